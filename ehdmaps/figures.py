@@ -1,8 +1,10 @@
-"""What all figures of this distribution share: colours, and how units are written; without a library of figures."""
+"""What all figures of this distribution share: colours, titles that fit, how units are written; imports no library."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
+from typing import Any
 
 COLOURS = ("#1f5fa8", "#c8102e", "#2a7f3f", "#8a5a00", "#6a3d9a", "#0b8a8f", "#d95f02", "#444444")
 """Colours of lines, in this order: dark enough for thin lines on white paper."""
@@ -13,8 +15,14 @@ WARNING = COLOURS[1]
 SHADE, SHADE_ALPHA = "#f2c14e", 0.35
 """Colour of ranges that are no longer valid, or not known."""
 
-_LETTERS = {"um": "µm", "degC": "°C", "deg": "°", "s2": "s²"}
-_UNIT = re.compile(r"(?<![A-Za-z0-9])(?:um|degC|s2)(?![A-Za-z0-9])|(?<=[0-9]) deg(?![A-Za-z])")
+_MARGIN = 0.02
+"""Right of a line, as a part of the width of its figure."""
+
+_HANDLE = 8
+"""Letters that the handle of a label takes, with the room beside it."""
+
+_LETTERS = {"um": "µm", "urad": "µrad", "degC": "°C", "deg": "°", "s2": "s²", "mm2": "mm²"}
+_UNIT = re.compile(r"(?<![A-Za-z0-9])(?:um|urad|degC|s2|mm2)(?![A-Za-z0-9])|(?<=[0-9]) deg(?![A-Za-z])")
 
 
 def typeset(text: str) -> str:
@@ -26,3 +34,56 @@ def typeset(text: str) -> str:
     '15°, 40 °C, 20 µm; N/µm, m/s², album'
     """
     return _UNIT.sub(lambda found: _LETTERS[found.group().strip()], text)
+
+
+def write_heading(figure: Any, text: str, size: float, weight: str = "normal") -> None:
+    """Write the heading of a figure; lines that are longer than it is wide are broken.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+        The figure.
+    text : str
+        The heading.
+    size : float
+        Size of its letters [pt].
+    weight : str
+        Their weight.
+    """
+    figure.suptitle(text, fontsize=size, fontweight=weight, wrap=True)
+
+
+def keep_within(figure: Any, text: Any) -> None:
+    """Make the letters of a line smaller where it would run out of its figure on the right.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+        The figure.
+    text : matplotlib.text.Text
+        A line that begins within it.
+    """
+    box, end = text.get_window_extent(), (1.0 - _MARGIN) * figure.bbox.width
+    if box.x1 > end:
+        text.set_fontsize(text.get_fontsize() * (end - box.x0) / box.width)
+
+
+def legend_columns(labels: Sequence[str], letters: int, most: int) -> int:
+    """How many columns a legend has room for.
+
+    Parameters
+    ----------
+    labels : sequence of str
+        Labels of the legend.
+    letters : int
+        Letters that have room beside each other.
+    most : int
+        Most columns that are wanted.
+
+    Examples
+    --------
+    >>> legend_columns(["dry Hertz", "film formula"], 150, 4), legend_columns(["a" * 60], 150, 4)
+    (4, 2)
+    """
+    longest = max(map(len, labels), default=0)
+    return max(1, min(most, letters // (longest + _HANDLE)))

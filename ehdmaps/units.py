@@ -1,7 +1,8 @@
 """Strings with units: the one place where they are read, and where numbers are written for people.
 
 Inside the package and in files everything is SI, temperatures in K. `quantity` turns what a person typed
-("62 N/mm", "40 degC") into that; the `Display` values turn it back into an engineer's units.
+("62 N/mm", "40 degC") into that; the `Display` values turn it back into an engineer's units, one for each quantity in
+whatever is printed or drawn: the table "Units" of the reference page has them.
 """
 
 from __future__ import annotations
@@ -227,7 +228,22 @@ KELVIN = Display("K")
 FILM = Display("um", 1e6)
 LENGTH = Display("mm", 1e3)
 PRESSURE = Display("GPa", 1e-9)
+# Of a contact, per length.
 STIFFNESS = Display("N/(um mm)", 1e-9)
-DAMPING = Display("N s/(m mm)", 1e-3)
+DAMPING = Display("N s/mm2", 1e-6)
+COMPLIANCE = Display("um mm/N", 1e9)
+# Of a roller, a bearing, a spring.
+SPRING = Display("N/um", 1e-6)
+DAMPER = Display("N s/mm", 1e-3)
 ROLLING_FORCE = Display("N/m")
 MASS_FLOW = Display("g/(m s)", 1e3)
+
+MOTIONS = {
+    "m": Display("um", 1e6),
+    "m/s": Display("mm/s", 1e3),
+    "m/s2": Display("m/s2"),
+    "rad": Display("urad", 1e6),
+    "rad/s": Display("mrad/s", 1e3),
+    "rad/s2": Display("rad/s2"),
+}
+"""How people are shown displacements, velocities and accelerations, by SI unit; so are responses, per N or N m."""

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 import ehdmaps
 from ehdmaps.errors import InputError
 from ehdmaps.outputs import write_figure
+from ehdmaps.units import DAMPER, SPRING
 
 BEARING, SLICE, FORCE = ehdmaps.BearingGeometry.named("N1014"), 0.45e-3, 40.0
 contact, _ = BEARING.contacts(ehdmaps.STEEL, "iso16281")
@@ -25,7 +26,8 @@ for solver in ("hertz", "formula", "reynolds", "openfoam"):
     except InputError as error:
         print(f"{solver}: skipped; {error}")
         continue
-    print(f"{solver}: k {found[solver].stiffness * SLICE:.4g} N/m, c {found[solver].damping * SLICE:.3g} N s/m")
+    k, c = found[solver].stiffness * SLICE, found[solver].damping * SLICE
+    print(f"{solver}: k {SPRING.text(k)}, c {DAMPER.text(c, 3)}")
 
 length = 1e3 * BEARING.roller_length  # the law takes the whole roller, in mm and N
 both = (point.load * 1e-3 * length / (35948.0 * length ** (8 / 9))) ** 0.9 * 1e-3
@@ -33,7 +35,7 @@ expected = 10 / 9 * point.load / (both / 2)
 assert abs(found["hertz"].stiffness / expected - 1.0) < 1e-12  # rounding
 
 figure = Figure(figsize=(7.0, 3.0), layout="constrained")
-for axes, name, unit in zip(figure.subplots(1, 2), ("stiffness", "damping"), ("N/m", "N s/m"), strict=True):
-    axes.bar(list(found), [getattr(solution, name) * SLICE for solution in found.values()])
-    axes.set_ylabel(f"{name} of the slice, {unit}")
+for axes, name, display in zip(figure.subplots(1, 2), ("stiffness", "damping"), (SPRING, DAMPER), strict=True):
+    axes.bar(list(found), [display.value(getattr(solution, name) * SLICE) for solution in found.values()])
+    axes.set_ylabel(f"{name} of the slice, {display.unit}")
 write_figure(figure, Path(sys.argv[1] if len(sys.argv) > 1 else ".") / "01_one_contact.png", 120)

@@ -31,7 +31,8 @@ run = solve_ivp(
     lambda _, y: [y[1], (FORCE - LENGTH * float(law(rest + y[0], y[1])[0])) / MASS], times[[0, -1]], begin, **options
 )
 counted = np.diff(times[1:][np.diff(np.sign(run.y[0])) > 0.0])[-4:].mean()  # the first, larger swings are not linear
-print(f"{1 / counted:.1f} Hz counted, {1 / period:.1f} Hz by k = {k:.4g} N/m and c = {c:.4g} N s/m of the law")
+law_words = f"k = {1e-6 * k:.4g} N/um and c = {1e-3 * c:.4g} N s/mm of the law"
+print(f"{1 / counted:.1f} Hz counted, {1 / period:.1f} Hz by {law_words}")
 assert abs(counted / period - 1.0) < 1e-3  # what is not linear in a swing of some tenths of a micrometre
 figure, axes = plt.subplots(figsize=(7.0, 3.0), layout="constrained")
 axes.plot(1e3 * run.t, 1e6 * run.y[0])

@@ -157,6 +157,13 @@ def parser() -> argparse.ArgumentParser:
         "--solve", metavar="FILE.json", help="solve the finite elements anew and write them; needs CalculiX (ccx)"
     )
 
+    openfoam = commands.add_parser("openfoam", help="build ehlFoam, which the solver openfoam runs; see --install")
+    way = openfoam.add_mutually_exclusive_group()
+    way.add_argument(
+        "--install", action="store_true", help="Debian 12: install OpenFOAM and a compiler first, by apt-get"
+    )
+    way.add_argument("--check", action="store_true", help="say whether the executable is up to date; build nothing")
+
     _add_export(commands)
     _add_solids(commands)
     _add_compare(commands)

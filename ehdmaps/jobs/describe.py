@@ -210,7 +210,8 @@ def oil_rows(oil: Lubricant) -> Iterator[tuple[str, str]]:
     over_temperature, over_pressure = record["viscosity_over_temperature"], record["viscosity_law"]
     yield "viscosity", f"{_at_temperatures(oil, 'viscosity', _VISCOSITY)} (law {over_temperature})"
     coefficient = _at_temperatures(oil, "pressure_viscosity", _PER_PRESSURE)
-    limit = f", fitted up to {PRESSURE.text(oil.fitted_pressure)}" if oil.fitted_pressure < float("inf") else ""
+    kind = "assumed" if oil.reach_assumed else "stated"
+    limit = f", reach {PRESSURE.text(oil.fitted_pressure)} {kind}" if oil.fitted_pressure < float("inf") else ""
     yield "pressure-viscosity", f"{coefficient} (law {over_pressure}{limit})"
     slope = f", {oil.density_slope:+g} kg/m3 a K" if oil.density_slope else ""
     yield "density", f"{oil.density_15:.5g} kg/m3 at 15 degC{slope} (over pressure: {oil.density_law})"

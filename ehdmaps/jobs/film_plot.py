@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ehdmaps.arrays import BoolArray, FloatArray
-from ehdmaps.figures import COLOURS, WARNING, typeset
+from ehdmaps.figures import COLOURS, WARNING, typeset, write_heading
 from ehdmaps.openfoam.grid_solver import GridSolution
 from ehdmaps.openfoam.results import FilmTable
 from ehdmaps.outputs import write_figure
@@ -69,7 +69,7 @@ def plot_films(rows: Sequence[FilmRow], heading: str, output: Path) -> None:
 
     with mpl.rc_context(_FONT):
         figure = Figure(figsize=(ROW[0], ROW[1] * len(rows) + 0.4), layout="constrained")
-        figure.suptitle(heading, fontsize=10, fontweight="bold")
+        write_heading(figure, heading, 10, "bold")
         warm = any(row.grid.fields is not None and row.grid.fields.T is not None for row in rows)
         panels = figure.subplots(len(rows), 4 if warm else 3, squeeze=False)
         for row, axes in zip(rows, panels, strict=True):

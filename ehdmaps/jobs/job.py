@@ -258,6 +258,11 @@ class Job:
             return f"line contact R = {self.contacts[0].radius * 1e3:.4g} mm"
         return self.bearing.title
 
+    @property
+    def estimates(self) -> tuple[str, ...]:
+        """Lines on what of the bearing is estimated, to follow a heading; none where nothing is."""
+        return (f"  bearing: {self.bearing.estimated}",) if self.bearing and self.bearing.estimated else ()
+
 
 def check_oil(oil: Lubricant, job: Job, where: str = "") -> None:
     """Make sure that a job that was written for an oil has this oil.

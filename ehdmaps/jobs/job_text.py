@@ -298,7 +298,10 @@ def _lubricant(oil: Lubricant) -> Iterator[tuple[str, Entry]]:
             value = float(record[parameter.key])
             yield parameter.key, _quantity(value, parameter.unit) if parameter.unit else value
     for key, unit in _OIL_UNITS.items():
-        if key in record and not (oil.correlation and key.startswith("pressure_viscosity")):
+        said = (oil.correlation and key.startswith("pressure_viscosity")) or (
+            key == "fitted_pressure" and oil.reach_assumed
+        )
+        if key in record and not said:
             yield from _oil_quantity(key, float(record[key]), unit)
     for key, unit in _OIL_HEAT_UNITS.items():
         if key in record:

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ehdmaps.figures import COLOURS
+from ehdmaps.figures import COLOURS, write_heading
 from ehdmaps.solids.three_d_compare import LengthComparison
 from ehdmaps.solids.three_d_reference import LengthReference
 
@@ -35,10 +35,11 @@ def length_figure(reference: LengthReference, cases: list[LengthComparison]) -> 
         panel.set_xlabel("place along the roller, mm")
     handles, labels = panels[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, ncols=4, fontsize=9, frameon=False, loc="outside lower center")
-    figure.suptitle(
+    write_heading(
+        figure,
         f"{reference.bearing}: a roller on its inner raceway, dry; finite elements with "
         f"{max(reference.unknowns.values())} unknowns",
-        fontsize=10.5,
+        10.5,
     )
     return figure
 

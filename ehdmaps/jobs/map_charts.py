@@ -25,7 +25,7 @@ from ehdmaps.report.axis import Axis, log_axis, symlog_axis
 from ehdmaps.report.chart import GREY, SEQUENCE, Chart, Curve, Points, Shade, figure
 from ehdmaps.report.markup import Markup, tag
 from ehdmaps.report.numbers import number, shown
-from ehdmaps.units import DAMPING, FILM, LOAD, SPEED, STIFFNESS, TEMPERATURE, Display
+from ehdmaps.units import DAMPING, FILM, LOAD, PRESSURE, SPEED, STIFFNESS, TEMPERATURE, Display
 
 MOST_CURVES = 6
 """Speeds, or temperatures, of a chart: more cannot be told apart."""
@@ -54,6 +54,9 @@ _NAMES = {
 }
 _VALLEY = 0.7
 """Share of the damping on both sides below which a valley is one."""
+
+_LINE = 1.015
+"""Ratio of the ends of a shade that is drawn as a line."""
 
 _DASHES = ("", "7 3", "2 3", "9 3 2 3")
 
@@ -330,13 +333,17 @@ def _operated(
 
 
 def _shades(of: MapCurves, contact: LineContact, temperature: float | None) -> list[Shade]:
-    """Where the viscosity is extrapolated at some speed."""
+    """Where the viscosity is extrapolated at some speed; a line alone where its reach is assumed."""
     here = of.emap.dataset.sel(contact=contact.name).sel(temperature=temperature, method="nearest")
     beyond = here["viscosity_extrapolated"].transpose("load", ...).values.max(axis=1) > 0
     if not beyond.any():
         return []
     loads = LOAD.factor * here["load"].values
-    return [Shade("viscosity extrapolated", float(loads[beyond][0]), float(loads[-1]))]
+    begin, oil = float(loads[beyond][0]), of.emap.lubricant
+    if not oil.reach_assumed:
+        return [Shade("viscosity extrapolated", begin, float(loads[-1]))]
+    words = f"right of it above {shown(PRESSURE, oil.fitted_pressure)}: assumed reach of the viscosity law"
+    return [Shade(words, begin, _LINE * begin)]
 
 
 def _says(

@@ -16,7 +16,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, NullLocator
 
-from ehdmaps.figures import typeset
+from ehdmaps.figures import keep_within, typeset
 from ehdmaps.jobs.plot_curves import (
     ASYMPTOTE,
     BELOW,
@@ -24,12 +24,13 @@ from ehdmaps.jobs.plot_curves import (
     HATCH,
     LOST,
     MOST_CURVES,
+    REACH,
     Sheet,
     draw_curves,
     keep_corners_free,
     spread,
 )
-from ehdmaps.jobs.report import fitted_pressure, span, status_counts
+from ehdmaps.jobs.report import span, status_counts
 from ehdmaps.maps import schema
 from ehdmaps.maps.curves import law_field
 from ehdmaps.maps.emap import EHDMap
@@ -38,7 +39,7 @@ from ehdmaps.outputs import write_figure
 from ehdmaps.physics.film_limits import BELOW_ROUGHNESS, CONTINUUM, NO_CONTINUUM
 from ehdmaps.physics.solution import Status
 from ehdmaps.program import plain
-from ehdmaps.units import DAMPING, FILM, LOAD, SPEED, STIFFNESS, TEMPERATURE, Display
+from ehdmaps.units import DAMPING, FILM, LOAD, PRESSURE, SPEED, STIFFNESS, TEMPERATURE, Display
 
 A4_LANDSCAPE = (11.69, 8.27)
 RESOLUTION = 200
@@ -224,6 +225,23 @@ def _heading(figure: Figure, emap: EHDMap, shown: int) -> None:
         f"{typeset(span(dataset['temperature'].values, TEMPERATURE))} of the raceways.",
         8,
     )
+    write_estimated(figure, 0.909, emap)
+
+
+def write_estimated(figure: Figure, height: float, emap: EHDMap) -> None:
+    """Write how the inner geometry of the bearing was estimated, where it was.
+
+    Parameters
+    ----------
+    figure : Figure
+        The page.
+    height : float
+        Place of the middle of the line, as a share of the page.
+    emap : EHDMap
+        The map.
+    """
+    if emap.bearing is not None and emap.bearing.estimated:
+        write_line(figure, height, f"{emap.bearing.name}: {emap.bearing.estimated}.", 7.5)
 
 
 def what_is_mapped(emap: EHDMap) -> tuple[str, str]:
@@ -244,7 +262,7 @@ def what_is_mapped(emap: EHDMap) -> tuple[str, str]:
 def write_line(
     figure: Figure, height: float, text: str, size: float, weight: str = "normal", colour: str = "black"
 ) -> None:
-    """Write a line of the page; texts of a map are no formulas.
+    """Write a line of the page, in smaller letters where it is long; texts of a map are no formulas.
 
     Parameters
     ----------
@@ -259,7 +277,10 @@ def write_line(
     weight, colour : str
         Their weight and colour.
     """
-    figure.text(0.057, height, text, fontsize=size, fontweight=weight, color=colour, va="center", parse_math=False)
+    line = figure.text(
+        0.057, height, text, fontsize=size, fontweight=weight, color=colour, va="center", parse_math=False
+    )
+    keep_within(figure, line)
 
 
 def page_legend(figure: Figure, entries: Sequence[Line2D | Patch]) -> Legend:
@@ -322,8 +343,13 @@ def mark_entries(sheet: Sheet) -> list[Line2D | Patch]:
     lost = ~np.isin(status, [int(known) for known in Status if known.usable])
     entries: list[Line2D | Patch] = []
     if sheet.extrapolated_from:
-        where = f"viscosity extrapolated at some speed: above {fitted_pressure(dataset)}"
-        entries.append(Patch(label=where, **HATCH))
+        oil = sheet.emap.lubricant
+        above = f"at some speed above {PRESSURE.text(oil.fitted_pressure)}"
+        if oil.reach_assumed:
+            where = f"right of it {above}: how far the viscosity law reaches is assumed, not stated"
+            entries.append(Line2D([], [], label=where, **REACH))
+        else:
+            entries.append(Patch(label=f"viscosity extrapolated: {above}", **HATCH))
     if (status == int(Status.ASYMPTOTE)).any():
         entries.append(Line2D([], [], ls="", mec="0.3", label=f"asymptote: {_limits(dataset)}", **ASYMPTOTE))
     if (lost & filled).any():

@@ -36,6 +36,10 @@ BELOW: Any = {"marker": "v", "ms": 3.5}
 FILLED: Any = {"marker": "o", "ms": 4, "mfc": "none", "mec": WARNING, "mew": 0.9}
 LOST: Any = {"marker": "x", "ms": 4, "color": WARNING}
 HATCH: Any = {"facecolor": "none", "edgecolor": "0.8", "hatch": "////", "lw": 0.0, "zorder": 0}
+"""Pressures beyond those to which the viscosity of the oil is stated."""
+
+REACH: Any = {"color": "0.35", "lw": 0.9, "ls": (0, (1, 1.5)), "zorder": 1}
+"""Where pressures pass a reach of the viscosity that nobody stated: a line, because nothing is known to end there."""
 
 
 @dataclass(frozen=True)
@@ -124,7 +128,10 @@ def draw_curves(
     _scales(axes, loads, display.factor * here[name].values, name)
     if place in sheet.extrapolated_from:
         start = LOAD.factor * sheet.extrapolated_from[place]
-        axes.axvspan(start, max(loads[-1], start), **HATCH)
+        if sheet.emap.lubricant.reach_assumed:
+            axes.axvline(start, **REACH)
+        else:
+            axes.axvspan(start, max(loads[-1], start), **HATCH)
 
 
 def _dense(sheet: Sheet, name: str, contact: int, temperature: int, speed: int) -> tuple[FloatArray, FloatArray] | None:

@@ -21,7 +21,21 @@ from ehdmaps.physics.moes import moes_groups
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.roughness import SMOOTH, Surface
 from ehdmaps.physics.solution import ContactSolution, Status
-from ehdmaps.units import FILM, LENGTH, LOAD, MASS_FLOW, PRESSURE, ROLLING_FORCE, RPM, TEMPERATURE, Display
+from ehdmaps.units import (
+    DAMPER,
+    DAMPING,
+    FILM,
+    LENGTH,
+    LOAD,
+    MASS_FLOW,
+    PRESSURE,
+    ROLLING_FORCE,
+    RPM,
+    SPRING,
+    STIFFNESS,
+    TEMPERATURE,
+    Display,
+)
 
 _SOLUTION_FIELDS = (
     "approach",
@@ -167,7 +181,7 @@ def point_table(job: Job, records: list[dict[str, Any]], point: OperatingPoint, 
     # a long status must not run into the next column
     cells = [[record["contact"] for record in records], *([_shown(value) for value in row[2]] for row in rows)]
     width = max(14, *(len(cell) + 2 for line in cells for cell in line))
-    lines = [header, place, f"{'':38s}" + "".join(f"{cell:>{width}s}" for cell in cells[0])]
+    lines = [header, *job.estimates, place, f"{'':38s}" + "".join(f"{cell:>{width}s}" for cell in cells[0])]
     for (label, unit, _), values in zip(rows, cells[1:], strict=True):
         shown = "".join(f"{cell:>{width}s}" for cell in values)
         lines.append(f"  {label:22s} {unit:12s} {shown}")
@@ -185,11 +199,10 @@ def _speed(job: Job, point: OperatingPoint) -> str:
 
 
 def _extrapolated(job: Job, record: dict[str, Any]) -> str:
-    """Say that the pressure of a contact lies beyond the viscosity's fit; empty where it does not."""
+    """Say that the pressure of a contact lies beyond the reach of the viscosity; empty where it does not."""
     if not record["viscosity_extrapolated"]:
         return ""
-    limit = PRESSURE.text(job.lubricant.fitted_pressure)
-    return f"viscosity extrapolated: pressure above {limit}, to which it was fitted"
+    return f"viscosity extrapolated: pressure above {job.lubricant.reach}"
 
 
 def _rows(records: list[dict[str, Any]], length: float | None) -> Iterator[tuple[str, str, list[Any]]]:
@@ -218,11 +231,11 @@ def _rows(records: list[dict[str, Any]], length: float | None) -> Iterator[tuple
     for name, words, display in FOUND_BY_SOME:
         if any(record[name] is not None for record in records):
             yield row(words, name, display)
-    yield row("stiffness k", "stiffness", Display("N/m2"))
-    yield row("damping c", "damping", Display("N s/m2"))
+    yield row("stiffness k", "stiffness", STIFFNESS)
+    yield row("damping c", "damping", DAMPING)
     if length is not None:
-        yield row("k x length", "stiffness", Display("N/m"), length)
-        yield row("c x length", "damping", Display("N s/m"), length)
+        yield row("k x length", "stiffness", SPRING, length)
+        yield row("c x length", "damping", DAMPER, length)
     for name in ERRORS:
         stated = [_stated(record, name) for record in records]
         yield f"error of {name.removesuffix('_error').replace('_', ' ')}", "", stated

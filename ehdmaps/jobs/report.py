@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from ehdmaps.arrays import BoolArray, FloatArray
-from ehdmaps.maps.records import record_from_json
+from ehdmaps.maps.records import lubricant_from_json
 from ehdmaps.physics.film_limits import BELOW_ROUGHNESS, CONTINUUM, NO_CONTINUUM
 from ehdmaps.physics.solution import Status
 from ehdmaps.program import plain
@@ -197,7 +197,7 @@ def span(values: FloatArray, display: Display) -> str:
 
 
 def extrapolated_lines(dataset: xr.Dataset) -> Iterator[str]:
-    """Yield how many points lie beyond the pressures to which the viscosity was fitted, and where; or nothing."""
+    """Yield how many points lie beyond the pressures to which the viscosity holds, and where; or nothing."""
     beyond = dataset["viscosity_extrapolated"].values.astype(bool)
     if beyond.any():
         share = f"{np.count_nonzero(beyond)} points, {100.0 * beyond.mean():.2f} %"
@@ -206,12 +206,8 @@ def extrapolated_lines(dataset: xr.Dataset) -> Iterator[str]:
 
 
 def fitted_pressure(dataset: xr.Dataset) -> str:
-    """Say up to which pressure the viscosity of the map's oil was fitted."""
-    oil = record_from_json(dataset.attrs["lubricant"], "lubricant")
-    value = oil.get("fitted_pressure")
-    if not isinstance(value, (int, float)):
-        return "those of its data"
-    return f"{PRESSURE.text(value)}, to which {oil.get('label') or oil.get('name')} was fitted"
+    """Say up to which pressure the viscosity of the map's oil holds, and whether that is known."""
+    return lubricant_from_json(dataset.attrs["lubricant"]).reach
 
 
 def error_lines(dataset: xr.Dataset) -> Iterator[str]:

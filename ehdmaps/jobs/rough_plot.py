@@ -20,6 +20,7 @@ from ehdmaps.jobs.plot import (
     mark_entries,
     speed_bar,
     what_is_mapped,
+    write_estimated,
     write_line,
 )
 from ehdmaps.jobs.plot_curves import Sheet, draw_curves, keep_corners_free, spread
@@ -70,7 +71,8 @@ def _page(sheet: Sheet) -> Figure:
     parameter = f"Λ: minimum film between smooth surfaces over it; {_below(sheet)}."
     write_line(figure, 0.934, f"Combined rms roughness of both surfaces. {parameter}", 8)
     share = "film and asperities in balance (Johnson, Greenwood and Poon; asperities of Greenwood and Tripp)"
-    write_line(figure, 0.914, f"Share of the load: {share}.", 8)
+    write_line(figure, 0.916, f"Share of the load: {share}.", 8)
+    write_estimated(figure, 0.9, sheet.emap)
     grid = figure.add_gridspec(
         2 * contacts, len(temperatures), left=0.062, right=0.92, top=0.875, bottom=0.105, wspace=0.08, hspace=0.12
     )

@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ehdmaps.figures import typeset, write_heading
 from ehdmaps.outputs import write_figure
 from ehdmaps.physics.approach import STRUCTURAL_LAWS
 from ehdmaps.physics.bearing import BearingGeometry, with_law
@@ -17,7 +18,7 @@ from ehdmaps.physics.contact import LineContact
 from ehdmaps.solids.mesh_plane import PlaneMesh
 from ehdmaps.solids.plane_bearing import contact_meshes
 from ehdmaps.solids.sections import Sections
-from ehdmaps.units import LOAD
+from ehdmaps.units import COMPLIANCE, LOAD
 
 RESOLUTION = 200
 SHOWN_GRADING = 0.3
@@ -74,7 +75,8 @@ def solids_figure(contacts: Sequence[LineContact], bearing: BearingGeometry, sec
         _meshes(row[0], roller, ring)
         row[0].set_title(f"{contact.name} contact, meshes (coarser than solved)", fontsize=8.5)
         _laws(row[1], row[2], contact, bearing)
-    figure.suptitle(f"{bearing.title}: solids by plane finite elements", fontsize=10)
+    estimated = f"\n{bearing.estimated}" if bearing.estimated else ""
+    write_heading(figure, f"{bearing.title}: solids by plane finite elements{estimated}", 10)
     return figure
 
 
@@ -100,11 +102,11 @@ def _laws(over_load: Axes, ratio: Axes, contact: LineContact, bearing: BearingGe
         line = with_law(contact, law, bearing)
         colour, style = _STYLES[law]
         shown = LOAD.factor * loads
-        secant = 1e12 * np.asarray(line.structural_approach(loads)) / loads
+        secant = COMPLIANCE.factor * np.asarray(line.structural_approach(loads)) / loads
         over_load.semilogx(shown, secant, style, color=colour, lw=1.0, label=law)
         ratio.semilogx(shown, reference / line.structural_compliance(loads), style, color=colour, lw=1.0, label=law)
-    over_load.set_xlabel("load (N/mm)")
-    over_load.set_ylabel("approach over load (nm mm/N)")
-    ratio.set_xlabel("load (N/mm)")
+    over_load.set_xlabel(f"load, {LOAD.unit}")
+    over_load.set_ylabel(typeset(f"approach over load, {COMPLIANCE.unit}"))
+    ratio.set_xlabel(f"load, {LOAD.unit}")
     ratio.set_ylabel("stiffness over that of fe")
     over_load.legend(fontsize=7)

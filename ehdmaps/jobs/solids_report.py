@@ -36,6 +36,8 @@ def _lines(record: Mapping[str, Any], bearing: BearingGeometry) -> Iterator[str]
     """The text, line by line."""
     contacts = record["contacts"]
     yield f"{bearing.title}: {sections_words(record['sections'])}"
+    if bearing.estimated:
+        yield f"  {bearing.estimated}"
     yield ""
     yield _row("", contacts)
     yield _row(f"approach at {LOAD.text(FE_LOAD)}", [FILM.text(c["fe_approach"], 5) for c in contacts.values()])

@@ -12,10 +12,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ehdmaps.arrays import BoolArray, FloatArray
+from ehdmaps.figures import write_heading
 from ehdmaps.jobs.spectrum_report import spectrum_place
 from ehdmaps.outputs import write_figure
 from ehdmaps.physics.solution import Status
-from ehdmaps.units import STIFFNESS, Display
+from ehdmaps.units import COMPLIANCE, STIFFNESS
 
 COLUMN = (5.6, 7.6)
 """Size of a column [inch]."""
@@ -23,7 +24,6 @@ COLUMN = (5.6, 7.6)
 RESOLUTION = 200
 _FONT: Any = {"font.size": 8.5, "axes.linewidth": 0.6, "xtick.major.width": 0.6, "ytick.major.width": 0.6}
 _LINE, _SLOW, _NEGATIVE = "#1b6ca8", "0.45", "#c8102e"
-_COMPLIANCE = Display("um mm/kN", 1e12)
 
 
 def plot_spectrum(dataset: xr.Dataset, title: str, output: Path) -> None:
@@ -62,7 +62,7 @@ def spectrum_figure(dataset: xr.Dataset, title: str) -> Figure:
     contacts = dataset["contact"].values.tolist()
     figure = Figure(figsize=(COLUMN[0] * max(len(contacts), 1), COLUMN[1]), layout="constrained")
     place = spectrum_place(dataset).replace("degC", "°C")
-    figure.suptitle(f"{title}: {place}; {dataset.attrs['solver']}", fontsize=10, fontweight="bold")
+    write_heading(figure, f"{title}: {place}; {dataset.attrs['solver']}", 10, "bold")
     panels = figure.subplots(3, len(contacts), squeeze=False, sharex=True)
     for contact, column in zip(contacts, panels.T, strict=True):
         _column(dataset.sel(contact=contact), contact, list(column))
@@ -94,13 +94,13 @@ def _column(chosen: xr.Dataset, contact: str, panels: list[Axes]) -> None:
     loss.set_ylim(low, high)
     loss.set_ylabel(f"loss part ωc, {STIFFNESS.unit}".replace("um", "µm"))
 
-    compliance, share = _COMPLIANCE.factor * chosen["film_compliance"].values, chosen["film_compliance_error"].values
+    compliance, share = COMPLIANCE.factor * chosen["film_compliance"].values, chosen["film_compliance_error"].values
     error = share * np.abs(compliance)
     for values, colour, name in ((compliance.real, "#444444", "real part"), (-compliance.imag, "#d17b0f", "loss part")):
         film.plot(frequency, values, color=colour, lw=1.1, label=f"{name} of S")
         film.fill_between(frequency, values - error, values + error, color=colour, alpha=0.25, lw=0.0)
     film.axhline(0.0, color="black", lw=0.5)
-    film.set_ylabel(f"film compliance S, {_COMPLIANCE.unit}".replace("um", "µm"))
+    film.set_ylabel(f"film compliance S, {COMPLIANCE.unit}".replace("um", "µm"))
 
     fed = c < 0.0
     for axes in panels:

@@ -11,7 +11,7 @@ import xarray as xr
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.report import NONE_STATED
 from ehdmaps.physics.solution import Status
-from ehdmaps.units import LENGTH, LOAD, SPEED, TEMPERATURE
+from ehdmaps.units import COMPLIANCE, DAMPER, DAMPING, LENGTH, LOAD, SPEED, SPRING, STIFFNESS, TEMPERATURE
 
 _COMPLEX = ("film_compliance", "film_stiffness", "dynamic_stiffness")
 
@@ -67,7 +67,8 @@ def spectrum_table(job: Job, dataset: xr.Dataset, length: float | None) -> str:
     if length is not None:
         place += f", slice of {LENGTH.text(length)} ({dataset.attrs['load'] * length:.5g} N)"
     law = job.contacts[0].structural_law
-    lines = [f"{job.title}, {job.lubricant.title}, solver {dataset.attrs['solver']}, structural law {law}", place]
+    head = f"{job.title}, {job.lubricant.title}, solver {dataset.attrs['solver']}, structural law {law}"
+    lines = [head, *job.estimates, place]
     for contact in dataset["contact"].values.tolist():
         lines.extend(["", *_block(dataset.sel(contact=contact), contact, length)])
     return "\n".join(lines)
@@ -90,18 +91,21 @@ def _block(chosen: xr.Dataset, contact: str, length: float | None) -> list[str]:
     status, reason = Status(int(chosen["status"])), str(chosen["reason"].values)
     if not status.usable:
         return [f"{contact}: {status.word}; {reason}"]
-    slow = f"slow motion: k {float(chosen['slow_stiffness']):.5g} N/m2, c {float(chosen['slow_damping']):.5g} N s/m2"
+    stiffness, damping = (float(chosen[f"slow_{name}"]) for name in ("stiffness", "damping"))
+    slow = f"slow motion: k {STIFFNESS.text(stiffness, 5)}, c {DAMPING.text(damping, 5)}"
     lines = [f"{contact}: {status.word}; {slow}{f'; {reason}' if reason else ''}"]
     heads = ["frequency", "omega b/u", "k", "error", "c", "error", "S real", "S imag.", "error"]
-    units = ["Hz", "", "N/m2", "", "N s/m2", "", "m2/N", "m2/N", ""]
+    units = ["Hz", "", STIFFNESS.unit, "", DAMPING.unit, "", COMPLIANCE.unit, COMPLIANCE.unit, ""]
     names = ("frequency", "omega_b_over_u", "stiffness", "stiffness_error", "damping", "damping_error")
     columns = [chosen[name].values for name in names]
-    film = chosen["film_compliance"].values
+    k, c = columns[2], columns[4]
+    columns[2], columns[4] = STIFFNESS.factor * k, DAMPING.factor * c
+    film = COMPLIANCE.factor * chosen["film_compliance"].values
     columns += [film.real, film.imag, chosen["film_compliance_error"].values]
     if length is not None:
         heads[6:6] = ["k x length", "c x length"]
-        units[6:6] = ["N/m", "N s/m"]
-        columns[6:6] = [columns[2] * length, columns[4] * length]
+        units[6:6] = [SPRING.unit, DAMPER.unit]
+        columns[6:6] = [SPRING.factor * k * length, DAMPER.factor * c * length]
     lines += ["".join(f"{word:>12s}" for word in words) for words in (heads, units)]
     for row in zip(*columns, strict=True):
         cells = (_error(value) if head == "error" else f"{value:12.5g}" for head, value in zip(heads, row, strict=True))

@@ -212,7 +212,7 @@ class StatusFile:
 
 def about(job: Job) -> str:
     """What is made, in words."""
-    return f"{job.title}, {job.lubricant.name}, solver {job.solver}"
+    return f"{job.title}, {job.lubricant.title}, solver {job.solver}"
 
 
 def status_path(output: Path) -> Path:

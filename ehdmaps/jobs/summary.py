@@ -11,6 +11,7 @@ import numpy as np
 from ehdmaps.jobs.correction_report import correction_lines
 from ehdmaps.jobs.generate import Generated
 from ehdmaps.jobs.report import error_lines, extrapolated_lines, holes, law_lines, status_lines, tolerance_lines
+from ehdmaps.maps.records import record_from_json
 
 
 def summary(generated: Generated, output: Path) -> str:
@@ -29,6 +30,8 @@ def summary(generated: Generated, output: Path) -> str:
 def _lines(generated: Generated, output: Path) -> Iterator[str]:
     dataset, sweep = generated.dataset, generated.sweep
     yield f"{output}: {dataset.attrs['title']}"
+    if estimated := record_from_json(dataset.attrs["geometry"], "geometry").get("estimated"):
+        yield f"  bearing: {estimated}"
     counts = f"{sweep.taken_over} taken over, {sweep.solved} solved now"
     yield f"points: {counts}, {holes(dataset)} without a solution"
     if sweep.damaged:

@@ -24,7 +24,7 @@ from ehdmaps.provenance import PACKAGES, code_hash
 LONGEST_LINE = 32
 """Loads of one task, which is lost as a whole when its process is killed: well under a second."""
 
-_SHOWN = ("label", "estimated")
+_SHOWN = ("label", "estimated", "fitted_pressure_stated")
 """Entries of an oil's record that are only shown."""
 
 _TYPES: Mapping[str, Any] = {

@@ -165,6 +165,7 @@ def lubricant_from_json(text: str) -> Lubricant:
             heat_capacity=record.get("heat_capacity", HEAT_CAPACITY),
             correlation=record.get("correlation"),
             label=record.get("label"),
+            fitted_pressure_stated=record.get("fitted_pressure_stated") is True,
         )
     except _UNREADABLE as error:
         raise _broken("lubricant", error) from error

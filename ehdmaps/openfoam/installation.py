@@ -7,7 +7,6 @@ import os
 import re
 import shutil
 import subprocess
-import sysconfig
 import tempfile
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
@@ -19,8 +18,8 @@ from ehdmaps.errors import InputError
 from ehdmaps.extras import lacking
 from ehdmaps.outputs import cache_folder
 
-BUILD_COMMAND = "openfoam_cases/build"
-"""Command in a clone of the project that installs what is needed and builds `ehlFoam`."""
+BUILD_COMMAND = "ehdmaps openfoam"
+"""Command that builds `ehlFoam`, by the script of `build_script`; with --install it installs what is needed, too."""
 
 FOLDER_VARIABLE = "EHDMAPS_OPENFOAM"
 """Environment variable with the folder of the build."""
@@ -33,9 +32,9 @@ DEBIAN_ENVIRONMENT = {"WM_PROJECT_DIR": str(DEBIAN), "WM_PROJECT_VERSION": "v191
 NO_PATH = re.compile(r"[\s\"']")
 """Characters that OpenFOAM does not take in the path of a case."""
 
-_CLONE = Path(__file__).parents[2] / "openfoam_cases"
-_SHARED = Path(sysconfig.get_path("data")) / "share" / "ehdmaps"
+_CASES = "openfoam_cases"
 _CASE = "lineContact"
+_NO_CASES = f"no folder {_CASES} is beside the package ehdmaps, and no share/ehdmaps/{_CASES} above it"
 _VERSION = re.compile(r"OpenFOAM\W+(?:version\W+)?(v?\d[\w.+-]*)", re.IGNORECASE)
 _PROCESSOR = re.compile(r"\bprocessor (\w+)")
 _RELEASE = re.compile(r"v?(\d+)")
@@ -97,7 +96,8 @@ def installation(environment: Mapping[str, str] | None = None) -> Installation:
     known = os.environ if environment is None else environment
     folder = build_folder(known)
     solver, record = folder / "bin" / "ehlFoam", folder / "bin" / "ehlFoam.build"
-    template = next((cases / _CASE for cases in (folder, _CLONE, _SHARED) if (cases / _CASE / "system").is_dir()), None)
+    places = (folder, cases_folder())
+    template = next((place / _CASE for place in places if place and (place / _CASE / "system").is_dir()), None)
     extra = () if "WM_PROJECT_DIR" in known else tuple(DEBIAN_ENVIRONMENT.items())
     build = ""
     problems = list(lacking("openfoam", "PyFoam", "the solver 'openfoam'"))
@@ -108,9 +108,14 @@ def installation(environment: Mapping[str, str] | None = None) -> Installation:
         )
     if shutil.which("setpriv", path=known.get("PATH")) is None:
         problems.append("setpriv is not in PATH; install the package util-linux")
-    if not os.access(solver, os.X_OK):
+    if NO_PATH.search(str(solver)):
         problems.append(
-            f"ehlFoam: there is no program {solver}; build it with `{BUILD_COMMAND}` in a clone of the project, "
+            f"ehlFoam: got the program {str(solver)!r}; OpenFOAM takes no spaces or quotes in its path; set "
+            f"{FOLDER_VARIABLE} to another folder and build there"
+        )
+    elif not os.access(solver, os.X_OK):
+        problems.append(
+            f"ehlFoam: there is no program {solver}; build it with `{BUILD_COMMAND} --install`, "
             f"or set {FOLDER_VARIABLE} to the folder of a build"
         )
     elif not record.is_file():
@@ -120,8 +125,8 @@ def installation(environment: Mapping[str, str] | None = None) -> Installation:
         problems += _other_machine(solver, build, known)
     if template is None:
         problems.append(
-            f"case {_CASE}: is in none of {folder}, {_CLONE}, {_SHARED}; install ehdmaps again, or copy "
-            f"openfoam_cases/{_CASE} of the project into the first"
+            f"case {_CASE}: is not in {folder}, and {_NO_CASES}; install ehdmaps again, or copy "
+            f"{_CASES}/{_CASE} of the project into that folder"
         )
     if NO_PATH.search(tempfile.gettempdir()):
         problems.append(
@@ -146,6 +151,40 @@ def missing() -> tuple[str, ...]:
     except InputError as error:
         return error.problems
     return ()
+
+
+def cases_folder(package: Path = Path(__file__).parents[1]) -> Path | None:
+    """Return the folder with the sources of `ehlFoam`, its case and the script that builds it.
+
+    Parameters
+    ----------
+    package : Path
+        Folder of the package ehdmaps.
+
+    Returns
+    -------
+    Path or None
+        `openfoam_cases` of a clone; else the nearest `share/ehdmaps/openfoam_cases` above the package, where
+        installations have it, whatever their scheme; None where there is neither.
+    """
+    places = (package.parent / _CASES, *(above / "share" / "ehdmaps" / _CASES for above in package.parents))
+    return next((place for place in places if (place / "build").is_file()), None)
+
+
+def build_script() -> Path:
+    """Return the script that builds `ehlFoam`.
+
+    Raises
+    ------
+    InputError
+        If it is not there.
+    """
+    cases = cases_folder()
+    if cases is None:
+        raise InputError(
+            f"the sources of ehlFoam: {_NO_CASES}; install ehdmaps again, from its wheel, sdist or a clone"
+        )
+    return cases / "build"
 
 
 def build_folder(environment: Mapping[str, str]) -> Path:

@@ -80,9 +80,8 @@ class BearingGeometry:
 
     @property
     def title(self) -> str:
-        """What the bearing is called in titles: its label, else its name; said where it is estimated."""
-        title = self.label or self.name
-        return f"{title} ({self.estimated.partition(',')[0]})" if self.estimated else title
+        """What the bearing is called in titles: its label, else its name; `estimated` is for a line of its own."""
+        return self.label or self.name
 
     def record(self) -> dict[str, float | str]:
         """Everything that defines the bearing, for provenance; SI units; what is not given is left out."""

@@ -140,6 +140,8 @@ class Lubricant:
         its values at 40 and 100 degC.
     label : str or None
         Free text shown instead of the name; no part of what makes oils equal.
+    fitted_pressure_stated : bool
+        Whether somebody stated `fitted_pressure` where it is `FITTED_PRESSURE`; any other pressure was stated.
 
     Raises
     ------
@@ -165,6 +167,7 @@ class Lubricant:
     heat_capacity: float = HEAT_CAPACITY
     correlation: str | None = None
     label: str | None = field(default=None, compare=False)
+    fitted_pressure_stated: bool = field(default=False, compare=False)
 
     def __post_init__(self) -> None:
         where = f"lubricant {self.name!r}"
@@ -197,6 +200,27 @@ class Lubricant:
     def title(self) -> str:
         """What the oil is called in titles: its label, else its name."""
         return self.label or self.name
+
+    @property
+    def reach_assumed(self) -> bool:
+        """Whether `fitted_pressure` is our assumption, because nobody stated how far the viscosity law reaches."""
+        return self.fitted_pressure == FITTED_PRESSURE and not self.fitted_pressure_stated
+
+    @property
+    def reach(self) -> str:
+        """Up to which pressure its viscosity holds, and whether that is known, in words.
+
+        Examples
+        --------
+        >>> Lubricant.named("FVA3").reach
+        '0.6 GPa, the reach that is assumed for FVA3 (none is stated)'
+        """
+        if math.isinf(self.fitted_pressure):
+            return "those of its data"
+        pressure = f"{1e-9 * self.fitted_pressure:.4g} GPa"
+        if self.reach_assumed:
+            return f"{pressure}, the reach that is assumed for {self.title} (none is stated)"
+        return f"{pressure}, up to which {self.title} is stated"
 
     @property
     def estimated(self) -> str:
@@ -297,7 +321,7 @@ class Lubricant:
         viscosity_100: float | None = None,
         density_slope: float = 0.0,
         density_law: DensityLaw = "dowson-higginson",
-        fitted_pressure: float = FITTED_PRESSURE,
+        fitted_pressure: float | None = None,
         thermal_conductivity: float | None = None,
         heat_capacity: float = HEAT_CAPACITY,
         name: str = "own oil",
@@ -325,8 +349,8 @@ class Lubricant:
             d rho0/dT [kg/(m3 K)].
         density_law : {"dowson-higginson", "incompressible"}
             Density over pressure.
-        fitted_pressure : float
-            Reach of the viscosity data [Pa]; inf flags nothing.
+        fitted_pressure : float, optional
+            Reach of the viscosity data [Pa]; inf flags nothing. Left out, `FITTED_PRESSURE` is assumed, and called so.
         thermal_conductivity : float, optional
             k_f [W/(m K)]; films with heat need it.
         heat_capacity : float
@@ -359,10 +383,11 @@ class Lubricant:
             density_15=density,
             density_slope=density_slope,
             density_law=density_law,
-            fitted_pressure=fitted_pressure,
+            fitted_pressure=FITTED_PRESSURE if fitted_pressure is None else fitted_pressure,
             thermal_conductivity=thermal_conductivity,
             heat_capacity=heat_capacity,
             correlation=laws.correlation,
+            fitted_pressure_stated=fitted_pressure is not None,
         )
 
     def at(self, temperature: float) -> LubricantState:
@@ -407,7 +432,8 @@ class Lubricant:
     def record(self) -> dict[str, float | str | bool]:
         """Everything that defines the oil, flat, for provenance; SI units; values not given are left out.
 
-        So is the heat capacity that is assumed: records that were made before there was one are those of today.
+        So is the heat capacity that is assumed, and whether the reach in pressure was stated where its value tells:
+        records that were made before there was any are those of today.
         """
         record: dict[str, float | str | bool] = {}
         for entry in fields(self):
@@ -417,6 +443,9 @@ class Lubricant:
                 record.update(_given(value, rename=_VOGEL_WORDS))
             elif entry.name == "pressure_viscosity":
                 record.update(law_record(value))
+            elif entry.name == "fitted_pressure_stated":
+                if value and self.fitted_pressure == FITTED_PRESSURE:
+                    record[entry.name] = True
             elif value is not None and not (entry.name == "heat_capacity" and value == HEAT_CAPACITY):
                 record[entry.name] = value
         if self.estimated:

@@ -8,7 +8,7 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ehdmaps.figures import COLOURS, typeset
+from ehdmaps.figures import COLOURS, typeset, write_heading
 from ehdmaps.trade.pareto import front
 from ehdmaps.trade.record import Choice, Judged, Trade
 
@@ -35,7 +35,7 @@ def trade_figure(trade: Trade) -> Figure:
     lines = len(trade.choices) + len(groups) + 3
     height = max(rows * _PANEL[1], lines * _KEY_LINE) + 0.6
     figure = Figure(figsize=(_COLUMNS * _PANEL[0] + _KEY, height), layout="constrained")
-    figure.suptitle(typeset(f"{trade.title}\nreference: {trade.reference}"), fontsize=8)
+    write_heading(figure, typeset(f"{trade.title}\nreference: {trade.reference}"), 8)
     grid = figure.add_gridspec(rows, _COLUMNS + 1, width_ratios=[*[_PANEL[0]] * _COLUMNS, _KEY])
     for place, entry in enumerate(judged):
         panel = figure.add_subplot(grid[place // _COLUMNS, place % _COLUMNS])

@@ -6,6 +6,8 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from ehdmaps.errors import InputError
 from ehdmaps.units import TEMPERATURE
 from mbs.analyses.varied import Subject
@@ -70,6 +72,22 @@ def temperature_text(model: Model) -> str:
         return f"raceways at {span(raceways, TEMPERATURE.unit)}"
     words = " around the bearings" if any(entry.changes_in_operation for entry in model.scene.bearings) else ""
     return TEMPERATURE.text(model.scene.temperature) + words
+
+
+def weight_text(model: Model) -> str:
+    """Whether the weight of the bodies is in what an analysis finds, in words.
+
+    Parameters
+    ----------
+    model : Model
+        Scene with its law.
+    """
+    along = np.array(model.scene.gravity)
+    if not along.any():
+        return "without weight (no gravity in [operation])"
+    axes = [f"{'-' if value < 0.0 else ''}{name}" for name, value in zip("xyz", along, strict=True) if value]
+    words = f"along {axes[0]}" if len(axes) == 1 else f"in {', '.join(axes)}"
+    return f"with weight ({np.linalg.norm(along):.4g} m/s2 {words})"
 
 
 def span(values: Sequence[float], unit: str) -> str:

@@ -242,7 +242,7 @@ def heat_verdict(found: Range, asked: str | None = None) -> Verdict:
     name = "inlet heating"
     size, state = found.carrying(lambda entry: heat_effect(entry, found.lubricant))
     if math.isnan(size):
-        return Verdict(name, False, size, f"unknown: no thermal conductivity of {found.lubricant.name} is known")
+        return Verdict(name, False, size, f"unknown: no thermal conductivity of {found.lubricant.title} is known")
     change = "more than the formula covers" if size >= 1.0 else f"up to {_percent(size)} at {SPEED.text(state.speed)}"
     words = f"it would lower c by {change} ({_beside(size, found)})"
     if asked is not None:

@@ -163,6 +163,7 @@ def tradeoff(
     ]
     if ramp is not None:
         lines += _run_frame(base, ramp, parts)
+    lines += model.warnings
     return Trade(
         level="system",
         title=f"Speed against accuracy of {scene.title}",

@@ -99,13 +99,14 @@ def overload(contacts: BearingContacts) -> str:
 
 
 def extrapolated(contacts: BearingContacts, oil: Lubricant | None) -> str:
-    """A sentence where the viscosity is used above the pressures that it was fitted for; empty otherwise."""
+    """A sentence where the viscosity is used above the pressures to which it holds; empty otherwise."""
     highest = float(np.max(contacts.max_pressure))
     if oil is None or not math.isfinite(_smallest(contacts.central_film)) or highest <= oil.fitted_pressure:
         return ""
     return (
-        f"the viscosity of {oil.name} is extrapolated above {PRESSURE.text(oil.fitted_pressure)} "
+        f"the viscosity of {oil.title} is extrapolated above {PRESSURE.text(oil.fitted_pressure)} "
         f"(largest pressure {PRESSURE.text(highest)})"
+        + ("; that its law reaches so far is assumed, not stated" if oil.reach_assumed else "")
     )
 
 

@@ -171,7 +171,7 @@ class FormulaFilms:
     def words(self) -> str:
         """The formulas."""
         formulas = "Moes' formula (minimum: Dowson-Higginson, Martin)"
-        return f"films: {formulas} for {self.lubricant.name}, {self.supply.label}"
+        return f"films: {formulas} for {self.lubricant.title}, {self.supply.label}"
 
     def state(self, side: int, load: FloatArray, entrainment_speed: float, temperature: float) -> ContactState:
         """Hertz' pressure and films by formula, zero at standstill; see `FilmSource.state`."""
@@ -241,7 +241,7 @@ class MapFilms:
     @property
     def words(self) -> str:
         """The map."""
-        return f"films of the map, {self.lubricant.name}, {self.in_force.label}"
+        return f"films of the map, {self.lubricant.title}, {self.in_force.label}"
 
     @property
     def in_force(self) -> OilSupply:

@@ -232,8 +232,8 @@ def _assumed(arguments: argparse.Namespace, given: _Given, emap: EHDMap | None, 
 def _law_words(law: str, emap: EHDMap | None, oil: Lubricant) -> str:
     """The law, for people."""
     if law == "map" and emap is not None:
-        return f"map of {oil.name}, solver {emap.dataset.attrs.get('solver', '')}{structure_words(emap)}"
-    words = f"film formula moes, {oil.name} (its damping is far too low for loaded contacts)"
+        return f"map of {oil.title}, solver {emap.dataset.attrs.get('solver', '')}{structure_words(emap)}"
+    words = f"film formula moes, {oil.title} (its damping is far too low for loaded contacts)"
     return words if law == "formula" else dry_words(law)
 
 

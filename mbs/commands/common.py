@@ -15,7 +15,7 @@ from ehdmaps.errors import InputError
 from ehdmaps.jobs.progress import Bar, Lines, progress
 from ehdmaps.outputs import write_figure
 from ehdmaps.units import RPM, Display, quantity
-from mbs.analyses.case import clearance_text, temperature_text
+from mbs.analyses.case import clearance_text, temperature_text, weight_text
 from mbs.analyses.film_errors import notable_from
 from mbs.analyses.reach import axes_outside, sources_of
 from mbs.analyses.resolution import Resolution
@@ -73,7 +73,7 @@ def heading(model: Model, speed: float | None = None) -> list[str]:
     at = "" if speed is None else f"{RPM.text(speed)}, "
     return [
         f"{model.scene.title}: law {model.law}",
-        f"  {at}{temperature_text(model)}, clearance {clearance_text(model) or 'none'}; assumed: "
+        f"  {at}{temperature_text(model)}, clearance {clearance_text(model) or 'none'}, {weight_text(model)}; assumed: "
         + (f"{len(model.scene.assumed)} keys of the scene, marked there" if model.scene.assumed else "nothing"),
         *_estimated(model),
         *(
@@ -82,6 +82,7 @@ def heading(model: Model, speed: float | None = None) -> list[str]:
             for name in model.system.weightless
         ),
         *state_lines(model.states),
+        *model.warnings,
     ]
 
 

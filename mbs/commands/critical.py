@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ehdmaps.errors import InputError
-from ehdmaps.units import RPM
+from ehdmaps.units import MOTIONS, RPM
 from mbs.analyses.case import Case
 from mbs.analyses.critical import CriticalResult, critical_of, dataset_of_laws, orders
 from mbs.analyses.operating import operating
@@ -196,7 +196,7 @@ def _responses(result: CriticalResult) -> list[str]:
         for index, sensor in enumerate(sensors):
             worst = int(np.argmax(seen[:, index]))
             lines.append(
-                f"  sensor {sensor.name}: {seen[worst, index]:.4g} {sensor_unit(sensor)} at "
+                f"  sensor {sensor.name}: {MOTIONS[sensor_unit(sensor)].text(seen[worst, index])} at "
                 f"{_rpm(result.speeds[worst])}"
             )
         for index, connected in enumerate(system.elements):

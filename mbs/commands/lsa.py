@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-import scipy  # its parts at first use: scipy.signal takes half a second
 
 from ehdmaps.errors import InputError
 from ehdmaps.exports.matlab_file import KIND
@@ -20,7 +19,7 @@ from mbs.commands.cases import load_cases
 from mbs.commands.common import band_lines, film_lines, heading, outside_at, write
 from mbs.commands.reach import fade_lines
 from mbs.commands.sweep import whole
-from mbs.linearised.linear import response_unit
+from mbs.linearised.linear import peak_places, response_display
 from mbs.linearised.sweep import MOST_ANGLES
 from mbs.linearised.validity import DynamicLoad
 from mbs.output.results import RESULT
@@ -148,15 +147,14 @@ def _peaks(model: Model, found: LsaResult) -> list[str]:
     frequencies, responses, bands = found.frequencies, found.responses, found.level_error
     for s, sensor in enumerate(model.scene.sensors):
         for i, entry in enumerate(model.scene.inputs):
-            size = np.abs(responses[:, s, i])
-            # A peak stands out of both valleys beside it.
-            places, _ = scipy.signal.find_peaks(np.log(np.maximum(size, 1e-300)), prominence=0.05)
+            display = response_display(sensor, entry)
+            size = display.factor * np.abs(responses[:, s, i])
             shown = [
                 f"{frequencies[k]:.5g} Hz ({size[k]:.3g}{'' if bands is None else f' +- {bands[k, s, i]:.2g} dB'})"
-                for k in places
+                for k in peak_places(size)
             ]
             lines.append(
-                f"  {sensor.name} ({sensor.quantity}, {response_unit(sensor, entry)}) by {entry.name}: "
+                f"  {sensor.name} ({sensor.quantity}, {display.unit}) by {entry.name}: "
                 + (f"peaks at {', '.join(shown)}" if shown else "no peak")
             )
     return lines

@@ -27,6 +27,7 @@ from mbs.commands.common import heading
 from mbs.scene.assembly import Model
 from mbs.scene.fields import MICROMETRE
 from mbs.scene.map_set import MapSet, map_sets
+from mbs.scene.oils import oil_warnings
 from mbs.scene.reader import read_scene
 from mbs.scene.scene import Scene
 
@@ -55,12 +56,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         *_turning(found),
     ]
     if maps is not None:
-        lines += [
-            f"  the oil of the map counts ({emap.lubricant.title}); that of the scene is another "
-            f"({scene.lubricant.title})"
-            for emap in maps.maps
-            if scene.lubricant is not None and scene.lubricant != emap.lubricant
-        ]
+        lines += oil_warnings(maps.oils(scene.bearings), scene.lubricant)
         return _covered(lines, coverage(found.needed, maps), ", ".join(arguments.map))
     planned = _plan(found, arguments)
     for entry in planned:

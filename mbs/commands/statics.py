@@ -9,7 +9,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.units import FILM, PRESSURE
+from ehdmaps.units import DAMPER, FILM, PRESSURE, SPRING
 from mbs.analyses.film_errors import film_errors
 from mbs.analyses.rings import ring_motions
 from mbs.analyses.statics import statics
@@ -22,7 +22,7 @@ from mbs.commands.common import heading, outside_at, write
 from mbs.commands.reach import fade_lines
 from mbs.linearised.validity import NOTABLE
 from mbs.model.equilibrium import Equilibrium
-from mbs.output.bearing_text import flooded_note, loss_words
+from mbs.output.bearing_text import DAMPINGS, STIFFNESSES, flooded_note, loss_words
 from mbs.output.gear_data import gear_lines
 from mbs.scene.assembly import Model
 
@@ -64,8 +64,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             *_loads(rollers),
             f"  {_contact_words(contacts[index])}",
             f"  {loss_words(found.losses[index])}",
-            *_matrix("K [N/m, N/rad; N m/m, N m/rad]", stiffness),
-            *_matrix("C [the same times s]", damping),
+            *_matrix(f"K [{STIFFNESSES}]", SPRING.factor * stiffness),
+            *_matrix(f"C [{DAMPINGS}]", DAMPER.factor * damping),
         ]
     lines += gear_lines(model, balance)
     lines += flooded_note(max((loss.torque for loss in found.losses), default=math.nan), model.supplies.values())
@@ -131,7 +131,7 @@ def _matrix(title: str, matrix: FloatArray) -> list[str]:
         + "".join(f"{_clean(matrix[row, column], scale[row] * scale[column]):13.5g}" for column in _SHOWN)
         for i, row in enumerate(_SHOWN)
     ]
-    return [f"  {title:34s}{_NAMES[0]:>3s}" + "".join(f"{name:>13s}" for name in _NAMES[1:]), *rows]
+    return [f"  {title}", f"{'':12s}" + "".join(f"{name:>13s}" for name in _NAMES), *rows]
 
 
 def _um(value: float) -> str:

@@ -8,11 +8,10 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-import scipy  # its parts at first use: scipy.signal takes half a second
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.units import RPM, quantity
+from ehdmaps.units import DAMPER, RPM, SPRING, quantity
 from ehdmaps.workers import available_cores
 from mbs.analyses.case import Case, clearance_text, common_supply, temperature_text
 from mbs.analyses.film_errors import film_errors, notable_from
@@ -24,7 +23,7 @@ from mbs.commands.cases import load_cases
 from mbs.commands.common import ROUND_OFF, band_lines, clean, film_lines, free_words, heading, write
 from mbs.commands.reach import fade_lines, outside_lines
 from mbs.linearised.crossings import exchanged
-from mbs.linearised.linear import response_unit
+from mbs.linearised.linear import response_display
 from mbs.linearised.modes import free_motions
 from mbs.linearised.sweep import MOST_ANGLES
 from mbs.linearised.sweep_result import Sweep
@@ -38,9 +37,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _LEAST_SHARE = 0.05
-_PROMINENCE = 0.05
-"""How far a peak stands out of both valleys beside it, as a logarithm."""
-
 _PEAKS = 5
 _LEAST_ASSURANCE = 0.5
 
@@ -228,8 +224,8 @@ def _bearings(result: Sweep, torque: FloatArray) -> list[str]:
         wide = 100.0 * float(entry.stiffness_spread[:, index].max())
         spread = f"; mean of {entry.angles} cage angles, k within {wide:.2g} % of it" if entry.angles > 1 else ""
         lines.append(
-            f"  {name}: {changed}; along the load k {k[0] * 1e-6:.4g} to {k[1] * 1e-6:.4g} N/um ({_change(*k)}), "
-            f"c {c[0]:.4g} to {c[1]:.4g} N s/m ({_change(*c)}){spread}"
+            f"  {name}: {changed}; along the load k {SPRING.value(k[0]):.4g} to {SPRING.text(k[1])} ({_change(*k)}), "
+            f"c {DAMPER.value(c[0]):.4g} to {DAMPER.text(c[1])} ({_change(*c)}){spread}"
             + _band("; k", entry.stiffness_error[:, index], entry.stiffness[:, index])
             + _band(", c", entry.damping_error[:, index], entry.damping[:, index])
         )
@@ -299,27 +295,29 @@ def _complex(result: Sweep) -> list[str]:
 
 
 def _responses(result: Sweep) -> list[str]:
-    """Lines on the highest peaks of each response at the first and last speed, by the frequencies of [linear]."""
+    """Lines on the highest peaks of each response at the first and last speed."""
     found = result.responses
     lines = []
     for s, i in np.ndindex(found.values.shape[2:]) if found.frequencies.size else ():
-        ends = [_peaks(found.frequencies, np.abs(found.values[k, :, s, i])) for k in (0, -1)]
+        sensor, entry = found.sensors[s], found.inputs[i]
+        display = response_display(sensor, entry)
+        size = display.factor * found.peak_size[:, :, s, i]
+        ends = [_peaks(found.peak_frequency[k, :, s, i], size[k]) for k in (0, -1)]
         if not any(ends):
             continue
         at = [
             f"{', '.join(words) or 'none'} at {RPM.text(float(result.speeds[k]))}"
             for k, words in zip((0, -1), ends, strict=True)
         ]
-        sensor, entry = found.sensors[s], found.inputs[i]
-        lines.append(f"  {sensor.name} by {entry.name}, peaks [{response_unit(sensor, entry)}]: {'; '.join(at)}")
+        lines.append(f"  {sensor.name} by {entry.name}, peaks [{display.unit}]: {'; '.join(at)}")
     return lines
 
 
-def _peaks(frequencies: FloatArray, size: FloatArray) -> list[str]:
-    """The highest peaks of a response, each with its frequency, in the order of these."""
-    places, _ = scipy.signal.find_peaks(np.log(np.maximum(size, 1e-300)), prominence=_PROMINENCE)
-    highest = np.sort(places[np.argsort(-size[places], kind="stable")][:_PEAKS])
-    return [f"{size[k]:.3g} ({frequencies[k]:.5g} Hz)" for k in highest]
+def _peaks(frequency: FloatArray, size: FloatArray) -> list[str]:
+    """The highest peaks of a response, each with its frequency, in the order of these; not those that are NaN."""
+    there = np.flatnonzero(np.isfinite(size))
+    highest = np.sort(there[np.argsort(-size[there], kind="stable")][:_PEAKS])
+    return [f"{size[k]:.3g} ({frequency[k]:.5g} Hz)" for k in highest]
 
 
 def _exchanged(result: Sweep) -> list[str]:

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from ehdmaps.errors import InputError
 from ehdmaps.units import RPM, closest
 from ehdmaps.workers import available_cores
-from mbs.analyses.case import clearance_text, common_supply, temperature_text
+from mbs.analyses.case import clearance_text, common_supply, temperature_text, weight_text
 from mbs.analyses.reach import axes_outside
 from mbs.analyses.variants import Variant, VariantsResult, Variation, variants
 from mbs.analyses.varied import VARIED, LawChoice
@@ -98,7 +98,7 @@ def _heading(found: VariantsResult) -> list[str]:
     """What is compared."""
     scene = found.models[0].scene
     return [
-        f"{scene.title}: {_base(found)}",
+        f"{scene.title}: {_base(found)}, {weight_text(found.models[1])}",
         f"  first law: {found.models[0].law}",
         f"  second law: {found.models[1].law}",
         *held_lines(found.models[1]),
@@ -158,7 +158,8 @@ def _ranges(found: VariantsResult) -> list[str]:
 
 def _warnings(found: VariantsResult) -> list[str]:
     """Lines on what has no result, and on what lies outside the map."""
-    lines = [f"warning: {row.words}: {row.problem}" for row in found.variants if row.problem]
+    lines = list(dict.fromkeys(line for model in found.models for line in model.warnings))
+    lines += [f"warning: {row.words}: {row.problem}" for row in found.variants if row.problem]
     speeds = found.course.speed.course.values
     axes = axes_outside(found.models[1], max(abs(speed) for speed in speeds))
     for row in found.variants:

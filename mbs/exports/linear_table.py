@@ -39,6 +39,9 @@ FREQUENCIES = (0.0, 1e5)
 
 _FILMS: tuple[Films, ...] = ("slow", "memory")
 
+_BEYOND = "the export refuses points"
+"""What happens outside of the map; what a program does outside of the table is its own note."""
+
 
 @dataclass(frozen=True, eq=False)
 class LinearTable:
@@ -82,7 +85,6 @@ class LinearTable:
         request = self.request
         bearing, emap = request.bearing, request.emap
         direction = math.degrees(math.atan2(request.direction[1], request.direction[0]))
-        relax = "films with memory" if self.films == "memory" else "slow films at any frequency"
         point = (
             f"bearing: {bearing.geometry.name}, {bearing.slices} slices",
             f"linear around: load {FORCE.text(request.loads[0])} on the inner ring, "
@@ -90,9 +92,18 @@ class LinearTable:
             f"diametral clearance {MICROMETRE.text(bearing.geometry.diametral_clearance)}; "
             f"cage angle {math.degrees(self.cage_angle):.6g} deg; raceways at {TEMPERATURE.text(request.temperature)}",
             f"speeds of the inner ring: {', '.join(RPM.text(speed) for speed in self.speeds)}; the outer ring stands",
-            f"frequencies: {', '.join(HERTZ.text(value) for value in self.frequencies)} (0: slow motion); {relax}",
+            f"frequencies: {', '.join(HERTZ.text(value) for value in self.frequencies)}; {self._motion}",
         )
-        return (*(() if emap is None else origin(emap, path.name)), *BEARING_AXES, *point)
+        return (*(() if emap is None else origin(emap, path.name, _BEYOND)), *BEARING_AXES, *point)
+
+    @property
+    def _motion(self) -> str:
+        """What K and C are at the frequencies, in words."""
+        relax = "films with memory" if self.films == "memory" else "slow films at any frequency"
+        if self.frequencies.all():
+            return relax
+        slow = "slow motion, K and C of films that follow at once"
+        return f"0 Hz: {slow}; above: {relax}" if self.frequencies.any() else slow
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -113,7 +124,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="VALUE",
         help='of the oscillation, such as "1 kHz", or FROM TO POINTS; more than once for a list (0 Hz, slow motion)',
     )
-    point.add_argument("--films", metavar="NAME", default=DEFAULT_FILMS, help=f"slow | memory ({DEFAULT_FILMS})")
+    point.add_argument(
+        "--films", metavar="NAME", default=DEFAULT_FILMS, help=f"above 0 Hz: slow | memory ({DEFAULT_FILMS})"
+    )
     point.add_argument("--direction", nargs="+", metavar="ANGLE", help="of the load from y towards z (0 deg)")
     point.add_argument("--temperature", metavar="TEMPERATURE", help='of the raceways, such as "60 degC" (40 degC)')
     point.add_argument("--clearance", metavar="LENGTH", help='diametral, such as "20 um"; default: the map\'s, none')

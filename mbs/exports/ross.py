@@ -59,9 +59,12 @@ def _text(table: LinearTable, header: tuple[str, ...], arguments: argparse.Names
     return "\n".join(lines) + "\n"
 
 
+BEYOND = "ROSS extrapolates beyond the tables: its responses and Campbell diagrams warn of it, run_modal does not"
+"""What ROSS 2.3 and 3.1 do there, for the file and the page."""
+
 _NOTES = (
     "ROSS: x is y of the bearing, y is z of it, z is the axis; there is no place for the tilting of the ring",
-    "ROSS goes on beyond the tables without a word: stay within the speeds and frequencies above",
+    f"{BEYOND}; stay within the speeds and frequencies above",
     "read by: ross.BearingElement.load(FILE)",
 )
 

@@ -11,8 +11,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy  # its parts at first use: scipy.signal takes half a second
 
-from ehdmaps.arrays import ComplexArray, FloatArray
+from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
+from ehdmaps.units import MOTIONS, Display
 from mbs.linearised.dynamic import dynamic_stiffness, system_film_states
 from mbs.model.elements import Input, Quantity, Sensor
 from mbs.model.equilibrium import Equilibrium
@@ -32,6 +34,9 @@ _AT_ONCE = 64
 _WIDEST = 0.1
 """Damping ratio above which a peak is so wide that any axis shows it."""
 
+_PROMINENCE = 0.05
+"""How far a peak stands out of both valleys beside it, as a logarithm."""
+
 
 def with_peaks(frequencies: FloatArray, eigenvalues: ComplexArray) -> FloatArray:
     """The frequencies of an axis and, among them, some around each lightly damped mode, which the axis may step over.
@@ -39,7 +44,7 @@ def with_peaks(frequencies: FloatArray, eigenvalues: ComplexArray) -> FloatArray
     Parameters
     ----------
     frequencies : array, shape (m,)
-        [Hz], rising.
+        [Hz].
     eigenvalues : array, shape (modes,)
         Eigenvalues of the complex modes [1/s]. Modes without any damping have no finite peak, and are left out.
 
@@ -53,8 +58,22 @@ def with_peaks(frequencies: FloatArray, eigenvalues: ComplexArray) -> FloatArray
     half_width, place = -eigenvalues.real / (2.0 * np.pi), eigenvalues.imag / (2.0 * np.pi)
     narrow = (half_width > 1e-12 * place) & (half_width < _WIDEST * place)
     added = (place[narrow, None] + half_width[narrow, None] * _AROUND).ravel()
-    inside = added[(added > frequencies[0]) & (added < frequencies[-1])]
+    inside = added[(added > frequencies.min()) & (added < frequencies.max())]
     return np.asarray(np.unique(np.concatenate([frequencies, inside])))
+
+
+def peak_places(size: FloatArray) -> IntArray:
+    """Where a response has its peaks: places that stand out of both valleys beside them, rising.
+
+    Between the frequencies of an axis a lightly damped peak is any height: take one `with_peaks`.
+
+    Parameters
+    ----------
+    size : array, shape (frequencies,)
+        Size of the response, in any unit.
+    """
+    places, _ = scipy.signal.find_peaks(np.log(np.maximum(size, 1e-300)), prominence=_PROMINENCE)
+    return np.asarray(places, dtype=np.int64)
 
 
 def response_unit(sensor: Sensor, entry: Input) -> str:
@@ -65,6 +84,13 @@ def response_unit(sensor: Sensor, entry: Input) -> str:
 def sensor_unit(sensor: Sensor) -> str:
     """Unit of a sensor, such as m/s2; rad for rotations."""
     return f"{'rad' if np.any(sensor.direction[3:]) else 'm'}{_PER_TIME[_ORDER[sensor.quantity]]}"
+
+
+def response_display(sensor: Sensor, entry: Input) -> Display:
+    """How people are shown the response of a sensor to an input, such as um/N."""
+    shown = MOTIONS[sensor_unit(sensor)]
+    per = response_unit(sensor, entry).removeprefix(sensor_unit(sensor))
+    return Display(shown.unit + per, shown.factor)
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,6 +10,7 @@ for the following only. Where damped modes cross, undamped ones are followed str
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -20,6 +21,7 @@ from ehdmaps.errors import AnalysisError, InputError
 from mbs.linearised.averaged import AveragedEquilibrium, PitchSpread, averaged, over_pitch, pitch_spread
 from mbs.linearised.bands import law_bands
 from mbs.linearised.crossings import straightened
+from mbs.linearised.linear import peak_places, with_peaks
 from mbs.linearised.modal_response import checked_response
 from mbs.linearised.own_frequency import LostMode
 from mbs.linearised.steady import steady_system
@@ -94,6 +96,7 @@ def sweep(
     links: list[Along] = []
     values = np.empty((speeds.size, frequencies.size, len(sensors), len(inputs)), dtype=np.complex128)
     errors = np.zeros(speeds.size)
+    peaks: list[list[FloatArray]] = []
     # Speeds in between cost as much as others: together at most as many as were asked for.
     spare = max(speeds.size, FEWEST_BETWEEN)
     first = before = at(float(speeds[0]), None)
@@ -102,9 +105,13 @@ def sweep(
         if index:
             links.append(bridge(before, point, at, spare))
             spare -= links[-1].between
-        values[index], errors[index] = checked_response(point.balance, point.states, inputs, sensors, frequencies)
+        axis = with_peaks(frequencies, point.damped.eigenvalues)
+        there, errors[index] = checked_response(point.balance, point.states, inputs, sensors, axis)
+        values[index] = there[np.searchsorted(axis, frequencies)]
+        peaks.append(_peaks(axis, np.abs(there)))
         points.append(_record(point))
         before = point
+    peak_frequency, peak_size = _padded(peaks, values)
     return Sweep(
         speeds=speeds,
         displacement=np.array([point.displacement for point in points]),
@@ -114,7 +121,7 @@ def sweep(
         undamped=straightened(_undamped(points, links, first, before)),
         damped=_damped(points, links, bearing_parts(first.balance)),
         bearings=_bearings(points, first),
-        responses=ResponseSweep(frequencies, tuple(inputs), tuple(sensors), values, errors),
+        responses=ResponseSweep(frequencies, tuple(inputs), tuple(sensors), values, peak_frequency, peak_size, errors),
         between=sum(link.between for link in links),
     )
 
@@ -180,6 +187,22 @@ def _errors(point: Point) -> tuple[FloatArray, FloatArray, FloatArray]:
     damped = laws.of_modes(point.damped.eigenvalues, states.right[:n, kept], states.left[kept, n : 2 * n])
     undamped = laws.of_undamped(point.undamped.frequency, point.undamped.shapes)
     return undamped, np.array(damped), laws.of_bearings()
+
+
+def _peaks(axis: FloatArray, size: FloatArray) -> list[FloatArray]:
+    """Frequency and size of the peaks of each response (frequencies, sensors, inputs), shape (2, peaks) each."""
+    columns = size.reshape(axis.size, math.prod(size.shape[1:])).T
+    return [np.array([axis[at], column[at]]) for column in columns for at in [peak_places(column)]]
+
+
+def _padded(peaks: Sequence[Sequence[FloatArray]], values: ComplexArray) -> FloatArray:
+    """Peaks of each speed and response of `values`, shape (2, speeds, peaks, sensors, inputs); NaN beyond the last."""
+    most = max((found.shape[1] for row in peaks for found in row), default=0)
+    filled = np.full((2, len(peaks), most, math.prod(values.shape[2:])), np.nan)
+    for index, row in enumerate(peaks):
+        for column, found in enumerate(row):
+            filled[:, index, : found.shape[1], column] = found
+    return filled.reshape(*filled.shape[:3], *values.shape[2:])
 
 
 def _check(speeds: FloatArray, frequencies: FloatArray, pairs: int, cage_angles: int) -> None:

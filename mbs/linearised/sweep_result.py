@@ -155,6 +155,9 @@ class ResponseSweep:
         Inputs and sensors of the responses.
     values : array, shape (speeds, frequencies, sensors, inputs)
         Sensor unit per N or N m.
+    peak_frequency, peak_size : array, shape (speeds, peaks, sensors, inputs)
+        Place [Hz] and size of each peak, by rising frequency, on an axis with more frequencies around the lightly
+        damped modes of each speed; NaN where a response has fewer peaks than others.
     error : array, shape (speeds,)
         Largest one seen beside direct solutions, see `mbs.linearised.modal_response`.
     """
@@ -163,7 +166,24 @@ class ResponseSweep:
     inputs: tuple[Input, ...]
     sensors: tuple[Sensor, ...]
     values: ComplexArray
+    peak_frequency: FloatArray
+    peak_size: FloatArray
     error: FloatArray
+
+    def largest(self, sensor: int, entry: int) -> FloatArray:
+        """Size of a response, at the frequency nearest to each peak that of the peak, shape (speeds, frequencies).
+
+        Parameters
+        ----------
+        sensor, entry : int
+            Which sensor and input.
+        """
+        found: FloatArray = np.abs(self.values[:, :, sensor, entry])
+        at, size = self.peak_frequency[:, :, sensor, entry], self.peak_size[:, :, sensor, entry]
+        for speed, peak in np.argwhere(np.isfinite(at)).tolist():
+            nearest = int(np.argmin(np.abs(self.frequencies - at[speed, peak])))
+            found[speed, nearest] = max(found[speed, nearest], size[speed, peak])
+        return found
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from ehdmaps.physics.oil_supply import OilSupply
-from ehdmaps.units import FILM, PRESSURE, RPM, TEMPERATURE
+from ehdmaps.units import DAMPER, FILM, PRESSURE, RPM, SPRING, TEMPERATURE
 from mbs.analyses.bearing_point import BearingPoint
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.films import SIDES
@@ -28,6 +28,12 @@ _PLACES = 11
 
 REGIMES = ((1.0, "boundary: the surfaces touch"), (3.0, "mixed: asperities touch"), (math.inf, "full film"))
 """What is usually said of Lambda below these values."""
+
+STIFFNESSES = "N/um, N/urad; N m/um, N m/urad"
+"""Units of a stiffness matrix on forces and moments: one factor from SI, that of `SPRING`."""
+
+DAMPINGS = "N s/mm, N s/mrad; N m s/mm, N m s/mrad"
+"""Those of a damping matrix, with the factor of `DAMPER`."""
 
 
 def bearing_text(description: BearingDescription, points: Points) -> list[str]:
@@ -57,7 +63,7 @@ def bearing_heading(description: BearingDescription) -> list[str]:
     clearance = f"clearance {MICROMETRE.text(bearing.geometry.diametral_clearance)}"
     state = clearance if description.state is None else state_words(description.state)
     return [
-        f"{bearing.geometry.name}: law {description.law}; {description.films}",
+        f"{bearing.geometry.title}: law {description.law}; {description.films}",
         f"  {TEMPERATURE.text(description.temperature)}, {state}, profile {bearing.profile}, {_slices(bearing)}, "
         f"load at {description.direction:.4g} deg from y (a roller) towards z, {surface_label(description.surface)}",
         f"  assumed: {', '.join(description.assumed) or 'nothing'}",
@@ -82,8 +88,12 @@ def _page(point: BearingPoint, description: BearingDescription) -> list[str]:
         f"{point.entrainment_speed:.4g} m/s",
         f"  {'':32s} {'':8s} {'along':>12s} {'across':>12s} the load",
         pair("inner ring moves by", "um", 1e6 * row["displacement_along"], 1e6 * row["displacement_across"]),
-        pair("stiffness", "N/um", 1e-6 * row["stiffness_along"], 1e-6 * row["stiffness_across"]),
-        pair("damping, low-frequency limit", "N s/mm", 1e-3 * row["damping_along"], 1e-3 * row["damping_across"]),
+        pair("stiffness", SPRING.unit, *(SPRING.factor * row[f"stiffness_{way}"] for way in ("along", "across"))),
+        pair(
+            "damping, low-frequency limit",
+            DAMPER.unit,
+            *(DAMPER.factor * row[f"damping_{way}"] for way in ("along", "across")),
+        ),
         f"  {'':32s} {'':8s} {'inner':>12s} {'outer':>12s} raceway",
         _sides("Hertz pressure", PRESSURE.unit, 1e-9 * contacts.hertz_pressure),
         *(
@@ -197,15 +207,15 @@ def _table(points: list[BearingPoint], description: BearingDescription) -> list[
     lines = [
         f"{'load':>10s} {'speed':>8s} {'K along':>9s} {'across':>9s} {'c along':>9s} {'rollers':>7s} {'highest':>9s} "
         f"{'Hertz':>7s} {'smallest':>9s} {'Lambda':>7s} {'rolling':>8s}" + (f" {'film':>6s}" if rough else ""),
-        f"{'N':>10s} {'rpm':>8s} {'N/um':>9s} {'N/um':>9s} {'N s/mm':>9s} {'loaded':>7s} {'N':>9s} "
+        f"{'N':>10s} {'rpm':>8s} {SPRING.unit:>9s} {SPRING.unit:>9s} {DAMPER.unit:>9s} {'loaded':>7s} {'N':>9s} "
         f"{'GPa':>7s} {'film, um':>9s} {'':>7s} {'N mm':>8s}" + (f" {'share':>6s}" if rough else ""),
     ]
     for point in points:
         row = bearing_row(point, description.roughness)
         share = f" {point.film_share(description.surface, description.oil):6.3f}" if rough else ""
         lines.append(
-            f"{point.size:10.5g} {RPM.value(point.speed):8.5g} {1e-6 * row['stiffness_along']:9.4g} "
-            f"{1e-6 * row['stiffness_across']:9.4g} {1e-3 * row['damping_along']:9.4g} {point.loaded:7d} "
+            f"{point.size:10.5g} {RPM.value(point.speed):8.5g} {SPRING.value(row['stiffness_along']):9.4g} "
+            f"{SPRING.value(row['stiffness_across']):9.4g} {DAMPER.value(row['damping_along']):9.4g} {point.loaded:7d} "
             f"{row['highest_roller_load']:9.5g} {1e-9 * float(point.contacts.hertz_pressure.max()):7.4g} "
             f"{_shown(1e6 * float(np.min(point.contacts.minimum_film)), 4):>9s} {_shown(row['film_parameter'], 3):>7s} "
             f"{_shown(1e3 * row['rolling_torque'], 4):>8s}{share}{' !' if point.problems else ''}"

@@ -17,7 +17,7 @@ from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.figures import COLOURS, SHADE
+from ehdmaps.figures import COLOURS, SHADE, write_heading
 from mbs.output.page import BAND_ALPHA, BAND_WORDS, ESTIMATED, shade_handle
 from mbs.spectral.campbell import Campbell, RunUpSpectra
 from mbs.spectral.levels import Reference, level
@@ -125,7 +125,7 @@ def campbell_figure(
         Band of the sum level of each law, either way [dB].
     """
     figure = Figure(figsize=(_WIDTH, _HEIGHT), layout="constrained")
-    figure.suptitle(title, fontsize=8)
+    write_heading(figure, title, 8)
     bands = bands or [None] * len(laws)
     upper, lower = np.ravel(figure.subfigures(2, 1, squeeze=False, height_ratios=(1.35, 1.0)))
     panels = upper.subplots(1, len(laws), sharex=True, sharey=True, squeeze=False)[0]

@@ -8,7 +8,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ehdmaps.figures import COLOURS
+from ehdmaps.figures import COLOURS, typeset, write_heading
+from ehdmaps.units import MOTIONS, Display
 from mbs.modal.records import Channel
 from mbs.modal.result import ModalFit
 
@@ -17,7 +18,7 @@ _MOST_ROWS = 5
 """Responses drawn: those with the most energy; more would hide each other."""
 
 _MARKS = {"rfp": ("o", "rational fraction polynomials"), "lscf": ("^", "p-LSCF")}
-_UNITS = {"displacement": "m", "velocity": "m/s", "acceleration": "m/s²", "force": "N", "unknown": ""}
+_UNITS = {"displacement": "m", "velocity": "m/s", "acceleration": "m/s2", "force": "N", "unknown": ""}
 
 
 def fit_figure(title: str, fits: Sequence[ModalFit]) -> Figure:
@@ -32,10 +33,10 @@ def fit_figure(title: str, fits: Sequence[ModalFit]) -> Figure:
     """
     first = fits[0]
     figure = Figure(figsize=_SIZE, layout="constrained")
-    figure.suptitle(f"{title}\n{_summary(first)}", fontsize=10)
+    write_heading(figure, f"{title}\n{_summary(first)}", 10)
     shown = _shown_rows(first)
     known = np.any(np.isfinite(first.responses.coherence[shown]))
-    units = list(dict.fromkeys(_unit(*first.responses.pairs[row]) for row in shown))
+    units = list(dict.fromkeys(_display(*first.responses.pairs[row]).unit for row in shown))
     heights = [*[3.0 / len(units) ** 0.5] * len(units), 1.4, *([1.0] if known else []), 2.2]
     axes = list(figure.subplots(len(heights), 1, sharex=True, height_ratios=heights))
     magnitudes = dict(zip(units, axes, strict=False))
@@ -61,10 +62,11 @@ def _responses(magnitudes: dict[str, Axes], phase: Axes, fit: ModalFit, shown: S
     made = fit.synthesise(fine)
     for row, colour in zip(shown, COLOURS, strict=False):
         measured = fit.responses.response[row]
-        magnitude = magnitudes[_unit(*fit.responses.pairs[row])]
+        display = _display(*fit.responses.pairs[row])
+        magnitude = magnitudes[display.unit]
         label = f"{fit.responses.labels[row]}, {100.0 * fit.error[row]:.2g} % left"
-        magnitude.semilogy(frequency, np.abs(measured), color=colour, lw=2.2, alpha=0.35)
-        magnitude.semilogy(fine, np.abs(made[row]), color=colour, lw=0.9, label=label)
+        magnitude.semilogy(frequency, display.factor * np.abs(measured), color=colour, lw=2.2, alpha=0.35)
+        magnitude.semilogy(fine, display.factor * np.abs(made[row]), color=colour, lw=0.9, label=label)
         phase.plot(frequency, np.degrees(np.angle(measured)), ".", color=colour, ms=1.2, alpha=0.35)
         phase.plot(fine, _broken(np.degrees(np.angle(made[row]))), color=colour, lw=0.9)
     for unit, magnitude in magnitudes.items():
@@ -120,10 +122,11 @@ def _shown_rows(fit: ModalFit) -> list[int]:
     return sorted(np.argsort(-energy, kind="stable")[:_MOST_ROWS].tolist())
 
 
-def _unit(sensor: Channel, reference: Channel) -> str:
-    """Unit of a response."""
+def _display(sensor: Channel, reference: Channel) -> Display:
+    """How a response is shown."""
     unit = _UNITS[sensor.quantity].replace("m", "rad", 1) if sensor.rotational else _UNITS[sensor.quantity]
-    return f"{unit or '1'}/{'(N m)' if reference.rotational else 'N'}"
+    shown = MOTIONS.get(unit, Display(unit or "1"))
+    return Display(f"{typeset(shown.unit)}/{'(N m)' if reference.rotational else 'N'}", shown.factor)
 
 
 def _summary(fit: ModalFit) -> str:

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.ticker import ScalarFormatter
 
-from ehdmaps.figures import SHADE, SHADE_ALPHA, typeset
+from ehdmaps.figures import SHADE, SHADE_ALPHA, typeset, write_heading
 from mbs.analyses.case import clearance_text, temperature_text
 from mbs.linearised.validity import NOTABLE
 from mbs.scene.assembly import Model
@@ -69,7 +69,7 @@ def headed(model: Model, words: str, size: tuple[float, float] = _SIZE, law: str
     figure = Figure(figsize=size, layout="constrained")
     # What a bearing is in operation takes a line of its own.
     end = "\n" if model.states else "; "
-    figure.suptitle(f"{model.scene.title}\n{law or model.law}{end}{', '.join(at)}", fontsize=10)
+    write_heading(figure, f"{model.scene.title}\n{law or model.law}{end}{', '.join(at)}", 10)
     return figure
 
 

@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.figures import COLOURS, typeset
 from ehdmaps.units import RPM
-from mbs.linearised.linear import response_unit
+from mbs.linearised.linear import response_display
 from mbs.output.page import BAND_ALPHA, BAND_WORDS, ESTIMATED, grid, headed, page, shade
 from mbs.scene.assembly import Model
 
@@ -69,14 +69,15 @@ def response_figure(model: Model, case: Curves, notes: Sequence[str] = ()) -> Fi
     kinds: dict[str, str] = {}
     for sensor in model.scene.sensors:
         for entry in model.scene.inputs:
-            kinds.setdefault(typeset(response_unit(sensor, entry)), sensor.quantity)
+            kinds.setdefault(typeset(response_display(sensor, entry).unit), sensor.quantity)
     figure, axes = page(model, f"{RPM.value(model.scene.speed):.4g} rpm", len(kinds) + 1, stacked=True)
     panels, phase = dict(zip(kinds, axes[:-1], strict=True)), axes[-1]
     colours = iter(COLOURS * 20)
     for s, sensor in enumerate(model.scene.sensors):
         for i, entry in enumerate(model.scene.inputs):
-            colour, panel = next(colours), panels[typeset(response_unit(sensor, entry))]
-            _magnitude(panel, case, (s, i), color=colour, label=f"{sensor.name} by {entry.name}")
+            colour, display = next(colours), response_display(sensor, entry)
+            words = f"{sensor.name} by {entry.name}"
+            _magnitude(panels[typeset(display.unit)], case, (s, i), display.factor, color=colour, label=words)
             phase.semilogx(*_phase(case.frequencies, case.responses[:, s, i]), color=colour, lw=0.9)
     for unit, panel in panels.items():
         panel.set_ylabel(f"{kinds[unit]}, {unit}")
@@ -113,10 +114,10 @@ def comparison_figure(model: Model, cases: Sequence[Curves], notes: Sequence[str
     for (s, i), (panel, phase) in zip(pairs, rows, strict=True):
         sensor, entry = model.scene.sensors[s], model.scene.inputs[i]
         for case, colour, dashes in styles:
-            _magnitude(panel, case, (s, i), color=colour, ls=dashes)
+            _magnitude(panel, case, (s, i), response_display(sensor, entry).factor, color=colour, ls=dashes)
             phase.semilogx(*_phase(case.frequencies, case.responses[:, s, i]), color=colour, ls=dashes, lw=0.9)
         panel.set_title(f"{sensor.name} by {entry.name}", fontsize=8.5)
-        panel.set_ylabel(typeset(f"{sensor.quantity}, {response_unit(sensor, entry)}"), fontsize=8)
+        panel.set_ylabel(typeset(f"{sensor.quantity}, {response_display(sensor, entry).unit}"), fontsize=8)
         phase.set(yticks=[-180, -90, 0, 90, 180])
         phase.set_ylabel("phase, degrees", fontsize=8)
     handles = []
@@ -140,12 +141,12 @@ def comparison_figure(model: Model, cases: Sequence[Curves], notes: Sequence[str
     return figure
 
 
-def _magnitude(panel: Axes, case: Curves, pair: tuple[int, int], **style: str) -> None:
-    """The size of a response; nothing where it is zero."""
-    size = np.abs(case.responses[:, pair[0], pair[1]])
+def _magnitude(panel: Axes, case: Curves, pair: tuple[int, int], unit: float, **style: str) -> None:
+    """The size of a response in its unit, a factor; nothing where it is zero."""
+    size = unit * np.abs(case.responses[:, pair[0], pair[1]])
     panel.loglog(case.frequencies, np.where(size > 0.0, size, np.nan), lw=1.0, **style)
     if case.pitch_range is not None:
-        for edge in case.pitch_range[:, :, pair[0], pair[1]]:
+        for edge in unit * case.pitch_range[:, :, pair[0], pair[1]]:
             seen = np.where(edge > 0.0, edge, np.nan)
             panel.loglog(case.frequencies, seen, lw=0.5, ls=":", color=style["color"])
     if case.level_error is not None:

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure, FigureBase
 
 from ehdmaps.arrays import BoolArray, FloatArray
-from ehdmaps.figures import COLOURS
+from ehdmaps.figures import COLOURS, write_heading
 from mbs.output.page import grid, headed, shade, shade_handle, whole_numbers
 from mbs.output.signals_plot import MOST_SENSORS, signal_panels
 from mbs.scene.assembly import Model
@@ -114,7 +114,7 @@ def signals_figure(data: TimeData, spectra: Sequence[Sequence[Sequence[Amplitude
     rows = min(len(data.records[0].sensors), MOST_SENSORS)
     size = (max(_WIDTH, _SPECTRUM * (len(spectra) + 1)), 1.4 * _SENSOR * rows + _MARGIN)
     figure = Figure(figsize=size, layout="constrained")
-    figure.suptitle(data.title or data.records[0].label, fontsize=10)
+    write_heading(figure, data.title or data.records[0].label, 10)
     signal_panels(figure, data.records, spectra)
     return figure
 

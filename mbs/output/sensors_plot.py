@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
 
-from ehdmaps.figures import COLOURS
+from ehdmaps.figures import COLOURS, write_heading
 from mbs.output.campbell_plot import (
     colour_scale,
     diagram,
@@ -54,7 +54,7 @@ def sensors_figure(
     """
     rows = min(len(sensors), MOST_SENSORS)
     figure = Figure(figsize=(_COLUMN * (len(laws) + 1) + 0.8, _ROW * rows + 1.0), layout="constrained")
-    figure.suptitle(title, fontsize=8)
+    write_heading(figure, title, 8)
     axes = figure.subplots(rows, len(laws) + 1, squeeze=False, sharex=True)
     for row, (name, reference) in enumerate(sensors[:rows]):
         here = [spectra[row] for spectra in results]

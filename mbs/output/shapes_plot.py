@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.figures import COLOURS
+from ehdmaps.figures import COLOURS, legend_columns
 from mbs.linearised.modes import Modes
 from mbs.linearised.shapes import AXIS, EDGE, JOINT, MARK, Skeleton
 from mbs.output.page import headed
@@ -29,7 +29,13 @@ _FLATTEST = 0.35
 
 _NOTHING, _ROUND_OFF = 1e-9, 1e-12
 _CELL, _HEAD, _FOOT = (4.0, 3.1), 0.6, 0.4
-"""Size of the place of a mode, and of what is above and below all of them [inch]."""
+"""Size of the place of a mode, and least height of what is above and below all of them [inch]."""
+
+_ABOVE, _LINE = 0.3, 0.2
+"""Room above and below the heading, and height of a line of the legend [inch]."""
+
+_LETTERS = 68
+"""Letters of a legend that have room over a mode."""
 
 _ZOOM = 0.95
 _MOST_NAMES = 12
@@ -53,20 +59,9 @@ def shapes_figure(model: Model, found: Modes, bones: Skeleton, shown: Sequence[i
     """
     columns = min(len(shown), 3) or 1
     rows = math.ceil(len(shown) / columns) or 1
-    width, height = _CELL[0] * columns, _CELL[1] * rows + _HEAD + _FOOT
-    figure = headed(model, words, (width, height))
+    width = _CELL[0] * columns
+    figure = headed(model, words, (width, _CELL[1] * rows))
     figure.set_layout_engine("none")
-    # A picture in three dimensions has wide margins of its own, which may lie over those of its neighbours.
-    side = _ZOOM * _CELL[0]
-    for place, mode in enumerate(shown):
-        x = (place % columns + 0.5) * _CELL[0]
-        y = _FOOT + (rows - place // columns - 0.5) * _CELL[1] - 0.15
-        where = ((x - 0.5 * side) / width, (y - 0.5 * side) / height, side / width, side / height)
-        panel: Any = figure.add_axes(where, projection="3d")
-        panel.patch.set_visible(False)
-        _mode(panel, found, bones, mode)
-        at = (x / width, (y + 0.5 * _CELL[1] + 0.1) / height)
-        figure.text(*at, _title(found, bones, mode), fontsize=9, ha="center", va="top")
     moving = [index for index in range(len(bones.bodies)) if np.any(bones.owners == index)]
     handles = [
         Line2D([], [], color=_colour(index), lw=2.0, label=bones.bodies[index]) for index in moving[:_MOST_NAMES]
@@ -74,7 +69,25 @@ def shapes_figure(model: Model, found: Modes, bones: Skeleton, shown: Sequence[i
     if JOINT in bones.kinds:
         handles.append(Line2D([], [], color=COLOURS[1], lw=1.6, label="bearings and gears"))
     handles.append(Line2D([], [], color="0.8", lw=1.2, label="at rest"))
-    figure.legend(handles=handles, loc="lower center", ncols=3 * columns, fontsize=8, frameon=False)
+    names = legend_columns([str(handle.get_label()) for handle in handles], _LETTERS * columns, 3 * columns)
+    foot = max(_FOOT, _LINE * math.ceil(len(handles) / names))
+    (heading,) = figure.texts
+    head = max(_HEAD, heading.get_window_extent().height / figure.dpi + _ABOVE)
+    height = _CELL[1] * rows + head + foot
+    figure.set_size_inches(width, height)
+    heading.set_y(1.0 - 0.5 * _ABOVE / height)
+    # A picture in three dimensions has wide margins of its own, which may lie over those of its neighbours.
+    side = _ZOOM * _CELL[0]
+    for place, mode in enumerate(shown):
+        x = (place % columns + 0.5) * _CELL[0]
+        y = foot + (rows - place // columns - 0.5) * _CELL[1] - 0.15
+        where = ((x - 0.5 * side) / width, (y - 0.5 * side) / height, side / width, side / height)
+        panel: Any = figure.add_axes(where, projection="3d")
+        panel.patch.set_visible(False)
+        _mode(panel, found, bones, mode)
+        at = (x / width, (y + 0.5 * _CELL[1] + 0.1) / height)
+        figure.text(*at, _title(found, bones, mode), fontsize=9, ha="center", va="top")
+    figure.legend(handles=handles, loc="lower center", ncols=names, fontsize=8, frameon=False)
     return figure
 
 

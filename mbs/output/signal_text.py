@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ehdmaps.units import RPM
+from ehdmaps.units import MOTIONS, RPM, Display
 from mbs.timedata.records import TimeRecord
 
 
@@ -26,7 +26,8 @@ def signal_lines(records: Sequence[TimeRecord]) -> list[str]:
     lines = [f"  {'sensor':<{widths[0]}}{run}         mean   rms about it    largest, at             unit"]
     for channel in records[0].sensors:
         for record in records:
-            values = record.column(channel)
+            shown = MOTIONS.get(channel.unit, Display(channel.unit))
+            values = shown.factor * record.column(channel)
             mean = float(values.mean())
             at = int(np.argmax(np.abs(values)))
             where = f"{record.time[at]:.4g} s"
@@ -35,7 +36,7 @@ def signal_lines(records: Sequence[TimeRecord]) -> list[str]:
             of = f"  {record.label:<{widths[1]}}" if named else ""
             lines.append(
                 f"  {channel.name:<{widths[0]}}{of} {mean:12.4g} {np.sqrt(np.mean((values - mean) ** 2)):14.4g} "
-                f"{values[at]:10.4g}, {where:<18} {channel.unit}"
+                f"{values[at]:10.4g}, {where:<18} {shown.unit}"
             )
     return lines
 

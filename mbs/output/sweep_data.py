@@ -20,6 +20,7 @@ UNDAMPED = ("case", "speed", "mode")
 DAMPED = ("case", "speed", "complex_mode")
 BEARING = ("case", "speed", "bearing")
 RESPONSE = ("case", "speed", "response_frequency", "sensor", "input")
+PEAK = ("case", "speed", "response_peak", "sensor", "input")
 
 RESPONSE_UNITS = "m, m/s or m/s2 by the sensor's quantity (rad for rotations), per N or N m"
 
@@ -44,11 +45,11 @@ class Variable:
     dims: tuple[str, ...]
     read: Callable[[Sweep], npt.ArrayLike]
 
-    def entry(self, sweeps: Sequence[Sweep], modes: int) -> _Entry:
-        """Return the variable of some cases side by side; complex modes beyond those of a case are NaN."""
+    def entry(self, sweeps: Sequence[Sweep]) -> _Entry:
+        """Return the variable of some cases side by side; complex modes and peaks beyond those of a case are NaN."""
         values = [np.asarray(self.read(sweep)) for sweep in sweeps]
-        if "complex_mode" in self.dims:
-            values = [_filled(value, modes) for value in values]
+        for own in {"complex_mode", "response_peak"}.intersection(self.dims):
+            values = _filled(values, self.dims.index(own) - 1)
         return self.dims, np.stack(values), _said(self.units, self.long_name)
 
 
@@ -259,6 +260,14 @@ RESPONSES = (
         lambda found: found.responses.values.imag,
     ),
     Variable(
+        "peak_frequency",
+        "Hz",
+        "frequency of each peak of the response, with more frequencies around lightly damped modes",
+        PEAK,
+        lambda found: found.responses.peak_frequency,
+    ),
+    Variable("peak_size", RESPONSE_UNITS, "size of each peak", PEAK, lambda found: found.responses.peak_size),
+    Variable(
         "response_error",
         "1",
         "largest relative error seen beside direct solutions",
@@ -291,7 +300,7 @@ def sweep_dataset(
     """
     first = sweeps[0]
     modes = max(sweep.damped.eigenvalues.shape[1] for sweep in sweeps)
-    variables = {entry.name: entry.entry(sweeps, modes) for entry in VARIABLES}
+    variables = {entry.name: entry.entry(sweeps) for entry in VARIABLES}
     variables |= {
         "law": (("case",), list(laws), {"long_name": "contact law"}),
         "clearance": (("case",), np.array(clearances), _said("m", "diametral clearance")),
@@ -307,7 +316,7 @@ def sweep_dataset(
     }
     responses = first.responses
     if responses.values.size:
-        variables |= {entry.name: entry.entry(sweeps, modes) for entry in RESPONSES}
+        variables |= {entry.name: entry.entry(sweeps) for entry in RESPONSES}
         quantities = [sensor.quantity for sensor in responses.sensors]
         variables["quantity"] = (("sensor",), quantities, {"long_name": "what the sensor measures"})
         coordinates |= {
@@ -318,10 +327,11 @@ def sweep_dataset(
     return xr.Dataset(variables, coords=coordinates, attrs={"cage_angles": first.bearings.angles})
 
 
-def _filled(values: npt.NDArray[Any], modes: int) -> npt.NDArray[Any]:
-    """Values with so many complex modes, the last axis, by NaN."""
-    missing = [(0, 0)] * (values.ndim - 1) + [(0, modes - values.shape[-1])]
-    return np.pad(values, missing, constant_values=np.nan)
+def _filled(values: Sequence[npt.NDArray[Any]], axis: int) -> list[npt.NDArray[Any]]:
+    """Values as long along an axis as the longest of them, by NaN."""
+    most = max(value.shape[axis] for value in values)
+    missing = [[(0, most - value.shape[axis] if k == axis else 0) for k in range(value.ndim)] for value in values]
+    return [np.pad(value, pad, constant_values=np.nan) for value, pad in zip(values, missing, strict=True)]
 
 
 def _said(units: str, words: str) -> dict[str, str]:

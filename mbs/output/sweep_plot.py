@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import textwrap
 from collections.abc import Callable, Sequence
 
 import numpy as np
@@ -13,10 +14,10 @@ from matplotlib.figure import Figure, SubFigure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from ehdmaps.arrays import FloatArray
-from ehdmaps.figures import COLOURS, typeset
-from ehdmaps.units import RPM
-from mbs.linearised.linear import response_unit
+from ehdmaps.arrays import ComplexArray, FloatArray
+from ehdmaps.figures import COLOURS, legend_columns, typeset, write_heading
+from ehdmaps.units import DAMPER, RPM, SPRING
+from mbs.linearised.linear import response_display
 from mbs.linearised.sweep_result import Sweep, UndampedSweep
 from mbs.output.page import BAND_ALPHA, BAND_WORDS, ESTIMATED, shade, shade_handle, whole_numbers
 
@@ -36,6 +37,9 @@ _LEAST_ROOM = 0.028
 
 _LEAST_CHANGE = 0.01
 """Least range of changes that is shown, either way [%]: less is round-off."""
+
+_LETTERS, _TITLES = 150, 100
+"""Letters that have room beside each other in a legend, and in titles of maps over the width of the page."""
 
 _WIDTH = 9.0
 _ROW = 3.1
@@ -74,7 +78,7 @@ def sweep_figure(
     maps = [sweeps[index] for index in mapped]
     heights = [1.0, 1.0, *([float(math.ceil(len(maps) / _MAPS_IN_A_ROW))] if maps else [])]
     figure = Figure(figsize=(_WIDTH, _ROW * sum(heights) + 0.4), layout="constrained")
-    figure.suptitle(f"{title}\n{typeset(words)}", fontsize=10)
+    write_heading(figure, f"{title}\n{typeset(words)}", 10)
     parts = figure.subfigures(len(heights), 1, squeeze=False, height_ratios=heights)[:, 0]
     top, middle = parts[0].subplots(1, 2), parts[1].subplots(1, 3)
     handles = []
@@ -86,8 +90,8 @@ def sweep_figure(
     _axes(top[0], "frequency, Hz", "log")
     _axes(top[1], "change of frequency, %" if any(relaxing) else "change of undamped frequency, %")
     _axes(middle[0], "damping ratio, %", "log")
-    _axes(middle[1], "bearing k along its load, N/µm")
-    _axes(middle[2], "bearing c along its load, N s/m")
+    _axes(middle[1], typeset(f"bearing k along its load, {SPRING.unit}"))
+    _axes(middle[2], f"bearing c along its load, {DAMPER.unit}")
     for panel in middle[1:]:
         panel.set_ylim(0.0, 1.05 * panel.get_ylim()[1])
     _limit(top[0], sweeps, lambda found: found.frequency)
@@ -100,7 +104,8 @@ def sweep_figure(
         _numbers(top[0], entry, colour, last)
     _bearing_names(middle[1], sweeps[0].bearings.names)
     if len(handles) > 1:
-        parts[0].legend(handles=handles, loc="outside upper center", ncols=4, fontsize=8, frameon=False)
+        columns = legend_columns(labels, _LETTERS, 4)
+        parts[0].legend(handles=handles, loc="outside upper center", ncols=columns, fontsize=8, frameon=False)
     styles: list[Artist] = [
         Line2D([], [], color="0.3", lw=1.8, label="undamped, all energy in the bearings"),
         Line2D([], [], color="0.3", lw=0.6, label="undamped, 5 % there"),
@@ -179,11 +184,14 @@ def _bearings(axes: Sequence[Axes], entry: Sweep, colour: str) -> None:
     """Stiffness and damping of each bearing over speed; bearings that do the same lie on each other."""
     rpm = entry.speeds * RPM.factor
     for index, dashes in zip(range(len(entry.bearings.names)), _DASHES * 16, strict=False):
-        axes[0].plot(rpm, 1e-6 * entry.bearings.stiffness[:, index], ls=dashes, color=colour, lw=1.3)
-        axes[1].plot(rpm, entry.bearings.damping[:, index], ls=dashes, color=colour, lw=1.3)
+        axes[0].plot(rpm, SPRING.factor * entry.bearings.stiffness[:, index], ls=dashes, color=colour, lw=1.3)
+        axes[1].plot(rpm, DAMPER.factor * entry.bearings.damping[:, index], ls=dashes, color=colour, lw=1.3)
         of = entry.bearings
-        _band(axes[0], rpm, 1e-6 * of.stiffness[:, index], 1e-6 * of.stiffness_error[:, index], colour)
-        _band(axes[1], rpm, of.damping[:, index], of.damping_error[:, index], colour)
+        for panel, display, values, errors in (
+            (axes[0], SPRING, of.stiffness, of.stiffness_error),
+            (axes[1], DAMPER, of.damping, of.damping_error),
+        ):
+            _band(panel, rpm, display.factor * values[:, index], display.factor * errors[:, index], colour)
 
 
 def _band(panel: Axes, rpm: FloatArray, values: FloatArray, errors: FloatArray, colour: str) -> None:
@@ -231,10 +239,11 @@ def _maps(part: SubFigure, maps: Sequence[Sweep], labels: Sequence[str], limits:
     grid = part.subplots(rows, math.ceil(len(maps) / rows), sharex=True, sharey=True, squeeze=False)
     axes = grid.ravel()
     found = maps[0].responses
-    unit = response_unit(found.sensors[0], found.inputs[0]).replace("s2", "s²")
-    levels = [20.0 * np.log10(np.maximum(np.abs(entry.responses.values[:, :, 0, 0]), 1e-300)) for entry in maps]
-    # The last tenths of a per cent are the tips of undamped resonances, which would take the scale for themselves.
-    lowest, highest = (5.0 * np.round(np.percentile(np.stack(levels), part) / 5.0) for part in (1.0, 99.7))
+    display = response_display(found.sensors[0], found.inputs[0])
+    levels = [_level(display.factor * entry.responses.largest(0, 0)) for entry in maps]
+    # Not the tips of resonances, which would take the scale for themselves.
+    beside = _level(display.factor * np.stack([entry.responses.values[:, :, 0, 0] for entry in maps]))
+    lowest, highest = (5.0 * np.round(np.percentile(beside, part) / 5.0) for part in (1.0, 99.7))
     lowest, highest = max(lowest, highest - _LEVELS_SHOWN), max(highest, lowest + 5.0)
     # The axis goes as the frequencies were asked for: the middle of a logarithmic one lies low.
     middle = found.frequencies[found.frequencies.size // 2]
@@ -257,7 +266,7 @@ def _maps(part: SubFigure, maps: Sequence[Sweep], labels: Sequence[str], limits:
         panel.plot(entry.speeds * RPM.factor, limit, color="w", lw=1.2, ls=_LIMIT)
         if found.frequencies[0] < found.frequencies[-1]:
             panel.set_ylim(found.frequencies[0], found.frequencies[-1])
-        panel.set_title(typeset(label), fontsize=8.5)
+        panel.set_title(textwrap.fill(typeset(label), _TITLES // grid.shape[1]), fontsize=8.5)
         panel.tick_params(labelsize=8)
     for panel in axes[len(maps) :]:
         panel.remove()
@@ -269,8 +278,13 @@ def _maps(part: SubFigure, maps: Sequence[Sweep], labels: Sequence[str], limits:
         lowest_panel.tick_params(labelbottom=True)
     if image is not None:
         bar = part.colorbar(image, ax=list(axes[: len(maps)]), pad=0.01, extend="both")
-        bar.set_label(f"{found.sensors[0].name} by {found.inputs[0].name}, dB re 1 {unit}", fontsize=8)
+        bar.set_label(f"{found.sensors[0].name} by {found.inputs[0].name}, dB re 1 {typeset(display.unit)}", fontsize=8)
         bar.ax.tick_params(labelsize=8)
+
+
+def _level(response: ComplexArray | FloatArray) -> FloatArray:
+    """Level of a response in dB re 1 of its unit."""
+    return np.asarray(20.0 * np.log10(np.maximum(np.abs(response), 1e-300)))
 
 
 def _axes(panel: Axes, label: str, scale: str = "linear") -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from ehdmaps.figures import COLOURS, WARNING, typeset
+from ehdmaps.figures import COLOURS, WARNING, typeset, write_heading
 
 _WIDTH, _TOP, _LINE = 7.2, 1.6, 0.19
 """Width of the page, what stands above and below, and height of a line [inch]."""
@@ -38,7 +38,7 @@ def variants_figure(title: str, dataset: xr.Dataset, labels: Sequence[str]) -> F
     ]
     sensors = dataset["sensor"].values.tolist()
     figure = Figure(figsize=(_WIDTH, _TOP + _LINE * len(names)), layout="constrained")
-    figure.suptitle(typeset(f"{title}\nsum level of {labels[1]} minus that of {labels[0]}"), fontsize=8)
+    write_heading(figure, typeset(f"{title}\nsum level of {labels[1]} minus that of {labels[0]}"), 8)
     panels = figure.subplots(1, len(sensors), sharex=True, sharey=True, squeeze=False)[0]
     lines = np.arange(len(names))
     for column, (panel, sensor) in enumerate(zip(panels, sensors, strict=True)):

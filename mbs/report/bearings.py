@@ -12,12 +12,12 @@ from ehdmaps.figures import typeset
 from ehdmaps.report.markup import Markup, joined, tag
 from ehdmaps.report.numbers import number, shown
 from ehdmaps.report.tables import pairs, table
-from ehdmaps.units import FILM, PRESSURE, SPEED
+from ehdmaps.units import DAMPER, FILM, PRESSURE, SPEED, SPRING
 from mbs.analyses.rings import ring_motions
 from mbs.bearings.films import ContactState
 from mbs.bearings.roller_element import ring_matrices
 from mbs.bearings.roller_loads import RollerLoads
-from mbs.output.bearing_text import loss_words
+from mbs.output.bearing_text import DAMPINGS, STIFFNESSES, loss_words
 from mbs.report.examination import Examination
 from mbs.scene.fields import FORCE
 
@@ -214,13 +214,17 @@ def _pair(unit: str, values: FloatArray) -> str:
 
 def _matrix(words: str, matrix: FloatArray) -> Markup:
     """A matrix on the inner ring, without the axial rows."""
-    scale = np.sqrt(np.abs(np.diag(matrix)))
-    units = "in N, N m per m, rad" if words.startswith("S") else "in N, N m per m/s, rad/s"
+    units, display = (STIFFNESSES, SPRING) if words.startswith("S") else (DAMPINGS, DAMPER)
+    values = display.factor * matrix
+    scale = np.sqrt(np.abs(np.diag(values)))
     rows = [
-        (_NAMES[i], *(f"{_clean(float(matrix[row, column]), scale[row] * scale[column]):.4g}" for column in _SHOWN))
+        (
+            _NAMES[i],
+            *(f"{_clean(float(values[row, column]), scale[row] * scale[column]):.4g}" for column in _SHOWN),
+        )
         for i, row in enumerate(_SHOWN)
     ]
-    return table(("", *_NAMES), rows, f"{words} {units}")
+    return table(("", *_NAMES), rows, f"{words} in {typeset(units)}")
 
 
 def _part(value: float, scale: float = 1.0) -> str:

@@ -12,7 +12,7 @@ from ehdmaps.report.markup import Markup, joined, tag
 from ehdmaps.report.numbers import number, shown
 from ehdmaps.report.tables import pairs, table
 from ehdmaps.units import FILM, LENGTH, PRESSURE, RPM
-from mbs.analyses.case import clearance_text, temperature_text
+from mbs.analyses.case import clearance_text, temperature_text, weight_text
 from mbs.analyses.film_errors import film_errors
 from mbs.analyses.rings import ring_motions
 from mbs.commands.common import outside_at
@@ -26,6 +26,7 @@ from mbs.report.bearings import loaded
 from mbs.report.examination import Examination
 from mbs.scene.contact_laws import supply_words
 from mbs.scene.fields import FORCE, HERTZ
+from mbs.scene.oils import by_oil
 
 
 def machine(found: Examination) -> Markup:
@@ -43,7 +44,8 @@ def machine(found: Examination) -> Markup:
         ("contact law", model.law),
         ("temperature", typeset(temperature_text(model))),
         ("diametral clearance", typeset(clearance_text(model) or "none")),
-        *([("oil", scene.lubricant.title)] if scene.lubricant else []),
+        ("equilibrium", typeset(weight_text(model))),
+        *_oil(found),
         *([("oil supply", typeset(supply_words(model.supplies)))] if model.supplies else []),
         *([("surfaces", typeset(model.surface.label))] if model.surface else []),
         ("assumed", f"{len(scene.assumed)} keys of the scene, marked there" if scene.assumed else "nothing"),
@@ -51,7 +53,7 @@ def machine(found: Examination) -> Markup:
     bearings = [
         (
             entry.name,
-            entry.geometry.label or entry.geometry.name,
+            entry.geometry.title,
             f"{entry.geometry.rollers}",
             number(LENGTH.value(entry.geometry.roller_diameter), 5),
             number(LENGTH.value(entry.geometry.roller_length), 5),
@@ -80,6 +82,16 @@ def machine(found: Examination) -> Markup:
         else None,
         table(("load", "at", "force x, y, z, N", "moment x, y, z, N m"), loads, "Loads", (0, 1)) if loads else None,
     )
+
+
+def _oil(found: Examination) -> list[tuple[str, str]]:
+    """The oil of the bearings, or that of the scene where the law has none."""
+    used = by_oil(found.model.oils)
+    if not used:
+        stated = found.model.scene.lubricant
+        return [("oil", stated.title)] if stated else []
+    words = [oil.title + (f" ({', '.join(names)})" if len(used) > 1 else "") for oil, names in used.items()]
+    return [("oil", typeset("; ".join(words)))]
 
 
 def in_short(found: Examination) -> Iterator[str]:
@@ -141,6 +153,7 @@ def warnings(found: Examination) -> list[str]:
     """
     balance, model = found.statics.balance, found.model
     lines = [
+        *model.warnings,
         *found.statics.overloads,
         *found.statics.free,
         *outside_at(model, balance),
@@ -158,7 +171,7 @@ def notes(found: Examination) -> list[str]:
         What was found.
     """
     balance, model = found.statics.balance, found.model
-    geometry = {entry.geometry.estimated: entry.geometry.label or entry.geometry.name for entry in model.scene.bearings}
+    geometry = {entry.geometry.estimated: entry.geometry.title for entry in model.scene.bearings}
     torque = max((loss.torque for loss in found.statics.losses), default=math.nan)
     return [
         *(f"{name}: {words}" for words, name in geometry.items() if words),

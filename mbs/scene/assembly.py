@@ -12,6 +12,7 @@ import numpy as np
 
 from ehdmaps.errors import InputError
 from ehdmaps.maps.emap import EHDMap, open_map
+from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.roughness import Surface
 from mbs.bearings.bearing_element import BearingElement
@@ -29,6 +30,7 @@ from mbs.scene.bodies import build_bodies
 from mbs.scene.contact_laws import ContactLaws, choose_law, supply_words, surface_label
 from mbs.scene.kinds import ElementKind
 from mbs.scene.map_set import MapSet
+from mbs.scene.oils import oil_warnings
 from mbs.scene.scene import Scene
 from mbs.scene.surroundings import Built, Surroundings
 from mbs.scene.turning import turning_loads, with_places
@@ -69,6 +71,8 @@ class Model:
         Oil supply of each bearing by its name; empty for laws without films.
     surface : Surface or None
         Surfaces of the contacts; None for laws without films.
+    oils : mapping of str to Lubricant
+        Oil of each bearing by its name, that of its map where there is one; empty for laws without films.
     """
 
     scene: Scene
@@ -83,6 +87,12 @@ class Model:
     found: dict[float, Model] = field(default_factory=dict, repr=False)
     supplies: Mapping[str, OilSupply] = field(default_factory=dict)
     surface: Surface | None = None
+    oils: Mapping[str, Lubricant] = field(default_factory=dict)
+
+    @property
+    def warnings(self) -> list[str]:
+        """What every analysis tells of the machine and its law: oils that contradict each other."""
+        return oil_warnings(self.oils, self.scene.lubricant)
 
     @property
     def operation(self) -> Operation:
@@ -185,6 +195,7 @@ def assemble(
         memory=laws.memory,
         supplies=laws.supplies,
         surface=laws.surface,
+        oils=laws.oils,
     )
 
 
@@ -200,7 +211,8 @@ def law_attributes(model: Model) -> Mapping[str, str]:
     """Provenance of a result."""
     named = {"scene": model.scene.name, "scene_toml": model.scene.text, "law": model.law}
     surface = {} if model.surface is None else {"surface": surface_label(model.surface)}
-    return {**named, **supply_attributes([(model.label, model)]), **surface}
+    warned = {"warnings": "; ".join(model.warnings)} if model.warnings else {}
+    return {**named, **supply_attributes([(model.label, model)]), **surface, **warned}
 
 
 def laws_attributes(labels: Sequence[str], models: Sequence[Model]) -> dict[str, str]:

@@ -16,7 +16,7 @@ from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.roughness import SMOOTH, Surface
-from ehdmaps.units import closest, quantity
+from ehdmaps.units import DAMPER, SPRING, closest, quantity
 from mbs.bearings import laws
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import NO_CENTRIFUGAL
@@ -117,7 +117,7 @@ class Damper:
         """The damper of each contact of a roller, for people; empty without one."""
         if self.time:
             return f"c = {1e6 * self.time:.4g} us times k"
-        return f"c = {self.constant:.4g} N s/m" if self.constant else ""
+        return f"c = {DAMPER.text(self.constant)}" if self.constant else ""
 
 
 def hertz_damper(law: str) -> Damper | None:
@@ -138,7 +138,7 @@ def hertz_damper(law: str) -> Damper | None:
     >>> hertz_damper("hertz:1.25e-5 s")
     Damper(constant=0.0, time=1.25e-05)
     >>> hertz_damper("hertz:100 N s/m").words
-    'c = 100 N s/m'
+    'c = 0.1 N s/mm'
     """
     if law == "hertz":
         return Damper()
@@ -172,7 +172,7 @@ def dry_words(law: str) -> str:
     Examples
     --------
     >>> dry_words("hertz:100 N s/m")
-    'dry Hertz, ISO 16281, c = 100 N s/m of each contact of a roller'
+    'dry Hertz, ISO 16281, c = 0.1 N s/mm of each contact of a roller'
     """
     if (path := table_path(law)) is not None:
         return f"table {path}, dry"
@@ -284,6 +284,14 @@ class ContactLaws:
         return {spec.name: self.supply(spec) for spec in self.scene.bearings} if self._has_films else {}
 
     @property
+    def oils(self) -> dict[str, Lubricant]:
+        """The oil of each bearing by its name, that of its map where there is one; none for laws without films."""
+        if not self._has_films:
+            return {}
+        bearings, maps = self.scene.bearings, self._maps_in_force
+        return {spec.name: self.lubricant for spec in bearings} if maps is None else maps.oils(bearings)
+
+    @property
     def _maps_in_force(self) -> MapSet | None:
         """The maps, where the law is that of maps."""
         return self.maps if self.chosen == "map" else None
@@ -364,7 +372,7 @@ class ContactLaws:
             return words
         name = self.chosen.removeprefix(_CONSTANT)
         stiffness, damping = self.scene.laws[name]
-        return f"constant {name}: {stiffness:.4g} N/m and {damping:.4g} N s/m for each contact of a roller"
+        return f"constant {name}: {SPRING.text(stiffness)} and {DAMPER.text(damping)} for each contact of a roller"
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from ehdmaps.jobs.table import Table
-from ehdmaps.units import LENGTH, STIFFNESS, Display, short
+from ehdmaps.units import DAMPER, LENGTH, STIFFNESS, Display, short
 from mbs.gears.pair import FEWEST_TEETH, MOST_HARMONICS, MOST_TEETH, STEEPEST, GearPair
 from mbs.model.elements import GROUND
 from mbs.scene import fields
@@ -15,7 +15,6 @@ from mbs.scene.fields import DEGREE, MICROMETRE
 if TYPE_CHECKING:
     from mbs.scene.surroundings import Built, Surroundings
 
-_DAMPING = Display("N s/m")
 _WORDS_HARMONICS = f"a whole number from 0 to {MOST_HARMONICS}, or a list of at most as many numbers, parts of the mean"
 
 
@@ -43,7 +42,7 @@ def read_gears(section: Table, name: str) -> GearPair | None:
     face_width = section.quantity("face_width", "m", 1e-5, 10.0, LENGTH, required=True)
     stiffness = section.quantity("stiffness", "N/m^2", 1e6, 1e13, STIFFNESS, required=True)
     backlash = section.quantity("backlash", "m", 0.0, 1.0, LENGTH, required=True)
-    damping = section.quantity("damping", "N s/m", 0.0, 1e9, _DAMPING)
+    damping = section.quantity("damping", "N s/m", 0.0, 1e9, DAMPER)
     harmonics = _harmonics(section)
     harmonic_phases = _quantities(section, "harmonic_phases", "rad", 10.0, DEGREE)
     error = _quantities(section, "transmission_error", "m", 1e-2, MICROMETRE)

@@ -14,6 +14,8 @@ from dataclasses import dataclass
 from ehdmaps.errors import InputError
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.units import LENGTH
 from mbs.scene.specs import BearingSpec
 
 _SAME = 1e-9
@@ -61,6 +63,17 @@ class MapSet:
         """
         return next((emap for emap in self.maps if suits(emap, geometry)), None)
 
+    def oils(self, bearings: Iterable[BearingSpec]) -> dict[str, Lubricant]:
+        """The oil of each bearing that has a map, by its name: that of the map.
+
+        Parameters
+        ----------
+        bearings : iterable of BearingSpec
+            Bearings of the scene.
+        """
+        found = {spec.name: self.of(spec.geometry) for spec in bearings}
+        return {name: emap.lubricant for name, emap in found.items() if emap is not None}
+
     def problems(self, where: str, geometry: BearingGeometry) -> list[str]:
         """Why a bearing, which messages call `where`, gets no map of these.
 
@@ -75,7 +88,7 @@ class MapSet:
             return []
         if len(self.maps) == 1:
             return geometry_problems(where, geometry, self.maps[0])
-        given = ", ".join(_made_for(emap) for emap in self.maps)
+        given = ", ".join(_made_for(emap) + _nearly(emap, geometry) for emap in self.maps)
         return [
             f"--map: {where}, {geometry.name}, has no map; given are maps of {given}; allowed: one map for each "
             "type of bearing; `mbs plan SCENE -o JOB.toml` writes the jobs, and `ehdmaps generate` makes the maps"
@@ -112,7 +125,7 @@ class MapSet:
         """The maps, for people; what they have in common is said once."""
         names: dict[str, list[str]] = {}
         for emap in self.maps:
-            names.setdefault(f"{emap.lubricant.title}, {_made_by(emap)}", []).append(_title(emap))
+            names.setdefault(f"{emap.lubricant.title}, {_made_by(emap)}", []).append(_made_for(emap))
         return "; ".join(
             f"{'map' if len(several) == 1 else 'maps'} of {' and '.join(several)}, {how}"
             for how, several in names.items()
@@ -206,14 +219,11 @@ def geometry_problems(where: str, geometry: BearingGeometry, emap: EHDMap) -> li
     made_for = emap.bearing
     if made_for is None:
         return [f"--map: is made for a bare contact; {where} needs a map of {geometry.name}"]
-    differing = [
-        f"{key} {getattr(made_for, key) * 1e3:.6g} mm and not {getattr(geometry, key) * 1e3:.6g} mm"
-        for key in _differing(made_for, geometry)
-    ]
+    differing = _difference_words(made_for, geometry)
     if not differing:
         return []
     return [
-        f"--map: is made for {made_for.name}: {', '.join(differing)} as the {geometry.name} of {where}; generate a map "
+        f"--map: is made for {made_for.name}: {differing} as the {geometry.name} of {where}; generate a map "
         "of that bearing"
     ]
 
@@ -230,8 +240,8 @@ def _check_all_suit(maps: Iterable[tuple[str, EHDMap]], bearings: Sequence[Beari
         types.setdefault(spec.geometry.name, []).append(spec.name)
     there = "; ".join(f"{kind} ({', '.join(names)})" for kind, names in types.items())
     problems = [
-        f"--map: {name} is made for {_made_for(emap)}, which no bearing of the scene is; there are {there}; "
-        "leave it out"
+        f"--map: {name} is made for {_made_for(emap)}{_nearest(emap, bearings)}, which no bearing of the scene is; "
+        f"there are {there}; leave it out"
         for name, emap in maps
         if not any(suits(emap, spec.geometry) for spec in bearings)
     ]
@@ -244,6 +254,27 @@ def _differing(first: BearingGeometry, second: BearingGeometry) -> list[str]:
     return [key for key in _COMPARED if abs(getattr(first, key) - getattr(second, key)) > _SAME]
 
 
+def _difference_words(made_for: BearingGeometry, geometry: BearingGeometry) -> str:
+    """In which lengths a map was made for something else than a bearing, with both values; empty where in none."""
+    return ", ".join(
+        f"{key} {LENGTH.text(getattr(made_for, key), 6)} and not {LENGTH.text(getattr(geometry, key), 6)}"
+        for key in _differing(made_for, geometry)
+    )
+
+
+def _nearly(emap: EHDMap, geometry: BearingGeometry) -> str:
+    """In what a map that could be meant for a bearing differs: one of its name, or with another length alone."""
+    if emap.bearing is None or not (differing := _differing(emap.bearing, geometry)):
+        return ""
+    meant = emap.bearing.name == geometry.name or len(differing) == 1
+    return f" ({_difference_words(emap.bearing, geometry)})" if meant else ""
+
+
+def _nearest(emap: EHDMap, bearings: Sequence[BearingSpec]) -> str:
+    """The same for the first bearing that it could be meant for."""
+    return next((words for spec in bearings if (words := _nearly(emap, spec.geometry))), "")
+
+
 def _same_type(first: EHDMap, second: EHDMap) -> bool:
     """Whether two maps are made for the same contacts; those of bare contacts count as one type."""
     if first.bearing is None or second.bearing is None:
@@ -254,11 +285,6 @@ def _same_type(first: EHDMap, second: EHDMap) -> bool:
 def _made_for(emap: EHDMap) -> str:
     """What a map was made for."""
     return emap.bearing.title if emap.bearing else "a bare contact"
-
-
-def _title(emap: EHDMap) -> str:
-    """What a map was made for, in a name; that its bearing is estimated is said with the scene."""
-    return "a bare contact" if emap.bearing is None else emap.bearing.label or emap.bearing.name
 
 
 def _made_by(emap: EHDMap) -> str:

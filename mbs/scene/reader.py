@@ -19,7 +19,7 @@ from ehdmaps.jobs.supply import read_supply
 from ehdmaps.jobs.surface import read_surface
 from ehdmaps.jobs.table import Table
 from ehdmaps.physics.operating_point import OIL_TEMPERATURES
-from ehdmaps.units import RPM, TEMPERATURE, Display, closest, short
+from ehdmaps.units import DAMPER, RPM, SPRING, TEMPERATURE, Display, closest, short
 from mbs.model.body import FREEDOMS, Inertia
 from mbs.model.drive import Drive, DrivenSpeed
 from mbs.model.elements import Input, Load, Sensor, Spring
@@ -320,8 +320,8 @@ class _Reader:
         found = {}
         for key in laws.entries() if laws else ():
             section = Table(laws.get(key) if laws else None, f"[laws.{key}]", self._top.problems)
-            stiffness = section.quantity("stiffness", "N/m", 1.0, 1e13, Display("N/m"), required=True)
-            damping = section.quantity("damping", "N s/m", 0.0, 1e9, Display("N s/m"))
+            stiffness = section.quantity("stiffness", "N/m", 1.0, 1e13, SPRING, required=True)
+            damping = section.quantity("damping", "N s/m", 0.0, 1e9, DAMPER)
             self._close(section)
             if stiffness is not None:
                 found[key] = (stiffness, damping or 0.0)

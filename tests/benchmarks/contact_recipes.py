@@ -6,6 +6,7 @@ import json
 import re
 from collections.abc import Sequence
 
+from ehdmaps.units import DAMPER, SPRING
 from tests.benchmarks.page_block import Figure, given, significant
 from tests.benchmarks.printed_tables import NUMBER, Output
 
@@ -24,14 +25,15 @@ def contact_over_speed(outputs: Sequence[Output]) -> list[Figure]:
 
 
 def solvers(outputs: Sequence[Output]) -> list[Figure]:
-    """Stiffness [N/m] and damping [N s/m] of a slice, inner and outer contact, of `ehdmaps solve --json`."""
+    """Stiffness [N/um] and damping [N s/mm] of a slice, inner and outer contact, of `ehdmaps solve --json`."""
     found: list[Figure] = []
     for output in outputs:
         length = re.search(r'--length "([\d.]+) mm"', output.command)
         assert length is not None
         contacts = json.loads(output.text)
         values = [
-            [1e-3 * float(length[1]) * contact[name] for contact in contacts] for name in ("stiffness", "damping")
+            [display.value(1e-3 * float(length[1]) * contact[name]) for contact in contacts]
+            for name, display in (("stiffness", SPRING), ("damping", DAMPER))
         ]
         dry = not any(values[1])
         found += [*values[0], *([0.0] if dry else values[1])]

@@ -196,7 +196,7 @@ def highest_peak(text: str) -> tuple[float, float]:
     """Frequency and height of the highest peak of sensor S1 that `mbs lsa` prints."""
     found = re.search(r"(?m)^  S1 .*: peaks at (.*)$", text)
     assert found is not None
-    peaks = [tuple(map(float, peak)) for peak in re.findall(rf"{NUMBER} Hz \({NUMBER}\)", found[1])]
+    peaks = [tuple(map(float, peak)) for peak in re.findall(rf"{NUMBER} Hz \({NUMBER}(?: [^)]*)?\)", found[1])]
     frequency, height = max(peaks, key=lambda peak: peak[1])
     return frequency, height
 
@@ -236,14 +236,14 @@ def bushings_of_the_rigid(outputs: Sequence[Output]) -> list[Figure]:
     """Stiffness of bilateral rollers [N/um]; how many unilateral ones are loaded; theirs, along and across the load."""
     rows = [
         [float(value) for value in re.findall(NUMBER, line)]
-        for line in re.findall(r"(?m)^    [yz]  (.*)$", outputs[0].text.partition("C [the same")[0])
+        for line in re.findall(r"(?m)^    [yz]  (.*)$", outputs[0].text.partition("C [")[0])
     ]
     loaded = re.search(r"; (\d+) of (\d+) rollers loaded", outputs[0].text)
     assert loaded is not None
-    rollers, constant = float(loaded[2]), re.search(rf"{NUMBER} N/m and", outputs[0].text)
+    rollers, constant = float(loaded[2]), re.search(rf"{NUMBER} N/um and", outputs[0].text)
     assert constant is not None
-    bilateral = 1e-6 * 0.5 * rollers * 0.5 * float(constant[1])
-    return [*given("24"), bilateral, float(loaded[1]), *given("24"), 1e-6 * rows[0][0], 1e-6 * rows[1][1]]
+    bilateral = 0.5 * rollers * 0.5 * float(constant[1])
+    return [*given("24"), bilateral, float(loaded[1]), *given("24"), rows[0][0], rows[1][1]]
 
 
 def hammer_test(outputs: Sequence[Output]) -> list[Figure]:

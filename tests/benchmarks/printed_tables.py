@@ -35,7 +35,7 @@ class Mode:
 
 @dataclass(frozen=True)
 class Along:
-    """Stiffness [N/um] and damping [N s/m] of the first bearing along the load, at the first and last speed."""
+    """Stiffness [N/um] and damping [N s/mm] of the first bearing along the load, at the first and last speed."""
 
     k: tuple[float, float]
     c: tuple[float, float]
@@ -80,7 +80,7 @@ def sweep_cases(text: str) -> list[Case]:
     """Read the cases that `mbs sweep` prints."""
     found = []
     for part in re.split(r"(?m)^(?=\S.*: law )", text)[1:]:
-        along = re.search(rf"along the load k {NUMBER} to {NUMBER} N/um \([^)]*\), c {NUMBER} to {NUMBER} N s/m", part)
+        along = re.search(rf"along the load k {NUMBER} to {NUMBER} N/um \([^)]*\), c {NUMBER} to {NUMBER} N s/mm", part)
         assert along is not None
         k0, k1, c0, c1 = map(float, along.groups())
         tables = part.split("complex modes  ")

@@ -1,4 +1,4 @@
-"""A unit as Model Exchange by FMPy, whatever its version."""
+"""A unit by FMPy, as Model Exchange or step by step, whatever its version."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 from fmpy import extract, read_model_description
-from fmpy.fmi2 import FMU2Model
-from fmpy.fmi3 import FMU3Model
+from fmpy.fmi2 import FMU2Model, FMU2Slave
+from fmpy.fmi3 import FMU3Model, FMU3Slave
 
 from ehdmaps.arrays import FloatArray
 
@@ -26,20 +26,31 @@ class Unit:
 
     def instance(self, begun: bool = True) -> Any:
         """Make an instance, in the mode for continuous time."""
-        model = (FMU2Model if self.second else FMU3Model)(
-            guid=self.description.guid,
-            unzipDirectory=str(self.folder),
-            modelIdentifier=self.description.modelExchange.modelIdentifier,
-            instanceName="one",
-        )
-        if self.second:
-            model.instantiate()
-            model.setupExperiment()
-        else:
-            model.instantiate()
+        model = self._made(FMU2Model if self.second else FMU3Model)
         if begun:
             model.enterInitializationMode()
             model.exitInitializationMode()
+        return model
+
+    def stepped(self, names: list[str], values: list[float]) -> Any:
+        """Make an instance of Co-Simulation that begins with some inputs."""
+        model = self._made(FMU2Slave if self.second else FMU3Slave)
+        model.enterInitializationMode()
+        self.put(model, names, values)
+        model.exitInitializationMode()
+        return model
+
+    def _made(self, kind: type) -> Any:
+        """Make an instance, which is not initialized."""
+        model = kind(
+            guid=self.description.guid,
+            unzipDirectory=str(self.folder),
+            modelIdentifier=self.description.modelExchange.modelIdentifier,  # that of Co-Simulation, too
+            instanceName="one",
+        )
+        model.instantiate()
+        if self.second:
+            model.setupExperiment()
         return model
 
     def put(self, model: Any, names: list[str], values: list[float]) -> None:

@@ -248,7 +248,7 @@ def test_check(machine):
         assert result.stdout.count("\n") == 1
         assert all(text in result.stdout for text in texts), result.stdout
 
-    check(1, "missing: no ", "run openfoam_cases/build")
+    check(1, "missing: no ", f"run {BUILD}")
     assert not machine.cache.exists()
     machine.builds()
     check(0, "up to date: ")

@@ -262,7 +262,7 @@ def test_solve_over_frequency(capsys, here):
     status, out, err = run(capsys, *asked, "--plot", "z.png")
     assert (status, err.strip().splitlines()[-1]) == (0, "z.png: written")
     assert (here / "z.png").is_file()
-    assert out.count("converged; slow motion: k 3.") == 2
+    assert out.count("converged; slow motion: k 3") == 2 and out.count(" N/(um mm), c ") == 2
     status, out, _ = run(capsys, *asked, "--json")
     inner, outer = json.loads(out)
     assert (inner["contact"], outer["contact"]) == ("inner", "outer")

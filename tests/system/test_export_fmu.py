@@ -293,30 +293,6 @@ def test_films_kept(remembering, fmi):
     model.freeInstance()
 
 
-def test_films_in_cosimulation(remembering, sliced, small_map):
-    """A step is so many of `BearingForce.advance`, with the motion at its beginning; a refused one changes nothing."""
-    unit, step, parts = remembering["3"], 95e-6, 10
-    conditions = dict(
-        cage_angle=0.0, entrainment_speed=sliced.bearing.geometry.entrainment_speed(90.0, 0.0), temperature=T
-    )
-    places = 4e-6 + 3e-6 * np.sin(np.arange(12.0))
-    time = np.arange(places.size) * step
-    signals = np.array(list(zip(time, places, strict=True)), dtype=[("time", float), ("pose.z", float)])
-    found = simulate_fmu(
-        str(unit.folder), fmi_type="CoSimulation", stop_time=time[-1], output_interval=step, input=signals,
-        start_values={"speed.inner": 90.0, "temperature": T}, output=["force.z"],
-    )["force.z"]  # fmt: skip
-    films, wanted = None, []
-    for place in places[:-1]:
-        pose = np.array([0.0, 0.0, place, 0.0, 0.0, 0.0])
-        if films is None:
-            films = resting(sliced, pose, conditions)
-        for _ in range(parts):
-            forces, films = sliced.advance(films, pose, step / parts, **conditions)
-        wanted.append(forces.force[2])
-    np.testing.assert_allclose(found[1:], wanted, rtol=1e-8)
-
-
 def test_films_far_off(remembering):
     """Solvers try states far from where they end: loads above the map refuse the force, and its reason is told."""
     for unit in remembering.values():
@@ -330,12 +306,6 @@ def test_films_far_off(remembering):
         with pytest.raises(FMICallException):
             unit.get(model)
         model.freeInstance()
-
-
-def resting(sliced, pose, conditions):
-    """Films in equilibrium that have not made a step."""
-    _, films = sliced.advance(None, pose, 1e6, **conditions)
-    return dataclasses.replace(films, change=np.zeros_like(films.change), step=0.0)
 
 
 @pytest.mark.slow

@@ -1,4 +1,4 @@
-"""Real installations, in new folders: README's two commands in one clone, upgrades, and a wheel installed elsewhere.
+"""Real installations, in new folders: README's two commands in one clone, and upgrades.
 
 What ehdmaps needs is linked from the environment of the tests, so that pip finds it and downloads setuptools alone.
 """
@@ -147,27 +147,3 @@ def test_an_upgrade_computes_with_the_new_code(tmp_path, cache):
     assert after.attrs["code_hash"] != before.attrs["code_hash"]
     point = solved(program, tmp_path, XDG_CACHE_HOME=cache)
     assert point == solved(program, tmp_path, XDG_CACHE_HOME=str(tmp_path / "another cache"))
-
-
-def test_a_wheel_installed_elsewhere_has_all_that_it_ships(tmp_path, cache):
-    tree = sources(tmp_path / "tree")
-    environment(tmp_path / "a place, für alle")
-    binaries = tmp_path / "a place, für alle" / "bin"
-    run(binaries / "pip", "wheel", "--quiet", "--no-deps", "--wheel-dir", "dist", tree, folder=tmp_path)
-    shutil.rmtree(tree)
-    (wheel,) = (tmp_path / "dist").glob("*.whl")
-    run(binaries / "pip", "install", "--quiet", "--no-deps", wheel, folder=tmp_path)
-    program, mbs = binaries / "ehdmaps", binaries / "mbs"
-    where = {"folder": tmp_path, "XDG_CACHE_HOME": cache}
-    code = "import ehdmaps.jobs.reader as r; print(*r.shipped_jobs())"
-    for name in run(binaries / "python", "-c", code, **where).split():
-        if "openfoam" not in name:  # which asks for a solver that was built
-            run(program, "check", name, **where)
-    code = "import mbs.scene.reader as r; print(*r.shipped_systems())"
-    for name in run(binaries / "python", "-c", code, **where).split():
-        run(mbs, "statics", name, "--law", "hertz", **where)
-    (tmp_path / "job.toml").write_text(JOB.replace('"reynolds"', '"formula"'))
-    run(program, "generate", "job.toml", "-o", "map.nc", "--workers", "1", **where)
-    for target, name in (("csv", "k.csv"), ("c", "c"), ("ross", "ross.json"), ("modelica", "m.mo")):
-        run(program, "export", "map.nc", "--to", target, "-o", name, **where)
-    assert "NU308" in run(program, "solids", "nu308", **where)

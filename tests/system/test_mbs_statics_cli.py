@@ -64,6 +64,62 @@ def test_the_loads_of_all_loaded_rollers_are_listed(here, capsys):
     assert found[:, 0] @ np.sin(angles) == pytest.approx(100.0, rel=1e-3)
 
 
+@pytest.mark.parametrize("command", ["statics", "lsa", "sweep", "report", "bearing", "solve", "spectrum"])
+def test_stiffness_damping_and_responses_have_the_units_of_engineers(here, capsys, command):
+    """One unit for each quantity: none of newtons a metre, which files have."""
+    path = scene(here, ("points = 2000", "points = 3"), ("slices = 41", "slices = 5"))
+    given = {
+        "lsa": (command, path),
+        "statics": (command, path, "--law", "constant:cfd"),
+        "sweep": (command, path, "--law", "hertz:100 N s/m", "--speeds", "500 rpm", "600 rpm", "2"),
+        "report": (command, path, "--law", "constant:cfd", "-o", "page.html"),
+        "bearing": (command, "nu308", "--load", "1 kN", "--speed", "900 rpm"),
+    }
+    if command in ("solve", "spectrum"):
+        solve = ["solve", "nu308", "--load", "20 N", "--speed", "1 m/s", "--temperature", "40 degC"]
+        more = ["--solver", "formula"] if command == "solve" else ["--frequencies", "100 Hz", "1 kHz", "2"]
+        assert ehdmaps_cli.main([*solve, "--length", "0.5 mm", *more]) == 0
+        told = capsys.readouterr().out
+    else:
+        status, told, _ = run(capsys, *given[command])
+        assert status == 0
+    if command == "report":
+        page = (here / "page.html").read_text(encoding="utf-8")
+        told = re.sub(r"<details>.*?</details>|<[^>]*>", " ", page, flags=re.DOTALL)
+    expected = {
+        "lsa": ("um/N", "m/s2/N"),
+        "sweep": ("N/um", "N s/mm", "um/N", "c = 0.1 N s/mm"),
+        "statics": ("N/um, N/urad; N m/um, N m/urad", "18 N/um and 0.015 N s/mm"),
+        "report": ("N/µm, N/µrad; N m/µm, N m/µrad", "18 N/um and 0.015 N s/mm"),
+        "bearing": ("N/um", "N s/mm"),
+        "solve": ("N/(um mm)", "N s/mm2", "N/um ", "N s/mm "),
+        "spectrum": ("N/(um mm)", "N s/mm2", "um mm/N", "N/um", "N s/mm"),
+    }
+    for unit in expected[command]:
+        assert unit in told
+    without = told.replace("rolling force          N/m", "")
+    assert re.findall(r"(?:N|N s)/(?:\()?m2?(?![A-Za-z])|(?<![A-Za-z])m2?/N", without) == []
+
+
+@pytest.mark.parametrize("command", ["statics", "modes", "lsa", "sweep", "variants", "report"])
+def test_heads_say_whether_weight_is_in_the_equilibrium(here, capsys, command):
+    short = (
+        ("points = 2000", "points = 3"),
+        ('duration = "0.2 s"', 'duration = "0.05 s"'),
+        ("slices = 41", "slices = 5"),
+    )
+    heavy = ("[operation]\n", '[operation]\ngravity = ["0 m/s^2", "3 m/s^2", "-4 m/s^2"]\n')
+    more = {
+        "sweep": ["--speeds", "500 rpm", "600 rpm", "2"],
+        "report": ["-o", "page.html"],
+        "variants": ["--law", "hertz", "--law", "hertz:1e-6 s", "--vary", "clearance", "1 um"],
+    }
+    for changes, words in ((short, "without weight (no gravity in [operation])"), ((*short, heavy), "in y, -z)")):
+        status, told, _ = run(capsys, command, scene(here, *changes), *more.get(command, []))
+        assert status == 0
+        assert words in ((here / "page.html").read_text(encoding="utf-8") if command == "report" else told)
+
+
 @pytest.mark.parametrize("law", ["map", "formula"])
 def test_films_where_the_law_knows_them(here, capsys, formula_map, law):
     options = ("--map", formula_map) if law == "map" else ("--law", "formula")

@@ -262,10 +262,26 @@ def test_check_names_what_is_missing_beside_other_problems(folder, done):
     err = done("check", "job.toml", status=2).stderr
     assert "2 problems" in err
     assert "which needs more than is here: ehlFoam: there is no program" in err
-    assert "build it with `openfoam_cases/build`" in err
+    assert "build it with `ehdmaps openfoam --install`" in err
     assert "FVA9" in err
     for arguments in (["generate", "job.toml"], ["solve", "job.toml", *POINT]):
-        assert "openfoam_cases/build" in done(*arguments, status=2).stderr
+        assert "ehdmaps openfoam --install" in done(*arguments, status=2).stderr
+
+
+def test_the_command_calls_the_script_that_builds(tmp_path, monkeypatch, capfd):
+    """Options go on to it, its words reach the user, its exit status is that of the command."""
+    script = tmp_path / "a folder" / "build"
+    script.parent.mkdir()
+    script.write_text('echo "got $*" >&2; echo "up to date: $1"; exit $#\n')
+    monkeypatch.setattr("ehdmaps.jobs.commands.openfoam.build_script", lambda: script)
+    for options in ([], ["--install"], ["--check"]):
+        assert cli.main(["openfoam", *options]) == len(options)
+        told = capfd.readouterr()
+        assert told.out == f"up to date: {''.join(options)}\n"
+        assert told.err == f"got {''.join(options)}\n"
+    monkeypatch.setenv("PATH", str(tmp_path))
+    assert cli.main(["openfoam"]) == 2
+    assert f"bash is not in PATH; needed: a shell that runs {script}" in capfd.readouterr().err
 
 
 @pytest.mark.slow

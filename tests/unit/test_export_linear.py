@@ -3,6 +3,7 @@
 import subprocess
 import tomllib
 from argparse import ArgumentParser
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.exports.linear_table import add_arguments, linear_table
+from mbs.exports.ross import BEYOND
 from mbs.linearised.linear import frequency_response
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import Input, Load, Operation, Sensor
@@ -25,6 +27,7 @@ from tests.cases.calculix import needed_calculix
 from tests.cases.jobs import SMALL
 
 RPM = np.pi / 30.0
+ENDINGS = {"ross": ".toml", "calculix": ".inp", "nastran": ".bdf", "ansys": ".txt"}
 POINT = ["--load", "2 kN", "--direction", "20 deg", "--clearance", "20 um", "--temperature", "40 degC"]
 SPEED, MASS = 400.0 * RPM, 10.0
 
@@ -97,6 +100,46 @@ def test_ross_has_both_radial_axes_as_x_and_y_over_speed(path, tmp_path):
     np.testing.assert_array_equal(element["speed"], found.speeds)
     np.testing.assert_allclose(element["frequency"], 2.0 * np.pi * np.array([100.0, 1000.0]), rtol=1e-15)
     assert np.shape(element["kxy"]) == (3, 2)
+
+
+@pytest.mark.parametrize("target", ENDINGS)
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ([], "frequencies: 0 Hz; slow motion, K and C of films that follow at once"),
+        (["--films", "slow"], "frequencies: 0 Hz; slow motion, K and C of films that follow at once"),
+        (["--frequency", "1 kHz"], "frequencies: 1000 Hz; films with memory"),
+        (["--frequency", "1 kHz", "--films", "slow"], "frequencies: 1000 Hz; slow films at any frequency"),
+    ],
+)
+def test_header_says_which_films_the_values_are_of(path, tmp_path, target, options, words):
+    """At 0 Hz both kinds of films have the very values of slow motion, and the header names these."""
+    text = exported(path, tmp_path / f"b{ENDINGS[target]}", target, "--speed", "400 rpm", *options)
+    (line,) = (line for line in text.splitlines() if "frequencies: " in line)
+    assert line.endswith(words)
+    assert "; the export refuses points beyond\n" in text
+    if "1 kHz" not in options:
+        slow, memory = (table(path, "--speed", "400 rpm", "--films", films) for films in ("slow", "memory"))
+        np.testing.assert_array_equal(slow.stiffness, memory.stiffness)
+        np.testing.assert_array_equal(slow.damping, memory.damping)
+
+
+def test_header_of_slow_motion_beside_other_frequencies(path, tmp_path):
+    options = ["--speed", "400 rpm", "--ross", "3", "--frequency", "0 Hz", "1 kHz", "2"]
+    text = exported(path, tmp_path / "b.toml", "ross", *options)
+    assert (
+        "frequencies: 0 Hz, 1000 Hz; 0 Hz: slow motion, K and C of films that follow at once; "
+        "above: films with memory\n" in text
+    )
+
+
+def test_page_and_file_say_the_same_of_what_ross_does_beyond_the_tables(path, tmp_path):
+    page = (Path(__file__).parents[2] / "docs" / "exports.md").read_text(encoding="utf-8")
+    section = " ".join(page.split("### ROSS")[1].split("###")[0].split())
+    assert f" {BEYOND}. " in section and section.count("beyond") == 1
+    text = exported(path, tmp_path / "b.toml", "ross", "--speed", "300 rpm", "600 rpm", "3")
+    (line,) = (line for line in text.splitlines() if "ROSS" in line and "beyond" in line)
+    assert line == f"# {BEYOND}; stay within the speeds and frequencies above"
 
 
 def test_calculix_answers_as_linear_analysis_does(path, force, tmp_path):
@@ -231,7 +274,7 @@ def test_ansys_has_its_columns(path, tmp_path):
 )
 def test_what_a_format_cannot_hold_is_refused_and_nothing_is_written(path, tmp_path, capsys, target, options, says):
     out = tmp_path / "out"
-    ending = {"ross": ".toml", "calculix": ".inp", "nastran": ".bdf", "ansys": ".txt"}[target]
+    ending = ENDINGS[target]
     name = str(out.with_suffix(ending))
     assert main(["export", str(path), "--to", target, "-o", name, *POINT, *options]) == 2
     assert says in capsys.readouterr().err

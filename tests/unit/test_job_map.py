@@ -246,7 +246,7 @@ def test_a_group_is_written_with_the_map(with_backbone):
 
 
 def test_extrapolated_viscosity_is_said_everywhere(with_backbone, page, tmp_path, monkeypatch):
-    """FVA 3 was fitted up to 0.6 GPa, which the formulas' Hertz pressure passes between 31 and 100 N/mm."""
+    """Of FVA 3 a reach of 0.6 GPa is assumed, which the formulas' Hertz pressure passes between 31 and 100 N/mm."""
     generated, path = with_backbone
     emap = open_map(path)
     beyond = emap.dataset["max_pressure"].values > 0.6e9
@@ -258,7 +258,12 @@ def test_extrapolated_viscosity_is_said_everywhere(with_backbone, page, tmp_path
     for text in (describe(emap, "a.nc"), summary(generated, path)):
         assert share in text
         assert "inner and outer, 100 to 1000 N/mm, 0.5 to 2 m/s, 20 to 40 degC" in text
-    assert "viscosity extrapolated at some speed: above 0.6 GPa" in page
+    assert "at some speed above 0.6 GPa: how far the viscosity law reaches is assumed, not stated" in page
+    # of an oil whose data are stated to reach so far the range beyond is hatched
+    record = {**json.loads(emap.dataset.attrs["lubricant"]), "fitted_pressure_stated": True, "label": "VG 46"}
+    stated = EHDMap(emap.dataset.assign_attrs(lubricant=json.dumps(record)))
+    assert "viscosity extrapolated: at some speed above 0.6 GPa" in drawn(stated, tmp_path, monkeypatch)
+    assert f"{share}, up to which VG 46 is stated" in describe(stated, "a.nc")
     light = EHDMap(made(job_of(SMALL.replace("1000 N/mm", "10 N/mm"))))
     assert "extrapolated" not in describe(light, "a.nc") + drawn(light, tmp_path, monkeypatch)
 
@@ -310,7 +315,7 @@ def test_describe_has_the_units_of_engineers(with_backbone):
         "Young's modulus 210 GPa, Poisson's ratio 0.3",
         "84.54 mPa s at 40 degC, 9.861 mPa s at 100 degC",
         "22.36 1/GPa at 40 degC",
-        "fitted up to 0.6 GPa",
+        "reach 0.6 GPa assumed",
         "film formula moes",
         "content              as made (sha256 ",
     ):
@@ -570,7 +575,7 @@ def test_the_page_names_what_it_shows(tmp_path, monkeypatch):
         "EHD contact map: NU308, oil FVA3",
         "structural law iso16281",
         "stiffness k, N/(µm mm)",
-        "damping c, N s/(m mm)",
+        "damping c, N s/mm²",
         "central film, µm",
         "entrainment speed, m/s",
         "load, N/mm",

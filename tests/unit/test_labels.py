@@ -9,8 +9,10 @@ import ehdmaps
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.cli import main
 from ehdmaps.jobs.reader import parse_job
+from ehdmaps.jobs.status import about
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
+from mbs import cli as bearing_cli
 
 from .test_job_reader import BY_HAND, GOOD, NAMED, NAMED_OIL, OIL
 
@@ -33,6 +35,18 @@ def test_a_label_is_shown_and_changes_nothing_else(text):
     assert job.bearing == plain.bearing and hash(job.bearing) == hash(plain.bearing)
     assert job.lubricant == plain.lubricant
     assert job.contacts == plain.contacts
+
+
+def test_status_and_the_page_of_a_bearing_have_the_labels(tmp_path, capsys):
+    text = labelled("gearbox, bearing A", "Öl 32", GOOD.replace(NAMED_OIL, OIL))
+    assert about(parse(text)).startswith("gearbox, bearing A, Öl 32, solver ")
+    path = tmp_path / "job.toml"
+    path.write_text(text, encoding="utf-8")
+    for law in ("hertz", "formula"):
+        assert bearing_cli.main(["bearing", str(path), "--load", "6 kN", "--speed", "900 rpm", "--law", law]) == 0
+        head, *_, last = capsys.readouterr().out.splitlines()
+        assert head.startswith("gearbox, bearing A: law ") and "Öl 32" in head and "own oil" not in head
+        assert "viscosity of Öl 32 is extrapolated above 0.6 GPa" in last
 
 
 @pytest.mark.parametrize("label", ["", "   ", "x" * 61, "a\\nb", "a\\u0007", "a\\u202eb"])

@@ -126,7 +126,7 @@ def test_solve_tells_that_no_error_is_stated_and_extrapolation(capsys):
     over_frequency = capsys.readouterr().out
     assert over_frequency.count(" none stated") == 12 and "nan" not in over_frequency
     for name in ("inner", "outer"):
-        assert f"  {name}: viscosity extrapolated: pressure above 0.6 GPa, to which it was fitted" in printed
+        assert f"  {name}: viscosity extrapolated: pressure above 0.6 GPa, the reach that is assumed" in printed
     assert "  error of max pressure " in printed
     assert main(["solve", "nu308", "--solver", "formula", "--load", "3 N/mm", *point[2:]]) == 0
     assert "extrapolated" not in capsys.readouterr().out

@@ -374,7 +374,7 @@ class TestResponseFigure:
 
     def test_lines_break_where_the_phase_passes_180_degrees(self, dry):
         frequencies = np.linspace(1.0, 2.0, 50)
-        turning = np.exp(-1j * 6.0 * np.pi * frequencies)[:, None, None] * np.ones((1, 2, 1))
+        turning = (frequencies * np.exp(-6j * np.pi * frequencies))[:, None, None] * np.ones((1, 2, 1))
         figure = response_figure(dry, Curves("a", frequencies, turning))
         line = figure.axes[-1].lines[0].get_ydata()
         assert np.count_nonzero(np.isnan(line)) == 3

@@ -43,6 +43,7 @@ from mbs import (
     statics,
     sweep,
 )
+from mbs.linearised.linear import peak_places
 from mbs.modal.uff_reading import read_uff
 from tests.cases.jobs import map_job
 
@@ -317,3 +318,24 @@ def test_responses_over_a_pitch_are_those_at_each_cage_angle():
     np.testing.assert_allclose(data["response_least"], np.min(sizes, axis=0), rtol=1e-6)
     np.testing.assert_allclose(data["response_most"], np.max(sizes, axis=0), rtol=1e-6)
     assert np.all(data["response_most"] > data["response_least"])
+
+
+@pytest.mark.parametrize(("scene", "law"), [("n1014_testrig", "hertz:1e-7 s"), ("n1014_testrig", "formula")])
+def test_peaks_of_a_sweep_are_those_of_a_linear_analysis_at_the_same_speed(scene, law):
+    """A coarse axis steps over every peak: both look between its frequencies, at the same places."""
+    model = assemble(dataclasses.replace(read_scene(scene), frequencies=tuple(np.linspace(130.0, 3030.0, 30))), law)
+    speeds = SweepRange(150.0, 200.0, 2)
+    found = sweep(model, SweepSettings(speeds)).sweeps[0].responses
+    for index, speed in enumerate(speeds.speeds.tolist()):
+        single = lsa(model, LsaSettings(operation=model.operation._replace(speed=speed, angle=0.0)))
+        for s, i in np.ndindex(single.responses.shape[1:]):
+            size = np.abs(single.responses[:, s, i])
+            places = peak_places(size)
+            for values, expected in (
+                (found.peak_frequency, single.frequencies[places]),
+                (found.peak_size, size[places]),
+            ):
+                there = values[index, :, s, i]
+                # equilibria from other starts; a sum over modes beside direct solutions
+                np.testing.assert_allclose(there[np.isfinite(there)], expected, rtol=1e-5)
+    assert np.nanmax(found.peak_size[:, :, 0, 0]) > 1.1 * np.abs(found.values[:, :, 0, 0]).max()

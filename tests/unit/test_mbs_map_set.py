@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import argparse
+import json
+import re
+from dataclasses import replace
 from importlib import resources
 from pathlib import Path
 from types import SimpleNamespace
@@ -13,12 +16,17 @@ from ehdmaps.errors import InputError
 from ehdmaps.maps import schema
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.solids import STEEL
 from mbs import assemble
 from mbs.analyses.reach import source_of
 from mbs.bearings.bearing import Bearing
 from mbs.commands.cases import load_cases, read_compared
+from mbs.commands.common import heading
+from mbs.report.examination import examined
+from mbs.report.machine import machine, warnings
+from mbs.scene.assembly import law_attributes
 from mbs.scene.contact_laws import ContactLaws
 from mbs.scene.map_set import MapSet, map_sets
 from mbs.scene.reader import parse_scene
@@ -96,6 +104,41 @@ def test_of_several_oils_those_belong_together_that_are_the_same(small):
     assert len(mixed) == 1  # two oils in one machine, where nothing else is given
 
 
+def heavier(emap, words):
+    """The map with the record of another oil: a label, and a higher viscosity."""
+    record = json.loads(emap.dataset.attrs["lubricant"])
+    record["vogel_factor"] *= 1.5
+    return EHDMap(emap.dataset.assign_attrs(lubricant=json.dumps({**record, "label": words})))
+
+
+def test_oils_that_contradict_each_other_are_told_and_those_of_the_maps_count(small):
+    first, second = small
+    agreed = assemble(scene(), emap=[first, second])
+    assert agreed.warnings == [] and "warnings" not in law_attributes(agreed)
+    assert set(agreed.oils.values()) == {Lubricant.named("FVA3")}
+    assert assemble(scene()).oils == {}  # dry
+    heavy = heavier(second, "VG 150")
+    model = assemble(scene(), emap=[first, heavy])
+    assert model.oils == {"bearing_left": first.lubricant, "bearing_right": heavy.lubricant}
+    several, other = model.warnings
+    assert (
+        "the maps of the bearings are made for different oils (FVA3 (84.54 mPa s at 40 degC): bearing_left" in several
+    )
+    assert "VG 150 (126.8 mPa s at 40 degC): bearing_right), which differ in viscosity; each bearing has" in several
+    assert "[lubricant] of the scene, FVA3 (84.54 mPa s" in other
+    assert "not the oil of the map of bearing_right, VG 150" in other and "the oil of the map counts" in other
+    assert law_attributes(model)["warnings"] == "; ".join(model.warnings)
+    # without [lubricant] there is nothing that the maps contradict but each other
+    bare = scene(re.sub(r"\[lubricant\][^\[]*", "", two_types()))
+    assert assemble(bare, emap=[first, heavy]).warnings == [several]
+    assert assemble(bare, emap=[first, second]).warnings == []
+    # the heading of every command, and a page to send
+    assert heading(model)[-2:] == model.warnings
+    found = examined(model, MapSet([first, heavy]), None, swept=False)
+    assert "FVA3 (bearing_left); VG 150 (bearing_right)" in str(machine(found))
+    assert warnings(found)[:2] == [line.removeprefix("warning: ") for line in model.warnings]
+
+
 def test_what_is_missing_or_too_much_is_named(small):
     first, second = small
     with pytest.raises(InputError, match=r"--map: is made for NU308: .* as the N1014 of bearing 'bearing_right'"):
@@ -112,6 +155,19 @@ def test_what_is_missing_or_too_much_is_named(small):
     rough = EHDMap(second.dataset.assign_attrs({schema.SURFACE: '{"roughness": 3e-07}'}))
     with pytest.raises(InputError, match=r"different surfaces .*; state \[surface\] in the scene"):
         assemble(scene(), emap=[first, rough])
+
+
+def test_a_map_of_the_same_name_says_in_what_it_differs(small):
+    """Both are called NU308; the rollers of the scene are 1 mm longer."""
+    longer = replace(small[0].bearing, roller_length=16e-3)
+    bearings = tuple(replace(spec, geometry=replace(longer, diametral_clearance=0.0)) for spec in scene(TEXT).bearings)
+    words = "roller_length 15 mm and not 16 mm"
+    assert MapSet(small[:1]).problems("here", longer) == [
+        f"--map: is made for NU308: {words} as the NU308 of here; generate a map of that bearing"
+    ]
+    assert f"given are maps of NU308 ({words}), N1014; allowed" in MapSet(small).problems("here", longer)[0]
+    with pytest.raises(InputError, match=rf"a is made for NU308 \({words}\), which no bearing of the scene is"):
+        map_sets([("a", small[0]), ("b", small[1])], bearings)
 
 
 def test_commands_take_several_maps_as_one_case_or_more(tmp_path, formula_maps):

@@ -361,8 +361,8 @@ def test_command_tells_whether_a_map_covers_the_scene(here, capsys, light, load,
     assert "oil of the map" not in out
     (here / "thin.toml").write_text(TEXT.replace('name = "FVA3"', THIN))
     assert (
-        "the oil of the map counts (FVA3); that of the scene is another"
-        in run(capsys, "thin.toml", "--map", "map.nc")[1]
+        "is not the oil of the map of bearing_left, bearing_right, FVA3 (84.54 mPa s at 40 degC)"
+        in (run(capsys, "thin.toml", "--map", "map.nc")[1])
     )
     # a map of other contacts is refused
     status, _, err = run(capsys, "n1014_rigid", "--map", "map.nc")

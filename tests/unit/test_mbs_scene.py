@@ -271,7 +271,7 @@ def test_dry_contacts_with_a_damper():
     plain = assemble(scene, "hertz")
     for law, words, damping, time in (
         ("hertz:12.5 us", "c = 12.5 us times k", 0.0, 1.25e-5),
-        ("hertz:100 N s/m", "c = 100 N s/m", 100.0, 0.0),
+        ("hertz:100 N s/m", "c = 0.1 N s/mm", 100.0, 0.0),
     ):
         model = assemble(scene, law)
         assert model.label == f"dry Hertz, {words}"

@@ -3,6 +3,7 @@
 import hashlib
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -449,8 +450,8 @@ def test_provenance(fake):
 
 
 MISSING = {
-    "ehlFoam": r"there is no program .*bin/ehlFoam; build it with `openfoam_cases/build`",
-    "ehlFoam.build": r"there is no record .*ehlFoam.build of its build; build it again with `openfoam_cases/build`",
+    "ehlFoam": r"there is no program .*bin/ehlFoam; build it with `ehdmaps openfoam --install`",
+    "ehlFoam.build": r"there is no record .*ehlFoam.build of its build; build it again with `ehdmaps openfoam`",
 }
 
 
@@ -477,7 +478,7 @@ def test_a_build_for_another_openfoam_is_refused(fake, monkeypatch):
     monkeypatch.setenv("WM_PROJECT_VERSION", "v2312")
     (problem,) = installed.missing()
     assert re.search(r"is built for OpenFOAM 1912.200626-1, found is OpenFOAM v2312; source etc/bashrc of", problem)
-    assert "or build it again with `openfoam_cases/build`" in problem
+    assert "or build it again with `ehdmaps openfoam`" in problem
     (fake / "bin" / "ehlFoam.build").write_text(f"processor {installed.processor()}\n")
     assert "without the version of OpenFOAM in its record, found is OpenFOAM v2312" in installed.missing()[0]
 
@@ -486,7 +487,7 @@ def test_a_build_on_another_processor_is_refused(fake, tmp_path):
     openfoam_fake.record(fake, machine="0123456789abcdef")
     (problem,) = installed.missing()
     assert f"of another processor (record 0123456789abcdef, here {installed.processor()})" in problem
-    assert "build it again with `openfoam_cases/build`, or set EHDMAPS_OPENFOAM to a folder" in problem
+    assert "build it again with `ehdmaps openfoam`, or set EHDMAPS_OPENFOAM to a folder" in problem
     (fake / "bin" / "ehlFoam.build").write_text("openfoam v1912\n")
     assert "(record none, here " in installed.missing()[0]
     flags = tmp_path / "cpuinfo"
@@ -503,8 +504,7 @@ def test_the_processor_is_the_one_that_the_build_command_records():
 
 
 def test_everything_that_is_missing_is_named_at_once(tmp_path, monkeypatch):
-    monkeypatch.setattr(installed, "_CLONE", tmp_path / "clone")
-    monkeypatch.setattr(installed, "_SHARED", tmp_path / "shared")
+    monkeypatch.setattr(installed, "cases_folder", lambda: None)
     monkeypatch.setattr(tempfile, "tempdir", "/tmp/with space")
     monkeypatch.setitem(sys.modules, "PyFoam", None)
     with pytest.raises(InputError) as raised:
@@ -514,11 +514,49 @@ def test_everything_that_is_missing_is_named_at_once(tmp_path, monkeypatch):
         "the solver 'openfoam': the package PyFoam cannot be loaded",
         "setpriv is not in PATH; install the package util-linux",
         "ehlFoam: there is no program",
-        "case lineContact: is in none of",
+        f"case lineContact: is not in {tmp_path}, and no folder openfoam_cases is beside the package ehdmaps, and",
         "the folder for temporary files: got '/tmp/with space'; OpenFOAM takes no spaces",
     ):
         assert part in found
     assert len(raised.value.problems) == 5
+
+
+@pytest.mark.parametrize("packages", ["lib/python3.11/site-packages", "local/lib/python3.12/dist-packages", "."])
+def test_cases_of_an_installation_are_the_nearest_ones(tmp_path, packages):
+    """Of a virtual environment, Debian's folders for local packages, and `pip install --target`."""
+    package = tmp_path / "a b" / packages / "ehdmaps"
+    assert installed.cases_folder(package) is None
+    found = []
+    for above in ("share/ehdmaps", "a b/share/ehdmaps"):
+        cases = tmp_path / above / "openfoam_cases"
+        cases.mkdir(parents=True)
+        assert installed.cases_folder(package) == (found[-1] if found else None)  # a folder without the script
+        (cases / "build").write_text("")
+        found.append(cases)
+        assert installed.cases_folder(package) == cases
+    clone = package.parent / "openfoam_cases"
+    clone.mkdir(parents=True)
+    (clone / "build").write_text("")
+    assert installed.cases_folder(package) == clone
+
+
+def test_the_script_that_builds_is_that_of_the_clone(monkeypatch):
+    assert installed.build_script() == Path(__file__).parents[2] / "openfoam_cases" / "build"
+    monkeypatch.setattr(installed, "cases_folder", lambda: None)
+    with pytest.raises(
+        InputError, match=r"^the sources of ehlFoam: no folder .*; install ehdmaps again, from its wheel"
+    ):
+        installed.build_script()
+
+
+def test_a_build_in_a_folder_with_blanks_is_refused(fake, monkeypatch):
+    """OpenFOAM would end with a message of its own at every point."""
+    shutil.copytree(fake, fake.parent / "a build")
+    monkeypatch.setenv("EHDMAPS_OPENFOAM", str(fake.parent / "a build"))
+    (problem,) = installed.missing()
+    assert re.search(
+        r"got the program '.*/a build/bin/ehlFoam'; OpenFOAM takes no spaces .*; set EHDMAPS_OPENFOAM", problem
+    )
 
 
 def test_openfoam_without_its_environment(fake, tmp_path, monkeypatch):

@@ -25,7 +25,7 @@ from tests.benchmarks.printed_tables import Output, sweep_cases
 ALL = [block for page in PAGES for block in blocks(page, (ROOT / page).read_text(encoding="utf-8"))]
 SWEEP = """Gearbox: law map of NU308
   case: Reynolds map, 30 um
-  left: 923.21 N; along the load k 296.4 to 277.1 N/um (-6.50 %), c 4070 to 1984 N s/m (-51.25 %)
+  left: 923.21 N; along the load k 296.4 to 277.1 N/um (-6.50 %), c 4.07 to 1.984 N s/mm (-51.25 %)
   undamped modes      frequency/Hz        change  by energy: summed, one step   damping ratio   energy in the bearings
     14       2449.9 to    2395.9     -2.20 %          -2.20 %,    -1.56 %    0.0587 to 0.0446         0.50 to 0.77
   complex modes       frequency/Hz        change   damping ratio   whirl d omega/d Omega   oscillates

@@ -2,8 +2,10 @@
 
 import dataclasses
 import inspect
+import json
 import math
 import pickle
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,8 +13,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ehdmaps.errors import InputError
+from ehdmaps.jobs.job_text import lubricant_keys
+from ehdmaps.maps.records import lubricant_from_json
 from ehdmaps.physics.heat import HeatData, heat_data
-from ehdmaps.physics.lubricant import LUBRICANTS, Lubricant, LubricantState, OilData, PressureViscosity
+from ehdmaps.physics.lubricant import FITTED_PRESSURE, LUBRICANTS, Lubricant, LubricantState, OilData, PressureViscosity
 from ehdmaps.physics.pressure_viscosity import Barus, Fva3, Roelands
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.viscosity import AstmViscosity, ConstantViscosity, VogelViscosity
@@ -120,6 +124,25 @@ def test_fva3_record_and_density():
     assert oil.at(C40).density == pytest.approx(887.6 - 0.6 * 25, rel=ROUND_OFF)
     assert oil.at(C40).fitted_pressure == 0.6e9
     assert oil.thermal_conductivity == 0.134
+
+
+def test_a_reach_that_nobody_stated_is_called_assumed():
+    data = {"viscosity": 0.04, "roelands_z": 0.6, "density": 870.0}
+    assumed = Lubricant.roelands(**data)
+    stated = Lubricant.roelands(**data, fitted_pressure=FITTED_PRESSURE)
+    far = Lubricant.roelands(**data, fitted_pressure=1e9)
+    endless = Lubricant.roelands(**data, fitted_pressure=math.inf)
+    assert assumed == stated != far  # the same numbers
+    assert [oil.reach_assumed for oil in (assumed, stated, far, endless)] == [True, False, False, False]
+    assert assumed.reach == "0.6 GPa, the reach that is assumed for own oil (none is stated)"
+    assert replace(stated, label="VG 46").reach == "0.6 GPa, up to which VG 46 is stated"
+    assert endless.reach == "those of its data"
+    for oil in (assumed, stated, far, Lubricant.named("FVA3")):
+        assert lubricant_from_json(json.dumps(oil.record())).reach == oil.reach
+    # records and jobs that were made before anyone asked are those of today
+    assert "fitted_pressure_stated" not in assumed.record() | far.record()
+    assert "fitted_pressure" not in lubricant_keys(assumed)
+    assert lubricant_keys(stated)["fitted_pressure"] == "600000000.0 Pa"
 
 
 def test_spirax_is_marked_as_a_guess():

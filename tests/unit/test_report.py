@@ -149,7 +149,7 @@ def test_without_laws_the_values_are_those_of_the_points():
     emap = without_solutions(old_map(), (slice(None), 1))
     report = Report(map_report(emap, "a.nc", ""))
     here = emap.dataset.sel(contact="outer", entrainment_speed=1.0).isel(temperature=0)
-    for name, factor in (("stiffness", 1e-9), ("damping", 1e-3), ("approach", 1e6), ("minimum-film", 1e6)):
+    for name, factor in (("stiffness", 1e-9), ("damping", 1e-6), ("approach", 1e6), ("minimum-film", 1e6)):
         found = report.charts[f"map-outer-{name}-speed"]
         values = [np.nan if value is None else value for value in found["curves"][0]]
         # five digits

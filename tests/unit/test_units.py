@@ -1,9 +1,19 @@
 import math
+from pathlib import Path
 
 import pytest
 
+from ehdmaps import units
 from ehdmaps.errors import InputError
-from ehdmaps.units import FILM, LOAD, TEMPERATURE, closest, quantity, short
+from ehdmaps.units import FILM, LOAD, MOTIONS, TEMPERATURE, Display, closest, quantity, short
+
+ROOT = Path(__file__).parents[2]
+SI = {
+    **{"STIFFNESS": "N/m^2", "DAMPING": "N s/m^2", "COMPLIANCE": "m^2/N", "SPRING": "N/m", "DAMPER": "N s/m"},
+    **{"LOAD": "N/m", "ROLLING_FORCE": "N/m", "MASS_FLOW": "kg/(m s)", "FILM": "m", "LENGTH": "m"},
+    **{"PRESSURE": "Pa", "SPEED": "m/s", "RPM": "rad/s"},
+}
+ELSEWHERE = {"TEMPERATURE", "KELVIN"}
 
 
 @pytest.mark.parametrize(
@@ -119,3 +129,21 @@ def test_short_keeps_messages_short():
 def test_closest_suggests_only_what_is_close():
     assert closest("structural_lav", ("structural_law", "name")) == " (did you mean 'structural_law'?)"
     assert closest("zzz", ("structural_law", "name")) == ""
+
+
+def test_what_people_are_shown_is_the_same_quantity_in_another_unit():
+    """The factor of each unit, by the reader of units, which is pint's."""
+    shown = {name: value for name, value in vars(units).items() if isinstance(value, Display)}
+    assert shown.keys() - ELSEWHERE == SI.keys()
+    for display, unit in [*((shown[name], unit) for name, unit in SI.items()), *((v, k) for k, v in MOTIONS.items())]:
+        assert quantity(f"1 {display.unit}", unit.replace("s2", "s^2")) * display.factor == pytest.approx(
+            1.0, rel=1e-12
+        )
+
+
+def test_the_reference_page_has_the_unit_of_every_quantity():
+    page = (ROOT / "ehdmaps" / "REFERENCE.md").read_text(encoding="utf-8")
+    table = page.partition("## Units\n")[2].partition("\n## ")[0]
+    for display in [value for value in vars(units).values() if isinstance(value, Display)] + [*MOTIONS.values()]:
+        if display.unit != "K":
+            assert display.unit in table

@@ -468,6 +468,27 @@ class TestResponses:
             direct = frequency_response(equilibrium(system, Operation(float(speed))), inputs, sensors, self.FREQUENCIES)
             assert np.all(np.abs(result.responses.values[index] - direct) <= 1e-8 * np.abs(direct).max(axis=0))
 
+    @pytest.mark.parametrize("damping", [2.0, 20.0])
+    def test_peaks_are_as_high_as_they_are_between_the_frequencies(self, damping):
+        """The velocity of a damped mass by a force has its peak of 1/c at the undamped frequency."""
+        system = damped_mass(lambda speed: damping * (1.0 + speed))
+        inputs, sensors = [Input("E", "a", Y)], [Sensor("S", "a", Y, "velocity"), Sensor("T", "b", Y)]
+        axis = np.linspace(1.0, 100.0, 12)
+        found = sweep(system, np.array([0.0, 1.0]), 0.0, inputs, sensors, axis).responses
+        resonance = math.sqrt(8e4 / MASS) / (2.0 * math.pi)
+        assert found.peak_size.shape == (2, 1, 2, 1)
+        # The nearest point of the axis lies zeta/2 half widths beside the peak: a height lower by zeta^2/8.
+        ratios = damping * np.array([1.0, 2.0]) / CRITICAL
+        np.testing.assert_allclose(found.peak_size[:, 0, 0, 0] * CRITICAL * ratios, 1.0 - ratios**2 / 8.0, rtol=1e-5)
+        np.testing.assert_allclose(found.peak_frequency[:, 0, 0, 0] / resonance, 1.0 - ratios**2 / 2.0, rtol=1e-5)
+        assert np.all(np.isnan(found.peak_size[:, 0, 1, 0]))  # T feels nothing of E
+        assert np.abs(found.values[:, :, 0, 0]).max() < 0.7 / damping  # the frequencies asked for step over it
+        nearest = int(np.argmin(np.abs(axis - resonance)))
+        np.testing.assert_array_equal(np.argmax(found.largest(0, 0), axis=1), nearest)
+        np.testing.assert_array_equal(found.largest(0, 0)[:, nearest], found.peak_size[:, 0, 0, 0])
+        others = np.arange(axis.size) != nearest
+        np.testing.assert_array_equal(found.largest(0, 0)[:, others], np.abs(found.values[:, others, 0, 0]))
+
 
 @pytest.mark.parametrize("damping", [0.0, 1e-5, 1e-2])
 def test_eigenvalues_are_those_of_the_plain_state_matrix(damping):

@@ -37,6 +37,7 @@ typedef struct snapshot {
     double values[VARIABLES];
     int begun;        /* whether films have left the equilibrium in which they begin */
     double last_step; /* of co-simulation [s] */
+    double former[INNER_SPEED]; /* poses, velocities and spins at the end of the last step of co-simulation */
     ehd_film_state films[FILMS + 1];
 } snapshot;
 
@@ -70,8 +71,9 @@ void component_restore(component *of, const snapshot *kept);
 /* The start is over: films begin in the equilibrium of the inputs of now, and have states of their own from here on. */
 int component_begin(component *of);
 
-/* A step of co-simulation over a time [s] with the inputs of now: films follow. Returns the status of the law; where it
- * refuses, nothing has changed. */
+/* A step of co-simulation over a time [s]: films follow a ring that moves from the inputs of the last step (at the first
+ * one, those of component_begin) to the inputs of now, which are those of the end. Speeds and temperature are those of now
+ * all along. Returns the status of the law; where it refuses, nothing has changed. */
 int component_step(component *of, double step);
 
 /* Bring the outputs up to date. Returns the status of the law; outputs are NaN where it refuses. */

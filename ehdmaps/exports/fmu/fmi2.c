@@ -246,12 +246,13 @@ fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real x[], size
     return fmi2OK;
 }
 
-/* Co-Simulation: the force of the values of now, which the master holds over a step. */
+/* Co-Simulation: the inputs that are set before a step are those of its end, and so is the force, which the master
+ * holds until the next one. */
 
 fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference r[], size_t n, const fmi2Integer o[],
                                        const fmi2Real v[]) {
     (void)r, (void)o, (void)v;
-    return n ? refuse(c, "inputs are not interpolated") : fmi2OK;
+    return n ? refuse(c, "no derivatives of inputs are taken: poses have their velocities as inputs") : fmi2OK;
 }
 
 fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference r[], size_t n, const fmi2Integer o[],

@@ -379,7 +379,8 @@ fmi3Status fmi3GetNumberOfEventIndicators(fmi3Instance c, size_t *n) { return (v
 
 fmi3Status fmi3GetNumberOfContinuousStates(fmi3Instance c, size_t *n) { return (void)c, *n = FILMS, fmi3OK; }
 
-/* Co-Simulation: the force of the values of now, which the importer holds over a step. */
+/* Co-Simulation: the inputs that are set before a step are those of its end, and so is the force, which the importer
+ * holds until the next one. */
 
 fmi3Status fmi3EnterStepMode(fmi3Instance c) { return (void)c, fmi3OK; }
 

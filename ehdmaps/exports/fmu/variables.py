@@ -69,7 +69,8 @@ UNITS = {
 LAG = (
     "Model Exchange is to be preferred. In Co-Simulation the master holds the force over a step h, so that it lags by "
     "half a step in the mean: of a motion at the frequency f it is wrong by pi f h, 10 percent at 320 Hz and 100 us, "
-    "and damps less or excites. Take steps that are short beside the motion."
+    "and the damping loses h/2 times the stiffness, so that long steps excite. Take steps that are short beside the "
+    "damping over the stiffness, or let the master extrapolate the force."
 )
 """The warning about Co-Simulation."""
 
@@ -88,8 +89,10 @@ SLOW = "Films follow the motion at once: there are no states."
 MEMORY = (
     "Films need time to follow: each slice of each roller has a state film.xi, the approach at which its film would be "
     "in equilibrium. Velocities have no part in the force. The states begin in equilibrium. Model Exchange wants a "
-    "solver for stiff equations, with an absolute tolerance of some 1e-11 m for them; in Co-Simulation the unit takes "
-    "steps of up to 10 us of its own. The derivatives by pose are those with the states held fixed."
+    "solver for stiff equations, with an absolute tolerance of some 1e-11 m for them. In Co-Simulation the inputs that "
+    "are set before a step are those of its end: the ring moves there from the inputs of the last step (of the "
+    "initialization at first), along a cubic by the velocities, or straight where they are not given, and the unit "
+    "takes steps of up to 5 us of its own. The derivatives by pose are those with the states held fixed."
 )
 """What units with memory say."""
 

@@ -65,7 +65,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     lines = [
         f"{arguments.job}: no problems{'' if solved else UNSOLVED}",
         f"  {job.title}, {job.lubricant.title}, solver {job.solver}, structural law {job.contacts[0].structural_law}",
-        *([f"  bearing: {job.bearing.estimated}"] if job.bearing and job.bearing.estimated else []),
+        *job.estimates,
         *oil_lines(job),
         f"  supply  {supply_words(job.supply)}",
         f"  surfaces {surface_words(job.surface)}",

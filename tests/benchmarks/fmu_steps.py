@@ -1,0 +1,44 @@
+"""Damping of a unit with films of memory in Co-Simulation, over the step, beside that of its own equations.
+
+    python -m tests.benchmarks.fmu_steps MAP.nc
+
+The ring of the bearing swings by 20 nm along its load. MAP.nc is a map of a bearing, for instance nu308.nc.
+"""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+from ehdmaps.jobs.cli import main
+from tests.cases.fmu import Unit
+from tests.cases.fmu_steps import Rest, linearised, stepped, swung
+
+REST = Rest(place=25e-6, speed=150.0, temperature=313.15)
+STEPS = (1e-6, 5e-6, 9e-6, 10e-6, 20e-6, 50e-6)
+
+
+def compare(source: str) -> None:
+    """Print the table."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "unit.fmu"
+        options = ["--films", "memory", "--slices", "9", "--clearance", "20 um"]
+        assert main(["export", source, "--to", "fmu", "-o", str(file), *options]) == 0
+        unit = Unit(file, Path(folder) / "unit")
+        print("damping beside that of the equations of the unit; with velocities, without; of a mass on a held force,")
+        print("on an extrapolated one")
+        for frequency in (300.0, 1e3, 3e3):
+            stiffness, damping = linearised(unit, REST, frequency)
+            print(f"{frequency:g} Hz: {stiffness * 1e-6:.4g} N/um, {damping * 1e-3:.4g} N s/mm")
+            mass = stiffness / (2.0 * np.pi * frequency) ** 2
+            for step in STEPS:
+                found = [stepped(unit, REST, frequency, step, velocities=given)[1] for given in (True, False)]
+                found += [swung(unit, REST, mass, frequency, step, way) for way in (False, True)]
+                print(f"  {step * 1e6:3g} us  " + "  ".join(f"{c / damping:8.4f}" for c in found))
+
+
+if __name__ == "__main__":
+    compare(sys.argv[1])

@@ -1,0 +1,134 @@
+"""The source distribution and the wheel: what they hold, and what an installation of the wheel does elsewhere."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import shutil
+import subprocess
+import sys
+import tarfile
+import zipfile
+from email import message_from_bytes
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+FOLDERS = ("ehdmaps", "mbs", "openfoam_cases")
+FILES = ("pyproject.toml", "setup.py", "MANIFEST.in", "README.md", "LICENSE")
+LEFT_OUT = shutil.ignore_patterns("__pycache__", "*.egg-info", "polyMesh", "*.pyc")
+GPL = "share/ehdmaps/openfoam_cases/"
+
+BUILD = """
+import sys
+from setuptools import build_meta
+print(getattr(build_meta, f"build_{sys.argv[1]}")(sys.argv[2]))
+"""
+
+
+def done(command, folder, status=0, **more):
+    """Run a program, without folders of packages that this process was given; its output."""
+    environment = {name: text for name, text in os.environ.items() if name != "PYTHONPATH"} | more
+    parts = [str(part) for part in command]
+    result = subprocess.run(parts, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+    assert result.returncode == status, result.stdout + result.stderr
+    return result.stdout
+
+
+@pytest.fixture(scope="module")
+def distributions(tmp_path_factory):
+    """The source distribution of this clone, and the wheel that is made of it, by the build system of the project."""
+    folder = tmp_path_factory.mktemp("a build")
+    done([sys.executable, "-m", "venv", "tools"], folder)
+    wanted = ["setuptools>=77.0.3"]
+    got = subprocess.run(
+        [folder / "tools/bin/pip", "install", "--quiet", *wanted], capture_output=True, text=True, check=False
+    )
+    if got.returncode:
+        (pytest.fail if os.environ.get("CI") else pytest.skip)(f"{wanted} cannot be installed: {got.stderr[-300:]}")
+    clone = folder / "clone"
+    clone.mkdir()
+    for name in FOLDERS:
+        shutil.copytree(ROOT / name, clone / name, ignore=LEFT_OUT)
+    for name in FILES:
+        shutil.copy(ROOT / name, clone)
+    python = folder / "tools/bin/python"
+    source = folder / done([python, "-c", BUILD, "sdist", folder], clone).splitlines()[-1]
+    with tarfile.open(source) as archive:
+        archive.extractall(folder, filter="data")
+    unpacked = folder / source.name.removesuffix(".tar.gz")
+    return source, folder / done([python, "-c", BUILD, "wheel", folder], unpacked).splitlines()[-1]
+
+
+@pytest.mark.slow
+def test_what_source_distribution_and_wheel_hold(distributions):
+    source, wheel = distributions
+    with tarfile.open(source) as archive:
+        held = {name.partition("/")[2] for name in archive.getnames()}
+    for path in (ROOT / "openfoam_cases" / "ehlFoam").rglob("*.[CH]"):
+        assert str(path.relative_to(ROOT)) in held
+    with zipfile.ZipFile(wheel) as archive:
+        names = archive.namelist()
+        told = message_from_bytes(archive.read(next(name for name in names if name.endswith(".dist-info/METADATA"))))
+        modes = {name: archive.getinfo(name).external_attr >> 16 for name in names}
+    outside = {name.partition("/")[0] for name in names} - {"ehdmaps", "mbs"}
+    assert {name.rpartition(".")[2] for name in outside} == {"data", "dist-info"}
+    assert "ehdmaps/jobs/shipped/nu308.toml" in names and "mbs/systems/gearbox.toml" in names
+    assert not [name for name in names if name.endswith((".png", ".pyc")) or "/tests/" in name]
+    cases = {name.partition(GPL)[2]: name for name in names if GPL in name}
+    assert {"COPYING", "build", "ehlFoam/ehlFoam.C", "ehlFoam/Make/options", "lineContact/system/fvSchemes"} <= set(
+        cases
+    )
+    assert modes[cases["build"]] & 0o111
+    assert told["License-Expression"] == "BSD-3-Clause AND BSD-2-Clause AND GPL-3.0-or-later"
+    texts = told.get_all("License-File")
+    assert texts == ["LICENSE", "ehdmaps/exports/fmu/headers/LICENSE", "openfoam_cases/COPYING"]
+    for text in texts:
+        assert any(name.endswith(f".dist-info/licenses/{text}") for name in names)
+    assert told["Author"] == "The ehdmaps developers"
+    assert told["Description-Content-Type"] == "text/markdown"
+    assert "](docs/" not in told.get_payload()
+
+
+@pytest.fixture(scope="module")
+def installed(distributions, tmp_path_factory):
+    """The wheel in an environment of its own, which borrows what ehdmaps needs; in a folder with blanks and umlauts."""
+    folder = tmp_path_factory.mktemp("elsewhere") / "else where, für alle"
+    done([sys.executable, "-m", "venv", folder], folder.parent)
+    done([folder / "bin/pip", "install", "--quiet", "--no-deps", distributions[1]], folder.parent)
+    (packages,) = folder.glob("lib/python*/site-packages")
+    borrowed = [path for path in sys.path if path.endswith("site-packages")]
+    (packages / "zz_borrowed.pth").write_text("\n".join(borrowed), encoding="utf-8")
+    where = "import ehdmaps, mbs; print(ehdmaps.__file__, mbs.__file__, sep='\\n')"
+    found = done([folder / "bin/python", "-c", where], folder.parent).splitlines()
+    assert found == [str(packages / name / "__init__.py") for name in ("ehdmaps", "mbs")]
+    return folder
+
+
+@pytest.mark.slow
+def test_an_installation_elsewhere_finds_what_builds_its_solver(installed, tmp_path):
+    scripts = installed / "share/ehdmaps/openfoam_cases"
+    cache = tmp_path / "cache"
+    told = done([installed / "bin/ehdmaps", "openfoam", "--check"], tmp_path, status=1, EHDMAPS_OPENFOAM=str(cache))
+    problem, _, script = told.partition("; run ")
+    assert problem == f"missing: no {cache}/bin/ehlFoam"
+    assert shlex.split(script) == [str(scripts / "build")]  # as a shell reads it
+    code = "from ehdmaps.openfoam.installation import cases_folder; print(cases_folder())"
+    assert done([installed / "bin/python", "-c", code], tmp_path).strip() == str(scripts)
+
+
+@pytest.mark.slow
+def test_an_installation_elsewhere_has_its_jobs_scenes_exports_and_solids(installed, small_map, tmp_path):
+    program, python = installed / "bin/ehdmaps", installed / "bin/python"
+    code = "import ehdmaps.jobs.reader as r; print(*r.shipped_jobs())"
+    for name in done([python, "-c", code], tmp_path).split():
+        if "openfoam" not in name:  # which asks for a solver that was built
+            done([program, "check", name], tmp_path)
+    code = "import mbs.scene.reader as r; print(*map(r.read_scene, r.shipped_systems()))"
+    done([python, "-c", code], tmp_path)
+    # with the finite elements of its housing
+    done([installed / "bin/mbs", "statics", "gearbox", "--law", "hertz"], tmp_path)
+    for target, name in (("csv", "k.csv"), ("c", "c"), ("ross", "ross.toml"), ("modelica", "m.mo")):
+        done([program, "export", small_map, "--to", target, "-o", name], tmp_path)
+    assert "NU308" in done([program, "solids", "nu308"], tmp_path)
