@@ -119,9 +119,10 @@ def test_fresh_films_lie_within_the_stated_errors(name: str) -> None:
 
 def _along(axis: str, at: FloatArray) -> TableFilms:
     """Films along a line of load, speed or temperature, however thick."""
-    place = {"load": 2e4, "entrainment_speed": 0.5, "temperature": 313.15, axis: at}
+    place: dict[str, FloatArray | float] = {"load": 2e4, "entrainment_speed": 0.5, "temperature": 313.15} | {axis: at}
+    w, u, T = (place[name] for name in ("load", "entrainment_speed", "temperature"))
     oil = Lubricant.named("FVA3")
-    return film_table(oil).films(bare(), oil, *place.values(), response=True, thickest_film=math.inf)
+    return film_table(oil).films(bare(), oil, w, u, T, response=True, thickest_film=math.inf)
 
 
 def _largest_bend(axis: str, low: float, high: float, n: int) -> dict[str, float]:
