@@ -14,6 +14,7 @@ import pytest
 from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import InputError, MapError
+from ehdmaps.jobs import table_make
 from ehdmaps.jobs.cli import main
 from ehdmaps.jobs.table_make import AXES, make_table, solve_table_line
 from ehdmaps.physics.bearing import BearingGeometry
@@ -307,6 +308,23 @@ def test_a_small_table_is_made_as_the_shipped_one() -> None:
         # the tip of a spike, and the stress at it, hang on the start of Newton's iterations
         allowed = 0.3 if field.name in ("max_pressure", "wall_stress") else 2e-3
         assert np.max(np.abs(small.values[..., k] - shipped[..., k])) < allowed, field.name
+
+
+def test_the_command_makes_a_table_that_reads(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Of few nodes; a file of another kind is not replaced."""
+    small = Axes(AXES.zeta[::12][:4], AXES.log_l[4:8], AXES.log_alpha[1:3], AXES.bend[1:3])
+    monkeypatch.setattr(table_make, "AXES", small)
+    monkeypatch.setattr(table_make, "INCOMPRESSIBLE", small)
+    path = tmp_path / "table.nc"
+    assert main(["table", "make", "-o", str(path)]) == 0
+    assert set(read_tables(path).tables) == {"dowson-higginson", "incompressible"}
+    assert main(["table", "show", str(path)]) == 0
+    assert "L 5 to 14 (4)" in capsys.readouterr().out
+    path.write_text("mine", encoding="utf-8")
+    assert main(["table", "make", "-o", str(path)]) == 2
+    assert path.read_text(encoding="utf-8") == "mine"
 
 
 def test_the_command_shows_the_table(capsys: pytest.CaptureFixture[str]) -> None:
