@@ -36,7 +36,7 @@ _MEANING = {
     "pressure_viscosity": ("alpha, d ln eta/dp at p = 0", "1/Pa"),
     "bend": ("(1 - z) sqrt(17/GPa / alpha) with the exponent z of Roelands' law", "1"),
 }
-_BITS = 18
+_BITS = 17
 """Bits of a value's mantissa that are kept."""
 
 ROUNDING = 2.0 ** -(_BITS + 1)

@@ -34,8 +34,10 @@ from ehdmaps.table.interpolation import Axes, Place, coefficients, place_of
 from ehdmaps.table.interpolation import read as read_fields
 from ehdmaps.table.oils import BESIDE, OilStates, exponent_at, matched_pressure, oil_states
 
-BEYOND_HEAVY, BEYOND_FLAT, BEYOND_LIGHT = 0.1, 0.05, 1e-3
-"""What smooth forms are wrong by, a unit of zeta above the table; at L = 0 below it; and far below its lowest zeta."""
+BEYOND_HEAVY, BEYOND_FLAT, BEYOND_LIGHT = 0.1, 0.05, 5e-3
+"""What smooth forms are wrong by, a unit of zeta above the table; at L = 0 below it; and far below its lowest zeta.
+
+Measured there, down to M = 1e-8: largest pressures 4e-3, as nodes of a grid sample them; films and compliances 2e-4."""
 
 FARTHEST = 3.0
 """Units of zeta above the table up to which its ends are taken."""

@@ -164,31 +164,34 @@ def _read(
     place: Place, part: slice | IndexArray, coefficients: FloatArray, zeta: bool = False, log_l: bool = False
 ) -> FloatArray:
     """Values of some points, or their derivatives along zeta or ln L, shape (n, fields)."""
-    by_bendeta = (place.zeta_slope if zeta else place.zeta)[part]
+    by_zeta = (place.zeta_slope if zeta else place.zeta)[part]
     by_l = (place.log_l_slope if log_l else place.log_l)[part]
     first, four = place.first[part], np.arange(DEGREE + 1)
     near = coefficients[(first[:, 0, None] + four)[:, :, None], (first[:, 1, None] + four)[:, None, :]]
     n, fields = first.shape[0], coefficients.shape[-1]
-    weights = (by_bendeta[:, :, None] * by_l[:, None, :]).reshape(n, 1, -1)
+    weights = (by_zeta[:, :, None] * by_l[:, None, :]).reshape(n, 1, -1)
     oils = coefficients.shape[2]
     summed = np.matmul(weights, near.reshape(n, (DEGREE + 1) ** 2, oils * fields)).reshape(n, oils, fields)
     return np.asarray(np.matmul(place.oil[part][:, None, :], summed)[:, 0, :])
 
 
 def _go_on(place: Place, coefficients: FloatArray, fields: Sequence[Field], found: FloatArray) -> None:
-    """Continue values beyond the nodes, in place."""
+    """Continue values beyond the nodes, in place: along zeta at the last L, and the derivative of this along L."""
     away = np.flatnonzero((place.below < 0.0) | (place.above > 0.0) | (place.flatter < 0.0))
-    along, along_l = _read(place, away, coefficients, zeta=True), _read(place, away, coefficients, log_l=True)
     below, above, flatter = place.below[away], place.above[away], place.flatter[away]
+    value, slope = found[away], _read(place, away, coefficients, zeta=True)
+    by_l, slope_by_l = (_read(place, away, coefficients, zeta=zeta, log_l=True) for zeta in (False, True))
     for k, field in enumerate(fields):
-        value, slope = found[away, k], along[:, k]
-        rigid = field.rigid_slope * (np.sign(value) if field.scale else 1.0)
-        lighter = rigid * below + (slope - rigid) * np.expm1(below)
+        # all but what fades is linear in value and slope
+        v, s = value[:, k] + flatter * by_l[:, k], slope[:, k] + flatter * slope_by_l[:, k]
+        rigid = field.rigid_slope * (np.sign(v) if field.scale else 1.0)
+        lighter = v + rigid * below + (s - rigid) * np.expm1(below)
         if field.fades:
-            heavier = value * np.expm1(np.minimum(slope / value, 0.0) * above)
+            rate = np.minimum(slope[:, k] / value[:, k], 0.0)
+            heavier = (v + flatter * above * (slope_by_l[:, k] - rate * by_l[:, k])) * np.exp(rate * above)
         else:
-            heavier = -slope * np.expm1(-above) if field.scale else slope * above
-        found[away, k] = value + np.where(below < 0.0, lighter, heavier) + along_l[:, k] * flatter
+            heavier = v - s * np.expm1(-above) if field.scale else v + s * above
+        found[away, k] = np.where(below < 0.0, lighter, heavier)
 
 
 def _knots(nodes: FloatArray) -> FloatArray:
@@ -251,7 +254,7 @@ def left_out(axes: Axes, values: FloatArray) -> FloatArray:
 
     Along zeta and ln L each value is read from the spline through every second node and from that through every fourth.
     What all nodes leave is what every second one does, times the ratio of the two: a sixteenth where the spline
-    converges, all of it where values scatter. Along ln alpha and the bend each inner node is read from all others; a
+    converges, all of it where values scatter. Along ln alpha and the bend each node is read from all others; the
     polynomial with one node more is taken to be wrong by a third of that.
 
     Parameters
@@ -290,10 +293,10 @@ def _spline_left_out(nodes: FloatArray, values: FloatArray, every: int) -> Float
 
 
 def _node_left_out(nodes: FloatArray, values: FloatArray) -> FloatArray:
-    """Largest difference of an inner node's value from the polynomial through the others, for all nodes alike."""
-    found = np.zeros_like(values[0])
-    for k in range(1, nodes.size - 1):
+    """Difference of each node's value from the polynomial through all others."""
+    found = np.empty_like(values)
+    for k in range(nodes.size):
         others = np.delete(np.arange(nodes.size), k)
         weights = lagrange_weights(nodes[others], nodes[k : k + 1])[0]
-        found = np.maximum(found, np.abs(np.tensordot(weights, values[others], axes=1) - values[k]))
-    return np.broadcast_to(found, values.shape)
+        found[k] = np.abs(np.tensordot(weights, values[others], axes=1) - values[k])
+    return found
