@@ -16,6 +16,7 @@ from ehdmaps.jobs.report import (
     AXES,
     error_lines,
     extrapolated_lines,
+    films_lines,
     law_lines,
     span,
     status_lines,
@@ -91,6 +92,9 @@ def _lines(emap: EHDMap, name: str) -> Iterator[str]:
     yield ""
     if schema.FAMILY in attributes:
         yield _family_line(attributes[schema.FAMILY])
+        yield ""
+    if films := list(films_lines(dataset)):
+        yield from films
         yield ""
     yield "accuracy of the points"
     yield from error_lines(dataset)

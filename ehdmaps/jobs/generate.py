@@ -8,6 +8,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
 import xarray as xr
 
 from ehdmaps.errors import InputError
@@ -29,6 +30,7 @@ from ehdmaps.maps.checksum import content_sha256
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.validation import validate
 from ehdmaps.physics.solution import ContactSolver
+from ehdmaps.table.solver import TableSolver
 from ehdmaps.workers import available_cores
 
 MOST_HALVINGS = 3
@@ -206,8 +208,12 @@ class _Plan:
     @property
     def everything(self) -> tuple[LineTask, ...]:
         """All tasks, in the order in which they are solved."""
-        refined = self.refined.tasks if self.refined else ()
-        return (*self.tasks, *refined, *(self.check.tasks if self.check else ()))
+        return (*self.films, *(self.check.tasks if self.check else ()))
+
+    @property
+    def films(self) -> tuple[LineTask, ...]:
+        """Points and lines of the map, without the check of its laws."""
+        return (*self.tasks, *(self.refined.tasks if self.refined else ()))
 
     @property
     def points(self) -> int:
@@ -270,6 +276,8 @@ def _finer(planned: _Plan, dataset: xr.Dataset, group: xr.Dataset | None, result
     """The plan with half the step along one axis of its lines; None where that would not help, or be too much."""
     if planned.check is None or planned.refined is None or met(dataset.attrs) or REFUSED in dataset.attrs:
         return None
+    if isinstance(planned.solver, TableSolver):  # between two films that are read lies a third one of the same table
+        return None
     axis = coarse_axis(planned.check, EHDMap(dataset, group), _results(planned, result))
     if axis is None:
         return None
@@ -289,6 +297,10 @@ def _finished(planned: _Plan, result: SweepResult, where: str) -> tuple[xr.Datas
     group = backbone_group(planned.refined, found) if planned.refined else None
     if planned.check:
         dataset.attrs.update(checked_laws(planned.check, EHDMap(dataset, group), found))
+    if isinstance(planned.solver, TableSolver):
+        read = sum(int(np.count_nonzero(found[task.key]["iterations"] == 0)) for task in planned.films)
+        total = sum(task.points for task in planned.films)
+        dataset.attrs[schema.FILMS_READ], dataset.attrs[schema.FILMS_SOLVED] = read, total - read
     if planned.halved:
         dataset.attrs[HALVED] = ", ".join(planned.halved)
     dataset.attrs[schema.CHECKSUM] = content_sha256(dataset, group)

@@ -29,6 +29,7 @@ from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.oil_supply import FLOODED
 from ehdmaps.physics.roughness import SMOOTH
 from ehdmaps.physics.solution import ContactSolution, ContactSolver, Status
+from ehdmaps.table.solver import TableSolver
 
 SEED = 20260
 
@@ -104,7 +105,9 @@ def plan_check(job: Job, solver: ContactSolver) -> LawCheck | None:
             for region, factors in OUTSIDE.items()
             for _ in range(round(OUTSIDE_SHARE * count))
         ]
-    tasks = tuple(LineTask(contact, job.lubricant, (w,), u, T, solver) for _, (contact, w, u, T) in drawn)
+    # the proof of films that are read is films that are solved
+    fresh = solver.other if isinstance(solver, TableSolver) else solver
+    tasks = tuple(LineTask(contact, job.lubricant, (w,), u, T, fresh) for _, (contact, w, u, T) in drawn)
     return LawCheck(job.contacts, tasks, tuple(region for region, _ in drawn))
 
 

@@ -11,6 +11,7 @@ import xarray as xr
 
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.maps.records import lubricant_from_json
+from ehdmaps.maps.schema import FILMS_READ, FILMS_SOLVED
 from ehdmaps.physics.film_limits import BELOW_ROUGHNESS, CONTINUUM, NO_CONTINUUM
 from ehdmaps.physics.solution import Status
 from ehdmaps.program import plain
@@ -208,6 +209,16 @@ def extrapolated_lines(dataset: xr.Dataset) -> Iterator[str]:
 def fitted_pressure(dataset: xr.Dataset) -> str:
     """Say up to which pressure the viscosity of the map's oil holds, and whether that is known."""
     return lubricant_from_json(dataset.attrs["lubricant"]).reach
+
+
+def films_lines(dataset: xr.Dataset) -> Iterator[str]:
+    """Say how many films of a map were read from the film table; nothing of a map whose films were all solved."""
+    if FILMS_READ in dataset.attrs:
+        read, solved = (int(dataset.attrs[name]) for name in (FILMS_READ, FILMS_SOLVED))
+        yield (
+            f"films: {read} of points and lines read from the film table, {solved} solved, where the table has none or "
+            "states too large an error"
+        )
 
 
 def error_lines(dataset: xr.Dataset) -> Iterator[str]:

@@ -16,6 +16,9 @@ from ehdmaps.physics.rheology import SHEAR_LIMITS, SHEARS
 from ehdmaps.physics.solution import ContactSolver
 from ehdmaps.units import Display, short
 
+SOLVED, TABLE = "solved", "table"
+"""Where the films of `reynolds` come from."""
+
 
 @dataclass(frozen=True)
 class Number:
@@ -143,10 +146,15 @@ def _formula(**options: Any) -> ContactSolver:
     return FormulaSolver(**options)
 
 
-def _reynolds(**options: Any) -> ContactSolver:
+def _reynolds(films: str = SOLVED, **options: Any) -> ContactSolver:
     from ehdmaps.ehl.solver import ReynoldsSolver
 
-    return ReynoldsSolver(**options)
+    solver = ReynoldsSolver(**options)
+    if films == SOLVED:
+        return solver
+    from ehdmaps.table.solver import TableSolver
+
+    return TableSolver(solver)
 
 
 def _openfoam(start: str = "reynolds", **options: Any) -> ContactSolver:
@@ -176,6 +184,11 @@ SOLVERS: Mapping[str, SolverEntry] = {
             Number("tolerance", *SETTING_LIMITS["tolerance"], "Newton tolerance on the last step"),
             physics_option(*PHYSICS),
             *SHEAR_OPTIONS,
+            Word(
+                "films",
+                (SOLVED, TABLE),
+                "whether films are solved, or read from the film table where it serves",
+            ),
         ),
         _reynolds,
     ),

@@ -10,7 +10,15 @@ import numpy as np
 
 from ehdmaps.jobs.correction_report import correction_lines
 from ehdmaps.jobs.generate import Generated
-from ehdmaps.jobs.report import error_lines, extrapolated_lines, holes, law_lines, status_lines, tolerance_lines
+from ehdmaps.jobs.report import (
+    error_lines,
+    extrapolated_lines,
+    films_lines,
+    holes,
+    law_lines,
+    status_lines,
+    tolerance_lines,
+)
 from ehdmaps.maps.records import record_from_json
 
 
@@ -34,6 +42,7 @@ def _lines(generated: Generated, output: Path) -> Iterator[str]:
         yield f"  bearing: {estimated}"
     counts = f"{sweep.taken_over} taken over, {sweep.solved} solved now"
     yield f"points: {counts}, {holes(dataset)} without a solution"
+    yield from films_lines(dataset)
     if sweep.damaged:
         yield f"store: {sweep.damaged} damaged entries were solved again"
     yield from status_lines(dataset)

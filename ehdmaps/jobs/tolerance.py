@@ -50,6 +50,7 @@ from ehdmaps.maps.backbone_plan import STEP_LIMITS, STEPS, Axis, Steps
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.law_errors import quantiles_text
 from ehdmaps.physics.solution import ContactSolver
+from ehdmaps.table.solver import TableSolver
 from ehdmaps.units import quantity_within
 
 SMALLEST, LARGEST = 1e-3, 0.2
@@ -223,7 +224,11 @@ def check_tolerance(job: Job, solver: ContactSolver, tolerance: float) -> Reynol
     problems = []
     if isinstance(tolerance, bool) or not isinstance(tolerance, (int, float)) or not SMALLEST <= tolerance <= LARGEST:
         problems.append(f"tolerance: got {tolerance!r:.40}; {_ALLOWED}, which is 0.01 in Python")
-    if not isinstance(solver, ReynoldsSolver):
+    if isinstance(solver, TableSolver):
+        problems.append(
+            'tolerance: the job has [solver] films = "table", whose errors are what they are; allowed: films = "solved"'
+        )
+    elif not isinstance(solver, ReynoldsSolver):
         problems.append(
             f"tolerance: the solver {solver.name!r} has no grid density and no refinement lines to choose; allowed: "
             "the solver reynolds; how far other solvers are from it is measured by `ehdmaps tradeoff`"

@@ -324,7 +324,7 @@ ATTRIBUTES = {
 }
 """Attributes that every map has, and what they hold: a whole number the first, texts the others."""
 
-NUMBERS = ("lubricant_verified", "structural_scaling")
+NUMBERS = ("lubricant_verified", "structural_scaling", "films_read", "films_solved")
 """Attributes that are numbers, where a map has them; those of the check of the laws, `law_*`, may be."""
 
 CHECKSUM = "content_sha256"
@@ -348,6 +348,9 @@ CORRECTION = "correction"
 FAMILY = "family"
 """Attribute of a map whose points were read from lines that several maps share, JSON: how many maps and points of
 lines, and how the laws of some of them were found to be."""
+
+FILMS_READ, FILMS_SOLVED = "films_read", "films_solved"
+"""Attributes of a map with films from the film table: how many points of it and its lines were read, and solved."""
 
 CODE = "code_hash"
 """Attribute with the hash of all that the map was computed with, see `ehdmaps.provenance.code_hash`."""
