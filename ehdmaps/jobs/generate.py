@@ -276,8 +276,6 @@ def _finer(planned: _Plan, dataset: xr.Dataset, group: xr.Dataset | None, result
     """The plan with half the step along one axis of its lines; None where that would not help, or be too much."""
     if planned.check is None or planned.refined is None or met(dataset.attrs) or REFUSED in dataset.attrs:
         return None
-    if isinstance(planned.solver, TableSolver):  # between two films that are read lies a third one of the same table
-        return None
     axis = coarse_axis(planned.check, EHDMap(dataset, group), _results(planned, result))
     if axis is None:
         return None

@@ -149,12 +149,12 @@ def _formula(**options: Any) -> ContactSolver:
 def _reynolds(films: str = SOLVED, **options: Any) -> ContactSolver:
     from ehdmaps.ehl.solver import ReynoldsSolver
 
-    solver = ReynoldsSolver(**options)
     if films == SOLVED:
-        return solver
+        return ReynoldsSolver(**options)
+    from ehdmaps.table.family import GRID
     from ehdmaps.table.solver import TableSolver
 
-    return TableSolver(solver)
+    return TableSolver(ReynoldsSolver(**{**GRID, **options}))
 
 
 def _openfoam(start: str = "reynolds", **options: Any) -> ContactSolver:

@@ -19,6 +19,7 @@ from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.roughness import SMOOTH, Surface
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.physics.solution import ContactSolver
+from ehdmaps.table.family import GRID
 from ehdmaps.table.solver import TableSolver
 
 LOADS, SPEEDS, TEMPERATURES = (100.0, 1e6), (0.05, 10.0), (293.15, 393.15)
@@ -91,7 +92,7 @@ def law(
         material=material,
         structural_law=structural_law,
     )
-    refined = refinement(job, solver or TableSolver(ReynoldsSolver()))
+    refined = refinement(job, solver or TableSolver(ReynoldsSolver(**GRID)))
     assert refined is not None
     group = backbone_group(refined, {task.key: task.run() for task in refined.tasks})
     read: Sequence[LineContact] = contacts if chosen == "series" else (by_name[chosen],)

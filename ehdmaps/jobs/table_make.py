@@ -27,13 +27,14 @@ from ehdmaps.physics.moes import viscosity_exponent
 from ehdmaps.physics.pressure_viscosity import ROELANDS_PRESSURE
 from ehdmaps.physics.rheology import ShearLaw
 from ehdmaps.table.coordinates import exponent_of, load_number_at
+from ehdmaps.table.family import GRID
 from ehdmaps.table.fields import FIELDS, FILMS, NATURAL_FREQUENCIES
 from ehdmaps.table.file import ROUNDING, TableFile, rounded
 from ehdmaps.table.films import LARGEST_ERROR, FilmTable, encoded
 from ehdmaps.table.interpolation import Axes, left_out
 from ehdmaps.version import version
 
-RESOLUTION = Resolution(density=10.0, inlet_length=700.0)
+RESOLUTION = Resolution(**GRID)
 """Of all solves: with half as many cells the grid's errors are what limits the table, with more the nodes are."""
 
 LARGEST_EXPONENT = 250.0

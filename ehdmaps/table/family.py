@@ -7,6 +7,9 @@ from ehdmaps.physics.solution import ContactSolver
 TABLE_OF = "reynolds"
 """Solver whose films the table holds."""
 
+GRID = {"density": 10.0, "inlet_length": 700.0}
+"""Settings of that solver: finer than its own, so that what is read and what is solved beside it fit together."""
+
 _MEANING = {
     "physics": "heat in the film",
     "shear": "a law of shear",
