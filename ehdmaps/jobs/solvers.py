@@ -151,10 +151,13 @@ def _reynolds(films: str = SOLVED, **options: Any) -> ContactSolver:
 
     if films == SOLVED:
         return ReynoldsSolver(**options)
-    from ehdmaps.table.family import GRID
+    from ehdmaps.table.family import GRID, outside_family
     from ehdmaps.table.solver import TableSolver
 
-    return TableSolver(ReynoldsSolver(**{**GRID, **options}))
+    solver = ReynoldsSolver(**{**GRID, **options})
+    if reason := outside_family(solver):
+        raise InputError(f"[solver] films: got {TABLE!r}; {reason}; allowed: {SOLVED!r}")
+    return TableSolver(solver)
 
 
 def _openfoam(start: str = "reynolds", **options: Any) -> ContactSolver:

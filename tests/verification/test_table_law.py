@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from functools import partial
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,11 +12,18 @@ import pytest
 import ehdmaps
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import InputError
+from ehdmaps.jobs.reader import parse_job
+from ehdmaps.jobs.report import films_lines
+from ehdmaps.jobs.solvers import build
 from ehdmaps.jobs.table_law import law
+from ehdmaps.jobs.tolerance import check_tolerance
+from ehdmaps.maps.emap import open_map
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.table.solver import TableSolver
+from tests.cases.jobs import FINE
+from tests.conftest import made_map
 
 OIL = Lubricant.named("FVA3")
 LINE = LineContact("line", 6e-3, STEEL, "half_space", reference_depth=6e-3)
@@ -71,3 +80,36 @@ def test_films_with_heat_are_all_solved() -> None:
     (film,) = TableSolver(warm).solve_line(LINE, OIL, (1e5,), 1.5, 330.0)
     (same,) = warm.solve_line(LINE, OIL, (1e5,), 1.5, 330.0)
     assert film.film_offset == same.film_offset
+
+
+READ = FINE.replace('name = "reynolds"\n', 'name = "reynolds"\nfilms = "table"\n').replace(
+    "law_check = 0", "law_check = 40"
+)
+
+
+@pytest.mark.slow
+def test_a_map_with_films_from_the_table_is_that_of_solved_films(reynolds_map: str, tmp_path: Path) -> None:
+    """Within the errors that both state; its laws are checked by fresh solves."""
+    read, solved = open_map(made_map(tmp_path, READ, statuses=(0, 1))).dataset, open_map(reynolds_map).dataset
+    assert read.attrs["films_read"] > 4 * read.attrs["films_solved"] > 0
+    assert "films_read" not in solved.attrs
+    usable = (read["status"] <= 1) & (solved["status"] <= 1)
+    assert float(usable.mean()) > 0.95
+    for name in ("central_film", "film_offset"):
+        apart = np.abs(read[name] / solved[name] - 1.0)
+        stated = np.abs(read[f"{name}_error"]) + np.abs(solved[f"{name}_error"])
+        assert float((apart <= stated).where(usable).mean()) > 0.95
+        assert float(apart.where(usable).median()) < 1e-3  # the grid of the map that was solved
+    settings = json.loads(read.attrs["solver_settings"])
+    assert settings["density"] == 10.0 and "film_table" in settings
+    (line,) = films_lines(read)
+    assert line.startswith(f"films: {read.attrs['films_read']} of points and lines read from the film table")
+    assert not list(films_lines(solved))
+
+
+def test_a_tolerance_and_films_with_heat_take_no_table(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r'tolerance: the job has \[solver\] films = "table"'):
+        check_tolerance(parse_job(READ, "a", "a.toml"), TableSolver(ReynoldsSolver()), 0.01)
+    words = r"\[solver\] films: got 'table'; film table: knows nothing of heat in the film \(physics = thermal\)"
+    with pytest.raises(InputError, match=words):
+        build("reynolds", {"films": "table", "physics": "thermal"})
