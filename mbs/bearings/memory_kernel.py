@@ -2,8 +2,9 @@
 
 The law is that of `ehdmaps.maps.memory_table`. Each slice carries parabolas of p, y and G around a state and of a
 around a load; they stand for the cubics of its cells, from which they differ in third order, and are read anew where
-the slice leaves their reach, and every few steps, as the law follows the speed (`mbs.bearings.film_course`). So Newton's
-method for the states is arithmetic alone, in vector instructions over all slices. A slice that leaves them within a step is solved from the table itself, with a bracket.
+the slice leaves their reach, and every few steps, as the law follows the speed (`mbs.bearings.film_course`). So
+Newton's method for the states is arithmetic alone, in vector instructions over all slices. A slice that leaves them
+within a step is solved from the table itself, with a bracket.
 
 A step is `begin`, `loads` as often as the system asks for them, and `commit`.
 """

@@ -119,6 +119,28 @@ def band_lines(model: Model) -> list[str]:
     return [f"  bands (+-): {words}"] if words else []
 
 
+def film_law_line(model: Model, known: bool) -> list[str]:
+    """A line on what films leave out of modes, and of their bands; none for laws without films, and at rest.
+
+    Parameters
+    ----------
+    model : Model
+        The model.
+    known : bool
+        Whether it is listed beside each mode.
+    """
+    if not model.scene.speed or not model.supplies:
+        return []
+    if known:
+        return [
+            "  film law: what one relaxation time of a slice leaves out of the response of the film solver, which the "
+            "map holds: true less printed, to first order; in no band"
+        ]
+    if model.memory == "slow":
+        return ["  film law: not known; films of slow motion leave out how films relax (--films memory has it)"]
+    return ["  film law: not known; the law holds no response of the film solver, and no band holds this part"]
+
+
 def clean(value: float) -> float:
     """The value, or 0 where it is round-off: of parts and ratios.
 
@@ -172,6 +194,7 @@ def _film_line(entry: FilmError, frequency: float, words: str) -> str:
     line = (
         f"{entry.bearing}: {FILM_WORDS[entry.films]}; estimated error of the dynamic stiffness along the load at "
         f"{frequency:.5g} Hz{words}: {100.0 * error:.2g} %"
+        + (", by the response that the map holds" if entry.contacts else "")
     )
     if error <= NOTABLE:
         return line

@@ -19,6 +19,7 @@ from mbs.commands.cases import load_model
 from mbs.commands.common import (
     band_lines,
     clean,
+    film_law_line,
     film_lines,
     free_words,
     heading,
@@ -66,6 +67,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         *heading(model, model.scene.speed),
         *_table(found, shown),
         *band_lines(model),
+        *film_law_line(model, found.film_law is not None),
         *_overdamped(found, overdamped),
         *(f"  {note}" for note in notes),
         *_lost(found),
@@ -157,16 +159,25 @@ def _highest(arguments: argparse.Namespace, scene: Scene | None, problems: list[
 
 def _table(found: Modes, shown: IntArray) -> list[str]:
     """Lines of modes: frequency, damping ratio, and the parts that have most of the strain energy."""
-    bands = found.bands
-    wide = "" if bands is None else "        +-"
+    bands, law = found.bands, found.film_law
+    wide = ("" if bands is None else "        +-") + ("" if law is None else "  film law")
     lines = [
         f"  mode   frequency/Hz{wide}   damping ratio{wide}   strain energy        (frequency: |eigenvalue|/(2 pi))"
     ]
     for k in shown:
+        by = ["", ""]
+        if bands is not None:
+            by = [f"{bands.frequency[k]:10.2g}", f"{bands.damping_ratio[k]:10.2g}"]
+        if law is not None:
+            by = [text + _part(part[k]) for text, part in zip(by, law, strict=True)]
         ratio = clean(found.damping_ratio[k])
-        by = ("", "") if bands is None else (f"{bands.frequency[k]:10.2g}", f"{bands.damping_ratio[k]:10.2g}")
         lines.append(f"  {k + 1:4d} {found.frequency[k]:14.6g}{by[0]} {ratio:15.4g}{by[1]}   {share_words(found, k)}")
     return lines
+
+
+def _part(value: float) -> str:
+    """What the film law leaves out, in its column; a dash where the first order says nothing."""
+    return f"{value:+10.2g}" if math.isfinite(value) else f"{'-':>10s}"
 
 
 def _overdamped(found: Modes, which: IntArray) -> list[str]:
