@@ -20,6 +20,7 @@ from mbs.analyses.film_errors import notable_from
 from mbs.analyses.reach import axes_outside, sources_of
 from mbs.analyses.resolution import Resolution
 from mbs.analyses.rings import ring_motions
+from mbs.analyses.soundness import Unsound
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.heat import HeatPaths
 from mbs.commands.reach import outside_lines
@@ -117,6 +118,20 @@ def band_lines(model: Model) -> list[str]:
     """
     words = error_words(model.system)
     return [f"  bands (+-): {words}"] if words else []
+
+
+def unsound_lines(found: Iterable[Unsound], label: str = "") -> list[str]:
+    """The first line of a result whose figures mean nothing, with the reasons; none of others.
+
+    Parameters
+    ----------
+    found : iterable of Unsound
+        Reasons.
+    label : str
+        Which case, where several are compared.
+    """
+    words = "; ".join(entry.words for entry in found)
+    return [f"error: {f'{label}: ' if label else ''}the figures below mean nothing: {words}"] if words else []
 
 
 def film_law_line(model: Model, known: bool) -> list[str]:

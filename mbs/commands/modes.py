@@ -25,6 +25,7 @@ from mbs.commands.common import (
     heading,
     outside_at,
     read_option,
+    unsound_lines,
     write,
     write_plot,
 )
@@ -63,6 +64,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         figure = modes_figure(model, found, shown, limit, "; ".join([*notes, *_overdamped_count(overdamped)]))
     outside = outside_at(model, result.balance)
     lines = [
+        *unsound_lines(result.unsound),
         *done.lines,
         *heading(model, model.scene.speed),
         *_table(found, shown),
@@ -77,7 +79,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         *write(arguments, result.dataset, figure),
         *_write_shapes(arguments, result, shown),
     ]
-    return "\n".join(lines), 1 if outside else done.status
+    return "\n".join(lines), 1 if outside or result.unsound else done.status
 
 
 def _asked(arguments: argparse.Namespace) -> tuple[Model, float]:
