@@ -160,7 +160,8 @@ def _run(model: Model, told: Callable[[int], None], settings: RunUp | None = Non
         signals = signal_variables(simulated([(model.label, model, record)]))
         dataset = dataset.merge(signals).assign_attrs({**signals.attrs, **dataset.attrs})
     unsound = unsound_run(model, record)
-    return _Made(course, record, seconds, with_unsound(dataset, unsound), unsound, step_check(model, course, start))
+    steps = None if unsound else step_check(model, course, start)
+    return _Made(course, record, seconds, with_unsound(dataset, unsound), unsound, steps)
 
 
 class RunUps(NamedTuple):

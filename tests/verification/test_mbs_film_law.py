@@ -6,6 +6,7 @@ equilibrium for both.
 
 from __future__ import annotations
 
+import dataclasses
 import math
 
 import numpy as np
@@ -17,7 +18,11 @@ from ehdmaps.jobs.job import Job
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.physics.lubricant import Lubricant
 from mbs.analyses.film_errors import film_errors
+from mbs.analyses.modes import modes as analysed
+from mbs.commands.common import band_lines, film_law_line, film_lines
+from mbs.commands.modes import _table
 from mbs.linearised.dynamic import element_dynamic_stiffness
+from mbs.linearised.film_law import FilmLawPart
 from mbs.linearised.modes import modes
 from mbs.linearised.steady import steady_system
 from mbs.model.elements import Operation
@@ -90,3 +95,35 @@ def test_modes_are_wrong_by_what_is_stated(emap, films):
         assert found.film_law.frequency[k] == pytest.approx(frequency, rel=0.05, abs=0.1)
         compared, largest = compared + 1, max(largest, abs(ratio) / found.damping_ratio[k])
     assert compared > 8 and largest > 0.03
+
+
+def test_it_stands_beside_each_mode(emap):
+    memory, slow = (assemble(read_scene("nu308_rigid"), "map", emap, 0.0, kind) for kind in ("memory", "slow"))
+    found = analysed(memory, Operation(SPEED))
+    law, data = found.modes.film_law, found.dataset
+    np.testing.assert_array_equal(data["damping_ratio_film_law"], law.damping_ratio)
+    np.testing.assert_array_equal(data["frequency_film_law"], law.frequency)
+    (k,) = np.flatnonzero((found.modes.frequency > 3e3) & np.isfinite(law.frequency))[:1]
+    head, *lines = _table(found.modes, np.arange(found.modes.frequency.size))
+    assert head.count("+-  film law") == 2
+    assert f"{law.frequency[k]:+10.2g}" in lines[k] and f"{law.damping_ratio[k]:+10.2g}" in lines[k]
+    unknown = dataclasses.replace(found.modes, film_law=FilmLawPart(*np.full((2, law.frequency.size), np.nan)))
+    assert _table(unknown, np.array([k]))[1].count(f"{'-':>10s}") == 2
+    assert "how films relax" in band_lines(memory)[0]
+    assert film_law_line(memory, True)[0].startswith("  film law: what one relaxation time of a slice leaves out of ")
+    without = analysed(slow, Operation(SPEED))
+    assert without.modes.film_law is None and np.all(np.isnan(without.dataset["frequency_film_law"]))
+    assert film_law_line(slow, False) == [
+        "  film law: not known; films of slow motion leave out how films relax (--films memory has it)"
+    ]
+    (line,) = film_lines(film_errors(memory, found.balance.displacement, found.balance.operation)[:1], [2000.0])
+    assert line.endswith(" %, by the response that the map holds")
+
+
+def test_laws_without_a_response_say_that_it_is_not_known():
+    formula, hertz = (assemble(read_scene("nu308_rigid"), law) for law in ("formula", "hertz"))
+    assert analysed(formula).modes.film_law is None
+    assert film_law_line(formula, False) == [
+        "  film law: not known; the law holds no response of the film solver, and no band holds this part"
+    ]
+    assert film_law_line(hertz, False) == []
