@@ -160,8 +160,8 @@ def _run(model: Model, told: Callable[[int], None], settings: RunUp | None = Non
         signals = signal_variables(simulated([(model.label, model, record)]))
         dataset = dataset.merge(signals).assign_attrs({**signals.attrs, **dataset.attrs})
     unsound = unsound_run(model, record)
-    steps = None if unsound else step_check(model, course, start)
-    return _Made(course, record, seconds, with_unsound(dataset, unsound), unsound, steps)
+    checked = None if unsound else step_check(model, course, start)
+    return _Made(course, record, seconds, with_unsound(dataset, unsound), unsound, checked)
 
 
 class RunUps(NamedTuple):

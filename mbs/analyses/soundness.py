@@ -84,7 +84,7 @@ def unsound_over_speed(model: Model, found: Sweep) -> tuple[Unsound, ...]:
     model : Model
         The machine with its law.
     found : Sweep
-        Its sweep.
+        Sweep of the machine.
     """
     for index in np.unique(np.linspace(0, found.speeds.size - 1, _SPEEDS).astype(int)).tolist():
         reasons = unsound_at_rest(model, found.displacement[index], Operation(float(found.speeds[index])))
@@ -141,7 +141,7 @@ def with_unsound(dataset: xr.Dataset, found: Iterable[Unsound]) -> xr.Dataset:
     dataset : xarray.Dataset
         The result.
     found : iterable of Unsound
-        Reasons.
+        Reasons why its figures mean nothing.
     """
     words = "; ".join(entry.words for entry in found)
     return dataset.assign_attrs(unsound=words) if words else dataset

@@ -79,7 +79,7 @@ def step_check(model: Model, course: RunUp, start: Equilibrium) -> StepCheck | N
     course : RunUp
         The run.
     start : Equilibrium
-        Where it begins.
+        Equilibrium where it begins.
 
     Returns
     -------

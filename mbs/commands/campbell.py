@@ -25,7 +25,17 @@ from mbs.analyses.tolerance import Tolerated, read_tolerance, within
 from mbs.commands.auto import Looked, analysed
 from mbs.commands.campbell_recorded import measured_lines, measured_run, read_look, recorded_runs, signal_problems
 from mbs.commands.cases import load_cases
-from mbs.commands.common import Told, band_lines, film_course, heading, held_lines, step_lines, unsound_lines, write
+from mbs.commands.common import (
+    Told,
+    band_lines,
+    film_course,
+    heading,
+    held_lines,
+    marked,
+    step_lines,
+    unsound_lines,
+    write,
+)
 from mbs.commands.reach import fade_lines, outside_lines
 from mbs.linearised.sweep_result import ComplexSweep, Sweep
 from mbs.model.elements import Sensor
@@ -80,7 +90,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     lines += [*_differences(runs, found.sensors), *(f"warning: {line}" for line in found.failed)]
     dataset = found.dataset.assign_attrs(tolerance="\n".join(tolerated.lines)) if tolerated else found.dataset
     dataset = with_measured(dataset, beside.dataset) if beside else dataset
-    lines += write(arguments, dataset, _figure(found, beside) if arguments.plot else None)
+    lines += write(arguments, marked(dataset, unsound), _figure(found, beside) if arguments.plot else None)
     if getattr(arguments, "signals", None):
         lines += write_time_data(arguments.signals, simulated_campbell(runs))
     outside = any(any(entry.record.outside.values()) for entry in runs)

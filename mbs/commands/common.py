@@ -126,12 +126,25 @@ def unsound_lines(found: Iterable[Unsound], label: str = "") -> list[str]:
     Parameters
     ----------
     found : iterable of Unsound
-        Reasons.
+        Reasons why its figures mean nothing.
     label : str
         Which case, where several are compared.
     """
     words = "; ".join(entry.words for entry in found)
     return [f"error: {f'{label}: ' if label else ''}the figures below mean nothing: {words}"] if words else []
+
+
+def marked(dataset: xr.Dataset, unsound: Sequence[str]) -> xr.Dataset:
+    """A result of several cases with the attribute `unsound`, where lines say that figures mean nothing.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The result.
+    unsound : sequence of str
+        Lines of `unsound_lines`.
+    """
+    return dataset.assign_attrs(unsound="; ".join(unsound)) if unsound else dataset
 
 
 def film_law_line(model: Model, known: bool) -> list[str]:

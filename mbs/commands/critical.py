@@ -19,7 +19,7 @@ from mbs.analyses.soundness import unsound_over_speed
 from mbs.analyses.sweep import SweepSettings
 from mbs.commands.auto import Looked, analysed
 from mbs.commands.cases import load_cases
-from mbs.commands.common import heading, unsound_lines, write
+from mbs.commands.common import heading, marked, unsound_lines, write
 from mbs.commands.lsa import MOST_COMPARED_CASES
 from mbs.commands.reach import fade_lines, outside_lines
 from mbs.commands.sweep import read_speeds
@@ -70,7 +70,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
 
         figure = critical_figure([_curves(label, entry) for label, entry in found])
     dataset = dataset_of_laws([label for label, _ in found], [entry for _, entry in found])
-    lines += outside + write(arguments, dataset, figure)
+    lines += outside + write(arguments, marked(dataset, unsound), figure)
     return "\n".join(lines), 1 if outside or unsound else done.status
 
 

@@ -22,7 +22,17 @@ from mbs.analyses.soundness import unsound_over_speed
 from mbs.analyses.sweep import SweepSettings, sweep, sweep_problems
 from mbs.commands.auto import Looked, analysed
 from mbs.commands.cases import load_cases
-from mbs.commands.common import ROUND_OFF, band_lines, clean, film_lines, free_words, heading, unsound_lines, write
+from mbs.commands.common import (
+    ROUND_OFF,
+    band_lines,
+    clean,
+    film_lines,
+    free_words,
+    heading,
+    marked,
+    unsound_lines,
+    write,
+)
 from mbs.commands.reach import fade_lines, outside_lines
 from mbs.linearised.crossings import exchanged
 from mbs.linearised.linear import response_unit
@@ -86,7 +96,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             *fade_lines(case.model, entry.speeds),
         ]
     figure = _figure(cases, found) if arguments.plot else None
-    lines += outside + write(arguments, result.dataset, figure)
+    lines += outside + write(arguments, marked(result.dataset, unsound), figure)
     return "\n".join(lines), 1 if outside or unsound else done.status
 
 
