@@ -23,6 +23,7 @@ from ehdmaps.maps.compilation import (
 from ehdmaps.maps.dry import DryField
 from ehdmaps.maps.excursions import Axis, Excursion, Range
 from ehdmaps.maps.film_field import FilmField
+from ehdmaps.maps.film_response import FilmResponse
 from ehdmaps.maps.law_arguments import broadcast, check_finite, floats
 from ehdmaps.maps.law_change import LawChange, changed_table
 from ehdmaps.maps.law_errors import LawBounds, LawErrors
@@ -359,6 +360,23 @@ class ContactLaw:
             u [m/s], of either sign, and T [K].
         """
         return self._films.locked_factors(entrainment_speed, temperature)
+
+    def film_response(self, loads: npt.ArrayLike, entrainment_speed: float, temperature: float) -> FilmResponse | None:
+        """What the law with memory leaves out of the complex stiffness, see `ehdmaps.maps.film_response`.
+
+        Parameters
+        ----------
+        loads : array (n,)
+            Loads at rest [N/m].
+        entrainment_speed, temperature : float
+            u [m/s], of either sign, and T [K]; held at the edges of the map.
+
+        Returns
+        -------
+        FilmResponse or None
+            None where nothing is known of films that oscillate.
+        """
+        return self._films.response(np.asarray(loads, dtype=np.float64), entrainment_speed, temperature)
 
     def _law_table(self) -> LawTable:
         """Everything but the single contacts of a series."""

@@ -6,11 +6,12 @@ import dataclasses
 import re
 from importlib import resources
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.errors import AnalysisError, InputError, MapError
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.generate import generate
 from ehdmaps.maps.emap import open_map
@@ -320,6 +321,29 @@ def test_the_planned_map_has_the_physics_that_is_asked_for(folder, monkeypatch):
         with pytest.raises(AnalysisError, match="enough"):
             automatic(scene(), statics, AutoSettings(folder=folder, physics=physics))
         assert planned[-1] == options
+
+
+def test_a_map_that_cannot_be_used_says_what_makes_another(monkeypatch):
+    """The same plan would end the same way: the physics that --auto added is what can be left out."""
+
+    def kept(name, job, *rest):
+        return SimpleNamespace(emap=None)
+
+    def unfit(subject):
+        raise MapError("backbone of the map: has 2 unsolved points")
+
+    monkeypatch.setattr(auto, "kept_map", kept)
+    monkeypatch.setattr(auto, "_subject", lambda *given: None)
+    with pytest.raises(MapError, match=r"^backbone of the map: has 2 unsolved points\nauto: the map was made with lim"):
+        automatic_of(unfit, AutoSettings(shear="limiting"))
+    with pytest.raises(MapError, match=r"as asked, eyring; .*--shear newtonian makes one without"):
+        automatic_of(unfit, AutoSettings(shear="eyring"))
+    with pytest.raises(MapError, match=r"^backbone of the map: has 2 unsolved points$"):
+        automatic_of(unfit, AutoSettings(shear="newtonian"))
+
+
+def automatic_of(analyse, settings):
+    return settled(scene(), analyse, settings)
 
 
 def test_physics_belong_to_auto(file, capsys):
