@@ -53,6 +53,12 @@ class Parser(argparse.ArgumentParser):
         tell(f"{self.format_usage()}{self.prog}: error: {message}")
         raise SystemExit(BAD_INPUT)
 
+    def _get_value(self, action: argparse.Action, arg_string: str) -> Any:
+        """Read one value of an argument; an empty text, as of a variable that is not set, is none."""
+        if not arg_string and action.nargs != argparse.PARSER:  # those of a command are looked at by its own parser
+            raise argparse.ArgumentError(action, "got ''; allowed: a text that is not empty, or to leave it out")
+        return super()._get_value(action, arg_string)  # type: ignore[misc]
+
     def _print_message(self, message: str, file: Any = None) -> None:
         """Print help, or the version."""
         status = deliver(self.prog, message.rstrip("\n"), DONE)

@@ -28,7 +28,7 @@ from ehdmaps.jobs.sweep import Progress, SweepResult, sweep, worker_pool
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone_plan import Axis
 from ehdmaps.netcdf_structure import DAMAGE
-from ehdmaps.outputs import MAP, Output, output_problems, root_attributes
+from ehdmaps.outputs import MAP, Output, name_problem, output_problems, root_attributes
 from ehdmaps.workers import available_cores
 
 MADE, KEPT, FAILED = "made", "kept", "failed"
@@ -128,6 +128,8 @@ def make_folder(folder: Path) -> None:
     InputError
         If it cannot be made, or something else stands there.
     """
+    if problem := name_problem(folder):
+        raise InputError(f"-o: got {str(folder)!r:.300}, {problem}")
     try:
         folder.mkdir(exist_ok=True)
     except OSError as error:

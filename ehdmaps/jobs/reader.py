@@ -117,6 +117,8 @@ def parse_job(
             "and `submit` take a batch"
         )
     problems: list[str] = []
+    if not name.isprintable():
+        problems.append(f"is called {name!r:.80}; allowed: printable characters, which its map can carry; rename it")
     job = _job(Table(values, "job file", problems), text, name, solver, to_run, finding_solids)
     if problems or job is None:
         raise InputError([f"{where}: {problem}" for problem in problems])

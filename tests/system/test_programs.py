@@ -1,5 +1,6 @@
 """What both programs do alike: arguments, streams that take nothing, foreign characters, versions, Ctrl-C."""
 
+import argparse
 import errno
 import os
 import random
@@ -204,6 +205,32 @@ def test_errors_end_in_words_and_a_status(capsys, error, status, said):
     parser.add_argument("command")
     assert program.run(parser, work, ["work"], no_result=AnalysisError) == status
     assert capsys.readouterr() == ("", said)
+
+
+def commands(parser):
+    (action,) = (action for action in parser._actions if isinstance(action, argparse._SubParsersAction))
+    return action.choices
+
+
+@pytest.mark.parametrize("name", ["ehdmaps", "mbs"])
+def test_an_empty_name_is_not_taken_for_none(capsys, name):
+    main, made = {"ehdmaps": (cli.main, cli.parser()), "mbs": (mbs.cli.main, mbs.cli.parser())}[name]
+    tried = 0
+    for command, parser in commands(made).items():
+        given = {option for action in parser._actions if action.metavar is not None for option in action.option_strings}
+        for option in sorted(given & {"-o", "--output", "--plot", "--maps", "--map"}):
+            for words in ([option, ""], [f"{option}="] if option.startswith("--") else []):
+                if words:
+                    with pytest.raises(SystemExit) as end:
+                        main([command, *words])
+                    assert end.value.code == 2
+                    assert f"{option}" in (err := capsys.readouterr().err.splitlines()[-1])
+                    assert err.endswith("got ''; allowed: a text that is not empty, or to leave it out")
+                    tried += 1
+    assert tried > 20
+    with pytest.raises(SystemExit):
+        main([""])
+    assert "argument COMMAND: invalid choice: ''" in capsys.readouterr().err
 
 
 # --- Ctrl-C

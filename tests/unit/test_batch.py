@@ -211,6 +211,10 @@ def test_a_folder_that_cannot_be_made(tmp_path, capsys):
     (tmp_path / "maps").write_text("a file")
     assert cli.main(["generate", str(tmp_path / "cat.toml"), "-o", str(tmp_path / "maps")]) == 2
     assert "maps: cannot be made" in capsys.readouterr().err
+    for name in ("a\\b", "a\nb"):
+        assert cli.main(["generate", str(tmp_path / "cat.toml"), "-o", str(tmp_path / name)]) == 2
+        assert "b'" in (err := capsys.readouterr().err) and "; rename it" in err
+        assert not (tmp_path / name).exists()
 
 
 @pytest.mark.parametrize("films", ["shared", "own"])
