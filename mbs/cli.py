@@ -501,7 +501,11 @@ def _auto(command: argparse.ArgumentParser, tolerance: bool = True) -> None:
         help="plan and make the map that the scene needs, or reuse the one of the same plan; switch film memory, oil "
         "supply and roughness on where they matter; check that all of it lies inside, else plan wider",
     )
-    command.add_argument("--maps", metavar="FOLDER", help="where --auto makes and keeps maps; default: this folder")
+    command.add_argument(
+        "--maps",
+        metavar="FOLDER",
+        help="for maps that --auto makes and keeps; made if missing; default: this one",
+    )
     command.add_argument(
         "--physics",
         metavar="NAME",

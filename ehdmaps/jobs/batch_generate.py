@@ -49,6 +49,9 @@ _Item = TypeVar("_Item")
 _Found = TypeVar("_Found")
 
 
+_FOLDER = "allowed: a folder for the maps, in one that is there and may be written; choose another"
+
+
 @dataclass(frozen=True)
 class Outcome:
     """What became of one map.
@@ -120,23 +123,44 @@ def batch_path(batch: Batch, folder: Path) -> Path:
     return folder / f"{batch.name}.batch"
 
 
-def make_folder(folder: Path) -> None:
+def make_folder(folder: Path, option: str = "-o") -> None:
     """Make the folder of the maps, where it is not there.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder; the one that it lies in is there.
+    option : str
+        That names it, for messages.
 
     Raises
     ------
     InputError
         If it cannot be made, or something else stands there.
     """
-    if problem := name_problem(folder):
-        raise InputError(f"-o: got {str(folder)!r:.300}, {problem}")
+    if problem := folder_problem(folder, option):
+        raise InputError(problem)
     try:
         folder.mkdir(exist_ok=True)
     except OSError as error:
-        raise InputError(
-            f"{folder}: cannot be made ({error.strerror}); allowed: a folder for the maps, in one that may be written; "
-            "choose another with -o"
-        ) from error
+        raise InputError(f"{option}: got {folder}, which cannot be made ({error.strerror}); {_FOLDER}") from error
+
+
+def folder_problem(folder: Path, option: str) -> str:
+    """Tell in one sentence why a folder of maps can be neither used nor made; empty if it may.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder.
+    option : str
+        That names it.
+    """
+    if problem := name_problem(folder):
+        return f"{option}: got {str(folder)!r:.300}, {problem}"
+    if not folder.is_dir() and (folder.exists() or not folder.parent.is_dir()):
+        return f"{option}: got {str(folder)!r:.300}, which is no folder and cannot be made; {_FOLDER}"
+    return ""
 
 
 def generate_batch(

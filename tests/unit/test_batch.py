@@ -210,7 +210,7 @@ def test_a_folder_that_cannot_be_made(tmp_path, capsys):
     (tmp_path / "cat.toml").write_text(batch_text(SMALL_LISTS))
     (tmp_path / "maps").write_text("a file")
     assert cli.main(["generate", str(tmp_path / "cat.toml"), "-o", str(tmp_path / "maps")]) == 2
-    assert "maps: cannot be made" in capsys.readouterr().err
+    assert "which is no folder and cannot be made; allowed: a folder for the maps" in capsys.readouterr().err
     for name in ("a\\b", "a\nb"):
         assert cli.main(["generate", str(tmp_path / "cat.toml"), "-o", str(tmp_path / name)]) == 2
         assert "b'" in (err := capsys.readouterr().err) and "; rename it" in err

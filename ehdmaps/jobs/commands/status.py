@@ -49,9 +49,7 @@ def _output(name: str, output: str | None) -> Path:
         return Path(output or Path(name).stem) / f"{Path(name).stem}.batch"
     if output is not None:
         if Path(output).is_dir():
-            raise InputError(
-                f"-o: got {output}, which is a folder; allowed: a map; a folder goes with a batch"
-            )
+            raise InputError(f"-o: got {output}, which is a folder; allowed: a map; a folder goes with a batch")
         return Path(output)
     if Path(name).is_dir():
         raise InputError(f"{name}: is a folder; allowed: the batch file, with -o {name}, or a map")
