@@ -57,7 +57,7 @@ class Parser(argparse.ArgumentParser):
         """Read one value of an argument; an empty text, as of a variable that is not set, is none."""
         if not arg_string and action.nargs != argparse.PARSER:  # those of a command are looked at by its own parser
             raise argparse.ArgumentError(action, "got ''; allowed: a text that is not empty, or to leave it out")
-        return super()._get_value(action, arg_string)  # type: ignore[misc]
+        return super()._get_value(action, arg_string)
 
     def _print_message(self, message: str, file: Any = None) -> None:
         """Print help, or the version."""

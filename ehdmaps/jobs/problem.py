@@ -283,8 +283,8 @@ def read_lubricant(section: Table) -> Lubricant | None:
     read = values | numbers | stated_heat
     wrong = [key for key in read if key in section and read[key] is None]
     if law is None or wrong or values["density"] is None:
-        stated = Stated(*(math.nan if key in wrong else values[key] for key in _OIL_STATED))
-        for problem in stated_problems("own oil", law, stated):
+        whole = Stated(*(math.nan if key in wrong else values[key] for key in _OIL_STATED))
+        for problem in stated_problems("own oil", law, whole):
             section.note("", problem)
         return None
     given = {key: value for key, value in values.items() if value is not None}

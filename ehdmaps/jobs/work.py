@@ -83,7 +83,7 @@ def read_work(
     if output is None and is_map(fspath(source)):
         raise InputError(f"-o: missing; {fspath(source)} is a map itself; give the map to write with -o")
     path = Path(f"{job.name}.nc" if output is None else output)
-    check_outputs([Output("-o", path, MAP)], [source])
+    check_outputs([Output("-o", path, MAP)], [fspath(source)])
     return Work(fspath(source), job, path, path, about(job), _hash(job.sha256, job.solver), unique(planned_tasks(job)))
 
 
