@@ -5,15 +5,13 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, Future, as_completed
-from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
 import xarray as xr
 
-from ehdmaps.errors import EhdmapsError, InputError
-from ehdmaps.interrupts import deaf_children
+from ehdmaps.errors import EhdmapsError, InputError, WorkerError
 from ehdmaps.jobs.batch import OWN, SHARED, Batch, Member
 from ehdmaps.jobs.batch_plan import Alone, Shared, plan_batch
 from ehdmaps.jobs.correction_report import unsolved
@@ -24,12 +22,12 @@ from ehdmaps.jobs.refinement import MOST_LINE_POINTS
 from ehdmaps.jobs.report import holes
 from ehdmaps.jobs.status import StatusFile
 from ehdmaps.jobs.store import Store, store_path
-from ehdmaps.jobs.sweep import Progress, SweepResult, sweep, worker_pool
+from ehdmaps.jobs.sweep import Progress, SweepResult, sweep
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone_plan import Axis
 from ehdmaps.netcdf_structure import DAMAGE
 from ehdmaps.outputs import MAP, Output, name_problem, output_problems, root_attributes
-from ehdmaps.workers import available_cores
+from ehdmaps.workers import WorkersDied, available_cores, worker_pool
 
 MADE, KEPT, FAILED = "made", "kept", "failed"
 """What became of a map: kept is one that was there from an earlier run, and is the same."""
@@ -312,6 +310,8 @@ class _Run:
             made = generate(
                 member.job, output, self.workers, False, self.progress, executor=self.executor, within=within
             )
+        except WorkerError:  # nothing of this map alone
+            raise
         except EhdmapsError as error:
             return Outcome(member, output, FAILED, OWN, reason=str(error))
         self._count(made.sweep)
@@ -322,6 +322,8 @@ class _Run:
         """Make the maps of a family; the points of its lines, and members whose lines cannot be read."""
         try:
             solved, halved = self._solved(shared)
+        except WorkerError:
+            raise
         except EhdmapsError:  # a line with too few solved points: each map stands on its own then
             left = [Alone(shared.members[index]) for index in due]
             self.status.more(sum(one.points for one in left))
@@ -435,11 +437,12 @@ def _each(
     try:
         with worker_pool(min(workers, len(items))) as pool:
             for item in items:
-                with deaf_children():
-                    running[pool.submit(function, item)] = item
+                running[pool.submit(function, item)] = item
             for future in as_completed(list(running)):
                 found = future.result()
                 yield running.pop(future), found
-    except BrokenProcessPool:
+    except WorkersDied as died:
+        if not died.begun:
+            raise died.error from None
         for item in running.values():
             yield item, None

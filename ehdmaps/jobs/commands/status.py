@@ -128,7 +128,7 @@ def _lines(output: Path, seen: Seen) -> list[str]:
     head = (
         f"running, {who} with {status.workers} worker{'s' if status.workers > 1 else ''}"
         if running
-        else f"interrupted, {who} has ended; the same command goes on"
+        else f"not finished: interrupted, {who} has ended; the same command goes on"
     )
     if not seen.known:
         head = f"{who}: only there it can be told whether it runs; it was heard of {_ago(status)} ago"
