@@ -120,7 +120,7 @@ def deaf_children(*more: int) -> Iterator[None]:
 
     Parameters
     ----------
-    more : int
+    *more : int
         Further signals that wait until the process takes them, as `ehdmaps.workers.start_worker` does with SIGTERM: a
         forked process forgets one that comes before it is itself.
     """

@@ -204,8 +204,10 @@ def new_part(target: Path) -> tuple[Path, int]:
 
     Returns
     -------
-    path, descriptor
-        Its path, in the same folder and with the same ending, and its descriptor, open for writing.
+    path : Path
+        The new file, in the same folder and with the same ending.
+    descriptor : int
+        File descriptor of it, open for writing.
 
     Raises
     ------

@@ -157,8 +157,10 @@ class WorkerPool:
 
         Parameters
         ----------
-        function, args, kwargs
+        function : callable
             What to call; picklable.
+        *args, **kwargs
+            Its arguments; picklable.
 
         Raises
         ------
