@@ -160,7 +160,7 @@ class WorkerPool:
         function : callable
             What to call; picklable.
         *args, **kwargs
-            Its arguments; picklable.
+            Arguments of it; picklable.
 
         Raises
         ------
