@@ -20,7 +20,7 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.roughness import Surface
 from ehdmaps.physics.solids import STEEL
-from mbs import AutoSettings, automatic, modes, parse_scene, statics
+from mbs import AutoSettings, automatic, modes, parse_scene, plan, read_scene, statics
 from mbs.analyses import auto, kept_map, planned_job
 from mbs.analyses.auto import outside_calls, settled
 from mbs.analyses.film_criteria import (
@@ -185,14 +185,14 @@ def test_bearings_of_two_types_have_a_map_each_and_one_alone_is_widened(folder, 
 def test_options_that_do_not_go_together_are_refused_before_a_map_is_made(file, capsys, by_formula):
     status, _, err = run(
         capsys, "modes", file, "--auto", "--map", "a.nc", "--clearance", "1 um", "--clearance", "2 um",
-        "--maps", "nowhere", "--tolerance", "5", "--highest", "far", "--law", "hertz", "--films", "thick",
+        "--maps", "none/where", "--tolerance", "5", "--highest", "far", "--law", "hertz", "--films", "thick",
         "--supply", "much",
     )  # fmt: skip
     assert status == 2
     for words in (
         "--map: stands beside --auto",
         "--clearance: got 2 of them",
-        "--maps: got 'nowhere'",
+        "--maps: got 'none/where', which is no folder and cannot be made",
         "--tolerance: got '5'; allowed: above 0 up to 900 % or 20 dB",
         "--highest: got 'far'",
         "--law: stands beside --auto",
@@ -201,7 +201,20 @@ def test_options_that_do_not_go_together_are_refused_before_a_map_is_made(file, 
     ):
         assert words in err
     assert run(capsys, "modes", file, "--maps", ".")[0] == 2
-    assert not by_formula
+    assert not by_formula and not Path("none").exists()
+
+
+def test_a_folder_of_maps_is_made(file, capsys, tmp_path):
+    status, out, _ = run(capsys, "statics", file, "--auto", "--maps", "new")
+    assert status == 0
+    (path,) = (tmp_path / "new").glob("*.nc")
+    assert f"auto: new/{path.name}: made" in out
+    job, *_ = plan(read_scene(file)).jobs()
+    kept = kept_map.kept_map("short", job, tmp_path / "newer", workers=1)
+    assert kept.path.parent == tmp_path / "newer" and kept.path.is_file()
+    (tmp_path / "mine").write_text("mine")
+    with pytest.raises(InputError, match=r"--maps: got '.*/mine', which is no folder and cannot be made; allowed: a"):
+        kept_map.kept_map("short", job, tmp_path / "mine")
 
 
 def test_results_of_other_kinds_are_refused():
