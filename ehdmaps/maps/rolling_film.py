@@ -178,9 +178,7 @@ class RollingFilm:
         T = float(np.clip(temperature, *self._temperatures))
         return mass / (self._lubricant.at(T).density * abs(entrainment_speed))
 
-    def flow_film(
-        self, contact: str, first: FloatArray, speeds: FloatArray, temperatures: FloatArray
-    ) -> FlowFilm:
+    def flow_film(self, contact: str, first: FloatArray, speeds: FloatArray, temperatures: FloatArray) -> FlowFilm:
         """Mass flow over density at rest and speed along the loads of each speed and temperature.
 
         Parameters

@@ -74,5 +74,5 @@ def test_a_grid_that_is_too_coarse_beyond_its_speeds_is_refused_with_the_way_out
     grid = EHDMap(open_map(reynolds_map).dataset)
     for layer in (1e-6, 5e-6):
         grid.law("inner", outside="clamp", supply=OilSupply(layer))
-    with pytest.raises(MapError, match=r"the map ends at 5 m/s, and its films do not go on so far: take outside='clamp'"):
+    with pytest.raises(MapError, match="ends at 5 m/s, and its films do not go on so far: take outside='clamp'"):
         grid.law("inner", outside="asymptote", supply=OilSupply(5e-6))
