@@ -22,8 +22,8 @@ VALLEY_REFINEMENT = 1.2
 """Density of cells at the bottom of the damping valley, relative to the density elsewhere."""
 
 OTHER_PLACES = 0.85, 0.75, 1.1
-"""Densities of cells, relative to the one asked for, that are tried besides: on some grids Newton goes round in circles,
-as a front stands between two cells. First of all where an oil has a limiting stress, else where nothing else helps."""
+"""Densities of cells, relative to the one asked for, that are tried besides: on some grids Newton goes round in
+circles, as a front stands between two cells. First of all where an oil has a limiting stress, else last of all."""
 
 THIN_FILM = 20.0
 """Load M above which a negative loss can only be a numerical one."""

@@ -19,6 +19,7 @@ from ehdmaps.physics.film_limits import too_thin
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import moes_groups
 from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.peak import tip_words
 from ehdmaps.physics.roughness import SMOOTH, Surface
 from ehdmaps.physics.solution import ContactSolution, Status
 from ehdmaps.units import FILM, LENGTH, LOAD, MASS_FLOW, PRESSURE, ROLLING_FORCE, RPM, TEMPERATURE, Display
@@ -173,7 +174,14 @@ def point_table(job: Job, records: list[dict[str, Any]], point: OperatingPoint, 
         lines.append(f"  {label:22s} {unit:12s} {shown}")
     lines.extend(f"  {record['contact']}: {record['reason']}" for record in records if record["reason"])
     lines.extend(f"  {record['contact']}: {note}" for record in records if (note := _extrapolated(job, record)))
+    lines.extend(f"  {record['contact']}: {note}" for record in records if (note := _tip(record)))
     return "\n".join(lines)
+
+
+def _tip(record: dict[str, Any]) -> str:
+    """Say what the largest pressure of a contact lacks of its spike; empty where it lacks nothing."""
+    error = record["max_pressure_error"]
+    return "" if error is None else tip_words(error)
 
 
 def _speed(job: Job, point: OperatingPoint) -> str:

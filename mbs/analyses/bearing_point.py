@@ -32,6 +32,7 @@ from mbs.bearings.contact_report import (
     heated,
     outside_map,
     overload,
+    spike_tip,
 )
 from mbs.bearings.films import FilmSource
 from mbs.bearings.laws import Law
@@ -243,6 +244,7 @@ def bearing_point(
     problems = [overload(contacts), *outside_map(force.law, float(rollers.load_per_length.max()), u, temperature)]
     modulus = reduced_modulus(force.bearing.material, force.bearing.material)
     notes = [
+        spike_tip(contacts),
         extrapolated(contacts, films.lubricant),
         fading(force.law, u),
         guessed(force.law, rollers.load_per_length, u, temperature),

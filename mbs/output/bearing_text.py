@@ -89,7 +89,7 @@ def _page(point: BearingPoint, description: BearingDescription) -> list[str]:
         *(
             []
             if np.array_equal(contacts.max_pressure, contacts.hertz_pressure)
-            else [_sides("film pressure with spike, +-25 %", PRESSURE.unit, 1e-9 * contacts.max_pressure)]
+            else [_sides("film pressure with spike", PRESSURE.unit, 1e-9 * contacts.max_pressure)]
         ),
         _sides("smallest central film", FILM.unit, 1e6 * contacts.central_film),
         _sides("smallest film", FILM.unit, 1e6 * contacts.minimum_film),
