@@ -7,6 +7,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from ehdmaps.maps.rough_films import OVERLAP
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.units import FILM, PRESSURE, RPM, TEMPERATURE
 from mbs.analyses.bearing_point import BearingPoint
@@ -103,8 +104,11 @@ def _share_words(point: BearingPoint, description: BearingDescription) -> str:
     """What the film carries of the load of the most loaded roller; nothing for smooth surfaces."""
     if description.surface.smooth:
         return ""
-    share = point.film_share(description.surface, description.oil)
-    return f"; the film carries {share:.0%} of the load of the most loaded roller" if not math.isnan(share) else ""
+    share, overlap = point.load_sharing(description.surface, description.oil)
+    if math.isnan(share):
+        return ""
+    words = f"; the film carries {share:.0%} of the load of the most loaded roller"
+    return f"{words}\n  {OVERLAP}" if overlap else words
 
 
 def loss_words(loss: RollingLoss) -> str:
