@@ -24,7 +24,7 @@ def tip_words(error: float) -> str:
     Parameters
     ----------
     error : float
-        Its stated error, or the largest one of several; NaN where none is known.
+        Stated error of the pressure, or the largest one of several; NaN where none is known.
 
     Examples
     --------

@@ -313,9 +313,10 @@ class MapFilms:
         found = []
         for side, name in enumerate(SIDES):
             of_side = data.sel(contact=name)
-            values = [of_side[variable].values for variable in _VARIABLES]
-            error = of_side.get(_PEAK_ERROR)
-            values = np.stack([*values, np.full_like(values[0], np.nan) if error is None else error.values], axis=-1)
+            columns = [of_side[variable].values for variable in _VARIABLES]
+            stated = _PEAK_ERROR in of_side
+            columns.append(of_side[_PEAK_ERROR].values if stated else np.full_like(columns[0], np.nan))
+            values = np.stack(columns, axis=-1)
             for j, speed in enumerate(speeds):
                 for k, kelvin in enumerate(kelvins):
                     plain = self._formula.state(side, loads, float(speed), float(kelvin))
