@@ -81,7 +81,8 @@ class ContactLaw:
         Oil before each contact; flooded if left out. See `ehdmaps.maps.oil_layer`.
     surface : Surface
         Roughness of the surfaces: film and asperities share the load, see `ehdmaps.maps.rough_layer`. The law then
-        has a table down to a speed without a film, and goes over into the rough dry contact at standstill.
+        has a table down to a speed without a film, and goes over into the rough dry contact at standstill. Where a film
+        is so thin that the mean planes overlap, its share and its damping are a guess, see `ehdmaps.maps.rough_films`.
     errors : LawErrors, optional
         How wrong the law may be, where its map says so; see `LawAtPoint.bounds`.
 
