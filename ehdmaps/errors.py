@@ -42,6 +42,22 @@ class StoreError(EhdmapsError):
     """The store of solved points cannot be read, written or shared."""
 
 
+class WorkerError(EhdmapsError):
+    """Processes that do the work cannot be started, or die before they do any; what was solved is kept.
+
+    Parameters
+    ----------
+    message : str
+        What happened, and what to do.
+    kept : int
+        Points that were solved before.
+    """
+
+    def __init__(self, message: str, kept: int = 0) -> None:
+        self.kept = kept
+        super().__init__(message)
+
+
 class MapError(EhdmapsError):
     """A map file is broken, of another schema, or unfit for what is asked of it."""
 

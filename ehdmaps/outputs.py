@@ -3,7 +3,8 @@
 A file is replaced only where it is a regular file, none of those that the command reads, and one that a program of this
 distribution made as the same kind of thing: a map for a map, a figure for a figure. An empty file may be filled. Every
 file carries a mark of its kind, so that this can be told from the file alone. Files are written aside in the same
-folder, brought to the disk and renamed: what stood there is replaced whole, or not at all.
+folder, brought to the disk and renamed: what stood there is replaced whole, or not at all. Aside is a new file with a
+name that nobody can guess, so that nothing else is written to; those of writers that were killed are removed later.
 """
 
 from __future__ import annotations
@@ -11,7 +12,10 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import os
+import re
+import secrets
 import stat
+import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -28,6 +32,15 @@ _SOUGHT = 4096
 
 _WRITABLE = 0o222
 """A file without these bits is protected on purpose, from root too."""
+
+_PART = re.compile(r"\.ehdmaps-([0-9]{1,10})-[0-9a-f]{16}\.part(?:\..*)?", re.DOTALL)
+"""Names of files that are being written, with the process that does."""
+
+_LONGEST_ENDING = 16
+"""Characters: what writers look at is shorter, and a name must not become too long for the file system."""
+
+_LEFT_SECONDS = 3600.0
+"""A file that nobody wrote to for so long, by a process that is no more, was left: here or on another machine."""
 
 _FIGURE_KEYS = {".png": "Software", ".pdf": "Creator", ".svg": "Creator"}
 
@@ -99,6 +112,25 @@ def output_problems(outputs: Iterable[Output], read: Iterable[str | Path] = ()) 
     return problems
 
 
+def name_problem(path: Path) -> str:
+    """Tell why nothing may be written under a name, whatever is there; empty if it may.
+
+    Parameters
+    ----------
+    path : Path
+        A file or a folder.
+    """
+    if not path.name.isprintable():
+        return "whose name is not printable; allowed: a name of printable characters; rename it"
+    place = os.path.realpath(path)
+    if "\\" in place:
+        return (
+            f"which is {place[:300]}; allowed: no backslash in names of files and folders, as netCDF takes it for the "
+            "end of a folder's name; rename it"
+        )
+    return ""
+
+
 def check_outputs(outputs: Iterable[Output], read: Iterable[str | Path] = ()) -> None:
     """Raise what `output_problems` finds.
 
@@ -128,7 +160,7 @@ def written_aside(path: str | Path, kind: Kind, advice: str = "") -> Iterator[Pa
     Yields
     ------
     Path
-        A name in the same folder, with the same ending, that no other process uses.
+        A new, empty file in the same folder, with the same ending.
 
     Raises
     ------
@@ -139,8 +171,10 @@ def written_aside(path: str | Path, kind: Kind, advice: str = "") -> Iterator[Pa
     if problem:
         raise InputError(problem)
     target = Path(os.path.realpath(path))
-    aside = target.with_name(f".{target.stem[:100]}.{os.getpid()}.part{target.suffix}")
+    _remove_left_parts(target.parent)
     try:
+        aside, descriptor = new_part(target)
+        os.close(descriptor)
         try:
             yield aside
             _sync(aside)
@@ -158,6 +192,31 @@ def written_aside(path: str | Path, kind: Kind, advice: str = "") -> Iterator[Pa
             f"{path}: cannot be written ({cause}); allowed: a file in a folder that may be written, with space on the "
             f"disk{'; ' if advice else ''}{advice}"
         ) from error
+
+
+def new_part(target: Path) -> tuple[Path, int]:
+    """Make the file that becomes another one: new, whatever stands in the folder, and under a random name.
+
+    Parameters
+    ----------
+    target : Path
+        What it is to become.
+
+    Returns
+    -------
+    path : Path
+        The new file, in the same folder and with the same ending.
+    descriptor : int
+        File descriptor of it, open for writing.
+
+    Raises
+    ------
+    OSError
+        If it cannot be made.
+    """
+    ending = target.suffix[:_LONGEST_ENDING]
+    path = target.with_name(f".ehdmaps-{os.getpid()}-{secrets.token_hex(8)}.part{ending}")
+    return path, os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW | os.O_CLOEXEC, 0o666)
 
 
 def write_text(path: str | Path, text: str, kind: Kind) -> None:
@@ -292,6 +351,8 @@ def _problem(output: Output, taken: dict[object, str]) -> str:
     if not text or "\0" in text:
         return f"{what}; allowed: the path of a file"
     path = Path(text)
+    if problem := name_problem(path):
+        return f"{what}, {problem}"
     if kind.endings and path.suffix.lower() not in kind.endings:
         return f"{what}; allowed: a file that ends in {', '.join(kind.endings)}"
     try:
@@ -322,6 +383,29 @@ def _problem(output: Output, taken: dict[object, str]) -> str:
         cause = getattr(error, "strerror", None) or str(error)
         return f"{what}, which cannot be looked at ({cause}); choose another name"
     return ""
+
+
+def _remove_left_parts(folder: Path) -> None:
+    """Remove files of ours that are being written no more: their writers were killed."""
+    with contextlib.suppress(OSError), os.scandir(folder) as entries:
+        for entry in entries:
+            named = _PART.fullmatch(entry.name)
+            if named and entry.is_file(follow_symlinks=False):
+                status = entry.stat(follow_symlinks=False)
+                untouched = time.time() - status.st_mtime > _LEFT_SECONDS
+                if untouched and status.st_uid == os.geteuid() and not _runs(int(named[1])):
+                    os.unlink(entry.path)
+
+
+def _runs(process: int) -> bool:
+    """Whether a process of this number is there."""
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except (OSError, OverflowError):
+        return True
+    return True
 
 
 def _place(path: str | Path) -> tuple[int, int] | None:

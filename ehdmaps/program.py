@@ -9,13 +9,15 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import errno
+import math
 import os
 import sys
 from collections.abc import Callable, Sequence
 from typing import Any, NoReturn, TextIO
 
-from ehdmaps.errors import EhdmapsError, InputError
-from ehdmaps.interrupts import STOPPED, careful_interrupts
+from ehdmaps.errors import EhdmapsError, InputError, WorkerError
+from ehdmaps.interrupts import STOPPED, Stopped, careful_interrupts
 
 DONE, NOT_DELIVERED, NO_RESULT, BAD_INPUT = 0, 1, 1, 2
 
@@ -29,6 +31,18 @@ _CONTROLS = {code: f"\\x{code:02x}" for code in (*range(0x20), *range(0x80, 0xA0
 _CONTROLS[0x7F] = "\\u007f"
 _DIRECTIONS = {code: f"\\u{code:04x}" for code in (*range(0x202A, 0x202F), *range(0x2066, 0x206A))}
 _ESCAPES = _CONTROLS | _DIRECTIONS
+
+
+_LEAST = {
+    "RLIMIT_AS": (1e9, "of memory addresses", "ulimit -v"),
+    "RLIMIT_DATA": (6e8, "of data", "ulimit -d"),
+    "RLIMIT_STACK": (2.5e5, "of stack", "ulimit -s"),
+}
+"""Least limits of a process [bytes]. One that compiles the solver was seen to take 0.79 GB of addresses, 0.47 GB of
+data and 0.13 MB of stack; with less, libraries crash or never end, before anything of ours can say why."""
+
+_LACK = {errno.ENOMEM, errno.EMFILE, errno.ENFILE, errno.EAGAIN}
+"""Of errors of the system: there is not enough of something."""
 
 
 class Parser(argparse.ArgumentParser):
@@ -52,6 +66,12 @@ class Parser(argparse.ArgumentParser):
         """Say what is wrong about the arguments, and end."""
         tell(f"{self.format_usage()}{self.prog}: error: {message}")
         raise SystemExit(BAD_INPUT)
+
+    def _get_value(self, action: argparse.Action, arg_string: str) -> Any:
+        """Read one value of an argument; an empty text, as of a variable that is not set, is none."""
+        if not arg_string and action.nargs != argparse.PARSER:  # those of a command are looked at by its own parser
+            raise argparse.ArgumentError(action, "got ''; allowed: a text that is not empty, or to leave it out")
+        return super()._get_value(action, arg_string)
 
     def _print_message(self, message: str, file: Any = None) -> None:
         """Print help, or the version."""
@@ -115,15 +135,18 @@ def run(
     Returns
     -------
     int
-        Exit status: that of the work; 1 also if its result could not be printed; 2 for input that cannot be used; 130
-        after Ctrl-C.
+        Exit status: that of the work; 1 also if its result could not be printed, or worker processes died after some
+        work; 2 for input that cannot be used, and where the system gives too little to begin; 130 after Ctrl-C, 143
+        after SIGTERM.
     """
+    stopped = Stopped()
     try:
-        with careful_interrupts(last=argv is None):
-            return _run(parser, work, sys.argv[1:] if argv is None else argv, no_result)
+        with careful_interrupts(last=argv is None) as stopped:
+            status = _run(parser, work, sys.argv[1:] if argv is None else argv, no_result)
     except KeyboardInterrupt:
         tell("\nstopped")
-        return STOPPED
+        status = STOPPED
+    return stopped.status if status == STOPPED else status
 
 
 def shown(text: str) -> str:
@@ -193,6 +216,37 @@ def complain(name: str, problems: Sequence[str]) -> None:
     tell("\n".join([head, *(f"  {problem}" for problem in problems)]))
 
 
+def lack(error: BaseException) -> str:
+    """Say in one sentence what the system has too little of; empty for errors of other kinds.
+
+    Parameters
+    ----------
+    error : BaseException
+        What was raised.
+    """
+    if not (isinstance(error, MemoryError) or (isinstance(error, OSError) and error.errno in _LACK)):
+        return ""
+    cause = getattr(error, "strerror", None) or "out of memory"
+    return f"the system has too little ({cause}); look after memory and limits (ulimit -a), or take fewer processes"
+
+
+def _tight_limits() -> list[str]:
+    """Tell which limits of this process leave libraries too little."""
+    try:
+        import resource
+    except ImportError:  # a system that has none
+        return []
+    problems = []
+    for name, (least, what, command) in _LEAST.items():
+        soft, _ = resource.getrlimit(getattr(resource, name))
+        if soft != resource.RLIM_INFINITY and soft < least:
+            problems.append(
+                f"limit {what}: got {soft / 1e6:.4g} MB; allowed: {least / 1e6:g} MB or more; raise it: {command} "
+                f"{math.ceil(least / 1024)}"
+            )
+    return problems
+
+
 def _plain(program: str) -> str:
     """Name of a program that may be a module to be run."""
     return program.removeprefix("python -m ")
@@ -213,12 +267,21 @@ def _run(
         return BAD_INPUT
     arguments = parser.parse_args(argv)
     name = f"{name} {getattr(arguments, 'command', '')}".rstrip()
+    if problems := _tight_limits():
+        complain(name, problems)
+        return BAD_INPUT
     _prepare_libraries()
     try:
         text, status = work(arguments)
     except EhdmapsError as error:
         complain(name, error.problems if isinstance(error, InputError) else str(error).splitlines())
-        return NO_RESULT if isinstance(error, no_result) else BAD_INPUT
+        kept = isinstance(error, WorkerError) and error.kept > 0
+        return NO_RESULT if kept or isinstance(error, no_result) else BAD_INPUT
+    except (MemoryError, OSError) as error:
+        if not (problem := lack(error)):
+            raise
+        complain(name, [problem])
+        return BAD_INPUT
     return deliver(name, text, int(status))
 
 

@@ -37,7 +37,7 @@ def parser() -> argparse.ArgumentParser:
         "bearings, and modal identification.",
         epilog="SCENE is a scene file or the name of a shipped system: n1014_rigid, n1014_testrig, nu308_rigid, "
         "nu308_flexible, gearbox, two_stage, nu2210_shaft, overhung_rotor. Exit status: 0 done; 1 done outside the "
-        "map, or no result from valid input; 2 bad input, nothing written; 130 stopped with Ctrl-C.",
+        "map, or no result from valid input; 2 bad input, nothing written; 130 stopped with Ctrl-C, 143 by SIGTERM.",
     )
     top.add_version()
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
@@ -501,7 +501,11 @@ def _auto(command: argparse.ArgumentParser, tolerance: bool = True) -> None:
         help="plan and make the map that the scene needs, or reuse the one of the same plan; switch film memory, oil "
         "supply and roughness on where they matter; check that all of it lies inside, else plan wider",
     )
-    command.add_argument("--maps", metavar="FOLDER", help="where --auto makes and keeps maps; default: this folder")
+    command.add_argument(
+        "--maps",
+        metavar="FOLDER",
+        help="for maps that --auto makes and keeps; made if missing; default: this one",
+    )
     command.add_argument(
         "--physics",
         metavar="NAME",

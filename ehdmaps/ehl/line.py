@@ -22,8 +22,8 @@ VALLEY_REFINEMENT = 1.2
 """Density of cells at the bottom of the damping valley, relative to the density elsewhere."""
 
 OTHER_PLACES = 0.85, 0.75, 1.1
-"""Densities of cells, relative to the one asked for, that are tried besides where an oil has a limiting stress: on some
-grids Newton goes round in circles, as its front stands between two cells."""
+"""Densities of cells, relative to the one asked for, that are tried besides: on some grids Newton goes round in
+circles, as a front stands between two cells. First of all where an oil has a limiting stress, else last of all."""
 
 THIN_FILM = 20.0
 """Load M above which a negative loss can only be a numerical one."""
@@ -53,12 +53,13 @@ def solve_groups(
         resolution = replace(resolution, density=VALLEY_REFINEMENT * resolution.density)
     solution = _solve_once(problem, M, L, resolution, previous)
     steps = solution.steps
-    nearby = OTHER_PLACES if problem.shear.form == LIMITING else ()
-    others = [replace(resolution, density=factor * resolution.density) for factor in nearby]
+    nearby = [replace(resolution, density=factor * resolution.density) for factor in OTHER_PLACES]
+    others, last = (nearby, []) if problem.shear.form == LIMITING else ([], nearby)
     if problem.heat.log_eta.size == 0:  # with temperatures these take minutes, for few points
-        others += [resolution.with_wide_spike, replace(resolution, density=2.0 * resolution.density)]
+        others = [*others, resolution.with_wide_spike, replace(resolution, density=2.0 * resolution.density), *last]
     for again in others:
-        if solution.outcome == CONVERGED and (solution.loss > 0.0 or M < THIN_FILM):
+        # a coarser grid is no remedy for a negative loss
+        if solution.outcome == CONVERGED and (solution.loss > 0.0 or M < THIN_FILM or again in last):
             break
         if again == resolution:
             continue

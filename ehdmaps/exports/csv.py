@@ -18,7 +18,7 @@ from ehdmaps.exports.target import Target
 from ehdmaps.maps.curves import curves, film_between, rough_layers
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.film_field import FilmField
-from ehdmaps.maps.rough_films import FILM_PARAMETER, FILM_SHARE, film_share
+from ehdmaps.maps.rough_films import FILM_PARAMETER, FILM_SHARE, load_sharing
 from ehdmaps.maps.rough_layer import RoughLayer
 from ehdmaps.maps.usable import check_grid
 from ehdmaps.outputs import MARK, TABLE, Output, check_outputs, write_text
@@ -115,7 +115,7 @@ def _share(field: FilmField, layer: RoughLayer, loads: FloatArray, speed: float,
     film = np.zeros((loads.size, 1, 1))
     if speed > 0.0 and not field.dry:
         film, _, _ = field.films(layer.contact.name, loads[:, None, None], speeds, temperatures)
-    return film_share(layer, film, loads, speeds, temperatures)[:, 0, 0]
+    return load_sharing(layer, film, loads, speeds, temperatures)[0][:, 0, 0]
 
 
 def _add_arguments(parser: argparse.ArgumentParser) -> None:

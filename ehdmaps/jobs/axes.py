@@ -42,7 +42,7 @@ RING_SPEED_AXIS = AxisRule("inner_ring_speed", "rad/s", 0.0, 1e5, RPM)
 TEMPERATURE_AXIS = AxisRule("temperature", "K", *OIL_TEMPERATURES, TEMPERATURE)
 
 
-def read_speeds(grid: Table, bearing: BearingGeometry | None) -> tuple[float, ...] | None:
+def read_speeds(grid: Table, bearing: BearingGeometry | None, known: bool = True) -> tuple[float, ...] | None:
     """Read the speed axis of [grid]: entrainment speeds, or speeds of the inner ring of a bearing.
 
     Parameters
@@ -51,6 +51,8 @@ def read_speeds(grid: Table, bearing: BearingGeometry | None) -> tuple[float, ..
         [grid].
     bearing : BearingGeometry or None
         Whose inner ring turns, the outer one fixed; None where there is none, or it was wrong already.
+    known : bool
+        False where the bearing was wrong already, which need not be said again.
 
     Returns
     -------
@@ -64,6 +66,8 @@ def read_speeds(grid: Table, bearing: BearingGeometry | None) -> tuple[float, ..
     if own in grid:
         grid.get(own)
         grid.note(ring, f"stands beside {own}; allowed: one of the two; delete one")
+        return None
+    if bearing is None and not known:
         return None
     if bearing is None:
         grid.note(ring, f"got no bearing to turn; allowed: with a [bearing]; give {own} in m/s for a bare contact")

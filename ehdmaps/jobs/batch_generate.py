@@ -5,15 +5,13 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, Future, as_completed
-from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
 import xarray as xr
 
-from ehdmaps.errors import EhdmapsError, InputError
-from ehdmaps.interrupts import deaf_children
+from ehdmaps.errors import EhdmapsError, InputError, WorkerError
 from ehdmaps.jobs.batch import OWN, SHARED, Batch, Member
 from ehdmaps.jobs.batch_plan import Alone, Shared, plan_batch
 from ehdmaps.jobs.correction_report import unsolved
@@ -24,12 +22,12 @@ from ehdmaps.jobs.refinement import MOST_LINE_POINTS
 from ehdmaps.jobs.report import holes
 from ehdmaps.jobs.status import StatusFile
 from ehdmaps.jobs.store import Store, store_path
-from ehdmaps.jobs.sweep import Progress, SweepResult, sweep, worker_pool
+from ehdmaps.jobs.sweep import Progress, SweepResult, sweep
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone_plan import Axis
 from ehdmaps.netcdf_structure import DAMAGE
-from ehdmaps.outputs import MAP, Output, output_problems, root_attributes
-from ehdmaps.workers import available_cores
+from ehdmaps.outputs import MAP, Output, name_problem, output_problems, root_attributes
+from ehdmaps.workers import WorkersDied, available_cores, worker_pool
 
 MADE, KEPT, FAILED = "made", "kept", "failed"
 """What became of a map: kept is one that was there from an earlier run, and is the same."""
@@ -47,6 +45,9 @@ _DIED = "the worker process died (killed, or out of memory); the same command tr
 
 _Item = TypeVar("_Item")
 _Found = TypeVar("_Found")
+
+
+_FOLDER = "allowed: a folder for the maps, in one that is there and may be written; choose another"
 
 
 @dataclass(frozen=True)
@@ -120,21 +121,44 @@ def batch_path(batch: Batch, folder: Path) -> Path:
     return folder / f"{batch.name}.batch"
 
 
-def make_folder(folder: Path) -> None:
+def make_folder(folder: Path, option: str = "-o") -> None:
     """Make the folder of the maps, where it is not there.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder; the one that it lies in is there.
+    option : str
+        That names it, for messages.
 
     Raises
     ------
     InputError
         If it cannot be made, or something else stands there.
     """
+    if problem := folder_problem(folder, option):
+        raise InputError(problem)
     try:
         folder.mkdir(exist_ok=True)
     except OSError as error:
-        raise InputError(
-            f"{folder}: cannot be made ({error.strerror}); allowed: a folder for the maps, in one that may be written; "
-            "choose another with -o"
-        ) from error
+        raise InputError(f"{option}: got {folder}, which cannot be made ({error.strerror}); {_FOLDER}") from error
+
+
+def folder_problem(folder: Path, option: str) -> str:
+    """Tell in one sentence why a folder of maps can be neither used nor made; empty if it may.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder.
+    option : str
+        That names it.
+    """
+    if problem := name_problem(folder):
+        return f"{option}: got {str(folder)!r:.300}, {problem}"
+    if not folder.is_dir() and (folder.exists() or not folder.parent.is_dir()):
+        return f"{option}: got {str(folder)!r:.300}, which is no folder and cannot be made; {_FOLDER}"
+    return ""
 
 
 def generate_batch(
@@ -286,6 +310,8 @@ class _Run:
             made = generate(
                 member.job, output, self.workers, False, self.progress, executor=self.executor, within=within
             )
+        except WorkerError:  # nothing of this map alone
+            raise
         except EhdmapsError as error:
             return Outcome(member, output, FAILED, OWN, reason=str(error))
         self._count(made.sweep)
@@ -296,6 +322,8 @@ class _Run:
         """Make the maps of a family; the points of its lines, and members whose lines cannot be read."""
         try:
             solved, halved = self._solved(shared)
+        except WorkerError:
+            raise
         except EhdmapsError:  # a line with too few solved points: each map stands on its own then
             left = [Alone(shared.members[index]) for index in due]
             self.status.more(sum(one.points for one in left))
@@ -409,11 +437,12 @@ def _each(
     try:
         with worker_pool(min(workers, len(items))) as pool:
             for item in items:
-                with deaf_children():
-                    running[pool.submit(function, item)] = item
+                running[pool.submit(function, item)] = item
             for future in as_completed(list(running)):
                 found = future.result()
                 yield running.pop(future), found
-    except BrokenProcessPool:
+    except WorkersDied as died:
+        if not died.begun:
+            raise died.error from None
         for item in running.values():
             yield item, None

@@ -86,7 +86,7 @@ def generate(
 
     Raises
     ------
-    InputError, StoreError, MapError
+    InputError, StoreError, MapError, WorkerError
         With what to do; everything solved is kept where there is an output file.
     """
     name = solver if isinstance(solver, str) else None
@@ -137,7 +137,7 @@ def generate_batch(
 
     Raises
     ------
-    InputError, StoreError
+    InputError, StoreError, WorkerError
         If nothing can be made at all; a map that fails is told in the table.
     """
     if not isinstance(batch, Batch) and not is_batch(batch):

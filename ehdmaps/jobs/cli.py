@@ -31,7 +31,7 @@ def parser() -> argparse.ArgumentParser:
         epilog="JOB is a job file, a map (its job is repeated), or the name of a shipped job: nu308, n1014, "
         "nu308_openfoam; for generate, check, merge, status and submit also a batch file, of many maps. "
         "Exit status: 0 done; 1 done, with failed points or an unmet tolerance; 2 bad input, nothing "
-        "written; 130 stopped with Ctrl-C.",
+        "written; 130 stopped with Ctrl-C, 143 by SIGTERM.",
     )
     top.add_version()
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")

@@ -7,6 +7,7 @@ on where they were.
 
 from __future__ import annotations
 
+import os
 import re
 import shlex
 import sys
@@ -16,6 +17,7 @@ from pathlib import Path
 from ehdmaps.errors import InputError
 from ehdmaps.extras import needs
 from ehdmaps.jobs.work import Work
+from ehdmaps.program import plain
 
 _TIME = re.compile(r"[0-9]{1,6}(?:-[0-9]{1,2})?(?::[0-9]{1,2}){0,2}")
 _PARTITION = re.compile(r"[A-Za-z0-9_.,-]{1,100}")
@@ -74,6 +76,30 @@ def check_shards(work: Work, array: Array) -> None:
         )
 
 
+def check_names(work: Work, folder: Path) -> None:
+    """Refuse names that a line of a script cannot hold.
+
+    Parameters
+    ----------
+    work : Work
+        The job or the batch.
+    folder : Path
+        Folder in which the commands run.
+
+    Raises
+    ------
+    InputError
+        For every name with a character that is not printable, such as the end of a line.
+    """
+    problems = [
+        f"submit: got {name[:200]!r}, which is not printable; allowed: names of printable characters; rename {what}"
+        for what, name in (("the job", work.source), ("the map", str(work.output)), ("the folder", str(folder)))
+        if not name.isprintable()
+    ]
+    if problems:
+        raise InputError(problems)
+
+
 def commands(work: Work, solver: str | None, array: Array) -> tuple[list[str], list[str]]:
     """Command of a shard, without the number of the shard, and command that merges, as lists of arguments.
 
@@ -87,10 +113,11 @@ def commands(work: Work, solver: str | None, array: Array) -> tuple[list[str], l
         The array.
     """
     program = [sys.executable, "-m", "ehdmaps.jobs.cli"]
-    common = ["-o", str(work.output), *([] if solver is None else ["--solver", solver])]
+    # A name may begin as an option does.
+    source = work.source if not work.source.startswith("-") else f"./{work.source}"
+    common = [source, f"--output={work.output}", *([] if solver is None else ["--solver", solver])]
     workers = ["--workers", str(array.cpus)]
-    source = [work.source]
-    return [*program, "generate", *source, *common, *workers], [*program, "merge", *source, *common, *workers]
+    return [*program, "generate", *common, *workers], [*program, "merge", *common, *workers]
 
 
 def script(work: Work, solver: str | None, array: Array, folder: Path) -> str:
@@ -106,7 +133,13 @@ def script(work: Work, solver: str | None, array: Array, folder: Path) -> str:
         The array.
     folder : Path
         Folder in which the commands run, on every node.
+
+    Raises
+    ------
+    InputError
+        For names that a script cannot hold.
     """
+    check_names(work, folder)
     shard, merge = (shlex.join(command) for command in commands(work, solver, array))
     wants = [f"--cpus-per-task={array.cpus}"]
     wants += [] if array.time is None else [f"--time={array.time}"]
@@ -114,13 +147,13 @@ def script(work: Work, solver: str | None, array: Array, folder: Path) -> str:
     name = work.place.name
     head = "\n".join(f"#SBATCH {want}" for want in wants)
     return f"""#!/bin/sh
-# {work.what.replace(chr(10), " ")}: {len(work.tasks)} tasks in {array.shards} shards, then merged.
+# {plain(work.what)}: {len(work.tasks)} tasks in {array.shards} shards, then merged.
 #   id=$(sbatch --parsable THIS_FILE)
 #   sbatch --dependency=afterany:$id --array=0 THIS_FILE
 # A shard that was killed: sbatch --array=NUMBER THIS_FILE; then merge again.
-#SBATCH --job-name={shlex.quote(f"ehdmaps-{name}"[:60])}
+#SBATCH --job-name={_quoted(f"ehdmaps-{name}"[:60])}
 #SBATCH --array=1-{array.shards}
-#SBATCH --output={name}.slurm-%A_%a.log
+#SBATCH --output={_quoted(f"{str(folder / name).replace('%', '%%')}.slurm-%A_%a.log")}
 {head}
 cd {shlex.quote(str(folder))} || exit 1
 if [ "$SLURM_ARRAY_TASK_ID" = 0 ]; then
@@ -128,6 +161,11 @@ if [ "$SLURM_ARRAY_TASK_ID" = 0 ]; then
 fi
 exec {shard} --shard "$SLURM_ARRAY_TASK_ID/{array.shards}"
 """
+
+
+def _quoted(text: str) -> str:
+    """A text as one value of an ``#SBATCH`` line, which Slurm reads by rules of its own: no shell looks at it."""
+    return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
 
 
 def submit(work: Work, solver: str | None, array: Array) -> str:
@@ -147,13 +185,19 @@ def submit(work: Work, solver: str | None, array: Array) -> str:
     DependencyError
         If submitit is not installed.
     InputError
-        If the cluster does not take the jobs.
+        If the cluster does not take the jobs, or a name is one that it cannot have.
     """
+    check_names(work, Path.cwd())
+    logs = f"{work.place}.slurm"
+    if "%" in os.path.abspath(logs):
+        raise InputError(
+            f"submit: got logs in {os.path.abspath(logs)}, where Slurm takes % for a sign of its own; allowed with "
+            "--submit: names of map and folders without %; rename it, or leave --submit out for a script"
+        )
     with needs("cluster", "submitit", "submit --submit"):
         import submitit
     shard, merge = commands(work, solver, array)
     command = submitit.helpers.CommandFunction
-    logs = f"{work.place}.slurm"
     wants = {} if array.time is None else {"time": array.time}
     if array.partition is not None:
         wants["partition"] = array.partition

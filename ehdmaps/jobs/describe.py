@@ -30,7 +30,16 @@ from ehdmaps.maps.backbone import ERROR
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.own_lines import has_own_lines
 from ehdmaps.maps.records import record_from_json
-from ehdmaps.maps.rough_films import BOUNDARY, FILM_PARAMETER, FILM_SHARE, MIXED, rough_variables
+from ehdmaps.maps.rough_films import (
+    BOUNDARY,
+    FILM_PARAMETER,
+    FILM_SHARE,
+    MEAN_DISTANCE,
+    MIXED,
+    OVERLAP,
+    overlapping,
+    rough_variables,
+)
 from ehdmaps.physics.approach import FE_LOAD
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
@@ -142,6 +151,10 @@ def roughness_lines(emap: EHDMap) -> Iterator[str]:
     yield f"    Lambda, minimum film over roughness: {', '.join(below)}; median {np.median(parameter):.3g}"
     most = ", ".join(f"{100.0 * np.mean(share < part):.0f} % below {part:g}" for part in (0.5, 0.9, 0.99))
     yield f"    share of the film in the load: {most} (of the points); smallest {np.min(share):.2g}"
+    beyond = overlapping(found[FILM_SHARE].values, found[MEAN_DISTANCE].values)
+    if beyond.any():
+        reach = np.max(found[FILM_PARAMETER].values[beyond])
+        yield f"    at {100.0 * np.mean(beyond):.0f} % of the points, Lambda up to {reach:.2g}, {OVERLAP}"
 
 
 def _geometry_lines(emap: EHDMap) -> Iterator[str]:

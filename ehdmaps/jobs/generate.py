@@ -106,7 +106,7 @@ def generate(
 
     Raises
     ------
-    InputError, StoreError, MapError
+    InputError, StoreError, MapError, WorkerError
         With what to do; everything solved is kept.
     """
     planned = _plan(job, _solver(job, solver), _corrector(job, corrector))

@@ -20,7 +20,7 @@ from ehdmaps.jobs.describe import (
 from ehdmaps.jobs.map_charts import MapCurves, Operated, contact_charts, shown_speed, shown_temperature
 from ehdmaps.jobs.map_limits import limits
 from ehdmaps.jobs.plot import contact_words, what_is_mapped
-from ehdmaps.jobs.report import AXES, NONE_STATED, error_rows, holes, law_rows, span, tolerance_lines
+from ehdmaps.jobs.report import AXES, NONE_STATED, error_rows, holes, law_rows, span, tip_line, tolerance_lines
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.program import plain
@@ -236,6 +236,8 @@ def accuracy(emap: EHDMap) -> Markup:
     parts: list[Markup] = [
         table(("quantity", "median", "95 % of points", "largest"), rows, "Estimated relative errors of the points")
     ]
+    if tip := tip_line(dataset):
+        parts.append(tag("p", f"{tip[0].upper()}{tip[1:]}."))
     law = list(law_rows(dataset))
     if law:
         parts.append(table(("check", "found"), law, "Contact laws at random points against fresh solves", (0, 1)))

@@ -11,7 +11,15 @@ import numpy as np
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.report import ERRORS, FOUND_BY_SOME, NONE_STATED
 from ehdmaps.jobs.solvers import solver_words
-from ehdmaps.maps.rough_films import FILM_PARAMETER, FILM_SHARE, LEAST_SPEED, film_share
+from ehdmaps.maps.rough_films import (
+    FILM_PARAMETER,
+    FILM_SHARE,
+    LEAST_SPEED,
+    MEAN_DISTANCE,
+    OVERLAP,
+    load_sharing,
+    overlapping,
+)
 from ehdmaps.maps.rough_layer import RoughLayer
 from ehdmaps.physics import hertz
 from ehdmaps.physics.contact import LineContact
@@ -19,6 +27,7 @@ from ehdmaps.physics.film_limits import too_thin
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import moes_groups
 from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.peak import tip_words
 from ehdmaps.physics.roughness import SMOOTH, Surface
 from ehdmaps.physics.solution import ContactSolution, Status
 from ehdmaps.units import (
@@ -129,11 +138,12 @@ def _rough(
         return {}
     layer = RoughLayer(surface, contact, oil, max(point.entrainment_speed, LEAST_SPEED))
     place = (np.array([value]) for value in (point.load, point.entrainment_speed, point.temperature))
-    share = film_share(layer, np.full((1, 1, 1), solution.film_offset), *place)
+    share, distance = load_sharing(layer, np.full((1, 1, 1), solution.film_offset), *place)
     return {
         "roughness": surface.roughness,
         FILM_PARAMETER: solution.minimum_film / surface.roughness,
         FILM_SHARE: float(share.item()),
+        MEAN_DISTANCE: float(distance.item()),
     }
 
 
@@ -187,7 +197,21 @@ def point_table(job: Job, records: list[dict[str, Any]], point: OperatingPoint, 
         lines.append(f"  {label:22s} {unit:12s} {shown}")
     lines.extend(f"  {record['contact']}: {record['reason']}" for record in records if record["reason"])
     lines.extend(f"  {record['contact']}: {note}" for record in records if (note := _extrapolated(job, record)))
+    lines.extend(f"  {record['contact']}: {note}" for record in records if (note := _tip(record)))
+    lines.extend(f"  {record['contact']}: {OVERLAP}" for record in records if _overlaps(record))
     return "\n".join(lines)
+
+
+def _overlaps(record: dict[str, Any]) -> bool:
+    """Whether the load sharing of a rough contact is out of its range."""
+    share, distance = record.get(FILM_SHARE), record.get(MEAN_DISTANCE)
+    return share is not None and distance is not None and bool(overlapping(share, distance))
+
+
+def _tip(record: dict[str, Any]) -> str:
+    """Say what the largest pressure of a contact lacks of its spike; empty where it lacks nothing."""
+    error = record["max_pressure_error"]
+    return "" if error is None else tip_words(error)
 
 
 def _speed(job: Job, point: OperatingPoint) -> str:
@@ -226,6 +250,7 @@ def _rows(records: list[dict[str, Any]], length: float | None) -> Iterator[tuple
     if FILM_PARAMETER in records[0]:
         yield row("film over roughness", FILM_PARAMETER, plain)
         yield row("film's share of load", FILM_SHARE, plain)
+        yield row("mean planes/roughness", MEAN_DISTANCE, plain)
     yield row("rolling force", "rolling_force", ROLLING_FORCE)
     yield row("mass flow", "mass_flow", MASS_FLOW)
     for name, words, display in FOUND_BY_SOME:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, TypeVar, cast
@@ -16,6 +17,7 @@ from ehdmaps.physics.catalogue import designations, estimate, estimate_from_dime
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.correlations import CORRELATIONS
 from ehdmaps.physics.lubricant import DENSITY_LAWS, LUBRICANTS, Lubricant
+from ehdmaps.physics.own_oil import Stated, stated_problems
 from ehdmaps.physics.pressure_viscosity import PRESSURE_LAWS, Parameter
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.units import LENGTH, Display, closest, short
@@ -54,6 +56,12 @@ _OIL_QUANTITIES: dict[str, tuple[str, float, float, Display]] = {
 }
 _LAW_PARAMETERS = {parameter.key: parameter for law in PRESSURE_LAWS.values() for parameter in law.parameters}
 _OIL_KEYS = ("viscosity_law", *_OIL_QUANTITIES, "pressure_viscosity", *_LAW_PARAMETERS, "density_law")
+_OIL_STATED = (
+    "viscosity", "viscosity_40", "viscosity_100",
+    "pressure_viscosity", "pressure_viscosity_40", "pressure_viscosity_100",
+)  # fmt: skip
+"""Keys of `Stated`, in its order."""
+
 _ISOVISCOUS = ("0 1/GPa", "0 1/Pa")
 
 
@@ -201,9 +209,9 @@ def _estimate(section: Table, label: str | None) -> BearingGeometry | None:
             return None
         made = _built(section, lambda: estimate_from_dimensions(bore, outside, width, rating))
     elif isinstance(value, str):
+        made = _built(section, lambda: estimate(value, rating))
         if rating is None and "basic_static_rating" in section:
             return None
-        made = _built(section, lambda: estimate(value, rating))
     else:
         section.note("estimate", f'got {short(value)}; allowed: a designation such as "NU206", or {_CATALOGUE_FORM}')
         return None
@@ -275,6 +283,9 @@ def read_lubricant(section: Table) -> Lubricant | None:
     read = values | numbers | stated_heat
     wrong = [key for key in read if key in section and read[key] is None]
     if law is None or wrong or values["density"] is None:
+        whole = Stated(*(math.nan if key in wrong else values[key] for key in _OIL_STATED))
+        for problem in stated_problems("own oil", law, whole):
+            section.note("", problem)
         return None
     given = {key: value for key, value in values.items() if value is not None}
     stated = {_LAW_PARAMETERS[key].field: value for key, value in numbers.items() if value is not None}

@@ -117,6 +117,8 @@ def parse_job(
             "and `submit` take a batch"
         )
     problems: list[str] = []
+    if not name.isprintable():
+        problems.append(f"is called {name!r:.80}; allowed: printable characters, which its map can carry; rename it")
     job = _job(Table(values, "job file", problems), text, name, solver, to_run, finding_solids)
     if problems or job is None:
         raise InputError([f"{where}: {problem}" for problem in problems])
@@ -167,7 +169,7 @@ def _job(top: Table, text: str, name: str, override: str | None, to_run: bool, f
     axes: list[tuple[float, ...] | None] = [None, None, None]
     grid = top.table("grid", "[grid]", required="a table with load, entrainment_speed and temperature")
     if grid:
-        axes = _grid(grid, len(contacts) or 2, bearing)
+        axes = _grid(grid, len(contacts) or 2, bearing, known=bearing is not None or "bearing" not in top)
         if oil is not None and axes[2] is not None:
             _check_temperatures(oil, axes[2], grid)
         _check_loads(contacts, axes[0], grid)
@@ -263,9 +265,9 @@ def _check_loads(contacts: Sequence[LineContact], loads: Sequence[float] | None,
                 grid.note("load", f"contact {contact.name}: {error.problems[0]}")
 
 
-def _grid(grid: Table, contacts: int, bearing: BearingGeometry | None) -> list[tuple[float, ...] | None]:
+def _grid(grid: Table, contacts: int, bearing: BearingGeometry | None, known: bool) -> list[tuple[float, ...] | None]:
     """Read [grid]."""
-    axes = [read_axis(grid, LOAD_AXIS), read_speeds(grid, bearing), read_axis(grid, TEMPERATURE_AXIS)]
+    axes = [read_axis(grid, LOAD_AXIS), read_speeds(grid, bearing, known), read_axis(grid, TEMPERATURE_AXIS)]
     grid.close()
     points = contacts
     for axis in axes:

@@ -13,6 +13,7 @@ from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.maps.records import lubricant_from_json
 from ehdmaps.maps.schema import FILMS_READ, FILMS_SOLVED
 from ehdmaps.physics.film_limits import BELOW_ROUGHNESS, CONTINUUM, NO_CONTINUUM
+from ehdmaps.physics.peak import tip_words
 from ehdmaps.physics.solution import Status
 from ehdmaps.program import plain
 from ehdmaps.units import (
@@ -230,6 +231,14 @@ def error_lines(dataset: xr.Dataset) -> Iterator[str]:
         else:
             middle, high, most = found
             yield f"  {label:25s} {middle:11.2g} {high:10.2g} {most:10.2g}"
+    if tip := tip_line(dataset):
+        yield f"  {tip}"
+
+
+def tip_line(dataset: xr.Dataset) -> str:
+    """Say what the largest pressures of a map lack of sharp spikes; empty where they lack nothing."""
+    name = "max_pressure_error"
+    return tip_words(float(np.max(dataset[name].fillna(0.0)))) if name in dataset else ""
 
 
 def error_rows(dataset: xr.Dataset) -> Iterator[tuple[str, tuple[float, float, float] | None]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -10,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from ehdmaps.figures import typeset
+from ehdmaps.figures import WARNING, typeset
 from ehdmaps.jobs.plot import (
     A4_LANDSCAPE,
     FONT,
@@ -25,7 +26,18 @@ from ehdmaps.jobs.plot import (
 )
 from ehdmaps.jobs.plot_curves import Sheet, draw_curves, keep_corners_free, spread
 from ehdmaps.maps.emap import EHDMap
-from ehdmaps.maps.rough_films import BOUNDARY, FILM_PARAMETER, FILM_SHARE, MIXED, rough_variables
+from ehdmaps.maps.rough_films import (
+    BOUNDARY,
+    FILM_PARAMETER,
+    FILM_SHARE,
+    LEAST_SPEED,
+    MEAN_DISTANCE,
+    MIXED,
+    least_share,
+    overlapping,
+    rough_variables,
+)
+from ehdmaps.maps.rough_layer import RoughLayer
 from ehdmaps.outputs import write_figure
 from ehdmaps.units import LOAD, TEMPERATURE, Display
 
@@ -34,7 +46,12 @@ _PLAIN = Display("")
 LOWEST, HIGHEST = 0.01, 100.0
 """Lambda that is drawn: what lies beyond is the same as rough, or as smooth, as these."""
 
-_LINES = ((BOUNDARY, "-", "Λ = 1: boundary lubrication below"), (MIXED, (0, (4, 2)), "Λ = 3: mixed lubrication below"))
+_LINES = (
+    (BOUNDARY, "-", "Λ = 1: usually called boundary lubrication below"),
+    (MIXED, (0, (4, 2)), "Λ = 3: usually called mixed below"),
+)
+_BEYOND: Any = {"facecolor": WARNING, "alpha": 0.13, "lw": 0.0, "zorder": 0}
+_LOADS = 200
 
 
 def plot_roughness(emap: EHDMap, output: Path) -> None:
@@ -71,7 +88,7 @@ def _page(sheet: Sheet) -> Figure:
     parameter = f"Λ: minimum film between smooth surfaces over it; {_below(sheet)}."
     write_line(figure, 0.934, f"Combined rms roughness of both surfaces. {parameter}", 8)
     share = "film and asperities in balance (Johnson, Greenwood and Poon; asperities of Greenwood and Tripp)"
-    write_line(figure, 0.916, f"Share of the load: {share}.", 8)
+    write_line(figure, 0.916, f"Share of the load: {share}; a guess where the mean planes overlap.", 8)
     write_estimated(figure, 0.9, sheet.emap)
     grid = figure.add_gridspec(
         2 * contacts, len(temperatures), left=0.062, right=0.92, top=0.875, bottom=0.105, wspace=0.08, hspace=0.12
@@ -96,6 +113,8 @@ def _page(sheet: Sheet) -> Figure:
     entries: list[Line2D | Patch] = [
         Line2D([], [], color="black", lw=0.8, ls=style, label=words) for _, style, words in _LINES
     ]
+    if overlapping(dataset[FILM_SHARE].values, dataset[MEAN_DISTANCE].values).any():
+        entries.append(Patch(label="mean planes overlap: out of the range of load sharing, a guess", **_BEYOND))
     figure.legend(
         handles=entries + mark_entries(sheet),
         loc="lower left",
@@ -113,6 +132,7 @@ def _panel(axes: Axes, sheet: Sheet, place: tuple[int, int], parameter: bool) ->
     if not parameter:
         axes.set_yscale("linear")
         axes.set_ylim(0.0, 1.05)
+        _shade_shares(axes, sheet, place[0])
         return
     known = sheet.dataset[FILM_PARAMETER].values
     positive = known[known > 0.0]
@@ -120,6 +140,26 @@ def _panel(axes: Axes, sheet: Sheet, place: tuple[int, int], parameter: bool) ->
         axes.set_ylim(0.7 * max(float(positive.min()), LOWEST), 1.4 * min(max(float(positive.max()), MIXED), HIGHEST))
     for limit, style, _ in _LINES:
         axes.axhline(limit, color="black", lw=0.8, ls=style, zorder=1)
+    _shade_parameters(axes, sheet, place)
+
+
+def _shade_shares(axes: Axes, sheet: Sheet, contact: int) -> None:
+    """Shade the shares at which the mean planes overlap: one limit over load, at any speed and temperature."""
+    emap, axis = sheet.emap, sheet.dataset["load"].values
+    layer = RoughLayer(emap.surface, emap.contacts[contact], emap.lubricant, LEAST_SPEED)
+    loads = np.geomspace(axis[0], axis[-1], _LOADS)
+    axes.fill_between(LOAD.factor * loads, 0.0, np.maximum(least_share(layer, loads), 0.0), **_BEYOND)
+
+
+def _shade_parameters(axes: Axes, sheet: Sheet, place: tuple[int, int]) -> None:
+    """Shade the Lambda below which the mean planes overlap, between the speeds of the map where they meet."""
+    here = sheet.dataset.isel(contact=place[0], temperature=place[1]).transpose("load", "entrainment_speed", ...)
+    limits = np.full(here.sizes["load"], np.nan)
+    for i, (distance, known) in enumerate(zip(here[MEAN_DISTANCE].values, here[FILM_PARAMETER].values, strict=True)):
+        moving = np.isfinite(distance) & (known > 0.0)
+        if moving.any() and distance[moving].min() < 0.0:  # it rises with speed
+            limits[i] = np.exp(np.interp(0.0, distance[moving], np.log(known[moving])))
+    axes.fill_between(LOAD.factor * here["load"].values, 1e-9, limits, where=np.isfinite(limits), **_BEYOND)
 
 
 def _below(sheet: Sheet) -> str:

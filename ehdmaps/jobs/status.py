@@ -29,7 +29,7 @@ from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.progress import Pace
 from ehdmaps.jobs.store import Arrays, store_path
 from ehdmaps.jobs.sweep import Task
-from ehdmaps.outputs import MARK, Kind, Output, has_mark, output_problems
+from ehdmaps.outputs import MARK, Kind, Output, has_mark, new_part, output_problems
 from ehdmaps.physics.solution import Status
 
 WRITE_SECONDS = 2.0
@@ -194,8 +194,7 @@ class StatusFile:
 
     def _replace(self, content: bytes) -> None:
         """Write a new file, locked before it gets the name."""
-        aside = self._path.with_name(f"{self._path.name}.{os.getpid()}.part")
-        descriptor = os.open(aside, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o666)
+        aside, descriptor = new_part(self._path)
         try:
             with contextlib.suppress(OSError):  # a file system without locks: the file still tells how far it is
                 fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)

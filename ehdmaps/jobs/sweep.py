@@ -6,25 +6,24 @@ their own types: any other exception is a bug and stops the sweep, with everythi
 
 from __future__ import annotations
 
-import multiprocessing
-import os
 import time
 from collections import deque
-from collections.abc import Generator, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
-from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from collections.abc import Generator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from ehdmaps.errors import SolverError
-from ehdmaps.interrupts import deaf_children
+from ehdmaps.errors import SolverError, WorkerError
 from ehdmaps.jobs.store import COMMIT_SECONDS, Arrays, Results
-from ehdmaps.workers import start_worker
+from ehdmaps.program import lack
+from ehdmaps.workers import WorkersDied, worker_pool
 
-_THREAD_VARIABLES = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 _AHEAD = 3
 """Tasks handed out per worker, so that none waits for the next; few, so that few are lost on Ctrl-C."""
+
+_MOST_DEATHS = 4
+"""Processes that die one after the other before any finishes a task: what one task does to its process, or somebody
+who kills one, is no reason to stop. Half as many where none of them begins a task."""
 
 MOST_OUT = 2000
 """Tasks handed out to an executor that was given, of which nobody knows how many workers it has."""
@@ -167,6 +166,8 @@ def sweep(
     ------
     StoreError
         If a result cannot be kept.
+    WorkerError
+        If processes cannot be started, or die before any finishes a task; what is solved is kept.
     KeyboardInterrupt
         On Ctrl-C, after the workers are stopped and the store is committed.
     """
@@ -198,6 +199,14 @@ def sweep(
             told.solved(task.points)
             for watch in watches:
                 watch.found(task, arrays, now=True)
+    except WorkerError as error:
+        error.kept = result.taken_over + result.solved
+        raise
+    except (MemoryError, OSError) as error:
+        if not (problem := lack(error)):
+            raise
+        kept = result.taken_over + result.solved
+        raise WorkerError(f"{problem}; what was solved is kept: the same command goes on", kept) from error
     finally:
         outcomes.close()
         store.commit()
@@ -227,6 +236,19 @@ def _import(task: Task) -> None:
     """Do nothing: a worker that receives a task has imported what the task needs."""
 
 
+class _Deaths:
+    """Counts processes that died before any finished a task."""
+
+    def __init__(self) -> None:
+        self.finished, self._count = False, 0
+
+    def add(self, died: WorkersDied) -> None:
+        """Count one; the error by which the sweep ends is raised where there are too many."""
+        self._count += 1 if died.begun else 2
+        if not self.finished and self._count >= _MOST_DEATHS:
+            raise died.error from None
+
+
 def _in_pool(tasks: Sequence[Task], workers: int, store: Results) -> _Outcomes:
     """Run tasks in worker processes; those that were out when a worker died are tried again alone.
 
@@ -235,30 +257,31 @@ def _in_pool(tasks: Sequence[Task], workers: int, store: Results) -> _Outcomes:
     """
     waiting = deque(tasks)
     compiled = any(task.slow for task in tasks)
+    deaths = _Deaths()
     while waiting:
         running: dict[Future[Arrays], Task] = {}
         try:
             with worker_pool(workers) as pool:
                 if not compiled:
-                    with deaf_children():  # a worker starts with every task that finds none idle
-                        running[pool.submit(_run, waiting[0])] = waiting[0]
-                        for _ in range(workers - 1):
-                            pool.submit(_import, waiting[0])
+                    running[pool.submit(_run, waiting[0])] = waiting[0]
+                    for _ in range(workers - 1):  # a worker starts with every task that finds none idle
+                        pool.submit(_import, waiting[0])
                     waiting.popleft()
                 while waiting or running:
                     while compiled and waiting and len(running) < workers * _AHEAD:
-                        with deaf_children():  # workers start with the first task
-                            running[pool.submit(_run, waiting[0])] = waiting[0]
+                        running[pool.submit(_run, waiting[0])] = waiting[0]
                         waiting.popleft()
                     done, _ = wait(running, timeout=COMMIT_SECONDS, return_when=FIRST_COMPLETED)
                     compiled = compiled or bool(done)
                     store.commit_if_due()
                     for future in done:
                         arrays = future.result()
+                        deaths.finished = True
                         yield running.pop(future), arrays, True
-        except BrokenProcessPool:
+        except WorkersDied as died:
+            deaths.add(died)
             # Nobody knows which task killed the worker: those that were out run one at a time.
-            yield from _alone(list(running.values()))
+            yield from _alone(list(running.values()), deaths)
 
 
 @dataclass(frozen=True)
@@ -313,45 +336,18 @@ def _in_executor(tasks: Sequence[Task], executor: Executor, store: Results) -> _
             future.cancel()
 
 
-def _alone(tasks: Sequence[Task]) -> _Outcomes:
+def _alone(tasks: Sequence[Task], deaths: _Deaths) -> _Outcomes:
     """Run tasks one at a time, in a process that each may take down with it; the next one gets another then."""
     waiting = deque(tasks)
     while waiting:
         try:
             with worker_pool(1) as pool:
                 while waiting:
-                    with deaf_children():
-                        outcome_of = pool.submit(_run, waiting[0])
-                    arrays = outcome_of.result()
+                    arrays = pool.submit(_run, waiting[0]).result()
+                    deaths.finished = True
                     yield waiting.popleft(), arrays, True
-        except BrokenProcessPool:
+        except WorkersDied as died:
+            deaths.add(died)
             reason = "the worker process died twice (killed, or out of memory); the same command tries again"
             task = waiting.popleft()
             yield task, task.failed(reason), False
-
-
-@contextmanager
-def worker_pool(workers: int) -> Iterator[ProcessPoolExecutor]:
-    """Start worker processes of one thread each; on any error stop them at once, else when they are done."""
-    others = set(multiprocessing.active_children())
-    before = {name: os.environ.get(name) for name in _THREAD_VARIABLES}
-    # Workers read these when they import numpy; they are spawned, so they inherit the environment of their
-    # start.
-    os.environ.update(dict.fromkeys(_THREAD_VARIABLES, "1"))
-    context = multiprocessing.get_context("spawn")
-    told = context.Value("b", False)
-    pool = ProcessPoolExecutor(workers, context, initializer=start_worker, initargs=(told,))
-    try:
-        yield pool
-        pool.shutdown()
-    except BaseException:
-        pool.shutdown(wait=False, cancel_futures=True)
-        for child in set(multiprocessing.active_children()) - others:
-            child.terminate()
-        raise
-    finally:
-        for name, value in before.items():
-            if value is None:
-                os.environ.pop(name, None)
-            else:
-                os.environ[name] = value

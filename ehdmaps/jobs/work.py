@@ -20,6 +20,7 @@ from ehdmaps.jobs.shards import Merged, Shard, check_found, merge_shards, solve_
 from ehdmaps.jobs.status import about
 from ehdmaps.jobs.store import Store, store_path
 from ehdmaps.jobs.sweep import Progress, SweepResult, Task
+from ehdmaps.outputs import MAP, Output, check_outputs
 
 
 @dataclass(frozen=True)
@@ -70,18 +71,19 @@ def read_work(
     Raises
     ------
     InputError
-        With every problem found.
+        With every problem found, also where the map could not be written at the end.
     """
     if is_batch(source):
         batch = read_batch(source, solver, to_run=True)
-        folder = Path(output or batch.name)
+        folder = Path(batch.name if output is None else output)
         tasks = unique(plan_batch(batch).tasks())
         what = f"batch {batch.name}, {len(batch.members)} maps"
         return Work(fspath(source), batch, folder, batch_path(batch, folder), what, _hash(batch.sha256, solver), tasks)
     job = read_job(source, solver, to_run=True)
     if output is None and is_map(fspath(source)):
         raise InputError(f"-o: missing; {fspath(source)} is a map itself; give the map to write with -o")
-    path = Path(output or f"{job.name}.nc")
+    path = Path(f"{job.name}.nc" if output is None else output)
+    check_outputs([Output("-o", path, MAP)], [fspath(source)])
     return Work(fspath(source), job, path, path, about(job), _hash(job.sha256, job.solver), unique(planned_tasks(job)))
 
 

@@ -39,6 +39,7 @@ outside_calls  the same as it adds up over the calls of a law
 law_errors     bounds of the errors of a law, from what the map states
 law_change     the table of a law with another stiffness, damping and film
 law_arguments  arguments of a law: arrays of doubles, of one shape, finite
+film_response  what films with memory leave out of the response of the film solver
 law_films      below which load the films of a law are a guess, and how they lock
 law            `ContactLaw`, `LawAtPoint`
 =============  =======================================================================================

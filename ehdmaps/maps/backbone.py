@@ -33,7 +33,7 @@ from ehdmaps.maps import schema
 from ehdmaps.maps.backbone_plan import NEIGHBOURS, VALLEY, Axis
 from ehdmaps.maps.film_field import lifted_loss
 from ehdmaps.maps.locked_film import film_of
-from ehdmaps.maps.locked_fit import MOST, fitted_factor, response_error
+from ehdmaps.maps.locked_fit import MOST, fitted_factor, law_differences, response_error
 from ehdmaps.maps.low_loads import first_loads, known_from
 from ehdmaps.maps.mixing import mix_lines
 from ehdmaps.physics.contact import LineContact
@@ -315,39 +315,71 @@ class BackboneField:
         """Factors of the closed formula of the locked film; see `FilmField.locked_factors`."""
         if self._responses is None:
             return None
-        chosen = self._contacts[contact]
-        rows, row_weights = lagrange(self._log_speeds, math.log(speed * self._reference.radius / chosen.radius))
-        columns, column_weights = lagrange(self._temperatures, temperature)
-        lines = (rows[:, None] * self._temperatures.size + columns).ravel()
-        unit, valley, _ = self._scales(chosen, speed, temperature)
-        last = self._log_factors.shape[1] - 1
-        place = np.clip((np.log(loads * unit / valley) - self._first) / LATTICE_STEP, 0.0, last)
-        cell = np.minimum(place.astype(np.int64), last - 1)
-        near = self._log_factors[lines]
-        logs = near[:, cell] + (place - cell) * (near[:, cell + 1] - near[:, cell])
-        mixed = np.outer(row_weights, column_weights).ravel() @ logs
+        mixed = self._read(self._log_factors[..., None], self._contacts[contact], loads, speed, temperature)[:, 0]
         return np.asarray(np.exp(np.clip(mixed, -math.log(MOST), math.log(MOST))))
+
+    def film_differences(
+        self, contact: str, loads: FloatArray, speed: float, temperature: float
+    ) -> tuple[FloatArray, ComplexArray] | None:
+        """What films with memory leave out at natural frequencies; see `FilmField.film_differences`."""
+        if self._responses is None:
+            return None
+        natural, chosen = self._responses.natural, self._contacts[contact]
+        mixed = self._read(self._differences, chosen, loads, speed, temperature)
+        return natural, np.asarray(mixed[:, : natural.size] + 1j * mixed[:, natural.size :])
+
+    def _read(
+        self, lattice: FloatArray, contact: LineContact, loads: FloatArray, speed: float, temperature: float
+    ) -> FloatArray:
+        """Values on the common lattice (lines, nodes, m) at loads (n,) of a contact, shape (n, m)."""
+        lines, weights = self.stencil(contact, speed, temperature)
+        last = lattice.shape[1] - 1
+        place = np.clip((self.zeta(contact, loads, speed, temperature) - self._first) / LATTICE_STEP, 0.0, last)
+        cell = np.minimum(place.astype(np.int64), last - 1)
+        near, part = lattice[lines], (place - cell)[:, None]
+        return np.asarray(np.tensordot(weights, near[:, cell] + part * (near[:, cell + 1] - near[:, cell]), axes=1))
 
     @cached_property
     def _log_factors(self) -> FloatArray:
         """Logarithms of the factors of each line on the common lattice, (lines, nodes); held beyond the line's ends."""
-        places = self._first + LATTICE_STEP * np.arange(self._lattice.shape[1])
-        lines = []
-        for j, log_speed in enumerate(self._log_speeds):
-            for k, temperature in enumerate(self._temperatures):
-                zeta, logs = self._fitted(j, k, math.exp(log_speed), float(temperature))
-                inside = np.clip(places, zeta[0], zeta[-1])
-                lines.append(PchipInterpolator(zeta, logs)(inside) if zeta.size > 1 else np.full(places.size, logs[0]))
-        return np.array(lines)
+        return self._on_lattice([(zeta, logs[:, None]) for zeta, logs, _ in self._fits])[..., 0]
 
-    def _fitted(self, j: int, k: int, speed: float, temperature: float) -> tuple[FloatArray, FloatArray]:
-        """Places zeta of a line whose response is known, and logarithms of the factors there; zero where none is."""
+    @cached_property
+    def _differences(self) -> FloatArray:
+        """Real and imaginary parts of what the law leaves out on the common lattice, (lines, nodes, 2 k)."""
+        return self._on_lattice([(zeta, np.hstack([apart.real, apart.imag])) for zeta, _, apart in self._fits])
+
+    def _on_lattice(self, lines: list[tuple[FloatArray, FloatArray]]) -> FloatArray:
+        """Values (n, m) at places (n,) of each line, on the common lattice."""
+        places = self._first + LATTICE_STEP * np.arange(self._lattice.shape[1])
+        found = []
+        for zeta, values in lines:
+            inside = np.clip(places, zeta[0], zeta[-1])
+            found.append(
+                PchipInterpolator(zeta, values)(inside) if zeta.size > 1 else values[np.zeros(inside.size, int)]
+            )
+        return np.array(found)
+
+    @cached_property
+    def _fits(self) -> list[tuple[FloatArray, FloatArray, ComplexArray]]:
+        """What `_fitted` finds of each line."""
+        return [
+            self._fitted(j, k, math.exp(log_speed), float(temperature))
+            for j, log_speed in enumerate(self._log_speeds)
+            for k, temperature in enumerate(self._temperatures)
+        ]
+
+    def _fitted(self, j: int, k: int, speed: float, temperature: float) -> tuple[FloatArray, FloatArray, ComplexArray]:
+        """Places zeta of a line whose response is known, logarithms of the factors there, and what the law leaves out.
+
+        Shapes (n,), (n,) and (n, natural frequencies); zero at one place where no response is known.
+        """
         assert self._responses is not None
         offset, compliance, loss = (values[:, j, k] for values in self._films)
         response, errors = self._responses.compliance[:, j, k], self._responses.errors[:, j, k]
         known = np.isfinite(offset + compliance + loss) & (offset > 0.0) & np.all(np.isfinite(response), axis=1)
         if not np.any(known):
-            return np.zeros(1), np.zeros(1)
+            return np.zeros(1), np.zeros(1), np.zeros((1, response.shape[1]), dtype=np.complex128)
         unit, valley, _ = self._scales(self._reference, speed, temperature)
         loads = np.exp(self._zeta) * valley / unit
         # the backbone reaches beyond the loads of the map, where a structural law need not hold
@@ -356,15 +388,13 @@ class BackboneField:
         lifted = lifted_loss(loss, width, speed, solids + compliance)
         error = response_error(solids, response, errors)
         film, natural = film_of((self._reference,), speed), self._responses.natural
-        logs = [
-            math.log(
-                fitted_factor(
-                    film, loads[i], offset[i], solids[i], compliance[i], lifted[i], natural, response[i], error[i]
-                )
-            )
-            for i in np.flatnonzero(known)
-        ]
-        return self._zeta[known], np.array(logs)
+        logs, apart = [], []
+        for i in np.flatnonzero(known):
+            point = (film, loads[i], offset[i], solids[i], compliance[i], lifted[i], natural, response[i])
+            factor = fitted_factor(*point, error[i])
+            logs.append(math.log(factor))
+            apart.append(law_differences(*point, factor))
+        return self._zeta[known], np.array(logs), np.array(apart)
 
     def _at(
         self,

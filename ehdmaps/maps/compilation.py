@@ -183,6 +183,8 @@ def compile_table(
         coefficients = spline_coefficients(coefficients, axis, 2)
         place = spline_coefficients(place, axis, 2)
     coefficients = spline_coefficients(coefficients, 2, 3)
+    if not (supply.flooded or surface.smooth):
+        coefficients[..., 0] = _rising(coefficients[..., 0])
     return ApproachTable(
         coefficients=coefficients.reshape(*coefficients.shape[:2], -1),
         place=place,
@@ -343,6 +345,15 @@ def _without_foot(
         np.concatenate((root[0] + over_two * below, root)),
         np.concatenate((np.full(2, over_two), slope)),
     )
+
+
+def _rising(coefficients: FloatArray) -> FloatArray:
+    """Coefficients of g that nowhere fall along s, the last axis: then g nowhere falls, at any speed and temperature.
+
+    Where a layer is about as thick as the asperities are high, these carry up to some 0.1 N/m before the layer ends: at
+    that knee a cubic rings, and g would fall.
+    """
+    return np.minimum.accumulate(coefficients[..., ::-1], axis=-1)[..., ::-1]
 
 
 def _continued_root(line: FloatArray, root: FloatArray, slope: FloatArray, nodes: FloatArray) -> FloatArray:

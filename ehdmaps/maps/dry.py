@@ -69,3 +69,6 @@ class DryField:
 
     def locked_factors(self, contact: str, loads: FloatArray, speed: float, temperature: float) -> None:
         """Nothing is known of films that oscillate; see `FilmField.locked_factors`."""
+
+    def film_differences(self, contact: str, loads: FloatArray, speed: float, temperature: float) -> None:
+        """Nothing is known of films that oscillate; see `FilmField.film_differences`."""

@@ -6,7 +6,7 @@ from typing import Protocol
 
 import numpy as np
 
-from ehdmaps.arrays import FloatArray
+from ehdmaps.arrays import ComplexArray, FloatArray
 
 LOSS_FLOOR = 1e-4
 """Smallest loss compliance of a field, as a share of b/(u k): a tenth of what the solver's damping is good to."""
@@ -116,5 +116,23 @@ class FilmField(Protocol):
         -------
         array (n,) or None
             None where nothing is known of films that oscillate: the closed formula then stands as it is.
+        """
+        ...
+
+    def film_differences(
+        self, contact: str, loads: FloatArray, speed: float, temperature: float
+    ) -> tuple[FloatArray, ComplexArray] | None:
+        """What films with memory leave out of the complex stiffness, see `ehdmaps.maps.film_response`.
+
+        Parameters
+        ----------
+        contact, loads, speed, temperature
+            The same as for `locked_factors`.
+
+        Returns
+        -------
+        natural, differences : array (k,), complex array (n, k), or None
+            Natural frequencies omega T, and how far the law is from the film solver there, relatively. None where
+            nothing is known of films that oscillate.
         """
         ...

@@ -114,6 +114,9 @@ class GridField:
     def locked_factors(self, contact: str, loads: FloatArray, speed: float, temperature: float) -> None:
         """Nothing is known of films that oscillate; see `FilmField.locked_factors`."""
 
+    def film_differences(self, contact: str, loads: FloatArray, speed: float, temperature: float) -> None:
+        """Nothing is known of films that oscillate; see `FilmField.film_differences`."""
+
     def films(
         self, contact: str, loads: FloatArray, speeds: FloatArray, temperatures: FloatArray
     ) -> tuple[FloatArray, FloatArray, FloatArray]:

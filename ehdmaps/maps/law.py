@@ -23,6 +23,7 @@ from ehdmaps.maps.compilation import (
 from ehdmaps.maps.dry import DryField
 from ehdmaps.maps.excursions import Axis, Excursion, Range
 from ehdmaps.maps.film_field import FilmField
+from ehdmaps.maps.film_response import FilmResponse
 from ehdmaps.maps.law_arguments import broadcast, check_finite, floats
 from ehdmaps.maps.law_change import LawChange, changed_table
 from ehdmaps.maps.law_errors import LawBounds, LawErrors
@@ -80,7 +81,8 @@ class ContactLaw:
         Oil before each contact; flooded if left out. See `ehdmaps.maps.oil_layer`.
     surface : Surface
         Roughness of the surfaces: film and asperities share the load, see `ehdmaps.maps.rough_layer`. The law then
-        has a table down to a speed without a film, and goes over into the rough dry contact at standstill.
+        has a table down to a speed without a film, and goes over into the rough dry contact at standstill. Where a film
+        is so thin that the mean planes overlap, its share and its damping are a guess, see `ehdmaps.maps.rough_films`.
     errors : LawErrors, optional
         How wrong the law may be, where its map says so; see `LawAtPoint.bounds`.
 
@@ -359,6 +361,23 @@ class ContactLaw:
             u [m/s], of either sign, and T [K].
         """
         return self._films.locked_factors(entrainment_speed, temperature)
+
+    def film_response(self, loads: npt.ArrayLike, entrainment_speed: float, temperature: float) -> FilmResponse | None:
+        """What the law with memory leaves out of the complex stiffness, see `ehdmaps.maps.film_response`.
+
+        Parameters
+        ----------
+        loads : array (n,)
+            Loads at rest [N/m].
+        entrainment_speed, temperature : float
+            u [m/s], of either sign, and T [K]; held at the edges of the map.
+
+        Returns
+        -------
+        FilmResponse or None
+            None where nothing is known of films that oscillate.
+        """
+        return self._films.response(np.asarray(loads, dtype=np.float64), entrainment_speed, temperature)
 
     def _law_table(self) -> LawTable:
         """Everything but the single contacts of a series."""

@@ -42,7 +42,9 @@ QUANTILES = {"median": 0.5, "95 %": 0.95, "99 %": 0.99, "largest": 1.0}
 TAKEN = "95 %"
 """Quantile of the errors of a law that a bound takes."""
 
-NOT_IN = "physics that the solver leaves out, the structure of the solids and the geometry are not in it"
+NOT_IN = (
+    "physics that the solver leaves out, how films relax, the structure of the solids and the geometry are not in it"
+)
 """What no bound has, for people."""
 
 _NUMBER = r"([0-9.eE+-]+)"

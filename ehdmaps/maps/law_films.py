@@ -3,22 +3,28 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from ehdmaps.arrays import FloatArray
+from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.maps.contact_curve import ContactCurve
 from ehdmaps.maps.excursions import Excursion, Range
 from ehdmaps.maps.film_field import FilmField
-from ehdmaps.maps.locked_film import FORMULA, LockedFactors, locked_compliances
+from ehdmaps.maps.film_response import FilmResponse, FilmsOfContact
+from ehdmaps.maps.locked_film import FORMULA, LockedFactors, film_of, locked_compliances, relaxation_times
 from ehdmaps.maps.low_loads import LowLoads, guessed_at, looked_at, low_loads
 from ehdmaps.maps.oil_layer import oil_layer
 from ehdmaps.maps.rolling_film import RollingFilm
 from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.hertz import half_width, natural_time
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import OilSupply
+
+LIGHTEST = 1.0
+"""Load down to which it is said what the law leaves out [N/m]; lighter contacts leave out as much."""
 
 _LOAD_STEP = 0.1
 """Step of ln of the load between the factors of the locked film."""
@@ -130,6 +136,35 @@ class LawFilms:
         factors = whole / locked_compliances(self.contacts, offset, loads, compliance)
         return LockedFactors(math.log(lowest), (loads.size - 1) / math.log(highest / lowest), factors)
 
+    def response(self, loads: FloatArray, entrainment_speed: float, temperature: float) -> FilmResponse | None:
+        """What the law with memory leaves out, see `ContactLaw.film_response`.
+
+        Parameters
+        ----------
+        loads : array (n,)
+            [N/m].
+        entrainment_speed, temperature : float
+            u [m/s], of either sign, and T [K]; held at the edges of the map.
+        """
+        u, T = self._held(entrainment_speed, temperature)
+        loads = np.maximum(loads, LIGHTEST)
+        solids, offset, compliance, loss, by_formula = np.zeros((5, loads.size))
+        each = []
+        for contact in self.contacts:
+            known = self.field.film_differences(contact.name, loads, u, T)
+            factors = self.field.locked_factors(contact.name, loads, u, T)
+            if known is None or factors is None:
+                return None
+            films = self.field.films(contact.name, loads[:, None, None], np.array([u]), np.array([T]))
+            own = [contact.structural_compliance(loads), *(part[:, 0, 0] for part in films)]
+            each.append(_films_of(contact, loads, u, own, factors, *known))
+            by_formula += locked_compliances((contact,), own[1], loads, own[2]) * factors
+            solids, offset, compliance, loss = (
+                a + b for a, b in zip((solids, offset, compliance, loss), own, strict=True)
+            )
+        factors = by_formula / locked_compliances(self.contacts, offset, loads, compliance)
+        return FilmResponse(*_law(self.contacts, loads, u, [solids, offset, compliance, loss], factors), tuple(each))
+
     def _held(self, entrainment_speed: float, temperature: float) -> tuple[float, float]:
         """Speed without its sign and temperature, both held at the edges of the map."""
         (slow, fast), (cold, hot) = self.field.speed_range, self.field.temperature_range
@@ -145,3 +180,28 @@ class LawFilms:
         layer = oil_layer(contact, self.supply.oil_layer, curve.tail, self.rolling, speeds, kelvins)
         film = layer(curve.mapped(every))
         return film.offset[:, 0, 0], -film.slope[:, 0, 0] / (3.0 * np.cbrt(loads) ** 2)
+
+
+def _law(
+    contacts: Sequence[LineContact], loads: FloatArray, u: float, films: Sequence[FloatArray], factors: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """k, c and relaxation time of contacts in series by their compliances, film offset and loss together, (n,) each."""
+    solids, offset, compliance, loss = films
+    k = 1.0 / (solids + compliance)
+    c = loss * k**2
+    return k, c, relaxation_times(film_of(contacts, u), offset, loads, k, c, solids, factors)
+
+
+def _films_of(
+    contact: LineContact,
+    loads: FloatArray,
+    u: float,
+    films: Sequence[FloatArray],
+    factors: FloatArray,
+    frequencies: FloatArray,
+    differences: ComplexArray,
+) -> FilmsOfContact:
+    """Films of one contact."""
+    natural = natural_time(loads, films[1], u, contact.radius, contact.reduced_modulus)
+    passing = half_width(loads, contact.radius, contact.reduced_modulus) / u
+    return FilmsOfContact(*_law((contact,), loads, u, films, factors), natural, passing, frequencies, differences)

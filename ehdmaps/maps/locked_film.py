@@ -147,6 +147,28 @@ def _many(film: Film, offsets: FloatArray, loads: FloatArray, compliances: Float
 
 
 @njit(error_model="numpy")
+def relaxation_times(
+    film: Film, offsets: FloatArray, loads: FloatArray, k: FloatArray, c: FloatArray, solids: FloatArray,
+    factors: FloatArray,
+) -> FloatArray:  # fmt: skip
+    """Relaxation times c/(k_s - k) of contacts at rest, shape (n,) [s]; 0 where nothing relaxes.
+
+    Parameters
+    ----------
+    film : Film
+        Geometry, moduli, speed.
+    offsets, loads, k, c, solids, factors : array (n,)
+        The same as for `locked_stiffness`.
+    """
+    found = np.zeros(loads.size)
+    for i in range(loads.size):
+        stiff = locked_stiffness(film, offsets[i], loads[i], k[i], c[i], solids[i], factors[i])
+        if stiff > k[i]:
+            found[i] = c[i] / (stiff - k[i])
+    return found
+
+
+@njit(error_model="numpy")
 def locked_stiffness(film: Film, offset: float, load: float, k: float, c: float, solids: float, factor: float) -> float:
     """Stiffness k_s of a contact whose film cannot give way [N/m2].
 

@@ -85,17 +85,38 @@ def _difference(
     response: ComplexArray, doubt: float, log_factor: float,
 ) -> float:  # fmt: skip
     """Sum of the squares of the relative differences, and of what holds the factor at one."""
+    apart = law_differences(film, load, offset, solids, compliance, loss, natural, response, math.exp(log_factor))
+    total = (doubt * log_factor) ** 2
+    for i in range(apart.size):
+        total += abs(apart[i]) ** 2
+    return total
+
+
+@njit(error_model="numpy")
+def law_differences(
+    film: Film, load: float, offset: float, solids: float, compliance: float, loss: float, natural: FloatArray,
+    response: ComplexArray, factor: float,
+) -> ComplexArray:  # fmt: skip
+    """Relative differences of the complex stiffness of the law from that of the film solver, shape (k,).
+
+    Parameters
+    ----------
+    film, load, offset, solids, compliance, loss, natural, response
+        The same as for `fitted_factor`.
+    factor : float
+        Factor of the closed formula.
+    """
     k = 1.0 / (solids + compliance)
     c = loss * k * k
-    stiff = locked_stiffness(film, offset, load, k, c, solids, math.exp(log_factor))
+    stiff = locked_stiffness(film, offset, load, k, c, solids, factor)
     time = math.sqrt(8.0 * load * film.radius / (math.pi * film.modulus) + 2.0 * offset * film.radius) / film.speed
     relaxation = c / (stiff - k) if stiff > k else 0.0
-    total = (doubt * log_factor) ** 2
+    apart = np.empty(natural.size, dtype=np.complex128)
     for i in range(natural.size):
         rate = 1j * natural[i] / time
         law = k + (rate * c / (1.0 + rate * relaxation) if stiff > k else 0.0)
-        total += abs(law * (solids + response[i]) - 1.0) ** 2
-    return total
+        apart[i] = law * (solids + response[i]) - 1.0
+    return apart
 
 
 def response_error(solids: FloatArray, response: ComplexArray, errors: FloatArray) -> FloatArray:

@@ -30,11 +30,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import CubicSpline, PPoly
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.maps.contact_curve import FilmSamples, dry_slope
-from ehdmaps.maps.rolling_film import RollingFilm
+from ehdmaps.maps.rolling_film import FlowFilm, RollingFilm
 from ehdmaps.maps.tail import Tail
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.starved import CORNER, RIGID_FLOW, compliance_ratio, damping_ratio, film_ratio
@@ -68,8 +67,7 @@ def oil_layer(
     speeds, temperatures : array (n_u,), (n_T,)
         Entrainment speeds [m/s], > 0, and temperatures [K].
     """
-    lowest = float(np.min(tail.load))
-    flow = None if rolling is None else rolling.flow_film(contact.name, lowest, speeds, temperatures)
+    flow = None if rolling is None else rolling.flow_film(contact.name, tail.load, speeds, temperatures)
     return OilLayer(contact, thickness, tail, flow)
 
 
@@ -85,15 +83,14 @@ class OilLayer:
         Layer before it, of both surfaces together [m].
     tail : Tail
         Film of the contact below the first known load.
-    flow : CubicSpline, optional
-        ln of the flooded contact's mass flow over density at rest and speed [m], over ln(w) from the first known load
-        on, values (n_u, n_T); it goes on straight above. None where the map holds none.
+    flow : FlowFilm, optional
+        Mass flow of the flooded contact from the first known load on. None where the map holds none.
     """
 
     contact: LineContact
     thickness: float
     tail: Tail
-    flow: CubicSpline | None
+    flow: FlowFilm | None
 
     def __call__(self, film: FilmSamples) -> FilmSamples:
         """Film on the layer, at the same loads.
@@ -168,7 +165,7 @@ class OilLayer:
         """m/h at and above the first known load, and its logarithm's derivative by g."""
         if self.flow is None:
             return np.full_like(film.root, RIGID_FLOW), np.zeros_like(film.root)
-        logs, slopes = _flow_at(self.flow, np.log(film.load))
+        logs, slopes = self.flow.at(np.log(film.load))
         return np.exp(logs) / film.offset, 3.0 * slopes / film.root - film.slope / film.offset
 
     def _flow_per_tail(self, root: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -179,7 +176,7 @@ class OilLayer:
         if self.flow is None:
             return np.full_like(root, RIGID_FLOW), np.zeros_like(root)
         tail = self.tail
-        logs, slopes = _flow_at(self.flow, np.log(tail.load)[None])
+        logs, slopes = self.flow.at(np.log(tail.load)[None])
         excess = logs[0] - np.log(tail.film_offset * RIGID_FLOW)
         exponent = slopes[0] + 1.0 - tail.pole / tail.film_offset
         held = np.maximum(root, 1e-30) / np.cbrt(tail.load)
@@ -222,16 +219,6 @@ class _Layered:
     log_slope: FloatArray
     root_ratio: FloatArray
     per_root: FloatArray
-
-
-def _flow_at(flow: CubicSpline, log_load: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """ln(m) and its derivative by ln(w) at loads (n, n_u, n_T), of the same shape; straight above the map."""
-    held = np.minimum(log_load, flow.x[-1])
-    logs, slopes = np.empty((2, *held.shape))
-    for place in np.ndindex(held.shape[1:]):
-        line = PPoly(flow.c[:, :, *place], flow.x)
-        logs[:, *place], slopes[:, *place] = line(held[:, *place]), line(held[:, *place], 1)
-    return logs + slopes * (log_load - held), slopes
 
 
 def _rows(film: FilmSamples, rows: slice) -> FilmSamples:

@@ -13,7 +13,7 @@ from functools import reduce
 import numpy as np
 import xarray as xr
 
-from ehdmaps.arrays import FloatArray
+from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone import BackboneField
 from ehdmaps.maps.film_field import FilmField
@@ -131,3 +131,9 @@ class _OwnFields:
     def locked_factors(self, contact: str, loads: FloatArray, speed: float, temperature: float) -> FloatArray | None:
         """Factors of the closed formula of the locked film; see `FilmField.locked_factors`."""
         return self._fields[contact].locked_factors(contact, loads, speed, temperature)
+
+    def film_differences(
+        self, contact: str, loads: FloatArray, speed: float, temperature: float
+    ) -> tuple[FloatArray, ComplexArray] | None:
+        """What films with memory leave out; see `FilmField.film_differences`."""
+        return self._fields[contact].film_differences(contact, loads, speed, temperature)

@@ -19,11 +19,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
-from scipy.interpolate import CubicSpline
+from scipy.interpolate import CubicSpline, PPoly
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.maps.backbone import FEWEST_NODES, LATTICE_STEP, lagrange
@@ -51,6 +52,42 @@ _FLOW_STEP = 0.1
 
 _Reader = Callable[[LineContact, FloatArray, float, float], FloatArray]
 """From contact, loads (n,) from the first known to the highest one, speed and temperature to ln f and ln g, (2, n)."""
+
+
+@dataclass(frozen=True)
+class FlowFilm:
+    """Mass flow over density at rest and speed [m] along loads, each speed and temperature over its own range.
+
+    None is read below its own first load: there the flow of a map goes over into that of the exact rigid film, and a
+    film may not.
+
+    Attributes
+    ----------
+    line : CubicSpline
+        ln of it over ln(w/w1)/ln(w2/w1), 0 to 1, values (n_u, n_T).
+    first, reach : array (n_u, n_T)
+        ln(w1) of the first load [N/m], and ln(w2/w1) to the highest one of the map.
+    """
+
+    line: CubicSpline
+    first: FloatArray
+    reach: FloatArray
+
+    def at(self, log_load: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """ln of it and its derivative by ln(w), straight above the map.
+
+        Parameters
+        ----------
+        log_load : array (n, n_u, n_T)
+            ln(w), w in N/m, from the first load on.
+        """
+        places = (log_load - self.first) / self.reach
+        held = np.minimum(places, 1.0)
+        logs, slopes = np.empty((2, *held.shape))
+        for place in np.ndindex(held.shape[1:]):
+            line = PPoly(self.line.c[:, :, *place], self.line.x)
+            logs[:, *place], slopes[:, *place] = line(held[:, *place]), line(held[:, *place], 1)
+        return logs + slopes * (places - held), slopes / self.reach
 
 
 class RollingFilm:
@@ -141,29 +178,29 @@ class RollingFilm:
         T = float(np.clip(temperature, *self._temperatures))
         return mass / (self._lubricant.at(T).density * abs(entrainment_speed))
 
-    def flow_film(self, contact: str, lowest_load: float, speeds: FloatArray, temperatures: FloatArray) -> CubicSpline:
-        """Mass flow over density at rest and speed, as ln of it [m] over ln(w), up to the highest load of the map.
+    def flow_film(self, contact: str, first: FloatArray, speeds: FloatArray, temperatures: FloatArray) -> FlowFilm:
+        """Mass flow over density at rest and speed along the loads of each speed and temperature.
 
         Parameters
         ----------
         contact : str
             Name of a contact of the map.
-        lowest_load : float
-            Load at which the spline begins [N/m], > 0.
+        first : array (n_u, n_T)
+            Loads from which on it is asked for [N/m], > 0, each below the highest load of the map.
         speeds, temperatures : array (n_u,), (n_T,)
-            Entrainment speeds [m/s], > 0, and temperatures [K]; values of the spline are (n_u, n_T).
+            Entrainment speeds [m/s], > 0, and temperatures [K].
         """
-        line, low, high = self._contacts[contact], lowest_load, self._loads[1]
-        loads = np.geomspace(low, high, 4 + math.ceil(math.log(high / low) / _FLOW_STEP))
-        logs = np.empty((loads.size, speeds.size, temperatures.size))
+        line, reach = self._contacts[contact], np.log(self._loads[1] / first)
+        places = np.linspace(0.0, 1.0, 4 + math.ceil(float(np.max(reach)) / _FLOW_STEP))
+        logs = np.empty((places.size, speeds.size, temperatures.size))
         for j, speed in enumerate(speeds.tolist()):
             for k, kelvin in enumerate(temperatures.tolist()):
                 state = self._lubricant.at(kelvin)
                 number = moes_speed_number(speed, state.viscosity, line.radius, line.reduced_modulus)
-                logs[:, j, k] = self._logarithms(line, loads, speed, kelvin)[1] + math.log(
-                    line.radius * math.sqrt(number)
-                )
-        return CubicSpline(np.log(loads), logs)
+                loads = first[j, k] * np.exp(places * reach[j, k])
+                known = self._logarithms(line, loads, speed, kelvin, float(first[j, k]))[1]
+                logs[:, j, k] = known + math.log(line.radius * math.sqrt(number))
+        return FlowFilm(CubicSpline(places, logs), np.log(first), reach)
 
     def _found(self, which: int, name: str, load: npt.ArrayLike, speed: float, temperature: float) -> FloatArray:
         """One of both, in SI."""
@@ -179,11 +216,16 @@ class RollingFilm:
         found[loaded] = rolling_units(contact, self._lubricant, speed, T)[which] * groups
         return found
 
-    def _logarithms(self, contact: LineContact, loads: FloatArray, speed: float, T: float) -> FloatArray:
-        """Logarithms of f and g at loads (n,) > 0, shape (2, n), at a temperature within the map."""
+    def _logarithms(
+        self, contact: LineContact, loads: FloatArray, speed: float, T: float, first: float = math.inf
+    ) -> FloatArray:
+        """Logarithms of f and g at loads (n,) > 0, shape (2, n), at a temperature within the map.
+
+        A backbone is read down to `first` at least.
+        """
         low, high = self._loads
         if math.isfinite(self._start):
-            low = min(low, load_at(contact, self._lubricant, self._start, speed, T))
+            low = min(low, first, load_at(contact, self._lubricant, self._start, speed, T))
         found = self._reader(contact, np.clip(loads, low, high), speed, T)
         below, above = loads < low, loads > high
         if np.any(below):

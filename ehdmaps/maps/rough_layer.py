@@ -12,7 +12,8 @@ smooth surfaces h_f(1) is that of the map. Asperities leave the same film on ave
 
 solved for the share g and the distance x of the mean planes in sigma; x sigma takes the place of the film offset, and
 the loss of the film counts by g^2. Where the film is thick, g is 1 and nothing changes; without a film g is 0, and x is
-that of the rough dry contact. The mean planes may come to overlap, x < 0.
+that of the rough dry contact. The mean planes may come to overlap, x < 0: there the share is out of the range of the
+theory, see `ehdmaps.maps.rough_films`, and the rule no more than a smooth way to the rough dry contact.
 
 The scaled film lies within -5 and +12 % of films that `reynolds` solves with the modulus g E' for g >= 0.3 (rms of 60
 points with FVA 3, M 0.1 to 200, L 3 to 35, to g = 0.1: 4 %; with the textbooks' exponent g^(-0.16) instead: 32 %).

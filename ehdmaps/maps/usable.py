@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from ehdmaps.arrays import BoolArray, FloatArray
+from ehdmaps.arrays import BoolArray, FloatArray, IntArray
 from ehdmaps.errors import MapError
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone import FILMS, IMAGINARY, REAL
@@ -22,6 +22,10 @@ from ehdmaps.physics.solution import Status
 from ehdmaps.units import LOAD, SPEED, TEMPERATURE
 
 _SHOWN = 3
+_AGAIN = "generate the map again"
+_ENDED = (Status.STAGNATED, Status.DIVERGED, Status.OUTSIDE_VALIDITY)
+"""How points end that the same solver does not solve the next time either."""
+
 _SLOWEST = 1.0
 """Longest time c/k in which a contact answers that a map may state [s]. Films of real oils take up to 10 ms."""
 
@@ -161,7 +165,22 @@ def check_backbone(
             f"{np.count_nonzero(clusters)} unsolved points beside one another within a line, {_lines(group, clusters)}"
         )
     if problems:
-        raise MapError("\n".join(f"backbone of the map: has {problem}; generate the map again" for problem in problems))
+        unsolved = _unsolved_remedy(status[clusters])
+        remedies = [_AGAIN] * (len(problems) - 1) + [unsolved if np.any(clusters) else _AGAIN]
+        found = zip(problems, remedies, strict=True)
+        raise MapError("\n".join(f"backbone of the map: has {problem}; {remedy}" for problem, remedy in found))
+
+
+def _unsolved_remedy(status: IntArray) -> str:
+    """What to do about points that a solver left unsolved, by how each ended: the same job would end so again."""
+    ended = [known for known in _ENDED if np.any(status == int(known))]
+    if not ended or np.any(~np.isin(status, [int(known) for known in _ENDED])):
+        return _AGAIN
+    words = " and ".join(known.name.lower().replace("_", " ") for known in ended)
+    return (
+        f"the solver ended there ({words}), and the same job ends there again; in the job, leave these speeds, "
+        "temperatures or loads out of [grid], or change [solver]: without its shear or physics, or with another density"
+    )
 
 
 def _within(

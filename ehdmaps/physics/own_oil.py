@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import NamedTuple
 
@@ -23,6 +24,9 @@ class Stated(NamedTuple):
     coefficient: float | str | None
     coefficient_40: float | None
     coefficient_100: float | None
+
+
+_SOUND = {"viscosity": 0.1, "viscosity_40": 1e-4, "viscosity_100": 1e-5}
 
 
 class Laws(NamedTuple):
@@ -57,19 +61,49 @@ def own_laws(
         With everything that is missing, doubly given or out of its limits.
     """
     problems = _law_problems(name, word, stated, numbers)
-    viscosity = _viscosity_law(name, stated, problems)
-    correlation = _correlation(name, stated, viscosity, problems)
-    pair = None if correlation else _coefficient_pair(name, stated, problems)
-    if pair is None and correlation is None and not problems and PRESSURE_LAWS[word].coefficient == "needed":
-        problems.append(
-            f"lubricant {name!r}, pressure_viscosity: got none; viscosity_law {word} needs it; give it in 1/Pa, or the "
-            f"name of a correlation that estimates it: {', '.join(CORRELATIONS)}"
-        )
+    viscosity, correlation, pair = _looked_at(name, word, stated, problems)
     if problems or viscosity is None:
         raise InputError(problems)
     if correlation:
         pair = _estimated_pair(name, correlation, viscosity, density, density_slope)
     return Laws(viscosity, _isotherms(word, pair, numbers), correlation)
+
+
+def stated_problems(name: str, word: str | None, stated: Stated) -> list[str]:
+    """What is missing or doubly given of an own oil, beside what is wrong about its values already.
+
+    Parameters
+    ----------
+    name : str
+        Name of the oil, for messages.
+    word : str or None
+        Law over pressure, one of `PRESSURE_LAWS`; None where it is not known.
+    stated : Stated
+        Stated numbers in SI; nan for one that is stated and no number.
+    """
+    problems: list[str] = []
+    if any(value is not None and math.isnan(value) for value in stated[:3]):
+        # What is stated of the viscosity counts then, not its values.
+        stated = stated._replace(**{key: value for key, value in _SOUND.items() if getattr(stated, key) is not None})
+    if word is not None:
+        problems += _law_problems(name, word, stated, {entry.field: 0.0 for entry in PRESSURE_LAWS[word].parameters})
+    _looked_at(name, word, stated, problems)
+    return problems
+
+
+def _looked_at(
+    name: str, word: str | None, stated: Stated, problems: list[str]
+) -> tuple[ViscosityLaw | None, str | None, tuple[float, float] | None]:
+    """Viscosity over temperature, and the correlation or the pair that gives alpha; problems are noted."""
+    viscosity = _viscosity_law(name, stated, problems)
+    correlation = _correlation(name, stated, viscosity, problems)
+    pair = None if correlation else _coefficient_pair(name, stated, problems)
+    if stated[3:] == (None, None, None) and word is not None and PRESSURE_LAWS[word].coefficient == "needed":
+        problems.append(
+            f"lubricant {name!r}, pressure_viscosity: got none; viscosity_law {word} needs it; give it in 1/Pa, or the "
+            f"name of a correlation that estimates it: {', '.join(CORRELATIONS)}"
+        )
+    return viscosity, correlation, pair
 
 
 def estimated_coefficient(correlation: str, law: ViscosityLaw, viscosity: float, density: float) -> float:
@@ -195,5 +229,5 @@ def _coefficient_pair(name: str, stated: Stated, problems: list[str]) -> tuple[f
 
 
 def _listed(**values: float | None) -> str:
-    """What is given, in words."""
-    return ", ".join(f"{name} = {value!r}" for name, value in values.items() if value is not None) or "none"
+    """What is given, by its names."""
+    return " and ".join(name for name, value in values.items() if value is not None) or "none"

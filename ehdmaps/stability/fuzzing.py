@@ -220,6 +220,7 @@ def _work(reader: Reader, seed: int, begin: int, end: int, sink: int) -> NoRetur
     status = 1
     try:
         faulthandler.disable()
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)
         # What a library prints about a broken file is no finding, and no use to anybody.
         nowhere = os.open(os.devnull, os.O_WRONLY)
         for stream in (1, 2):

@@ -43,6 +43,8 @@ rings          how the rings of the bearings move
 reach          where the films of a law begin, and calls outside its map
 losses         what contacts feel at an equilibrium, and what rolling costs there
 film_errors    how wrong the films are estimated to be over frequency
+soundness      results whose own checks failed so grossly that their figures mean nothing
+step_check     whether the steps of a run are short enough: its first part again with half of them
 =============  ====================================================================================
 
 Nothing is imported here: take the functions from `mbs`, or from their modules.

@@ -18,7 +18,7 @@ from typing import Generic, TypeVar
 
 import numpy as np
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, MapError
 from ehdmaps.jobs.job_text import Entry
 from ehdmaps.physics.heat import PHYSICS
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
@@ -234,7 +234,10 @@ def settled(
         )
         tried += zip(kept, margins, strict=True)
         subject = _subject(scene, kept, verdicts, supplies, settings)
-        result = analyse(subject)
+        try:
+            result = analyse(subject)
+        except MapError as error:
+            raise MapError("\n".join([str(error), *_remedies(verdicts)])) from error
         left = outside_calls(result)
         more = _with_memory(subject, looked_at, found, verdicts, settings, highest)
         widened = False
@@ -250,6 +253,17 @@ def settled(
         verdicts = more or verdicts
     maps, their_margins = zip(*tried, strict=True)
     return Automatic(result, subject, maps, their_margins, kept, verdicts, left, frozenset(too_fast))
+
+
+def _remedies(verdicts: tuple[Verdict, ...]) -> list[str]:
+    """What gives another map where one cannot be used: without the physics that it was made with."""
+    plain = {"limiting shear stress": "--shear newtonian", "inlet heating": "--physics isothermal"}
+    return [
+        f"auto: the map was made with {verdict.physics} ({verdict.words}); {plain[verdict.physics]} makes one without, "
+        "whose films leave that out"
+        for verdict in verdicts
+        if verdict.on and verdict.solver
+    ]
 
 
 def outside_calls(result: object) -> dict[str, int]:

@@ -15,7 +15,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
-from ehdmaps.maps.rough_films import LEAST_SPEED, film_share
+from ehdmaps.maps.rough_films import LEAST_SPEED, load_sharing, overlapping
 from ehdmaps.maps.rough_layer import RoughLayer
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.roughness import Surface
@@ -32,6 +32,7 @@ from mbs.bearings.contact_report import (
     heated,
     outside_map,
     overload,
+    spike_tip,
 )
 from mbs.bearings.films import FilmSource
 from mbs.bearings.laws import Law
@@ -137,19 +138,30 @@ class BearingPoint:
         lubricant : Lubricant
             The oil.
         """
+        return self.load_sharing(surface, lubricant)[0]
+
+    def load_sharing(self, surface: Surface, lubricant: Lubricant) -> tuple[float, bool]:
+        """`film_share`, and whether the mean planes overlap in a slice, see `ehdmaps.maps.rough_films`.
+
+        Parameters
+        ----------
+        surface, lubricant
+            Arguments of `film_share`.
+        """
         if surface.smooth:
-            return 1.0
+            return 1.0, False
         loads = self.rollers.load_per_length[self.most_loaded]
         loaded = loads > 0.0
         contacts = self.bearing.geometry.contacts(self.bearing.material, "iso16281")
         place = loads[loaded], np.array([self.entrainment_speed]), np.array([self.temperature])
-        shares = []
+        shares, overlap = [], False
         for contact, side in zip(contacts, self.contacts.sides, strict=True):
             film = side.central_film[self.most_loaded][loaded][:, None, None]
             layer = RoughLayer(surface, contact, lubricant, max(self.entrainment_speed, LEAST_SPEED))
-            part = film_share(layer, film, *place)[:, 0, 0]
+            part, distance = (values[:, 0, 0] for values in load_sharing(layer, film, *place))
+            overlap = overlap or bool(np.any(overlapping(part, distance)))
             shares.append(float(np.sum(part * loads[loaded]) / np.sum(loads)) if loaded.any() else math.nan)
-        return min(shares)
+        return min(shares), overlap
 
 
 def bearing_points(
@@ -243,6 +255,7 @@ def bearing_point(
     problems = [overload(contacts), *outside_map(force.law, float(rollers.load_per_length.max()), u, temperature)]
     modulus = reduced_modulus(force.bearing.material, force.bearing.material)
     notes = [
+        spike_tip(contacts),
         extrapolated(contacts, films.lubricant),
         fading(force.law, u),
         guessed(force.law, rollers.load_per_length, u, temperature),

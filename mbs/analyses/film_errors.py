@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from mbs.analyses.operating import operating
 from mbs.bearings.bearing_element import RingElement
 from mbs.bearings.roller_element import ring_following
-from mbs.linearised.validity import FilmError
+from mbs.linearised.validity import FilmError, LoadedContacts
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
-from mbs.model.relaxation import Films
+from mbs.model.relaxation import Films, Relaxation
 from mbs.scene.assembly import Model
 
 
@@ -58,9 +60,33 @@ def film_errors(
                 springs=(relaxation.rows @ motion) ** 2,
                 times=relaxation.times,
                 natural=element.natural_times(ports, operation),
+                contacts=_contacts(element, ports, operation, relaxation, motion),
             )
         )
     return found
+
+
+def _contacts(
+    element: RingElement, ports: FloatArray, operation: Operation, relaxation: Relaxation, motion: FloatArray
+) -> tuple[LoadedContacts, ...]:
+    """The loaded slices of a bearing along a motion of its ports; none where no response of the films is known."""
+    found: list[LoadedContacts] = []
+    begin = 0
+    for group in element.contact_groups(ports, operation):
+        # The slices of groups are those of the relaxation, one after the other.
+        part = slice(begin, begin + group.approach.size)
+        begin = part.stop
+        load, stiffness, _, _ = group.state()
+        on = load > 0.0
+        loaded = dataclasses.replace(group, rows=group.rows[on], approach=group.approach[on])
+        response = loaded.film_response()
+        if response is None:
+            return ()
+        springs = (relaxation.rows[part][on] @ motion) ** 2
+        found.append(
+            LoadedContacts(stiffness[on] * (loaded.rows @ motion) ** 2, springs, relaxation.times[part][on], response)
+        )
+    return tuple(found)
 
 
 def notable_from(model: Model, speeds: FloatArray, displacements: FloatArray | None = None) -> FloatArray:

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ehdmaps.errors import InputError
+from ehdmaps.jobs.batch_generate import make_folder
 from ehdmaps.jobs.generate import generate
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.law_check import STANDS_ON_LINES, STANDS_ON_POINTS, unmet
@@ -95,7 +96,7 @@ def kept_map(
     job : Job
         What is wanted.
     folder : Path
-        Folder of the map, which is made there if it is not there yet.
+        Folder of the map; each is made where it is not there yet.
     others : sequence of Path
         Further folders with maps.
     workers : int, optional
@@ -106,12 +107,11 @@ def kept_map(
     Raises
     ------
     InputError
-        If the folder is not there, or a file of that name is no map of this job.
+        If the folder cannot be made, or a file of that name is no map of this job.
     EhdmapsError
         If the map cannot be read, made or written; what was solved is kept.
     """
-    if not folder.is_dir():
-        raise InputError(f"--maps: got {folder}; allowed: a folder that is there, in which maps are made and kept")
+    make_folder(folder, "--maps")
     name = map_name(scene, job)
     for place in dict.fromkeys((folder, *others)):
         if (place / name).exists() and (emap := _of_job(place / name, job)) is not None:

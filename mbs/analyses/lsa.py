@@ -14,6 +14,7 @@ from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.errors import InputError
 from mbs.analyses.film_errors import film_errors
 from mbs.analyses.operating import operating, states_of
+from mbs.analyses.soundness import Unsound, unsound_at_rest, with_unsound
 from mbs.linearised.averaged import AveragedEquilibrium, averaged, over_pitch
 from mbs.linearised.level_bands import level_bands
 from mbs.linearised.linear import StateSpace, frequency_response, sensed, state_space, with_peaks
@@ -79,6 +80,8 @@ class LsaResult:
         Loads that exceed the static ones, so that contacts lift off.
     dataset : xarray.Dataset
         What `mbs lsa -o` writes.
+    unsound : tuple of Unsound
+        Why its figures mean nothing; empty where they do.
     """
 
     model: Model
@@ -92,6 +95,7 @@ class LsaResult:
     errors: tuple[FilmError, ...]
     lifting: tuple[DynamicLoad, ...]
     dataset: xr.Dataset
+    unsound: tuple[Unsound, ...] = ()
 
 
 def lsa_problems(scene: Scene) -> list[str]:
@@ -209,6 +213,7 @@ def _responded(found: _Linearised, frequencies: FloatArray) -> LsaResult:
                 "long_name": f"{words} size of the response at one cage angle",
             }
             dataset[f"response_{name}"] = (dataset["response_real"].dims, values, attributes)
+    unsound = unsound_at_rest(model, balance.displacement, balance.operation)
     return LsaResult(
         model=model,
         balance=balance,
@@ -220,7 +225,8 @@ def _responded(found: _Linearised, frequencies: FloatArray) -> LsaResult:
         pitch_range=pitch_range,
         errors=tuple(film_errors(model, balance.displacement, balance.operation)),
         lifting=lifting,
-        dataset=described(with_states(dataset, states_of(model)), **law_attributes(model)),
+        dataset=with_unsound(described(with_states(dataset, states_of(model)), **law_attributes(model)), unsound),
+        unsound=unsound,
     )
 
 

@@ -8,6 +8,7 @@ import xarray as xr
 
 from mbs.analyses.film_errors import film_errors
 from mbs.analyses.operating import operating, states_of
+from mbs.analyses.soundness import Unsound, unsound_at_rest, with_unsound
 from mbs.linearised.modes import Modes
 from mbs.linearised.modes import modes as modes_at
 from mbs.linearised.steady import steady_system
@@ -35,6 +36,8 @@ class ModesResult:
         How wrong the films of each bearing are estimated to be; empty for laws without films.
     dataset : xarray.Dataset
         What `mbs modes -o` writes.
+    unsound : tuple of Unsound
+        Why its figures mean nothing; empty where they do.
     """
 
     model: Model
@@ -42,6 +45,7 @@ class ModesResult:
     modes: Modes
     errors: tuple[FilmError, ...]
     dataset: xr.Dataset
+    unsound: tuple[Unsound, ...] = ()
 
 
 def modes(model: Model, operation: Operation | None = None) -> ModesResult:
@@ -72,4 +76,5 @@ def modes(model: Model, operation: Operation | None = None) -> ModesResult:
     found = modes_at(balance)
     dataset = described(with_states(modes_dataset(found, balance), states_of(model)), **law_attributes(model))
     errors = tuple(film_errors(model, balance.displacement, balance.operation))
-    return ModesResult(model, balance, found, errors, dataset)
+    unsound = unsound_at_rest(model, balance.displacement, balance.operation)
+    return ModesResult(model, balance, found, errors, with_unsound(dataset, unsound), unsound)

@@ -18,6 +18,8 @@ from mbs.analyses.operating import held, states_of
 from mbs.analyses.progress import Progress, silent
 from mbs.analyses.recorded import simulated
 from mbs.analyses.side_by_side import Failed, side_by_side
+from mbs.analyses.soundness import Unsound, unsound_run, with_unsound
+from mbs.analyses.step_check import StepCheck, step_check
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.output.energy_data import with_energy
@@ -50,6 +52,10 @@ class RunUpResult:
         How long the integration took [s].
     dataset : xarray.Dataset
         What `mbs runup -o` writes.
+    unsound : tuple of Unsound
+        Why its figures mean nothing; empty where they do.
+    steps : StepCheck or None
+        Whether its steps are short enough, measured; None where that was not.
     """
 
     model: Model
@@ -57,6 +63,8 @@ class RunUpResult:
     record: Recording
     seconds: float
     dataset: xr.Dataset
+    unsound: tuple[Unsound, ...] = ()
+    steps: StepCheck | None = None
 
 
 def runup_problems(scene: Scene) -> list[str]:
@@ -111,6 +119,8 @@ class _Made(NamedTuple):
     record: Recording
     seconds: float
     dataset: xr.Dataset
+    unsound: tuple[Unsound, ...]
+    steps: StepCheck | None
 
 
 def _course(model: Model, settings: RunUp | None = None) -> RunUp:
@@ -149,7 +159,9 @@ def _run(model: Model, told: Callable[[int], None], settings: RunUp | None = Non
     if sensors:
         signals = signal_variables(simulated([(model.label, model, record)]))
         dataset = dataset.merge(signals).assign_attrs({**signals.attrs, **dataset.attrs})
-    return _Made(course, record, seconds, dataset)
+    unsound = unsound_run(model, record)
+    checked = None if unsound else step_check(model, course, start)
+    return _Made(course, record, seconds, with_unsound(dataset, unsound), unsound, checked)
 
 
 class RunUps(NamedTuple):

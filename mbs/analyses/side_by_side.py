@@ -7,6 +7,7 @@ alone. Where there are no forks, or one process is asked for, cases run one afte
 from __future__ import annotations
 
 import multiprocessing
+import signal
 import time
 import warnings
 from collections.abc import Callable, Iterator, Sequence
@@ -143,7 +144,7 @@ class _Forks(Generic[Result]):
             process = self._context.Process(
                 target=_compute, args=(self._work, self._next, theirs, self._said), daemon=True
             )
-            with deaf_children(), warnings.catch_warnings():
+            with deaf_children(signal.SIGTERM), warnings.catch_warnings():
                 # Of threads that a fork leaves behind none is needed in it.
                 warnings.simplefilter("ignore", DeprecationWarning)
                 process.start()

@@ -8,6 +8,7 @@ import xarray as xr
 
 from mbs.analyses.losses import contacts_and_losses
 from mbs.analyses.operating import operating, states_of
+from mbs.analyses.soundness import Unsound, unsound_at_rest, with_unsound
 from mbs.bearings.contact_report import BearingContacts, overload
 from mbs.bearings.rolling_loss import RollingLoss
 from mbs.model.elements import Operation
@@ -39,6 +40,8 @@ class StaticsResult:
         Motions that nothing holds.
     dataset : xarray.Dataset
         What `mbs statics -o` writes.
+    unsound : tuple of Unsound
+        Why its figures mean nothing; empty where they do.
     """
 
     model: Model
@@ -48,6 +51,7 @@ class StaticsResult:
     overloads: tuple[str, ...]
     free: tuple[str, ...]
     dataset: xr.Dataset
+    unsound: tuple[Unsound, ...] = ()
 
 
 def statics(model: Model, operation: Operation | None = None) -> StaticsResult:
@@ -86,4 +90,5 @@ def statics(model: Model, operation: Operation | None = None) -> StaticsResult:
     dataset = with_states(statics_dataset(balance, contacts, losses, (*overloads, *free)), states_of(model))
     dataset = with_gears(dataset, model, balance)
     dataset = described(dataset, **law_attributes(model))
-    return StaticsResult(model, balance, contacts, losses, overloads, free, dataset)
+    unsound = unsound_at_rest(model, balance.displacement, balance.operation)
+    return StaticsResult(model, balance, contacts, losses, overloads, free, with_unsound(dataset, unsound), unsound)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.maps.film_response import FilmResponse
 from ehdmaps.maps.law import LawAtPoint
 from mbs.bearings.film_relaxation import relaxation_times
 
@@ -47,3 +48,8 @@ class ContactGroup:
         load, stiffness, damping = self.law(approach, np.zeros_like(approach))
         times = relaxation_times(self.law, approach) if self.relaxes else np.zeros_like(approach)
         return load, stiffness * self.length, damping * self.length, times
+
+    def film_response(self) -> FilmResponse | None:
+        """What the law of its slices leaves out with memory; None where nothing is known of films that oscillate."""
+        loads = self.state()[0]
+        return self.law.law.film_response(loads, self.law.entrainment_speed, self.law.temperature)

@@ -12,6 +12,7 @@ from ehdmaps.errors import InputError
 from ehdmaps.maps.kernel import LOAD_TOLERANCE
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.peak import tip_words
 from ehdmaps.physics.thermal import inlet_shear_heating_factor, thermal_loading, viscosity_slope
 from ehdmaps.units import LOAD, PRESSURE, SPEED, TEMPERATURE
 from mbs.bearings.bearing import STATIC_LIMIT
@@ -108,6 +109,12 @@ def extrapolated(contacts: BearingContacts, oil: Lubricant | None) -> str:
         f"(largest pressure {PRESSURE.text(highest)})"
         + ("; that its law reaches so far is assumed, not stated" if oil.reach_assumed else "")
     )
+
+
+def spike_tip(contacts: BearingContacts) -> str:
+    """A sentence where the largest pressure is that of a sharp spike, whose tip stands higher; empty otherwise."""
+    errors = [side.pressure_error.flat[int(np.argmax(side.max_pressure))] for side in contacts.sides]
+    return tip_words(float(np.max(np.nan_to_num(errors))))
 
 
 def outside_map(law: Law, load: float, entrainment_speed: float, temperature: float) -> list[str]:

@@ -2,7 +2,7 @@
 
 The first question at the end of a new step begins it, with the states of the last step that was made, here or in
 Python. Questions at other motions, and steps that are tried again with another length, leave these alone. Tables over
-the speed are mixed every `KEPT` steps, as slices read them.
+the speed are mixed as often as slices read them, see `Course.kept`.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.compiled import njit
 from ehdmaps.maps.memory import FilmState
 from mbs.bearings.film_course import Course
-from mbs.bearings.memory_kernel import CHANGE, KEPT, LATEST, LOAD, resume
+from mbs.bearings.memory_kernel import CHANGE, LATEST, LOAD, resume
 from mbs.bearings.memory_tables import MemoryFilms, mix
 from mbs.model.blocks import Moment
 
@@ -46,7 +46,7 @@ def begin_step(clock: FloatArray, films: MemoryFilms, course: Course, moment: Mo
     """
     clock[TRIAL] = moment.time
     for film in range(films.in_use.shape[0]):
-        if films.in_use[film, 0] < 0.0 or int(clock[STEPS]) % KEPT == 0:
+        if films.in_use[film, 0] < 0.0 or int(clock[STEPS]) % course.kept[moment.step] == 0:
             mix(films, film, course.nodes[moment.step, film], course.weights[moment.step, film])
     return (moment.time - clock[ACCEPTED]) / clock[LAST] if clock[LAST] > 0.0 else 0.0
 

@@ -22,11 +22,23 @@ class Course(NamedTuple):
         Node below the speed, and the part of the way to the next one.
     outside : array (steps, films), of int
         Whether speed or temperature lie outside the map.
+    kept : array (steps,), of int
+        Steps for which what was read from the tables holds.
     """
 
     nodes: IntArray
     weights: FloatArray
     outside: IntArray
+    kept: IntArray
+
+
+MOST_KEPT = 8
+"""Steps for which what was read from a table is kept at most."""
+
+MOVED = 1.0 / 64.0
+"""Part of the distance of two tables by which the speed may move meanwhile, 6e-5 of the speed for films with memory:
+their load then lags behind by some 1e-5, as much as their parabolas are wrong. Slices are read in turns, so that more
+would shake the machine at an eighth of the rate of the steps, the more the faster a run-up begins."""
 
 
 Places = tuple[IntArray, FloatArray]
@@ -52,11 +64,13 @@ class CourseOfFilms:
         self._place, self._prepare = places, prepare
         self._places: list[Places] = []
         self._speeds = np.zeros(0)
+        self._kept = np.zeros(0, dtype=np.int64)
 
     def begin(self, speeds: FloatArray) -> None:
         """Find the places of the speeds [rad/s] on the tables."""
         self._speeds = speeds
         self._places = [place(speeds) for place in self._place]
+        self._kept = _kept(self._places, speeds.size)
 
     def prepare(self, first: int, last: int) -> tuple[Course, BoolArray]:
         """Have the tables of the next steps made, as many as are held at once, and say which steps have one.
@@ -73,6 +87,7 @@ class CourseOfFilms:
         ]
         count = min((slots.size for slots, _, _, _ in found), default=last - first)
         course, whole = course_of(count, len(found)), np.ones(count, dtype=np.bool_)
+        course.kept[:] = self._kept[first : first + count]
         for film, (slots, sound, outside, weights) in enumerate(found):
             course.nodes[:, film], course.weights[:, film] = slots[:count], weights[:count]
             course.outside[:, film] = outside[:count]
@@ -83,7 +98,20 @@ class CourseOfFilms:
 def course_of(steps: int, films: int) -> Course:
     """Room for the course of some steps."""
     shape = (steps, films)
-    return Course(np.zeros(shape, dtype=np.int64), np.zeros(shape), np.zeros(shape, dtype=np.int64))
+    nodes, outside = np.zeros((2, *shape), dtype=np.int64)
+    return Course(nodes, np.zeros(shape), outside, np.ones(steps, dtype=np.int64))
+
+
+def _kept(places: Sequence[Places], steps: int) -> IntArray:
+    """Steps for which what was read holds, shape (steps,): a power of two; 1 for a step alone, whose speed may move."""
+    if steps < 2:
+        return np.ones(steps, dtype=np.int64)
+    moved = np.zeros(steps - 1)
+    for nodes, weights in places:
+        moved = np.maximum(moved, np.abs(np.diff(nodes.astype(np.float64) + weights)))
+    most = np.clip(MOVED / np.maximum(moved, MOVED / MOST_KEPT), 1.0, MOST_KEPT)
+    kept = 2 ** np.floor(np.log2(most)).astype(np.int64)
+    return np.concatenate([kept[:1], kept])
 
 
 def shared(keys: Iterable[tuple[object, ...]]) -> tuple[list[int], list[int]]:

@@ -34,6 +34,7 @@ SIDES = ("inner", "outer")
 """The contacts of a roller, in the order of all arrays."""
 
 _VARIABLES = ("max_pressure", "central_film", "minimum_film")
+_PEAK_ERROR = "max_pressure_error"
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,6 +51,9 @@ class ContactState:
         Film at the centre and smallest film [m]; NaN without load, and where no film is known.
     rolling_force : array
         Force of both walls together against pure rolling [N/m]; zero without load, NaN where none is known.
+    pressure_error : array
+        Stated error of the largest pressure, see `ehdmaps.physics.peak`; zero for that of Hertz, NaN where none is
+        stated.
     """
 
     hertz_pressure: FloatArray
@@ -57,6 +61,7 @@ class ContactState:
     central_film: FloatArray
     minimum_film: FloatArray
     rolling_force: FloatArray
+    pressure_error: FloatArray
 
 
 class FilmSource(Protocol):
@@ -146,7 +151,7 @@ class DryContacts:
         contact = self.contacts[side]
         pressure = np.asarray(max_pressure(load, contact.radius, contact.reduced_modulus))
         unknown = np.full(load.shape, np.nan)
-        return ContactState(pressure, pressure, unknown, unknown, unknown)
+        return ContactState(pressure, pressure, unknown, unknown, unknown, np.zeros(load.shape))
 
 
 @dataclass(frozen=True)
@@ -180,7 +185,7 @@ class FormulaFilms:
         loaded = load > 0.0
         central, minimum = np.full(load.shape, np.nan), np.full(load.shape, np.nan)
         central[loaded], minimum[loaded] = self._films(contact, load[loaded], abs(entrainment_speed), temperature)
-        state = ContactState(pressure, pressure, central, minimum, np.full(load.shape, np.nan))
+        state = ContactState(pressure, pressure, central, minimum, np.full(load.shape, np.nan), np.zeros(load.shape))
         return on_supply(state, RIGID_FLOW * central, self.supply)
 
     def _films(
@@ -266,26 +271,27 @@ class MapFilms:
             rolling = found.rolling_force(*at, self.in_force)
         if entrainment_speed == 0.0 or not np.any(loaded):
             return replace(plain, rolling_force=rolling)
-        ratios = np.full((*load.shape, len(_VARIABLES)), np.nan)
+        ratios = np.full((*load.shape, len(_VARIABLES) + 1), np.nan)
         ratios[loaded] = self._ratios(side, load[loaded], abs(entrainment_speed), temperature)
         pressure = np.where(loaded, ratios[..., 0] * plain.hertz_pressure, 0.0)
         central, minimum = (ratios[..., part] * plain.central_film for part in (1, 2))
-        state = ContactState(plain.hertz_pressure, pressure, central, minimum, rolling)
+        error = np.where(loaded, ratios[..., -1], 0.0)
+        state = ContactState(plain.hertz_pressure, pressure, central, minimum, rolling, error)
         if found is None:
             return on_supply(state, RIGID_FLOW * central, self.in_force)
         flow = found.flow(SIDES[side], np.maximum(load, 0.0), entrainment_speed, temperature)
         return on_supply(state, flow, self.in_force)
 
     def _ratios(self, side: int, load: FloatArray, speed: float, temperature: float) -> FloatArray:
-        """Ratios (n, 3) at positive loads, held at the edges of the map."""
+        """Ratios, and the error of the pressure, (n, 4), at positive loads, held at the edges of the map."""
         lines = self._lines[side]
         speeds, kelvins = lines.nodes
         place = np.log(load) - self._shift(side, speed, temperature)
-        found = np.zeros((load.size, len(_VARIABLES)))
+        found = np.zeros((load.size, lines.ratios.shape[-1]))
         for j, by_speed in _corners(np.log(speeds), float(np.log(speed))):
             for k, by_temperature in _corners(kelvins, temperature):
                 at = place + self._shift(side, float(speeds[j]), float(kelvins[k]))
-                for part in range(len(_VARIABLES)):
+                for part in range(found.shape[1]):
                     line = np.interp(at, lines.log_load, lines.ratios[:, j, k, part])
                     found[:, part] += by_speed * by_temperature * line
         return found
@@ -306,19 +312,23 @@ class MapFilms:
         )
         found = []
         for side, name in enumerate(SIDES):
-            values = np.stack([data[variable].sel(contact=name).values for variable in _VARIABLES], axis=-1)
+            of_side = data.sel(contact=name)
+            columns = [of_side[variable].values for variable in _VARIABLES]
+            stated = _PEAK_ERROR in of_side
+            columns.append(of_side[_PEAK_ERROR].values if stated else np.full_like(columns[0], np.nan))
+            values = np.stack(columns, axis=-1)
             for j, speed in enumerate(speeds):
                 for k, kelvin in enumerate(kelvins):
                     plain = self._formula.state(side, loads, float(speed), float(kelvin))
                     values[:, j, k, 0] /= plain.hertz_pressure
-                    values[:, j, k, 1:] /= plain.central_film[:, None]
+                    values[:, j, k, 1:3] /= plain.central_film[:, None]
             found.append(_Lines(np.log(loads), (speeds, kelvins), values))
         return tuple(found)
 
 
 @dataclass(frozen=True, eq=False)
 class _Lines:
-    """Ratios (loads, speeds, temperatures, 3) of a contact over ln(load), at speeds and temperatures."""
+    """Ratios and the pressure's error (loads, speeds, temperatures, 4) of a contact, over ln(load)."""
 
     log_load: FloatArray
     nodes: tuple[FloatArray, FloatArray]

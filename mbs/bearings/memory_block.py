@@ -98,9 +98,9 @@ def memory_of(bearings: MemoryBearings, b: int) -> FloatArray:
 def _begin(bearings: MemoryBearings, moment: Moment) -> None:
     """Begin a step: tables, and what its slices start from."""
     films, steps = bearings.films, int(bearings.clock[STEPS])
-    growth = begin_step(bearings.clock, films, bearings.course, moment)
+    growth, kept = begin_step(bearings.clock, films, bearings.course, moment), bearings.course.kept[moment.step]
     for b in range(bearings.rings.firsts.size):
-        begin(table_in_use(films, bearings.rings.films_of[b]), growth, steps, memory_of(bearings, b))
+        begin(table_in_use(films, bearings.rings.films_of[b]), growth, steps, kept, memory_of(bearings, b))
 
 
 @njit(error_model="numpy")

@@ -2,8 +2,9 @@
 
 The law is that of `ehdmaps.maps.memory_table`. Each slice carries parabolas of p, y and G around a state and of a
 around a load; they stand for the cubics of its cells, from which they differ in third order, and are read anew where
-the slice leaves their reach, and every `KEPT` steps. So Newton's method for the states is arithmetic alone, in vector
-instructions over all slices. A slice that leaves them within a step is solved from the table itself, with a bracket.
+the slice leaves their reach, and every few steps, as the law follows the speed (`mbs.bearings.film_course`). So
+Newton's method for the states is arithmetic alone, in vector instructions over all slices. A slice that leaves them
+within a step is solved from the table itself, with a bracket.
 
 A step is `begin`, `loads` as often as the system asks for them, and `commit`.
 """
@@ -35,9 +36,6 @@ MEMORY = 22
 """Rows of the memory of the slices: states after the last two steps, change of G over the last one and `fading_of` it,
 load after it; state of the trial; where the parabolas lie and how far they reach, in the state and in the load;
 parabolas. G counts from the last state."""
-
-KEPT = 8
-"""Steps for which parabolas are kept at most: the law follows the speed."""
 
 _PART = 2.0**-6
 """How far a parabola reaches, as a part of the distance from the centre of the table: a cell or less."""
@@ -72,7 +70,7 @@ def resume(approach: FloatArray, change: FloatArray, load: FloatArray, memory: F
 
 
 @njit(error_model="numpy", fastmath=FAST)
-def begin(table: MemoryTable, growth: float, count: int, memory: FloatArray) -> None:
+def begin(table: MemoryTable, growth: float, count: int, kept: int, memory: FloatArray) -> None:
     """Begin a step.
 
     Parameters
@@ -83,6 +81,8 @@ def begin(table: MemoryTable, growth: float, count: int, memory: FloatArray) -> 
         Length of the step by that of the last one; 0 at the first.
     count : int
         Number of the step.
+    kept : int
+        Steps for which parabolas are kept at most.
     memory : array (MEMORY, n)
         Memory of the slices; states are foretold, parabolas read where they are used up.
     """
@@ -94,7 +94,7 @@ def begin(table: MemoryTable, growth: float, count: int, memory: FloatArray) -> 
         trial[i] = guess if guess > lowest else lowest
     for i in range(latest.size):
         moved, more = abs(trial[i] - around[i]), abs(load[i] - loaded[i])
-        if 2.0 * moved > reach[i] or 2.0 * more > load_reach[i] or (count + i) % KEPT == 0:
+        if 2.0 * moved > reach[i] or 2.0 * more > load_reach[i] or (count + i) % kept == 0:
             _read(table, memory, i)
 
 

@@ -94,10 +94,10 @@ def _memory_of(bearings: MemoryRollerBearings, b: int, side: int) -> FloatArray:
 def _begin(bearings: MemoryRollerBearings, moment: Moment) -> None:
     """Begin a step: tables, and what slices start from."""
     films, rollers, steps = bearings.films, bearings.rollers, int(bearings.clock[STEPS])
-    growth = begin_step(bearings.clock, films, bearings.course, moment)
+    growth, kept = begin_step(bearings.clock, films, bearings.course, moment), bearings.course.kept[moment.step]
     for b in range(bearings.strict.size):
         for side in range(2):
-            begin(table_in_use(films, rollers.films_of[b, side]), growth, steps, _memory_of(bearings, b, side))
+            begin(table_in_use(films, rollers.films_of[b, side]), growth, steps, kept, _memory_of(bearings, b, side))
 
 
 @njit(error_model="numpy")

@@ -30,6 +30,14 @@ _LAST_NODE = ROWS - 32
 
 _A = nodes_of(ROWS)
 
+_LIMITS = {
+    "approach": ("m", -1.0, 1.0, 1e-15),
+    "load": ("N/m", 0.0, 1e12, 1e-9),
+    "damping": ("N s/m2", 0.0, 1e18, None),
+}
+"""Unit, smallest and largest value, and least rise from point to point: far beyond any roller, and products of these
+numbers are still numbers."""
+
 
 @dataclass(frozen=True, eq=False)
 class TableLaw(DryLaw):
@@ -182,13 +190,11 @@ def curve_problems(approach: FloatArray, load: FloatArray, damping: FloatArray) 
     if approach.size < 2:
         return [f"points: got {approach.size}; allowed: two or more"]
     problems = []
-    for name, values, unit in (("approach", approach, "m"), ("load", load, "N/m"), ("damping", damping, "N s/m2")):
-        wrong = ~np.isfinite(values)
-        allowed = "finite numbers"
-        if not wrong.any() and name == "damping":
-            wrong, allowed = values < 0.0, "0 or more"
-        elif not wrong.any():
-            wrong, allowed = np.append(False, np.diff(values) <= 0.0), "more than at the point before"
+    for (name, (unit, low, high, rise)), values in zip(_LIMITS.items(), (approach, load, damping), strict=True):
+        wrong, allowed = ~((values >= low) & (values <= high)), f"{low:g} to {high:g} {unit}"
+        if not wrong.any() and rise is not None:
+            wrong = np.append(False, np.diff(values) < rise)
+            allowed = f"at least {rise:g} {unit} more than at the point before"
         if wrong.any():
             at = int(np.argmax(wrong))
             problems.append(f"{name} at point {at + 1}: got {values[at]:.9g} {unit}; allowed: {allowed}")

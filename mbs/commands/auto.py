@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, Generic, TypeVar
 
 from ehdmaps.errors import InputError
+from ehdmaps.jobs.batch_generate import folder_problem, make_folder
 from ehdmaps.jobs.progress import progress
 from ehdmaps.jobs.store import store_path
 from ehdmaps.physics.heat import PHYSICS
@@ -158,8 +159,8 @@ def _asked(
     if len(clearances) > 1:
         problems.append(f"--clearance: got {len(clearances)} of them; allowed with --auto: one, as each has a plan")
     folder = Path(getattr(arguments, "maps", None) or ".")
-    if not folder.is_dir():
-        problems.append(f"--maps: got {str(folder)!r:.200}; allowed: a folder that is there; make it first")
+    if problem := folder_problem(folder, "--maps"):
+        problems.append(problem)
     looked, scene = None, None
     try:
         scene = read_scene(arguments.scene)
@@ -180,6 +181,7 @@ def _asked(
         problems.append(f"--shear: got {shear!r:.60}{closest(shear, tuple(SHEARS))}; allowed: {', '.join(SHEARS)}")
     if problems or scene is None or looked is None:
         raise InputError(tuple(dict.fromkeys(problems)))
+    make_folder(folder, "--maps")
     return scene, looked, _settings(arguments, tolerance, folder, looked.highest)
 
 

@@ -20,11 +20,22 @@ from mbs.analyses.film_errors import notable_from
 from mbs.analyses.reach import axes_outside, fade_of, sources_of
 from mbs.analyses.recorded import RecordedRun, simulated_campbell
 from mbs.analyses.resolution import resolution
+from mbs.analyses.soundness import unsound_run
 from mbs.analyses.tolerance import Tolerated, read_tolerance, within
 from mbs.commands.auto import Looked, analysed
 from mbs.commands.campbell_recorded import measured_lines, measured_run, read_look, recorded_runs, signal_problems
 from mbs.commands.cases import load_cases
-from mbs.commands.common import Told, band_lines, film_course, heading, held_lines, step_lines, write
+from mbs.commands.common import (
+    Told,
+    band_lines,
+    film_course,
+    heading,
+    held_lines,
+    marked,
+    step_lines,
+    unsound_lines,
+    write,
+)
 from mbs.commands.reach import fade_lines, outside_lines
 from mbs.linearised.sweep_result import ComplexSweep, Sweep
 from mbs.model.elements import Sensor
@@ -59,7 +70,13 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     )
     found, tolerated, beside = done.result.run, done.result.tolerated, done.result.measured
     settings, runs, course, bands = found.settings, found.runs, found.course, int(arguments.bands or "0")
+    unsound = [
+        line
+        for entry in runs
+        for line in unsound_lines(unsound_run(entry.case.model, entry.record), entry.case.label if runs[1:] else "")
+    ]
     lines = [
+        *unsound,
         *done.lines,
         f"{runs[0].case.model.scene.title}: run-up from {RPM.text(course.speed.at(0.0)[0])} to "
         f"{RPM.text(course.speed.at(course.duration)[0])} in {course.duration:.4g} s; {_sensor_words(found.sensors)}",
@@ -73,12 +90,12 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     lines += [*_differences(runs, found.sensors), *(f"warning: {line}" for line in found.failed)]
     dataset = found.dataset.assign_attrs(tolerance="\n".join(tolerated.lines)) if tolerated else found.dataset
     dataset = with_measured(dataset, beside.dataset) if beside else dataset
-    lines += write(arguments, dataset, _figure(found, beside) if arguments.plot else None)
+    lines += write(arguments, marked(dataset, unsound), _figure(found, beside) if arguments.plot else None)
     if getattr(arguments, "signals", None):
         lines += write_time_data(arguments.signals, simulated_campbell(runs))
     outside = any(any(entry.record.outside.values()) for entry in runs)
-    unsound = found.failed or outside or (tolerated is not None and not tolerated.met)
-    return "\n".join(lines), 1 if unsound else done.status
+    missed = unsound or found.failed or outside or (tolerated is not None and not tolerated.met)
+    return "\n".join(lines), 1 if missed else done.status
 
 
 class _Asked(NamedTuple):

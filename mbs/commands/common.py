@@ -20,6 +20,7 @@ from mbs.analyses.film_errors import notable_from
 from mbs.analyses.reach import axes_outside, sources_of
 from mbs.analyses.resolution import Resolution
 from mbs.analyses.rings import ring_motions
+from mbs.analyses.soundness import Unsound
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.heat import HeatPaths
 from mbs.commands.reach import outside_lines
@@ -120,6 +121,55 @@ def band_lines(model: Model) -> list[str]:
     return [f"  bands (+-): {words}"] if words else []
 
 
+def unsound_lines(found: Iterable[Unsound], label: str = "") -> list[str]:
+    """The first line of a result whose figures mean nothing, with the reasons; none of others.
+
+    Parameters
+    ----------
+    found : iterable of Unsound
+        Reasons why its figures mean nothing.
+    label : str
+        Which case, where several are compared.
+    """
+    words = "; ".join(entry.words for entry in found)
+    return [f"error: {f'{label}: ' if label else ''}the figures below mean nothing: {words}"] if words else []
+
+
+def marked(dataset: xr.Dataset, unsound: Sequence[str]) -> xr.Dataset:
+    """A result of several cases with the attribute `unsound`, where lines say that figures mean nothing.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The result.
+    unsound : sequence of str
+        Lines of `unsound_lines`.
+    """
+    return dataset.assign_attrs(unsound="; ".join(unsound)) if unsound else dataset
+
+
+def film_law_line(model: Model, known: bool) -> list[str]:
+    """A line on what films leave out of modes, and of their bands; none for laws without films, and at rest.
+
+    Parameters
+    ----------
+    model : Model
+        The model.
+    known : bool
+        Whether it is listed beside each mode.
+    """
+    if not model.scene.speed or not model.supplies:
+        return []
+    if known:
+        return [
+            "  film law: what one relaxation time of a slice leaves out of the response of the film solver, which the "
+            "map holds: true less printed, to first order; in no band"
+        ]
+    if model.memory == "slow":
+        return ["  film law: not known; films of slow motion leave out how films relax (--films memory has it)"]
+    return ["  film law: not known; the law holds no response of the film solver, and no band holds this part"]
+
+
 def clean(value: float) -> float:
     """The value, or 0 where it is round-off: of parts and ratios.
 
@@ -173,6 +223,7 @@ def _film_line(entry: FilmError, frequency: float, words: str) -> str:
     line = (
         f"{entry.bearing}: {FILM_WORDS[entry.films]}; estimated error of the dynamic stiffness along the load at "
         f"{frequency:.5g} Hz{words}: {100.0 * error:.2g} %"
+        + (", by the response that the map holds" if entry.contacts else "")
     )
     if error <= NOTABLE:
         return line

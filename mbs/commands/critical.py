@@ -15,10 +15,11 @@ from mbs.analyses.case import Case
 from mbs.analyses.critical import CriticalResult, critical_of, dataset_of_laws, orders
 from mbs.analyses.operating import operating
 from mbs.analyses.reach import axes_outside, sources_of
+from mbs.analyses.soundness import unsound_over_speed
 from mbs.analyses.sweep import SweepSettings
 from mbs.commands.auto import Looked, analysed
 from mbs.commands.cases import load_cases
-from mbs.commands.common import heading, write
+from mbs.commands.common import heading, marked, unsound_lines, write
 from mbs.commands.lsa import MOST_COMPARED_CASES
 from mbs.commands.reach import fade_lines, outside_lines
 from mbs.commands.sweep import read_speeds
@@ -52,7 +53,12 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         _looks_at,
     )
     found = done.result
-    lines, outside = list(done.lines), list[str]()
+    unsound = [
+        line
+        for label, entry in found
+        for line in unsound_lines(unsound_over_speed(entry.model, entry.sweep), label if found[1:] else "")
+    ]
+    lines, outside = [*unsound, *done.lines], list[str]()
     for label, entry in found:
         outside += [line for line in _outside(entry) if line not in outside]
         lines += _report(entry, label if found[1:] else "")
@@ -64,8 +70,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
 
         figure = critical_figure([_curves(label, entry) for label, entry in found])
     dataset = dataset_of_laws([label for label, _ in found], [entry for _, entry in found])
-    lines += outside + write(arguments, dataset, figure)
-    return "\n".join(lines), 1 if outside else done.status
+    lines += outside + write(arguments, marked(dataset, unsound), figure)
+    return "\n".join(lines), 1 if outside or unsound else done.status
 
 
 class _Asked(NamedTuple):

@@ -15,9 +15,10 @@ from ehdmaps.workers import available_cores
 from mbs.analyses.case import Case
 from mbs.analyses.hammer import HIGHEST, HammerResult, HammerSettings, hammer_problems, hammers
 from mbs.analyses.reach import source_of
+from mbs.analyses.soundness import unsound_at_rest
 from mbs.commands.auto import Looked, analysed
 from mbs.commands.cases import load_cases
-from mbs.commands.common import Told, clean, film_lines, free_words, heading, outside_at
+from mbs.commands.common import Told, clean, film_lines, free_words, heading, outside_at, unsound_lines
 from mbs.linearised.modes import Modes
 from mbs.modal.uff import UFF, Measurement
 from mbs.modal.uff_writing import write_uff
@@ -40,8 +41,16 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     )
     found, labels = done.result
     paths = dict(zip(labels, _files(arguments.output, len(labels)), strict=True))
-    lines = list(done.lines)
-    outside = False
+    unsound = [
+        line
+        for label, entry in zip(found.labels, found.results, strict=True)
+        for line in unsound_lines(
+            unsound_at_rest(entry.model, entry.balance.displacement, entry.balance.operation),
+            label if labels[1:] else "",
+        )
+    ]
+    lines = [*unsound, *done.lines]
+    outside = bool(unsound)
     for label, entry in zip(found.labels, found.results, strict=True):
         words, warned = _report(entry, label if labels[1:] else "", settings.nonlinear)
         _write(paths[label], entry, label if labels[1:] else entry.model.label)

@@ -16,7 +16,7 @@ from mbs.analyses.case import Case
 from mbs.analyses.lsa import LsaResult, LsaSettings, lsa_dataset, lsa_of, lsa_problems
 from mbs.commands.auto import Looked, analysed
 from mbs.commands.cases import load_cases
-from mbs.commands.common import band_lines, film_lines, heading, outside_at, write
+from mbs.commands.common import band_lines, film_lines, heading, outside_at, unsound_lines, write
 from mbs.commands.reach import fade_lines
 from mbs.commands.sweep import whole
 from mbs.linearised.linear import peak_places, response_display
@@ -63,7 +63,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         notes = [note for label, entry in found for note in _lifting_notes(entry.lifting, label if found[1:] else "")]
         first = found[0][1].model
         figure = comparison_figure(first, curves, notes) if found[1:] else response_figure(first, curves[0], notes)
-    lines = list(done.lines)
+    unsound = [line for label, entry in found for line in unsound_lines(entry.unsound, label if found[1:] else "")]
+    lines = [*unsound, *done.lines]
     outside: list[str] = []
     for label, entry in found:
         outside += [line for line in outside_at(entry.model, entry.balance) if line not in outside]
@@ -73,7 +74,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     if file := getattr(arguments, "state_space", None):
         write_spaces(Path(file), found)
         lines.append(f"{file}: written")
-    return "\n".join(lines), 1 if outside else done.status
+    return "\n".join(lines), 1 if outside or unsound else done.status
 
 
 def _asked(arguments: argparse.Namespace) -> list[Case]:

@@ -19,11 +19,13 @@ from mbs.commands.cases import load_model
 from mbs.commands.common import (
     band_lines,
     clean,
+    film_law_line,
     film_lines,
     free_words,
     heading,
     outside_at,
     read_option,
+    unsound_lines,
     write,
     write_plot,
 )
@@ -62,10 +64,12 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         figure = modes_figure(model, found, shown, limit, "; ".join([*notes, *_overdamped_count(overdamped)]))
     outside = outside_at(model, result.balance)
     lines = [
+        *unsound_lines(result.unsound),
         *done.lines,
         *heading(model, model.scene.speed),
         *_table(found, shown),
         *band_lines(model),
+        *film_law_line(model, found.film_law is not None),
         *_overdamped(found, overdamped),
         *(f"  {note}" for note in notes),
         *_lost(found),
@@ -75,7 +79,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         *write(arguments, result.dataset, figure),
         *_write_shapes(arguments, result, shown),
     ]
-    return "\n".join(lines), 1 if outside else done.status
+    return "\n".join(lines), 1 if outside or result.unsound else done.status
 
 
 def _asked(arguments: argparse.Namespace) -> tuple[Model, float]:
@@ -157,16 +161,25 @@ def _highest(arguments: argparse.Namespace, scene: Scene | None, problems: list[
 
 def _table(found: Modes, shown: IntArray) -> list[str]:
     """Lines of modes: frequency, damping ratio, and the parts that have most of the strain energy."""
-    bands = found.bands
-    wide = "" if bands is None else "        +-"
+    bands, law = found.bands, found.film_law
+    wide = ("" if bands is None else "        +-") + ("" if law is None else "  film law")
     lines = [
         f"  mode   frequency/Hz{wide}   damping ratio{wide}   strain energy        (frequency: |eigenvalue|/(2 pi))"
     ]
     for k in shown:
+        by = ["", ""]
+        if bands is not None:
+            by = [f"{bands.frequency[k]:10.2g}", f"{bands.damping_ratio[k]:10.2g}"]
+        if law is not None:
+            by = [text + _part(part[k]) for text, part in zip(by, law, strict=True)]
         ratio = clean(found.damping_ratio[k])
-        by = ("", "") if bands is None else (f"{bands.frequency[k]:10.2g}", f"{bands.damping_ratio[k]:10.2g}")
         lines.append(f"  {k + 1:4d} {found.frequency[k]:14.6g}{by[0]} {ratio:15.4g}{by[1]}   {share_words(found, k)}")
     return lines
+
+
+def _part(value: float) -> str:
+    """What the film law leaves out, in its column; a dash where the first order says nothing."""
+    return f"{value:+10.2g}" if math.isfinite(value) else f"{'-':>10s}"
 
 
 def _overdamped(found: Modes, which: IntArray) -> list[str]:

@@ -21,10 +21,21 @@ from mbs.analyses.reach import POINTS, Fade, axes_outside, fade_of, source_of, s
 from mbs.analyses.recorded import amplitudes_at, simulated
 from mbs.analyses.resolution import resolution
 from mbs.analyses.runup import RunUpResult, RunUps, runup_problems, runups
+from mbs.analyses.step_check import NOTABLE, StepCheck
 from mbs.commands.auto import Looked, analysed
 from mbs.commands.campbell_recorded import read_source, signal_problems
 from mbs.commands.cases import load_cases
-from mbs.commands.common import Told, film_course, heading, held_lines, read_option, step_lines, write
+from mbs.commands.common import (
+    MICROSECOND,
+    Told,
+    film_course,
+    heading,
+    held_lines,
+    read_option,
+    step_lines,
+    unsound_lines,
+    write,
+)
 from mbs.commands.reach import fade_lines, outside_lines
 from mbs.output.energy_text import drive_lines, energy_lines
 from mbs.output.results import described
@@ -85,8 +96,11 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     spectra = _spectra_of(data, asked.spectra, found.runs[0].model.scene) if data else []
     fade = fade_of(found.runs[0].model)
     figure = _figure(found, data, spectra, fade) if arguments.plot else None
-    lines = list(done.lines)
-    outside = False
+    unsound = [
+        line for label, entry in _pairs(found) for line in unsound_lines(entry.unsound, label if found.runs[1:] else "")
+    ]
+    lines = [*unsound, *done.lines]
+    outside = bool(unsound)
     for label, entry in _pairs(found):
         lines += [*([label] if found.runs[1:] else []), *_report(entry)]
         outside = outside or any(entry.record.outside.values())
@@ -232,6 +246,7 @@ def _report(found: RunUpResult) -> list[str]:
         f"{result.iterations / max(result.steps, 1):.3g} Newton iterations a step, "
         f"{1e6 * found.seconds / max(result.steps, 1):.0f} us a step",
         *step_lines(resolution(model, found.course)),
+        *_step_check_lines(found.steps),
         *(f"note: {line}" for line in result.notes),
     ]
     end = POINTS if source_of(model) == POINTS else "the map"
@@ -248,6 +263,25 @@ def _report(found: RunUpResult) -> list[str]:
     lines += outside_lines(outside, "{} calls outside the map", axes_outside(model, fastest), sources=sources_of(model))
     # The equilibria of this line are no part of the run, whose calls were counted above.
     return lines + film_course(model, (float(result.speed[0]), float(result.speed[-1])))
+
+
+def _step_check_lines(found: StepCheck | None) -> list[str]:
+    """A line on what half of the step changes in the first part of the run."""
+    if found is None:
+        return []
+    worst = int(np.argmax(found.errors))
+    half, step = MICROSECOND.text(0.5 * found.step), MICROSECOND.text(found.step)
+    first = f"the first {found.duration:.4g} s again with steps of {half}"
+    if found.converged:
+        return [f"{first}: signals are right within {100.0 * found.errors[worst]:.2g} % (rms, {found.names[worst]})"]
+    wrong = [
+        f"{found.names[k]} {found.with_step[k]:.3g} {found.units[k]} rms, and {found.with_half[k]:.3g}"
+        for k in np.flatnonzero(found.errors > NOTABLE)
+    ]
+    return [
+        f"warning: this run is not converged: {first} has other signals ({'; '.join(wrong)} with these, more than "
+        f"{100.0 * NOTABLE:g} % off with {step}); take shorter steps in [runup], until they agree"
+    ]
 
 
 def _looks_at(scene: Scene) -> Looked:

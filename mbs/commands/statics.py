@@ -18,7 +18,7 @@ from mbs.bearings.roller_element import ring_matrices
 from mbs.bearings.roller_loads import RollerLoads
 from mbs.commands.auto import Looked, analysed
 from mbs.commands.cases import load_model
-from mbs.commands.common import heading, outside_at, write
+from mbs.commands.common import heading, outside_at, unsound_lines, write
 from mbs.commands.reach import fade_lines
 from mbs.linearised.validity import NOTABLE
 from mbs.model.equilibrium import Equilibrium
@@ -44,6 +44,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
 
         figure = statics_figure(model, balance, contacts, found.overloads)
     lines = [
+        *unsound_lines(found.unsound),
         *done.lines,
         *heading(model, model.scene.speed),
         f"equilibrium in {balance.steps} Newton steps, residual {balance.residual:.1e} of the largest force",
@@ -79,7 +80,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     outside = outside_at(model, balance)
     lines += [f"warning: {line}" for line in (*found.overloads, *found.free)] + outside
     lines += write(arguments, found.dataset, figure)
-    return "\n".join(lines), 1 if outside or found.overloads else done.status
+    return "\n".join(lines), 1 if outside or found.overloads or found.unsound else done.status
 
 
 def _asked(arguments: argparse.Namespace) -> Model:

@@ -17,10 +17,21 @@ from mbs.analyses.case import Case, clearance_text, common_supply, temperature_t
 from mbs.analyses.film_errors import film_errors, notable_from
 from mbs.analyses.operating import operating
 from mbs.analyses.reach import axes_outside, fade_of, sources_of
+from mbs.analyses.soundness import unsound_over_speed
 from mbs.analyses.sweep import SweepSettings, sweep, sweep_problems
 from mbs.commands.auto import Looked, analysed
 from mbs.commands.cases import load_cases
-from mbs.commands.common import ROUND_OFF, band_lines, clean, film_lines, free_words, heading, write
+from mbs.commands.common import (
+    ROUND_OFF,
+    band_lines,
+    clean,
+    film_lines,
+    free_words,
+    heading,
+    marked,
+    unsound_lines,
+    write,
+)
 from mbs.commands.reach import fade_lines, outside_lines
 from mbs.linearised.crossings import exchanged
 from mbs.linearised.linear import response_display
@@ -52,7 +63,12 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     )
     result = done.result
     cases, found = result.cases, result.sweeps
-    lines = list(done.lines)
+    unsound = [
+        line
+        for case, entry in zip(cases, found, strict=True)
+        for line in unsound_lines(unsound_over_speed(case.model, entry), case.label if len(cases) > 1 else "")
+    ]
+    lines = [*unsound, *done.lines]
     outside: list[str] = []
     torques = result.dataset["rolling_torque"].values
     for case, entry, calls, torque in zip(cases, found, result.outside, torques, strict=True):
@@ -76,8 +92,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             *fade_lines(case.model, entry.speeds),
         ]
     figure = _figure(cases, found) if arguments.plot else None
-    lines += outside + write(arguments, result.dataset, figure)
-    return "\n".join(lines), 1 if outside else done.status
+    lines += outside + write(arguments, marked(result.dataset, unsound), figure)
+    return "\n".join(lines), 1 if outside or unsound else done.status
 
 
 class _Asked(NamedTuple):

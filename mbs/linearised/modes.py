@@ -20,6 +20,7 @@ from ehdmaps.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from ehdmaps.errors import AnalysisError
 from mbs.linearised.bands import ModeBands, law_bands
 from mbs.linearised.dynamic import system_film_states
+from mbs.linearised.film_law import FilmLawPart, film_law_part
 from mbs.linearised.film_states import FilmStates
 from mbs.linearised.own_frequency import LostMode, OwnFrequency, at_own_frequency
 from mbs.model.equilibrium import Equilibrium
@@ -55,6 +56,8 @@ class Modes:
         array.
     bands : ModeBands or None
         What the errors that a map states may change, see `mbs.linearised.bands`; None for laws that state none.
+    film_law : FilmLawPart or None
+        What films with memory leave out, see `mbs.linearised.film_law`; None where that is not known.
     """
 
     eigenvalues: ComplexArray
@@ -64,6 +67,7 @@ class Modes:
     lost: tuple[LostMode, ...] = ()
     among_films: int = 0
     bands: ModeBands | None = None
+    film_law: FilmLawPart | None = None
 
     @property
     def frequency(self) -> FloatArray:
@@ -218,7 +222,9 @@ def modes_of(balance: Equilibrium, states: StateModes) -> Modes:
     values, kept = values[order], kept[order]
     shapes = states.right[:n, kept]
     laws = law_bands(balance)
-    bands = None if laws is None else laws.of_modes(values, shapes, states.left[kept, n : 2 * n])
+    left = states.left[kept, n : 2 * n]
+    bands = None if laws is None else laws.of_modes(values, shapes, left)
+    film_law = film_law_part(balance, values, shapes, left)
     translations = np.array([unit != "rad" for unit in balance.system.units])
     for k in range(shapes.shape[1]):
         column = shapes[:, k]
@@ -228,7 +234,7 @@ def modes_of(balance: Equilibrium, states: StateModes) -> Modes:
         largest = int(np.argmax(shown if shown.max() > 1e-6 * size.max() else size))
         shapes[:, k] = column / column[largest]
     shares = energy_shares(balance, shapes, np.abs(values))
-    return Modes(values, shapes, tuple(balance.parts), shares, own.lost, int(np.count_nonzero(among)), bands)
+    return Modes(values, shapes, tuple(balance.parts), shares, own.lost, int(np.count_nonzero(among)), bands, film_law)
 
 
 def undamped_modes(balance: Equilibrium) -> UndampedModes:

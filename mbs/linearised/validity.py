@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from ehdmaps.arrays import ComplexArray, FloatArray
+from ehdmaps.maps.film_response import FilmResponse, by_powers
 from mbs.bearings.bearing_element import RingElement
 from mbs.linearised.dynamic import element_dynamic_stiffness
 from mbs.model.elements import Input
@@ -40,20 +42,41 @@ def memory_error(place: FloatArray) -> FloatArray:
     >>> memory_error(np.array([0.0, 1.0, 10.0])).tolist()
     [0.0, 0.015, 0.041]
     """
-    x, steps = np.log(np.clip(place, 1e-30, 1e30)), np.log(_PLACES)
-    cell = np.clip(np.searchsorted(steps, x) - 1, 0, steps.size - 2)
-    slope = np.diff(np.log(_WITHIN)) / np.diff(steps)
-    found = np.exp(np.log(_WITHIN)[cell] + slope[cell] * (x - steps[cell]))
-    return np.asarray(np.where(place > 0.0, np.round(found, 12), 0.0), dtype=np.float64)
+    return np.asarray(np.round(by_powers(place, _PLACES, _WITHIN), 12))
+
+
+class LoadedContacts(NamedTuple):
+    """Slices of a bearing that have the same law, as they are felt along its load.
+
+    Attributes
+    ----------
+    stiffness, springs, times : array, shape (r,)
+        k of slow motion [N/m], stiffness of the spring in series with the damper [N/m], and relaxation time [s].
+    response : FilmResponse
+        What their law leaves out, by what the map holds.
+    """
+
+    stiffness: FloatArray
+    springs: FloatArray
+    times: FloatArray
+    response: FilmResponse
+
+    def left_out(self, s: ComplexArray) -> tuple[ComplexArray, FloatArray]:
+        """What their films with memory leave out at frequencies s (k,) [1/s], and how wrong that may be [N/m]; (k,)."""
+        place = np.multiply.outer(s, self.times)
+        own = self.stiffness + self.springs * place / (1.0 + place)
+        return np.sum(own * self.response.correction(s), axis=1), np.sum(np.abs(own) * self.response.doubt(s), axis=1)
 
 
 @dataclass(frozen=True, eq=False)
 class FilmError:
     """How far the films that an analysis has may be from true ones: along the load of a bearing, over frequency.
 
-    The error is |dZ/Z| of the dynamic stiffness Z. That of films of slow motion is their difference from films with
-    memory. That of films with memory is the mean of `memory_error` of its slices, each with the weight of c over its
-    natural time, which is some measure of its stiffness and all that is known of it here.
+    The error is |dZ/Z| of the dynamic stiffness Z. With a map that holds the response of its films, Z is that of films
+    with memory and what each of their slices leaves out, see `ehdmaps.maps.film_response`; how wrong that may be as it
+    is read is added by its size. Without one, Z is that of films with memory, whose own error is the mean of
+    `memory_error` of the slices, each with the weight of c over its natural time, which is some measure of its
+    stiffness and all that is known of it here.
 
     Attributes
     ----------
@@ -69,6 +92,8 @@ class FilmError:
         Stiffness [N/m] and relaxation time [s] of each slice, as of `mbs.model.relaxation`.
     natural : array, shape (r,)
         Natural time of each slice [s].
+    contacts : tuple of LoadedContacts
+        The loaded slices; none of a law whose map holds no response.
     """
 
     bearing: str
@@ -79,12 +104,15 @@ class FilmError:
     springs: FloatArray
     times: FloatArray
     natural: FloatArray
+    contacts: tuple[LoadedContacts, ...] = ()
 
     def error(self, frequencies: FloatArray) -> FloatArray:
         """Estimated |dZ/Z| at frequencies (k,) [Hz]; 0 at rest."""
         omega = 2.0 * np.pi * np.asarray(frequencies, dtype=np.float64)
         if self.at_rest or not np.any(self.springs > 0.0):
             return np.zeros(omega.shape)
+        if self.contacts:
+            return self._by_response(omega)
         if self.films == "memory":
             weights = np.where(self.springs > 0.0, self.springs * self.times / np.maximum(self.natural, 1e-30), 0.0)
             errors = memory_error(np.multiply.outer(omega, self.natural))
@@ -92,6 +120,18 @@ class FilmError:
         place = 1j * np.multiply.outer(omega, self.times)
         more = -(place**2 / (1.0 + place)) @ self.springs
         return np.asarray(np.abs(more) / np.abs(self.stiffness + 1j * omega * self.damping + more), dtype=np.float64)
+
+    def _by_response(self, omega: FloatArray) -> FloatArray:
+        """The error at angular frequencies (k,) [rad/s], by what the map holds."""
+        s = np.asarray(1j * omega)
+        place = np.multiply.outer(s, self.times)
+        more = -(place**2 / (1.0 + place)) @ self.springs
+        found = [contacts.left_out(s) for contacts in self.contacts]
+        left_out = np.sum([part for part, _ in found], axis=0)
+        doubt = np.sum([part for _, part in found], axis=0)
+        true = self.stiffness + s * self.damping + more + left_out
+        wrong = left_out if self.films == "memory" else more + left_out
+        return np.asarray((np.abs(wrong) + doubt) / np.abs(true), dtype=np.float64)
 
     def at(self, frequency: float) -> float:
         """The error at one frequency [Hz]."""

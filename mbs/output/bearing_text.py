@@ -7,6 +7,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from ehdmaps.maps.rough_films import OVERLAP
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.units import DAMPER, FILM, PRESSURE, RPM, SPRING, TEMPERATURE
 from mbs.analyses.bearing_point import BearingPoint
@@ -99,7 +100,7 @@ def _page(point: BearingPoint, description: BearingDescription) -> list[str]:
         *(
             []
             if np.array_equal(contacts.max_pressure, contacts.hertz_pressure)
-            else [_sides("film pressure with spike, +-25 %", PRESSURE.unit, 1e-9 * contacts.max_pressure)]
+            else [_sides("film pressure with spike", PRESSURE.unit, 1e-9 * contacts.max_pressure)]
         ),
         _sides("smallest central film", FILM.unit, 1e6 * contacts.central_film),
         _sides("smallest film", FILM.unit, 1e6 * contacts.minimum_film),
@@ -113,8 +114,11 @@ def _share_words(point: BearingPoint, description: BearingDescription) -> str:
     """What the film carries of the load of the most loaded roller; nothing for smooth surfaces."""
     if description.surface.smooth:
         return ""
-    share = point.film_share(description.surface, description.oil)
-    return f"; the film carries {share:.0%} of the load of the most loaded roller" if not math.isnan(share) else ""
+    share, overlap = point.load_sharing(description.surface, description.oil)
+    if math.isnan(share):
+        return ""
+    words = f"; the film carries {share:.0%} of the load of the most loaded roller"
+    return f"{words}\n  {OVERLAP}" if overlap else words
 
 
 def loss_words(loss: RollingLoss) -> str:

@@ -20,6 +20,7 @@ from mbs.bearings.films import SIDES
 from mbs.bearings.roller_element import ring_matrices
 from mbs.bearings.rolling_loss import RollingLoss
 from mbs.linearised.bands import ModeBands, error_words
+from mbs.linearised.film_law import FilmLawPart
 from mbs.linearised.linear import StateSpace
 from mbs.linearised.modes import Modes
 from mbs.model.body import FREEDOMS
@@ -36,6 +37,9 @@ RESULT = dataset_kind("a result of mbs", _RESULT)
 
 BAND = "band, either way, by the errors that the map states, of"
 """How datasets call the bands; they are NaN where none is stated."""
+
+LEFT_OUT = "what the film law with memory leaves out, true less found, to first order,"
+"""How datasets call the part of the film law; it is NaN where it is not known."""
 
 _KINDS = (("translation", "m", "displacement"), ("rotation", "rad", "rotation"), ("modal", "1", "modal amplitude"))
 _UNITS = {"m": "m", "rad": "rad", "1": "1"}
@@ -118,11 +122,18 @@ def modes_dataset(found: Modes, balance: Equilibrium) -> xr.Dataset:
     )
     none = np.full(found.frequency.shape, np.nan)
     bands = ModeBands(none, none) if found.bands is None else found.bands
+    law = FilmLawPart(none, none) if found.film_law is None else found.film_law
     variables = {
         "frequency": ("mode", found.frequency, {"units": "Hz", "long_name": "|eigenvalue|/(2 pi)"}),
         "damping_ratio": ("mode", found.damping_ratio, {"units": "1", "long_name": "damping ratio"}),
         "frequency_error": ("mode", bands.frequency, {"units": "Hz", "long_name": f"{BAND} the frequency"}),
         "damping_ratio_error": ("mode", bands.damping_ratio, {"units": "1", "long_name": f"{BAND} the damping ratio"}),
+        "frequency_film_law": ("mode", law.frequency, {"units": "Hz", "long_name": f"{LEFT_OUT} of the frequency"}),
+        "damping_ratio_film_law": (
+            "mode",
+            law.damping_ratio,
+            {"units": "1", "long_name": f"{LEFT_OUT} of the damping ratio"},
+        ),
         "eigenvalue_real": ("mode", found.eigenvalues.real, {"units": "1/s", "long_name": "decay"}),
         "eigenvalue_imaginary": ("mode", found.eigenvalues.imag, {"units": "rad/s", "long_name": "damped frequency"}),
         "energy_share": (

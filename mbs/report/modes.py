@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
+
 from ehdmaps.report.markup import Markup, joined, tag
 from ehdmaps.report.numbers import number, shown
 from ehdmaps.report.tables import table
 from mbs.analyses.modes import ModesResult
-from mbs.commands.common import clean, film_lines, free_words
+from mbs.commands.common import band_lines, clean, film_law_line, film_lines, free_words
 from mbs.output.modes_text import kinds, share_words
 from mbs.scene.fields import HERTZ
 
@@ -27,19 +29,21 @@ def mode_table(found: ModesResult, highest: float) -> Markup:
     all_modes = found.modes
     free, creeping, swinging = kinds(all_modes)
     listed = swinging[all_modes.frequency[swinging] <= highest][:MOST]
-    bands = all_modes.bands
+    bands, law = all_modes.bands, all_modes.film_law
     rows = [
         (
             f"{k + 1}",
             number(float(all_modes.frequency[k]), 5),
             *([number(float(bands.frequency[k]), 2)] if bands is not None else []),
+            *([_part(float(law.frequency[k]))] if law is not None else []),
             number(clean(float(all_modes.damping_ratio[k])), 3),
             *([number(float(bands.damping_ratio[k]), 2)] if bands is not None else []),
+            *([_part(float(law.damping_ratio[k]))] if law is not None else []),
             share_words(all_modes, int(k)),
         )
         for k in listed
     ]
-    error = ("±",) if bands is not None else ()
+    error = (*(("±",) if bands is not None else ()), *(("film law",) if law is not None else ()))
     heads = ("mode", "frequency, Hz", *error, "damping ratio", *error, "strain energy")
     remarks = [
         f"{swinging.size - listed.size} more modes up to "
@@ -51,6 +55,7 @@ def mode_table(found: ModesResult, highest: float) -> Markup:
         f"{len(all_modes.lost)} modes could not be brought to the films of their own frequency and are not listed."
         if all_modes.lost
         else "",
+        *(line.strip() + "." for line in (*band_lines(found.model), *film_law_line(found.model, law is not None))),
         *film_lines(found.errors, all_modes.frequency[listed]),
     ]
     return joined(
@@ -59,3 +64,8 @@ def mode_table(found: ModesResult, highest: float) -> Markup:
         else tag("p", f"No mode oscillates below {shown(HERTZ, highest)}."),
         *(tag("p", remark, class_="says") for remark in remarks if remark),
     )
+
+
+def _part(value: float) -> str:
+    """What the film law leaves out; a dash where that is not known."""
+    return number(value, 2) if math.isfinite(value) else "-"

@@ -130,7 +130,7 @@ def read_wav(path: Path) -> TimeData:
         raise InputError(
             f"{path}: cannot be read as a sound file ({error}); allowed: a WAV of 8, 16, 24 or 32 bits, or floating"
         ) from error
-    samples = _floating(given.reshape(given.shape[0], -1))
+    samples = _floating(given[:, np.newaxis] if given.ndim == 1 else given)
     channels, factors = _channels(path, table)
     if samples.shape[1] != len(channels):
         raise InputError(

@@ -33,6 +33,7 @@ from tests.cases.film_memory import (
     FVA3,
     LARGE_COURSES,
     PLACES,
+    READ,
     THICK,
     THIN,
     Errors,
@@ -102,6 +103,11 @@ def over_frequency(count: int) -> None:
     wrong = 100.0 * np.array([each.at_places for each in every])
     for column, place in enumerate(PLACES):
         one = wrong[:, column]
+        print(f"  omega T {place:4g}: {np.median(one):6.2f} {np.percentile(one, 95.0):6.2f} {one.max():6.2f}")
+    print("that error as it is read from the natural frequencies of a map, what is wrong of it [%]: the same")
+    read = 100.0 * np.array([each.read for each in every])
+    for column, place in enumerate(READ):
+        one = read[:, column]
         print(f"  omega T {place:4g}: {np.median(one):6.2f} {np.percentile(one, 95.0):6.2f} {one.max():6.2f}")
     print("worst points of the law with memory")
     for name, each in worst:

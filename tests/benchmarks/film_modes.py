@@ -4,9 +4,10 @@ Run: python -m tests.benchmarks.film_modes nu308.nc [--scene gearbox] [--speed 5
 
 Exact: films by the solver itself at 72 loads, for both contacts and each speed, at the complex frequency of each mode
 (`tests.cases.exact_films`); Newton's method from the mode with memory. Memory and slow: `mbs modes --films memory` and
-`--films slow` with the map; memory is the law that runs have in time, for small motion. The loads of the slices are
-those of the map's equilibrium for all. Listed are the modes below 12 kHz that oscillate and have 5 % and more of their
-strain energy in bearings; a mode of slow films is the one whose shape is most alike (MAC, mass-weighted).
+`--films slow` with the map; memory is the law that runs have in time, for small motion. Corrected: memory with what its
+film law leaves out, as `mbs modes` states it. The loads of the slices are those of the map's equilibrium for all.
+Listed are the modes below 12 kHz that oscillate and have 5 % and more of their strain energy in bearings; a mode of
+slow films is the one whose shape is most alike (MAC, mass-weighted).
 
 Below, for the bearings of each machine: the error of the dynamic stiffness along the load beside exact films, and what
 the analyses state as its estimate.
@@ -69,7 +70,7 @@ def compare(
     mass = balance.system.mass
     share = memory.shares[[memory.parts.index(bearing.name) for bearing in exact.bearings]].sum(axis=0)
     print(f"\n{scene}, {1e6 * clearance:g} um, {rpm:g} rpm: f/Hz, damping ratio/%")
-    print(f"{'share':>6s}{'exact':>18s}{'memory':>18s}{'slow':>18s}   MAC with exact: memory, slow")
+    print(f"{'share':>6s}{'exact':>18s}{'memory':>18s}{'corrected':>18s}{'slow':>18s}   MAC with exact: memory, slow")
     found: list[complex] = []
     failed = 0
     for k in np.flatnonzero((memory.eigenvalues.imag > 0.0) & (share >= _LEAST_SHARE) & (memory.frequency < HIGHEST)):
@@ -82,10 +83,15 @@ def compare(
         swinging = np.flatnonzero(slow.eigenvalues.imag > 0.0)
         like = [likeness(shape, slow.shapes[:, j], mass) for j in swinging]
         j = int(swinging[int(np.argmax(like))])
-        cells = "".join(
-            f"{abs(one) / (2.0 * math.pi):11.1f} /{-100.0 * one.real / abs(one):5.2f}"
+        law = memory.film_law
+        assert law is not None
+        pairs = [
+            (abs(one) / (2.0 * math.pi), -one.real / abs(one))
             for one in (value, complex(memory.eigenvalues[k]), complex(slow.eigenvalues[j]))
-        )
+        ]
+        corrected = (memory.frequency[k] + law.frequency[k], memory.damping_ratio[k] + law.damping_ratio[k])
+        pairs.insert(2, corrected)
+        cells = "".join(f"{frequency:11.1f} /{100.0 * ratio:5.2f}" for frequency, ratio in pairs)
         alike = likeness(shape, memory.shapes[:, k], mass)
         print(f"{100.0 * share[k]:5.0f}%{cells}   {alike:.3f}  {max(like):.3f}")
     apart = np.abs(np.subtract.outer(found, found)) + np.eye(len(found)) * 1e9

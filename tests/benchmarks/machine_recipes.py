@@ -85,7 +85,7 @@ def widths_of_resonances(outputs: Sequence[Output]) -> list[Figure]:
 
 def slow_and_memory(outputs: Sequence[Output]) -> list[Figure]:
     """Fall and damping of the modes along the load with slow films and with memory, and the errors of both."""
-    found: list[Figure] = given("30")
+    found: list[Figure] = given("30 0")
     for films, speeds in (("slow films", "500 2500"), ("films with memory", "")):
         modes = one_case([outputs[0].text], f"Reynolds map, {films}").bearing_modes()
         found += [-mode.change for mode in modes]

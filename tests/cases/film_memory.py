@@ -27,9 +27,10 @@ from ehdmaps.jobs.generate import generate_in_memory
 from ehdmaps.jobs.job import Job
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.film_field import lifted_loss
+from ehdmaps.maps.film_response import FilmsOfContact
 from ehdmaps.maps.law import LawAtPoint
 from ehdmaps.maps.locked_film import film_of, locked_stiffness
-from ehdmaps.maps.locked_fit import fitted_factor, response_error
+from ehdmaps.maps.locked_fit import fitted_factor, law_differences, response_error
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width, natural_time
 from ehdmaps.physics.lubricant import Lubricant
@@ -61,6 +62,9 @@ NATURAL = np.geomspace(0.01, 10.0, 25)
 
 PLACES = np.array([0.1, 0.3, 1.0, 3.0, 10.0, 30.0])
 """omega T at which errors are told one by one."""
+
+READ = np.array([0.1, 0.3, 0.7, 1.4, 2.8, 5.6, 10.0, 14.0, 30.0])
+"""omega T at which it is asked how well the law's error is read from the responses of a map."""
 
 REST = (0.4, 0.7, 1.5, 2.0)
 """Loads at which the curves at rest are compared, over that of the start."""
@@ -346,6 +350,8 @@ class Response:
         Errors of the law with memory at `PLACES`.
     stated : float
         Largest error that the solver states.
+    read : tuple of float
+        Error of the law's own error at `READ`, as it is read from the natural frequencies of a map.
     """
 
     M: float
@@ -357,6 +363,7 @@ class Response:
     worst: float
     at_places: tuple[float, ...]
     stated: float
+    read: tuple[float, ...]
 
 
 def response(contact: LineContact, oil: Lubricant, point: OperatingPoint) -> Response:
@@ -380,11 +387,11 @@ def response(contact: LineContact, oil: Lubricant, point: OperatingPoint) -> Res
         raise NoSolutionError(f"none at {load:.6g} N/m, {speed:.6g} m/s, {point.temperature:.6g} K")
     natural = natural_time(load, film.film_offset, speed, contact.radius, contact.reduced_modulus)
     omega, held = NATURAL / natural, np.array(solver.natural_frequencies)
-    asked = np.concatenate([NATURAL, PLACES, held]) / (2.0 * math.pi * natural)
+    asked = np.concatenate([NATURAL, PLACES, READ, held]) / (2.0 * math.pi * natural)
     found = solver.film_spectrum(contact, oil, point, asked)
     spectrum = contact_spectrum(found, contact, point)
     exact, k = spectrum.dynamic_stiffness[: omega.size], spectrum.solution.stiffness
-    beyond = spectrum.dynamic_stiffness[omega.size : -held.size]
+    beyond, between = np.split(spectrum.dynamic_stiffness[omega.size : -held.size], [PLACES.size])
     loss = lifted_loss(np.array(spectrum.solution.damping / k**2), np.array(half), speed, np.array(1.0 / k))
     c = float(loss) * k**2
     solids = float(contact.structural_compliance(load))
@@ -395,6 +402,15 @@ def response(contact: LineContact, oil: Lubricant, point: OperatingPoint) -> Res
     )
     stiff, by_formula = (locked_stiffness(locked, film.film_offset, load, k, c, solids, each) for each in (factor, 1.0))
     wrong = np.abs(relaxing(k, c, stiff, omega) / exact - 1.0)
+    apart = law_differences(
+        locked, load, film.film_offset, solids, film.film_compliance, float(loss), held, kept, factor
+    )
+    relaxation = np.array([c / (stiff - k) if stiff > k else 0.0])
+    films = FilmsOfContact(
+        *(np.array([value]) for value in (k, c)), relaxation, *(np.array([time]) for time in (natural, half / speed)),
+        held, apart[None],
+    )  # fmt: skip
+    by_map = films.compliance(1j * READ / natural)[:, 0]
     state = oil.at(point.temperature)
     alpha = state.pressure_viscosity.pressure_viscosity
     M, L = moes_groups(load, speed, state.viscosity, alpha, contact.radius, contact.reduced_modulus)
@@ -408,6 +424,7 @@ def response(contact: LineContact, oil: Lubricant, point: OperatingPoint) -> Res
         float(NATURAL[np.argmax(wrong)]),
         tuple(np.abs(relaxing(k, c, stiff, PLACES / natural) / beyond - 1.0).tolist()),
         float(np.max(spectrum.dynamic_stiffness_error[: omega.size])),
+        tuple(np.abs(relaxing(k, c, stiff, READ / natural) * (by_map - 1.0 / between)).tolist()),
     )
 
 

@@ -53,6 +53,9 @@ class ValleyField:
     def locked_factors(self, contact, loads, speed, temperature):
         """Nothing is known of films that oscillate; see `FilmField.locked_factors`."""
 
+    def film_differences(self, contact, loads, speed, temperature):
+        """Nothing is known of films that oscillate; see `FilmField.film_differences`."""
+
     def films(self, contact, loads, speeds, temperatures):
         solids = self.line_contacts[self.contacts.index(contact)]
         out = np.empty((3, *loads.shape))

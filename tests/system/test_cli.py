@@ -156,6 +156,45 @@ def test_an_output_that_cannot_be_written(here, capsys, output, message):
     assert message in err
 
 
+@pytest.mark.parametrize("name", ["a\rb", "a\u2028b", "a\x1b[31mb"])
+def test_a_job_whose_name_no_map_can_carry_is_refused_at_once(here, capsys, name):
+    (here / "mine.toml").rename(here / f"{name}.toml")
+    for command in (["generate"], ["generate", "-o", "good.nc"], ["check"], ["submit", "--array", "2"]):
+        status, out, err = run(capsys, *command, f"{name}.toml")
+        assert (status, out, names(here)) == (2, "", [f"{name}.toml"])
+        assert f"is called {name!r}; allowed: printable characters, which its map can carry; rename it" in err
+
+
+def test_a_backslash_in_a_name_is_refused_at_once(here, capsys):
+    (here / "mine.toml").rename(here / "a\\b.toml")
+    (here / "c\\d").mkdir()
+    before = names(here)
+    for command in (["generate"], ["generate", "--shard", "1/2"], ["submit", "--array", "2"],
+                    ["generate", "-o", "c\\d/e.nc"]):  # fmt: skip
+        status, out, err = run(capsys, *command, "a\\b.toml")
+        assert (status, out, names(here)) == (2, "", before)
+        assert "allowed: no backslash in names of files and folders" in err
+    status, _, _ = run(capsys, "generate", "a\\b.toml", "-o", "good.nc", "--workers", "1")
+    assert status == 0 and open_map("good.nc").dataset.attrs["job_name"] == "a\\b"
+
+
+def test_two_runs_of_a_job_have_one_checksum(here, capsys):
+    text = map_job(spaced("1 N/mm", "100 N/mm", 3), '["0.5 m/s"]', '["40 degC"]', solver="reynolds")
+    (here / "solved.toml").write_text(f'{text}backbone = "none"\n')
+    sums = []
+    for name in ("one.nc", "two.nc"):
+        assert run(capsys, "generate", "solved.toml", "-o", name, "--workers", "1")[0] == 0
+        sums.append(open_map(name).dataset)
+    assert sums[0]["solve_seconds"].values.tolist() != sums[1]["solve_seconds"].values.tolist()
+    assert sums[0].attrs["content_sha256"] == sums[1].attrs["content_sha256"]
+
+
+def test_a_folder_is_no_map_to_look_for(here, capsys):
+    status, _, err = run(capsys, "status", "mine.toml", "-o", ".")
+    assert status == 2
+    assert "-o: got ., which is a folder; allowed: a map; a folder goes with a batch" in err
+
+
 def test_a_broken_store_leaves_the_good_map_alone(here, capsys):
     run(capsys, "generate", "mine.toml", "--workers", "1")
     good = (here / "mine.nc").read_bytes()

@@ -129,6 +129,7 @@ def test_an_installation_elsewhere_has_its_jobs_scenes_exports_and_solids(instal
     done([python, "-c", code], tmp_path)
     # with the finite elements of its housing
     done([installed / "bin/mbs", "statics", "gearbox", "--law", "hertz"], tmp_path)
-    for target, name in (("csv", "k.csv"), ("c", "c"), ("ross", "ross.toml"), ("modelica", "m.mo")):
-        done([program, "export", small_map, "--to", target, "-o", name], tmp_path)
+    at = ["--load", "5 kN", "--speed", "1000 rpm"]
+    for target, name, more in (("csv", "k.csv", []), ("c", "c", []), ("ross", "ross.toml", at)):
+        done([program, "export", small_map, "--to", target, "-o", name, *more], tmp_path)
     assert "NU308" in done([program, "solids", "nu308"], tmp_path)

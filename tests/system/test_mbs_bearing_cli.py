@@ -12,7 +12,10 @@ import xarray as xr
 from scipy.optimize import root
 
 import ehdmaps
+from ehdmaps.jobs import cli
+from ehdmaps.maps.rough_films import OVERLAP
 from ehdmaps.physics.bearing import BEARINGS
+from ehdmaps.physics.peak import tip_words
 from mbs import Bearing, BearingForce
 from tests.cases import commands
 from tests.cases.commands import check_units
@@ -249,3 +252,28 @@ def test_no_equilibrium_is_status_1(here, capsys):
     status, out, err = run(capsys, "soft.toml", "--load", "1e7 N", "--speed", "9 rpm")
     assert (status, out) == (1, "")
     assert "the load is beyond what the bearing can carry" in err
+
+
+def test_where_load_sharing_is_out_of_its_range_is_said(here, capsys, formula_map):
+    at = ("NU308", "--load", "5 kN", "--temperature", "50 degC", "--map", formula_map, "--roughness", "2 um")
+    for speed, wanted in (("100 rpm", True), ("3000 rpm", False)):
+        status, out, _ = run(capsys, *at[:3], "--speed", speed, *at[3:])
+        assert status == 0 and "the film carries" in out
+        assert (OVERLAP in out) == wanted
+
+
+def test_the_missing_tip_of_a_spike_is_said_alike_everywhere(here, capsys, reynolds_map):
+    """By `solve`, `show` and `mbs bearing`: one sentence, with the error that the point or the map states."""
+    status, out, _ = run(capsys, "NU308", "--load", "5 kN", "--speed", "1500 rpm", "--map", reynolds_map)
+    assert status == 0 and "  film pressure with spike " in out and "+-" not in out
+    assert cli.main(["show", reynolds_map]) == 0
+    shown = capsys.readouterr().out
+    errors = ehdmaps.open_map(reynolds_map).dataset["max_pressure_error"]
+    assert tip_words(float(errors.max())) in shown
+    place = ["--load", "80 N/mm", "--speed", "1.7 m/s", "--temperature", "40 degC"]
+    assert cli.main(["solve", "nu308", *place]) == 0
+    solved = capsys.readouterr().out
+    sentence = tip_words(1.0).split(", by")[0]
+    assert sentence in out and sentence in shown and solved.count(sentence) == 2
+    assert cli.main(["solve", "nu308", *place[:2], "--speed", "0.1 m/s", "--temperature", "100 degC"]) == 0
+    assert sentence not in capsys.readouterr().out

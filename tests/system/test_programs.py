@@ -1,8 +1,10 @@
 """What both programs do alike: arguments, streams that take nothing, foreign characters, versions, Ctrl-C."""
 
+import argparse
 import errno
 import os
 import random
+import resource
 import shutil
 import signal
 import subprocess
@@ -25,6 +27,9 @@ ROOT = str(Path(errors.__file__).parents[1])
 DATA = Path(__file__).parents[1] / "data"
 PROGRAMS = {"ehdmaps": "ehdmaps.jobs.cli", "mbs": "mbs", "examples.housings": "examples.housings"}
 NOWHERE = {"ehdmaps": ["status", "none.nc"], "mbs": ["modes", "none.toml"], "examples.housings": ["none"]}
+
+
+LACK = "the system has too little ({}); look after memory and limits (ulimit -a), or take fewer processes"
 
 
 @pytest.fixture
@@ -194,6 +199,10 @@ def test_programs_know_their_version(name, capsys):
         (errors.StoreError("a"), 2, "p work: 1 problem\n  a\n"),
         (AnalysisError("no\nbalance"), 1, "p work: 2 problems\n  no\n  balance\n"),
         (KeyboardInterrupt(), 130, "\nstopped\n"),
+        (errors.WorkerError("they die"), 2, "p work: 1 problem\n  they die\n"),
+        (errors.WorkerError("they die", kept=3), 1, "p work: 1 problem\n  they die\n"),
+        (MemoryError(), 2, f"p work: 1 problem\n  {LACK.format('out of memory')}\n"),
+        (OSError(errno.EMFILE, "no files left"), 2, f"p work: 1 problem\n  {LACK.format('no files left')}\n"),
     ],
 )
 def test_errors_end_in_words_and_a_status(capsys, error, status, said):
@@ -206,6 +215,100 @@ def test_errors_end_in_words_and_a_status(capsys, error, status, said):
     assert capsys.readouterr() == ("", said)
 
 
+def commands(parser):
+    (action,) = (action for action in parser._actions if isinstance(action, argparse._SubParsersAction))
+    return action.choices
+
+
+@pytest.mark.parametrize("name", ["ehdmaps", "mbs"])
+def test_an_empty_name_is_not_taken_for_none(capsys, name):
+    main, made = {"ehdmaps": (cli.main, cli.parser()), "mbs": (mbs.cli.main, mbs.cli.parser())}[name]
+    tried = 0
+    for command, parser in commands(made).items():
+        given = {option for action in parser._actions if action.metavar is not None for option in action.option_strings}
+        for option in sorted(given & {"-o", "--output", "--plot", "--maps", "--map"}):
+            for words in ([option, ""], [f"{option}="] if option.startswith("--") else []):
+                if words:
+                    with pytest.raises(SystemExit) as end:
+                        main([command, *words])
+                    assert end.value.code == 2
+                    assert f"{option}" in (err := capsys.readouterr().err.splitlines()[-1])
+                    assert err.endswith("got ''; allowed: a text that is not empty, or to leave it out")
+                    tried += 1
+    assert tried > 20
+    with pytest.raises(SystemExit):
+        main([""])
+    assert "argument COMMAND: invalid choice: ''" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", ["ehdmaps", "mbs"])
+@pytest.mark.parametrize(
+    ("limit", "bytes_", "said"),
+    [
+        (
+            "RLIMIT_AS",
+            409_600_000,
+            "limit of memory addresses: got 409.6 MB; allowed: 1000 MB or more; raise it: ulimit -v",
+        ),
+        ("RLIMIT_DATA", 300_000_000, "limit of data: got 300 MB; allowed: 600 MB or more; raise it: ulimit -d"),
+        ("RLIMIT_STACK", 131_072, "limit of stack: got 0.1311 MB; allowed: 0.25 MB or more; raise it: ulimit -s"),
+    ],
+)
+def test_limits_with_which_libraries_crash_are_refused(folder, capsys, monkeypatch, name, limit, bytes_, said):
+    given = resource.getrlimit
+    tight = (bytes_, resource.RLIM_INFINITY)
+    monkeypatch.setattr(
+        resource, "getrlimit", lambda which: tight if which == getattr(resource, limit) else given(which)
+    )
+    main = {"ehdmaps": cli.main, "mbs": mbs.cli.main}[name]
+    assert main(["stability"]) == 2
+    out, err = capsys.readouterr()
+    assert out == "" and len(err.splitlines()) == 2
+    assert said in err
+
+
+def limited(folder, limits, *arguments):
+    """A command as a process with limits of the system: what is returned, and how long it took."""
+
+    def tighten():
+        for limit, value in limits.items():
+            resource.setrlimit(getattr(resource, limit), (value, value))
+
+    begin = time.monotonic()
+    found = done("ehdmaps", *arguments, preexec_fn=tighten, timeout=60)
+    return found.returncode, found.stderr.decode(), time.monotonic() - begin
+
+
+def test_too_few_addresses_are_told_within_seconds(folder):
+    status, err, seconds = limited(folder, {"RLIMIT_AS": 400_000 * 1024}, "generate", "job.toml", "--workers", "2")
+    assert (status, len(err.splitlines())) == (2, 2)
+    assert "limit of memory addresses: got 409.6 MB" in err and seconds < 30.0
+
+
+@pytest.mark.slow  # two processes that load all libraries
+@pytest.mark.parametrize(
+    ("files", "said"),
+    [(6, "the system has too little (Too many open files)"), (12, "worker processes cannot be started")],
+)
+def test_too_few_files_are_told(folder, files, said):
+    status, err, _ = limited(folder, {"RLIMIT_NOFILE": files}, "generate", "job.toml", "--workers", "2")
+    assert status == 2
+    assert said in err.splitlines()[-1] and "Traceback" not in err
+
+
+@pytest.mark.slow  # processes that load all libraries
+def test_a_script_that_starts_itself_again_is_told_so(folder):
+    script = "import ehdmaps\nehdmaps.generate('job.toml', 'job.nc', workers=2)\n"
+    (folder / "script.py").write_text(script)
+    found = subprocess.run([sys.executable, "script.py"], capture_output=True, text=True, timeout=120, check=False)
+    *trace, last = found.stderr.splitlines()
+    assert found.returncode == 1 and len(trace) < 40
+    assert last.startswith("ehdmaps.errors.WorkerError: worker processes: each runs ")
+    assert "script.py again before it works, which fails (" in last
+    assert "job.nc.store: is in use by another job" in last
+    assert last.endswith('under `if __name__ == "__main__":`; put that around it, or take one worker')
+
+
 # --- Ctrl-C
 
 
@@ -214,8 +317,8 @@ def test_errors_end_in_words_and_a_status(capsys, error, status, said):
     [["ehdmaps", "tradeoff", "nu308", "--points", "1000"], ["mbs", "campbell", "gearbox", "--law", "hertz"]],
     ids=["ehdmaps", "mbs"],
 )
-@pytest.mark.parametrize("seed", [1, 2])
-def test_ctrl_c_ends_a_program_in_peace(folder, command, seed):
+@pytest.mark.parametrize(("seed", "number", "status"), [(1, signal.SIGINT, 130), (2, signal.SIGTERM, 143)])
+def test_ctrl_c_ends_a_program_in_peace(folder, command, seed, number, status):
     name, *arguments = command
     ready = (
         f"import runpy; print(flush=True); runpy.run_module({PROGRAMS[name]!r}, run_name='__main__', alter_sys=True)"
@@ -223,9 +326,9 @@ def test_ctrl_c_ends_a_program_in_peace(folder, command, seed):
     job = start([sys.executable, "-c", ready, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     job.stdout.readline()
     time.sleep(0.3 + random.Random(seed).uniform(0.0, 1.5))
-    job.send_signal(signal.SIGINT)
+    job.send_signal(number)
     out, err = job.communicate(timeout=60)
-    assert (job.returncode, out) == (130, "")
+    assert (job.returncode, out) == (status, "")
     assert err.endswith("\nstopped\n") and "Traceback" not in err
 
 

@@ -4,6 +4,7 @@ import json
 import os
 import re
 import signal
+import subprocess
 import time
 
 import numpy as np
@@ -13,7 +14,7 @@ import ehdmaps
 from ehdmaps.jobs import cli
 from ehdmaps.jobs.status import status_path
 from tests.cases.batches import SMALL_LISTS, batch_text
-from tests.cases.jobs import map_job, spaced
+from tests.cases.jobs import SMALL, map_job, spaced
 from tests.cases.slurm import running_slurm
 
 JOB = (
@@ -100,6 +101,41 @@ def test_submitit_submits_the_array_and_the_merge(slurm, tmp_path, monkeypatch, 
         assert ehdmaps.open_map(tmp_path / "cat" / f"{name}.nc").dataset.attrs["job_name"] == name
     assert cli.main(["status", "cat.toml"]) == 0
     assert "2 of 2 shards finished" in capsys.readouterr().out
+
+
+@pytest.mark.slow  # two short processes, one after the other
+def test_slurm_reads_any_name_as_it_is(slurm, tmp_path, monkeypatch, capsys):
+    """Blanks, quotes, signs of a shell and of Slurm in names of job, map and folder: nothing is run or expanded."""
+    folder = tmp_path / "50 %j $HOME"
+    folder.mkdir()
+    monkeypatch.chdir(folder)
+    name = "-a %j \"q\" 'x' `touch PWN` $(touch PWN) ;&|<> ü #"
+    (folder / f"{name}.toml").write_text(SMALL)
+    assert cli.main(["submit", "--array", "2", "--", f"{name}.toml"]) == 0
+    (folder / "array.sh").write_text(capsys.readouterr().out)
+    assert subprocess.run(["bash", "-n", "array.sh"], check=False).returncode == 0
+    array = slurm.submit("array.sh")
+    shown = slurm.run("scontrol", "show", "job", array)
+    assert slurm.wait(array) == {"COMPLETED"}
+    merge = slurm.submit("--array=0", "array.sh")
+    assert slurm.wait(merge) == {"COMPLETED"}
+    logs = {f"{name}.nc.slurm-{job}_{task}.log" for job, task in ((array, 1), (array, 2), (merge, 0))}
+    stores = {f"{name}.nc{shard}.store{end}" for shard in (".shard-1-of-2", ".shard-2-of-2") for end in ("", ".status")}
+    found = {path.name for path in folder.iterdir()}
+    assert found == {"array.sh", f"{name}.toml", f"{name}.nc", f"{name}.nc.store"} | logs | stores
+    assert f"JobName=ehdmaps-{name}"[:60] in shown
+    assert ehdmaps.open_map(folder / f"{name}.nc").dataset.attrs["job_name"] == name
+
+
+def test_submitit_is_not_given_signs_of_slurm(tmp_path, monkeypatch, capsys):
+    pytest.importorskip("submitit")
+    folder = tmp_path / "50 %j"
+    folder.mkdir()
+    monkeypatch.chdir(folder)
+    (folder / "cat.toml").write_text(batch_text(SMALL_LISTS))
+    assert cli.main(["submit", "cat.toml", "--array", "2", "--submit"]) == 2
+    assert "where Slurm takes % for a sign of its own; allowed with --submit: names" in capsys.readouterr().err
+    assert [path.name for path in folder.iterdir()] == ["cat.toml"]
 
 
 def test_a_machine_without_slurm_is_told_so(tmp_path, monkeypatch, capsys):

@@ -1,14 +1,15 @@
 """Batch files: what is read, what is refused, what becomes of members that fail, and of a run that goes on."""
 
 import csv
+import importlib
 from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
 
-from ehdmaps.errors import InputError
-from ehdmaps.jobs import cli
+from ehdmaps.errors import InputError, WorkerError
+from ehdmaps.jobs import batch_generate, cli
 from ehdmaps.jobs.batch import MOST_MEMBERS, is_batch, parse_batch, read_batch
 from ehdmaps.jobs.batch_generate import generate_batch
 from ehdmaps.jobs.batch_plan import plan_batch
@@ -210,7 +211,11 @@ def test_a_folder_that_cannot_be_made(tmp_path, capsys):
     (tmp_path / "cat.toml").write_text(batch_text(SMALL_LISTS))
     (tmp_path / "maps").write_text("a file")
     assert cli.main(["generate", str(tmp_path / "cat.toml"), "-o", str(tmp_path / "maps")]) == 2
-    assert "maps: cannot be made" in capsys.readouterr().err
+    assert "which is no folder and cannot be made; allowed: a folder for the maps" in capsys.readouterr().err
+    for name in ("a\\b", "a\nb"):
+        assert cli.main(["generate", str(tmp_path / "cat.toml"), "-o", str(tmp_path / name)]) == 2
+        assert "b'" in (err := capsys.readouterr().err) and "; rename it" in err
+        assert not (tmp_path / name).exists()
 
 
 @pytest.mark.parametrize("films", ["shared", "own"])
@@ -243,3 +248,30 @@ def test_check_tells_what_maps_share_and_other_commands_refuse_a_batch(tmp_path,
     assert "32 in 8 tasks, which is what shards can be made of" in told
     assert cli.main(["length", source]) == 2
     assert "is a batch file, of many jobs; allowed: one job" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("films", ["shared", "own"])
+def test_processes_that_die_are_no_failure_of_each_map(films, tmp_path, monkeypatch):
+    def dying(*_, **__):
+        raise WorkerError("worker processes die", kept=1)
+
+    monkeypatch.setattr(batch_generate, "sweep", dying)
+    monkeypatch.setattr(batch_generate, "generate", dying)
+    with pytest.raises(WorkerError, match="worker processes die"):
+        generate_batch(read(batch_text(f'{SMALL_LISTS}\nfilms = "{films}"')), tmp_path / "maps", workers=1)
+
+
+def _dies_on_import(item):
+    raise AssertionError
+
+
+class Missing:
+    """What a worker process cannot unpickle."""
+
+    def __reduce__(self):
+        return importlib.import_module, ("no_such_library",)
+
+
+def test_pieces_whose_processes_die_at_once_are_the_end():
+    with pytest.raises(WorkerError, match=r"before they do anything .*no_such_library"):
+        list(batch_generate._each(_dies_on_import, [Missing(), Missing(), Missing()], 2))

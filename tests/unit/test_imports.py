@@ -32,7 +32,7 @@ ALLOWED = {
     "ehdmaps.interrupts": set(),
     "ehdmaps.program": {"ehdmaps.errors", "ehdmaps.interrupts", "ehdmaps.version"},
     "ehdmaps.compiling": set(),
-    "ehdmaps.workers": {"ehdmaps.compiling", "ehdmaps.program"},
+    "ehdmaps.workers": {"ehdmaps.compiling", "ehdmaps.errors", "ehdmaps.interrupts", "ehdmaps.program"},
     "ehdmaps.physics": {"ehdmaps.arrays", "ehdmaps.errors"},
     "ehdmaps.ehl": {"ehdmaps.arrays", "ehdmaps.compiled", "ehdmaps.copies", "ehdmaps.errors", "ehdmaps.physics"},
     "ehdmaps.maps": {

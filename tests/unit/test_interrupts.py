@@ -1,3 +1,4 @@
+import os
 import random
 import signal
 import subprocess
@@ -8,6 +9,7 @@ import time
 import pytest
 
 from ehdmaps.interrupts import careful_interrupts, deaf_children
+from ehdmaps.workers import start_worker
 from tests.cases.interruptible import start
 
 LOOP = """
@@ -66,6 +68,25 @@ def test_our_own_code_is_interrupted_at_once(heard):
     assert not reached
 
 
+def test_sigterm_is_heard_like_ctrl_c(heard):
+    assert signal.getsignal(signal.SIGTERM) == signal.SIG_DFL
+    with pytest.raises(KeyboardInterrupt), careful_interrupts() as stopped:
+        assert stopped.status == 130
+        signal.raise_signal(signal.SIGTERM)
+    assert stopped.status == 143
+    assert signal.getsignal(signal.SIGTERM) == signal.SIG_DFL
+
+
+@pytest.mark.filterwarnings("ignore:This process .* is multi-threaded:DeprecationWarning")
+def test_a_forked_process_ends_at_once_by_sigterm(heard):
+    with careful_interrupts():
+        child = os.fork()
+        if child == 0:
+            signal.raise_signal(signal.SIGTERM)
+            os._exit(1)
+        assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 143
+
+
 def test_delicate_code_comes_to_its_end(heard):
     places = []
     # Frames are known by the name of their module; numba calls such code without expecting an exception.
@@ -102,6 +123,7 @@ def test_ignored_interrupts_stay_ignored():
         assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN
     finally:
         signal.signal(signal.SIGINT, before)
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)  # at the end of the process it ends that at once
 
 
 def test_threads_and_handlers_of_others_are_left_alone(heard):
@@ -122,6 +144,18 @@ def test_threads_and_handlers_of_others_are_left_alone(heard):
     thread.start()
     thread.join()
     assert found == [signal.default_int_handler]
+
+
+@pytest.mark.filterwarnings("ignore:This process .* is multi-threaded:DeprecationWarning")
+def test_a_signal_to_a_process_that_begins_waits_for_it(heard):
+    """A fork forgets signals that a handler of Python has taken before it is itself; blocked ones stay."""
+    with careful_interrupts(), deaf_children(signal.SIGTERM):
+        child = os.fork()
+        if child == 0:
+            os.kill(os.getpid(), signal.SIGTERM)
+            start_worker()
+            os._exit(1)
+        assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == -signal.SIGTERM
 
 
 def test_children_can_be_deaf(heard):

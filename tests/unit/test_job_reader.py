@@ -355,6 +355,57 @@ def test_all_problems_at_once():
     assert len(raised.value.problems) == 7
 
 
+@pytest.mark.parametrize(
+    ("oil", "said"),
+    [
+        (
+            'viscosity_law = "barus"\nviscosity_40 = "46 mm^2/s"',
+            ["density: missing", "viscosity: got viscosity_40; allowed: either", "pressure_viscosity: got none"],
+        ),
+        (
+            'viscosity_law = "barus"\nviscosity_40 = "46 mmm^2/s"\nroelands_z = 0.6\ndensity_law = "x"',
+            ["viscosity_40: got the unit 'mmm^2/s'", "density: missing", "density_law: got 'x'", "roelands_z: stands",
+             "viscosity: got viscosity_40; allowed: either", "pressure_viscosity: got none"],
+        ),
+        (
+            'viscosity_law = "barus"\nviscosity_40 = "46 N"\nviscosity_100 = "7 mm^2/s"\ndensity = "870 kg/m^3"\n'
+            'pressure_viscosity_40 = "20 1/GPa"',
+            ["viscosity_40: got the unit 'N'", "pressure_viscosity: got pressure_viscosity_40; allowed: either"],
+        ),
+        (
+            'viscosity_law = "roelands"\nviscosity_40 = "7 mm^2/s"\nviscosity_100 = "46 mm^2/s"\nroelands_z = 0.6',
+            ["density: missing", "viscosity_100"],
+        ),
+        ('viscosity = "80 mPa s"\nviscosity_40 = "46 mm^2/s"',
+         ["viscosity_law: missing", "density: missing", "viscosity: got viscosity and viscosity_40; allowed: either"]),
+        ('viscosity_law = "tait-doolittle"\npressure_viscosity = "20 1/GPa"',
+         ["density: missing", *["missing"] * 8, "viscosity: got none", "whose numbers give it; delete it"]),
+    ],
+)  # fmt: skip
+def test_all_problems_of_an_own_oil_at_once(oil, said):
+    with pytest.raises(InputError) as raised:
+        parse(GOOD.replace(NAMED_OIL, f"[lubricant]\n{oil}\n"))
+    found = list(raised.value.problems)
+    for words in said:
+        at = next((place for place, problem in enumerate(found) if words in problem), None)
+        assert at is not None, words
+        del found[at]
+    assert found == []
+
+
+def test_a_bearing_that_was_wrong_already_is_not_called_missing():
+    speeds = changed('entrainment_speed = ["0.5 m/s", "1 m/s"]', 'inner_ring_speed = ["100 rpm", "200 rpm"]')
+    for bearing, said in (
+        ('estimate = "NU206"\nbasic_static_rating = "-3 kN"', ["basic_static_rating: got '-3 kN'"]),
+        ('estimate = "NU999"\nbasic_static_rating = "3 N"', ["basic_static_rating: got '3 N'", "got 'NU999'"]),
+        ('name = "NU309"', ["NU309"]),
+    ):
+        with pytest.raises(InputError) as raised:
+            parse(speeds.replace('name = "NU308"', bearing))
+        assert len(raised.value.problems) == len(said)
+        assert all(words in problem for words, problem in zip(said, raised.value.problems, strict=True))
+
+
 def test_a_wrong_solver_option():
     with pytest.raises(InputError, match="--solver: got 'foo'; allowed: hertz"):
         parse(GOOD, solver="foo")

@@ -252,6 +252,10 @@ DAMAGES = {
         set_value("backbone/status", (slice(30, 32), 0, 0), 5),
         "unsolved points beside one another within a line, at reference speed",
     ),
+    "group: two stagnated": (
+        set_value("backbone/status", (slice(30, 32), 0, 0), 2),
+        r"the solver ended there \(stagnated\), and the same job ends there again; in the job, leave these speeds",
+    ),
     "response: no axis": (deleted("backbone/natural_frequency"), ANY),
     "response: one variable": (
         deleted("backbone/film_compliance_imaginary"),

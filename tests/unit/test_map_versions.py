@@ -197,6 +197,26 @@ def test_what_the_table_of_the_version_does_not_name_is_left_alone(tmp_path):
     assert "heat_flow" not in emap.dataset
 
 
+@pytest.mark.parametrize("path", [OLD, OLD_2, OLD_3, OLD_4], ids=["1", "2", "3", "4"])
+def test_a_checksum_that_was_made_over_times_too_still_holds(path):
+    emap = open_map(path)
+    dataset, backbone = emap.dataset, emap.backbone
+    assert dataset.attrs[schema.CHECKSUM] != content_sha256(dataset, backbone)
+    check_content(dataset, backbone, "old")
+    for name in ("film_offset", "solve_seconds"):
+        with pytest.raises(MapError, match="old: was changed since it was made"):
+            check_content(dataset.assign({name: 2.0 * dataset[name]}), backbone, "old")
+
+
+def test_a_checksum_does_not_know_what_the_clock_said():
+    dataset = dataset_of()
+    assert "solve_seconds" in dataset
+    slower = dataset.assign(solve_seconds=2.0 * dataset["solve_seconds"] + 1.0)
+    assert content_sha256(slower, None) == content_sha256(dataset, None)
+    other = dataset.assign(iterations=dataset["iterations"] + 1)
+    assert content_sha256(other, None) != content_sha256(dataset, None)
+
+
 def test_one_row_of_the_table_makes_a_variable_or_an_axis(tmp_path, monkeypatch):
     """As the text of the table says: written, read, checked and sealed; older maps open as before."""
     rows = (

@@ -6,11 +6,12 @@ import dataclasses
 import re
 from importlib import resources
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.errors import AnalysisError, InputError, MapError
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.generate import generate
 from ehdmaps.maps.emap import open_map
@@ -19,7 +20,7 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.roughness import Surface
 from ehdmaps.physics.solids import STEEL
-from mbs import AutoSettings, automatic, modes, parse_scene, statics
+from mbs import AutoSettings, automatic, modes, parse_scene, plan, read_scene, statics
 from mbs.analyses import auto, kept_map, planned_job
 from mbs.analyses.auto import outside_calls, settled
 from mbs.analyses.film_criteria import (
@@ -184,14 +185,14 @@ def test_bearings_of_two_types_have_a_map_each_and_one_alone_is_widened(folder, 
 def test_options_that_do_not_go_together_are_refused_before_a_map_is_made(file, capsys, by_formula):
     status, _, err = run(
         capsys, "modes", file, "--auto", "--map", "a.nc", "--clearance", "1 um", "--clearance", "2 um",
-        "--maps", "nowhere", "--tolerance", "5", "--highest", "far", "--law", "hertz", "--films", "thick",
+        "--maps", "none/where", "--tolerance", "5", "--highest", "far", "--law", "hertz", "--films", "thick",
         "--supply", "much",
     )  # fmt: skip
     assert status == 2
     for words in (
         "--map: stands beside --auto",
         "--clearance: got 2 of them",
-        "--maps: got 'nowhere'",
+        "--maps: got 'none/where', which is no folder and cannot be made",
         "--tolerance: got '5'; allowed: above 0 up to 900 % or 20 dB",
         "--highest: got 'far'",
         "--law: stands beside --auto",
@@ -200,7 +201,20 @@ def test_options_that_do_not_go_together_are_refused_before_a_map_is_made(file, 
     ):
         assert words in err
     assert run(capsys, "modes", file, "--maps", ".")[0] == 2
-    assert not by_formula
+    assert not by_formula and not Path("none").exists()
+
+
+def test_a_folder_of_maps_is_made(file, capsys, tmp_path):
+    status, out, _ = run(capsys, "statics", file, "--auto", "--maps", "new")
+    assert status == 0
+    (path,) = (tmp_path / "new").glob("*.nc")
+    assert f"auto: new/{path.name}: made" in out
+    job, *_ = plan(read_scene(file)).jobs()
+    kept = kept_map.kept_map("short", job, tmp_path / "newer", workers=1)
+    assert kept.path.parent == tmp_path / "newer" and kept.path.is_file()
+    (tmp_path / "mine").write_text("mine")
+    with pytest.raises(InputError, match=r"--maps: got '.*/mine', which is no folder and cannot be made; allowed: a"):
+        kept_map.kept_map("short", job, tmp_path / "mine")
 
 
 def test_results_of_other_kinds_are_refused():
@@ -320,6 +334,29 @@ def test_the_planned_map_has_the_physics_that_is_asked_for(folder, monkeypatch):
         with pytest.raises(AnalysisError, match="enough"):
             automatic(scene(), statics, AutoSettings(folder=folder, physics=physics))
         assert planned[-1] == options
+
+
+def test_a_map_that_cannot_be_used_says_what_makes_another(monkeypatch):
+    """The same plan would end the same way: the physics that --auto added is what can be left out."""
+
+    def kept(name, job, *rest):
+        return SimpleNamespace(emap=None)
+
+    def unfit(subject):
+        raise MapError("backbone of the map: has 2 unsolved points")
+
+    monkeypatch.setattr(auto, "kept_map", kept)
+    monkeypatch.setattr(auto, "_subject", lambda *given: None)
+    with pytest.raises(MapError, match=r"^backbone of the map: has 2 unsolved points\nauto: the map was made with lim"):
+        automatic_of(unfit, AutoSettings(shear="limiting"))
+    with pytest.raises(MapError, match=r"as asked, eyring; .*--shear newtonian makes one without"):
+        automatic_of(unfit, AutoSettings(shear="eyring"))
+    with pytest.raises(MapError, match=r"^backbone of the map: has 2 unsolved points$"):
+        automatic_of(unfit, AutoSettings(shear="newtonian"))
+
+
+def automatic_of(analyse, settings):
+    return settled(scene(), analyse, settings)
 
 
 def test_physics_belong_to_auto(file, capsys):

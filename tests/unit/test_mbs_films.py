@@ -13,10 +13,12 @@ from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.closed_form import FormulaSolver
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
+from ehdmaps.physics.peak import tip_words
 from ehdmaps.physics.solids import STEEL
 from mbs.bearings import laws
 from mbs.bearings.bearing import Bearing
-from mbs.bearings.films import DryContacts, FormulaFilms, MapFilms
+from mbs.bearings.contact_report import BearingContacts, spike_tip
+from mbs.bearings.films import ContactState, DryContacts, FormulaFilms, MapFilms
 
 ROUND_OFF = 1e-12
 OIL = Lubricant.named("FVA3")
@@ -102,6 +104,32 @@ def test_films_between_the_points_of_a_map_against_fresh_solutions(tmp_path):
     # that of the spike, which the grid of the solver does not resolve.
     assert np.all(worst < [0.012, 0.006, 0.30]), worst
     assert worst[0] > 0.0
+
+
+def test_the_stated_error_of_the_pressure_is_that_of_the_map(tmp_path):
+    """At a point of the map its own; by a formula there is no spike, and an older map states nothing."""
+    emap = a_map(tmp_path, "reynolds")
+    data = emap.dataset.isel(contact=1, load=1, entrainment_speed=-1, temperature=0)
+    at = np.array([float(data["load"])]), float(data["entrainment_speed"]), float(data["temperature"])
+    state = MapFilms(emap).state(1, *at)
+    assert state.pressure_error[0] == pytest.approx(float(data["max_pressure_error"]), rel=1e-9)
+    assert FormulaFilms(CONTACTS, OIL).state(1, *at).pressure_error[0] == 0.0
+    older = MapFilms(EHDMap(emap.dataset.drop_vars("max_pressure_error")))
+    assert np.isnan(older.state(1, *at).pressure_error[0])
+
+
+def test_a_spike_whose_tip_is_missing_is_said():
+    """Of the two raceways the one that lacks more; one sentence for all programs."""
+    one = np.ones((1, 2))
+
+    def contacts(inner, outer):
+        sides = ((inner, 2.0 * one), (outer, one))
+        return BearingContacts(*(ContactState(one, high * [[1.0, 2.0]], one, one, one, error) for error, high in sides))
+
+    sharp, calm, unknown = np.array([[0.9, 1.4]]), np.array([[0.8, 0.05]]), np.full((1, 2), np.nan)
+    assert spike_tip(contacts(sharp, calm)) == tip_words(1.4) != ""
+    assert spike_tip(contacts(calm, calm)) == spike_tip(contacts(unknown, unknown)) == ""
+    assert spike_tip(contacts(unknown, sharp)) == tip_words(1.4)
 
 
 def test_axes_of_one_value_and_maps_of_a_bare_contact(tmp_path):

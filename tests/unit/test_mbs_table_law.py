@@ -120,6 +120,13 @@ def test_above_the_last_point_calls_are_counted():
     assert BearingForce(NU308, of_hertz(20, outside="clamp")).at().evaluate(far).outside
 
 
+def test_laws_at_the_ends_of_what_is_allowed_are_numbers():
+    for at, load in (([0.0, 1e-15, 2e-15], [0.0, 1e12 - 1.0, 1e12]), ([-1.0, 0.0, 1.0], [0.0, 1e-9, 2e-9])):
+        law = TableLaw("edge", "series", np.array(at), np.array(load), np.array([0.0, 1e18, 0.0]), LENGTH)
+        found = law.evaluate(np.linspace(at[0], at[-1], 9), np.linspace(-1.0, 1.0, 9))
+        assert np.isfinite(found).all() and np.isfinite(law.energy(np.array(at))).all()
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [
@@ -133,6 +140,11 @@ def test_above_the_last_point_calls_are_counted():
         ("approach, load\n0, 0\n1, 5\n", "got the column 'approach'"),
         ("approach [um], load [N/mm]\n0, 0\n1, x\n", "line 3: got '1, x'"),
         ("approach [um], load [N/mm], damping [N s/m^2]\n0, 0, 0\n1, 5, -1\n", "damping at point 2"),
+        ("approach [um], load [N/mm]\n0, 0\n1, 5\n2, 1e300\n", "load at point 3: got 1e+303 N/m; allowed: 0 to 1e+12"),
+        ("approach [um], load [N/mm]\n0, 0\n1, 1e-300\n2, 2e-300\n", "load at point 2: got 1e-297 N/m; allowed: at"),
+        ("approach [um], load [N/mm]\n0, 0\n1e-300, 1\n2e-300, 2\n", "approach at point 2: got 1e-306 m; allowed: at"),
+        ("approach [um], load [N/mm]\n0, 0\n1e300, 1\n", "approach at point 2: got 1e+294 m; allowed: -1 to 1 m"),
+        ("approach [um], load [N/mm], damping [N s/m^2]\n0, 0, 0\n1, 5, 1e300\n", "damping at point 2: got 1e+300"),
         ("approach [um], load [N/mm]\n" + "1, 2\n" * 10001, "got 10001 points"),
         ("approach [um], load [N/mm]\n" + "1, 2\n" * 1000000, "1 MB"),
         (b"\xff\xfe\x00", "UTF-8"),

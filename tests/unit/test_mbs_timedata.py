@@ -203,6 +203,13 @@ class TestHostile:
         assert "samples of a sound file have no unit without one" in run(capsys, "campbell", "a.wav")[2]
         table.write_text("[[channels]]\n")
         assert "cannot be read as a sound file" in run(capsys, "campbell", "a.wav")[2]
+        table.write_text('channels = [{ name = "S1", unit = "m/s2", full_scale = 1.0 }]\n')
+        with wave.open("a.wav", "wb") as file:  # of a recorder that was stopped early
+            file.setparams((1, 2, 5000, 0, "NONE", ""))
+        assert "a.wav: got 0 samples; allowed: 2 to " in run(capsys, "campbell", "a.wav")[2]
+        with wave.open("a.wav", "wb") as file:
+            file.setparams((2, 2, 5000, 0, "NONE", ""))
+        assert "got 1 channels for a sound file of 2" in run(capsys, "campbell", "a.wav")[2]
         write_time_data("b.wav", TimeData("", (known(),)))
         table = here / "b.wav.toml"
         good = table.read_text()

@@ -2,6 +2,8 @@
 
 import multiprocessing
 import os
+import signal
+import time
 from pathlib import Path
 
 import netCDF4
@@ -123,6 +125,87 @@ def test_a_foreign_file_that_came_meanwhile_stays(here):
         aside.write_text(OURS)
         (here / "note").write_text("mine")
     assert (here / "note").read_text() == "mine"
+    assert os.listdir(here) == ["note"]
+
+
+def test_names_that_no_map_may_have(here):
+    (here / "a\\b").mkdir()
+    for name in ("a\rb.nc", "a\u2028b.nc", "a\nb.nc", "a\x1bb.nc"):
+        assert problem(name).endswith(f"got {name!r}, whose name is not printable; allowed: a name of printable "
+                                      "characters; rename it")  # fmt: skip
+    for name in ("a\\b.nc", "a\\b/c.nc"):
+        assert f"got {name}, which is {os.path.realpath(name)}; allowed: no backslash" in problem(name)
+    for name in ("ä b.nc", "日本.nc", "%j 'q' \"$x\".nc", "#.nc"):
+        assert output_problems([Output("-o", name, NOTES)]) == []
+
+
+def test_no_file_of_others_is_written_to_on_the_way(here, monkeypatch):
+    """A link under the name that the file has on the way stays, with what it leads to: names are new, or refused."""
+    (here / "victim").write_text("mine")
+    names = []
+    for _ in range(2):
+        with outputs.written_aside("note", NOTES) as aside:
+            assert aside.parent == here and aside.read_bytes() == b"" and not aside.is_symlink()
+            names.append(aside.name)
+            aside.write_text(OURS)
+    assert names[0] != names[1]
+    monkeypatch.setattr(outputs.secrets, "token_hex", lambda count: "0" * (2 * count))
+    with outputs.written_aside("note", NOTES) as aside:
+        guessed = aside.name
+        aside.write_text(OURS)
+    (here / guessed).symlink_to("victim")
+    message = r"note: cannot be written \(File exists\)"
+    with pytest.raises(InputError, match=message), outputs.written_aside("note", NOTES):
+        raise AssertionError
+    assert (here / "victim").read_text() == "mine" and (here / guessed).is_symlink()
+
+
+def test_names_on_the_way_are_no_longer_than_a_file_system_takes(here):
+    for name in ("ä" * 120, "a." + "b" * 250, "日" * 80 + ".nc"):
+        outputs.write_text(name, OURS, NOTES)
+        assert (here / name).read_text() == OURS
+
+
+def test_what_killed_writers_left_is_removed_later(here):
+    dead, me = 2**22 + 1, os.getpid()  # above the largest number that Linux gives a process
+
+    def left(name, age=7200.0):
+        (here / name).write_text("half")
+        os.utime(name, (time.time() - age,) * 2)
+        return name
+
+    token = "0123456789abcdef"
+    gone = [left(f".ehdmaps-{dead}-{token}.part.nc"), left(f".ehdmaps-{dead}-{token}.part")]
+    stay = [
+        left(f".ehdmaps-{me}-{token}.part.nc"),  # its process runs
+        left(f".ehdmaps-{dead}-{token[::-1]}.part.nc", age=60.0),  # may be written on another machine
+        left(f".ehdmaps-{dead}-{token}.part-nc"),
+        left(f"ehdmaps-{dead}-{token}.part.nc"),
+        left(f".ehdmaps-{dead}-{token[:-1]}.part.nc"),
+    ]
+    (here / "victim").write_text("mine")
+    (here / f".ehdmaps-{dead}-{token}.part.csv").symlink_to("victim")
+    outputs.write_text("note", OURS, NOTES)
+    assert not [name for name in gone if (here / name).exists()]
+    assert all((here / name).read_text() == "half" for name in stay)
+    assert (here / f".ehdmaps-{dead}-{token}.part.csv").is_symlink() and (here / "victim").read_text() == "mine"
+
+
+def _killed(path: str) -> None:
+    with outputs.written_aside(path, NOTES) as aside:
+        aside.write_text("half")
+        os.kill(os.getpid(), signal.SIGKILL)
+
+
+def test_a_killed_writer_leaves_what_the_next_one_knows(here):
+    writer = multiprocessing.get_context("fork").Process(target=_killed, args=("note",))
+    writer.start()
+    writer.join()
+    (part,) = os.listdir(here)
+    outputs.write_text("note", OURS, NOTES)
+    assert sorted(os.listdir(here)) == [part, "note"]
+    os.utime(part, (0, 0))
+    outputs.write_text("note", OURS, NOTES)
     assert os.listdir(here) == ["note"]
 
 

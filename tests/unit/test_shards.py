@@ -160,6 +160,22 @@ def test_other_files_are_no_shards(tmp_path):
     assert found_shards(tmp_path / "absent" / "map.nc") == {}
 
 
+def test_names_that_a_script_cannot_hold(tmp_path, monkeypatch, capsys):
+    folder = tmp_path / "a\ntouch PWN"
+    folder.mkdir()
+    job_file(folder)
+    monkeypatch.chdir(tmp_path)
+    for more in ([], ["--submit"]):
+        assert cli.main(["submit", "a\ntouch PWN/job.toml", "--array", "2", "-o", "a\ntouch PWN/b.nc", *more]) == 2
+        out, err = capsys.readouterr()
+        assert out == "" and err.startswith("ehdmaps submit: 2 problems\n")
+        for what in ("job", "map"):
+            assert f"which is not printable; allowed: names of printable characters; rename the {what}" in err
+    monkeypatch.chdir(folder)
+    assert cli.main(["submit", "job.toml", "--array", "2"]) == 2
+    assert "rename the folder" in capsys.readouterr().err
+
+
 def test_the_script_of_an_array(tmp_path, monkeypatch, capsys):
     folder = tmp_path / "a b"
     folder.mkdir()

@@ -141,7 +141,8 @@ def test_an_interrupted_run_by_all_its_names(output, capsys, name):
     code, out, err = command(capsys, *([name] if name else []))
     assert (code, err) == (1, "")
     lines = out.splitlines()
-    assert lines[0] == f"mine.nc: interrupted, process 12 on {platform.node()} has ended; the same command goes on"
+    ended = f"process 12 on {platform.node()} has ended"
+    assert lines[0] == f"mine.nc: not finished: interrupted, {ended}; the same command goes on"
     assert lines[2] == "  points   40 of 100 (40.0 %), 10 of them taken over"
     assert lines[3] == "  rate     not known"
     assert lines[4] == "  failed   1 failed, 3 outside validity"

@@ -13,14 +13,25 @@ from ehdmaps import BearingGeometry, EHDMap, Job, Lubricant
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import InputError, MapError
 from ehdmaps.jobs import cli
+from ehdmaps.jobs.describe import roughness_lines
 from ehdmaps.jobs.reader import parse_job, read_job
 from ehdmaps.jobs.report import status_counts
+from ehdmaps.jobs.rough_plot import plot_roughness
 from ehdmaps.jobs.surface import surface_from_text, surface_keys, surface_words
 from ehdmaps.maps import schema
 from ehdmaps.maps.checksum import check_content, content_sha256
 from ehdmaps.maps.emap import open_map
 from ehdmaps.maps.records import surface_json
-from ehdmaps.maps.rough_films import FILM_PARAMETER, FILM_SHARE, rough_variables
+from ehdmaps.maps.rough_films import (
+    FILM_PARAMETER,
+    FILM_SHARE,
+    MEAN_DISTANCE,
+    OVERLAP,
+    least_share,
+    overlapping,
+    rough_variables,
+)
+from ehdmaps.maps.rough_layer import RoughLayer
 from ehdmaps.physics.closed_form import FormulaSolver
 from ehdmaps.physics.film_limits import THICKEST_FILM, too_thick, too_thin
 from ehdmaps.physics.roughness import SMOOTH, Surface
@@ -213,3 +224,35 @@ def test_a_film_of_millimetres_is_refused(solver):
 def test_limit_of_thick_films_is_told():
     assert too_thick(2e-3, 5.5e-3).startswith("film h/R = 0.364 above 0.3:")
     assert too_thick(1e-3, 5.5e-3) == too_thick(math.nan, 5.5e-3) == ""
+
+
+def test_load_sharing_says_where_it_is_out_of_its_range(tmp_path, capsys):
+    """Where the mean planes overlap: below one share at a load, whatever speed and temperature."""
+    emap = EHDMap(dataset_of()).with_surface(Surface(1e-6))
+    found = rough_variables(emap.dataset, emap.contacts, emap.lubricant, emap.surface)
+    share, distance = (found[name].values for name in (FILM_SHARE, MEAN_DISTANCE))
+    beyond = overlapping(share, distance)
+    assert beyond.any() and not beyond.all()
+    for contact, shares, overlaps in zip(emap.contacts, share, beyond, strict=True):
+        limits = least_share(RoughLayer(emap.surface, contact, emap.lubricant, 1.0), emap.dataset["load"].values)
+        np.testing.assert_array_equal(overlaps, (shares > 0.0) & (shares < limits[:, None, None]))
+    assert not overlapping(np.array([0.0]), np.array([-1.0])).any()  # the rough dry contact shares nothing
+    said = "\n".join(roughness_lines(emap))
+    assert f"at {100.0 * beyond.mean():.0f} % of the points, Lambda up to" in said and OVERLAP in said
+    assert OVERLAP not in "\n".join(roughness_lines(emap.with_surface(Surface(1e-9))))
+    job = tmp_path / "rough.toml"
+    job.write_text(ROUGH)
+    for load, wanted in (("200 N/mm", True), ("0.5 N/mm", False)):
+        point = ["--load", load, "--speed", "0.1 m/s", "--temperature", "100 degC", "--solver", "formula"]
+        assert cli.main(["solve", str(job), *point]) == 0
+        assert (OVERLAP in capsys.readouterr().out) == wanted
+    assert cli.main(["solve", str(job), *point, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)[0]["mean_distance"] > 0.0
+
+
+@pytest.mark.parametrize("surface", [Surface(1e-6), Surface(1e-9)])
+def test_the_page_of_roughness_shades_what_is_out_of_range(surface, tmp_path):
+    emap = EHDMap(dataset_of()).with_surface(surface)
+    plot_roughness(emap, tmp_path / "rough.svg")
+    drawn = (tmp_path / "rough.svg").read_text()
+    assert ("mean planes overlap: out of the range of load sharing" in drawn) == (surface.roughness == 1e-6)

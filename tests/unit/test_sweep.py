@@ -1,3 +1,4 @@
+import importlib
 import os
 import signal
 import time
@@ -7,9 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ehdmaps.errors import SolverError
+from ehdmaps import workers as processes
+from ehdmaps.errors import SolverError, WorkerError
 from ehdmaps.jobs.store import Store
 from ehdmaps.jobs.sweep import sweep
+from ehdmaps.workers import worker_pool
 
 
 @dataclass(frozen=True)
@@ -145,6 +148,90 @@ def test_a_worker_that_was_killed_by_chance_costs_nothing(tmp_path):
         result = sweep([Stub(1), once, Stub(2)], store, 2)
         assert store.get(once.key)["value"] == 25.0
     assert result.arrays[once.key]["value"] == 25.0
+
+
+@dataclass(frozen=True)
+class Missing(Stub):
+    """A task that needs what a worker does not have: a library, as its process would find on import."""
+
+    def __reduce__(self):
+        return importlib.import_module, ("no_such_library",)
+
+
+def test_processes_that_die_before_they_do_anything_are_the_end(tmp_path, capfd):
+    tasks = [Missing(number) for number in range(1000)]
+    with Store(tmp_path / "s") as store:
+        store.put("square 7", {"value": np.array([49.0])})
+        with pytest.raises(WorkerError) as raised:
+            sweep(tasks, store, 2)
+    assert str(raised.value) == (
+        "worker processes die before they do anything (ModuleNotFoundError: No module named 'no_such_library'); look "
+        "after memory, limits (ulimit -a) and the libraries of this Python, or take one worker; what was solved is "
+        "kept: the same command goes on"
+    )
+    assert raised.value.kept == 3
+    assert capfd.readouterr() == ("", "")
+
+
+def test_processes_that_all_die_in_their_first_task_are_the_end(tmp_path):
+    heard = Heard()
+    with Store(tmp_path / "s") as store, pytest.raises(WorkerError, match=r"in their first task \(signal SIGKILL\)"):
+        sweep([Stub(number, "dies") for number in range(1000)], store, 2, heard)
+    assert heard.after <= 6  # two tasks were given up, by two processes each
+
+
+def test_deaths_after_a_first_result_cost_their_tasks_only(tmp_path):
+    tasks = [Stub(0), *(Stub(number, "dies") for number in range(1, 6)), Stub(6)]
+    with Store(tmp_path / "s") as store:
+        result = sweep(tasks, store, 2)
+    assert [float(result.arrays[f"square {n}"]["value"][0]) for n in (0, 6)] == [0.0, 36.0]
+    assert all("died twice" in str(result.arrays[f"dies {n}"]["reason"][0]) for n in range(1, 6))
+
+
+@dataclass(frozen=True)
+class Greedy(Stub):
+    """A task for which there is too little of something."""
+
+    error: type[BaseException] = MemoryError
+    number_of_error: int = 0
+
+    def run(self):
+        raise self.error(*([self.number_of_error, "too little"] if self.number_of_error else []))
+
+
+@pytest.mark.parametrize(("error", "number"), [(MemoryError, 0), (OSError, 24)])
+def test_too_little_of_something_ends_the_sweep_in_words(tmp_path, error, number):
+    with (
+        Store(tmp_path / "s") as store,
+        pytest.raises(WorkerError, match=r"the system has too little .* what was solved is kept") as raised,
+    ):
+        sweep([Stub(1), Stub(2), Greedy(3, "greedy", error=error, number_of_error=number)], store, 1)
+    assert raised.value.kept == 6
+    with Store(tmp_path / "s") as store, pytest.raises(OSError, match="too little"):
+        sweep([Greedy(3, "greedy", error=OSError, number_of_error=2)], store, 1)  # a bug: no such file
+
+
+def test_processes_that_cannot_be_started(tmp_path, monkeypatch):
+    def full(*_, **__):
+        raise OSError(24, "Too many open files")
+
+    message = r"worker processes cannot be started \(Too many open files\); look after memory, limits"
+    for place in ((processes, "ProcessPoolExecutor"), (processes.ProcessPoolExecutor, "submit")):
+        with monkeypatch.context() as patched:
+            patched.setattr(*place, full)
+            with Store(tmp_path / "s") as store, pytest.raises(WorkerError, match=message):
+                sweep([Stub(1), Stub(2)], store, 2)
+
+
+def _speak(text):
+    os.write(2, text.encode())
+
+
+def test_workers_are_heard_from_their_first_task_on(capfd):
+    with worker_pool(1) as pool:
+        for text in ("one\n", "two\n"):
+            pool.submit(_speak, text).result()
+    assert capfd.readouterr().err == "one\ntwo\n"
 
 
 @pytest.mark.parametrize(("kind", "error"), [("bug", ZeroDivisionError), ("interrupted", KeyboardInterrupt)])

@@ -6,6 +6,7 @@ import math
 import re
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from ehdmaps.ehl.newton import CONVERGED
 from ehdmaps.ehl.resolution import Resolution
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import InputError
+from ehdmaps.jobs.reader import read_job
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
@@ -180,6 +182,21 @@ def test_pressure_at_the_tip_of_a_spike() -> None:
         found = solve_groups(point.problem, point.M, point.L, Resolution())
         tip = float(np.median(spikes.tip_pressures(point, 14.0)))
         assert abs(tip / found.max_pressure - 1.0) < found.max_pressure_error
+
+
+@pytest.mark.parametrize(
+    ("load", "speed", "celsius"),
+    [(62996.0525, 5.0, 0.0), (71900.0, 5.8, -0.45), (67100.0, 5.51, -0.2), (68600.0, 6.21, 0.84)],
+)
+def test_cold_gear_oil_beside_its_damping_valley(load: float, speed: float, celsius: float) -> None:
+    """L = 80 to 85, M = 0.2: on some grids Newton goes round in circles, among others on those with twice the cells."""
+    lubricant = read_job(str(Path(__file__).parents[2] / "docs" / "vg320.toml")).lubricant
+    near = (load, 1.02 * load)
+    film, other = (SOLVER.solve_line(CONTACTS[0], lubricant, (at,), speed, celsius + 273.15)[0] for at in near)
+    assert film.status is Status.CONVERGED, film.reason
+    # -d ln(h)/d ln(w) of both films is the compliance of the one, to the curvature over a step of 2 %
+    slope = math.log(film.film_offset / other.film_offset) / math.log(1.02)
+    assert slope == pytest.approx(film.film_compliance * load / film.film_offset, rel=2e-2)
 
 
 def test_wall_stress_of_a_spike_is_flagged() -> None:

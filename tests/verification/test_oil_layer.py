@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 
 from ehdmaps.ehl.solver import ReynoldsSolver
+from ehdmaps.errors import MapError
 from ehdmaps.maps.contact_curve import ContactCurve
-from ehdmaps.maps.emap import open_map
+from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.maps.oil_layer import oil_layer
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.roughness import SMOOTH, Surface
 
 SPEED, WARM = 1.0, 313.15
 
@@ -34,3 +36,43 @@ def test_film_and_damping_of_light_contacts(reynolds_map, load, ratio):
     assert film.offset[0, 0, 0] == pytest.approx(solved.film_offset, rel=2.5e-2)
     compliance = contact.structural_compliance(load) + solved.film_compliance
     assert c == pytest.approx(solved.loss_compliance / compliance**2, rel=0.2)
+
+
+@pytest.mark.parametrize(("kind", "surface"), [("inner", SMOOTH), ("outer", SMOOTH), ("inner", Surface(3e-7))])
+@pytest.mark.parametrize("layer", [2e-7, 1e-6, 2e-5])
+def test_laws_beyond_the_speeds_of_a_map_rise_and_are_passive(reynolds_map, kind, surface, layer):
+    """To ten times the highest speed the film on a layer still thins with load, exact in its slope.
+
+    There the flow and the film of the map go on with its end exponents, some per cent beside those of rigid surfaces:
+    a flow that goes over into the rigid one makes the film rise with load.
+    """
+    law = open_map(reynolds_map).law(kind, outside="asymptote", supply=OilSupply(layer), surface=surface)
+    delta = np.concatenate((-np.geomspace(2.5 * layer + 3e-6, 1e-9, 1500), np.geomspace(1e-9, 2e-5, 500)))
+    for speed in (0.02, 0.7, 5.0, 12.0, 50.0, 80.0):
+        at = law.at(speed, WARM)
+        load, stiffness, damping = at(delta, 0.0)
+        assert np.all(np.diff(load) >= 0.0) and np.all(stiffness >= 0.0) and np.all(damping >= 0.0)
+        step = 1e-12
+        quotient = (at(delta + step, 0.0)[0] - at(delta - step, 0.0)[0]) / (2.0 * step)
+        np.testing.assert_allclose(quotient, stiffness, rtol=1e-4, atol=1e-4 * float(np.max(stiffness)))
+    below, above = (law(delta, 0.0, 5.0 * side, WARM)[0] for side in (1.0 - 1e-9, 1.0 + 1e-9))
+    np.testing.assert_allclose(above, below, rtol=1e-6, atol=1e-3)
+
+
+@pytest.mark.parametrize(("layer", "roughness"), [(1e-6, 3e-7), (7e-7, 2e-7)])
+def test_a_layer_as_thick_as_the_asperities_are_high_gives_a_law_that_rises(reynolds_map, layer, roughness):
+    """Asperities carry some hundredths of 1 N/m before such a layer ends: no table resolves the knee between them."""
+    law = open_map(reynolds_map).law("outer", supply=OilSupply(layer), surface=Surface(roughness))
+    delta = np.linspace(-1.5 * layer - 8.0 * roughness, 0.0, 3000)
+    for speed in np.geomspace(0.01, 5.0, 12).tolist():
+        load, stiffness, _ = law.at(speed, WARM)(delta, 0.0)
+        assert np.all(np.diff(load) >= 0.0) and np.all(stiffness >= 0.0), speed
+
+
+def test_a_grid_that_is_too_coarse_beyond_its_speeds_is_refused_with_the_way_out(reynolds_map):
+    """Without refinement lines film and flow are read from the grid, and do not go on alike to ten times the speed."""
+    grid = EHDMap(open_map(reynolds_map).dataset)
+    for layer in (1e-6, 5e-6):
+        grid.law("inner", outside="clamp", supply=OilSupply(layer))
+    with pytest.raises(MapError, match="ends at 5 m/s, and its films do not go on so far: take outside='clamp'"):
+        grid.law("inner", outside="asymptote", supply=OilSupply(5e-6))

@@ -48,6 +48,8 @@ def _output(name: str, output: str | None) -> Path:
     if is_batch(name):
         return Path(output or Path(name).stem) / f"{Path(name).stem}.batch"
     if output is not None:
+        if Path(output).is_dir():
+            raise InputError(f"-o: got {output}, which is a folder; allowed: a map; a folder goes with a batch")
         return Path(output)
     if Path(name).is_dir():
         raise InputError(f"{name}: is a folder; allowed: the batch file, with -o {name}, or a map")
@@ -126,7 +128,7 @@ def _lines(output: Path, seen: Seen) -> list[str]:
     head = (
         f"running, {who} with {status.workers} worker{'s' if status.workers > 1 else ''}"
         if running
-        else f"interrupted, {who} has ended; the same command goes on"
+        else f"not finished: interrupted, {who} has ended; the same command goes on"
     )
     if not seen.known:
         head = f"{who}: only there it can be told whether it runs; it was heard of {_ago(status)} ago"

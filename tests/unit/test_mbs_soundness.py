@@ -1,0 +1,128 @@
+"""Results whose own checks failed so grossly that their figures mean nothing, and steps that are too long."""
+
+from __future__ import annotations
+
+import dataclasses
+from importlib import resources
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from mbs import assemble, lsa, modes, parse_scene, read_scene, runup, statics, sweep
+from mbs.analyses.lsa import LsaSettings
+from mbs.analyses.soundness import Cause, Unsound, unsound_run, with_unsound
+from mbs.analyses.step_check import NOTABLE, step_check
+from mbs.analyses.sweep import SweepSettings
+from mbs.commands.common import unsound_lines
+from mbs.commands.runup import _step_check_lines
+from mbs.model.elements import Operation
+from mbs.model.equilibrium import equilibrium
+from mbs.scene.changes import with_loads
+from mbs.settings import SweepRange
+from tests.cases.commands import run
+
+SCENE = "nu308_rigid"
+TEXT = (resources.files("mbs") / "systems" / f"{SCENE}.toml").read_text(encoding="utf-8")
+
+
+def model(factor=1.0, law="hertz", name=SCENE):
+    return assemble(with_loads(read_scene(name), factor), law)
+
+
+@pytest.mark.parametrize("rollers", ["massless", "bodies"])
+def test_a_load_that_no_contact_carries_is_told_by_every_analysis(rollers):
+    """1e4 times 141 N: 7 GPa are the hardness of the steel. At 1e3 times it the figures are those of an overload."""
+    scene = parse_scene(TEXT.replace('profile = "iso"', f'rollers = "{rollers}"\nprofile = "iso"'), "a", "a.toml")
+    crushed, heavy = (assemble(with_loads(scene, factor), "hertz") for factor in (1e4, 1e3))
+    for found in (statics(crushed), modes(crushed), lsa(crushed, LsaSettings((50.0, 500.0)))):
+        assert [entry.cause for entry in found.unsound] == [Cause.PRESSURE] * 2
+        assert "bearing_left: Hertz pressure of " in found.dataset.attrs["unsound"]
+        assert "above 7 GPa, the hardness of bearing steel, which no contact carries" in found.dataset.attrs["unsound"]
+    sound = statics(heavy)
+    assert sound.unsound == () and "unsound" not in sound.dataset.attrs
+
+
+def run_of(outside=0, residual=0.0, iterations=1000):
+    energy = SimpleNamespace(relative_residual=residual)
+    return SimpleNamespace(
+        forces=(), motions=(), energy=energy, outside={"bearing_left": outside}, iterations=iterations
+    )
+
+
+def test_runs_say_what_failed():
+    plain = model()
+    assert unsound_run(plain, run_of(outside=400, residual=0.09)) == ()
+    (energy,) = unsound_run(plain, run_of(residual=1.6))
+    assert energy == Unsound(
+        Cause.ENERGY, "1.6e+02 % of the energy that went through the run is missing or too much (allowed: 10 %)"
+    )
+    (outside,) = unsound_run(plain, run_of(outside=720))
+    assert outside.cause is Cause.OUTSIDE and outside.words.startswith("bearing_left: 72 % of the calls lie outside")
+
+
+def test_a_run_under_a_load_that_no_contact_carries():
+    crushed = model(1e4)
+    course = dataclasses.replace(crushed.scene.run_up, duration=1e-3)
+    found = runup(crushed, course)
+    assert Cause.PRESSURE in [entry.cause for entry in found.unsound] and found.steps is None
+    assert "unsound" in found.dataset.attrs
+
+
+def test_the_first_line_says_it_and_the_status_is_1(tmp_path, capsys):
+    path = tmp_path / "crushed.toml"
+    crushed = TEXT.replace('"100 N", "100 N"', '"1e6 N", "0 N"')
+    path.write_text(crushed.replace('duration = "0.2 s"', 'duration = "1 ms"'))
+    speeds = ["--speeds", "300 rpm", "600 rpm", "2"]
+    for command in (["statics"], ["modes"], ["lsa"], ["sweep", *speeds], ["critical", *speeds], ["runup"]):
+        status, out, _ = run(capsys, command[0], str(path), *command[1:])
+        assert status == 1, command
+        assert out.startswith("error: the figures below mean nothing: bearing_left: Hertz pressure of "), command
+    status, out, _ = run(capsys, "statics", SCENE)
+    assert status == 0 and "mean nothing" not in out
+
+
+def test_words_of_several_cases_have_their_label():
+    reasons = (Unsound(Cause.ENERGY, "one"), Unsound(Cause.OUTSIDE, "two"))
+    assert unsound_lines(reasons, "Hertz") == ["error: Hertz: the figures below mean nothing: one; two"]
+    assert unsound_lines(()) == []
+    sweeps = sweep(model(), SweepSettings(SweepRange(30.0, 60.0, 2)))
+    assert "unsound" not in with_unsound(sweeps.dataset, ()).attrs
+
+
+def checked(step, duration=0.05):
+    there = model(name="n1014_testrig")
+    given = there.scene.run_up
+    settings = dataclasses.replace(given.settings, step=step, sample=step)
+    course = dataclasses.replace(given, duration=duration, settings=settings)
+    return step_check(there, course, equilibrium(there.system, Operation(given.speed.at(0.0)[0])))
+
+
+def test_steps_that_are_too_long_are_found_by_half_of_them():
+    """A dry spindle: over its whole run-up S2 has 0.081 m/s2 with steps of 20 us, and 0.104 with 5 us."""
+    long, short = checked(2e-5), checked(5e-6)
+    assert not long.converged and short.converged
+    assert long.duration == pytest.approx(0.01) and short.duration == pytest.approx(2.5e-3)
+    assert long.errors.max() > NOTABLE > short.errors.max()
+    (line,) = _step_check_lines(long)
+    assert line.startswith("warning: this run is not converged: the first 0.01 s again with steps of 10 us has other ")
+    assert " m/s2 rms, and " in line and "more than 10 % off with 20 us); take shorter steps in [runup]" in line
+    (line,) = _step_check_lines(short)
+    assert line.startswith("the first 0.0025 s again with steps of 2.5 us: signals are right within ")
+
+
+def test_where_nothing_can_be_compared_nothing_is_said():
+    there = model()
+    course = there.scene.run_up
+    start = equilibrium(there.system, Operation(0.0))
+    deaf = dataclasses.replace(there, scene=dataclasses.replace(there.scene, sensors=()))
+    assert step_check(deaf, course, start) is None
+    adapting = dataclasses.replace(course, settings=dataclasses.replace(course.settings, tolerance=1e-9))
+    assert step_check(there, adapting, start) is None
+    assert _step_check_lines(None) == []
+
+
+def test_signals_without_motion_are_right():
+    found = checked(5e-6, duration=1e-3)
+    still = dataclasses.replace(found, with_step=np.zeros(3), with_half=np.zeros(3))
+    assert still.converged and still.errors.tolist() == [0.0, 0.0, 0.0]
