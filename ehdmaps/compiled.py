@@ -76,7 +76,7 @@ def njit(function: Callable[..., Any] | None = None, /, *, cache: bool = True, *
     cache : bool
         Whether the machine code is kept on disk. Not for a function that calls what is no part of this distribution.
     **options
-        Of `numba.njit`.
+        Other options of `numba.njit`, as they are.
 
     Returns
     -------
