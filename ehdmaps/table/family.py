@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from ehdmaps.physics.solution import ContactSolver
 
 TABLE_OF = "reynolds"
 """Solver whose films the table holds."""
 
-GRID = {"density": 10.0, "inlet_length": 700.0}
+GRID: dict[str, Any] = {"density": 10.0, "inlet_length": 700.0}
 """Settings of that solver: finer than its own, so that what is read and what is solved beside it fit together."""
 
 _MEANING = {
