@@ -26,8 +26,9 @@ for solver in ("hertz", "formula", "reynolds", "openfoam"):
     except InputError as error:
         print(f"{solver}: skipped; {error}")
         continue
-    k, c = found[solver].stiffness * SLICE, found[solver].damping * SLICE
-    print(f"{solver}: k {SPRING.text(k)}, c {DAMPER.text(c, 3)}")
+    print(
+        f"{solver}: k {SPRING.text(found[solver].stiffness * SLICE)}, c {DAMPER.text(found[solver].damping * SLICE, 3)}"
+    )
 
 length = 1e3 * BEARING.roller_length  # the law takes the whole roller, in mm and N
 both = (point.load * 1e-3 * length / (35948.0 * length ** (8 / 9))) ** 0.9 * 1e-3

@@ -6,7 +6,6 @@ The period of m x'' = F - L w(x, x') after a push must be 2 pi/Im(s), s = -c/(2 
 
 import sys
 from pathlib import Path
-from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -18,9 +17,8 @@ from ehdmaps.outputs import write_figure
 
 MASS, FORCE, SPEED, TEMPERATURE = 0.2, 1500.0, 2.0, 333.15
 bearing, oil = ehdmaps.BearingGeometry.named("NU308"), ehdmaps.Lubricant.named("FVA3")
-grid: Any = {"loads": np.geomspace(1e3, 1e6, 13), "entrainment_speeds": [1.0, 2.0, 4.0], "temperatures": [TEMPERATURE]}
-job = ehdmaps.Job.build(bearing=bearing, lubricant=oil, **grid, solver_options={"density": 4.5})
-law, LENGTH = ehdmaps.EHDMap(ehdmaps.generate(job)).law("series").at(SPEED, TEMPERATURE), bearing.roller_length
+law = ehdmaps.law(bearing, oil, entrainment_speeds=(1.0, 4.0), temperatures=(330.0, 336.0)).at(SPEED, TEMPERATURE)
+LENGTH = bearing.roller_length
 rest = brentq(lambda x: LENGTH * float(law(x, 0.0)[0]) - FORCE, 1e-6, 20e-6, xtol=1e-15)
 k, c = (LENGTH * float(value) for value in law(rest, 0.0)[1:])
 s = np.sqrt(complex((c / (2 * MASS)) ** 2 - k / MASS)) - c / (2 * MASS)

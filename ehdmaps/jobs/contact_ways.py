@@ -20,6 +20,7 @@ from ehdmaps.maps.contact_curve import FilmSamples
 from ehdmaps.maps.locked_film import film_of, locked_stiffness
 from ehdmaps.maps.locked_fit import fitted_factor, response_error
 from ehdmaps.maps.oil_layer import OilLayer
+from ehdmaps.maps.rolling_film import FlowFilm
 from ehdmaps.maps.rough_layer import RoughLayer
 from ehdmaps.maps.tail import Tail
 from ehdmaps.physics.oil_supply import OilSupply
@@ -121,9 +122,13 @@ class LayerRule:
                 return film_answer(film, question)
         full = films[1]
         mass = question.lubricant.at(point.temperature).density * point.entrainment_speed
-        flow = CubicSpline(np.log(loads), np.log([film.mass_flow / mass for film in films])[:, None, None])
         # the load is known: nothing is read of the tail but that it begins here
         one = np.ones((1, 1))
+        reach = math.log(loads[-1] / loads[0])
+        line = CubicSpline(
+            np.log(np.array(loads) / loads[0]) / reach, np.log([film.mass_flow / mass for film in films])[:, None, None]
+        )
+        flow = FlowFilm(line, math.log(loads[0]) * one, reach * one)
         slow = film_answer(full, question).values["damping"]
         tail = Tail(
             point.load * one, full.film_offset * one, full.film_compliance * one, slow * one, one, contact.radius

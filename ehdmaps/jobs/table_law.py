@@ -1,41 +1,96 @@
-"""Contact laws without a map: lines from the film table, made into a law as the lines of a map are."""
+"""Contact laws without a file of a map: a map in memory, with films from the film table."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import numpy as np
 
-from ehdmaps.ehl.solver import ReynoldsSolver
-from ehdmaps.errors import InputError
+from ehdmaps.jobs.generate import generate_in_memory
 from ehdmaps.jobs.job import Job
-from ehdmaps.jobs.refinement import backbone_group, refinement
-from ehdmaps.maps.law import ContactLaw, OutsidePolicy
-from ehdmaps.maps.own_lines import line_field
-from ehdmaps.maps.rolling_film import rolling_film_of_lines
+from ehdmaps.jobs.solvers import TABLE
+from ehdmaps.maps.emap import EHDMap
+from ehdmaps.maps.law import ContactLaw, LawKind, OutsidePolicy
 from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.oil_supply import FLOODED, OilSupply
-from ehdmaps.physics.roughness import SMOOTH, Surface
+from ehdmaps.physics.oil_supply import OilSupply
+from ehdmaps.physics.roughness import Surface
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.physics.solution import ContactSolver
-from ehdmaps.table.family import GRID
-from ehdmaps.table.solver import TableSolver
 
 LOADS, SPEEDS, TEMPERATURES = (100.0, 1e6), (0.05, 10.0), (293.15, 393.15)
 """Ranges of a law for which nothing else is said: those of the shipped jobs [N/m], [m/s], [K]."""
+
+_POINTS = (25, 12, 6)
+"""Loads, speeds and temperatures of a map in memory: for its error estimates, as laws read lines."""
+
+
+def table_map(
+    of: BearingGeometry | LineContact,
+    lubricant: Lubricant,
+    loads: tuple[float, float] = LOADS,
+    entrainment_speeds: tuple[float, float] = SPEEDS,
+    temperatures: tuple[float, float] = TEMPERATURES,
+    structural_law: StructuralLaw = "iso16281",
+    material: Material = STEEL,
+    supply: OilSupply | None = None,
+    surface: Surface | None = None,
+    solver: ContactSolver | None = None,
+) -> EHDMap:
+    """Make a map in memory, in some seconds, with few points: it is there for its laws.
+
+    Films come from the film table; what it does not know is solved. The laws are not checked by fresh solves.
+
+    Parameters
+    ----------
+    of : BearingGeometry or LineContact
+        A bearing, or one contact.
+    lubricant : Lubricant
+        The oil.
+    loads, entrainment_speeds, temperatures : (float, float)
+        Ranges of the laws [N/m], [m/s] > 0, [K].
+    structural_law : str
+        Law of the solids of a bearing's contacts.
+    material : Material
+        Material of a bearing.
+    supply, surface : OilSupply, Surface, optional
+        Oil supply and surfaces that the laws have by default; flooded and smooth if left out.
+    solver : ContactSolver, optional
+        What gives the films; the table if left out.
+
+    Raises
+    ------
+    InputError
+        For ranges that no map could have.
+    """
+    bearing = of if isinstance(of, BearingGeometry) else None
+    job = Job.build(
+        lubricant=lubricant,
+        loads=np.geomspace(*loads, _POINTS[0]),
+        entrainment_speeds=np.geomspace(*entrainment_speeds, _POINTS[1]),
+        temperatures=np.linspace(*temperatures, _POINTS[2]),
+        bearing=bearing,
+        contact=of if isinstance(of, LineContact) else None,
+        material=material,
+        supply=supply,
+        surface=surface,
+        solver_options={"films": TABLE},
+        structural_law=structural_law,
+    )
+    made = generate_in_memory(job, workers=1, solver=solver)
+    return EHDMap(made.dataset, made.backbone)
 
 
 def law(
     of: BearingGeometry | LineContact,
     lubricant: Lubricant,
-    kind: str | None = None,
+    kind: LawKind | None = None,
     loads: tuple[float, float] = LOADS,
     entrainment_speeds: tuple[float, float] = SPEEDS,
     temperatures: tuple[float, float] = TEMPERATURES,
     outside: OutsidePolicy = "error",
-    supply: OilSupply = FLOODED,
-    surface: Surface = SMOOTH,
+    supply: OilSupply | None = None,
+    surface: Surface | None = None,
     structural_law: StructuralLaw = "iso16281",
     material: Material = STEEL,
     solver: ContactSolver | None = None,
@@ -75,34 +130,15 @@ def law(
     >>> import ehdmaps
     >>> nu308 = ehdmaps.law(ehdmaps.BearingGeometry.named("NU308"), ehdmaps.Lubricant.named("FVA3"))  # doctest: +SKIP
     """
-    bearing = of if isinstance(of, BearingGeometry) else None
-    contacts = of.contacts(material, structural_law) if isinstance(of, BearingGeometry) else (of,)
-    by_name = {contact.name: contact for contact in contacts}
-    allowed = (["series"] if bearing else []) + list(by_name)
-    chosen = kind or allowed[0]
-    if chosen not in allowed:
-        raise InputError(f"contact law, kind: got {kind!r}; allowed: {', '.join(allowed)}")
-    job = Job.build(
-        lubricant=lubricant,
-        loads=loads,
-        entrainment_speeds=entrainment_speeds,
-        temperatures=temperatures,
-        bearing=bearing,
-        contact=None if bearing else contacts[0],
-        material=material,
+    chosen: LawKind = kind or ("series" if isinstance(of, BearingGeometry) else "line")
+    emap = table_map(
+        of,
+        lubricant,
+        loads,
+        entrainment_speeds,
+        temperatures,
         structural_law=structural_law,
+        material=material,
+        solver=solver,
     )
-    refined = refinement(job, solver or TableSolver(ReynoldsSolver(**GRID)))
-    assert refined is not None
-    group = backbone_group(refined, {task.key: task.run() for task in refined.tasks})
-    read: Sequence[LineContact] = contacts if chosen == "series" else (by_name[chosen],)
-    return ContactLaw(
-        chosen,  # type: ignore[arg-type]
-        read,
-        job.lubricant,
-        line_field(group, read, job.lubricant, loads, entrainment_speeds, temperatures),
-        outside,
-        rolling=rolling_film_of_lines(group, contacts, job.lubricant, loads, temperatures),
-        supply=supply,
-        surface=surface,
-    )
+    return emap.law(chosen, outside, supply=supply, surface=surface)

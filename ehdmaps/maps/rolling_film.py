@@ -283,28 +283,6 @@ def rolling_film(
     return RollingFilm(contacts, lubricant, reader, load_range, temperature_range, start)
 
 
-def rolling_film_of_lines(
-    backbone: xr.Dataset,
-    contacts: Sequence[LineContact],
-    lubricant: Lubricant,
-    load_range: tuple[float, float],
-    temperature_range: tuple[float, float],
-) -> RollingFilm | None:
-    """Rolling force and mass flow from lines without a map; None where a line has too few solved points.
-
-    Parameters
-    ----------
-    backbone, contacts, lubricant
-        Arguments of `rolling_film`.
-    load_range, temperature_range : tuple of float
-        What the lines cover [N/m], [K].
-    """
-    reader, start = _lines_reader(backbone, contacts, lubricant)
-    if reader is None:
-        return None
-    return RollingFilm(contacts, lubricant, reader, load_range, temperature_range, start)
-
-
 def _lines_reader(
     backbone: xr.Dataset, contacts: Sequence[LineContact], lubricant: Lubricant
 ) -> tuple[_Reader | None, float]:

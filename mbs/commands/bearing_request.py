@@ -21,6 +21,7 @@ from ehdmaps.jobs.supply import read_supply
 from ehdmaps.jobs.surface import read_surface
 from ehdmaps.jobs.table import Table
 from ehdmaps.maps.emap import EHDMap
+from ehdmaps.maps.schema import FILMS_READ
 from ehdmaps.outputs import FIGURE, Output, output_problems
 from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
 from ehdmaps.physics.lubricant import LUBRICANTS, Lubricant
@@ -35,12 +36,20 @@ from mbs.bearings.fits import Mounting, operating_clearance
 from mbs.bearings.state import BearingState
 from mbs.commands.cases import NO_MAP, read_clearance, read_supplies
 from mbs.output.bearing_data import WIDE_RANGE, BearingDescription, result_kind
-from mbs.scene.contact_laws import HERTZ_FORMS, TABLE_FORM, dry_words, hertz_damper, table_path, table_problems
+from mbs.scene.contact_laws import (
+    HERTZ_FORMS,
+    TABLE_FORM,
+    TABLE_LAW,
+    dry_words,
+    hertz_damper,
+    table_path,
+    table_problems,
+)
 from mbs.scene.fields import FORCE, MICROMETRE
 from mbs.scene.map_set import geometry_problems, structure_words
 from mbs.scene.profiles import profile_from_text
 
-LAWS = ("hertz", "formula", "map")
+LAWS = ("hertz", "formula", TABLE_LAW, "map")
 OIL, CELSIUS_40, ROUGHNESS = "FVA3", 313.15, 0.3e-6
 """Assumed where nothing is given: the oil, the temperature of the raceways [K], the combined rms roughness [m]."""
 
@@ -172,6 +181,8 @@ def read_request(arguments: argparse.Namespace) -> BearingRequest:
     problems += output_problems(outputs, [path for path in read if path])
     if problems or bearing is None or given is None or oil is None:
         raise InputError(tuple(dict.fromkeys(problems)))
+    if law == TABLE_LAW:
+        law, emap = "map", _table_map(bearing.geometry, oil, given.material, speeds, temperature)
     contacts = bearing.geometry.contacts(given.material, "iso16281")
     films = MapFilms(emap, supply) if emap is not None else FormulaFilms(contacts, oil, supply)
     return BearingRequest(
@@ -229,8 +240,26 @@ def _assumed(arguments: argparse.Namespace, given: _Given, emap: EHDMap | None, 
     return tuple(found)
 
 
+def _table_map(
+    geometry: BearingGeometry, oil: Lubricant, material: Material, speeds: Sequence[float], temperature: float
+) -> EHDMap:
+    """Map in memory over the usual ranges, and over the speeds [rad/s] and the temperature [K] that are asked for."""
+    from ehdmaps.jobs.table_law import SPEEDS, TEMPERATURES, table_map  # with the solver
+
+    entrainment = [geometry.entrainment_speed(speed) for speed in speeds if speed > 0.0]
+    return table_map(
+        dataclasses.replace(geometry, diametral_clearance=0.0),
+        oil,
+        entrainment_speeds=(min(SPEEDS[0], *entrainment), max(SPEEDS[1], *entrainment)),
+        temperatures=(min(TEMPERATURES[0], temperature), max(TEMPERATURES[1], temperature)),
+        material=material,
+    )
+
+
 def _law_words(law: str, emap: EHDMap | None, oil: Lubricant) -> str:
     """The law, for people."""
+    if law == "map" and emap is not None and FILMS_READ in emap.dataset.attrs:
+        return f"film table, {oil.title}{structure_words(emap)}"
     if law == "map" and emap is not None:
         return f"map of {oil.title}, solver {emap.dataset.attrs.get('solver', '')}{structure_words(emap)}"
     words = f"film formula moes, {oil.title} (its damping is far too low for loaded contacts)"
@@ -339,8 +368,8 @@ def _law(name: str | None, with_map: bool, problems: list[str]) -> str:
         problems.append(f"--law: got {short(name)}{closest(name, LAWS)}; allowed: {allowed}")
     elif name == "map" and not with_map:
         problems.append("--law: got 'map' without a map; allowed: with --map MAP.nc, made by `ehdmaps generate`")
-    elif name == "formula" and with_map:
-        problems.append("--law: got 'formula' with a map; allowed: hertz or map with --map; leave one of the two out")
+    elif name in ("formula", TABLE_LAW) and with_map:
+        problems.append(f"--law: got {name!r} with a map; allowed: hertz or map with --map; leave one of the two out")
     return name
 
 

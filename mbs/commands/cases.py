@@ -26,7 +26,7 @@ from mbs.analyses.varied import VARIED, LawChoice, Subject, Value
 from mbs.model.relaxation import DEFAULT_FILMS, Films
 from mbs.output.results import RESULT
 from mbs.scene.assembly import Model
-from mbs.scene.contact_laws import FILM_WORDS, ContactLaws, choose_law, law_label, table_path
+from mbs.scene.contact_laws import FILM_WORDS, TABLE_LAW, ContactLaws, choose_law, law_label, table_path
 from mbs.scene.fields import DEGREE, MICROMETRE
 from mbs.scene.map_set import MapSet, map_sets
 from mbs.scene.reader import read_scene
@@ -259,12 +259,26 @@ def _laws(
             for text in sorted(set(texts))
             if texts.count(text) > 1
         ]
-    laws = [LawChoice(law_label(name), name) for name in names if name != "map" or not paths]
+    laws = [_law(name, scene, problems) for name in names if name != "map" or not paths]
     laws += [
         LawChoice(label, "map", maps)
         for label, maps in _labelled_sets(read_maps(paths, structure, problems), scene, problems)
     ]
     return laws if names or paths else [LawChoice(law_label("hertz"), None)]
+
+
+def _law(name: str, scene: Scene | None, problems: list[str]) -> LawChoice:
+    """A law by its name; that of the film table brings its maps."""
+    if name == TABLE_LAW and scene is not None:
+        from mbs.scene.table_maps import table_maps  # with the solver, for what the table does not know
+
+        try:
+            maps = table_maps(scene)
+        except InputError as error:
+            problems += error.problems
+        else:
+            return LawChoice(law_label("map", maps), "map", maps)
+    return LawChoice(law_label(name), name)
 
 
 def read_maps(paths: list[str], structure: str | None, problems: list[str]) -> list[tuple[str, EHDMap]]:

@@ -27,7 +27,7 @@ from mbs.model.turning import TurningLoad
 from mbs.scene import kinds
 from mbs.scene.axial import axial_problems
 from mbs.scene.bodies import build_bodies
-from mbs.scene.contact_laws import ContactLaws, choose_law, supply_words, surface_label
+from mbs.scene.contact_laws import TABLE_LAW, ContactLaws, choose_law, supply_words, surface_label
 from mbs.scene.kinds import ElementKind
 from mbs.scene.map_set import MapSet
 from mbs.scene.oils import oil_warnings
@@ -115,7 +115,8 @@ def assemble(
     scene : Scene
         Bodies, springs, loads, machine elements.
     law : str, optional
-        hertz, formula, constant:NAME or map; map by default where there is one, else hertz.
+        hertz, formula, constant:NAME, table (films of the scene's oil from the film table, no file is needed) or map;
+        map by default where there is one, else hertz.
     emap : EHDMap, str or Path, or several of these in a list, or MapSet, optional
         Map of the law `map`, or the path of its file; of a scene with several types of bearing one map for each.
     clearance : float, optional
@@ -154,6 +155,10 @@ def assemble(
     ('dry Hertz', 8)
     """
     maps = _opened(emap)
+    if law == TABLE_LAW and maps is None:
+        from mbs.scene.table_maps import table_maps  # with the solver, for what the table does not know
+
+        law, maps = "map", table_maps(scene)
     problems: list[str] = []
     if clearance is not None:
         scene = _with_clearance(scene, clearance, problems)

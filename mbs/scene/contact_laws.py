@@ -45,6 +45,9 @@ HERTZ_FORMS = "hertz:TIME such as 'hertz:1.25e-5 s', hertz:DAMPING such as 'hert
 TABLE_FORM = "table:FILE.csv"
 """The form of the dry law by points, for messages."""
 
+TABLE_LAW = "table"
+"""The law whose films come from the film table: that of maps which are made in memory, see `mbs.scene.table_maps`."""
+
 _LABELS = {"hertz": "dry Hertz", "formula": "film formula"}
 
 
@@ -222,7 +225,7 @@ class ContactLaws:
         """What is wrong about the choice of the law."""
         scene = self.scene
         names = tuple(f"{_CONSTANT}{name}" for name in scene.laws)
-        allowed = ("hertz", "formula", *names, "map")
+        allowed = ("hertz", "formula", *names, TABLE_LAW, "map")
         try:
             damper = hertz_damper(self.chosen)
         except InputError as error:

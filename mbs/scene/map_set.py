@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 from ehdmaps.errors import InputError
 from ehdmaps.maps.emap import EHDMap
+from ehdmaps.maps.schema import FILMS_READ
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.units import LENGTH
@@ -117,8 +118,7 @@ class MapSet:
     @property
     def label(self) -> str:
         """By which solvers they were made, such as "Reynolds map"."""
-        solvers = (str(emap.dataset.attrs.get("solver", "")) for emap in self.maps)
-        return " and ".join(dict.fromkeys(_LABELS.get(solver, "map") for solver in solvers))
+        return " and ".join(dict.fromkeys(map(_label, self.maps)))
 
     @property
     def words(self) -> str:
@@ -130,6 +130,12 @@ class MapSet:
             f"{'map' if len(several) == 1 else 'maps'} of {' and '.join(several)}, {how}"
             for how, several in names.items()
         )
+
+
+def _label(emap: EHDMap) -> str:
+    """By which solver a map was made, in two words."""
+    attributes = emap.dataset.attrs
+    return "film table" if FILMS_READ in attributes else _LABELS.get(str(attributes.get("solver", "")), "map")
 
 
 def as_map_set(given: EHDMap | MapSet | Sequence[EHDMap] | None) -> MapSet | None:

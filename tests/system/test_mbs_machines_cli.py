@@ -114,7 +114,6 @@ class TestFiles:
             (("--plot", "own.toml"), "--plot: got own.toml; allowed: a file that ends in .png, .pdf, .svg"),
             (("-o", "a.png", "--plot", "a.png"), "--plot: got a.png, which would be written over the file of -o"),
             (("-o", "sub"), "-o: got sub, which is a folder; allowed: a file in it"),
-            (("-o", ""), "-o: got ''; allowed: the path of a file"),
             (("--plot", "a\0.png"), "allowed: the path of a file"),
             (("-o", "pipe"), "-o: got pipe, which is no regular file"),
         ],

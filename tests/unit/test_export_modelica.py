@@ -21,7 +21,7 @@ AT = ("--speed", "0.7 m/s", "--temperature", "30 degC")
 @pytest.fixture(scope="module")
 def path(tmp_path_factory):
     path = tmp_path_factory.mktemp("modelica") / "a.nc"
-    generate(parse_job(SMALL, 'x"; end EhdContact; é\n', "map.toml"), path, workers=1, solver=FormulaSolver())
+    generate(parse_job(SMALL, 'x"; end EhdContact; é', "map.toml"), path, workers=1, solver=FormulaSolver())
     return path
 
 

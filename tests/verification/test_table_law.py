@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-import ehdmaps
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.reader import parse_job
@@ -22,6 +22,8 @@ from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.table.solver import TableSolver
+from mbs import assemble, read_scene, statics
+from mbs.cli import main
 from tests.cases.jobs import FINE
 from tests.conftest import made_map
 
@@ -49,11 +51,38 @@ def test_a_law_from_the_table_is_that_from_solved_lines() -> None:
 
 
 def test_a_kind_that_there_is_not_is_refused() -> None:
-    """Of a bare contact and of a bearing."""
-    with pytest.raises(InputError, match="kind: got 'series'; allowed: line"):
-        ehdmaps.law(LINE, OIL, "series")
-    with pytest.raises(InputError, match="kind: got 'line'; allowed: series, inner, outer"):
-        ehdmaps.law(ehdmaps.BearingGeometry.named("NU308"), OIL, "line")
+    with pytest.raises(InputError, match="kind: got 'series'; allowed in this map: line"):
+        narrow_law(kind="series")
+
+
+@pytest.mark.slow
+def test_a_machine_runs_on_the_table_as_on_a_map(reynolds_map: str) -> None:
+    """Stiffness within 0.1 % and damping within 2 %: the errors of table and map."""
+    scene = read_scene("nu308_rigid")
+    read, solved = statics(assemble(scene, "table")), statics(assemble(scene, "map", reynolds_map))
+    assert read.model.label == "film table"
+    assert solved.model.label == "Reynolds map"
+    for name, bound in (("stiffness", 1e-3), ("damping", 0.02)):
+        one, other = (found.dataset[f"bearing_{name}"].values[:, :2, :2] for found in (read, solved))
+        assert np.max(np.abs(one - other)) < bound * np.max(np.abs(other))
+
+
+@pytest.mark.slow
+def test_a_bearing_has_films_without_a_map(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["bearing", "NU308", "--law", "table", "--load", "5 kN", "--speed", "1500 rpm"]) == 0
+    head = capsys.readouterr().out.splitlines()[0]
+    assert head == "NU308: law film table, FVA3; films of the map, FVA3, flooded"
+
+
+def test_what_the_law_of_the_table_needs(small_map: str, capsys: pytest.CaptureFixture[str]) -> None:
+    bare = replace(read_scene("nu308_rigid"), lubricant=None)
+    with pytest.raises(InputError, match=r"--law: got 'table', but nu308_rigid has no \[lubricant\]; add the table"):
+        assemble(bare, "table")
+    with pytest.raises(InputError, match="--law: got 'table', but nu308_rigid has no bearings; leave it out"):
+        assemble(replace(bare, lubricant=OIL, elements=()), "table")
+    asked = ["bearing", "NU308", "--law", "table", "--map", small_map, "--load", "5 kN", "--speed", "800 rpm"]
+    assert main(asked) == 2
+    assert "--law: got 'table' with a map; allowed: hertz or map with --map" in capsys.readouterr().err
 
 
 def test_the_table_as_a_solver_reads_what_it_knows_and_has_the_rest_solved() -> None:
