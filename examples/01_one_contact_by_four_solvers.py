@@ -22,13 +22,11 @@ point = ehdmaps.OperatingPoint(load=FORCE / SLICE, entrainment_speed=3.297, temp
 found = {}
 for solver in ("hertz", "formula", "reynolds", "openfoam"):
     try:
-        found[solver] = ehdmaps.solve(contact, ehdmaps.Lubricant.named("FVA3"), point, solver)
+        found[solver] = one = ehdmaps.solve(contact, ehdmaps.Lubricant.named("FVA3"), point, solver)
     except InputError as error:
         print(f"{solver}: skipped; {error}")
         continue
-    print(
-        f"{solver}: k {SPRING.text(found[solver].stiffness * SLICE)}, c {DAMPER.text(found[solver].damping * SLICE, 3)}"
-    )
+    print(f"{solver}: k {SPRING.text(one.stiffness * SLICE)}, c {DAMPER.text(one.damping * SLICE, 3)}")
 
 length = 1e3 * BEARING.roller_length  # the law takes the whole roller, in mm and N
 both = (point.load * 1e-3 * length / (35948.0 * length ** (8 / 9))) ** 0.9 * 1e-3

@@ -286,14 +286,14 @@ def test_too_few_addresses_are_told_within_seconds(folder):
 
 
 @pytest.mark.slow  # two processes that load all libraries
-@pytest.mark.parametrize(
-    ("files", "said"),
-    [(6, "the system has too little (Too many open files)"), (12, "worker processes cannot be started")],
-)
-def test_too_few_files_are_told(folder, files, said):
+@pytest.mark.parametrize("files", [6, 12])
+def test_too_few_files_are_told(folder, files):
+    """Which of both sentences it is hangs on what else is open then."""
     status, err, _ = limited(folder, {"RLIMIT_NOFILE": files}, "generate", "job.toml", "--workers", "2")
     assert status == 2
-    assert said in err.splitlines()[-1] and "Traceback" not in err
+    last = err.splitlines()[-1]
+    assert "the system has too little (Too many open files)" in last or "worker processes cannot be started" in last
+    assert "Traceback" not in err
 
 
 @pytest.mark.slow  # processes that load all libraries
