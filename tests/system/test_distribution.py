@@ -94,7 +94,7 @@ def test_what_source_distribution_and_wheel_hold(distributions):
 @pytest.fixture(scope="module")
 def installed(distributions, tmp_path_factory):
     """The wheel in an environment of its own, which borrows what ehdmaps needs; in a folder with blanks and umlauts."""
-    folder = tmp_path_factory.mktemp("elsewhere") / "else where, für alle"
+    folder = tmp_path_factory.mktemp("elsewhere") / "else where, für jede"
     done([sys.executable, "-m", "venv", folder], folder.parent)
     done([folder / "bin/pip", "install", "--quiet", "--no-deps", distributions[1]], folder.parent)
     (packages,) = folder.glob("lib/python*/site-packages")
