@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ehdmaps.errors import InputError
 from ehdmaps.jobs.generate import generate_in_memory
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.solvers import TABLE
@@ -130,7 +131,10 @@ def law(
     >>> import ehdmaps
     >>> nu308 = ehdmaps.law(ehdmaps.BearingGeometry.named("NU308"), ehdmaps.Lubricant.named("FVA3"))  # doctest: +SKIP
     """
-    chosen: LawKind = kind or ("series" if isinstance(of, BearingGeometry) else "line")
+    allowed: tuple[LawKind, ...] = ("series", "inner", "outer") if isinstance(of, BearingGeometry) else ("line",)
+    chosen = kind or allowed[0]
+    if chosen not in allowed:
+        raise InputError(f"contact law, kind: got {kind!r}; allowed: {', '.join(allowed)}")
     emap = table_map(
         of,
         lubricant,

@@ -250,7 +250,7 @@ def _table_map(
     return table_map(
         dataclasses.replace(geometry, diametral_clearance=0.0),
         oil,
-        entrainment_speeds=(min(SPEEDS[0], *entrainment), max(SPEEDS[1], *entrainment)),
+        entrainment_speeds=(min([SPEEDS[0], *entrainment]), max([SPEEDS[1], *entrainment])),
         temperatures=(min(TEMPERATURES[0], temperature), max(TEMPERATURES[1], temperature)),
         material=material,
     )

@@ -295,4 +295,6 @@ def _made_for(emap: EHDMap) -> str:
 
 def _made_by(emap: EHDMap) -> str:
     """How a map was made."""
-    return f"solver {emap.dataset.attrs.get('solver', '')}{structure_words(emap)}"
+    attributes = emap.dataset.attrs
+    films = "films from the film table" if FILMS_READ in attributes else f"solver {attributes.get('solver', '')}"
+    return films + structure_words(emap)

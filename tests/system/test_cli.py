@@ -425,6 +425,7 @@ def test_solve_lists_every_problem(capsys, arguments, messages):
     assert err.startswith(f"ehdmaps solve: {len(messages)} problem")
 
 
+@pytest.mark.slow
 def test_tradeoff_prints_its_tables_and_writes_its_files(here, capsys):
     Path("mine.toml").write_text(TEXT.replace('"formula"', '"reynolds"\ndensity = 3.0'))  # which takes less time
     arguments = ["tradeoff", "mine.toml", "--points", "2", "--seed", "4", "--openfoam", "0"]

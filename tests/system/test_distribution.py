@@ -127,9 +127,9 @@ def test_an_installation_elsewhere_has_its_jobs_scenes_exports_and_solids(instal
             done([program, "check", name], tmp_path)
     code = "import mbs.scene.reader as r; print(*map(r.read_scene, r.shipped_systems()))"
     done([python, "-c", code], tmp_path)
-    # with the finite elements of its housing
-    done([installed / "bin/mbs", "statics", "gearbox", "--law", "hertz"], tmp_path)
-    at = ["--load", "5 kN", "--speed", "1000 rpm"]
-    for target, name, more in (("csv", "k.csv", []), ("c", "c", []), ("ross", "ross.toml", at)):
-        done([program, "export", small_map, "--to", target, "-o", name, *more], tmp_path)
+    # with the finite elements of its housing; in Python, as numba would compile all anew for the new place
+    statics = [installed / "bin/mbs", "statics", "gearbox", "--law", "hertz"]
+    done(statics, tmp_path, NUMBA_DISABLE_JIT="1")
+    for target, name in (("csv", "k.csv"), ("c", "c")):
+        done([program, "export", small_map, "--to", target, "-o", name], tmp_path)
     assert "NU308" in done([program, "solids", "nu308"], tmp_path)

@@ -76,6 +76,7 @@ def _scene(here, *changes):
     (here / "own.toml").write_text(text, encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_a_drive_is_told(here, capsys):
     _scene(here, ('duration = "2.5 s"', 'duration = "4 ms"'))
     status, out, _ = run(capsys, "runup", "own.toml", *DAMPED)

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import ehdmaps
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.reader import parse_job
@@ -51,8 +52,10 @@ def test_a_law_from_the_table_is_that_from_solved_lines() -> None:
 
 
 def test_a_kind_that_there_is_not_is_refused() -> None:
-    with pytest.raises(InputError, match="kind: got 'series'; allowed in this map: line"):
+    with pytest.raises(InputError, match="kind: got 'series'; allowed: line"):
         narrow_law(kind="series")
+    with pytest.raises(InputError, match="kind: got 'line'; allowed: series, inner, outer"):
+        ehdmaps.law(ehdmaps.BearingGeometry.named("NU308"), OIL, "line")
 
 
 @pytest.mark.slow
@@ -68,8 +71,9 @@ def test_a_machine_runs_on_the_table_as_on_a_map(reynolds_map: str) -> None:
 
 
 @pytest.mark.slow
-def test_a_bearing_has_films_without_a_map(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["bearing", "NU308", "--law", "table", "--load", "5 kN", "--speed", "1500 rpm"]) == 0
+@pytest.mark.parametrize("speed", ["1500 rpm", "0 rpm"])
+def test_a_bearing_has_films_without_a_map(speed: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["bearing", "NU308", "--law", "table", "--load", "5 kN", "--speed", speed]) == 0
     head = capsys.readouterr().out.splitlines()[0]
     assert head == "NU308: law film table, FVA3; films of the map, FVA3, flooded"
 
