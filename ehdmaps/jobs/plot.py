@@ -283,7 +283,7 @@ def write_line(
     keep_within(figure, line)
 
 
-def page_legend(figure: Figure, entries: Sequence[Line2D | Patch]) -> Legend:
+def page_legend(figure: Figure, entries: Sequence[Line2D | Patch], bottom: float = 0.022) -> Legend:
     """Write a legend at the foot of a page: three columns, or two where a long text would run out of it.
 
     Parameters
@@ -292,18 +292,21 @@ def page_legend(figure: Figure, entries: Sequence[Line2D | Patch]) -> Legend:
         The page.
     entries : sequence of Line2D or Patch
         What is explained.
+    bottom : float
+        Height of its lower edge, as a part of the page.
     """
     for columns in (3, 2):
         legend = figure.legend(
             handles=entries,
             loc="lower left",
-            bbox_to_anchor=(0.047, 0.022),
+            bbox_to_anchor=(0.047, bottom),
             ncols=columns,
             frameon=False,
             fontsize=7.5,
             columnspacing=2.5,
         )
-        if legend.get_window_extent().x1 <= figure.bbox.x1 or columns == 2:
+        # letters are up to 3 % wider at the resolution of the file
+        if legend.get_window_extent().x1 <= 0.96 * figure.bbox.x1 or columns == 2:
             break
         legend.remove()
     return legend

@@ -19,6 +19,7 @@ from ehdmaps.jobs.plot import (
     RESOLUTION,
     contact_words,
     mark_entries,
+    page_legend,
     speed_bar,
     what_is_mapped,
     write_estimated,
@@ -91,7 +92,7 @@ def _page(sheet: Sheet) -> Figure:
     write_line(figure, 0.916, f"Share of the load: {share}; a guess where the mean planes overlap.", 8)
     write_estimated(figure, 0.9, sheet.emap)
     grid = figure.add_gridspec(
-        2 * contacts, len(temperatures), left=0.062, right=0.92, top=0.875, bottom=0.105, wspace=0.08, hspace=0.12
+        2 * contacts, len(temperatures), left=0.062, right=0.92, top=0.875, bottom=0.122, wspace=0.08, hspace=0.12
     )
     for row in range(2 * contacts):
         left: Axes | None = None
@@ -109,20 +110,13 @@ def _page(sheet: Sheet) -> Figure:
             if column == 0:
                 words = contact_words(str(dataset["contact"].values[row // 2]))
                 axes.set_ylabel(f"{words}\n" + ("Λ" if row % 2 == 0 else "film's share of the load"), labelpad=2)
-    speed_bar(figure, sheet, (0.936, 0.105, 0.011, 0.77))
+    speed_bar(figure, sheet, (0.936, 0.122, 0.011, 0.753))
     entries: list[Line2D | Patch] = [
         Line2D([], [], color="black", lw=0.8, ls=style, label=words) for _, style, words in _LINES
     ]
     if overlapping(dataset[FILM_SHARE].values, dataset[MEAN_DISTANCE].values).any():
         entries.append(Patch(label="mean planes overlap: out of the range of load sharing, a guess", **_BEYOND))
-    figure.legend(
-        handles=entries + mark_entries(sheet),
-        loc="lower left",
-        bbox_to_anchor=(0.052, 0.01),
-        ncols=3,
-        frameon=False,
-        fontsize=7.5,
-    )
+    page_legend(figure, [*entries, *mark_entries(sheet)], 0.005)
     return figure
 
 

@@ -90,6 +90,7 @@ def test_of_a_map(folder, monkeypatch, capsys):
     monkeypatch.chdir(folder)
     with drawn() as figures:
         assert jobs_cli.main(["plot", "NU2210.nc", "-o", "a.png"]) == 0
+        assert jobs_cli.main(["plot", "NU2210.nc", "--roughness", "0.2 um", "-o", "b.png"]) == 0
     looked_at(figures)
     texts = [words for words, _ in titles(figures[0])]
     assert f"EHD contact map: {LABEL}, oil {OIL}" in texts
