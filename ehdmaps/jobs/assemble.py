@@ -43,7 +43,7 @@ _ALWAYS = ("status", "reason", "iterations", "solve_seconds", "viscosity_extrapo
 """Fields of a film that a hole keeps."""
 
 
-def assemble(job: Job, solver: ContactSolver, tasks: Sequence[LineTask], results: Mapping[str, Arrays]) -> xr.Dataset:
+def assemble(job: Job, solver: ContactSolver, films: Mapping[str, npt.NDArray[Any]]) -> xr.Dataset:
     """Build the dataset of a map.
 
     Parameters
@@ -52,17 +52,15 @@ def assemble(job: Job, solver: ContactSolver, tasks: Sequence[LineTask], results
         What was asked for.
     solver : ContactSolver
         What solved it.
-    tasks : sequence of LineTask
-        All of them.
-    results : mapping
-        Arrays by key of the task.
+    films : mapping of str to array
+        Films of its points by the names of `FilmSolution`, in the shape of the map; see `placed`.
 
     Returns
     -------
     xarray.Dataset
         The map as the schema wants it, with provenance; isolated holes filled if the job says so.
     """
-    films = _films(job, tasks, results)
+    films = only_usable(films)
     holes_filled = np.zeros(job.shape, dtype=bool)
     if job.fill == "neighbours":
         films, holes_filled = _fill(job, films)
@@ -120,8 +118,18 @@ def with_correction(dataset: xr.Dataset, job: Job, correction: Correction, corre
     )
 
 
-def _films(job: Job, tasks: Sequence[LineTask], results: Mapping[str, Arrays]) -> dict[str, npt.NDArray[Any]]:
-    """Put the films of every task in their place; only usable points keep their numbers."""
+def placed(job: Job, tasks: Sequence[LineTask], results: Mapping[str, Arrays]) -> dict[str, npt.NDArray[Any]]:
+    """Put the films of every task in their place.
+
+    Parameters
+    ----------
+    job : Job
+        What was asked for.
+    tasks : sequence of LineTask
+        All of them.
+    results : mapping
+        Arrays by key of the task.
+    """
     films: dict[str, npt.NDArray[Any]] = {}
     for task in tasks:
         contact, start, speed, temperature = task.place
@@ -129,7 +137,7 @@ def _films(job: Job, tasks: Sequence[LineTask], results: Mapping[str, Arrays]) -
             if name not in films:
                 films[name] = np.empty(job.shape, dtype=object if line.dtype.kind == "U" else line.dtype)
             films[name][contact, start : start + task.points, speed, temperature] = line
-    return only_usable(films)
+    return films
 
 
 def only_usable(films: Mapping[str, npt.NDArray[Any]]) -> dict[str, npt.NDArray[Any]]:

@@ -53,6 +53,11 @@ def parser() -> argparse.ArgumentParser:
     )
     generate.add_argument("--workers", metavar="N", type=count, help="processes; default: all cores")
     generate.add_argument("--fresh", action="store_true", help="forget what is solved already")
+    generate.add_argument(
+        "--fresh-films",
+        action="store_true",
+        help="reynolds: have all films solved, none read from the film table; as films = \"solved\" of [solver]",
+    )
     generate.add_argument("--keep-cases", metavar="FOLDER", nargs="?", const="ehdmaps-cases", help=_KEEP)
     generate.add_argument(
         "--shard", metavar="I/N", type=_shard, help="solve part I of N only, into a store of its own; see `merge`"

@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from ehdmaps.arrays import BoolArray
-from ehdmaps.jobs.assemble import assemble
+from ehdmaps.jobs.assemble import assemble, placed
 from ehdmaps.jobs.family import Family, own_part
 from ehdmaps.jobs.family_films import FamilyFilms
 from ehdmaps.jobs.job import record_json
@@ -67,7 +67,7 @@ def read_map(solved: Solved, member: int) -> tuple[xr.Dataset, xr.Dataset]:
     """
     films, job, solver = solved.films, solved.family.jobs[member], solved.family.solver
     tasks = line_tasks(job, solver)
-    dataset = assemble(job, solver, tasks, {task.key: _with_solved(task, *films.read(task)) for task in tasks})
+    dataset = assemble(job, solver, placed(job, tasks, {task.key: _with_solved(task, *films.read(task)) for task in tasks}))
     group = own_part(films.group, films.reference, job)
     validate(dataset, job.name)
     return dataset, group

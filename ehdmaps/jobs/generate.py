@@ -13,7 +13,7 @@ import xarray as xr
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers
-from ehdmaps.jobs.assemble import assemble, with_correction
+from ehdmaps.jobs.assemble import assemble, placed, with_correction
 from ehdmaps.jobs.correction import Correction, correction
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.law_check import HALVED, REFUSED, LawCheck, checked_laws, coarse_axis, met, plan_check
@@ -21,6 +21,7 @@ from ehdmaps.jobs.refinement import MOST_LINE_POINTS, Refinement, backbone_group
 from ehdmaps.jobs.status import StatusFile, about
 from ehdmaps.jobs.store import Arrays, NoStore, Results, Store, store_path
 from ehdmaps.jobs.sweep import Progress, SweepResult, sweep
+from ehdmaps.jobs.table_films import table_films, unserved
 from ehdmaps.jobs.tasks import LineTask, line_tasks
 from ehdmaps.jobs.tolerance import check_tolerance, within_tolerance
 from ehdmaps.jobs.write import write_map
@@ -30,6 +31,7 @@ from ehdmaps.maps.checksum import content_sha256
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.validation import validate
 from ehdmaps.physics.solution import ContactSolver
+from ehdmaps.table.file import CHECKSUM, shipped_tables
 from ehdmaps.table.solver import TableSolver
 from ehdmaps.workers import available_cores
 
@@ -109,7 +111,10 @@ def generate(
     InputError, StoreError, MapError, WorkerError
         With what to do; everything solved is kept.
     """
-    planned = _plan(job, _solver(job, solver), _corrector(job, corrector))
+    chosen_solver = _solver(job, solver)
+    if tolerance is not None and isinstance(chosen_solver, TableSolver) and "films" not in job.solver_options:
+        chosen_solver = solvers.build(job.solver, {**job.solver_options, "films": solvers.SOLVED})
+    planned = _plan(job, chosen_solver, _corrector(job, corrector))
     adjusted = None if tolerance is None else check_tolerance(job, planned.solver, tolerance)
     total = planned.points if adjusted is None else 0
     processes = workers or available_cores()
@@ -192,7 +197,8 @@ def planned_tasks(job: Job, solver: ContactSolver | None = None) -> tuple[LineTa
 class _Plan:
     """All that is solved for a map: its points, the lines of a contact law, and the check of the laws.
 
-    `halved` are the axes along which the steps of the lines were halved, in turn; `correction` is what the points of
+    With `from_table` points and laws are read from the film table, and the check is all that is solved; `unserved` says
+    why they are not. `halved` are the axes along which the steps of the lines were halved, in turn; `correction` is what the points of
     the `corrector` made, once they are solved.
     """
 
@@ -202,6 +208,8 @@ class _Plan:
     tasks: tuple[LineTask, ...]
     refined: Refinement | None
     check: LawCheck | None
+    from_table: bool = False
+    unserved: str = ""
     halved: tuple[Axis, ...] = ()
     correction: Correction | None = None
 
@@ -223,7 +231,7 @@ class _Plan:
 
 def _solver(job: Job, instead: ContactSolver | None) -> ContactSolver:
     """The solver of a job, or another one."""
-    return solvers.complete(instead or solvers.build(job.solver, job.solver_options))
+    return solvers.complete(instead or solvers.of_map(job))
 
 
 def _corrector(job: Job, instead: ContactSolver | None) -> ContactSolver | None:
@@ -238,7 +246,13 @@ def _corrector(job: Job, instead: ContactSolver | None) -> ContactSolver | None:
 
 def _plan(job: Job, solver: ContactSolver, corrector: ContactSolver | None) -> _Plan:
     """Lay out what is to be solved."""
-    return _Plan(job, solver, corrector, line_tasks(job, solver), refinement(job, solver), plan_check(job, solver))
+    why = ""
+    if isinstance(solver, TableSolver) and job.backbone == "law" and job.corrected_by is None:
+        why = unserved(job)
+        if not why:
+            return _Plan(job, solver, corrector, (), None, plan_check(job, solver), from_table=True)
+    lines = refinement(job, solver)
+    return _Plan(job, solver, corrector, line_tasks(job, solver), lines, plan_check(job, solver), unserved=why)
 
 
 def _corrected(planned: _Plan, solve: Callable[[Sequence[LineTask]], Mapping[str, Arrays]]) -> _Plan:
@@ -288,14 +302,20 @@ def _finer(planned: _Plan, dataset: xr.Dataset, group: xr.Dataset | None, result
 def _finished(planned: _Plan, result: SweepResult, where: str) -> tuple[xr.Dataset, xr.Dataset | None]:
     """Put results together, with the check of the laws and a checksum: the map and its backbone."""
     found = _results(planned, result)
-    dataset = assemble(planned.job, planned.solver, planned.tasks, found)
+    films = table_films(planned.job) if planned.from_table else placed(planned.job, planned.tasks, found)
+    dataset = assemble(planned.job, planned.solver, films)
+    if planned.from_table:
+        dataset.attrs[schema.FILM_TABLE] = shipped_tables().attributes[CHECKSUM]
     if planned.correction and planned.corrector:
         dataset = with_correction(dataset, planned.job, planned.correction, planned.corrector)
     validate(dataset, where)
     group = backbone_group(planned.refined, found) if planned.refined else None
     if planned.check:
         dataset.attrs.update(checked_laws(planned.check, EHDMap(dataset, group), found))
-    if isinstance(planned.solver, TableSolver):
+    if planned.from_table:
+        dataset.attrs[schema.FILMS_READ], dataset.attrs[schema.FILMS_SOLVED] = planned.job.points, 0
+    elif isinstance(planned.solver, TableSolver):
+        dataset.attrs[schema.UNSERVED] = planned.unserved
         read = sum(int(np.count_nonzero(found[task.key]["iterations"] == 0)) for task in planned.films)
         total = sum(task.points for task in planned.films)
         dataset.attrs[schema.FILMS_READ], dataset.attrs[schema.FILMS_SOLVED] = read, total - read

@@ -13,7 +13,7 @@ import xarray as xr
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import MapError
 from ehdmaps.jobs.job import Job
-from ehdmaps.jobs.law_points import COMPLIANCE_BARS, DAMPING_BARS, at_loads, fresh_solution
+from ehdmaps.jobs.law_points import COMPLIANCE_BARS, DAMPING_BARS, READ_COMPLIANCE_BARS, at_loads, fresh_solution
 from ehdmaps.jobs.sampling import SamplePoint, draw, draw_apart, drawable, log_uniform
 from ehdmaps.jobs.store import Arrays
 from ehdmaps.jobs.tasks import LineTask
@@ -23,6 +23,7 @@ from ehdmaps.maps.compilation import highest_structural_load
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.law import ContactLaw, OutsidePolicy
 from ehdmaps.maps.law_errors import quantiles_text
+from ehdmaps.maps.schema import FILM_TABLE
 from ehdmaps.maps.tail import THICK_FILM
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width
@@ -47,6 +48,9 @@ of films to lower loads are worth there is told, and held to no bar."""
 OUTSIDE_SHARE = 0.1
 """Points in each of these regions, as a share of those within the map."""
 
+MOST_OF_READ = 100
+"""Points within a map with films from the film table: they prove that reading is right, and lay no lines."""
+
 SHARES = {"law_": 0.99, "law_valley_": 0.95}
 """Share of the points that should be within the bars, over the whole map and in the valley."""
 
@@ -60,6 +64,7 @@ STANDS_ON_LINES = (
     "point without a law"
 )
 STANDS_ON_POINTS = "these laws are made from the points of the map: more temperatures, speeds or loads help"
+STANDS_ON_TABLE = "these laws are read from the film table: `--fresh-films` has their films solved"
 """What can be done where a bar is unmet; for the lines see `coarse_axis`."""
 
 NOTHING = {
@@ -75,11 +80,15 @@ _WORTH: Mapping[Axis, float] = {"load": 0.25}
 
 @dataclass(frozen=True)
 class LawCheck:
-    """Random points: within the map, in its valley, and in each region of `OUTSIDE`; `regions` says which is which."""
+    """Random points: within the map, in its valley, and in each region of `OUTSIDE`; `regions` says which is which.
+
+    `compliance_bars` are those that the laws are held to.
+    """
 
     contacts: tuple[LineContact, ...]
     tasks: tuple[LineTask, ...]
     regions: tuple[str, ...]
+    compliance_bars: tuple[float, float] = COMPLIANCE_BARS
 
     def inside(self, task: int) -> bool:
         """Whether a task lies within the map."""
@@ -93,13 +102,15 @@ def check_points(count: int) -> int:
 
 def plan_check(job: Job, solver: ContactSolver) -> LawCheck | None:
     """Draw the points: load and speed log-uniform, temperature uniform, contact at random; None if `law_check` is 0."""
-    count = job.law_check
+    read = isinstance(solver, TableSolver)
+    count = min(job.law_check, MOST_OF_READ) if read else job.law_check
     if not count or not drawable(job):
         return None
     rng = np.random.default_rng(SEED)
     over, valley = draw_apart(job, rng, count)
     drawn = [("", point) for point in over] + [("valley", point) for point in valley]
-    if len(job.loads) > 1:
+    # beyond the map, laws with films that are read go on as all others do
+    if len(job.loads) > 1 and not read:
         drawn += [
             (region, _moved(job, draw(job, rng), region, log_uniform(rng, *factors)))
             for region, factors in OUTSIDE.items()
@@ -108,7 +119,8 @@ def plan_check(job: Job, solver: ContactSolver) -> LawCheck | None:
     # the proof of films that are read is films that are solved
     fresh = solver.other if isinstance(solver, TableSolver) else solver
     tasks = tuple(LineTask(contact, job.lubricant, (w,), u, T, fresh) for _, (contact, w, u, T) in drawn)
-    return LawCheck(job.contacts, tasks, tuple(region for region, _ in drawn))
+    bars = READ_COMPLIANCE_BARS if read else COMPLIANCE_BARS
+    return LawCheck(job.contacts, tasks, tuple(region for region, _ in drawn), bars)
 
 
 def _moved(job: Job, point: SamplePoint, region: str, factor: float) -> SamplePoint:
@@ -159,7 +171,8 @@ def unmet(dataset: xr.Dataset, with_backbone: bool) -> list[str]:
                 f"points {where}; wanted {share:.0%}"
             )
     if any(line.startswith("unmet") for line in missed):
-        missed.append(STANDS_ON_LINES if with_backbone else STANDS_ON_POINTS)
+        advice = STANDS_ON_LINES if with_backbone else STANDS_ON_POINTS
+        missed.append(STANDS_ON_TABLE if FILM_TABLE in dataset.attrs else advice)
     return missed
 
 
@@ -209,7 +222,7 @@ def coarse_axis(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) ->
             arrays = results[task.key]
             if task.contact != contact or not check.inside(i) or not Status(int(arrays["status"][0])).usable:
                 continue
-            if _missed_between(field, task, fresh_solution(task, arrays)):
+            if _missed_between(field, task, fresh_solution(task, arrays), check.compliance_bars):
                 votes[loosest_axis(field, task)] += 1
     return votes.most_common(1)[0][0] if votes else None
 
@@ -228,7 +241,9 @@ def loosest_axis(field: BackboneField, task: LineTask) -> Axis:
     return max(changes, key=lambda axis: changes[axis] * _WORTH.get(axis, 1.0))
 
 
-def _missed_between(field: BackboneField, task: LineTask, fresh: ContactSolution) -> bool:
+def _missed_between(
+    field: BackboneField, task: LineTask, fresh: ContactSolution, bars: tuple[float, float]
+) -> bool:
     """Whether films between the lines miss a bar."""
     (load,), u, T, contact = task.loads, task.entrainment_speed, task.temperature, task.contact
     films = field.films(contact.name, np.array([[[load]]]), np.array([u]), np.array([T]))
@@ -237,7 +252,7 @@ def _missed_between(field: BackboneField, task: LineTask, fresh: ContactSolution
     wrong, solved_c = abs(1.0 / stiffness - 1.0 / fresh.stiffness), max(fresh.damping, 0.0)
     wrong_c = abs(loss * stiffness**2 - solved_c)
     unit = fresh.stiffness * float(half_width(load, contact.radius, contact.reduced_modulus)) / u
-    return wrong > max(COMPLIANCE_BARS[0] * abs(fresh.film_compliance), COMPLIANCE_BARS[1] / fresh.stiffness) or (
+    return wrong > max(bars[0] * abs(fresh.film_compliance), bars[1] / fresh.stiffness) or (
         wrong_c > max(DAMPING_BARS[0] * solved_c, DAMPING_BARS[1] * unit)
     )
 
@@ -274,7 +289,8 @@ def check_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> 
                 # Fresh solves are those of flooded films between smooth surfaces, whatever the job states.
                 policy: OutsidePolicy = "error" if inside else "asymptote"
                 law = emap.law(contact.name, policy, supply=FLOODED, surface=SMOOTH)  # type: ignore[arg-type]
-                rows.append(_errors(law, [(check.tasks[i], results[check.tasks[i].key]) for i in chosen]))
+                points = [(check.tasks[i], results[check.tasks[i].key]) for i in chosen]
+                rows.append(_errors(law, points, check.compliance_bars))
                 regions += [check.regions[i] for i in chosen]
     counted = [region in INSIDE for region in check.regions]
     record: dict[str, float | int | str] = {
@@ -305,7 +321,7 @@ def _known(task: LineTask, arrays: Arrays, region: str) -> bool:
     return Status(int(arrays["status"][0])).usable and not fading
 
 
-def _errors(law: ContactLaw, points: list[tuple[LineTask, Arrays]]) -> FloatArray:
+def _errors(law: ContactLaw, points: list[tuple[LineTask, Arrays]], bars: tuple[float, float]) -> FloatArray:
     """Errors of film compliance and damping, whether each is within its bar, errors of k and film offset, shape (n, 6).
 
     All are relative; that of the film offset is what the approach at the load misses, as a part of the offset.
@@ -332,7 +348,7 @@ def _errors(law: ContactLaw, points: list[tuple[LineTask, Arrays]]) -> FloatArra
         [
             relative,
             relative_c,
-            (relative <= COMPLIANCE_BARS[0]) | (wrong * solved_k <= COMPLIANCE_BARS[1]),
+            (relative <= bars[0]) | (wrong * solved_k <= bars[1]),
             (relative_c <= DAMPING_BARS[0]) | (wrong_c * speed <= DAMPING_BARS[1] * solved_k * half),
             wrong * solved_k,
             np.where(offset > 0.0, missed / np.maximum(offset, 1e-300), np.nan),

@@ -26,6 +26,10 @@ STIFFNESS, DAMPING, OFFSET, APPROACH = "stiffness", "damping", "film offset", "a
 COMPLIANCE_BARS, DAMPING_BARS = (0.01, 1e-4), (0.05, 1e-3)
 """An error is within its bar where it is below a share of the film compliance or of 1/k; of c or of k b/u."""
 
+READ_COMPLIANCE_BARS = (0.01, 1e-3)
+"""The bar of film compliance for laws whose films are read from the film table: a thousandth of a stiffness. Whoever
+needs more has the films solved."""
+
 SMALL_DAMPING = DAMPING_BARS[1] / DAMPING_BARS[0]
 """Damping, as a share of k b/u, below which an error is related to this share: damping runs through zero in its valley,
 and a share of nothing is no measure."""

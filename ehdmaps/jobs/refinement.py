@@ -12,14 +12,14 @@ import numpy.typing as npt
 import xarray as xr
 
 from ehdmaps.ehl.solver import ReynoldsSolver
-from ehdmaps.jobs.job import Job, record_json
+from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.store import Arrays
 from ehdmaps.jobs.tasks import SPECTRUM_FIELDS, LineTask, knows_heat, with_later_fields
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone import ERROR, FILMS, IMAGINARY, REAL, BackboneField
 from ehdmaps.maps.backbone_plan import BackbonePlan, Steps, plan_backbone, plan_own_lines
 from ehdmaps.maps.own_lines import lines_by_contact
-from ehdmaps.maps.records import contact_record
+from ehdmaps.maps.records import reference_json
 from ehdmaps.maps.rolling_film import NAMES as ROLLING
 from ehdmaps.maps.usable import check_backbone
 from ehdmaps.physics.contact import LineContact
@@ -111,7 +111,7 @@ def backbone_group(refined: Refinement, results: Mapping[str, Arrays]) -> xr.Dat
         values,
         {
             "title": "films of a reference contact, from which the contact laws of the map are made",
-            schema.REFERENCE_CONTACT: record_json(contact_record(first.contact)),
+            schema.REFERENCE_CONTACT: reference_json(first.contact),
         },
     )
 

@@ -11,7 +11,7 @@ import xarray as xr
 
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.maps.records import lubricant_from_json
-from ehdmaps.maps.schema import FILMS_READ, FILMS_SOLVED
+from ehdmaps.maps.schema import FILM_TABLE, FILMS_READ, FILMS_SOLVED, UNSERVED
 from ehdmaps.physics.film_limits import BELOW_ROUGHNESS, CONTINUUM, NO_CONTINUUM
 from ehdmaps.physics.peak import tip_words
 from ehdmaps.physics.solution import Status
@@ -216,10 +216,15 @@ def films_lines(dataset: xr.Dataset) -> Iterator[str]:
     """Say how many films of a map were read from the film table; nothing of a map whose films were all solved."""
     if FILMS_READ in dataset.attrs:
         read, solved = (int(dataset.attrs[name]) for name in (FILMS_READ, FILMS_SOLVED))
+        if FILM_TABLE in dataset.attrs:
+            yield f"films: {read} points read from the film table, as the films of the laws are; none solved"
+            return
         yield (
             f"films: {read} of points and lines read from the film table, {solved} solved, where the table has none or "
             "states too large an error"
         )
+        if why := dataset.attrs.get(UNSERVED):
+            yield f"       lines are solved as {why}"
 
 
 def error_lines(dataset: xr.Dataset) -> Iterator[str]:

@@ -10,6 +10,7 @@ from typing import Any
 
 from ehdmaps.ehl.limits import SETTING_LIMITS
 from ehdmaps.errors import InputError
+from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.table import Table
 from ehdmaps.physics.heat import ISOTHERMAL, PHYSICS, THERMAL
 from ehdmaps.physics.rheology import SHEAR_LIMITS, SHEARS
@@ -18,6 +19,9 @@ from ehdmaps.units import Display, short
 
 SOLVED, TABLE = "solved", "table"
 """Where the films of `reynolds` come from."""
+
+GRID_KEYS = ("density", "inlet_length", "tolerance")
+"""Keys of `reynolds` that say how a film is solved: who states one has films solved."""
 
 
 @dataclass(frozen=True)
@@ -236,6 +240,23 @@ def build(name: str, options: Mapping[str, Any]) -> ContactSolver:
     if lacking:
         raise InputError([f"solver {name!r}: {problem}" for problem in lacking])
     return entry.build(**options)
+
+
+def of_map(job: Job) -> ContactSolver:
+    """Make the solver of a job's map: where the job does not say otherwise, the film table is read where it serves.
+
+    Parameters
+    ----------
+    job : Job
+        The job.
+    """
+    options = job.solver_options
+    if job.solver != "reynolds" or job.corrected_by or {"films", *GRID_KEYS} & options.keys():
+        return build(job.solver, options)
+    from ehdmaps.table.family import outside_family
+
+    solved = build(job.solver, options)
+    return solved if outside_family(solved) else build(job.solver, {**options, "films": TABLE})
 
 
 def complete(solver: ContactSolver) -> ContactSolver:

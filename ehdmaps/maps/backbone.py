@@ -66,44 +66,65 @@ REAL, IMAGINARY, ERROR = "film_compliance_real", "film_compliance_imaginary", "f
 
 
 @dataclass(frozen=True)
-class _OffsetLine:
-    """ln(film offset) along one line: integral of its slope, bent outside the valley to meet its values."""
+class OffsetLine:
+    """ln(film offset) along a line, or along several: integral of its slope, bent outside the valley to meet its values.
+
+    Attributes
+    ----------
+    steep, integral : CubicSpline, PPoly
+        Slope over zeta and its integral; of several lines with values (n, lines).
+    bend : ndarray, shape (5,) or (5, lines)
+        What is added, see `bent`.
+    """
 
     steep: CubicSpline
     integral: PPoly
     bend: FloatArray
 
     @classmethod
-    def through(cls, zeta: FloatArray, value: FloatArray, slope: FloatArray) -> _OffsetLine:
-        """Line through the slopes at the nodes, exactly in the valley, and through the values on the average."""
+    def through(cls, zeta: FloatArray, value: FloatArray, slope: FloatArray) -> OffsetLine:
+        """Line through the slopes at the nodes, exactly in the valley, and through the values on the average.
+
+        Parameters
+        ----------
+        zeta : ndarray, shape (n,)
+            Nodes.
+        value, slope : ndarray, shape (n,) or (n, lines)
+            ln(film offset) and its derivative there.
+        """
         heavy = zeta > HEAVY
         if np.any(heavy):
-            slope = np.where(heavy, CubicSpline(zeta, value)(zeta, 1), slope)
+            by_values = CubicSpline(zeta, value)(zeta, 1)
+            slope = np.where(heavy.reshape(-1, *(1,) * (slope.ndim - 1)), by_values, slope)
         steep = CubicSpline(zeta, slope)
         integral = steep.antiderivative()
         bend, *_ = np.linalg.lstsq(_bends(zeta, 0), value - integral(zeta), rcond=None)
         return cls(steep, integral, bend)
 
+    def bent(self, zeta: FloatArray, order: int) -> FloatArray:
+        """What is added to the integral, or to its derivatives of an order, at places (n,), of several lines (n, lines)."""
+        return np.asarray(np.sum(_bends(zeta, order) * self.bend.T, axis=-1))
+
     def value(self, zeta: FloatArray) -> FloatArray:
-        """Value of ln(film offset)."""
-        return np.asarray(self.integral(zeta) + _bends(zeta, 0) @ self.bend)
+        """Value of ln(film offset) of one line at places (n,)."""
+        return np.asarray(self.integral(zeta) + self.bent(zeta, 0))
 
     def slope(self, zeta: FloatArray) -> FloatArray:
         """Its derivative."""
-        return np.asarray(self.steep(zeta) + _bends(zeta, 1) @ self.bend)
+        return np.asarray(self.steep(zeta) + self.bent(zeta, 1))
 
     def curvature(self, zeta: FloatArray) -> FloatArray:
         """Its second derivative."""
-        return np.asarray(self.steep(zeta, 1) + _bends(zeta, 2) @ self.bend)
+        return np.asarray(self.steep(zeta, 1) + self.bent(zeta, 2))
 
 
 def _bends(zeta: FloatArray, order: int) -> FloatArray:
-    """Derivatives of a constant, and of a square and a cube on either side of the valley; shape (n, 5)."""
+    """Derivatives of a constant, and of a square and a cube on either side of the valley; shape (..., 5)."""
     columns = [np.full_like(zeta, float(order == 0))]
     for away in (np.minimum(zeta - VALLEY[0], 0.0), np.maximum(zeta - VALLEY[1], 0.0)):
         beyond = (away != 0.0).astype(float)
         columns += [(away**2, 2.0 * away, 2.0 * beyond)[order], (away**3, 3.0 * away**2, 6.0 * away)[order]]
-    return np.column_stack(columns)
+    return np.stack(columns, axis=-1)
 
 
 class _Responses(NamedTuple):
@@ -214,7 +235,7 @@ class BackboneField:
         unit, valley, scale = self._scales(self._reference, speed, temperature)
         loads = np.exp(z) * valley / unit
         share = b * speed * loads / (h * half_width(loads, self._reference.radius, self._reference.reduced_modulus))
-        film = _OffsetLine.through(z, np.log(h / scale), -s * loads / h)
+        film = OffsetLine.through(z, np.log(h / scale), -s * loads / h)
         damping = CubicSpline(z, np.arcsinh(share / LOSS_SCALE))
         places = self._first + LATTICE_STEP * np.arange(self._nodes)
         inside = np.clip(places, z[0], z[-1])

@@ -152,7 +152,7 @@ def plan_backbone(
             low, high = zeta_span(contacts, lubricant, reference, loads, u, T)
             span[j, k] = min(low, RIGID), high
     if zeta is None:
-        zeta = _zeta_axis(min(low for low, _ in span.values()), max(high for _, high in span.values()), steps.load)
+        zeta = zeta_axis(min(low for low, _ in span.values()), max(high for _, high in span.values()), steps.load)
     reach = NEIGHBOURS // 2
     lines = []
     for k, T in enumerate(temperature_axis):
@@ -207,7 +207,7 @@ def plan_own_lines(
     ends = [(plan.zeta[0], plan.zeta[-1]) for plan in plans if plan is not None]
     if not ends:
         return ()
-    zeta = _zeta_axis(min(low for low, _ in ends), max(high for _, high in ends), steps.load)
+    zeta = zeta_axis(min(low for low, _ in ends), max(high for _, high in ends), steps.load)
     own = (plan_backbone((contact,), lubricant, *axes, zeta) for contact in contacts)
     return tuple(plan for plan in own if plan is not None)
 
@@ -268,8 +268,16 @@ def _linear_axis(low: float, high: float, step: float) -> tuple[float, ...]:
     return tuple(float(v) for v in np.linspace(low, high, count))
 
 
-def _zeta_axis(low: float, high: float, step: float) -> tuple[float, ...]:
-    """Fine steps in the valley, coarse ones outside."""
+def zeta_axis(low: float, high: float, step: float) -> tuple[float, ...]:
+    """Axis of zeta with fine steps in the valley and coarse ones outside.
+
+    Parameters
+    ----------
+    low, high : float
+        What it covers at least.
+    step : float
+        Step in the valley.
+    """
     axis = list(np.arange(VALLEY[0], VALLEY[1] + 0.5 * step, step))
     while axis[0] > low:
         axis.insert(0, axis[0] - min(OUTER_STEP, 1.25 * (axis[1] - axis[0])))

@@ -19,7 +19,7 @@ from ehdmaps.maps import schema
 
 _ATTRIBUTES = ("contacts", "geometry", "lubricant", "structural_law", schema.REFERENCE_CONTACT)
 
-_WHERE_STATED = (schema.OIL_SUPPLY, schema.SURFACE)
+_WHERE_STATED = (schema.OIL_SUPPLY, schema.SURFACE, schema.FILM_TABLE)
 """Attributes that only some maps have: of the others the checksum is that of a table without them."""
 
 _TIMES = ("solve_seconds",)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import cached_property, partial
 from os import PathLike, fspath
@@ -19,7 +19,7 @@ from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.grid_field import GridField
 from ehdmaps.maps.law import ContactLaw, LawKind, OutsidePolicy
 from ehdmaps.maps.law_errors import LawErrors
-from ehdmaps.maps.low_loads import FirstLoads, LowLoads, first_loads, known_from, low_loads, same_load
+from ehdmaps.maps.low_loads import RIGID, FirstLoads, LowLoads, first_loads, known_from, low_loads, same_load
 from ehdmaps.maps.own_lines import line_field, lines_by_contact
 from ehdmaps.maps.reading import read_map
 from ehdmaps.maps.records import (
@@ -33,6 +33,7 @@ from ehdmaps.maps.records import (
 )
 from ehdmaps.maps.rolling_film import RollingFilm, rolling_film
 from ehdmaps.maps.structure import completed, restructured
+from ehdmaps.maps.table_field import TABLE_RESOLUTION, TableField, table_lines
 from ehdmaps.maps.usable import check_backbone, check_grid, check_loads
 from ehdmaps.maps.validation import check_tables, validate
 from ehdmaps.physics.approach import StructuralLaw
@@ -213,11 +214,22 @@ class EHDMap:
             self.lubricant,
             self.film_field(names),
             outside,
+            TABLE_RESOLUTION if self.from_table else None,
             rolling=self.rolling_film,
             supply=supply or self.supply,
             surface=self.surface if surface is None else surface,
             errors=self.law_errors,
         )
+
+    @property
+    def from_table(self) -> bool:
+        """Whether the films of its laws are read from the film table, as its points were."""
+        return schema.FILM_TABLE in self.dataset.attrs
+
+    @property
+    def known_between(self) -> bool:
+        """Whether films between its points are known, from refinement lines or from the film table."""
+        return self.backbone is not None or self.from_table
 
     @cached_property
     def law_errors(self) -> LawErrors:
@@ -225,7 +237,7 @@ class EHDMap:
         return LawErrors(self.dataset, self.contacts, self.lubricant)
 
     def film_field(self, contacts: tuple[str, ...] | None = None) -> FilmField:
-        """Film between the solved points, what a law is made from: of the backbone, or of the map's own grid.
+        """Film between the points, what a law is made from: of the film table, the backbone, or the map's own grid.
 
         Parameters
         ----------
@@ -239,8 +251,10 @@ class EHDMap:
         """
         chosen = tuple(contact for contact in self.contacts if contacts is None or contact.name in contacts)
         self._check_films(chosen)
+        ranges = (self._range(axis) for axis in ("load", "entrainment_speed", "temperature"))
+        if self.from_table:
+            return TableField(chosen, self.lubricant, *ranges)
         if self.backbone is not None:
-            ranges = (self._range(axis) for axis in ("load", "entrainment_speed", "temperature"))
             return line_field(self.backbone, chosen, self.lubricant, *ranges)
         data = self.dataset.sel(contact=[contact.name for contact in chosen]).transpose(*schema.DIMS, ...)
         return GridField(
@@ -258,7 +272,11 @@ class EHDMap:
 
         Maps of schema 1 and 2 and those of the solvers `formula` and `hertz` hold none, nor do those with holes.
         """
-        return rolling_film(self.dataset, self.backbone, self.contacts, self.lubricant)
+        lines: xr.Dataset | Callable[[], xr.Dataset] | None = self.backbone
+        if self.from_table:
+            ranges = (self._range(axis) for axis in ("load", "entrainment_speed", "temperature"))
+            lines = partial(table_lines, self.contacts, self.lubricant, *ranges)
+        return rolling_film(self.dataset, lines, self.contacts, self.lubricant)
 
     @cached_property
     def low_loads(self) -> LowLoads | None:
@@ -269,7 +287,9 @@ class EHDMap:
         temperatures = self.dataset["temperature"].values.astype(np.float64)
         (lowest, _), speeds = self._range("load"), self._range("entrainment_speed")
         first: FirstLoads = partial(same_load, lowest)
-        if self.backbone is not None:
+        if self.from_table:
+            first = partial(first_loads, self.contacts, self.lubricant, lowest, RIGID)
+        elif self.backbone is not None:
             start = max(_known_from(group) for group, *_ in lines_by_contact(self.backbone, self.contacts))
             first = partial(first_loads, self.contacts, self.lubricant, lowest, start)
         ends = float(temperatures[0]), float(temperatures[-1])
@@ -294,6 +314,8 @@ class EHDMap:
 
     def _check_films(self, chosen: tuple[LineContact, ...]) -> None:
         """Refuse films of these contacts that cannot be interpolated."""
+        if self.from_table:
+            return  # the field itself tells what the table lacks
         if self.backbone is None:
             check_grid(self.dataset, chosen)
         else:

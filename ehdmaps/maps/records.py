@@ -100,6 +100,11 @@ def contacts_json(contacts: Sequence[LineContact]) -> str:
     return json.dumps(records, sort_keys=True, allow_nan=False, ensure_ascii=False)
 
 
+def reference_json(contact: LineContact) -> str:
+    """The attribute `reference_contact` of a backbone."""
+    return contacts_json((contact,))[1:-1]
+
+
 def contacts_of(dataset: xr.Dataset) -> tuple[LineContact, ...]:
     """Contacts of a map, in the order of its contact axis.
 

@@ -20,6 +20,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 import numpy.typing as npt
@@ -28,7 +29,7 @@ from scipy.interpolate import CubicSpline, PPoly
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.maps.backbone import FEWEST_NODES, LATTICE_STEP, lagrange
-from ehdmaps.maps.low_loads import known_from, load_at
+from ehdmaps.maps.low_loads import RIGID, known_from, load_at
 from ehdmaps.maps.mixing import mix_lines
 from ehdmaps.maps.own_lines import lines_by_contact
 from ehdmaps.maps.schema import BACKBONE_DIMS, DIMS
@@ -249,7 +250,7 @@ class RollingFilm:
 
 def rolling_film(
     dataset: xr.Dataset,
-    backbone: xr.Dataset | None,
+    backbone: xr.Dataset | Callable[[], xr.Dataset] | None,
     contacts: Sequence[LineContact],
     lubricant: Lubricant,
 ) -> RollingFilm | None:
@@ -259,8 +260,8 @@ def rolling_film(
     ----------
     dataset : xarray.Dataset
         The map.
-    backbone : xarray.Dataset or None
-        Group of its refinement lines.
+    backbone : xarray.Dataset, callable or None
+        Group of its refinement lines, or what makes it, where it is asked for only, down to rigid films.
     contacts : sequence of LineContact
         Contacts of the map.
     lubricant : Lubricant
@@ -275,12 +276,28 @@ def rolling_film(
     axes = [moving[name].values.astype(np.float64) for name in DIMS[1:]]
     reader: _Reader | None = None
     start = math.inf
-    if backbone is not None and all(name in backbone for name in NAMES):
+    if callable(backbone):
+        reader, start = _made_later(backbone, contacts, lubricant), RIGID
+    elif backbone is not None and all(name in backbone for name in NAMES):
         reader, start = _lines_reader(backbone, contacts, lubricant)
     if reader is None:
         reader, start = _grid_reader(values, axes, contacts, lubricant), math.inf
     load_range, _, temperature_range = ((float(axis[0]), float(axis[-1])) for axis in axes)
     return RollingFilm(contacts, lubricant, reader, load_range, temperature_range, start)
+
+
+def _made_later(
+    lines: Callable[[], xr.Dataset], contacts: Sequence[LineContact], lubricant: Lubricant
+) -> _Reader:
+    """Reader of lines that are made when it is first called."""
+
+    @cache
+    def reader() -> _Reader:
+        found, _ = _lines_reader(lines(), contacts, lubricant)
+        assert found is not None  # lines of the film table are whole
+        return found
+
+    return lambda contact, *at: reader()(contact, *at)
 
 
 def _lines_reader(

@@ -43,7 +43,7 @@ import xarray as xr
 
 from ehdmaps.physics.solution import Status
 
-SCHEMA_VERSION = 5
+SCHEMA_VERSION = 6
 """Version of the table; files of this and of all lower versions are read."""
 
 DIMS = ("contact", "load", "entrainment_speed", "temperature")
@@ -349,8 +349,14 @@ FAMILY = "family"
 """Attribute of a map whose points were read from lines that several maps share, JSON: how many maps and points of
 lines, and how the laws of some of them were found to be."""
 
+FILM_TABLE = "film_table"
+"""Attribute of a map whose points were read from the film table, as its laws are: checksum of that table."""
+
 FILMS_READ, FILMS_SOLVED = "films_read", "films_solved"
 """Attributes of a map with films from the film table: how many points of it and its lines were read, and solved."""
+
+UNSERVED = "film_table_unserved"
+"""Attribute of a map with lines some of whose films were read from the film table: why not all of them are."""
 
 CODE = "code_hash"
 """Attribute with the hash of all that the map was computed with, see `ehdmaps.provenance.code_hash`."""
@@ -367,6 +373,8 @@ TEXTS = (
     SURFACE,
     CORRECTION,
     FAMILY,
+    FILM_TABLE,
+    UNSERVED,
     CODE,
     CHECKSUM,
 )

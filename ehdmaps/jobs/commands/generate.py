@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -135,8 +136,10 @@ def _planned(arguments: argparse.Namespace) -> list[tuple[Job, Path]]:
 def _made(job: Job, output: Path, arguments: argparse.Namespace, tolerance: float | None) -> tuple[str, int]:
     """Make one map."""
     by = job.corrected_by
+    if arguments.fresh_films:
+        job = _with_fresh_films(job)
     kept = solvers.case_options(by.solver if by and _keeps_cases(by.solver) else job.solver, arguments.keep_cases)
-    solver = _built(job.solver, job.solver_options, kept)
+    solver = _built(job.solver, job.solver_options, kept) if kept else None
     corrector = _built(by.solver, by.options, kept) if by else None
     try:
         generated = generate(job, output, arguments.workers, arguments.fresh, progress, solver, tolerance, corrector)
@@ -149,6 +152,19 @@ def _made(job: Job, output: Path, arguments: argparse.Namespace, tolerance: floa
         *unmet_tolerance(generated.dataset.attrs),
     ]
     return "\n".join([summary(generated, output), *missed]), 1 if lost or missed else 0
+
+
+def _with_fresh_films(job: Job) -> Job:
+    """A job whose films are all solved.
+
+    Raises
+    ------
+    InputError
+        If its solver reads none.
+    """
+    if job.solver != "reynolds":
+        raise InputError(f"--fresh-films: the solver {job.solver!r} reads no films; allowed: with the solver reynolds")
+    return replace(job, solver_options={**job.solver_options, "films": solvers.SOLVED})
 
 
 def _keeps_cases(name: str) -> bool:

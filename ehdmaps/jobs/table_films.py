@@ -1,0 +1,139 @@
+"""Maps whose films are read from the film table: whether it serves a job, and the points of the map."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import fields
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ehdmaps.arrays import BoolArray
+from ehdmaps.errors import MapError
+from ehdmaps.jobs.job import Job
+from ehdmaps.jobs.law_check import SHARES
+from ehdmaps.jobs.law_points import DAMPING_BARS, READ_COMPLIANCE_BARS
+from ehdmaps.jobs.sampling import SamplePoint, draw_apart, drawable
+from ehdmaps.maps.low_loads import looked_at
+from ehdmaps.maps.table_field import TableField
+from ehdmaps.physics.hertz import half_width
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.solution import FilmSolution
+from ehdmaps.table.fields import FILMS
+from ehdmaps.table.file import film_table
+from ehdmaps.table.films import TableFilms
+
+_LOOKED_AT, _SEED = 1000, 4
+"""Random points at which the errors of the table are looked at, and where their numbers start."""
+
+
+def unserved(job: Job) -> str:
+    """Why the laws of a job cannot be read from the film table; empty where they can.
+
+    The table has to have films wherever a law looks, and the errors that it states have to lie within the bars of the
+    check of laws at as many random points as are wanted of fresh solves there.
+
+    Parameters
+    ----------
+    job : Job
+        A job whose films belong to the family of the table.
+    """
+    speeds = [u for u in job.entrainment_speeds if u > 0.0]
+    if not speeds or not drawable(job):
+        return "film table: laws need more than one load, and a speed"
+    ranges = (
+        (min(job.loads), max(job.loads)),
+        (min(speeds), max(speeds)),
+        (min(job.temperatures), max(job.temperatures)),
+    )
+    field = TableField(job.contacts, job.lubricant, *ranges)
+    try:
+        for contact in job.contacts:
+            us, kelvins = looked_at(*ranges[1:])
+            field.films(contact.name, np.full((1, us.size, kelvins.size), ranges[0][1]), us, kelvins)
+    except MapError as error:
+        return str(error)
+    over, valley = draw_apart(job, np.random.default_rng(_SEED), _LOOKED_AT)
+    for points, wanted, where in zip((over, valley), SHARES.values(), ("over the map", "in the damping valley"), strict=True):
+        found = float(np.mean(within_bars(job.lubricant, points))) if points else 1.0
+        if found < wanted:
+            return (
+                f"film table: its stated errors are within the bars of contact laws at {found:.1%} of the points "
+                f"{where}; wanted {wanted:.0%}"
+            )
+    return ""
+
+
+def within_bars(lubricant: Lubricant, points: list[SamplePoint]) -> BoolArray:
+    """Whether the errors that the table states are within the bars of contact laws.
+
+    Parameters
+    ----------
+    lubricant : Lubricant
+        The oil.
+    points : list of SamplePoint
+        The points.
+    """
+    good, bars = np.empty(len(points), dtype=bool), READ_COMPLIANCE_BARS
+    for contact in {point.contact for point in points}:
+        here = np.array([point.contact == contact for point in points])
+        w, u, T = (
+            np.array([getattr(point, name) for point in points if point.contact == contact])
+            for name in ("load", "speed", "temperature")
+        )
+        read = film_table(lubricant).films(contact, lubricant, w, u, T, others=False, thickest_film=math.inf)
+        with np.errstate(invalid="ignore"):
+            k = 1.0 / (contact.structural_compliance(w) + read.film_compliance)
+            unit = k * half_width(w, contact.radius, contact.reduced_modulus) / u
+            c = np.maximum(read.loss_compliance, 0.0) * k**2
+            wrong, wrong_loss = (
+                read.errors[name] * np.abs(getattr(read, name)) for name in ("film_compliance", "loss_compliance")
+            )
+            wrong_c = wrong_loss * k**2 + 2.0 * c * k * wrong
+            good[here] = (
+                read.usable
+                & (wrong <= np.maximum(bars[0] * np.abs(read.film_compliance), bars[1] / k))
+                & (wrong_c <= np.maximum(DAMPING_BARS[0] * c, DAMPING_BARS[1] * unit))
+            )
+    return good
+
+
+def table_films(job: Job) -> dict[str, npt.NDArray[Any]]:
+    """Films of all points of a map, read from the table, by the names of `FilmSolution`; of the shape of the map.
+
+    Parameters
+    ----------
+    job : Job
+        The job.
+    """
+    axes = (np.array(axis, dtype=float) for axis in (job.loads, job.entrainment_speeds, job.temperatures))
+    w, u, T = np.meshgrid(*axes, indexing="ij")
+    table = film_table(job.lubricant)
+    read = [film_arrays_of(table.films(contact, job.lubricant, w, u, T)) for contact in job.contacts]
+    return {name: np.stack([one[name] for one in read]) for name in read[0]}
+
+
+def film_arrays_of(films: TableFilms) -> dict[str, npt.NDArray[Any]]:
+    """Films by the names of `FilmSolution`, of one shape.
+
+    Parameters
+    ----------
+    films : TableFilms
+        Films from the table.
+    """
+    numbers = {field.name: getattr(films, field.name) for field in FILMS}
+    errors = {f"{name}_error": films.errors[name] for name in numbers if name != "wall_stress"}
+    found: dict[str, npt.NDArray[Any]] = {
+        **numbers,
+        **errors,
+        "status": films.status,
+        "reason": films.reason.astype(object),
+        "viscosity_extrapolated": films.viscosity_extrapolated.astype(np.int8),
+        "traction": np.where(films.usable, 0.0, np.nan),
+    }
+    for entry in fields(FilmSolution):
+        if entry.name not in found:
+            dtype = np.int32 if entry.name == "iterations" else np.float64
+            found[entry.name] = np.full(films.status.shape, entry.default, dtype=dtype)
+    return found
