@@ -47,9 +47,6 @@ LONGEST_NAME = 120
 SUMMARY = "summary.csv"
 """File with the table of all maps of a batch, in their folder."""
 
-SHARED, OWN = "shared", "own"
-"""Whether maps are read from the lines that they share with others, or solved at their own points."""
-
 DEFAULT_CHECKED = 3
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9.+-]*")
@@ -92,16 +89,13 @@ class Batch:
         Text of the file.
     members : tuple of Member
         Bearing by bearing, oil by oil.
-    films : {"shared", "own"}
-        Whether maps of one oil are read from the lines that they share, see `ehdmaps.jobs.family`.
     checked : int
-        Number of maps of those that share lines whose laws are checked as the jobs say.
+        Of the maps of one oil with films from the film table, so many have their laws checked as the jobs say.
     """
 
     name: str
     text: str
     members: tuple[Member, ...]
-    films: str = SHARED
     checked: int = DEFAULT_CHECKED
 
     @property
@@ -192,7 +186,7 @@ def parse_batch(text: str, name: str, where: str, solver: str | None = None, to_
         )
     base = {key: value for key, value in values.items() if key in _OF_JOB}
     members = _members(lists, overrides, base, where, solver, to_run)
-    return Batch(name, text, members, lists.films, lists.checked)
+    return Batch(name, text, members, lists.checked)
 
 
 @dataclass(frozen=True)
@@ -201,7 +195,6 @@ class _Lists:
 
     bearings: Mapping[str, Mapping[str, Any]]
     oils: Mapping[str, Mapping[str, Any]]
-    films: str
     checked: int
 
     @classmethod
@@ -212,10 +205,12 @@ class _Lists:
         for name in named.keys() & estimated.keys():
             section.note("estimates", f"got {name!r}, which bearings has, too; allowed: each name once; give labels")
         oils = _entries(section, "oils", "name", required=True)
-        films = section.choice("films", (SHARED, OWN)) or SHARED
+        if "films" in section:
+            section.get("films")
+            section.note("films", 'is no key of [batch] any more; allowed: films = "table" or "solved" of [solver]')
         checked = section.integer("checked", 0, MOST_MEMBERS)
         section.close()
-        return cls({**named, **estimated}, oils, films, DEFAULT_CHECKED if checked is None else checked)
+        return cls({**named, **estimated}, oils, DEFAULT_CHECKED if checked is None else checked)
 
 
 def _entries(section: Table, key: str, word: str, required: bool) -> dict[str, Mapping[str, Any]]:

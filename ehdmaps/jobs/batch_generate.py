@@ -1,4 +1,4 @@
-"""From a batch file to its maps: the lines of families first, then one map after the other, all from one store."""
+"""From a batch file to its maps: those that the film table has first, then one solved map after the other."""
 
 from __future__ import annotations
 
@@ -7,24 +7,21 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, Future, as_completed
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import xarray as xr
 
 from ehdmaps.errors import EhdmapsError, InputError, WorkerError
-from ehdmaps.jobs.batch import OWN, SHARED, Batch, Member
-from ehdmaps.jobs.batch_plan import Alone, Shared, plan_batch
+from ehdmaps.jobs.batch import Batch, Member
+from ehdmaps.jobs.batch_plan import Planned, plan_batch
 from ehdmaps.jobs.correction_report import unsolved
-from ehdmaps.jobs.family_maps import Checked, Solved, check_member, make_map
-from ehdmaps.jobs.generate import MOST_HALVINGS, Within, generate
-from ehdmaps.jobs.law_check import HALVED, unmet
-from ehdmaps.jobs.refinement import MOST_LINE_POINTS
+from ehdmaps.jobs.generate import Within, generate, read_map
+from ehdmaps.jobs.law_check import unmet
 from ehdmaps.jobs.report import holes
 from ehdmaps.jobs.status import StatusFile
 from ehdmaps.jobs.store import Store, store_path
-from ehdmaps.jobs.sweep import Progress, SweepResult, sweep
+from ehdmaps.jobs.sweep import Progress, SweepResult
 from ehdmaps.maps import schema
-from ehdmaps.maps.backbone_plan import Axis
 from ehdmaps.netcdf_structure import DAMAGE
 from ehdmaps.outputs import MAP, Output, name_problem, output_problems, root_attributes
 from ehdmaps.workers import WorkersDied, available_cores, worker_pool
@@ -32,11 +29,14 @@ from ehdmaps.workers import WorkersDied, available_cores, worker_pool
 MADE, KEPT, FAILED = "made", "kept", "failed"
 """What became of a map: kept is one that was there from an earlier run, and is the same."""
 
-BATCH, FINGERPRINT, FILMS = "batch", "batch_fingerprint", "batch_films"
-"""Attributes of a map of a batch: its name, the hash of all that shapes the map, and whether its films are shared."""
+READ, SOLVED = "film table", "solved"
+"""Where the films of a map come from."""
+
+BATCH, FINGERPRINT = "batch", "batch_fingerprint"
+"""Attributes of a map of a batch: its name, and the hash of all that shapes the map."""
 
 _PIECES = 16
-"""Pieces of work for each worker, into which the maps of a family are cut."""
+"""Pieces of work for each worker, into which maps are cut."""
 
 _LONGEST_PIECE = 10
 """Maps of one piece, which is lost as a whole when its process is killed."""
@@ -63,7 +63,7 @@ class Outcome:
     state : str
         `MADE`, `KEPT` or `FAILED`.
     films : str
-        "shared" where its points were read from the lines of a family, else "own".
+        `READ` or `SOLVED`.
     lost : int
         Points without a solution.
     missed : tuple of str
@@ -73,13 +73,13 @@ class Outcome:
     reason : str
         Why it failed.
     seconds : float
-        What it took besides the lines that it shares.
+        What it took.
     """
 
     member: Member
     output: Path
     state: str
-    films: str
+    films: str = ""
     lost: int = 0
     missed: tuple[str, ...] = ()
     figures: Mapping[str, float] = field(default_factory=dict)
@@ -99,7 +99,6 @@ class BatchResult:
     batch: Batch
     outcomes: tuple[Outcome, ...]
     sweep: SweepResult
-    families: tuple[tuple[int, int], ...]
     wall_seconds: float
 
     @property
@@ -201,42 +200,26 @@ def generate_batch(
     outcomes: dict[str, Outcome] = {}
     place = batch_path(batch, folder)
     with Store(store_path(place), fresh) as store:
-        todo = [_due(shared, batch, folder, fresh, outcomes) for shared in plan.shared]
-        alone = [one for one in plan.alone if _is_due(one.member, one.fingerprint, batch, folder, OWN, fresh, outcomes)]
-        total = sum(s.family.points for s, due in zip(plan.shared, todo, strict=True) if due)
-        total += sum(one.points for one in alone)
+        due = [planned for planned in plan.maps if _is_due(planned, batch, folder, fresh, outcomes)]
         about = f"batch {batch.name}, {len(batch.members)} maps"
-        with StatusFile(place, about, total, processes) as status:
+        with StatusFile(place, about, 0, processes) as status:
             run = _Run(batch, folder, store, status, processes, progress, executor, told)
-            families = []
-            for shared, due in zip(plan.shared, todo, strict=True):
-                if due:
-                    points, left = run.family(shared, due, outcomes)
-                    families.append((len(shared.members), points))
-                    alone += left
-            for one in alone:
-                outcomes[one.member.name] = run.alone(one)
+            alone = run.read([planned for planned in due if planned.reads], outcomes)
+            alone += [planned for planned in due if not planned.reads]
+            status.more(sum(task.points for planned in alone for task in planned.tasks))
+            for planned in alone:
+                outcomes[planned.member.name] = run.alone(planned)
     ordered = tuple(outcomes[member.name] for member in batch.members)
-    return BatchResult(batch, ordered, run.result, tuple(families), time.monotonic() - begin)
+    return BatchResult(batch, ordered, run.result, time.monotonic() - begin)
 
 
-def _due(shared: Shared, batch: Batch, folder: Path, fresh: bool, outcomes: dict[str, Outcome]) -> list[int]:
-    """Members of a family whose maps are to be made; of the others the outcome is noted."""
-    return [
-        index
-        for index, member in enumerate(shared.members)
-        if _is_due(member, shared.fingerprint(index), batch, folder, SHARED, fresh, outcomes)
-    ]
-
-
-def _is_due(
-    member: Member, fingerprint: str, batch: Batch, folder: Path, films: str, fresh: bool, outcomes: dict[str, Outcome]
-) -> bool:
+def _is_due(planned: Planned, batch: Batch, folder: Path, fresh: bool, outcomes: dict[str, Outcome]) -> bool:
     """Whether a map is to be made: not where it is there already, nor where something else stands in its place."""
+    member = planned.member
     output = folder / f"{member.name}.nc"
     there = root_attributes(output) if output.is_file() else {}
-    if not fresh and there.get(BATCH) == batch.name and there.get(FINGERPRINT) == fingerprint:
-        kept = _kept(member, output, str(there.get(FILMS, films)))
+    if not fresh and there.get(BATCH) == batch.name and there.get(FINGERPRINT) == planned.fingerprint:
+        kept = _kept(member, output)
         if kept is not None:
             outcomes[member.name] = kept
             return False
@@ -247,11 +230,11 @@ def _is_due(
             "away, or choose another folder with -o"
         ]
     if problems:
-        outcomes[member.name] = Outcome(member, output, FAILED, films, reason="; ".join(problems))
+        outcomes[member.name] = Outcome(member, output, FAILED, reason="; ".join(problems))
     return not problems
 
 
-def _kept(member: Member, output: Path, films: str) -> Outcome | None:
+def _kept(member: Member, output: Path) -> Outcome | None:
     """What is to be said of a map that is there; None where it does not read."""
     import netCDF4
 
@@ -259,15 +242,14 @@ def _kept(member: Member, output: Path, films: str) -> Outcome | None:
         with netCDF4.Dataset(output) as file:
             lines = schema.BACKBONE in file.groups
         with xr.open_dataset(output, engine="netcdf4") as dataset:
-            return _outcome(member, output, KEPT, films, dataset, lines, 0.0)
+            return _outcome(member, output, KEPT, dataset, lines, 0.0)
     except (*DAMAGE, KeyError):
         return None
 
 
-def _outcome(
-    member: Member, output: Path, state: str, films: str, dataset: xr.Dataset, lines: bool, seconds: float
-) -> Outcome:
+def _outcome(member: Member, output: Path, state: str, dataset: xr.Dataset, lines: bool, seconds: float) -> Outcome:
     """What became of a map that is there."""
+    films = READ if schema.FILM_TABLE in dataset.attrs else SOLVED
     lost = holes(dataset) + unsolved(dataset)
     missed = tuple(unmet(dataset, lines))
     return Outcome(member, output, state, films, int(lost), missed, _figures(dataset), "", seconds)
@@ -283,9 +265,9 @@ def _figures(dataset: xr.Dataset) -> dict[str, float]:
     return figures | {f"{name} [{unit}]": float(middle[name]) for name, unit in wanted.items()}
 
 
-def _marks(batch: Batch, fingerprint: str, films: str) -> dict[str, str]:
+def _marks(batch: Batch, fingerprint: str) -> dict[str, str | int]:
     """Attributes of a map of a batch."""
-    return {BATCH: batch.name, FINGERPRINT: fingerprint, FILMS: films}
+    return {BATCH: batch.name, FINGERPRINT: fingerprint}
 
 
 @dataclass
@@ -302,92 +284,42 @@ class _Run:
     told: Callable[[int], Progress] | None
     result: SweepResult = field(default_factory=SweepResult)
 
-    def alone(self, one: Alone) -> Outcome:
-        """Make a map at its own points."""
-        member, output, begin = one.member, self.folder / f"{one.member.name}.nc", time.monotonic()
-        within = Within(self.store, self.status, _marks(self.batch, one.fingerprint, OWN))
+    def alone(self, planned: Planned) -> Outcome:
+        """Make a map whose films are solved."""
+        member, begin = planned.member, time.monotonic()
+        output = self.folder / f"{member.name}.nc"
+        within = Within(self.store, self.status, _marks(self.batch, planned.fingerprint))
         try:
             made = generate(
-                member.job, output, self.workers, False, self.progress, executor=self.executor, within=within
+                planned.job, output, self.workers, False, self.progress, executor=self.executor, within=within
             )
         except WorkerError:  # nothing of this map alone
             raise
         except EhdmapsError as error:
-            return Outcome(member, output, FAILED, OWN, reason=str(error))
+            return Outcome(member, output, FAILED, reason=str(error))
         self._count(made.sweep)
         seconds = time.monotonic() - begin
-        return _outcome(member, output, MADE, OWN, made.dataset, made.backbone is not None, seconds)
+        return _outcome(member, output, MADE, made.dataset, made.backbone is not None, seconds)
 
-    def family(self, shared: Shared, due: Sequence[int], outcomes: dict[str, Outcome]) -> tuple[int, list[Alone]]:
-        """Make the maps of a family; the points of its lines, and members whose lines cannot be read."""
-        try:
-            solved, halved = self._solved(shared)
-        except WorkerError:
-            raise
-        except EhdmapsError:  # a line with too few solved points: each map stands on its own then
-            left = [Alone(shared.members[index]) for index in due]
-            self.status.more(sum(one.points for one in left))
-            return shared.family.lines.points, left
-        attributes = {HALVED: ", ".join(halved)} if halved else {}
+    def read(self, due: Sequence[Planned], outcomes: dict[str, Outcome]) -> list[Planned]:
+        """Make the maps whose films the film table has; gives back those that it does not serve."""
         size = max(1, min(_LONGEST_PIECE, len(due) // (self.workers * _PIECES)))
-        pieces = [
-            _Piece(
-                self.batch,
-                solved,
-                tuple((i, shared.members[i], shared.fingerprint(i)) for i in due[start : start + size]),
-                self.folder,
-                attributes,
-            )
-            for start in range(0, len(due), size)
-        ]
-        counter = self.told(len(due)) if self.told else None
+        pieces = [_Piece(self.batch, tuple(due[i : i + size]), self.folder) for i in range(0, len(due), size)]
+        counter = self.told(len(due)) if self.told and due else None
         if counter:
             counter.taken_over(0)
+        left = []
         for piece, found in _each(_made, pieces, self.workers):
-            made = found or [
-                Outcome(m, self.folder / f"{m.name}.nc", FAILED, SHARED, reason=_DIED) for _, m, _ in piece.members
-            ]
-            outcomes.update({outcome.member.name: outcome for outcome in made})
+            died = [Outcome(m.member, self.folder / f"{m.member.name}.nc", FAILED, reason=_DIED) for m in piece.maps]
+            for planned, outcome in zip(piece.maps, found or died, strict=True):
+                if outcome is None:
+                    left.append(planned)
+                else:
+                    outcomes[planned.member.name] = outcome
             self.status.write()
             if counter:
-                counter.solved(len(made))
-        return solved.family.lines.points, []
-
-    def _solved(self, shared: Shared) -> tuple[Solved, list[Axis]]:
-        """Lines and checks of a family solved, with lines halved as long as checked laws miss their bars."""
-        family = shared.family
-        halved: list[Axis] = []
-        found = dict(self._sweep(shared.family.tasks))
-        while True:
-            solved = Solved(family, {task.key: found[task.key] for task in family.tasks}, {})
-            solved.films  # noqa: B018  # lines that cannot be read are told before anything is made of them
-            checks = [(solved, index, check) for index, check in family.checks]
-            by_member: dict[int, Checked] = {}
-            for (_, index, _), checked in _each(_checked, checks, self.workers):
-                if checked is not None:
-                    by_member[index] = checked
-            coarse = [by_member[index].coarse for index in sorted(by_member) if by_member[index].coarse]
-            names = {family.jobs[index].name: found.attributes for index, found in sorted(by_member.items())}
-            solved = replace(solved, checked=names)
-            if not coarse or len(halved) == MOST_HALVINGS or coarse[0] is None:
-                return solved, halved
-            finer = family.with_steps(family.lines.steps.finer(coarse[0]))
-            if finer.lines.points > MOST_LINE_POINTS:
-                return solved, halved
-            family = finer
-            halved.append(coarse[0])
-            new = [task for task in family.lines.tasks if task.key not in found]
-            self.status.more(sum(task.points for task in new))
-            found |= self._sweep(new)
-
-    def _sweep(self, tasks: Sequence[Any]) -> Mapping[str, Any]:
-        """Solve tasks."""
-        points = sum(task.points for task in tasks)
-        told = self.progress(points) if self.progress else None
-        result = sweep(tasks, self.store, self.workers, told, [self.status], self.executor)
-        self.status.write()
-        self._count(result)
-        return result.arrays
+                counter.solved(len(piece.maps))
+        return left
 
     def _count(self, result: SweepResult) -> None:
         """Count a sweep, without keeping its arrays: those of a thousand maps need more memory than there is."""
@@ -396,33 +328,27 @@ class _Run:
 
 @dataclass(frozen=True)
 class _Piece:
-    """Some maps of a family: index of each, member and fingerprint."""
+    """Some maps with films from the film table."""
 
     batch: Batch
-    solved: Solved
-    members: tuple[tuple[int, Member, str], ...]
+    maps: tuple[Planned, ...]
     folder: Path
-    attributes: Mapping[str, Any]
 
 
-def _made(piece: _Piece) -> list[Outcome]:
-    """Make some maps of a family."""
-    outcomes = []
-    for index, member, fingerprint in piece.members:
-        output, begin = piece.folder / f"{member.name}.nc", time.monotonic()
-        marks = {**_marks(piece.batch, fingerprint, SHARED), **piece.attributes}
+def _made(piece: _Piece) -> list[Outcome | None]:
+    """Make some maps; None for each that the film table does not serve."""
+    outcomes: list[Outcome | None] = []
+    for planned in piece.maps:
+        member, begin = planned.member, time.monotonic()
+        output = piece.folder / f"{member.name}.nc"
         try:
-            dataset = make_map(piece.solved, index, output, marks)
-            seconds = time.monotonic() - begin
-            outcomes.append(_outcome(member, output, MADE, SHARED, dataset, True, seconds))
+            dataset = read_map(planned.job, output, _marks(piece.batch, planned.fingerprint))
         except EhdmapsError as error:
-            outcomes.append(Outcome(member, output, FAILED, SHARED, reason=str(error)))
+            outcomes.append(Outcome(member, output, FAILED, reason=str(error)))
+        else:
+            seconds = time.monotonic() - begin
+            outcomes.append(_outcome(member, output, MADE, dataset, False, seconds) if dataset is not None else None)
     return outcomes
-
-
-def _checked(what: tuple[Solved, int, Any]) -> Checked:
-    """Check the laws of a member."""
-    return check_member(*what)
 
 
 def _each(

@@ -1,101 +1,94 @@
-"""What is solved for a batch: the families that share lines, and the maps on their own."""
+"""What is made for a batch: maps with films from the film table, and maps that are solved one by one."""
 
 from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
+import numpy as np
+
 from ehdmaps.jobs import solvers
-from ehdmaps.jobs.batch import SHARED, Batch, Member
-from ehdmaps.jobs.family import FEWEST_MEMBERS, Family, family, family_key, shares
+from ehdmaps.jobs.batch import Batch, Member
 from ehdmaps.jobs.generate import planned_tasks
-from ehdmaps.jobs.tasks import LineTask
+from ehdmaps.jobs.job import Job, record_json
+from ehdmaps.jobs.table_films import unserved
+from ehdmaps.jobs.tasks import LineTask, solver_version
 from ehdmaps.maps.schema import SCHEMA_VERSION
+from ehdmaps.physics.solution import ContactSolver
+from ehdmaps.table.solver import TableSolver
 
 
 @dataclass(frozen=True)
-class Shared:
-    """Members of a batch that share lines, in the order of the family's jobs."""
+class Planned:
+    """One map of a batch.
 
-    members: tuple[Member, ...]
-    family: Family
-
-    def fingerprint(self, index: int) -> str:
-        """Hash of all that shapes the map of a member, by which a map that is there is known to be it."""
-        checked = str(self.family.check_of(index) is not None)
-        return _hash(self.members[index].job.sha256, self.family.sha256, checked)
-
-
-@dataclass(frozen=True)
-class Alone:
-    """A member of a batch that is solved at its own points."""
+    Attributes
+    ----------
+    member : Member
+        Which one.
+    job : Job
+        What is made: its laws are checked if it is one of those for which the batch wants that.
+    """
 
     member: Member
+    job: Job
 
     @cached_property
-    def tasks(self) -> tuple[LineTask, ...]:
-        """All that is known to be solved for it."""
-        return planned_tasks(self.member.job)
+    def solver(self) -> ContactSolver:
+        """What gives its films."""
+        return solvers.of_map(self.job)
 
     @property
-    def points(self) -> int:
-        """Their points."""
-        return sum(task.points for task in self.tasks)
+    def reads(self) -> bool:
+        """Whether its films are to be read from the film table, where that serves."""
+        return isinstance(self.solver, TableSolver)
 
-    @property
+    @cached_property
     def fingerprint(self) -> str:
-        """Hash of all that shapes its map."""
-        return _hash(self.member.job.sha256, *(task.key for task in self.tasks))
+        """Hash of all that shapes the map, by which a map that is there is known to be it."""
+        solver = record_json([self.solver.name, self.solver.settings(), solver_version(self.solver)])
+        parts = str(SCHEMA_VERSION), self.job.sha256, solver, str(self.job.law_check)
+        return hashlib.sha256("\0".join(parts).encode()).hexdigest()
+
+    @property
+    def tasks(self) -> tuple[LineTask, ...]:
+        """All that is known to be solved for it; nothing of a map that is read, which is made in less than a second."""
+        return () if self.reads and not unserved(self.job) else planned_tasks(self.job)
 
 
 @dataclass(frozen=True)
 class BatchPlan:
-    """Families, and maps on their own."""
+    """The maps of a batch, in its order."""
 
     batch: Batch
-    shared: tuple[Shared, ...]
-    alone: tuple[Alone, ...]
+    maps: tuple[Planned, ...]
 
     def tasks(self) -> Iterator[LineTask]:
-        """Yield all that is known to be solved, families first; tasks of equal keys may come again."""
-        for shared in self.shared:
-            yield from shared.family.tasks
-        for alone in self.alone:
-            yield from alone.tasks
+        """Yield all that is known to be solved; tasks of equal keys may come again."""
+        for planned in self.maps:
+            yield from planned.tasks
 
 
 def plan_batch(batch: Batch) -> BatchPlan:
-    """Lay out what is solved.
+    """Lay out what is made.
 
     Parameters
     ----------
     batch : Batch
         The batch.
     """
-    groups: dict[str, list[Member]] = {}
-    alone: list[Member] = []
-    built = {}
-    for member in batch.members:
-        job = member.job
-        solver = solvers.build(job.solver, job.solver_options)
-        if batch.films == SHARED and shares(job, solver):
-            key = family_key(job, solver)
-            groups.setdefault(key, []).append(member)
-            built[key] = solver
-        else:
-            alone.append(member)
-    shared = []
-    for key, members in groups.items():
-        if len(members) < FEWEST_MEMBERS:
-            alone += members
-        else:
-            jobs = [member.job for member in members]
-            shared.append(Shared(tuple(members), family(jobs, built[key], batch.checked)))
-    return BatchPlan(batch, tuple(shared), tuple(Alone(member) for member in alone))
-
-
-def _hash(*parts: str) -> str:
-    """Hash of texts and of the version of the map file."""
-    return hashlib.sha256("\0".join((str(SCHEMA_VERSION), *parts)).encode()).hexdigest()
+    maps = [Planned(member, member.job) for member in batch.members]
+    groups: dict[tuple[str, str], list[int]] = {}
+    for index, planned in enumerate(maps):
+        if planned.reads:
+            groups.setdefault((planned.member.oil, planned.member.override), []).append(index)
+    for indices in groups.values():
+        # from the smallest radius to the largest
+        ordered = sorted(indices, key=lambda index: (maps[index].job.contacts[0].radius, index))
+        count = min(batch.checked, len(ordered))
+        places = np.unique(np.linspace(0, len(ordered) - 1, count).round().astype(int)) if count else ()
+        for index in set(indices) - {ordered[place] for place in places}:
+            maps[index] = Planned(maps[index].member, replace(maps[index].job, law_check=0))
+    return BatchPlan(batch, tuple(maps))

@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 
 from ehdmaps.jobs.batch import SUMMARY
-from ehdmaps.jobs.batch_generate import FAILED, BatchResult, Outcome
+from ehdmaps.jobs.batch_generate import FAILED, READ, BatchResult, Outcome
 from ehdmaps.jobs.progress import duration
 from ehdmaps.outputs import MARK, TABLE, write_text
 
@@ -124,8 +124,8 @@ def _lines(result: BatchResult, written: Path) -> Iterator[str]:
     counts = Counter(outcome.state for outcome in result.outcomes)
     told = ", ".join(f"{count} {state}" for state, count in sorted(counts.items(), reverse=True))
     yield f"{result.batch.name}: {len(result.outcomes)} maps: {told}"
-    for members, points in result.families:
-        yield f"{members} maps share lines of {points} points"
+    if read := sum(outcome.films == READ for outcome in result.outcomes):
+        yield f"films: {read} maps read from the film table"
     yield f"points: {result.sweep.taken_over} taken over, {result.sweep.solved} solved now"
     if result.sweep.damaged:
         yield f"store: {result.sweep.damaged} damaged entries were solved again"

@@ -56,7 +56,7 @@ def parser() -> argparse.ArgumentParser:
     generate.add_argument(
         "--fresh-films",
         action="store_true",
-        help="reynolds: have all films solved, none read from the film table; as films = \"solved\" of [solver]",
+        help='reynolds: have all films solved, none read from the film table; as films = "solved" of [solver]',
     )
     generate.add_argument("--keep-cases", metavar="FOLDER", nargs="?", const="ehdmaps-cases", help=_KEEP)
     generate.add_argument(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Iterator
 from typing import Any
@@ -99,9 +98,6 @@ def _lines(emap: EHDMap, name: str) -> Iterator[str]:
     yield from status_lines(dataset, emap.surface.roughness)
     yield from extrapolated_lines(dataset)
     yield ""
-    if schema.FAMILY in attributes:
-        yield _family_line(attributes[schema.FAMILY])
-        yield ""
     if films := list(films_lines(dataset)):
         yield from films
         yield ""
@@ -128,16 +124,6 @@ def _lines(emap: EHDMap, name: str) -> Iterator[str]:
     yield ""
     yield "provenance"
     yield from map(_line, provenance_rows(attributes))
-
-
-def _family_line(text: str) -> str:
-    """Say from what the points were read."""
-    try:
-        record = json.loads(text)
-        shared = f"refinement lines of {int(record['line_points'])} points, which {int(record['members'])} maps share"
-    except (ValueError, TypeError, KeyError, OverflowError, RecursionError):
-        shared = "refinement lines that several maps share"
-    return f"points read from {shared}, and not solved themselves: solve_seconds and iterations are zero"
 
 
 def roughness_lines(emap: EHDMap) -> Iterator[str]:

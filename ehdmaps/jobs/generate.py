@@ -178,6 +178,33 @@ def generate_in_memory(
     return Generated(dataset, group, result)
 
 
+def read_map(job: Job, output: Path, attributes: Mapping[str, str | int]) -> xr.Dataset | None:
+    """Make a map whose films are all read from the film table, in this process; None where that does not serve it.
+
+    Parameters
+    ----------
+    job : Job
+        What to make.
+    output : Path
+        The map file.
+    attributes : mapping
+        Attributes of the map besides.
+
+    Raises
+    ------
+    MapError
+        If it cannot be written.
+    """
+    planned = _plan(job, solvers.of_map(job), None)
+    if not planned.from_table:
+        return None
+    result = sweep(planned.everything, NoStore(), 1)
+    dataset, _ = _finished(planned, result, str(output))
+    dataset.attrs.update(attributes)
+    write_map(dataset, output, None)
+    return dataset
+
+
 def planned_tasks(job: Job, solver: ContactSolver | None = None) -> tuple[LineTask, ...]:
     """All that is known to be solved for a map before anything is solved.
 
@@ -198,8 +225,8 @@ class _Plan:
     """All that is solved for a map: its points, the lines of a contact law, and the check of the laws.
 
     With `from_table` points and laws are read from the film table, and the check is all that is solved; `unserved` says
-    why they are not. `halved` are the axes along which the steps of the lines were halved, in turn; `correction` is what the points of
-    the `corrector` made, once they are solved.
+    why they are not. `halved` are the axes along which the steps of the lines were halved, in turn; `correction` is
+    what the points of the `corrector` made, once they are solved.
     """
 
     job: Job

@@ -241,9 +241,7 @@ def loosest_axis(field: BackboneField, task: LineTask) -> Axis:
     return max(changes, key=lambda axis: changes[axis] * _WORTH.get(axis, 1.0))
 
 
-def _missed_between(
-    field: BackboneField, task: LineTask, fresh: ContactSolution, bars: tuple[float, float]
-) -> bool:
+def _missed_between(field: BackboneField, task: LineTask, fresh: ContactSolution, bars: tuple[float, float]) -> bool:
     """Whether films between the lines miss a bar."""
     (load,), u, T, contact = task.loads, task.entrainment_speed, task.temperature, task.contact
     films = field.films(contact.name, np.array([[[load]]]), np.array([u]), np.array([T]))

@@ -192,7 +192,7 @@ def sweep(
     if executor is not None:
         outcomes = _in_executor(todo, executor, store)
     else:
-        alone = workers <= 1 or not any(task.slow for task in todo) and sum(task.points for task in todo) <= _FEW
+        alone = workers <= 1 or (not any(task.slow for task in todo) and sum(task.points for task in todo) <= _FEW)
         outcomes = _in_process(todo) if alone else _in_pool(todo, min(workers, len(todo)), store)
     try:
         for task, arrays, final in outcomes:

@@ -55,7 +55,8 @@ def unserved(job: Job) -> str:
     except MapError as error:
         return str(error)
     over, valley = draw_apart(job, np.random.default_rng(_SEED), _LOOKED_AT)
-    for points, wanted, where in zip((over, valley), SHARES.values(), ("over the map", "in the damping valley"), strict=True):
+    regions = (over, "over the map"), (valley, "in the damping valley")
+    for (points, where), wanted in zip(regions, SHARES.values(), strict=True):
         found = float(np.mean(within_bars(job.lubricant, points))) if points else 1.0
         if found < wanted:
             return (

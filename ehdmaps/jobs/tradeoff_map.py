@@ -18,7 +18,7 @@ from ehdmaps.ehl.limits import SETTING_LIMITS
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import InputError, MapError
 from ehdmaps.jobs import solvers
-from ehdmaps.jobs.assemble import assemble
+from ehdmaps.jobs.assemble import assemble, placed
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.law_points import (
     APPROACH,
@@ -369,7 +369,7 @@ def _grid_laws(job: Job, solver: ContactSolver) -> tuple[Callable[[], dict[str, 
     results, seconds = _solved(tasks)
 
     def laws() -> dict[str, ContactLaw]:
-        emap = EHDMap(assemble(job, solver, tasks, results))
+        emap = EHDMap(assemble(job, solver, placed(job, tasks, results)))
         return {
             contact.name: emap.law(contact.name, "clamp", supply=FLOODED, surface=SMOOTH)  # type: ignore[arg-type]
             for contact in job.contacts

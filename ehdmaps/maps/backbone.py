@@ -67,7 +67,7 @@ REAL, IMAGINARY, ERROR = "film_compliance_real", "film_compliance_imaginary", "f
 
 @dataclass(frozen=True)
 class OffsetLine:
-    """ln(film offset) along a line, or along several: integral of its slope, bent outside the valley to meet its values.
+    """ln(film offset) along a line or several: integral of its slope, bent outside the valley to meet its values.
 
     Attributes
     ----------
@@ -102,7 +102,7 @@ class OffsetLine:
         return cls(steep, integral, bend)
 
     def bent(self, zeta: FloatArray, order: int) -> FloatArray:
-        """What is added to the integral, or to its derivatives of an order, at places (n,), of several lines (n, lines)."""
+        """What is added to the integral or its derivatives of an order at places (n,), of several lines (n, lines)."""
         return np.asarray(np.sum(_bends(zeta, order) * self.bend.T, axis=-1))
 
     def value(self, zeta: FloatArray) -> FloatArray:

@@ -39,8 +39,8 @@ class Curves:
 
 
 def law_field(emap: EHDMap) -> FilmField | None:
-    """Film between the solved points, where a map has a backbone that tells it; None for other maps."""
-    if emap.backbone is None:
+    """Film between the solved points, where a backbone or the film table tells it; None for other maps."""
+    if not emap.known_between:
         return None
     try:
         return emap.film_field()

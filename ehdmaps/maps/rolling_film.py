@@ -286,9 +286,7 @@ def rolling_film(
     return RollingFilm(contacts, lubricant, reader, load_range, temperature_range, start)
 
 
-def _made_later(
-    lines: Callable[[], xr.Dataset], contacts: Sequence[LineContact], lubricant: Lubricant
-) -> _Reader:
+def _made_later(lines: Callable[[], xr.Dataset], contacts: Sequence[LineContact], lubricant: Lubricant) -> _Reader:
     """Reader of lines that are made when it is first called."""
 
     @cache
@@ -297,7 +295,10 @@ def _made_later(
         assert found is not None  # lines of the film table are whole
         return found
 
-    return lambda contact, *at: reader()(contact, *at)
+    def read(contact: LineContact, loads: FloatArray, speed: float, T: float) -> FloatArray:
+        return reader()(contact, loads, speed, T)
+
+    return read
 
 
 def _lines_reader(

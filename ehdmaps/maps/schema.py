@@ -345,10 +345,6 @@ The points of a map are those of smooth surfaces, whatever it says.
 CORRECTION = "correction"
 """Attribute of a map whose films are corrected, JSON: the dearer solver, its points, the errors of leaving one out."""
 
-FAMILY = "family"
-"""Attribute of a map whose points were read from lines that several maps share, JSON: how many maps and points of
-lines, and how the laws of some of them were found to be."""
-
 FILM_TABLE = "film_table"
 """Attribute of a map whose points were read from the film table, as its laws are: checksum of that table."""
 
@@ -372,7 +368,6 @@ TEXTS = (
     OIL_SUPPLY,
     SURFACE,
     CORRECTION,
-    FAMILY,
     FILM_TABLE,
     UNSERVED,
     CODE,

@@ -32,8 +32,8 @@ from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import moes_groups, moes_speed_number, valley_load_number
 from ehdmaps.table.fields import NATURAL_FREQUENCIES
-from ehdmaps.table.films import FilmTable
 from ehdmaps.table.file import film_table
+from ehdmaps.table.films import FilmTable
 from ehdmaps.units import LOAD, SPEED, TEMPERATURE
 
 _STEP = 0.05
@@ -195,22 +195,18 @@ class TableField:
         if lacking.size:
             i = int(lacking[0])
             raise MapError(
-                f"{str(read.reason.flat[i])} at {LOAD.text(float(loads[at][i]))}, {SPEED.text(float(u[at[1:]][i]))}, "
-                f"{TEMPERATURE.text(float(T[at[1:]][i]))}; have the films solved: [solver] films = \"solved\""
+                f"{read.reason.flat[i]!s} at {LOAD.text(float(loads[at][i]))}, {SPEED.text(float(u[at[1:]][i]))}, "
+                f'{TEMPERATURE.text(float(T[at[1:]][i]))}; have the films solved: [solver] films = "solved"'
             )
         w = loads[at]
         width = half_width(w, contact.radius, contact.reduced_modulus)
         film = groups.film[at[1:]]
         values = np.full((3, *wanted.shape), np.nan)
         with np.errstate(invalid="ignore"):
-            values[(slice(None), *at)] = np.where(
-                read.usable,
-                [
-                    np.log(read.film_offset / film),
-                    -read.film_compliance * w / read.film_offset,
-                    np.arcsinh(read.loss_compliance * u[at[1:]] * w / (read.film_offset * width) / LOSS_SCALE),
-                ],
-                np.nan,
+            values[:, wanted] = (
+                np.log(read.film_offset / film),
+                -read.film_compliance * w / read.film_offset,
+                np.arcsinh(read.loss_compliance * u[at[1:]] * w / (read.film_offset * width) / LOSS_SCALE),
             )
         held = values.reshape(3, axis.size, -1)
         _go_on(axis, held)

@@ -220,7 +220,7 @@ def _thinned(given: MapSet) -> Iterable[tuple[str, MapSet]]:
     if any(emap.backbone is not None for emap in given.maps):
         with contextlib.suppress(EhdmapsError):
             yield "no lines of refinement", given.each(lambda emap: EHDMap(emap.dataset))
-    if any(_every_second(emap) for emap in given.maps):
+    if any(_every_second(emap) and not emap.from_table for emap in given.maps):
         # What is left may be too little for a law.
         with contextlib.suppress(EhdmapsError):
             yield (

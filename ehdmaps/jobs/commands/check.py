@@ -83,17 +83,15 @@ def _batch(source: str, solver: str | None) -> tuple[str, int]:
     """Read a batch file, and tell what its maps share."""
     batch = read_batch(source, solver, to_run=True)
     plan = plan_batch(batch)
-    tasks = unique(plan.tasks())
+    solved = [planned for planned in plan.maps if planned.tasks]
+    read = len(plan.maps) - len(solved)
+    tasks = unique(task for planned in solved for task in planned.tasks)
     points = sum(task.points for task in tasks)
     lines = [
         f"{source}: no problems",
         f"  {len(batch.members)} maps, from {batch.members[0].name} to {batch.members[-1].name}",
-        *(
-            f"  {len(shared.members)} maps with {shared.family.jobs[0].lubricant.title} share lines of "
-            f"{shared.family.lines.points} points"
-            for shared in plan.shared
-        ),
-        *([f"  {len(plan.alone)} maps are solved at their own points"] if plan.alone else []),
+        *([f"  {read} maps are read from the film table"] if read else []),
+        *([f"  {len(solved)} maps are solved at their own points"] if solved else []),
         f"  points  {points} in {len(tasks)} tasks, which is what shards can be made of",
     ]
     job = batch.members[0].job
