@@ -73,7 +73,7 @@ def test_an_override_replaces_keys_of_a_table_and_leaves_the_others():
         ("bearings = [3]\noils = ['FVA3']", r"bearings\[0\]: got 3; allowed: a name in quotes"),
         ("bearings = [{ rollers = 3 }]\noils = ['FVA3']", "has no label; allowed: a table with one"),
         ("bearings = ['NU308']\noils = ['FVA3']\nfilm = 'own'", "film: unknown key"),
-        ("bearings = ['NU308']\noils = ['FVA3']\nfilms = 'none'", "films: got 'none'; allowed: 'shared', 'own'"),
+        ("bearings = ['NU308']\noils = ['FVA3']\nfilms = 'own'", 'films: is no key of .batch. any more; allowed: films = "table"'),
         ("bearings = ['NU308']\noils = ['FVA3']\nchecked = -1", "checked: got -1; allowed: a whole number from 0"),
         (
             "bearings = ['{0}']\noils = ['{0}']".format("A" * 100),
@@ -145,7 +145,7 @@ def test_maps_of_a_batch_are_those_of_their_jobs(tmp_path, monkeypatch, capsys):
         for name in ("approach", "stiffness", "damping", "minimum_film"):
             np.testing.assert_array_equal(own[name].values, made[name].values)  # the same solves
     first, second = rows(tmp_path / "cat")
-    assert (first["map"], first["state"], first["films"]) == ("NU308_FVA3.nc", "made", "own")
+    assert (first["map"], first["state"], first["films"]) == ("NU308_FVA3.nc", "made", "solved")
     assert float(second["stiffness [N/m2]"]) > 1e9
     # again: kept, and nothing is solved
     capsys.readouterr()
@@ -218,27 +218,27 @@ def test_a_folder_that_cannot_be_made(tmp_path, capsys):
         assert not (tmp_path / name).exists()
 
 
-@pytest.mark.parametrize("films", ["shared", "own"])
-def test_which_maps_share_lines(films):
-    lists = f'{SMALL_LISTS}\nfilms = "{films}"'
+def test_which_maps_are_read_from_the_film_table_and_checked():
     heat = "[[overrides]]\nname = 'a'\n[[overrides]]\nname = 'heat'\nsolver = { physics = 'inlet-heat' }\n"
-    plan = plan_batch(read(batch_text(lists, "reynolds", heat)))
-    assert [len(shared.members) for shared in plan.shared] == ([2] if films == "shared" else [])
-    assert len(plan.alone) == (2 if films == "shared" else 4)
-    assert plan_batch(read(batch_text(lists))).shared == ()  # formulas have no lines
+    lists = 'estimates = ["NU206", "NU205", "NU210"]\noils = ["FVA3"]\nchecked = 1'
+    plan = plan_batch(read(batch_text(lists, "reynolds", f"law_check = 20\n{heat}")))
+    read_ones = [planned for planned in plan.maps if planned.reads]
+    assert [planned.member.override for planned in read_ones] == ["a"] * 3
+    assert [planned.job.law_check for planned in read_ones] == [0, 20, 0]  # NU205 has the smallest radius
+    assert all(planned.job.law_check == 20 for planned in plan.maps if not planned.reads)
+    assert len({planned.fingerprint for planned in plan.maps}) == 6
+    assert not any(planned.reads for planned in plan_batch(read(batch_text(SMALL_LISTS))).maps)  # formulas
 
 
-def test_the_example_is_a_catalogue_of_five_families():
+def test_the_example_is_a_catalogue_of_five_oils():
     batch = read_batch(EXAMPLE)
     assert len(batch.members) == 1000
     plan = plan_batch(batch)
-    assert [len(shared.members) for shared in plan.shared] == [200] * 5
-    assert not plan.alone
-    points = sum(shared.family.lines.points for shared in plan.shared)
-    assert points < 0.02 * sum(member.job.points for member in batch.members)  # what sharing saves
+    assert all(planned.reads for planned in plan.maps)
+    assert sum(planned.job.law_check > 0 for planned in plan.maps) == 5 * batch.checked
 
 
-def test_check_tells_what_maps_share_and_other_commands_refuse_a_batch(tmp_path, capsys):
+def test_check_tells_what_is_solved_and_other_commands_refuse_a_batch(tmp_path, capsys):
     source = str(tmp_path / "cat.toml")
     (tmp_path / "cat.toml").write_text(batch_text(SMALL_LISTS))
     assert cli.main(["check", source]) == 0
@@ -250,15 +250,13 @@ def test_check_tells_what_maps_share_and_other_commands_refuse_a_batch(tmp_path,
     assert "is a batch file, of many jobs; allowed: one job" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("films", ["shared", "own"])
-def test_processes_that_die_are_no_failure_of_each_map(films, tmp_path, monkeypatch):
+def test_processes_that_die_are_no_failure_of_each_map(tmp_path, monkeypatch):
     def dying(*_, **__):
         raise WorkerError("worker processes die", kept=1)
 
-    monkeypatch.setattr(batch_generate, "sweep", dying)
     monkeypatch.setattr(batch_generate, "generate", dying)
     with pytest.raises(WorkerError, match="worker processes die"):
-        generate_batch(read(batch_text(f'{SMALL_LISTS}\nfilms = "{films}"')), tmp_path / "maps", workers=1)
+        generate_batch(read(batch_text(SMALL_LISTS)), tmp_path / "maps", workers=1)
 
 
 def _dies_on_import(item):

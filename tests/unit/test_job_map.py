@@ -11,7 +11,7 @@ import xarray as xr
 
 from ehdmaps.errors import MapError
 from ehdmaps.jobs import solvers
-from ehdmaps.jobs.assemble import assemble
+from ehdmaps.jobs.assemble import assemble, placed
 from ehdmaps.jobs.compare import compare
 from ehdmaps.jobs.compare_text import comparison_json, comparison_text
 from ehdmaps.jobs.describe import describe
@@ -78,7 +78,7 @@ def job_of(text=SMALL, **changes):
 def made(job, solver=None):
     chosen = solver or solvers.build(job.solver, job.solver_options)
     tasks = line_tasks(job, chosen)
-    return assemble(job, chosen, tasks, {task.key: task.run() for task in tasks})
+    return assemble(job, chosen, placed(job, tasks, {task.key: task.run() for task in tasks}))
 
 
 def test_every_point_is_in_its_place():
@@ -158,7 +158,7 @@ def test_results_from_before_there_was_a_rolling_force_are_taken_over_without_it
     old = results[tasks[0].key]
     for name in LATER_FIELDS:
         del old[name]
-    values = assemble(job, HertzSolver(), tasks, results)["rolling_force"].values
+    values = assemble(job, HertzSolver(), placed(job, tasks, results))["rolling_force"].values
     assert np.count_nonzero(np.isnan(values)) == tasks[0].points
     assert set(values[np.isfinite(values)]) == {2.0}
 
@@ -395,7 +395,7 @@ def test_validate_lists_every_problem():
     ):
         assert part in text
     dataset.attrs["schema_version"] = 99
-    with pytest.raises(MapError, match=r"schema_version is 99; this ehdmaps reads 1 to 5; .*newer one: update"):
+    with pytest.raises(MapError, match=r"schema_version is 99; this ehdmaps reads 1 to 6; .*newer one: update"):
         validate(dataset)
 
 

@@ -270,7 +270,8 @@ def test_one_row_of_the_table_makes_a_variable_or_an_axis(tmp_path, monkeypatch)
 
 
 def test_every_row_names_its_version():
-    assert {entry.since for entry in schema.TABLE} == set(range(1, schema.SCHEMA_VERSION + 1))
+    # version 6 brought an attribute and no row: the film table that laws are read from
+    assert {entry.since for entry in schema.TABLE} | {6} == set(range(1, schema.SCHEMA_VERSION + 1))
     names = [(entry.group, entry.name) for entry in schema.TABLE]
     assert len(names) == len(set(names))
     for entry in schema.TABLE:
