@@ -20,8 +20,8 @@ VARIED_KEYS = (
 _MORE = "; more than once to compare"
 _LAW = (
     "hertz | hertz:TIME | hertz:DAMPING | table:FILE.csv | formula | table | constant:NAME | map; default: map with "
-    "--map, else hertz. table: films of the scene's oil from the film table, without a map. TIME is damping over "
-    "stiffness of a dry contact ('hertz:1.25e-5 s'; usual: 0.25e-5 to 2.5e-5 s), DAMPING a constant one ('hertz:100 "
+    "--map, else table, or hertz of a scene without oil. table: films of the scene's oil from the film table, without "
+    "a map. TIME is damping over stiffness of a dry contact ('hertz:1.25e-5 s'; usual: 0.25e-5 to 2.5e-5 s), DAMPING a constant one ('hertz:100 "
     "N s/m' of each contact of a roller), FILE.csv has points of approach, load and damping, NAME a table [laws.NAME]"
 )
 _STRUCTURE = (
@@ -365,7 +365,7 @@ def _bearing(commands: Any) -> None:
         metavar="LAW",
         help="hertz | hertz:TIME | hertz:DAMPING (TIME: damping over stiffness) | table:FILE.csv (points of approach, "
         "load and damping) | formula | table (films from the film table, without a map) | map; default: map with "
-        "--map, else hertz",
+        "--map, else table",
     )
     _supply(command, "[supply] of the file, else of the job of the map, else flooded", compares=False)
     command.add_argument(

@@ -355,7 +355,7 @@ def _map(path: str | None, structure: str | None, problems: list[str]) -> EHDMap
 def _law(name: str | None, with_map: bool, problems: list[str]) -> str:
     """The law that is meant."""
     if name is None:
-        return "map" if with_map else "hertz"
+        return "map" if with_map else TABLE_LAW
     try:
         damper = hertz_damper(name)
     except InputError as error:

@@ -250,7 +250,7 @@ def _given(arguments: argparse.Namespace, name: str) -> list[str]:
 def _laws(
     names: list[str], paths: list[str], structure: str | None, scene: Scene | None, problems: list[str]
 ) -> list[LawChoice]:
-    """The laws that are meant: those named, and each set of maps; dry Hertz without either."""
+    """The laws that are meant: those named, and each set of maps; without either films from the film table."""
     if structure is not None and not paths:
         problems.append(NO_MAP.format(structure))
     for option, texts in (("--law", names), ("--map", paths)):
@@ -264,7 +264,10 @@ def _laws(
         LawChoice(label, "map", maps)
         for label, maps in _labelled_sets(read_maps(paths, structure, problems), scene, problems)
     ]
-    return laws if names or paths else [LawChoice(law_label("hertz"), None)]
+    if names or paths:
+        return laws
+    with_films = scene is not None and scene.lubricant is not None and scene.bearings
+    return [_law(TABLE_LAW if with_films else "hertz", scene, problems)]
 
 
 def _law(name: str, scene: Scene | None, problems: list[str]) -> LawChoice:

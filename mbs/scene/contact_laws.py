@@ -32,8 +32,8 @@ from mbs.scene.specs import BearingSpec
 FILM_WORDS: dict[Films, str] = {"memory": "films with memory", "slow": "slow films"}
 """How people are told that films relax, or that they have stiffness and damping of slow motion at any frequency."""
 
-_FORMULA_SPEEDS, _BEYOND = (0.05, 10.0), 1.05
-"""Entrainment speeds of the table of the film formula [m/s], and how far it goes beyond a scene that is faster."""
+_SPEEDS, _BEYOND = (0.05, 10.0), 1.05
+"""Entrainment speeds of laws that are made for a scene [m/s], and how far they go beyond a scene that is faster."""
 
 _HERTZ, _CONSTANT, _TABLE = "hertz:", "constant:", "table:"
 _LONGEST_TIME, _STRONGEST = 1e-2, 1e9
@@ -49,6 +49,22 @@ TABLE_LAW = "table"
 """The law whose films come from the film table: that of maps which are made in memory, see `mbs.scene.table_maps`."""
 
 _LABELS = {"hertz": "dry Hertz", "formula": "film formula"}
+
+
+def speeds_of_laws(geometry: BearingGeometry, scene: Scene) -> tuple[float, float]:
+    """Range of the entrainment speed of laws that are made for a scene [m/s]; no bearing of this geometry exceeds it.
+
+    Parameters
+    ----------
+    geometry : BearingGeometry
+        The bearing.
+    scene : Scene
+        The scene.
+    """
+    spin = max((abs(body.spin) for body in scene.bodies), default=0.0)
+    # Rings turn against each other at most.
+    fastest = abs(geometry.entrainment_speed(spin * scene.fastest, -spin * scene.fastest))
+    return _SPEEDS[0], max(_SPEEDS[1], _BEYOND * fastest)
 
 
 def choose_law(name: str | None, maps: MapSet | None) -> str:
@@ -420,21 +436,13 @@ class BearingLaws:
         surface = self.given.surface
         if (emap := self.given.map_of(self.bearing.geometry)) is not None:
             return emap.law(kind, outside="clamp", supply=self.supply, surface=surface)
-        fastest = max(_FORMULA_SPEEDS[1], _BEYOND * self._highest_speed)
         return laws.formula(
             self.bearing,
             self.given.lubricant,
-            entrainment_speed=(_FORMULA_SPEEDS[0], fastest),
+            entrainment_speed=speeds_of_laws(self.bearing.geometry, self.given.scene),
             kind=kind,
             outside="clamp",
             supply=self.supply,
             surface=surface,
         )
 
-    @property
-    def _highest_speed(self) -> float:
-        """Entrainment speed that no bearing of this geometry exceeds in the scene [m/s]."""
-        scene = self.given.scene
-        spin = max((abs(body.spin) for body in scene.bodies), default=0.0)
-        # Rings turn against each other at most.
-        return abs(self.bearing.geometry.entrainment_speed(spin * scene.fastest, -spin * scene.fastest))

@@ -10,13 +10,13 @@ from ehdmaps.jobs.table_law import TEMPERATURES, table_map
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
-from mbs.scene.contact_laws import TABLE_LAW
+from mbs.scene.contact_laws import TABLE_LAW, speeds_of_laws
 from mbs.scene.map_set import MapSet, suits
 from mbs.scene.scene import Scene
 
 
 def table_maps(scene: Scene) -> MapSet:
-    """Maps of all types of bearing of a scene, over the usual ranges and the temperature of the scene; some seconds.
+    """Maps of all types of bearing of a scene, over the usual ranges and those of the scene; a second each.
 
     Parameters
     ----------
@@ -39,11 +39,16 @@ def table_maps(scene: Scene) -> MapSet:
     for spec in scene.bearings:
         if not any(suits(emap, spec.geometry) for emap in maps):
             plain = dataclasses.replace(spec.geometry, diametral_clearance=0.0)
-            maps.append(_made(plain, scene.lubricant, temperatures))
+            maps.append(_made(plain, scene.lubricant, speeds_of_laws(plain, scene), temperatures))
     return MapSet(maps)
 
 
 @lru_cache(maxsize=16)
-def _made(geometry: BearingGeometry, lubricant: Lubricant, temperatures: tuple[float, float]) -> EHDMap:
+def _made(
+    geometry: BearingGeometry,
+    lubricant: Lubricant,
+    speeds: tuple[float, float],
+    temperatures: tuple[float, float],
+) -> EHDMap:
     """Map of one type of bearing, made once in a process."""
-    return table_map(geometry, lubricant, temperatures=temperatures)
+    return table_map(geometry, lubricant, entrainment_speeds=speeds, temperatures=temperatures)
