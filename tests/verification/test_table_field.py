@@ -1,0 +1,161 @@
+"""Films and laws straight from the film table: beside the table itself, fresh solves, and laws from solved lines."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import ehdmaps
+from ehdmaps.ehl.solver import ReynoldsSolver
+from ehdmaps.errors import MapError
+from ehdmaps.jobs.describe import describe
+from ehdmaps.jobs.generate import generate, generate_in_memory
+from ehdmaps.jobs.job import Job
+from ehdmaps.jobs.table_films import unserved
+from ehdmaps.maps import schema
+from ehdmaps.maps.emap import EHDMap, open_map
+from ehdmaps.maps.law import ContactLaw
+from ehdmaps.maps.low_loads import load_at
+from ehdmaps.maps.table_field import TABLE_RESOLUTION, TableField, table_lines
+from ehdmaps.physics.catalogue import estimate
+from ehdmaps.physics.hertz import half_width
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.solids import STEEL
+from ehdmaps.physics.solution import contact_solution
+from ehdmaps.table.file import film_table
+
+BEARING = estimate("NU206")
+CONTACTS = BEARING.contacts(STEEL, "iso16281")
+OIL = Lubricant.roelands(density=870.0, viscosity_40=68e-6, viscosity_100=9e-6, pressure_viscosity=19e-9)
+RANGES = (200.0, 8e5), (0.1, 8.0), (303.15, 383.15)
+FIELD = TableField(CONTACTS, OIL, *RANGES)
+SPEEDS, TEMPERATURES = np.array([0.13, 1.1, 6.7]), np.array([305.0, 341.3, 380.0])
+LOADS = np.broadcast_to(np.geomspace(250.0, 7e5, 40)[:, None, None], (40, 3, 3)).copy()
+
+
+def job(**changes: object) -> Job:
+    axes = {
+        "loads": np.geomspace(*RANGES[0], 12),
+        "entrainment_speeds": np.geomspace(*RANGES[1], 5),
+        "temperatures": np.linspace(*RANGES[2], 3),
+    }
+    made = Job.build(lubricant=OIL, bearing=BEARING, structural_law="iso16281", name="nu206", **axes)
+    return replace(made, **changes)
+
+
+def test_films_between_nodes_are_those_of_the_table() -> None:
+    """Film offset within 5e-4, the errors of the table; compliances within 2e-3 of that of the whole contact."""
+    for contact in CONTACTS:
+        offset, compliance, _ = FIELD.films(contact.name, LOADS, SPEEDS, TEMPERATURES)
+        u, T = np.meshgrid(SPEEDS, TEMPERATURES, indexing="ij")
+        read = film_table(OIL).films(contact, OIL, LOADS, u, T, others=False, thickest_film=np.inf)
+        np.testing.assert_allclose(offset, read.film_offset, rtol=5e-4)
+        whole = contact.structural_compliance(LOADS) + read.film_compliance
+        assert np.max(np.abs(compliance - read.film_compliance) / whole) < 2e-3
+
+
+def test_the_film_compliance_is_the_derivative_of_the_film_offset() -> None:
+    """Central differences with a step of 1e-4 of the load are wrong by 1e-6 of the film's slope at most."""
+    step = 1e-4
+    (heavier, *_), (lighter, *_) = (FIELD.films("inner", LOADS * x, SPEEDS, TEMPERATURES) for x in (1 + step, 1 - step))
+    offset, compliance, loss = FIELD.films("inner", LOADS, SPEEDS, TEMPERATURES)
+    slope = -(heavier - lighter) / (2.0 * step * LOADS)
+    assert np.max(np.abs(slope - compliance) * LOADS / offset) < 1e-5
+    assert np.all(loss > 0.0)
+
+
+def test_lines_go_on_smoothly_above_the_map() -> None:
+    """Beyond the highest load films go on straight in logarithms: no jump, and no kink, where the map ends."""
+    loads = np.geomspace(6e5, 1.2e6, 400)[:, None, None]
+    offset, compliance, loss = FIELD.films("outer", loads, SPEEDS[1:2], TEMPERATURES[1:2])
+    for values in (np.log(offset), compliance * loads / offset, np.log(loss)):
+        second = np.diff(values[:, 0, 0], 2)
+        assert np.max(np.abs(second)) < 1e-4
+
+
+def test_films_that_the_table_does_not_have_are_told() -> None:
+    # L above 150: a cold oil at a speed that no bearing has
+    field = TableField(CONTACTS, OIL, RANGES[0], (0.1, 5e5), RANGES[2])
+    with pytest.raises(MapError, match=r'film table: .* at .* N/mm, .* m/s, .* degC; have the films solved'):
+        field.films("inner", LOADS[:, :1, :1], np.array([5e5]), np.array([303.15]))
+    assert unserved(job(entrainment_speeds=(0.1, 5e5))).startswith("film table: ")
+    assert unserved(job(loads=(1e3,), entrainment_speeds=(1.0,), temperatures=(320.0,))) != ""
+
+
+@pytest.mark.slow
+def test_a_law_of_the_table_is_that_of_fresh_solves() -> None:
+    """k within 0.1 % and c within 5 % of max(c, 0.02 k b/u), the bars of laws whose films are read."""
+    contact = CONTACTS[1]
+    law = ContactLaw("outer", (contact,), OIL, FIELD, "error", TABLE_RESOLUTION)
+    random, solver = np.random.default_rng(8), ReynoldsSolver(density=14.0, inlet_length=700.0)
+    wrong_k, wrong_c = [], []
+    for _ in range(40):
+        w, u = np.exp(random.uniform(np.log([3e2, 0.1]), np.log([5e5, 8.0]))).tolist()
+        T = float(random.uniform(*RANGES[2]))
+        (film,) = solver.solve_line(contact, OIL, (w,), u, T)
+        solved = contact_solution(film, contact, OperatingPoint(w, u, T))
+        _, k, c = law(solved.approach, 0.0, u, T)
+        unit = 0.02 * solved.stiffness * float(half_width(w, contact.radius, contact.reduced_modulus)) / u
+        wrong_k.append(abs(float(k) / solved.stiffness - 1.0))
+        wrong_c.append(abs(float(c) - max(solved.damping, 0.0)) / max(solved.damping, unit))
+    assert np.quantile(wrong_k, 0.95) < 1e-3
+    assert np.quantile(wrong_c, 0.95) < 0.05
+
+
+@pytest.mark.slow
+def test_a_map_of_the_table_has_no_lines_and_all_laws(tmp_path: Path) -> None:
+    checked = job(law_check=20)
+    assert unserved(checked) == ""
+    made = generate(checked, tmp_path / "nu206.nc", workers=1)
+    assert made.backbone is None
+    assert made.sweep.solved == 20  # the check of its laws, and nothing else
+    emap = open_map(tmp_path / "nu206.nc")
+    assert emap.from_table and emap.known_between
+    attributes = emap.dataset.attrs
+    assert (attributes["films_read"], attributes["films_solved"]) == (checked.points, 0)
+    assert attributes["law_film_compliance_within_bar"] == attributes["law_damping_within_bar"] == 1.0
+    assert f"films: {checked.points} points read from the film table, as the films of the laws are; none solved" in (
+        describe(emap, "nu206.nc")
+    )
+    assert emap.low_loads is not None and emap.low_loads.guessed == 0.0
+    for kind in ("series", "inner", "outer"):
+        law = emap.law(kind, "asymptote")  # type: ignore[arg-type]
+        w, k, c = law(np.linspace(-1e-6, 20e-6, 50), 0.0, 2.0, 330.0)
+        assert np.all(np.diff(w) > 0.0) and np.all(k > 0.0) and np.all(c > 0.0)
+    tampered = EHDMap(emap.dataset.assign_attrs({schema.FILM_TABLE: "0"}), None)
+    with pytest.raises(MapError, match="was changed"):
+        tampered.dataset.to_netcdf(tmp_path / "other.nc")
+        open_map(tmp_path / "other.nc")
+
+
+@pytest.mark.slow
+def test_memory_layers_and_rolling_forces_of_the_table_are_those_of_solved_lines() -> None:
+    """Locked films within 5 % and rolling force, mass flow, layers within 1 %: lines read and lines solved."""
+    small = job(loads=(1e4, 1e5), entrainment_speeds=(1.0, 2.0), temperatures=(330.0, 340.0), law_check=0)
+    read, solved = (
+        generate_in_memory(replace(small, solver_options={"films": films}), workers=1) for films in ("table", "solved")
+    )
+    maps = EHDMap(read.dataset, read.backbone), EHDMap(solved.dataset, solved.backbone)
+    assert maps[0].from_table and not maps[1].from_table
+    layered = [emap.law("inner", supply=ehdmaps.OilSupply(2e-7)) for emap in maps]
+    delta = np.linspace(1e-6, 8e-6, 20)
+    for one, other in zip(layered[0](delta, 0.0, 1.3, 333.0), layered[1](delta, 0.0, 1.3, 333.0), strict=True):
+        np.testing.assert_allclose(one, other, rtol=0.01)
+    flooded = [emap.law("inner") for emap in maps]
+    factors = [law.locked_factors(1.3, 333.0).factors for law in flooded]
+    np.testing.assert_allclose(*factors, rtol=0.05)
+    rolling = [emap.rolling_film for emap in maps]
+    for name in ("rolling_force", "mass_flow"):
+        loads = np.geomspace(2.0, 9e4, 9)
+        np.testing.assert_allclose(*(getattr(film, name)("inner", loads, 1.3, 333.0) for film in rolling), rtol=0.01)
+
+
+def test_lines_of_the_table_reach_down_to_rigid_films() -> None:
+    group = table_lines(CONTACTS, OIL, *RANGES)
+    assert set(np.unique(group["status"].values)) <= {0, 1, schema.NOT_NEEDED}
+    lowest = load_at(CONTACTS[0], OIL, float(group["zeta"].values[0]), 1.0, 330.0)
+    assert lowest < 0.1 * RANGES[0][0]
