@@ -1,10 +1,12 @@
-"""Open the map of a command, by the structural law that its option --structure names."""
+"""Open the map of a command: a file, or a job whose map is made in memory, with films from the film table."""
 
 from __future__ import annotations
 
-from os import PathLike
+from os import PathLike, fspath
+from pathlib import Path
 
 from ehdmaps.errors import InputError
+from ehdmaps.jobs.reader import read_job, shipped_jobs
 from ehdmaps.jobs.surface import surface_from_text
 from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.physics.approach import STRUCTURAL_LAWS
@@ -18,7 +20,8 @@ def open_given(path: str | PathLike[str], structure: str | None, roughness: str 
     Parameters
     ----------
     path : str or path
-        The file.
+        The file of a map. Of a job, a file ending with .toml or the name of a shipped one, the map is made in memory,
+        in about a second, where the film table serves it.
     structure : str or None
         What was given for --structure; None for the structural law of the map's job.
     roughness : str or None
@@ -29,7 +32,8 @@ def open_given(path: str | PathLike[str], structure: str | None, roughness: str 
     MapError
         If the file cannot be read, is no map, or was changed since it was made.
     InputError
-        If there is no such structural law, or it does not suit the map; if the roughness is none.
+        If there is no such structural law, or it does not suit the map; if the roughness is none; if a job is wrong, or
+        its films have to be solved.
     """
     known = {law: law for law in STRUCTURAL_LAWS}
     if structure is not None and structure not in known:
@@ -38,13 +42,25 @@ def open_given(path: str | PathLike[str], structure: str | None, roughness: str 
             f"{', '.join(STRUCTURAL_LAWS)}"
         )
     surface = None if roughness is None else surface_given(roughness)
-    emap = open_map(path)
+    emap = _of_job(path) if _is_job(path) else open_map(path)
     if surface is not None:
         emap = emap.with_surface(surface)
     try:
         return emap if structure is None else emap.with_structure(known[structure])
     except InputError as error:
         raise InputError([f"--structure: {problem}" for problem in error.problems]) from error
+
+
+def _is_job(path: str | PathLike[str]) -> bool:
+    """Whether a job is given in the place of a map."""
+    return fspath(path) in shipped_jobs() or Path(path).suffix == ".toml"
+
+
+def _of_job(path: str | PathLike[str]) -> EHDMap:
+    """The map of a job."""
+    from ehdmaps.jobs.table_law import job_map  # with the solver, that only a map in the making needs
+
+    return job_map(read_job(path), fspath(path))
 
 
 def surface_given(text: str) -> Surface:

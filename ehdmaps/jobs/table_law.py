@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ehdmaps.errors import InputError
+from ehdmaps.jobs import solvers
 from ehdmaps.jobs.generate import generate_in_memory
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.solvers import TABLE
+from ehdmaps.jobs.table_films import unserved
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.law import ContactLaw, LawKind, OutsidePolicy
 from ehdmaps.physics.approach import StructuralLaw
@@ -18,6 +22,7 @@ from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.roughness import Surface
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.physics.solution import ContactSolver
+from ehdmaps.table.solver import TableSolver
 
 LOADS, SPEEDS, TEMPERATURES = (100.0, 1e6), (0.05, 10.0), (293.15, 393.15)
 """Ranges of a law for which nothing else is said: those of the shipped jobs [N/m], [m/s], [K]."""
@@ -79,6 +84,29 @@ def table_map(
         structural_law=structural_law,
     )
     made = generate_in_memory(job, workers=1, solver=solver)
+    return EHDMap(made.dataset, made.backbone)
+
+
+def job_map(job: Job, source: str) -> EHDMap:
+    """Make the map of a job in memory, with films from the film table; its laws are not checked by fresh solves.
+
+    Parameters
+    ----------
+    job : Job
+        The job.
+    source : str
+        How it was given, for messages.
+
+    Raises
+    ------
+    InputError
+        If its films have to be solved.
+    """
+    solver = solvers.of_map(job)
+    why = unserved(job) if isinstance(solver, TableSolver) else "the film table has none of its solver and settings"
+    if why:
+        raise InputError(f"{source}: its films have to be solved ({why}); give the map that `ehdmaps generate` makes")
+    made = generate_in_memory(replace(job, law_check=0), 1, solver=solver)
     return EHDMap(made.dataset, made.backbone)
 
 
