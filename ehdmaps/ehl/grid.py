@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -36,8 +37,7 @@ LEAST_INLET = 6.0
 """Inlet of a film without thickness [b]; `Resolution.inlet_length` comes to it."""
 
 
-@dataclass(frozen=True)
-class Grid:
+class Grid(NamedTuple):
     """Nodes and metric of one grid.
 
     Attributes

@@ -11,16 +11,15 @@ response does not depend on how the grid moves.
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import LinAlgWarning, lu_factor
 
-from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.arrays import FloatArray
 from ehdmaps.compiled import njit
+from ehdmaps.copies import put
+from ehdmaps.ehl.dense import Factorised, factorised, solved
 from ehdmaps.ehl.elastic import log_kernel
 from ehdmaps.ehl.grid import Grid
 from ehdmaps.ehl.reynolds import LineProblem, residual
@@ -70,12 +69,8 @@ class Arrays(NamedTuple):
 
     Attributes
     ----------
-    scale : ndarray, shape (size,)
-        What the rows were multiplied by, in the order of the factors.
-    factors : ndarray, shape (size, size)
-        LU factors of the scaled matrix, row by row.
-    order : ndarray of int, shape (size,)
-        The row of the matrix that each row of the factors stands for.
+    found : Factorised
+        The matrix, factorised.
     x, kernel : ndarray, shapes (n + 1,) and (n + 1, n + 1)
         Nodes and deflection.
     exit_at : float
@@ -88,35 +83,13 @@ class Arrays(NamedTuple):
         Stored mass per shift of the spike; zero where the grid follows none.
     """
 
-    scale: FloatArray
-    factors: FloatArray
-    order: IntArray
+    found: Factorised
     x: FloatArray
     kernel: FloatArray
     exit_at: float
     stored: StoredOil
     carried: FloatArray
     grid_mass: FloatArray
-
-
-@njit(fastmath={"contract", "reassoc"})
-def solved(linear: Arrays, right: FloatArray) -> FloatArray:
-    """Solve matrix z = right, both of shape (size,)."""
-    factors, size = linear.factors, right.size
-    found = np.empty(size)
-    for i in range(size):
-        total = linear.scale[i] * right[linear.order[i]]
-        row = factors[i]
-        for j in range(i):
-            total -= row[j] * found[j]
-        found[i] = total
-    for i in range(size - 1, -1, -1):
-        total = found[i]
-        row = factors[i]
-        for j in range(i + 1, size):
-            total -= row[j] * found[j]
-        found[i] = total / row[i]
-    return found
 
 
 @njit
@@ -134,34 +107,38 @@ def storage(linear: Arrays, rate: FloatArray) -> FloatArray:
     return added
 
 
+@njit
+def unit_load(linear: Arrays) -> FloatArray:
+    """Right-hand side of a unit load."""
+    unit = np.zeros(linear.found.scale.size)
+    unit[linear.x.size] = 1.0
+    return unit
+
+
+@njit
+def _slow(linear: Arrays) -> tuple[float, float]:
+    """H0 of the static response, and of what its storage brings about."""
+    static = solved(linear.found, unit_load(linear))
+    slow = solved(linear.found, -storage(linear, static))
+    return static[linear.x.size], slow[linear.x.size]
+
+
 @dataclass(frozen=True)
 class Linearisation:
     """The transient equations to first order about a steady solution: matrix z + storage(dz/dT) = unit dW.
 
     Attributes
     ----------
-    problem : LineProblem
-        Dimensionless groups.
-    grid : Grid
-        The grid of the solution.
-    kernel : ndarray, shape (n + 1, n + 1)
-        Deflection at the nodes by the pressures at the nodes.
-    unknowns : ndarray, shape (n + 2,)
-        Converged unknowns on `grid`.
     matrix : ndarray, shape (size, size)
         Derivative of the steady equations; size is n + 2, or n + 3 where the grid follows the spike.
-    grid_mass : ndarray, shape (n + 1,), or None
-        Stored mass per shift of the spike.
+    arrays : Arrays
+        The same for compiled code, the matrix factorised.
     inlet : Inlet or None
         What the place of the meniscus adds, of a starved contact. In the matrix the meniscus is held.
     """
 
-    problem: LineProblem
-    grid: Grid
-    kernel: FloatArray
-    unknowns: FloatArray
     matrix: FloatArray
-    grid_mass: FloatArray | None
+    arrays: Arrays
     inlet: Inlet | None = None
 
     @property
@@ -172,45 +149,17 @@ class Linearisation:
     @property
     def height(self) -> int:
         """Index of H0 among the unknowns, and of the load among the equations."""
-        return self.unknowns.size - 1
+        return self.arrays.x.size
 
     @property
     def unit(self) -> FloatArray:
         """Right-hand side of a unit load, shape (size,)."""
-        unit = np.zeros(self.size)
-        unit[self.height] = 1.0
-        return unit
+        return unit_load(self.arrays)
 
     @property
     def singular(self) -> bool:
         """Whether the film has no linear response: a pivot of its matrix is zero to the rounding of the numbers."""
-        return not np.all(np.diagonal(self.arrays.factors))
-
-    @cached_property
-    def arrays(self) -> Arrays:
-        """The same for compiled code, the matrix factorised."""
-        grid, n = self.grid, self.unknowns.size - 2
-        scale = 1.0 / np.max(np.abs(self.matrix), axis=1)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", LinAlgWarning)  # `singular` says it
-            factors, swaps = lu_factor(self.matrix * scale[:, None], overwrite_a=True, check_finite=False)
-        order = np.arange(self.size)
-        carried = stored_mass(self.problem, grid.x, grid.step, self.kernel, self.unknowns)[1]
-        if self.inlet is not None:  # the length grows as the exit moves away from the held meniscus
-            carried = carried - self.inlet.mass
-        for row, other in enumerate(swaps):
-            order[row], order[other] = order[other], order[row]
-        return Arrays(
-            scale=scale[order],
-            factors=np.ascontiguousarray(factors),
-            order=order,
-            x=grid.x,
-            kernel=self.kernel,
-            exit_at=float(self.unknowns[n]),
-            stored=stored_oil(self.problem, grid.x, grid.step, self.kernel, self.unknowns),
-            carried=carried,
-            grid_mass=np.zeros(n + 1) if self.grid_mass is None else self.grid_mass,
-        )
+        return self.arrays.found.singular
 
     def storage(self, rate: FloatArray) -> FloatArray:
         """What the time derivative adds to the equations for a rate of the unknowns, both of shape (size,)."""
@@ -218,13 +167,12 @@ class Linearisation:
 
     def solve(self, right: FloatArray) -> FloatArray:
         """Solve matrix z = right, both of shape (size,)."""
-        return solved(self.arrays, right)
+        return solved(self.arrays.found, right)
 
     def slow_response(self) -> Response:
         """Film compliance and loss in the limit of slow motion."""
-        static = self.solve(self.unit)
-        slow = self.solve(-self.storage(static))
-        return Response(compliance=-float(static[self.height]) - DRY_COMPLIANCE, loss=float(slow[self.height]))
+        static, slow = _slow(self.arrays)
+        return Response(compliance=-static - DRY_COMPLIANCE, loss=slow)
 
     def supplied_compliance(self) -> float:
         """Film compliance of a starved contact whose meniscus follows until it takes the layer again.
@@ -275,42 +223,70 @@ def linearised(
     longer : GridShift, optional
         Needed where the grid begins at a meniscus, which is then held.
     """
-    size = unknowns.size
-    total = size + (neighbour is not None)
-    matrix = np.zeros((total, total))
-    out = np.empty(size)
-    jacobian = np.empty((size, size))
-    residual(problem, grid.x, grid.step, grid.face_step, kernel, unknowns, load, out, jacobian)
-    matrix[:size, :size] = jacobian
-    grid_mass: FloatArray | None = None
-    if neighbour is not None:
-        by_grid, grid_mass = _by_grid(problem, grid, kernel, unknowns, load, out, neighbour.grid, neighbour.shift)
-        matrix[:size, size] = by_grid
-        matrix[size, neighbour.node - 1] = 1.0
-    inlet: Inlet | None = None
-    if longer is not None:
-        inlet = Inlet(*_by_grid(problem, grid, kernel, unknowns, load, out, longer.grid, longer.shift))
-        matrix[:size, size - 2] += inlet.residual  # the exit's column: the length is the exit less the held meniscus
-    return Linearisation(problem, grid, kernel, unknowns, matrix, grid_mass, inlet)
+    follows = Neighbour(grid, 0.0, 0) if neighbour is None else neighbour
+    lengthened = GridShift(grid, 0.0) if longer is None else longer
+    matrix, arrays, inlet = _linearised(problem, grid, kernel, unknowns, load, follows, lengthened)
+    return Linearisation(matrix, arrays, None if longer is None else inlet)
 
 
-def _by_grid(
+@njit
+def _linearised(
     problem: LineProblem,
     grid: Grid,
     kernel: FloatArray,
     unknowns: FloatArray,
     load: float,
+    neighbour: Neighbour,
+    longer: GridShift,
+) -> tuple[FloatArray, Arrays, Inlet]:
+    """Matrix, its factors with all that storage needs, and what a longer inlet does; a shift of zero is no shift."""
+    size = unknowns.size
+    n = size - 2
+    here, jacobian = np.empty(size), np.empty((size, size))
+    residual(problem, grid.x, grid.step, grid.face_step, kernel, unknowns, load, here, jacobian)
+    mass, carried = stored_mass(problem, grid.x, grid.step, kernel, unknowns)
+    stored = stored_oil(problem, grid.x, grid.step, kernel, unknowns)
+    matrix, by_spike, by_length = jacobian, np.zeros(n + 1), Inlet(np.zeros(size), np.zeros(n + 1))
+    if neighbour.shift != 0.0:
+        by_grid, by_spike = _by_grid(
+            problem, grid, unknowns, load, here, mass, carried, neighbour.grid, neighbour.shift
+        )
+        matrix = np.zeros((size + 1, size + 1))
+        for i in range(size):
+            put(jacobian[i], matrix[i, :size])
+            matrix[i, size] = by_grid[i]
+        matrix[size, neighbour.node - 1] = 1.0
+    if longer.shift != 0.0:
+        by_length = Inlet(*_by_grid(problem, grid, unknowns, load, here, mass, carried, longer.grid, longer.shift))
+        # the length is the exit less the held meniscus
+        for i in range(size):
+            matrix[i, n] += by_length.residual[i]
+        carried = carried - by_length.mass
+    arrays = Arrays(factorised(matrix), grid.x, kernel, unknowns[n], stored, carried, by_spike)
+    return matrix, arrays, by_length
+
+
+@njit
+def _by_grid(
+    problem: LineProblem,
+    grid: Grid,
+    unknowns: FloatArray,
+    load: float,
     here: FloatArray,
+    mass: FloatArray,
+    carried: FloatArray,
     moved: Grid,
     shift: float,
 ) -> tuple[FloatArray, FloatArray]:
     """Derivatives of the residual and of the stored mass (as moving faces see it) with respect to a shift of nodes."""
-    moved_kernel = log_kernel(moved.x, moved.step)
+    kernel = log_kernel(moved.x, moved.step)
     there = np.empty(unknowns.size)
     scratch = np.empty((1, unknowns.size))
-    residual(problem, moved.x, moved.step, moved.face_step, moved_kernel, unknowns, load, there, scratch)
-    mass, carried = stored_mass(problem, grid.x, grid.step, kernel, unknowns)
-    moved_mass, _ = stored_mass(problem, moved.x, moved.step, moved_kernel, unknowns)
-    face_shift = np.append(moved.face - grid.face, moved.x[-1] - grid.x[-1])
-    by_grid: FloatArray = (there - here) / shift
-    return by_grid, (moved_mass - mass - carried * face_shift) / shift
+    residual(problem, moved.x, moved.step, moved.face_step, kernel, unknowns, load, there, scratch)
+    moved_mass, _ = stored_mass(problem, moved.x, moved.step, kernel, unknowns)
+    n = grid.face.size
+    swept = np.empty(n + 1)
+    for f in range(n):
+        swept[f] = carried[f] * (moved.face[f] - grid.face[f])
+    swept[n] = carried[n] * (moved.x[n] - grid.x[n])
+    return (there - here) / shift, (moved_mass - mass - swept) / shift

@@ -10,6 +10,7 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.compiled import njit
 from ehdmaps.copies import put
+from ehdmaps.ehl.dense import factorised, solved
 from ehdmaps.ehl.reynolds import (
     LineProblem,
     film,
@@ -63,20 +64,6 @@ class NewtonResult(NamedTuple):
     outcome: int
     steps: int
     last_step: float
-
-
-@njit
-def solve_scaled(jacobian: FloatArray, right_hand_side: FloatArray) -> FloatArray:
-    """Solve a dense system after scaling each row by its largest entry; overwrites both arguments."""
-    for i in range(jacobian.shape[0]):
-        largest = 0.0
-        for j in range(jacobian.shape[1]):
-            largest = max(largest, abs(jacobian[i, j]))
-        if largest > 0.0:
-            for j in range(jacobian.shape[1]):
-                jacobian[i, j] /= largest
-            right_hand_side[i] /= largest
-    return np.linalg.solve(jacobian, right_hand_side)  # type: ignore[return-value]
 
 
 @njit
@@ -223,7 +210,7 @@ def newton(
         lowest = residual_with(problem, factors, x, step, face_step, kernel, unknowns, load, out, jacobian)
         if not np.all(np.isfinite(out)):
             return NewtonResult(unknowns, DIVERGED, count, last)
-        move = solve_scaled(jacobian, -out)
+        move = solved(factorised(jacobian), -out)
         last = step_size(unknowns, move)
         if not math.isfinite(last):
             return NewtonResult(unknowns, DIVERGED, count, last)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -50,17 +51,17 @@ class Profile:
         """Number of cells."""
         return self.grid.face.size
 
-    @property
+    @cached_property
     def pressure(self) -> FloatArray:
         """P at the nodes, shape (n + 1,) [p_H]."""
         return np.asarray(node_pressure(self.unknowns))
 
-    @property
+    @cached_property
     def film(self) -> FloatArray:
         """H at the nodes, shape (n + 1,) [b^2/R]."""
         return np.asarray(film(self.grid.x, self.kernel, self.unknowns))
 
-    @property
+    @cached_property
     def position(self) -> FloatArray:
         """X of the nodes from the centre of the Hertz contact, shape (n + 1,) [b]."""
         return np.asarray(self.grid.x + self.unknowns[-2])
@@ -75,7 +76,7 @@ class Profile:
         """Mass of oil through the contact [b^2/R], over density at rest and speed."""
         return float(self.unknowns[-3])
 
-    @property
+    @cached_property
     def rolling_force(self) -> float:
         """Int H dP, that of a flooded inlet before the grid included [b^2/R p_H]."""
         inside = film_times_rise(self.film, self.pressure)
@@ -86,7 +87,7 @@ class Profile:
         )
         return inside + before
 
-    @property
+    @cached_property
     def stresses(self) -> tuple[FloatArray, FloatArray]:
         """Mean stress across the film and difference of the stresses at both walls, at the faces, shape (n,)."""
         problem, grid, pressure = self.problem, self.grid, self.pressure

@@ -17,7 +17,8 @@ import numpy as np
 
 from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.compiled import njit
-from ehdmaps.ehl.linearisation import Arrays, Linearisation, solved, storage
+from ehdmaps.ehl.dense import solved
+from ehdmaps.ehl.linearisation import Arrays, Linearisation, storage, unit_load
 from ehdmaps.physics.hertz import DRY_COMPLIANCE
 
 SMALL_RESIDUAL = 1e-13
@@ -101,7 +102,7 @@ def film_space(linear: Linearisation, fastest: float) -> FilmSpace:
     fastest : float
         Highest Omega = omega b/u.
     """
-    return FilmSpace(*_space(linear.arrays, linear.unit, linear.height, fastest))
+    return FilmSpace(*_space(linear.arrays, fastest))
 
 
 def arnoldi(step: Callable[[FloatArray], FloatArray], static: FloatArray, height: int, fastest: float) -> FilmSpace:
@@ -131,11 +132,11 @@ def arnoldi(step: Callable[[FloatArray], FloatArray], static: FloatArray, height
 
 
 @njit
-def _space(linear: Arrays, unit: FloatArray, height: int, fastest: float) -> tuple[float, FloatArray, FloatArray]:
-    """Length of the static response, T in the space of its vectors, and the unknown `height` of these."""
-    static = solved(linear, unit)
+def _space(linear: Arrays, fastest: float) -> tuple[float, FloatArray, FloatArray]:
+    """Length of the static response, T in the space of its vectors, and H0 of these."""
+    static = solved(linear.found, unit_load(linear))
     norm = float(np.linalg.norm(static))
-    size = unit.size
+    size, height = static.size, linear.x.size
     basis = np.empty((size + 1, size))
     hessenberg = np.zeros((size + 1, size))
     basis[0] = static / norm
@@ -153,7 +154,7 @@ def _space(linear: Arrays, unit: FloatArray, height: int, fastest: float) -> tup
 @njit
 def _extend(linear: Arrays, basis: FloatArray, hessenberg: FloatArray, count: int) -> None:
     """Add T times the last vector to the basis, orthogonal to all before it; twice, for round-off."""
-    _orthogonalised(solved(linear, storage(linear, basis[count])), basis, hessenberg, count)
+    _orthogonalised(solved(linear.found, storage(linear, basis[count])), basis, hessenberg, count)
 
 
 @njit

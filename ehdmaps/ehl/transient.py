@@ -18,7 +18,8 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.compiled import njit
-from ehdmaps.ehl.newton import LOG_VISCOSITY_STEP, solve_scaled
+from ehdmaps.ehl.dense import factorised, solved
+from ehdmaps.ehl.newton import LOG_VISCOSITY_STEP
 from ehdmaps.ehl.profile import Profile
 from ehdmaps.ehl.reynolds import LineProblem, film, residual, steepest_viscosity_step
 from ehdmaps.ehl.stored_mass import stored_mass, stored_mass_jacobian
@@ -156,7 +157,7 @@ def _one_step(
             out[f] += side * growth[f]
             for j in range(size):
                 matrix[f, j] += side * by_unknowns[f, j]
-        move = solve_scaled(matrix, -out)
+        move = solved(factorised(matrix), -out)
         peak = max(np.max(unknowns[: n - 1]), 1e-300)
         last = max(
             np.max(np.abs(move[: n - 1])) / peak,

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.ehl.dense import factorised, solved
 from ehdmaps.ehl.energy import ROWS, EnergyEquations, energy
 from ehdmaps.ehl.newton import (
     CONVERGED,
@@ -20,7 +21,6 @@ from ehdmaps.ehl.newton import (
     YIELDING_STEP,
     lifted,
     relaxed,
-    solve_scaled,
     step_length,
 )
 from ehdmaps.ehl.newton import step_size as size_of
@@ -252,7 +252,7 @@ def warm_newton(
         lowest = residual_with(problem, factors, x, step, face_step, kernel, unknowns, load, out, jacobian)
         if not np.all(np.isfinite(out)):
             return WarmResult(unknowns, rises, first, DIVERGED, count, last)
-        move = solve_scaled(jacobian, -out)
+        move = solved(factorised(jacobian), -out)
         last = size_of(unknowns, move)
         if not math.isfinite(last):
             return WarmResult(unknowns, rises, first, DIVERGED, count, last)

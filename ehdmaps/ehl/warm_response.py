@@ -15,10 +15,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import lu_factor, lu_solve
 
-from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.arrays import FloatArray
 from ehdmaps.compiled import njit
+from ehdmaps.ehl.dense import Factorised, factorised, solved
 from ehdmaps.ehl.elastic import log_kernel
 from ehdmaps.ehl.energy import EnergyEquations, fitted
 from ehdmaps.ehl.grid import Grid
@@ -127,15 +127,14 @@ class WarmLinearisation:
     factors: Factors
     following: FloatArray
     by_grid: _Grid | None
-    lu: tuple[FloatArray, IntArray] | None
-    scale: FloatArray
+    found: Factorised
     warmest: float
     balance: float
 
     @property
     def singular(self) -> bool:
         """Whether the film has no linear response: a pivot of its matrix is zero to the rounding of the numbers."""
-        return self.lu is None
+        return self.found.singular
 
     @property
     def height(self) -> int:
@@ -145,7 +144,7 @@ class WarmLinearisation:
     @property
     def rows(self) -> int:
         """Number of unknowns but for the temperatures."""
-        return self.scale.size
+        return self.found.scale.size
 
     def solve(self, right: FloatArray, heat: FloatArray) -> FloatArray:
         """State of the equations without storage.
@@ -157,12 +156,11 @@ class WarmLinearisation:
         heat : ndarray, shape (n, k + 2, 1)
             That of the temperatures and fluxes, see `warm_march.marched`.
         """
-        assert self.lu is not None
         here, size = self.here, self.unknowns.size
         extra = marched(here.equations, heat, self.first)[:, :, 0]
         right = right.copy()
         right[:size] -= self._moved_by(extra)
-        film_part = np.asarray(lu_solve(self.lu, self.scale * right))
+        film_part = np.asarray(solved(self.found, right))
         rises = extra + (self.following.reshape(-1, size) @ film_part[:size]).reshape(extra.shape)
         if self.by_grid is not None:
             rises = rises + self.by_grid.rises * film_part[size]
@@ -376,14 +374,10 @@ def warm_linearised(
             rises=(moved.rises - here.rises) / neighbour.shift,
             films=(np.asarray(face_films(moved.gap)) - np.asarray(face_films(here.gap))) / neighbour.shift,
         )
-    scale = 1.0 / np.max(np.abs(matrix), axis=1)
-    lu = None
-    if np.all(np.isfinite(matrix)):
-        lu = lu_factor(matrix * scale[:, None])
-        lu = lu if np.all(np.diagonal(lu[0])) else None
+    found = factorised(matrix)
     warmest = max(float(np.max(here.rises)), LEAST_RISE)
     balance = _balance(problem, here, first)
-    return WarmLinearisation(problem, unknowns, first, here, factors, following, by_grid, lu, scale, warmest, balance)
+    return WarmLinearisation(problem, unknowns, first, here, factors, following, by_grid, found, warmest, balance)
 
 
 def _balance(problem: LineProblem, here: _State, first: int) -> float:
