@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from os import PathLike
+from typing import TYPE_CHECKING
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.surface import surface_from_text
-from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.physics.approach import STRUCTURAL_LAWS
 from ehdmaps.physics.roughness import Surface
 from ehdmaps.units import closest
+
+if TYPE_CHECKING:
+    from ehdmaps.maps.emap import EHDMap
 
 
 def open_given(path: str | PathLike[str], structure: str | None, roughness: str | None = None) -> EHDMap:
@@ -38,6 +41,8 @@ def open_given(path: str | PathLike[str], structure: str | None, roughness: str 
             f"{', '.join(STRUCTURAL_LAWS)}"
         )
     surface = None if roughness is None else surface_given(roughness)
+    from ehdmaps.maps.emap import open_map  # commands without a map look at their options by this module, too
+
     emap = open_map(path)
     if surface is not None:
         emap = emap.with_surface(surface)
