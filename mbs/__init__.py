@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
     from mbs.analyses.auto import AutoSettings, automatic
     from mbs.analyses.campbell import campbell
-    from mbs.analyses.case import Case
+    from mbs.analyses.case import Case, LawChoice
     from mbs.analyses.critical import critical
     from mbs.analyses.hammer import HammerSettings, hammer
     from mbs.analyses.lsa import LsaSettings, lsa
@@ -52,7 +52,6 @@ if TYPE_CHECKING:
     from mbs.analyses.statics import statics
     from mbs.analyses.sweep import SweepSettings, sweep
     from mbs.analyses.variants import Variation, variants
-    from mbs.analyses.varied import LawChoice
     from mbs.bearings.bearing import Bearing
     from mbs.bearings.bearing_force import BearingForce
     from mbs.bearings.fits import Mounting, Seat
@@ -141,7 +140,7 @@ _HOMES = {
     "HeatPaths": "bearings.heat",
     "Inertia": "model.body",
     "Input": "model.elements",
-    "LawChoice": "analyses.varied",
+    "LawChoice": "analyses.case",
     "Load": "model.elements",
     "LsaSettings": "analyses.lsa",
     "Model": "scene.assembly",

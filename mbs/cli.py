@@ -21,8 +21,9 @@ _MORE = "; more than once to compare"
 _LAW = (
     "hertz | hertz:TIME | hertz:DAMPING | table:FILE.csv | formula | table | constant:NAME | map; default: map with "
     "--map, else table, or hertz of a scene without oil. table: films of the scene's oil from the film table, without "
-    "a map. TIME is damping over stiffness of a dry contact ('hertz:1.25e-5 s'; usual: 0.25e-5 to 2.5e-5 s), DAMPING a constant one ('hertz:100 "
-    "N s/m' of each contact of a roller), FILE.csv has points of approach, load and damping, NAME a table [laws.NAME]"
+    "a map. TIME is damping over stiffness of a dry contact ('hertz:1.25e-5 s'; usual: 0.25e-5 to 2.5e-5 s), DAMPING a "
+    "constant one ('hertz:100 N s/m' of each contact of a roller), FILE.csv has points of approach, load and damping, "
+    "NAME a table [laws.NAME]"
 )
 _STRUCTURE = (
     "law of the solids in the contacts of a map: iso16281 | palmgren | half_space | fe; default: that of its job"

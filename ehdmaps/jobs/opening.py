@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from os import PathLike, fspath
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ehdmaps.errors import InputError
-from ehdmaps.jobs.reader import read_job, shipped_jobs
 from ehdmaps.jobs.surface import surface_from_text
-from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.physics.approach import STRUCTURAL_LAWS
 from ehdmaps.physics.roughness import Surface
 from ehdmaps.units import closest
+
+if TYPE_CHECKING:
+    from ehdmaps.maps.emap import EHDMap
 
 
 def open_given(path: str | PathLike[str], structure: str | None, roughness: str | None = None) -> EHDMap:
@@ -42,7 +44,7 @@ def open_given(path: str | PathLike[str], structure: str | None, roughness: str 
             f"{', '.join(STRUCTURAL_LAWS)}"
         )
     surface = None if roughness is None else surface_given(roughness)
-    emap = _of_job(path) if _is_job(path) else open_map(path)
+    emap = _of_job(path) if _is_job(path) else _of_file(path)
     if surface is not None:
         emap = emap.with_surface(surface)
     try:
@@ -53,12 +55,24 @@ def open_given(path: str | PathLike[str], structure: str | None, roughness: str 
 
 def _is_job(path: str | PathLike[str]) -> bool:
     """Whether a job is given in the place of a map."""
-    return fspath(path) in shipped_jobs() or Path(path).suffix == ".toml"
+    if Path(path).suffix:
+        return Path(path).suffix == ".toml"
+    from ehdmaps.jobs.reader import shipped_jobs
+
+    return fspath(path) in shipped_jobs()
+
+
+def _of_file(path: str | PathLike[str]) -> EHDMap:
+    """The map of a file."""
+    from ehdmaps.maps.emap import open_map  # commands without a map look at their options by this module, too
+
+    return open_map(path)
 
 
 def _of_job(path: str | PathLike[str]) -> EHDMap:
     """The map of a job."""
-    from ehdmaps.jobs.table_law import job_map  # with the solver, that only a map in the making needs
+    from ehdmaps.jobs.reader import read_job
+    from ehdmaps.jobs.table_law import job_map
 
     return job_map(read_job(path), fspath(path))
 

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.table import Table
 from ehdmaps.physics.approach import STRUCTURAL_LAWS
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.solids import Material
-from ehdmaps.solids.sections import SEATS, Sections, sections_of
 from ehdmaps.units import FILM, LENGTH
+
+if TYPE_CHECKING:
+    from ehdmaps.solids.sections import Sections
 
 FE_APPROACHES = (1e-8, 1e-2)
 """Approaches at 100 N/mm [m]: far beyond of what steel bodies have."""
@@ -53,6 +56,8 @@ def read_solids(section: Table) -> SolidsKeys:
     section : Table
         The table.
     """
+    from ehdmaps.solids.sections import SEATS  # only jobs with [solids] know rings
+
     law = section.choice("law", STRUCTURAL_LAWS)
     approaches = {}
     for key in (*_OF_BEARING, *_OF_CONTACT):
@@ -146,6 +151,8 @@ def job_sections(keys: SolidsKeys, bearing: BearingGeometry, material: Material)
     InputError
         If dimensions do not fit, or bore and outside diameter are neither given nor known.
     """
+    from ehdmaps.solids.sections import sections_of
+
     return sections_of(bearing, material, **keys.sections)  # type: ignore[arg-type]
 
 

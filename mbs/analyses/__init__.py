@@ -33,14 +33,14 @@ kept_map       a map for a planned job: one that is there, or a new one
 film_verdicts  which physics of the films a scene requires
 film_criteria  such criteria at a contact, in closed form
 shear_effect   what a limiting shear stress changes there, by solving
-case           the models that an analysis compares, with their labels
+case           a law as it was chosen, a scene with its law, the models that an analysis compares
 varied         what comparisons vary, one row a key
 recorded       runs that are recorded, measured or simulated before: signals, levels, amplitudes
 progress       how an analysis tells how far it is
 side_by_side   cases in processes of their own
-operating      a model as it is in operation: temperatures, heat and clearances of its bearings at a speed
-rings          how the rings of the bearings move
-reach          where the films of a law begin, and calls outside its map
+operating      a model as it is in operation: temperatures and clearances of its bearings at a speed
+heat_balance   the temperatures at which the heat of all bearings is carried away
+reach          where the films of a law begin, and calls outside its map, with the lines that say so
 losses         what contacts feel at an equilibrium, and what rolling costs there
 film_errors    how wrong the films are estimated to be over frequency
 soundness      results whose own checks failed so grossly that their figures mean nothing

@@ -25,6 +25,7 @@ from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.rheology import SHEARS
 from mbs.analyses import film_verdicts, planning
 from mbs.analyses.campbell import CampbellResult
+from mbs.analyses.case import LawChoice, Subject
 from mbs.analyses.critical import CriticalResult
 from mbs.analyses.film_errors import film_errors
 from mbs.analyses.film_verdicts import Verdict
@@ -39,7 +40,6 @@ from mbs.analyses.runup import RunUpResult
 from mbs.analyses.statics import StaticsResult
 from mbs.analyses.sweep import SweepResult
 from mbs.analyses.tolerance import Tolerated
-from mbs.analyses.varied import LawChoice, Subject
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.model.relaxation import Films

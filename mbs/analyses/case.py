@@ -1,19 +1,71 @@
-"""What an analysis compares: models with their labels."""
+"""What an analysis compares: a law as it was chosen, a scene with its law, and models with their labels."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from ehdmaps.errors import InputError
-from ehdmaps.units import TEMPERATURE
-from mbs.analyses.varied import Subject
-from mbs.scene.assembly import Model
-from mbs.scene.contact_laws import supply_words
-from mbs.scene.fields import MICROMETRE
+from ehdmaps.physics.oil_supply import OilSupply
+from mbs.model.relaxation import Films
+from mbs.scene.assembly import Model, assemble
+from mbs.scene.map_set import MapSet
+from mbs.scene.scene import Scene
+
+
+@dataclass(frozen=True)
+class LawChoice:
+    """A contact law as it was chosen.
+
+    Attributes
+    ----------
+    label : str
+        The law in two words.
+    name : str or None
+        Name of the law, as `mbs.scene.assembly.assemble` takes it.
+    maps : MapSet or None
+        The maps of the law `map`, one for each type of bearing.
+    films : {"slow", "memory"} or None
+        Which films it is to have.
+    supply : OilSupply or None
+        Oil supply of all bearings; None for that of the scene, or of the map.
+    """
+
+    label: str
+    name: str | None
+    maps: MapSet | None = None
+    films: Films | None = None
+    supply: OilSupply | None = None
+
+    @property
+    def has_films(self) -> bool:
+        """Whether it knows an oil."""
+        return self.name in ("map", "formula") or (self.name is None and self.maps is not None)
+
+
+@dataclass(frozen=True, eq=False)
+class Subject:
+    """What is run: a scene with a law.
+
+    Attributes
+    ----------
+    scene : Scene
+        The scene.
+    law : LawChoice
+        The law.
+    clearance : float or None
+        Diametral clearance of all bearings [m]; None for those of the scene.
+    """
+
+    scene: Scene
+    law: LawChoice
+    clearance: float | None = None
+
+    def model(self) -> Model:
+        """The model; see `mbs.scene.assembly.assemble`."""
+        law = self.law
+        return assemble(self.scene, law.name, law.maps, self.clearance, law.films, law.supply)
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,72 +94,6 @@ class Case:
     load_factor: float = 1.0
     start_angle: float | None = None
     subject: Subject | None = None
-
-
-def clearance_text(model: Model) -> str:
-    """The diametral clearances of all bearings in words, such as ``20 um``; empty without bearings.
-
-    Parameters
-    ----------
-    model : Model
-        Those of a model in operation are its own, else those that the scene states.
-    """
-    if model.states:
-        return span([1e6 * state.clearance.operating for state in model.states], MICROMETRE.unit)
-    clearances = sorted({entry.geometry.diametral_clearance for entry in model.scene.bearings})
-    words = " stated" if any(entry.changes_in_operation for entry in model.scene.bearings) else ""
-    return ", ".join(MICROMETRE.text(value) for value in clearances) + words
-
-
-def temperature_text(model: Model) -> str:
-    """The temperatures of the raceways of all bearings in words, such as ``40 degC``.
-
-    Parameters
-    ----------
-    model : Model
-        Those of a model in operation are its own, else that of the scene.
-    """
-    if model.states:
-        raceways = [TEMPERATURE.value(kelvin) for state in model.states for kelvin in (state.inner, state.outer)]
-        return f"raceways at {span(raceways, TEMPERATURE.unit)}"
-    words = " around the bearings" if any(entry.changes_in_operation for entry in model.scene.bearings) else ""
-    return TEMPERATURE.text(model.scene.temperature) + words
-
-
-def weight_text(model: Model) -> str:
-    """Whether the weight of the bodies is in what an analysis finds, in words.
-
-    Parameters
-    ----------
-    model : Model
-        Scene with its law.
-    """
-    along = np.array(model.scene.gravity)
-    if not along.any():
-        return "without weight (no gravity in [operation])"
-    axes = [f"{'-' if value < 0.0 else ''}{name}" for name, value in zip("xyz", along, strict=True) if value]
-    words = f"along {axes[0]}" if len(axes) == 1 else f"in {', '.join(axes)}"
-    return f"with weight ({np.linalg.norm(along):.4g} m/s2 {words})"
-
-
-def span(values: Sequence[float], unit: str) -> str:
-    """The range of some values, such as "20 to 30 um".
-
-    Parameters
-    ----------
-    values : sequence of float
-        The values, in the unit.
-    unit : str
-        Unit as it is written.
-    """
-    low, high = f"{min(values):.4g}", f"{max(values):.4g}"
-    return f"{low} {unit}" if low == high else f"{low} to {high} {unit}"
-
-
-def common_supply(models: Iterable[Model]) -> str:
-    """The oil supply of all models whose law has films, for titles; empty where they differ, and without films."""
-    found = {supply_words(model.supplies) for model in models if model.supplies}
-    return f"films {found.pop()}" if len(found) == 1 else ""
 
 
 def common_clearance(model: Model) -> float:

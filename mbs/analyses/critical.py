@@ -26,7 +26,7 @@ from mbs.linearised.sweep import sweep as sweep_system
 from mbs.linearised.sweep_result import Sweep
 from mbs.model.system import System
 from mbs.output.critical_data import critical_dataset
-from mbs.output.results import described
+from mbs.output.files import described
 from mbs.scene.assembly import Model, law_attributes, laws_attributes
 
 

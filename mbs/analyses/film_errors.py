@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Iterable
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.units import RPM
 from mbs.analyses.operating import operating
-from mbs.bearings.bearing_element import RingElement
-from mbs.bearings.roller_element import ring_following
+from mbs.bearings.bearing_element import RingElement, ring_following
 from mbs.linearised.validity import FilmError, LoadedContacts
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
-from mbs.model.relaxation import Films, Relaxation
+from mbs.model.relaxation import NOTABLE, Films, Relaxation
 from mbs.scene.assembly import Model
+from mbs.scene.contact_laws import FILM_WORDS
 
 
 def film_errors(
@@ -115,3 +117,21 @@ def notable_from(model: Model, speeds: FloatArray, displacements: FloatArray | N
             break
         found[index] = min(entry.frequency for entry in errors)
     return found
+
+
+def film_course(model: Model, speeds: Iterable[float]) -> list[str]:
+    """A line on the frequencies up to which the films are nowhere notably wrong, at some speeds [rad/s]."""
+    shown = []
+    for speed in speeds:
+        if speed == 0.0:
+            continue
+        (frequency,) = notable_from(model, np.array([speed]))
+        if not np.isnan(frequency):
+            words = f"{frequency:.4g} Hz" if np.isfinite(frequency) else "1 MHz and more"
+            shown.append(f"{words} at {RPM.text(abs(speed))}")
+    if not shown:
+        return []
+    return [
+        f"{FILM_WORDS[model.memory]}: dynamic stiffness along the load with an estimated error of up to "
+        f"{100.0 * NOTABLE:g} % up to {', '.join(shown)}"
+    ]

@@ -16,14 +16,13 @@ from scipy.optimize import linear_sum_assignment
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import AnalysisError
 from mbs.analyses.operating import operating
-from mbs.analyses.rings import ring_motions
 from mbs.bearings.bearing_force import BearingForce
 from mbs.linearised.linear import frequency_response, with_peaks
 from mbs.linearised.modes import Modes, modes
 from mbs.linearised.steady import steady_system
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
-from mbs.scene.assembly import Model
+from mbs.scene.assembly import Model, ring_motions
 
 LEAST_ASSURANCE = 0.5
 """Modal assurance above which two modes are one."""

@@ -9,13 +9,12 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.physics.solids import STEEL
-from mbs.analyses.rings import ring_motions
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.contact_report import BearingContacts, bearing_contacts
 from mbs.bearings.films import DryContacts, FilmSource
 from mbs.bearings.rolling_loss import RollingLoss, rolling_loss
 from mbs.model.elements import Operation
-from mbs.scene.assembly import Model
+from mbs.scene.assembly import Model, ring_motions
 
 
 def contacts_and_losses(

@@ -25,7 +25,8 @@ from mbs.linearised.sweep import MOST_ANGLES
 from mbs.linearised.validity import DynamicLoad, FilmError, dynamic_loads
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
-from mbs.output.results import described, linear_dataset
+from mbs.output.files import described
+from mbs.output.results import linear_dataset
 from mbs.output.state_data import with_states
 from mbs.scene.assembly import Model, law_attributes, laws_attributes
 from mbs.scene.scene import Scene

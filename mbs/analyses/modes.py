@@ -15,7 +15,8 @@ from mbs.linearised.steady import steady_system
 from mbs.linearised.validity import FilmError
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
-from mbs.output.results import described, modes_dataset
+from mbs.output.files import described
+from mbs.output.results import modes_dataset
 from mbs.output.state_data import with_states
 from mbs.scene.assembly import Model, law_attributes
 

@@ -6,7 +6,8 @@ import dataclasses
 from dataclasses import dataclass
 
 from ehdmaps.errors import InputError
-from mbs.analyses.varied import VARIED, Subject
+from mbs.analyses.case import Subject
+from mbs.analyses.varied import VARIED
 from mbs.scene.changes import cutoff_of
 from mbs.scene.scene import Scene
 

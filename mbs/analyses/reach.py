@@ -9,14 +9,16 @@ import numpy as np
 import numpy.typing as npt
 
 from ehdmaps.arrays import BoolArray, FloatArray
-from ehdmaps.maps.law import ContactLaw
-from ehdmaps.units import LOAD
+from ehdmaps.units import LOAD, RPM
+from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.contact_report import axes_left
+from mbs.bearings.laws import DryLaw, Law
 from mbs.bearings.table_law import TableLaw
 from mbs.model.elements import Operation
+from mbs.model.equilibrium import Equilibrium
 from mbs.model.matrices import MatrixElement
-from mbs.scene.assembly import Model
+from mbs.scene.assembly import Model, ring_motions
 
 
 @dataclass(frozen=True)
@@ -83,8 +85,8 @@ def fade_of(model: Model) -> Fade | None:
     """Where the films of the model begin; None for laws without films, and for bearings that do not turn."""
     found: list[Fade] = []
     for bearing in model.bearings:
-        law = bearing.force.law if isinstance(bearing.force, BearingForce) else None
-        if not isinstance(law, ContactLaw) or not bearing.rates[1] > 0.0 or not law.speed_range[0] > 0.0:
+        law = _law_of(bearing)
+        if law is None or isinstance(law, DryLaw) or not bearing.rates[1] > 0.0 or not law.speed_range[0] > 0.0:
             continue
         lowest = law.speed_range[0]
         found.append(Fade(lowest / bearing.rates[1], lowest, source_of(model)))
@@ -113,9 +115,9 @@ def faster_than_laws(model: Model, speed: float) -> set[str]:
         if isinstance(entry.element, MatrixElement) and entry.element.beyond(speed)
     }
     for bearing in model.bearings:
-        law = bearing.force.law if isinstance(bearing.force, BearingForce) else None
+        law = _law_of(bearing)
         fastest = bearing.entrainment_speed(Operation(speed))
-        if isinstance(law, ContactLaw) and fastest > law.speed_range[1] * (1.0 + SPEED_ROUND_OFF):
+        if law is not None and not isinstance(law, DryLaw) and fastest > law.speed_range[1] * (1.0 + SPEED_ROUND_OFF):
             found.add(bearing.name)
     return found
 
@@ -134,8 +136,8 @@ def axes_outside(model: Model, speed: float, loads: Mapping[str, float] | None =
     """
     found = {}
     for bearing in model.bearings:
-        law = bearing.force.law if isinstance(bearing.force, BearingForce) else None
-        if not isinstance(law, ContactLaw | TableLaw):
+        law = _law_of(bearing)
+        if law is None or (isinstance(law, DryLaw) and not isinstance(law, TableLaw)):
             continue
         load = (loads or {}).get(bearing.name, 0.0)
         axes = axes_left(law, load, bearing.entrainment_speed(Operation(speed)), bearing.temperature)
@@ -146,3 +148,105 @@ def axes_outside(model: Model, speed: float, loads: Mapping[str, float] | None =
         words = "; ".join(axes) or f"a load above {end}"
         found[bearing.name] = words.replace("the map", source_of(model))
     return found
+
+
+def _law_of(bearing: BearingElement) -> Law | None:
+    """The law of a bearing; None of one that has another force."""
+    return bearing.force.law if isinstance(bearing.force, BearingForce) else None
+
+
+def fade_lines(model: Model, speeds: FloatArray, of: str = "the speeds") -> list[str]:
+    """A line where some of the speeds lie below the films of the law.
+
+    Parameters
+    ----------
+    model : Model
+        The machine with its law.
+    speeds : array, shape (n,)
+        Speeds of the system [rad/s].
+    of : str
+        What the speeds are, in words.
+    """
+    fade = fade_of(model)
+    if fade is None or not np.any(fade.below(speeds)):
+        return []
+    begin = RPM.text(float(np.abs(speeds).min()))
+    one = speeds.size == 1
+    where = f"{begin} lies" if one else f"{begin.removesuffix(' rpm')} to {RPM.text(fade.speed)} lie"
+    share = "" if one else f"{_percent(share_below(model, speeds))} of {of}; "
+    return [
+        f"warning: {where} below {fade.source} ({share}entrainment speed below {fade.entrainment_speed:.4g} m/s"
+        + (f", {RPM.text(fade.speed)}" if one else "")
+        + "): the film fades to the dry contact there"
+    ]
+
+
+_ADVICE = {
+    "the map": "make a map that reaches there",
+    SPEED_TABLE: "give it these speeds too",
+    POINTS: "add points that reach there",
+}
+
+
+def outside_lines(
+    calls: Mapping[str, int],
+    words: str,
+    axes: Mapping[str, str],
+    case: str = "",
+    sources: Mapping[str, str] | None = None,
+) -> list[str]:
+    """A line for each bearing whose law was called outside its map: every command says it by this function.
+
+    Parameters
+    ----------
+    calls : mapping of str to int
+        How often, by bearing; none where it is 0.
+    words : str
+        What happened so often, such as "lies outside the map at {} of 40 speeds".
+    axes : mapping of str to str
+        How it is left, as `axes_outside` says it.
+    case : str
+        Begins the line, where several are compared.
+    sources : mapping of str to str
+        What is left, by bearing, as `mbs.analyses.reach.sources_of` calls it; "the map" if left out.
+    """
+    begin = f"{case}: " if case else ""
+    lines = []
+    for name, count in calls.items():
+        if not count:
+            continue
+        source = (sources or {}).get(name, "the map")
+        left = words.format(count).replace("the map", source)
+        axis = f" ({axes[name]})" if name in axes else ""
+        held = "it is held at its edge" if source == SPEED_TABLE else "the law is held at its edge"
+        if source == POINTS:
+            held = "the law goes on straight"
+        advice = _ADVICE.get(source, "a map may reach there, `mbs plan` writes its job")
+        lines.append(f"warning: {begin}{name}: {left}{axis}, where {held}; {advice}")
+    return lines
+
+
+def _percent(part: float) -> str:
+    """A part in per cent, with two digits."""
+    return f"{100.0 * part:.2g} %"
+
+
+def outside_at(model: Model, balance: Equilibrium) -> list[str]:
+    """Lines on bearings whose equilibrium lies outside the map.
+
+    Parameters
+    ----------
+    model : Model
+        The machine with its law.
+    balance : Equilibrium
+        The equilibrium.
+    """
+    if not any(balance.outside.values()):
+        return []
+    loads = {
+        bearing.name: float(bearing.rollers(motion, balance.operation).load_per_length.max())
+        for bearing, motion in ring_motions(model, balance.displacement)
+        if isinstance(bearing.force, BearingForce)
+    }
+    axes = axes_outside(model, balance.operation.speed, loads)
+    return outside_lines(balance.outside, "lies outside the map", axes, sources=sources_of(model))

@@ -10,6 +10,7 @@ from mbs.linearised.modes import free_motions, undamped_modes
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.scene.assembly import Model
+from mbs.scene.fields import HERTZ, MICROSECOND, MILLISECOND
 from mbs.settings import RunUp
 from mbs.transient.numerical_damping import RESOLVED, energy_lost, numerical_damping_ratio
 
@@ -106,3 +107,37 @@ def resolution(model: Model, course: RunUp) -> Resolution:
         max(orders) * fastest if orders else float("nan"),
         model.scene.campbell.highest,
     )
+
+
+def step_lines(found: Resolution) -> list[str]:
+    """Lines on what the steps of a run resolve, and on what the method takes from oscillations.
+
+    Parameters
+    ----------
+    found : Resolution
+        What they resolve.
+    """
+    high = min(found.highest, found.looked_at)
+    losses = " and ".join(_lost(found, part * high) for part in (0.5, 1.0))
+    taken = (
+        "the method of integration takes no energy (spectral radius 1)"
+        if found.spectral_radius == 1.0
+        else f"numerical damping (spectral radius {found.spectral_radius:g}) takes {losses} of the energy of an "
+        "oscillation in 1 s"
+    )
+    step = MICROSECOND.text(found.step) if found.step < 1e-3 else MILLISECOND.text(found.step)
+    lines = [f"steps of {step}: {RESOLVED:g} a period at {HERTZ.text(found.highest)}; {taken}"]
+    if found.unresolved:
+        needed = MICROSECOND.text(found.needed, 3) if found.needed < 1e-3 else MILLISECOND.text(found.needed, 3)
+        lines.append(
+            f"warning: steps of {step} do not resolve what moves here: {', and '.join(found.unresolved)}; this run "
+            f"is a row of equilibria at best; take steps of {needed} or less in [runup]"
+        )
+    return lines
+
+
+def _lost(found: Resolution, frequency: float) -> str:
+    """What an oscillation loses in a second, and the damping ratio that takes as much."""
+    part = found.lost(frequency)
+    words = f"{100.0 * part:.3g} %" if 1e-6 < part < 0.9995 else "less than 0.0001 %" if part < 0.5 else "all"
+    return f"{words} at {HERTZ.text(frequency)} (a damping ratio of {found.ratio(frequency):.2g})"

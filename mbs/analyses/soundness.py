@@ -10,21 +10,24 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.roughness import HARDNESS
 from ehdmaps.units import PRESSURE
-from mbs.analyses.rings import ring_motions
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
-from mbs.linearised.sweep_result import Sweep
 from mbs.model.elements import Operation
-from mbs.scene.assembly import Model
-from mbs.transient.run import Recording
+from mbs.scene.assembly import Model, ring_motions
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from mbs.linearised.sweep_result import Sweep
+    from mbs.transient.run import Recording
 
 MOST_RESIDUAL = 0.1
 """Part of the energy that went through a run that may be missing; lines warn from a hundredth on."""

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-
-import xarray as xr
+from functools import cached_property
+from typing import TYPE_CHECKING
 
 from mbs.analyses.losses import contacts_and_losses
 from mbs.analyses.operating import operating, states_of
@@ -14,10 +14,11 @@ from mbs.bearings.rolling_loss import RollingLoss
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.model.free_motion import free_lines, free_motions
-from mbs.output.gear_data import with_gears
-from mbs.output.results import described, statics_dataset
-from mbs.output.state_data import with_states
+from mbs.output.files import described
 from mbs.scene.assembly import Model, law_attributes
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,8 +39,6 @@ class StaticsResult:
         Bearings whose pressures are above the static limit.
     free : tuple of str
         Motions that nothing holds.
-    dataset : xarray.Dataset
-        What `mbs statics -o` writes.
     unsound : tuple of Unsound
         Why its figures mean nothing; empty where they do.
     """
@@ -50,8 +49,22 @@ class StaticsResult:
     losses: tuple[RollingLoss, ...]
     overloads: tuple[str, ...]
     free: tuple[str, ...]
-    dataset: xr.Dataset
     unsound: tuple[Unsound, ...] = ()
+
+    @cached_property
+    def dataset(self) -> xr.Dataset:
+        """What `mbs statics -o` writes; made when it is asked for."""
+        from mbs.output.results import statics_dataset
+        from mbs.output.state_data import with_states
+
+        model = self.model
+        dataset = statics_dataset(self.balance, self.contacts, self.losses, (*self.overloads, *self.free))
+        dataset = with_states(dataset, states_of(model))
+        if model.gears:
+            from mbs.output.gear_data import with_gears
+
+            dataset = with_gears(dataset, model, self.balance)
+        return with_unsound(described(dataset, **law_attributes(model)), self.unsound)
 
 
 def statics(model: Model, operation: Operation | None = None) -> StaticsResult:
@@ -87,8 +100,5 @@ def statics(model: Model, operation: Operation | None = None) -> StaticsResult:
         for bearing, state in zip(model.bearings, contacts, strict=True)
         if (sentence := overload(state))
     )
-    dataset = with_states(statics_dataset(balance, contacts, losses, (*overloads, *free)), states_of(model))
-    dataset = with_gears(dataset, model, balance)
-    dataset = described(dataset, **law_attributes(model))
     unsound = unsound_at_rest(model, balance.displacement, balance.operation)
-    return StaticsResult(model, balance, contacts, losses, overloads, free, with_unsound(dataset, unsound), unsound)
+    return StaticsResult(model, balance, contacts, losses, overloads, free, unsound)

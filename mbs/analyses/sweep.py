@@ -16,7 +16,7 @@ from mbs.analyses.progress import Progress, silent
 from mbs.analyses.side_by_side import Failed, side_by_side
 from mbs.linearised.sweep import sweep as sweep_system
 from mbs.linearised.sweep_result import Sweep
-from mbs.output.results import described
+from mbs.output.files import described
 from mbs.output.state_data import with_states
 from mbs.output.sweep_data import sweep_dataset
 from mbs.scene.assembly import Model, law_attributes, supply_attributes

@@ -16,14 +16,15 @@ import xarray as xr
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
+from mbs.analyses.case import LawChoice, Subject
 from mbs.analyses.followed import followed_orders
 from mbs.analyses.operating import held
 from mbs.analyses.progress import Progress, silent
 from mbs.analyses.ramp import recorded_run, run_course, silent_run
 from mbs.analyses.side_by_side import Failed, side_by_side
-from mbs.analyses.varied import VARIED, LawChoice, Subject, Value
+from mbs.analyses.varied import VARIED, Value
 from mbs.model.elements import Sensor
-from mbs.output.results import described
+from mbs.output.files import described
 from mbs.output.variants_data import variants_dataset
 from mbs.scene.assembly import Model, supply_attributes
 from mbs.scene.scene import Scene

@@ -13,15 +13,13 @@ from typing import Literal, get_args
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.supply import supply_from_text
-from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.operating_point import OIL_TEMPERATURES
 from ehdmaps.units import TEMPERATURE, Display, closest, quantity
+from mbs.analyses.case import LawChoice, Subject
 from mbs.model.relaxation import Films
 from mbs.scene import changes
-from mbs.scene.assembly import Model, assemble
 from mbs.scene.contact_laws import law_label
 from mbs.scene.fields import DEGREE, HERTZ, MICROMETRE
-from mbs.scene.map_set import MapSet
 from mbs.scene.scene import Scene
 
 Value = float | int | str
@@ -33,60 +31,6 @@ MOST_FACTOR = 1e3
 MOST_SLICES = 10_000
 
 _SECOND, _MICROSECOND = Display("s"), Display("us", 1e6)
-
-
-@dataclass(frozen=True)
-class LawChoice:
-    """A contact law as it was chosen.
-
-    Attributes
-    ----------
-    label : str
-        The law in two words.
-    name : str or None
-        Name of the law, as `mbs.scene.assembly.assemble` takes it.
-    maps : MapSet or None
-        The maps of the law `map`, one for each type of bearing.
-    films : {"slow", "memory"} or None
-        Which films it is to have.
-    supply : OilSupply or None
-        Oil supply of all bearings; None for that of the scene, or of the map.
-    """
-
-    label: str
-    name: str | None
-    maps: MapSet | None = None
-    films: Films | None = None
-    supply: OilSupply | None = None
-
-    @property
-    def has_films(self) -> bool:
-        """Whether it knows an oil."""
-        return self.name in ("map", "formula") or (self.name is None and self.maps is not None)
-
-
-@dataclass(frozen=True, eq=False)
-class Subject:
-    """What is run: a scene with a law.
-
-    Attributes
-    ----------
-    scene : Scene
-        The scene.
-    law : LawChoice
-        The law.
-    clearance : float or None
-        Diametral clearance of all bearings [m]; None for those of the scene.
-    """
-
-    scene: Scene
-    law: LawChoice
-    clearance: float | None = None
-
-    def model(self) -> Model:
-        """The model; see `mbs.scene.assembly.assemble`."""
-        law = self.law
-        return assemble(self.scene, law.name, law.maps, self.clearance, law.films, law.supply)
 
 
 @dataclass(frozen=True)

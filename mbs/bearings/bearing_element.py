@@ -5,25 +5,30 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.maps.law import ContactLaw
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import NO_COUPLED_MEMORY, BearingForce
 from mbs.bearings.contact_energy import brought_by_speed, cage_moment, energy_at_rest
-from mbs.bearings.contact_groups import ContactGroup
-from mbs.bearings.film_relaxation import bearing_relaxation, massless_rows, natural_times
 from mbs.bearings.force_at_point import Arrays
+from mbs.bearings.laws import DryLaw
 from mbs.bearings.roller_loads import RollerLoads
 from mbs.bearings.roller_motion import approaches_of_arrays
 from mbs.model.elements import ElementDefaults, Excitation, Forces, Operation, Port, Powers
 from mbs.model.relaxation import Films, Relaxation
 
+if TYPE_CHECKING:
+    from mbs.bearings.contact_groups import ContactGroup
+    from mbs.model.system import System
+
 NO_CENTRIFUGAL = "got 'memory' with centrifugal = true; allowed: films with memory without it, or slow films"
+
+NO_MAP = "none stated: the law is not that of a map"
+"""What is said where laws state no errors."""
 
 HARMONICS = 3
 """Multiples of the order of passing rollers that are worth following."""
@@ -198,30 +203,39 @@ class BearingElement(RingElement):
 
     def film_relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
         """See `RingElement.film_relaxation`; with centrifugal load the times are those without it, as an estimate."""
-        if not isinstance(self.force, BearingForce) or not isinstance(self.force.law, ContactLaw):
+        if not isinstance(self.force, BearingForce) or isinstance(self.force.law, DryLaw):
             return None
+        from mbs.bearings.film_relaxation import bearing_relaxation  # dry bearings have no films
+
         law = self.force.law.at(self.entrainment_speed(operation), self.temperature)
         return bearing_relaxation(law, self.rollers(displacement, operation), self.bearing.slice_length)
 
     def natural_times(self, displacement: FloatArray, operation: Operation) -> FloatArray:
         """See `RingElement.natural_times`."""
-        if not isinstance(self.force, BearingForce) or not isinstance(self.force.law, ContactLaw):
+        if not isinstance(self.force, BearingForce) or isinstance(self.force.law, DryLaw):
             return np.zeros(0)
+        from mbs.bearings.film_relaxation import natural_times
+
         law = self.force.law.at(self.entrainment_speed(operation), self.temperature)
         return natural_times(law, self.rollers(displacement, operation).approach).reshape(-1)
 
     @property
     def error_words(self) -> str:
         """See `RingElement.error_words`."""
-        law = self.force.law if isinstance(self.force, BearingForce) else None
-        return law.errors.words if isinstance(law, ContactLaw) and law.errors is not None else ""
+        if not isinstance(self.force, BearingForce) or isinstance(self.force.law, DryLaw):
+            return ""
+        errors = self.force.law.errors
+        return "" if errors is None else errors.words
 
     def contact_groups(self, displacement: FloatArray, operation: Operation) -> tuple[ContactGroup, ...]:
         """See `RingElement.contact_groups`: slices of both contacts in series; none where slices are coupled."""
         if self.bearing.coupled:
             return ()
-        if not isinstance(self.force, BearingForce) or not isinstance(self.force.law, ContactLaw):
+        if not isinstance(self.force, BearingForce) or isinstance(self.force.law, DryLaw):
             return ()
+        from mbs.bearings.contact_groups import ContactGroup
+        from mbs.bearings.film_relaxation import massless_rows
+
         u, q = self.entrainment_speed(operation), self.centrifugal_load(operation)
         rollers = self.rollers(displacement, operation)
         law, length = self.force.law.at(u, self.temperature, q), self.bearing.slice_length
@@ -284,3 +298,44 @@ class BearingElement(RingElement):
             return found
 
         return brought_by_speed(self.force.law, self.force.bearing, conditions, approaches)
+
+
+def error_words(system: System) -> str:
+    """What is in the bands of a system, for people; empty without bearings."""
+    bearings = [system.elements[index].element for index in system.select(RingElement)]
+    if not bearings:
+        return ""
+    words = {element.error_words for element in bearings if isinstance(element, RingElement)}
+    return NO_MAP if "" in words else "; ".join(sorted(words))
+
+
+def ring_matrices(stiffness: FloatArray, damping: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """K and C (6, 6) of the inner ring against the outer one from those of an element in its ports.
+
+    Rollers that are bodies follow in equilibrium; those without load are left where they are.
+
+    Parameters
+    ----------
+    stiffness, damping : array, shape (6, 6) or (12 + Z, 12 + Z)
+        Matrices of massless rollers, or of rings and rollers.
+    """
+    following = ring_following(stiffness)
+    return following.T @ stiffness @ following, following.T @ damping @ following
+
+
+def ring_following(stiffness: FloatArray) -> FloatArray:
+    """How the ports of an element follow the inner ring, the outer one being held, shape (m, 6).
+
+    Parameters
+    ----------
+    stiffness : array, shape (6, 6) or (12 + Z, 12 + Z)
+        Matrix of massless rollers, or of rings and rollers.
+    """
+    if stiffness.shape[0] == 6:
+        return np.eye(6)
+    own = stiffness[12:, 12:]
+    following = np.zeros((stiffness.shape[0], 6))
+    following[:6] = np.eye(6)
+    loaded = np.nonzero(np.diag(own) > 0.0)[0]
+    following[12 + loaded] = -np.linalg.solve(own[np.ix_(loaded, loaded)], stiffness[12 + loaded, :6])
+    return following

@@ -16,13 +16,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from ehdmaps.errors import InputError
-from ehdmaps.maps.law import ContactLaw
-from ehdmaps.maps.memory import FilmState
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.flat_law import FlatLaw
 from mbs.bearings.force_at_point import Arrays, ForceAtPoint, Triple, check_conditions, coupling_beside
@@ -32,6 +31,10 @@ from mbs.bearings.laws import DryLaw, Law
 from mbs.bearings.ring_forces import RingForces, ring_forces
 from mbs.bearings.roller_loads import RollerLoads
 from mbs.model.elements import Forces
+
+if TYPE_CHECKING:
+    from ehdmaps.maps.law import ContactLaw
+    from ehdmaps.maps.memory import FilmState
 
 NO_COUPLED_MEMORY = "got coupled slices with films that have a memory; allowed: slow films, or slices on their own"
 
@@ -257,7 +260,7 @@ class BearingForce:
         law = self.law
         if self.bearing.coupled:
             raise InputError(f"bearing force, advance: {NO_COUPLED_MEMORY}")
-        if not isinstance(law, ContactLaw):
+        if isinstance(law, DryLaw):
             raise InputError(
                 f"bearing force, advance: got the law {law.name!r}, which has no films; allowed: the law of a map, or "
                 "laws.formula; without films the force of a call holds in time"
@@ -384,6 +387,8 @@ def _check_law(law: Law, bearing: Bearing, outside: str | None) -> None:
                 "both raceways; leave out `single()`"
             )
         return
+    from ehdmaps.maps.law import ContactLaw  # it is loaded already, if the law is one
+
     if not isinstance(law, ContactLaw):
         raise InputError(
             f"bearing force, law: got {type(law).__name__}; allowed: a law of mbs.bearings.laws, or the law 'series' "

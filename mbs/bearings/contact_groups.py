@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.maps.film_response import FilmResponse
-from ehdmaps.maps.law import LawAtPoint
 from mbs.bearings.film_relaxation import relaxation_times
+
+if TYPE_CHECKING:
+    from ehdmaps.maps.film_response import FilmResponse
+    from ehdmaps.maps.law import LawAtPoint
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,14 +10,13 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.maps.kernel import LOAD_TOLERANCE
-from ehdmaps.maps.law import ContactLaw
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.peak import tip_words
 from ehdmaps.physics.thermal import inlet_shear_heating_factor, thermal_loading, viscosity_slope
 from ehdmaps.units import LOAD, PRESSURE, SPEED, TEMPERATURE
 from mbs.bearings.bearing import STATIC_LIMIT
 from mbs.bearings.films import SIDES, ContactState, FilmSource
-from mbs.bearings.laws import Law
+from mbs.bearings.laws import DryLaw, Law
 from mbs.bearings.roller_loads import RollerLoads
 from mbs.bearings.table_law import TableLaw
 
@@ -151,7 +150,7 @@ def axes_left(law: Law, load: float, entrainment_speed: float, temperature: floa
         last = float(law.line_load[-1])
         above = load > last * (1.0 + LOAD_TOLERANCE)
         return [f"load per length of {LOAD.text(load)} is above the last point of the law, {LOAD.text(last)}"] * above
-    if not isinstance(law, ContactLaw):
+    if isinstance(law, DryLaw):
         return []
     axes = (
         ("load per length", load, (0.0, law.load_range[1]), law.load_range, LOAD),
@@ -168,7 +167,7 @@ def axes_left(law: Law, load: float, entrainment_speed: float, temperature: floa
 
 def fading(law: Law, entrainment_speed: float) -> str:
     """A sentence where the speed is below the map, so that the film fades to the dry contact; empty otherwise."""
-    if not isinstance(law, ContactLaw) or not 0.0 < abs(entrainment_speed) < law.speed_range[0] * (1.0 - 1e-9):
+    if isinstance(law, DryLaw) or not 0.0 < abs(entrainment_speed) < law.speed_range[0] * (1.0 - 1e-9):
         return ""
     fate = "stiffness and damping fade to those of dry contacts from there on"
     if not law.surface.smooth:
@@ -191,7 +190,7 @@ def guessed(law: Law, loads: FloatArray, entrainment_speed: float, temperature: 
     entrainment_speed, temperature : float
         u [m/s], T [K].
     """
-    limit = law.guessed_below(entrainment_speed, temperature) if isinstance(law, ContactLaw) else 0.0
+    limit = 0.0 if isinstance(law, DryLaw) else law.guessed_below(entrainment_speed, temperature)
     low = (loads > 0.0) & (loads < limit)
     if not np.any(low):
         return ""

@@ -7,15 +7,20 @@ the law which films with memory follow in time, for small oscillations about an 
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.compiled import njit
-from ehdmaps.maps.law import LawAtPoint
-from ehdmaps.maps.memory_table import MemoryTable, equilibrium_at
+from ehdmaps.maps.memory_table import equilibrium_at
 from ehdmaps.physics.hertz import half_width
 from mbs.bearings.roller_loads import RollerLoads
 from mbs.model.relaxation import Relaxation
+
+if TYPE_CHECKING:
+    from ehdmaps.maps.law import LawAtPoint
+    from ehdmaps.maps.memory_table import MemoryTable
 
 
 @njit(error_model="numpy")

@@ -15,13 +15,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import MapError
-from ehdmaps.maps.emap import EHDMap
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.films import dowson_higginson_minimum, martin_minimum, moes_central
 from ehdmaps.physics.hertz import max_pressure
@@ -29,6 +28,9 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import dowson_groups, film_from_moes, moes_groups
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.starved import RIGID_FLOW, film_ratio, passing, pressure_ratio
+
+if TYPE_CHECKING:
+    from ehdmaps.maps.emap import EHDMap
 
 SIDES = ("inner", "outer")
 """The contacts of a roller, in the order of all arrays."""

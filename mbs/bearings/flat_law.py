@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ehdmaps.arrays import ByteArray, FloatArray, IntArray
 from ehdmaps.compiled import njit
 from ehdmaps.maps.kernel import LOAD_TOLERANCE, collapse
-from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.tables import ApproachTable, LawTable, Point
 from mbs.bearings.faded_table import write_film
 from mbs.bearings.laws import Law
 from mbs.bearings.slice_table import fixed_tuple, tabulate
+
+if TYPE_CHECKING:
+    from ehdmaps.maps.law import ContactLaw
 
 
 class FlatTable(NamedTuple):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -12,9 +12,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.compiled import in_python
 from ehdmaps.errors import AnalysisError, InputError, OutsideMapError
 from ehdmaps.maps.kernel import LOAD_TOLERANCE, film_part
-from ehdmaps.maps.law import ContactLaw, LawAtPoint
 from ehdmaps.maps.tables import POWER_LAW, Point
-from ehdmaps.solids.slices import without_ends
 from mbs.bearings import slice_table as table
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_kernel import force_of_arrays, force_of_point_arrays
@@ -26,6 +24,9 @@ from mbs.bearings.laws import DryLaw, Law
 from mbs.bearings.roller_loads import RollerLoads, roller_loads
 from mbs.bearings.roller_motion import NOT_FINITE, Sizes, rollers_of_arrays
 from mbs.model.elements import Forces
+
+if TYPE_CHECKING:
+    from ehdmaps.maps.law import ContactLaw, LawAtPoint
 
 Triple = tuple[FloatArray, FloatArray, FloatArray]
 """Force, stiffness, damping."""
@@ -255,7 +256,7 @@ class ForceAtPoint:
         if status != NO_TABLE:
             return status
         law = self._flat_law.law
-        assert isinstance(law, ContactLaw)
+        assert not isinstance(law, DryLaw)
         self._growing, self._by_slices, self._apart = None, True, True
         return self._from_slices(law, out)
 
@@ -295,14 +296,14 @@ class ForceAtPoint:
         law = self._flat_law.law
         if self._coupled:
             return self._from_coupled(law, out)
-        assert isinstance(law, ContactLaw)
+        assert not isinstance(law, DryLaw)
         return self._from_slices(law, out)
 
     def _from_coupled(self, law: Law, out: FloatArray) -> int:
         """Solve for the loads of coupled slices."""
         w = self._work
         assert w.coupling is not None
-        point = self._point(law) if self._by_slices and isinstance(law, ContactLaw) else None
+        point = self._point(law) if self._by_slices and not isinstance(law, DryLaw) else None
         status: int = coupled_arrays(point, *w.shape, w.cells, w.rows, w.states, w.coupling, w.own, w.counts, out)
         return status
 
@@ -367,7 +368,9 @@ def coupling_beside(bearing: Bearing, law: Law) -> FloatArray | None:
     """
     if not bearing.coupled:
         return None
-    plane = isinstance(law, ContactLaw) and all(
+    from ehdmaps.solids.slices import without_ends
+
+    plane = not isinstance(law, DryLaw) and all(
         contact.structural_law not in _WHOLE_ROLLERS for contact in law.contacts
     )
     return bearing.coupling if plane else without_ends(bearing.coupling)

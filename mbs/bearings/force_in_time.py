@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 import numpy.typing as npt
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.maps.kernel import LOAD_TOLERANCE
-from ehdmaps.maps.law import LawAtPoint
-from ehdmaps.maps.memory import FilmState
 from mbs.bearings.bearing_kernel import assemble_arrays
 from mbs.bearings.force_at_point import Arrays, raise_state, six_numbers
 from mbs.bearings.roller_motion import NOT_FINITE, approaches_of_arrays
 from mbs.model.elements import Forces
+
+if TYPE_CHECKING:
+    from ehdmaps.maps.law import LawAtPoint
+    from ehdmaps.maps.memory import FilmState
 
 
 class ForceInTime:

@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -20,10 +20,7 @@ import numpy.typing as npt
 from ehdmaps.arrays import FloatArray
 from ehdmaps.compiled import njit
 from ehdmaps.errors import InputError, SolverError
-from ehdmaps.maps.grid_field import GridField
-from ehdmaps.maps.law import ContactLaw, LawKind, OutsidePolicy
 from ehdmaps.physics.approach import ISO_LINE_CONSTANT, STEEL_REDUCED_MODULUS, StructuralLaw
-from ehdmaps.physics.closed_form import FilmFormula, FormulaSolver
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
@@ -32,6 +29,10 @@ from ehdmaps.physics.solids import reduced_modulus
 from ehdmaps.physics.unilateral import unilateral_force
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.slice_table import POWER, LawNumbers
+
+if TYPE_CHECKING:
+    from ehdmaps.maps.law import ContactLaw, LawKind, OutsidePolicy
+    from ehdmaps.physics.closed_form import FilmFormula, FormulaSolver
 
 _EXPONENT = 10.0 / 9.0
 
@@ -169,7 +170,8 @@ class PowerLaw(DryLaw):
         ), None  # fmt: skip
 
 
-Law = DryLaw | ContactLaw
+Law: TypeAlias = "DryLaw | ContactLaw"
+"""What is no `DryLaw` is the law of a map or of the film formula, whose module is loaded with the first of them."""
 
 _unilateral_force = njit(error_model="numpy")(unilateral_force)
 
@@ -289,6 +291,10 @@ def formula(
     SolverError
         Where the formula gives no film.
     """
+    from ehdmaps.maps.grid_field import GridField  # dry laws need nothing of a map
+    from ehdmaps.maps.law import ContactLaw
+    from ehdmaps.physics.closed_form import FormulaSolver
+
     problems = [
         f"law 'formula', {name}: got {given!r}; allowed: (lowest, highest), finite, 0 < lowest < highest"
         for name, given in (("load", load), ("entrainment_speed", entrainment_speed), ("temperature", temperature))

@@ -13,7 +13,6 @@ import numpy as np
 
 from ehdmaps.arrays import BoolArray, FloatArray, IntArray
 from ehdmaps.compiled import in_python, njit
-from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.memory import FilmState
 from ehdmaps.maps.memory_table import step_of
 from mbs.bearings.bearing_kernel import assemble_slices
@@ -29,6 +28,7 @@ from mbs.bearings.film_clock import (
     resume_rows,
 )
 from mbs.bearings.film_course import Course, CourseOfFilms, FilmBlock, course_of, shared
+from mbs.bearings.laws import DryLaw
 from mbs.bearings.level_kernel import assemble_level_slices
 from mbs.bearings.memory_element import FilmStates, MemoryBearing
 from mbs.bearings.memory_kernel import MEMORY, begin, commit, loads, spent
@@ -271,7 +271,7 @@ def _slices(films: FilmState, which: IntArray) -> FilmState:
 
 def _takes(element: Element) -> bool:
     """Whether the law has a memory in compiled code."""
-    return isinstance(element, MemoryBearing) and isinstance(element.law, ContactLaw)
+    return isinstance(element, MemoryBearing) and not isinstance(element.law, DryLaw)
 
 
 MEMORY_BEARINGS = Kind(

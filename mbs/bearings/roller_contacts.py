@@ -11,20 +11,23 @@ difference of the contacts.
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, OutsideMapError, SolverError
-from ehdmaps.maps.law import ContactLaw, LawAtPoint
-from ehdmaps.maps.memory import FilmMemory, FilmState
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.contact_groups import ContactGroup
 from mbs.bearings.film_relaxation import natural_times, relaxation_times, relaxing
 from mbs.bearings.laws import DryLaw, Law
 from mbs.model.elements import Forces
 from mbs.model.relaxation import Relaxation
+
+if TYPE_CHECKING:
+    from ehdmaps.maps.law import ContactLaw, LawAtPoint
+    from ehdmaps.maps.memory import FilmMemory, FilmState
 
 _STEPS = 100
 _AT_REST = 1e6
@@ -167,7 +170,7 @@ class RollerContacts:
         f, K, C = np.zeros(self.size), np.zeros((self.size, self.size)), np.zeros((self.size, self.size))
         length, found = self.bearing.slice_length, []
         for side, law in enumerate(self.laws):
-            if not isinstance(law, ContactLaw):
+            if isinstance(law, DryLaw):
                 raise InputError(
                     f"roller contacts, films: got the law {law.name!r} without films; allowed: map, formula"
                 )
@@ -196,7 +199,7 @@ class RollerContacts:
         q = self._vector("displacement", displacement)
         rows, damping, times = [], [], []
         for side, law in enumerate(self.laws):
-            if not isinstance(law, ContactLaw):
+            if isinstance(law, DryLaw):
                 return None
             flat, tilted = self._rows(side, cage_angle)
             delta = self._approach(flat, tilted, q)
@@ -229,7 +232,7 @@ class RollerContacts:
         q = self._vector("displacement", displacement)
         found = []
         for side, law in enumerate(self.laws):
-            if not isinstance(law, ContactLaw):
+            if isinstance(law, DryLaw):
                 return ()
             flat, tilted = self._rows(side, cage_angle)
             point = self._point(side, law, entrainment_speed, temperature)
@@ -251,7 +254,7 @@ class RollerContacts:
         q = self._vector("displacement", displacement)
         times = []
         for side, law in enumerate(self.laws):
-            if not isinstance(law, ContactLaw):
+            if isinstance(law, DryLaw):
                 return np.zeros(0)
             flat, tilted = self._rows(side, cage_angle)
             delta = self._approach(flat, tilted, q)
@@ -328,7 +331,7 @@ class RollerContacts:
         """Laws with memory of both contacts at a speed [m/s] and temperature [K]; for laws with films only."""
         found = []
         for side, law in enumerate(self.laws):
-            assert isinstance(law, ContactLaw)
+            assert not isinstance(law, DryLaw)
             found.append(self._point(side, law, entrainment_speed, temperature).memory)
         return found[0], found[1]
 
@@ -420,6 +423,8 @@ def _law_problems(bearing: Bearing, side: str, law: Law) -> list[str]:
                 f"{where}: got the law {law.name!r} of a whole roller; allowed: that of one contact; use `single()`"
             ]
         return []
+    from ehdmaps.maps.law import ContactLaw  # it is loaded already, if the law is one
+
     if not isinstance(law, ContactLaw):
         return [f"{where}: got {type(law).__name__}; allowed: a law of mbs.bearings.laws, or the law {side!r} of a map"]
     if law.kind != side:

@@ -173,35 +173,3 @@ class RollerElement(RingElement):
     def outward(self, operation: Operation) -> float:
         """Centrifugal force of a roller [N]; zero where it is left out."""
         return self.plain.centrifugal_load(operation) * self.plain.bearing.geometry.roller_length
-
-
-def ring_matrices(stiffness: FloatArray, damping: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """K and C (6, 6) of the inner ring against the outer one from those of an element in its ports.
-
-    Rollers that are bodies follow in equilibrium; those without load are left where they are.
-
-    Parameters
-    ----------
-    stiffness, damping : array, shape (6, 6) or (12 + Z, 12 + Z)
-        Matrices of massless rollers, or of rings and rollers.
-    """
-    following = ring_following(stiffness)
-    return following.T @ stiffness @ following, following.T @ damping @ following
-
-
-def ring_following(stiffness: FloatArray) -> FloatArray:
-    """How the ports of an element follow the inner ring, the outer one being held, shape (m, 6).
-
-    Parameters
-    ----------
-    stiffness : array, shape (6, 6) or (12 + Z, 12 + Z)
-        Matrix of massless rollers, or of rings and rollers.
-    """
-    if stiffness.shape[0] == 6:
-        return np.eye(6)
-    own = stiffness[12:, 12:]
-    following = np.zeros((stiffness.shape[0], 6))
-    following[:6] = np.eye(6)
-    loaded = np.nonzero(np.diag(own) > 0.0)[0]
-    following[12 + loaded] = -np.linalg.solve(own[np.ix_(loaded, loaded)], stiffness[12 + loaded, :6])
-    return following

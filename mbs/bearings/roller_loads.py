@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.interpolate import RegularGridInterpolator
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, MapError
-from ehdmaps.maps.emap import EHDMap
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.laws import unilateral_forces
+
+if TYPE_CHECKING:
+    from ehdmaps.maps.emap import EHDMap
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,6 +81,8 @@ class RollerLoads:
         MapError
             For a map without the contacts of a roller.
         """
+        from scipy.interpolate import RegularGridInterpolator  # films of a map alone need it
+
         if variable not in ("central_film", "minimum_film"):
             raise InputError(f"rollers, film: got {variable!r}; allowed: central_film, minimum_film")
         if emap.bearing is None:

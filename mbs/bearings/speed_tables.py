@@ -12,17 +12,21 @@ Below the speeds with a whole film one table serves all: what is left of the fil
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ehdmaps.arrays import BoolArray, FloatArray, IntArray
 from ehdmaps.errors import EhdmapsError
-from ehdmaps.maps.law import ContactLaw
 from mbs.bearings import slice_table as table
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.flat_law import FlatLaw, tabulate_law
 from mbs.bearings.force_at_point import ForceAtPoint, is_faded, is_one_power, part_of_film
+from mbs.bearings.laws import DryLaw
 from mbs.bearings.speed_window import Made, SpeedWindow
+
+if TYPE_CHECKING:
+    from ehdmaps.maps.law import ContactLaw
 
 STEP = 1e-3
 """Distance of the nodes in ln of the speed."""
@@ -60,10 +64,10 @@ class SpeedTables:
 
     def __init__(self, bearing: Bearing, law: FlatLaw, temperature: float, rates: tuple[float, float]) -> None:
         self._bearing, self._law, self._temperature, self._rates = bearing, law, temperature, rates
-        self.varies = isinstance(law.law, ContactLaw)
-        self.has_cells = isinstance(law.law, ContactLaw) or law.law.prepared(1.0)[1] is not None
+        self.varies = not isinstance(law.law, DryLaw)
+        self.has_cells = not isinstance(law.law, DryLaw) or law.law.prepared(1.0)[1] is not None
         lowest, self._faded_below = 1.0, 0.0
-        if isinstance(law.law, ContactLaw):
+        if not isinstance(law.law, DryLaw):
             lowest, self._faded_below = _limits(law.law, abs(rates[0]))
         self._window = SpeedWindow(STEP, NODES, lowest, self.varies)
         self._nodes, self._marks = np.empty((4, table.NODES)), np.zeros((2, table.NODES), dtype=np.uint8)
@@ -75,7 +79,7 @@ class SpeedTables:
         nodes, weights = self._window.places(speeds)
         law, faded = self._law.law, np.abs(speeds) < self._faded_below
         # Dry contacts that are one power law need no table.
-        if isinstance(law, ContactLaw) and faded.any() and (np.any(speeds) or not is_one_power(law)):
+        if not isinstance(law, DryLaw) and faded.any() and (np.any(speeds) or not is_one_power(law)):
             nodes[faded] = _FADED
             weights[faded] = [part_of_film(law, self._rates[0] * speed) for speed in speeds[faded].tolist()]
         return nodes, weights
@@ -138,7 +142,7 @@ class SpeedTables:
     def _made(self, speed: float, cells: FloatArray, numbers: FloatArray) -> Made:
         """Make the table of a speed, or take over its power law."""
         law, (u, temperature, centrifugal) = self._law.law, self._conditions(speed)
-        assert isinstance(law, ContactLaw)
+        assert not isinstance(law, DryLaw)
         if speed >= self._faded_below > 0.0:
             # The node at the lowest speed has its whole film, whatever the rounding.
             u = max(abs(u), law.plain_table.lowest_speed)
@@ -150,7 +154,7 @@ class SpeedTables:
     def _tabulated(self, given: tuple[float, float, float], cells: FloatArray, numbers: FloatArray) -> Made:
         """Make a table at some conditions."""
         law, centrifugal = self._law.law, given[2]
-        assert isinstance(law, ContactLaw)
+        assert not isinstance(law, DryLaw)
         if not 0.0 <= centrifugal < law.load_range[1]:
             return Made(sound=False)
         arrays, workspace = self._law.arrays(law, centrifugal > 0.0)

@@ -11,19 +11,20 @@ from __future__ import annotations
 import dataclasses
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import numpy.typing as npt
-from scipy.interpolate import PchipInterpolator
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.maps.binary_cells import nodes_of
 from ehdmaps.maps.kernel import LOAD_TOLERANCE
-from ehdmaps.maps.law import OutsidePolicy
 from mbs.bearings.laws import DryLaw, unilateral_forces
 from mbs.bearings.slice_table import CELLS, ROWS, LawNumbers
+
+if TYPE_CHECKING:
+    from ehdmaps.maps.law import OutsidePolicy
 
 _LAST_NODE = ROWS - 32
 """The last point lies one doubling before the end of the cells, which go on straight from there."""
@@ -95,6 +96,8 @@ class TableLaw(DryLaw):
     @cached_property
     def _prepared(self) -> tuple[LawNumbers, FloatArray]:
         """Numbers and cells of the law per unit length."""
+        from scipy.interpolate import PchipInterpolator  # laws by points alone need it
+
         first, last = float(self.approach[0]), float(self.approach[-1])
         inverse = (_A[_LAST_NODE] - 1.0) / (last - first)
         at = np.minimum(first + (_A - 1.0) / inverse, last)

@@ -1,71 +1,16 @@
-"""What `--auto` does for a command: maps and the physics that the scene requires, and lines that say so."""
+"""The analysis of a command; where `--auto` asks for maps of its own, `mbs.commands.auto_maps` makes them."""
 
 from __future__ import annotations
 
 import argparse
-import math
 from collections.abc import Callable
-from dataclasses import dataclass
-from pathlib import Path
-from typing import Any, Generic, TypeVar
+from typing import TypeVar
 
 from ehdmaps.errors import InputError
-from ehdmaps.jobs.batch_generate import folder_problem, make_folder
-from ehdmaps.jobs.progress import progress
-from ehdmaps.jobs.store import store_path
-from ehdmaps.physics.heat import PHYSICS
-from ehdmaps.physics.rheology import SHEARS
-from ehdmaps.program import tell
-from ehdmaps.units import LOAD, SPEED, TEMPERATURE, closest
-from mbs.analyses.auto import MOST_TOLERANCE, TOLERANCE, Automatic, AutoSettings, settled
-from mbs.analyses.kept_map import KeptMap
-from mbs.analyses.varied import LawChoice, Subject
-from mbs.commands.cases import FILMS, read_clearance, read_supplies
-from mbs.model.relaxation import Films
-from mbs.scene.contact_laws import law_label
-from mbs.scene.reader import read_scene
-from mbs.scene.scene import Scene
+from mbs.commands.common import Done, Looked
 
 A = TypeVar("A")
 R = TypeVar("R")
-
-_CONTRARY = ("map", "structure")
-"""Options that stand for a map that is there."""
-
-
-@dataclass(frozen=True, eq=False)
-class Done(Generic[R]):
-    """The result of a command's analysis, with what `--auto` has to say.
-
-    Attributes
-    ----------
-    result : R
-        What the analysis gave.
-    lines : tuple of str
-        Lines for the beginning of the output; none without `--auto`.
-    status : int
-        Exit status that they ask for.
-    """
-
-    result: R
-    lines: tuple[str, ...] = ()
-    status: int = 0
-
-
-@dataclass(frozen=True, eq=False)
-class Looked:
-    """What an analysis looks at, as far as a map and its physics depend on it.
-
-    Attributes
-    ----------
-    scene : Scene
-        The scene with the speeds, loads and clearances of the analysis.
-    highest : float
-        Highest frequency that matters [Hz]; 0 for an equilibrium.
-    """
-
-    scene: Scene
-    highest: float
 
 
 def analysed(
@@ -99,119 +44,9 @@ def analysed(
         if problems := _only_with_auto(arguments, own_tolerance):
             raise InputError(problems)
         return Done(analyse(ask(arguments)))
-    scene, looked, settings = _asked(arguments, ask, looks_at)
+    from mbs.commands.auto_maps import with_own_maps  # with all that makes maps
 
-    def of_subject(subject: Subject) -> R:
-        return analyse(ask(_with(arguments, subject)))
-
-    try:
-        found = settled(scene, of_subject, settings, progress, looked.scene)
-    except KeyboardInterrupt:
-        stores = ", ".join(str(path) for path in sorted(settings.folder.glob(f"{store_path(Path('*.nc'))}")))
-        if stores:
-            tell(f"\nstopped; what is solved of a map is kept ({stores}): the same command goes on from there")
-        raise
-    return Done(
-        found.result, (*_lines(found, settings),), 1 if found.left or any(one.unmet for one in found.kept) else 0
-    )
-
-
-def read_tolerance(text: str | None, problems: list[str]) -> float:
-    """Read --tolerance: a part of a stiffness or damping, such as "5 %", or of a level, such as "1 dB".
-
-    A level at a resonance goes with 1/c, one held by stiffness with 1/k, so that a decibel is a change of k or c by
-    12 %.
-
-    Parameters
-    ----------
-    text : str or None
-        What was given; None if it was left out.
-    problems : list of str
-        Appended to.
-    """
-    if text is None:
-        return TOLERANCE
-    number, _, unit = text.strip().partition(" ")
-    try:
-        value = float(number)
-        part = {"%": value / 100.0, "dB": math.pow(10.0, value / 20.0) - 1.0}[unit.strip()]
-    except (KeyError, ValueError, OverflowError):
-        part = math.nan
-    if not 0.0 < part <= MOST_TOLERANCE * (1.0 + 1e-9):
-        problems.append(
-            f"--tolerance: got {text!r:.40}; allowed: above 0 up to 900 % or 20 dB, such as '5 %' or '1 dB'"
-        )
-        return TOLERANCE
-    return min(part, MOST_TOLERANCE)
-
-
-def _asked(
-    arguments: argparse.Namespace, ask: Callable[[argparse.Namespace], A], looks_at: Callable[[A], Looked]
-) -> tuple[Scene, Looked, AutoSettings]:
-    """Scene, what is looked at, and settings; all problems at once, before anything is made."""
-    problems = [
-        f"--{option}: stands beside --auto, which makes or finds the map itself; leave one of them out"
-        for option in _CONTRARY
-        if getattr(arguments, option, None)
-    ]
-    tolerance = read_tolerance(getattr(arguments, "tolerance", None), problems)
-    clearances = getattr(arguments, "clearance", None) or []
-    if len(clearances) > 1:
-        problems.append(f"--clearance: got {len(clearances)} of them; allowed with --auto: one, as each has a plan")
-    folder = Path(getattr(arguments, "maps", None) or ".")
-    if problem := folder_problem(folder, "--maps"):
-        problems.append(problem)
-    looked, scene = None, None
-    try:
-        scene = read_scene(arguments.scene)
-        if scene.lubricant is None:
-            problems.append(f"{scene.name}: got no [lubricant], which a map is made for; add the table to the scene")
-        else:
-            looked = looks_at(ask(_stand_in(arguments, scene)))
-    except InputError as error:
-        problems += error.problems
-    films = getattr(arguments, "films", None) or []
-    problems += [f"--films: got {text!r:.60}; allowed: {', '.join(FILMS)}" for text in films if text not in FILMS]
-    read_supplies(getattr(arguments, "supply", None) or (), problems)
-    physics = getattr(arguments, "physics", None)
-    if physics is not None and physics not in PHYSICS:
-        problems.append(f"--physics: got {physics!r:.60}{closest(physics, PHYSICS)}; allowed: {', '.join(PHYSICS)}")
-    shear = getattr(arguments, "shear", None)
-    if shear is not None and shear not in SHEARS:
-        problems.append(f"--shear: got {shear!r:.60}{closest(shear, tuple(SHEARS))}; allowed: {', '.join(SHEARS)}")
-    if problems or scene is None or looked is None:
-        raise InputError(tuple(dict.fromkeys(problems)))
-    make_folder(folder, "--maps")
-    return scene, looked, _settings(arguments, tolerance, folder, looked.highest)
-
-
-def _stand_in(arguments: argparse.Namespace, scene: Scene) -> argparse.Namespace:
-    """The arguments with a law that is made in a moment in place of the map, to see what is wrong about the others."""
-    needs_films = any(entry.centrifugal and not entry.rollers_as_bodies for entry in scene.bearings)
-    law = "formula" if needs_films else "hertz"
-    without = {name: None for name in ("films", "supply") if hasattr(arguments, name)}
-    there = _with(arguments, Subject(scene, LawChoice(law_label(law), law)))
-    return argparse.Namespace(**{**vars(there), **without})
-
-
-def _settings(arguments: argparse.Namespace, tolerance: float, folder: Path, highest: float) -> AutoSettings:
-    """The settings; films and supply that were asked for are taken where one is."""
-    none: list[str] = []
-    films = [text for text in getattr(arguments, "films", None) or () if text in FILMS]
-    supplies = read_supplies(getattr(arguments, "supply", None) or (), none)
-    clearances = [read_clearance(text, none) for text in getattr(arguments, "clearance", None) or ()]
-    kinds: dict[str, Films] = {"memory": "memory", "slow": "slow"}
-    return AutoSettings(
-        tolerance=tolerance,
-        highest=highest,
-        folder=folder,
-        others=(Path(),),
-        clearance=clearances[0] if clearances else None,
-        films=kinds.get(films[0]) if films else None,
-        supply=supplies[0] if supplies else None,
-        physics=getattr(arguments, "physics", None),
-        shear=getattr(arguments, "shear", None),
-    )
+    return with_own_maps(arguments, ask, analyse, looks_at)
 
 
 def _only_with_auto(arguments: argparse.Namespace, own_tolerance: bool) -> list[str]:
@@ -219,47 +54,3 @@ def _only_with_auto(arguments: argparse.Namespace, own_tolerance: bool) -> list[
     options = ("maps", "physics", "shear") if own_tolerance else ("maps", "physics", "shear", "tolerance")
     given = [option for option in options if getattr(arguments, option, None) is not None]
     return [f"--{option}: stands without --auto; allowed: with it" for option in given]
-
-
-def _with(arguments: argparse.Namespace, subject: Subject) -> argparse.Namespace:
-    """The arguments with a scene and a law in place of those that are to be read."""
-    return argparse.Namespace(**{**vars(arguments), "subject": subject})
-
-
-def _lines(found: Automatic[Any], settings: AutoSettings) -> list[str]:
-    """What was planned and made, what is on, and what is not met."""
-    lines = []
-    for kept, margin in zip(found.maps, found.margins, strict=True):
-        lines += [line for line in _map_lines(kept, margin) if line not in lines]
-    lines += [f"auto: {verdict.line}" for verdict in found.verdicts]
-    lines += [f"warning: auto: {one.path}: {line}" for one in found.kept for line in one.unmet]
-    if found.left:
-        names = ", ".join(f"{name} {count} times" for name, count in found.left.items())
-        plans = len(found.maps) // len(found.kept)
-        if found.left.keys() - found.too_fast:
-            lines.append(
-                f"warning: auto: after {plans} plans the analysis still left its map ({names}); the loads grow "
-                "beyond what the plan allows for: check clearance, loads and speeds of the scene, or make a map by "
-                "`mbs plan --margin` and `ehdmaps generate`"
-            )
-        if found.too_fast:
-            lines.append(
-                f"warning: auto: {', '.join(sorted(found.too_fast))}: turns faster in the analysis than its map, or "
-                "its table over speed, goes, which no plan for larger loads changes; give the scene the highest speed "
-                "in [operation], [sweep] or [runup], or the table more speeds"
-            )
-    else:
-        inside = "the map" if len(found.kept) == 1 else "the maps"
-        lines.append(f"auto: all loads, speeds and temperatures of the analysis lie inside {inside}")
-    return lines
-
-
-def _map_lines(kept: KeptMap, margin: float) -> list[str]:
-    """Lines on a map: where it is, what it covers."""
-    data = kept.emap.dataset
-    load, speed, kelvin = (data[name].values for name in ("load", "entrainment_speed", "temperature"))
-    how = "reused" if kept.reused else f"made, {kept.solved} points solved"
-    return [
-        f"auto: {kept.path}: {how}; {LOAD.value(load[0]):.3g} to {LOAD.text(load[-1])} ({margin:g} times the largest "
-        f"load at rest), {SPEED.value(speed[0]):.3g} to {SPEED.text(speed[-1])}, {TEMPERATURE.text(kelvin[0])}"
-    ]

@@ -12,7 +12,7 @@ from mbs.bearings.laws import Law
 from mbs.commands.bearing_request import BearingRequest, read_request
 from mbs.output.bearing_data import bearing_dataset, write_csv
 from mbs.output.bearing_text import bearing_text
-from mbs.output.results import write_dataset
+from mbs.output.files import write_dataset
 from mbs.scene.contact_laws import Damper, hertz_damper, table_path
 from mbs.scene.law_file import read_law
 
@@ -27,9 +27,9 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     points = bearing_points(
         request.bearing, _law(request), request.films, request.load_vectors, request.speeds, request.temperature
     )
-    dataset = bearing_dataset(request.description, points)
     lines = bearing_text(request.description, points)
     if arguments.output:
+        dataset = bearing_dataset(request.description, points)
         if Path(arguments.output).suffix.lower() == ".csv":
             write_csv(dataset, arguments.output)
         else:

@@ -8,20 +8,12 @@ import math
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ehdmaps.errors import EhdmapsError, InputError
 from ehdmaps.inputs import first_bytes, read_text
-from ehdmaps.jobs import toml_text
-from ehdmaps.jobs.opening import open_given
-from ehdmaps.jobs.problem import read_contacts, read_lubricant
-from ehdmaps.jobs.reader import LONGEST_FILE, read_job, shipped_jobs
-from ehdmaps.jobs.supply import read_supply
-from ehdmaps.jobs.surface import read_surface
-from ehdmaps.jobs.table import Table
-from ehdmaps.maps.emap import EHDMap
-from ehdmaps.maps.schema import FILMS_READ
 from ehdmaps.outputs import FIGURE, Output, output_problems
 from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
 from ehdmaps.physics.lubricant import LUBRICANTS, Lubricant
@@ -34,7 +26,7 @@ from mbs.bearings.bearing import MOST_COUPLED, Bearing
 from mbs.bearings.films import SIDES, FilmSource, FormulaFilms, MapFilms
 from mbs.bearings.fits import Mounting, operating_clearance
 from mbs.bearings.state import BearingState
-from mbs.commands.cases import NO_MAP, read_clearance, read_supplies
+from mbs.commands.options import NO_MAP, read_clearance, read_supplies
 from mbs.output.bearing_data import WIDE_RANGE, BearingDescription, result_kind
 from mbs.scene.contact_laws import (
     HERTZ_FORMS,
@@ -46,8 +38,11 @@ from mbs.scene.contact_laws import (
     table_problems,
 )
 from mbs.scene.fields import FORCE, MICROMETRE
-from mbs.scene.map_set import geometry_problems, structure_words
+from mbs.scene.map_set import geometry_problems, reads_table, structure_words
 from mbs.scene.profiles import profile_from_text
+
+if TYPE_CHECKING:
+    from ehdmaps.maps.emap import EHDMap
 
 LAWS = ("hertz", "formula", TABLE_LAW, "map")
 OIL, CELSIUS_40, ROUGHNESS = "FVA3", 313.15, 0.3e-6
@@ -258,7 +253,7 @@ def _table_map(
 
 def _law_words(law: str, emap: EHDMap | None, oil: Lubricant) -> str:
     """The law, for people."""
-    if law == "map" and emap is not None and FILMS_READ in emap.dataset.attrs:
+    if law == "map" and emap is not None and reads_table(emap):
         return f"film table, {oil.title}{structure_words(emap)}"
     if law == "map" and emap is not None:
         return f"map of {oil.title}, solver {emap.dataset.attrs.get('solver', '')}{structure_words(emap)}"
@@ -270,6 +265,8 @@ def _bearing(source: str, problems: list[str]) -> _Given | None:
     """The bearing of a name, a shipped job or a file."""
     if source in BEARINGS:
         return _Given(BEARINGS[source], STEEL)
+    from ehdmaps.jobs.reader import shipped_jobs  # with the readers of all tables of a job
+
     allowed = f"{', '.join(BEARINGS)}, or a TOML file with [bearing], such as a job"
     if source not in shipped_jobs() and not ("\0" not in source and os.path.isfile(source)):
         problems.append(f"BEARING: got {short(source)}{closest(source, tuple(BEARINGS))}; allowed: {allowed}")
@@ -283,6 +280,8 @@ def _bearing(source: str, problems: list[str]) -> _Given | None:
 
 def _from_file(source: str) -> _Given:
     """The bearing of a job, or of a file that holds no more than the bearing, material, oil, supply and surfaces."""
+    from ehdmaps.jobs.reader import read_job, shipped_jobs
+
     if source not in shipped_jobs():
         alone = _alone(source)
         if alone is not None:
@@ -295,6 +294,13 @@ def _from_file(source: str) -> _Given:
 
 def _alone(source: str) -> _Given | None:
     """The bearing of a file without [grid] and [solver]; None for a job or a map, which have a reader of their own."""
+    from ehdmaps.jobs import toml_text
+    from ehdmaps.jobs.problem import read_contacts, read_lubricant
+    from ehdmaps.jobs.reader import LONGEST_FILE
+    from ehdmaps.jobs.supply import read_supply
+    from ehdmaps.jobs.surface import read_surface
+    from ehdmaps.jobs.table import Table
+
     allowed = "a TOML file with [bearing]"
     if first_bytes(source, 4, allowed).startswith((b"CDF", b"\x89HDF")):
         return None
@@ -342,6 +348,8 @@ def _map(path: str | None, structure: str | None, problems: list[str]) -> EHDMap
     if path is None:
         problems += [] if structure is None else [NO_MAP.format(structure)]
         return None
+    from ehdmaps.jobs.opening import open_given
+
     try:
         return open_given(path, structure)
     except InputError as error:

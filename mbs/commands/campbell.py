@@ -15,33 +15,23 @@ from ehdmaps.figures import typeset
 from ehdmaps.units import RPM
 from ehdmaps.workers import available_cores
 from mbs.analyses.campbell import MODE_SPEEDS, MOST_BANDS, CampbellResult, LawRun, campbell, campbell_problems
-from mbs.analyses.case import Case, clearance_text, common_supply, temperature_text
-from mbs.analyses.film_errors import notable_from
-from mbs.analyses.reach import axes_outside, fade_of, sources_of
+from mbs.analyses.case import Case
+from mbs.analyses.film_errors import film_course, notable_from
+from mbs.analyses.reach import axes_outside, fade_lines, fade_of, outside_lines, sources_of
 from mbs.analyses.recorded import RecordedRun, simulated_campbell
-from mbs.analyses.resolution import resolution
+from mbs.analyses.resolution import resolution, step_lines
 from mbs.analyses.soundness import unsound_run
 from mbs.analyses.tolerance import Tolerated, read_tolerance, within
-from mbs.commands.auto import Looked, analysed
+from mbs.commands.auto import analysed
 from mbs.commands.campbell_recorded import measured_lines, measured_run, read_look, recorded_runs, signal_problems
 from mbs.commands.cases import load_cases
-from mbs.commands.common import (
-    Told,
-    band_lines,
-    film_course,
-    heading,
-    held_lines,
-    marked,
-    step_lines,
-    unsound_lines,
-    write,
-)
-from mbs.commands.reach import fade_lines, outside_lines
+from mbs.commands.common import Looked, Told, marked, unsound_lines, write
 from mbs.linearised.sweep_result import ComplexSweep, Sweep
 from mbs.model.elements import Sensor
 from mbs.output.campbell_data import with_measured
 from mbs.output.campbell_text import PEAKS, highest_line, peak_line, peak_lines, resolution_lines, sensor_line
 from mbs.output.energy_text import drive_lines, energy_lines
+from mbs.output.model_text import band_lines, clearance_text, common_supply, heading, held_lines, temperature_text
 from mbs.output.time_files import is_time_data, write_time_data
 from mbs.scene.assembly import Model
 from mbs.settings import CampbellSettings

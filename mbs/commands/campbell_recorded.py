@@ -24,13 +24,14 @@ from mbs.analyses.recorded import (
     recorded_run_of,
 )
 from mbs.analyses.sensors import ALL_SENSORS, chosen_sensors
-from mbs.commands.common import read_option, write
+from mbs.commands.common import write
+from mbs.commands.options import read_option
 from mbs.output.campbell_text import highest_line, peak_lines, resolution_lines, sensor_line
-from mbs.output.results import RESULT
+from mbs.output.files import RESULT
 from mbs.output.time_files import is_time_data, read_time_data, signal_outputs, write_time_data
 from mbs.scene.assembly import Model
-from mbs.scene.campbell import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
 from mbs.scene.fields import HERTZ, MILLISECOND
+from mbs.scene.runs import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
 from mbs.settings import CampbellSettings
 from mbs.spectral.campbell import RunUpSpectra
 from mbs.spectral.levels import Reference, difference_text

@@ -11,20 +11,18 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import itertools
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ehdmaps.errors import EhdmapsError, InputError
 from ehdmaps.jobs.opening import open_given
-from ehdmaps.jobs.supply import supply_from_text
-from ehdmaps.maps.emap import EHDMap
 from ehdmaps.outputs import FIGURE, Kind, Output, output_problems
-from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.units import closest
-from mbs.analyses.case import Case, common_clearance
-from mbs.analyses.varied import VARIED, LawChoice, Subject, Value
+from mbs.analyses.case import Case, LawChoice, Subject, common_clearance
+from mbs.commands.options import NO_MAP, read_clearance, read_supplies, read_varied, varied_key
 from mbs.model.relaxation import DEFAULT_FILMS, Films
-from mbs.output.results import RESULT
+from mbs.output.files import RESULT
 from mbs.scene.assembly import Model
 from mbs.scene.contact_laws import FILM_WORDS, TABLE_LAW, ContactLaws, choose_law, law_label, table_path
 from mbs.scene.fields import DEGREE, MICROMETRE
@@ -33,8 +31,8 @@ from mbs.scene.reader import read_scene
 from mbs.scene.scene import Scene
 from mbs.settings import SweepRange
 
-NO_MAP = "--structure: got {!r:.60} without a map; allowed: with --map MAP.nc, made by `ehdmaps generate`"
-"""What is said where a structural law is given for no map."""
+if TYPE_CHECKING:
+    from ehdmaps.maps.emap import EHDMap
 
 FILMS = ("memory", "slow", "dry")
 """What --films takes: films that relax, those of slow motion, and none."""
@@ -119,8 +117,8 @@ def load_cases(
         laws = [dataclasses.replace(law, films="slow") for law in laws]
     laws = _with_supplies(laws, _given(arguments, "supply"), scene, problems)
     clearances = [read_clearance(text, problems) for text in _given(arguments, "clearance")] or [None]
-    factors = [_read("load-factor", text, problems) for text in _given(arguments, "load_factor")] or [None]
-    angles = [_read("start-angle", text, problems) for text in _given(arguments, "start_angle")] or [None]
+    factors = [read_varied("load-factor", text, problems) for text in _given(arguments, "load_factor")] or [None]
+    angles = [read_varied("start-angle", text, problems) for text in _given(arguments, "start_angle")] or [None]
     problems += _output_problems(arguments, scene, kind)
     count = len(laws) * len(clearances) * len(factors) * len(angles)
     if count > MOST_CASES:
@@ -138,7 +136,7 @@ def load_cases(
         try:
             subject = Subject(scene, law, clearance)
             for key, value in (("load-factor", factor), ("start-angle", angle)):
-                subject = subject if value is None else VARIED[key].change(subject, value)
+                subject = subject if value is None else varied_key(key).change(subject, value)
             model = subject.model()
         except InputError as error:
             problems += scene_problems(scene, error)
@@ -377,30 +375,6 @@ def _with_supplies(
     return found
 
 
-def read_supplies(given: Sequence[str], problems: list[str]) -> list[OilSupply]:
-    """Read what was given for --supply; what is wrong about it is noted, and left out.
-
-    Parameters
-    ----------
-    given : sequence of str
-        What was given.
-    problems : list of str
-        Appended to.
-    """
-    found: list[OilSupply] = []
-    for text in given:
-        try:
-            supply = supply_from_text(text)
-        except InputError as error:
-            problems += [f"--supply: {problem}" for problem in error.problems]
-            continue
-        if supply in found:
-            problems.append(f"--supply: got {text!r:.60} twice; allowed: each once")
-        else:
-            found.append(supply)
-    return found
-
-
 def _stated_label(law: LawChoice, scene: Scene) -> str:
     """What the label of a law says of the oil supply that scene or map state."""
     return ContactLaws(choose_law(law.name, law.maps), scene, law.maps).supply_label
@@ -409,18 +383,3 @@ def _stated_label(law: LawChoice, scene: Scene) -> str:
 def _labelled(law: LawChoice, words: str) -> LawChoice:
     """A law with more words in its label."""
     return dataclasses.replace(law, label=law.label + words)
-
-
-def read_clearance(text: str, problems: list[str]) -> float | None:
-    """Read what was given for --clearance [m]; None where a problem was noted."""
-    value = _read("clearance", text, problems)
-    return None if value is None else float(value)
-
-
-def _read(key: str, text: str, problems: list[str]) -> Value | None:
-    """Read what was given for the option of a key that is varied; None where a problem was noted."""
-    try:
-        return VARIED[key].read(text)
-    except InputError as error:
-        problems.append(f"--{key}: {error.problems[0]}")
-        return None

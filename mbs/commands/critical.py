@@ -14,18 +14,18 @@ from ehdmaps.units import MOTIONS, RPM
 from mbs.analyses.case import Case
 from mbs.analyses.critical import CriticalResult, critical_of, dataset_of_laws, orders
 from mbs.analyses.operating import operating
-from mbs.analyses.reach import axes_outside, sources_of
+from mbs.analyses.reach import axes_outside, fade_lines, outside_lines, sources_of
 from mbs.analyses.soundness import unsound_over_speed
 from mbs.analyses.sweep import SweepSettings
-from mbs.commands.auto import Looked, analysed
+from mbs.commands.auto import analysed
 from mbs.commands.cases import load_cases
-from mbs.commands.common import heading, marked, unsound_lines, write
+from mbs.commands.common import Looked, marked, unsound_lines, write
 from mbs.commands.lsa import MOST_COMPARED_CASES
-from mbs.commands.reach import fade_lines, outside_lines
 from mbs.commands.sweep import read_speeds
 from mbs.linearised.critical import CriticalSpeed
 from mbs.linearised.linear import sensor_unit
 from mbs.output.critical_data import orbits, sensed
+from mbs.output.model_text import heading
 
 if TYPE_CHECKING:
     from mbs.output.critical_plot import CriticalCurves

@@ -14,14 +14,15 @@ from ehdmaps.units import quantity
 from ehdmaps.workers import available_cores
 from mbs.analyses.case import Case
 from mbs.analyses.hammer import HIGHEST, HammerResult, HammerSettings, hammer_problems, hammers
-from mbs.analyses.reach import source_of
+from mbs.analyses.reach import outside_at, source_of
 from mbs.analyses.soundness import unsound_at_rest
-from mbs.commands.auto import Looked, analysed
+from mbs.commands.auto import analysed
 from mbs.commands.cases import load_cases
-from mbs.commands.common import Told, clean, film_lines, free_words, heading, outside_at, unsound_lines
+from mbs.commands.common import Looked, Told, unsound_lines
 from mbs.linearised.modes import Modes
 from mbs.modal.uff import UFF, Measurement
 from mbs.modal.uff_writing import write_uff
+from mbs.output.model_text import clean, film_lines, free_words, heading
 from mbs.scene.contact_laws import FILM_WORDS
 from mbs.scene.fields import MILLISECOND
 from mbs.transient.hammer import HammerTest

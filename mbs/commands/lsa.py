@@ -14,15 +14,16 @@ from ehdmaps.exports.matlab_file import KIND
 from ehdmaps.outputs import FIGURE, Output, output_problems
 from mbs.analyses.case import Case
 from mbs.analyses.lsa import LsaResult, LsaSettings, lsa_dataset, lsa_of, lsa_problems
-from mbs.commands.auto import Looked, analysed
+from mbs.analyses.reach import fade_lines, outside_at
+from mbs.commands.auto import analysed
 from mbs.commands.cases import load_cases
-from mbs.commands.common import band_lines, film_lines, heading, outside_at, unsound_lines, write
-from mbs.commands.reach import fade_lines
+from mbs.commands.common import Looked, unsound_lines, write
 from mbs.commands.sweep import whole
 from mbs.linearised.linear import peak_places, response_display
 from mbs.linearised.sweep import MOST_ANGLES
 from mbs.linearised.validity import DynamicLoad
-from mbs.output.results import RESULT
+from mbs.output.files import RESULT
+from mbs.output.model_text import band_lines, film_lines, heading
 from mbs.output.state_space_file import write_spaces
 from mbs.scene.assembly import Model
 

@@ -21,7 +21,7 @@ from mbs.modal.uff import UFF, Measurement
 from mbs.modal.uff_reading import read_uff
 from mbs.modal.uff_writing import write_uff
 from mbs.modal.windows import needed_decay
-from mbs.output.results import RESULT, described, write_dataset
+from mbs.output.files import RESULT, described, write_dataset
 
 TOLERANCE = 0.2
 """Largest part of a response that a fit may leave, rms over rms, before the status says so."""

@@ -14,31 +14,21 @@ from ehdmaps.extras import lacking
 from ehdmaps.outputs import FIGURE, Output, output_problems
 from ehdmaps.units import RPM
 from mbs.analyses.modes import ModesResult, modes
-from mbs.commands.auto import Looked, analysed
+from mbs.analyses.reach import fade_lines, outside_at
+from mbs.commands.auto import analysed
 from mbs.commands.cases import load_model
-from mbs.commands.common import (
-    band_lines,
-    clean,
-    film_law_line,
-    film_lines,
-    free_words,
-    heading,
-    outside_at,
-    read_option,
-    unsound_lines,
-    write,
-    write_plot,
-)
-from mbs.commands.reach import fade_lines
+from mbs.commands.common import Looked, unsound_lines, write, write_plot
+from mbs.commands.options import read_option
 from mbs.linearised.modes import Modes
 from mbs.linearised.shapes import skeleton
+from mbs.output.files import RESULT
+from mbs.output.model_text import band_lines, clean, film_law_line, film_lines, free_words, heading
 from mbs.output.modes_text import kinds, share_words
-from mbs.output.results import RESULT
 from mbs.output.shapes_file import MOST_SHAPES as MOST_WRITTEN
 from mbs.output.shapes_file import SHAPES, write_shapes
 from mbs.scene.assembly import Model
-from mbs.scene.campbell import HIGHEST_HIGHEST, LOWEST_HIGHEST
 from mbs.scene.fields import HERTZ, MILLISECOND
+from mbs.scene.runs import HIGHEST_HIGHEST, LOWEST_HIGHEST
 from mbs.scene.scene import Scene
 
 HIGHEST = 10e3

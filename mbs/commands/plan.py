@@ -22,8 +22,9 @@ from mbs.analyses import planning
 from mbs.analyses.coverage import AxisCover, Coverage, coverage
 from mbs.analyses.plan import PlanResult, PlanSettings, dry_model, law_problems, needed_of
 from mbs.analyses.planning import Needed
-from mbs.commands.cases import read_clearance, read_maps, scene_output_problems
-from mbs.commands.common import heading
+from mbs.commands.cases import read_maps, scene_output_problems
+from mbs.commands.options import read_clearance
+from mbs.output.model_text import heading
 from mbs.scene.assembly import Model
 from mbs.scene.fields import MICROMETRE
 from mbs.scene.map_set import MapSet, map_sets

@@ -3,27 +3,21 @@
 from __future__ import annotations
 
 import argparse
-import dataclasses
 import time
 from pathlib import Path
 
 import numpy as np
 
 from ehdmaps.errors import InputError
-from ehdmaps.inputs import read_text
-from ehdmaps.jobs import toml_text
-from ehdmaps.jobs.table import Table
 from ehdmaps.outputs import Output, output_problems
 from ehdmaps.units import LENGTH
 from ehdmaps.version import version
 from mbs.flexible.carry_out import read_model, reduce_model
 from mbs.flexible.extent import Extent, extent
-from mbs.flexible.plan import ReductionPlan
 from mbs.flexible.reduced_body import ReducedBody
 from mbs.flexible.reduced_file import REDUCED, write_reduced
 from mbs.scene.fields import HERTZ
-from mbs.scene.flexible import read_reduction
-from mbs.scene.reader import LONGEST_FILE
+from mbs.scene.flexible import read_body_file
 
 _SHOWN = 30
 
@@ -48,31 +42,6 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     warnings = [f"warning: {source}: {words}" for words in found.warnings(plan.units)]
     write_reduced(target, reduced)
     return "\n".join([*_lines(reduced, found, source, seconds), *warnings, f"{target}: written"]), 0
-
-
-def read_body_file(path: Path) -> ReductionPlan:
-    """Read a file that says what is reduced and how.
-
-    Parameters
-    ----------
-    path : Path
-        TOML with the keys of a `[[flexible]]` table that has matrices, at top level.
-
-    Raises
-    ------
-    InputError
-        With every problem found, each beginning with the path.
-    """
-    values = toml_text.parse(read_text(path, LONGEST_FILE, "a body file in TOML"), str(path))
-    problems: list[str] = []
-    top = Table(values, "body file", problems)
-    plan = read_reduction(top, path.parent)
-    # What is an assumption concerns the reader of the file only.
-    top.get("assumed")
-    top.close()
-    if problems or plan is None:
-        raise InputError([f"{path}: {problem}" for problem in problems])
-    return dataclasses.replace(plan, source=path)
 
 
 def _lines(reduced: ReducedBody, found: Extent, source: Path, seconds: float) -> list[str]:

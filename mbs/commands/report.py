@@ -15,8 +15,9 @@ from mbs.analyses.case import Case
 from mbs.analyses.modes import ModesResult
 from mbs.analyses.statics import StaticsResult
 from mbs.analyses.sweep import SweepResult
-from mbs.commands.auto import Looked, analysed
+from mbs.commands.auto import analysed
 from mbs.commands.cases import load_cases
+from mbs.commands.common import Looked
 from mbs.commands.sweep import read_speeds
 from mbs.report.campbell import read_result
 from mbs.report.examination import Examination, examined

@@ -16,34 +16,26 @@ from ehdmaps.figures import COLOURS
 from ehdmaps.units import RPM
 from ehdmaps.workers import available_cores
 from mbs.analyses.case import Case
+from mbs.analyses.film_errors import film_course
 from mbs.analyses.ramp import silent_run
-from mbs.analyses.reach import POINTS, Fade, axes_outside, fade_of, source_of, sources_of
+from mbs.analyses.reach import POINTS, Fade, axes_outside, fade_lines, fade_of, outside_lines, source_of, sources_of
 from mbs.analyses.recorded import amplitudes_at, simulated
-from mbs.analyses.resolution import resolution
+from mbs.analyses.resolution import resolution, step_lines
 from mbs.analyses.runup import RunUpResult, RunUps, runup_problems, runups
 from mbs.analyses.step_check import NOTABLE, StepCheck
-from mbs.commands.auto import Looked, analysed
+from mbs.commands.auto import analysed
 from mbs.commands.campbell_recorded import read_source, signal_problems
 from mbs.commands.cases import load_cases
-from mbs.commands.common import (
-    MICROSECOND,
-    Told,
-    film_course,
-    heading,
-    held_lines,
-    read_option,
-    step_lines,
-    unsound_lines,
-    write,
-)
-from mbs.commands.reach import fade_lines, outside_lines
+from mbs.commands.common import Looked, Told, unsound_lines, write
+from mbs.commands.options import read_option
 from mbs.output.energy_text import drive_lines, energy_lines
-from mbs.output.results import described
+from mbs.output.files import described
+from mbs.output.model_text import heading, held_lines
 from mbs.output.signal_text import signal_lines
 from mbs.output.spectrum_data import with_spectra
 from mbs.output.time_files import is_time_data, read_time_data, write_time_data
-from mbs.scene.campbell import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
-from mbs.scene.fields import HERTZ, MILLISECOND
+from mbs.scene.fields import HERTZ, MICROSECOND, MILLISECOND
+from mbs.scene.runs import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
 from mbs.scene.scene import Scene
 from mbs.settings import HIGHEST
 from mbs.spectral.spectra import AmplitudeSpectrum

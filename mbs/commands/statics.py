@@ -10,21 +10,19 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.units import DAMPER, FILM, PRESSURE, SPRING
-from mbs.analyses.film_errors import film_errors
-from mbs.analyses.rings import ring_motions
+from mbs.analyses.reach import fade_lines, outside_at
 from mbs.analyses.statics import statics
+from mbs.bearings.bearing_element import ring_matrices
 from mbs.bearings.contact_report import BearingContacts
-from mbs.bearings.roller_element import ring_matrices
 from mbs.bearings.roller_loads import RollerLoads
-from mbs.commands.auto import Looked, analysed
+from mbs.commands.auto import analysed
 from mbs.commands.cases import load_model
-from mbs.commands.common import heading, outside_at, unsound_lines, write
-from mbs.commands.reach import fade_lines
-from mbs.linearised.validity import NOTABLE
+from mbs.commands.common import Looked, unsound_lines, write
 from mbs.model.equilibrium import Equilibrium
-from mbs.output.bearing_text import DAMPINGS, STIFFNESSES, flooded_note, loss_words
-from mbs.output.gear_data import gear_lines
-from mbs.scene.assembly import Model
+from mbs.model.relaxation import NOTABLE
+from mbs.output.model_text import heading
+from mbs.output.state_text import DAMPINGS, STIFFNESSES, flooded_note, loss_words
+from mbs.scene.assembly import Model, ring_motions
 
 _SHOWN = (1, 2, 4, 5)
 _ROUND_OFF = 1e-9
@@ -68,19 +66,29 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             *_matrix(f"K [{STIFFNESSES}]", SPRING.factor * stiffness),
             *_matrix(f"C [{DAMPINGS}]", DAMPER.factor * damping),
         ]
-    lines += gear_lines(model, balance)
+    if model.gears:
+        from mbs.output.gear_data import gear_lines
+
+        lines += gear_lines(model, balance)
     lines += flooded_note(max((loss.torque for loss in found.losses), default=math.nan), model.supplies.values())
-    lines += [
+    lines += _slow(model, balance) if model.supplies else []
+    lines += fade_lines(model, np.array([model.scene.speed]))
+    outside = outside_at(model, balance)
+    lines += [f"warning: {line}" for line in (*found.overloads, *found.free)] + outside
+    lines += write(arguments, found.dataset if arguments.output else None, figure)
+    return "\n".join(lines), 1 if outside or found.overloads or found.unsound else done.status
+
+
+def _slow(model: Model, balance: Equilibrium) -> list[str]:
+    """Lines on the frequencies up to which K and C hold, for laws with films."""
+    from mbs.analyses.film_errors import film_errors
+
+    return [
         f"{entry.bearing}: K and C are those of slow motion; the estimated error of the dynamic stiffness along the "
         f"load passes {100.0 * NOTABLE:g} % at {entry.frequency:.4g} Hz"
         for entry in film_errors(model, balance.displacement, balance.operation, "slow")
         if math.isfinite(entry.frequency)
     ]
-    lines += fade_lines(model, np.array([model.scene.speed]))
-    outside = outside_at(model, balance)
-    lines += [f"warning: {line}" for line in (*found.overloads, *found.free)] + outside
-    lines += write(arguments, found.dataset, figure)
-    return "\n".join(lines), 1 if outside or found.overloads or found.unsound else done.status
 
 
 def _asked(arguments: argparse.Namespace) -> Model:

@@ -13,34 +13,33 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.units import DAMPER, RPM, SPRING, quantity
 from ehdmaps.workers import available_cores
-from mbs.analyses.case import Case, clearance_text, common_supply, temperature_text
+from mbs.analyses.case import Case
 from mbs.analyses.film_errors import film_errors, notable_from
 from mbs.analyses.operating import operating
-from mbs.analyses.reach import axes_outside, fade_of, sources_of
+from mbs.analyses.reach import axes_outside, fade_lines, fade_of, outside_lines, sources_of
 from mbs.analyses.soundness import unsound_over_speed
 from mbs.analyses.sweep import SweepSettings, sweep, sweep_problems
-from mbs.commands.auto import Looked, analysed
+from mbs.commands.auto import analysed
 from mbs.commands.cases import load_cases
-from mbs.commands.common import (
-    ROUND_OFF,
-    band_lines,
-    clean,
-    film_lines,
-    free_words,
-    heading,
-    marked,
-    unsound_lines,
-    write,
-)
-from mbs.commands.reach import fade_lines, outside_lines
+from mbs.commands.common import Looked, marked, unsound_lines, write
 from mbs.linearised.crossings import exchanged
 from mbs.linearised.linear import response_display
 from mbs.linearised.modes import free_motions
 from mbs.linearised.sweep import MOST_ANGLES
 from mbs.linearised.sweep_result import Sweep
 from mbs.model.elements import Operation
-from mbs.output.bearing_text import flooded_note
-from mbs.output.state_text import state_lines
+from mbs.output.model_text import (
+    ROUND_OFF,
+    band_lines,
+    clean,
+    clearance_text,
+    common_supply,
+    film_lines,
+    free_words,
+    heading,
+    temperature_text,
+)
+from mbs.output.state_text import flooded_note, state_lines
 from mbs.scene.assembly import Model
 from mbs.settings import MOST_SPEEDS, SweepRange
 

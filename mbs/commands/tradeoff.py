@@ -10,12 +10,13 @@ from ehdmaps.trade.data import trade_json
 from ehdmaps.trade.files import TRADE, write_trade
 from ehdmaps.trade.text import trade_text
 from mbs.analyses.campbell import campbell_problems
+from mbs.analyses.case import LawChoice
 from mbs.analyses.tradeoff import TradeoffSettings, tradeoff
-from mbs.analyses.varied import LawChoice
 from mbs.commands.cases import read_compared
-from mbs.commands.common import Told, read_option
-from mbs.scene.campbell import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
+from mbs.commands.common import Told
+from mbs.commands.options import read_option
 from mbs.scene.fields import HERTZ, MILLISECOND
+from mbs.scene.runs import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
 from mbs.scene.scene import Scene
 
 

@@ -9,15 +9,16 @@ from collections.abc import Sequence
 from ehdmaps.errors import InputError
 from ehdmaps.units import RPM, closest
 from ehdmaps.workers import available_cores
-from mbs.analyses.case import clearance_text, common_supply, temperature_text, weight_text
-from mbs.analyses.reach import axes_outside
+from mbs.analyses.case import LawChoice
+from mbs.analyses.reach import axes_outside, outside_lines
 from mbs.analyses.variants import Variant, VariantsResult, Variation, variants
-from mbs.analyses.varied import VARIED, LawChoice
+from mbs.analyses.varied import VARIED
 from mbs.commands.cases import read_compared
-from mbs.commands.common import Told, held_lines, read_option, write
-from mbs.commands.reach import outside_lines
-from mbs.scene.campbell import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
+from mbs.commands.common import Told, write
+from mbs.commands.options import read_option
+from mbs.output.model_text import clearance_text, common_supply, held_lines, temperature_text, weight_text
 from mbs.scene.fields import HERTZ, MILLISECOND
+from mbs.scene.runs import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
 from mbs.scene.scene import Scene
 from mbs.settings import CampbellSettings
 from mbs.spectral.levels import Reference

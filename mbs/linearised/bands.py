@@ -24,21 +24,18 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
 from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
-from ehdmaps.maps.law_errors import LawBounds
-from mbs.bearings.bearing_element import RingElement
+from mbs.bearings.bearing_element import RingElement, ring_following
 from mbs.bearings.contact_groups import ContactGroup
-from mbs.bearings.roller_element import ring_following
 from mbs.model.equilibrium import Equilibrium
-from mbs.model.system import System
 
-NO_MAP = "none stated: the law is not that of a map"
-"""What is said where laws state no errors."""
+if TYPE_CHECKING:
+    from ehdmaps.maps.law_errors import LawBounds
 
 KINDS = ("stiffness", "damping", "film")
 """Kinds of changes, in the order in which each bearing has them."""
@@ -257,15 +254,6 @@ class LawBands:
                 sums += np.abs([motion @ dk, motion @ dc + 2.0 * (motion @ damping) @ _moved(stiffness, dk)])
             found.append(sums.tolist())
         return np.array(found).reshape(-1, 2).T
-
-
-def error_words(system: System) -> str:
-    """What is in the bands of a system, for people; empty without bearings."""
-    bearings = [system.elements[index].element for index in system.select(RingElement)]
-    if not bearings:
-        return ""
-    words = {element.error_words for element in bearings if isinstance(element, RingElement)}
-    return NO_MAP if "" in words else "; ".join(sorted(words))
 
 
 def law_bands(balance: Equilibrium) -> LawBands | None:

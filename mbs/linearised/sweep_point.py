@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
-from mbs.bearings.bearing_element import RingElement
-from mbs.bearings.roller_element import ring_matrices
+from mbs.bearings.bearing_element import RingElement, ring_matrices
 from mbs.linearised.modes import StateModes, UndampedModes, energy_shares, state_modes, undamped_modes
 from mbs.linearised.own_frequency import LostMode
 from mbs.linearised.tracking import Match, ModeSet, compose, match

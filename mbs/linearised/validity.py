@@ -15,10 +15,7 @@ from mbs.bearings.bearing_element import RingElement
 from mbs.linearised.dynamic import element_dynamic_stiffness
 from mbs.model.elements import Input
 from mbs.model.equilibrium import Equilibrium
-from mbs.model.relaxation import Films
-
-NOTABLE = 0.05
-"""Error of the dynamic stiffness of a bearing from which on it is told and shaded."""
+from mbs.model.relaxation import NOTABLE, Films
 
 _PLACES = np.array([0.1, 0.3, 1.0, 3.0, 10.0, 30.0])
 _WITHIN = np.array([4e-4, 2.5e-3, 1.5e-2, 3.1e-2, 4.1e-2, 7.9e-2])

@@ -21,6 +21,9 @@ from ehdmaps.arrays import ComplexArray, FloatArray
 Films = Literal["slow", "memory"]
 """Whether films have stiffness and damping of slow motion at any frequency, or relax."""
 
+NOTABLE = 0.05
+"""Error of the dynamic stiffness of a bearing from which on it is told and shaded."""
+
 DEFAULT_FILMS: Films = "memory"
 """Which films linear analyses have where none are asked for."""
 

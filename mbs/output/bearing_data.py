@@ -7,21 +7,23 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from ehdmaps.outputs import MARK, TABLE, Kind, write_text
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.roughness import Surface
-from mbs.analyses.bearing_point import BearingPoint
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.films import SIDES
+from mbs.bearings.point import BearingPoint
 from mbs.bearings.state import BearingState
-from mbs.output.results import RESULT, described
+from mbs.output.files import RESULT, described
 from mbs.scene.contact_laws import surface_label
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 WIDE_RANGE = 20.0
 """A range of loads whose end is further above its beginning is spaced, and drawn, in the logarithm."""
@@ -126,6 +128,8 @@ def bearing_dataset(description: BearingDescription, points: Points) -> xr.Datas
     points : sequence of sequence of BearingPoint
         Points by load, then by speed.
     """
+    import xarray as xr  # a third of a second, which points for people do not need
+
     dims = ("load", "speed")
     rows = [[bearing_row(point, description.roughness) for point in line] for line in points]
     variables: dict[str, Any] = {

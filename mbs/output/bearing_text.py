@@ -7,34 +7,19 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from ehdmaps.maps.rough_films import OVERLAP
-from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.units import DAMPER, FILM, PRESSURE, RPM, SPRING, TEMPERATURE
-from mbs.analyses.bearing_point import BearingPoint
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.films import SIDES
-from mbs.bearings.rolling_loss import RollingLoss
+from mbs.bearings.point import BearingPoint
 from mbs.output.bearing_data import BearingDescription, Points, bearing_row
-from mbs.output.state_text import state_words
+from mbs.output.state_text import flooded_note, loss_words, state_words
 from mbs.scene.contact_laws import surface_label
 from mbs.scene.fields import FORCE, MICROMETRE
-
-FLOODED_NOTE = (
-    "note: all contacts are taken as flooded, so that idle rollers drag too; --supply gives them less oil, such as "
-    "--supply 'oil bath'"
-)
-"""What is said beside the rolling torque of flooded bearings."""
 
 _PLACES = 11
 
 REGIMES = ((1.0, "boundary: the surfaces touch"), (3.0, "mixed: asperities touch"), (math.inf, "full film"))
 """What is usually said of Lambda below these values."""
-
-STIFFNESSES = "N/um, N/urad; N m/um, N m/urad"
-"""Units of a stiffness matrix on forces and moments: one factor from SI, that of `SPRING`."""
-
-DAMPINGS = "N s/mm, N s/mrad; N m s/mm, N m s/mrad"
-"""Those of a damping matrix, with the factor of `DAMPER`."""
 
 
 def bearing_text(description: BearingDescription, points: Points) -> list[str]:
@@ -118,32 +103,11 @@ def _share_words(point: BearingPoint, description: BearingDescription) -> str:
     if math.isnan(share):
         return ""
     words = f"; the film carries {share:.0%} of the load of the most loaded roller"
-    return f"{words}\n  {OVERLAP}" if overlap else words
-
-
-def loss_words(loss: RollingLoss) -> str:
-    """What rolling costs in a bearing."""
-    if math.isnan(loss.total):
-        return "rolling torque: none, no map with rolling forces"
-    words = f"rolling torque {1e3 * loss.torque:.4g} N mm, power {loss.total:.4g} W"
-    if not loss.total:
+    if not overlap:
         return words
-    return f"{words}, {loss.idle:.0%} of it in idle rollers (films only: no flanges, cage, seals, churning)"
+    from ehdmaps.maps.rough_films import OVERLAP
 
-
-def flooded_note(torque: float, supplies: Iterable[OilSupply]) -> list[str]:
-    """A line on the rolling torque of bearings that are flooded all round, and on what to do; else none.
-
-    Parameters
-    ----------
-    torque : float
-        The largest rolling torque that is shown [N m]; NaN where none is known.
-    supplies : iterable of OilSupply
-        Oil supplies of the bearings.
-    """
-    if not torque > 0.0 or not any(supply.flooded for supply in supplies):
-        return []
-    return [FLOODED_NOTE]
+    return f"{words}\n  {OVERLAP}"
 
 
 def regime(film_parameter: float) -> str:

@@ -10,8 +10,8 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import ScalarFormatter
 
 from ehdmaps.figures import SHADE, SHADE_ALPHA, typeset, write_heading
-from mbs.analyses.case import clearance_text, temperature_text
-from mbs.linearised.validity import NOTABLE
+from mbs.model.relaxation import NOTABLE
+from mbs.output.model_text import clearance_text, temperature_text
 from mbs.scene.assembly import Model
 
 _SIZE = (9.0, 5.5)

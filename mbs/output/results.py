@@ -3,37 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
 from ehdmaps.arrays import ComplexArray, FloatArray
-from ehdmaps.outputs import MADE_AS, dataset_kind, written_aside
-from ehdmaps.provenance import code_hash
-from ehdmaps.version import version
-from mbs.bearings.bearing_element import RingElement
-from mbs.bearings.contact_report import BearingContacts
+from mbs.bearings.bearing_element import RingElement, error_words, ring_matrices
 from mbs.bearings.films import SIDES
-from mbs.bearings.roller_element import ring_matrices
-from mbs.bearings.rolling_loss import RollingLoss
-from mbs.linearised.bands import ModeBands, error_words
-from mbs.linearised.film_law import FilmLawPart
-from mbs.linearised.linear import StateSpace
-from mbs.linearised.modes import Modes
 from mbs.model.body import FREEDOMS
 from mbs.model.elements import Input, Sensor
-from mbs.model.equilibrium import Equilibrium
 from mbs.model.system import System
-from mbs.transient.run import Recording
 
-SCHEMA_VERSION = 1
-
-_RESULT = "result of mbs"
-RESULT = dataset_kind("a result of mbs", _RESULT)
-"""What -o writes, but where a command says otherwise."""
+if TYPE_CHECKING:
+    from mbs.bearings.contact_report import BearingContacts
+    from mbs.bearings.rolling_loss import RollingLoss
+    from mbs.linearised.linear import StateSpace
+    from mbs.linearised.modes import Modes
+    from mbs.model.equilibrium import Equilibrium
+    from mbs.transient.run import Recording
 
 BAND = "band, either way, by the errors that the map states, of"
 """How datasets call the bands; they are NaN where none is stated."""
@@ -121,17 +110,17 @@ def modes_dataset(found: Modes, balance: Equilibrium) -> xr.Dataset:
         for name, part in (("real", found.shapes.real), ("imaginary", found.shapes.imag))
     )
     none = np.full(found.frequency.shape, np.nan)
-    bands = ModeBands(none, none) if found.bands is None else found.bands
-    law = FilmLawPart(none, none) if found.film_law is None else found.film_law
+    frequency_band, damping_band = (none, none) if found.bands is None else found.bands
+    frequency_law, damping_law = (none, none) if found.film_law is None else found.film_law
     variables = {
         "frequency": ("mode", found.frequency, {"units": "Hz", "long_name": "|eigenvalue|/(2 pi)"}),
         "damping_ratio": ("mode", found.damping_ratio, {"units": "1", "long_name": "damping ratio"}),
-        "frequency_error": ("mode", bands.frequency, {"units": "Hz", "long_name": f"{BAND} the frequency"}),
-        "damping_ratio_error": ("mode", bands.damping_ratio, {"units": "1", "long_name": f"{BAND} the damping ratio"}),
-        "frequency_film_law": ("mode", law.frequency, {"units": "Hz", "long_name": f"{LEFT_OUT} of the frequency"}),
+        "frequency_error": ("mode", frequency_band, {"units": "Hz", "long_name": f"{BAND} the frequency"}),
+        "damping_ratio_error": ("mode", damping_band, {"units": "1", "long_name": f"{BAND} the damping ratio"}),
+        "frequency_film_law": ("mode", frequency_law, {"units": "Hz", "long_name": f"{LEFT_OUT} of the frequency"}),
         "damping_ratio_film_law": (
             "mode",
-            law.damping_ratio,
+            damping_law,
             {"units": "1", "long_name": f"{LEFT_OUT} of the damping ratio"},
         ),
         "eigenvalue_real": ("mode", found.eigenvalues.real, {"units": "1/s", "long_name": "decay"}),
@@ -244,25 +233,6 @@ def run_dataset(system: System, run: Recording) -> xr.Dataset:
     }
     attributes = {"steps": run.steps, "steps_halved": run.halved, "newton_iterations": run.iterations}
     return xr.Dataset(variables, coords={**_coordinates(system), **coordinates}, attrs=attributes)
-
-
-def write_dataset(dataset: xr.Dataset, path: Path) -> None:
-    """Write a result, by the rule of all files that are written.
-
-    Raises
-    ------
-    InputError
-        If it cannot be written, or something else stands there.
-    """
-    with written_aside(path, RESULT) as aside:
-        dataset.assign_attrs({MADE_AS: _RESULT}).to_netcdf(aside, engine="netcdf4", mode="w")
-
-
-def described(dataset: xr.Dataset, **attributes: str) -> xr.Dataset:
-    """The dataset with its provenance: scene, law and versions."""
-    return dataset.assign_attrs(
-        schema_version=SCHEMA_VERSION, ehdmaps_version=version(), code_hash=code_hash(), **attributes
-    )
 
 
 def _by_kind(system: System, values: FloatArray, dims: tuple[str, ...], order: str) -> dict[str, Any]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -13,9 +13,15 @@ from ehdmaps.exports.matlab_file import ascii_text, write_matlab
 from ehdmaps.outputs import MARK
 from ehdmaps.units import RPM
 from ehdmaps.version import version
-from mbs.analyses.case import clearance_text, temperature_text
-from mbs.analyses.lsa import LsaResult
 from mbs.linearised.linear import sensor_unit
+from mbs.output.model_text import clearance_text, temperature_text
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from mbs.linearised.linear import StateSpace
+    from mbs.model.equilibrium import Equilibrium
+    from mbs.scene.assembly import Model
 
 _RATES = {"m": "m/s", "rad": "rad/s", "1": "1/s"}
 
@@ -30,14 +36,38 @@ _NOTES = (
 )
 
 
-def write_spaces(path: Path, found: Sequence[tuple[str, LsaResult]]) -> None:
+class LinearSystem(Protocol):
+    """What a state space is written of: the result of `mbs lsa`."""
+
+    @property
+    def model(self) -> Model:
+        """Scene with its law."""
+        ...
+
+    @property
+    def balance(self) -> Equilibrium:
+        """Equilibrium at which the system was linearised."""
+        ...
+
+    @property
+    def space(self) -> StateSpace:
+        """State space from the inputs of the scene to its sensors."""
+        ...
+
+    @property
+    def dataset(self) -> xr.Dataset:
+        """The result, with the names of its states."""
+        ...
+
+
+def write_spaces(path: Path, found: Sequence[tuple[str, LinearSystem]]) -> None:
     """Write the struct array `space`, one struct a law.
 
     Parameters
     ----------
     path : Path
         The file; look at it with `check_outputs` and `KIND` of `ehdmaps.exports.matlab_file` first.
-    found : sequence of (str, LsaResult)
+    found : sequence of (str, LinearSystem)
         Label and result of each law.
 
     Raises
@@ -54,7 +84,7 @@ def write_spaces(path: Path, found: Sequence[tuple[str, LsaResult]]) -> None:
     write_matlab(path, {"space": array}, "use -o for a netCDF file")
 
 
-def _struct(label: str, result: LsaResult) -> dict[str, Any]:
+def _struct(label: str, result: LinearSystem) -> dict[str, Any]:
     """Return the fields of one state space."""
     model, balance, space, scene = result.model, result.balance, result.space, result.model.scene
     units = list(balance.system.units)

@@ -1,13 +1,27 @@
-"""Temperatures, clearances and heat of bearings in words."""
+"""Bearings in words: temperatures, clearances, heat, what rolling costs, and the units of their matrices."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable
 
+from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.units import TEMPERATURE
+from mbs.bearings.rolling_loss import RollingLoss
 from mbs.bearings.state import BearingHeat, BearingState
 from mbs.scene.fields import MICROMETRE
+
+FLOODED_NOTE = (
+    "note: all contacts are taken as flooded, so that idle rollers drag too; --supply gives them less oil, such as "
+    "--supply 'oil bath'"
+)
+"""What is said beside the rolling torque of flooded bearings."""
+
+STIFFNESSES = "N/um, N/urad; N m/um, N m/urad"
+"""Units of a stiffness matrix on forces and moments: one factor from SI, that of `SPRING`."""
+
+DAMPINGS = "N s/mm, N s/mrad; N m s/mm, N m s/mrad"
+"""Those of a damping matrix, with the factor of `DAMPER`."""
 
 
 def state_lines(states: Iterable[BearingState]) -> list[str]:
@@ -61,3 +75,28 @@ def _heat(heat: BearingHeat) -> str:
         if value
     ]
     return f"friction {heat.friction:.4g} W{added}; {', '.join(ways) or 'no heat flows'}; {heat.left:.1g} W left"
+
+
+def loss_words(loss: RollingLoss) -> str:
+    """What rolling costs in a bearing."""
+    if math.isnan(loss.total):
+        return "rolling torque: none, no map with rolling forces"
+    words = f"rolling torque {1e3 * loss.torque:.4g} N mm, power {loss.total:.4g} W"
+    if not loss.total:
+        return words
+    return f"{words}, {loss.idle:.0%} of it in idle rollers (films only: no flanges, cage, seals, churning)"
+
+
+def flooded_note(torque: float, supplies: Iterable[OilSupply]) -> list[str]:
+    """A line on the rolling torque of bearings that are flooded all round, and on what to do; else none.
+
+    Parameters
+    ----------
+    torque : float
+        The largest rolling torque that is shown [N m]; NaN where none is known.
+    supplies : iterable of OilSupply
+        Oil supplies of the bearings.
+    """
+    if not torque > 0.0 or not any(supply.flooded for supply in supplies):
+        return []
+    return [FLOODED_NOTE]

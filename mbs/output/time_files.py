@@ -10,7 +10,7 @@ from ehdmaps.errors import InputError
 from ehdmaps.extras import lacking
 from ehdmaps.outputs import TABLE, Output
 from mbs.modal.uff import UFF
-from mbs.output.results import RESULT, described, write_dataset
+from mbs.output.files import RESULT, described, write_dataset
 from mbs.timedata.csv_file import read_csv, write_csv
 from mbs.timedata.netcdf_file import read_netcdf, signal_variables
 from mbs.timedata.records import TimeData, TimeRecord

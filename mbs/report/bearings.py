@@ -13,12 +13,12 @@ from ehdmaps.report.markup import Markup, joined, tag
 from ehdmaps.report.numbers import number, shown
 from ehdmaps.report.tables import pairs, table
 from ehdmaps.units import DAMPER, FILM, PRESSURE, SPEED, SPRING
-from mbs.analyses.rings import ring_motions
+from mbs.bearings.bearing_element import ring_matrices
 from mbs.bearings.films import ContactState
-from mbs.bearings.roller_element import ring_matrices
 from mbs.bearings.roller_loads import RollerLoads
-from mbs.output.bearing_text import DAMPINGS, STIFFNESSES, loss_words
+from mbs.output.state_text import DAMPINGS, STIFFNESSES, loss_words
 from mbs.report.examination import Examination
+from mbs.scene.assembly import ring_motions
 from mbs.scene.fields import FORCE
 
 _SHOWN = (1, 2, 4, 5)

@@ -20,7 +20,7 @@ from ehdmaps.report.markup import Markup, joined, tag
 from ehdmaps.report.numbers import number, shown
 from ehdmaps.units import RPM
 from mbs.linearised.sweep_result import Sweep
-from mbs.output.results import RESULT
+from mbs.output.files import RESULT
 from mbs.scene.fields import HERTZ
 
 LEAST_SHARE = 0.05

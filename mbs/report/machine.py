@@ -12,18 +12,17 @@ from ehdmaps.report.markup import Markup, joined, tag
 from ehdmaps.report.numbers import number, shown
 from ehdmaps.report.tables import pairs, table
 from ehdmaps.units import FILM, LENGTH, PRESSURE, RPM
-from mbs.analyses.case import clearance_text, temperature_text, weight_text
 from mbs.analyses.film_errors import film_errors
-from mbs.analyses.rings import ring_motions
-from mbs.commands.common import outside_at
-from mbs.commands.reach import fade_lines
-from mbs.linearised.validity import NOTABLE
+from mbs.analyses.reach import fade_lines, outside_at
 from mbs.model.elements import GROUND
-from mbs.output.bearing_text import flooded_note, regime
+from mbs.model.relaxation import NOTABLE
+from mbs.output.bearing_text import regime
+from mbs.output.model_text import clearance_text, temperature_text, weight_text
 from mbs.output.modes_text import kinds
-from mbs.output.state_text import state_lines
+from mbs.output.state_text import flooded_note, state_lines
 from mbs.report.bearings import loaded
 from mbs.report.examination import Examination
+from mbs.scene.assembly import ring_motions
 from mbs.scene.contact_laws import supply_words
 from mbs.scene.fields import FORCE, HERTZ
 from mbs.scene.oils import by_oil

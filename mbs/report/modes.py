@@ -8,7 +8,7 @@ from ehdmaps.report.markup import Markup, joined, tag
 from ehdmaps.report.numbers import number, shown
 from ehdmaps.report.tables import table
 from mbs.analyses.modes import ModesResult
-from mbs.commands.common import band_lines, clean, film_law_line, film_lines, free_words
+from mbs.output.model_text import band_lines, clean, film_law_line, film_lines, free_words
 from mbs.output.modes_text import kinds, share_words
 from mbs.scene.fields import HERTZ
 

@@ -12,8 +12,8 @@ from ehdmaps.jobs.map_report import accuracy, curve_sections
 from ehdmaps.jobs.plot import what_is_mapped
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.report.page import Section
-from mbs.analyses.rings import ring_motions
 from mbs.report.examination import Examination
+from mbs.scene.assembly import ring_motions
 
 
 @dataclass(frozen=True, eq=False)

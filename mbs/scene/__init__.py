@@ -5,8 +5,8 @@ The modules in the order of the data:
 =============  ====================================================================================
 reader         a scene file becomes a `Scene`; nothing is computed
 fields         how the values of a file are read: places, vectors, directions
-shaft, ...     readers of one kind of table each: `flexible`, `attached`, `bearings`, `profiles`,
-               `gears`, `sweep`, `campbell`
+shaft, ...     one kind of table each, how it is read and built: `flexible`, `bearings`, `gears`;
+               `profiles`, `runs` (run-up by a drive, sweep, Campbell diagram)
 specs          what a scene says of bodies and bearings: plain frozen values
 scene          the scene itself; it may be made of specs, without a file
 kinds          the machine elements that a scene may have, one row each

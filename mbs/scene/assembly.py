@@ -6,19 +6,18 @@ import dataclasses
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeAlias, cast
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.roughness import Surface
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.films import FilmSource
 from mbs.bearings.state import BearingState
-from mbs.gears.gear import GearMesh
 from mbs.model.elements import Operation
 from mbs.model.places import Places
 from mbs.model.relaxation import Films
@@ -35,7 +34,11 @@ from mbs.scene.scene import Scene
 from mbs.scene.surroundings import Built, Surroundings
 from mbs.scene.turning import turning_loads, with_places
 
-GivenMaps = EHDMap | str | Path | Sequence[EHDMap | str | Path] | MapSet | None
+if TYPE_CHECKING:
+    from ehdmaps.maps.emap import EHDMap
+    from mbs.gears.gear import GearMesh
+
+GivenMaps: TypeAlias = "EHDMap | str | Path | Sequence[EHDMap | str | Path] | MapSet | None"
 """What `assemble` takes as maps."""
 
 
@@ -191,7 +194,7 @@ def assemble(
         system=system,
         law=laws.words,
         bearings=bearings,
-        gears=tuple(_shown(built, "gears", GearMesh)),
+        gears=cast("tuple[GearMesh, ...]", tuple(part.shown for part in built["gears"])),
         films={
             entry.name: laws.films(entry.bearing, laws.supply(spec))
             for entry, spec in zip(bearings, scene.bearings, strict=True)
@@ -208,8 +211,10 @@ def _opened(given: GivenMaps) -> MapSet | None:
     """Maps, or the paths of their files, as a set."""
     if given is None or isinstance(given, MapSet):
         return given
-    several = [given] if isinstance(given, (EHDMap, str, Path)) else given
-    return MapSet([entry if isinstance(entry, EHDMap) else open_map(entry) for entry in several])
+    from ehdmaps.maps.emap import open_map
+
+    several = given if isinstance(given, Sequence) and not isinstance(given, str) else [given]
+    return MapSet([open_map(entry) if isinstance(entry, (str, Path)) else entry for entry in several])
 
 
 def law_attributes(model: Model) -> Mapping[str, str]:
@@ -333,3 +338,8 @@ def _idle_problems(system: System, scene: Scene, turning: Sequence[TurningLoad])
                 "in which the body is free"
             )
     return problems
+
+
+def ring_motions(model: Model, displacement: FloatArray) -> list[tuple[BearingElement, FloatArray]]:
+    """Each bearing with the displacement (6,) of its inner ring against the outer one."""
+    return [(bearing, model.system.relative(bearing.inner, bearing.outer) @ displacement) for bearing in model.bearings]

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from mbs.gears.gear import GearMesh
 from mbs.gears.pair import GearPair
 from mbs.model.elements import Operation
 from mbs.model.system import System
@@ -45,6 +44,8 @@ def axial_problems(system: System, pairs: Sequence[GearPair], operation: Operati
 
 def _free_along_x(system: System, body: str, operation: Operation) -> bool:
     """Whether a body moves along x, and neither spring nor bearing resists."""
+    from mbs.gears.gear import GearMesh
+
     own = np.array([name.partition(".")[0] == body and name.endswith(".x") for name in system.coordinates])
     moved = own.astype(np.float64)
     if not np.any(moved) or _resists(system.stiffness, moved):

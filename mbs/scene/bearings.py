@@ -111,16 +111,17 @@ def build_bearing(spec: BearingSpec, surroundings: Surroundings) -> Built:
     from mbs.bearings.bearing import Bearing
     from mbs.bearings.bearing_element import BearingElement
     from mbs.bearings.bearing_force import BearingForce
-    from mbs.bearings.memory_element import MemoryBearing
-    from mbs.bearings.memory_rollers import MemoryRollers
-    from mbs.bearings.roller_contacts import RollerContacts
-    from mbs.bearings.roller_element import RollerElement, roller_body
     from mbs.scene.surroundings import Built
 
     bearing = Bearing(spec.geometry, spec.profile, spec.slices, coupled=spec.slices_coupled)
     laws = surroundings.laws.of(bearing, surroundings.laws.supply(spec))
     memory = surroundings.laws.memory == "memory"
-    plain = (MemoryBearing if memory and not spec.rollers_as_bodies else BearingElement)(
+    kind = BearingElement
+    if memory and not spec.rollers_as_bodies:
+        from mbs.bearings.memory_element import MemoryBearing
+
+        kind = MemoryBearing
+    plain = kind(
         name=spec.name,
         inner=spec.inner,
         outer=spec.outer,
@@ -134,6 +135,13 @@ def build_bearing(spec: BearingSpec, surroundings: Surroundings) -> Built:
     )
     if not spec.rollers_as_bodies:
         return Built(plain, plain)
+    from mbs.bearings.roller_contacts import RollerContacts
+    from mbs.bearings.roller_element import RollerElement, roller_body
+
     body = roller_body(f"{spec.name}_rollers", bearing)
     contacts = RollerContacts(bearing, *laws.single)
-    return Built((MemoryRollers if memory else RollerElement)(plain, contacts, body.name), plain, (body,))
+    if not memory:
+        return Built(RollerElement(plain, contacts, body.name), plain, (body,))
+    from mbs.bearings.memory_rollers import MemoryRollers
+
+    return Built(MemoryRollers(plain, contacts, body.name), plain, (body,))

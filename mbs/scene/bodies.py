@@ -13,13 +13,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ehdmaps.errors import InputError
-from mbs.flexible.attached import attach
-from mbs.flexible.kept import file_digest, plan_key, reduced_body
-from mbs.flexible.orientation import rotation_of
-from mbs.flexible.plan import ReductionPlan, check_reduced
-from mbs.flexible.reduced_body import ReducedBody, to_body
-from mbs.flexible.reduced_file import read_reduced
-from mbs.flexible.shaft import flexible_shaft
 from mbs.model.body import Body, rigid_body
 from mbs.scene.specs import BodySpec, FlexibleSpec, RigidSpec, ShaftSpec
 
@@ -73,11 +66,14 @@ def build_body(spec: BodySpec) -> Body:
         return spec
     if not isinstance(spec, FlexibleSpec):
         return _built(_ByContent(repr(spec), spec))
+    from mbs.scene.flexible import build_flexible, content_of
+
     try:
-        if isinstance(spec.source, ReducedBody):
-            return _flexible(spec)
+        content = content_of(spec.source)
+        if content is None:
+            return build_flexible(spec)
         rest = repr(dataclasses.replace(spec, source=Path()))
-        return _built(_ByContent(f"{_content(spec.source)} {rest}", spec))
+        return _built(_ByContent(f"{content} {rest}", spec))
     except InputError as error:
         raise InputError([f"flexible body {spec.name!r}: {problem}" for problem in error.problems]) from error
 
@@ -97,42 +93,14 @@ def _built(given: _ByContent) -> Body:
     if isinstance(spec, RigidSpec):
         body = rigid_body(spec.name, spec.parts, spec.freedoms, spec.position, spec.frames, spec.spin)
     elif isinstance(spec, ShaftSpec):
-        body = flexible_shaft(
-            spec.name,
-            spec.sections,
-            spec.discs,
-            spec.freedoms,
-            spec.position,
-            spec.frames,
-            spec.spin,
-            spec.largest_element,
-            spec.cutoff,
-            spec.damping_ratio,
-        )
+        from mbs.scene.shaft import build_shaft
+
+        body = build_shaft(spec)
     else:
-        body = _flexible(spec)
+        from mbs.scene.flexible import build_flexible
+
+        body = build_flexible(spec)
     shared = (body.mass, body.gyroscopic, body.damping, body.stiffness)
     for array in (*shared, *(part for frame in body.frames.values() for part in (frame.position, frame.transform))):
         array.setflags(write=False)  # several systems have it
     return body
-
-
-def _content(source: Path | ReductionPlan | ReducedBody) -> str:
-    """Hash of what is in the files of a source."""
-    if isinstance(source, ReductionPlan):
-        return plan_key(source)
-    assert isinstance(source, Path)
-    check_reduced(source)
-    return f"{source.suffix}:{file_digest(source)}"
-
-
-def _flexible(spec: FlexibleSpec) -> Body:
-    """Put a reduced body into the system, with what is fixed to it."""
-    source = spec.source
-    if isinstance(source, ReductionPlan):
-        reduced = reduced_body(source)
-    else:
-        reduced = read_reduced(source) if isinstance(source, Path) else source
-    turned = rotation_of(spec.rotation) if spec.rotation else None
-    body = to_body(reduced, spec.name, spec.position, spec.damping_ratio, rotation=turned)
-    return attach(body, spec.attached)

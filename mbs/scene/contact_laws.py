@@ -7,11 +7,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import get_args
+from typing import TYPE_CHECKING, get_args
 
 from ehdmaps.errors import InputError
-from ehdmaps.maps.emap import EHDMap
-from ehdmaps.maps.law import LawKind
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
@@ -25,9 +23,13 @@ from mbs.bearings.films import DryContacts, FilmSource, FormulaFilms, MapFilms
 from mbs.bearings.laws import DryLaw, Law
 from mbs.model.relaxation import DEFAULT_FILMS, Films
 from mbs.scene.law_file import read_law
-from mbs.scene.map_set import MapSet
-from mbs.scene.scene import Scene
-from mbs.scene.specs import BearingSpec
+
+if TYPE_CHECKING:
+    from ehdmaps.maps.emap import EHDMap
+    from ehdmaps.maps.law import LawKind
+    from mbs.scene.map_set import MapSet
+    from mbs.scene.scene import Scene
+    from mbs.scene.specs import BearingSpec
 
 FILM_WORDS: dict[Films, str] = {"memory": "films with memory", "slow": "slow films"}
 """How people are told that films relax, or that they have stiffness and damping of slow motion at any frequency."""

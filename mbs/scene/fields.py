@@ -4,23 +4,29 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.jobs.table import Table
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.units import LENGTH, Display, short
 from mbs.model.body import FREEDOMS, Inertia
 from mbs.model.elements import GROUND
+
+if TYPE_CHECKING:
+    from ehdmaps.jobs.table import Table
 
 FORCE = Display("N")
 MOMENT = Display("N m")
 ACCELERATION = Display("m/s^2")
 MICROMETRE = Display("um", 1e6)
 MILLISECOND = Display("ms", 1e3)
+MICROSECOND = Display("us", 1e6)
+
+LONGEST_FILE = 1_000_000
+"""Bytes of a scene file."""
 HERTZ = Display("Hz")
 DEGREE = Display("deg", 180.0 / math.pi)
 

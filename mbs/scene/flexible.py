@@ -1,14 +1,23 @@
-"""How a flexible body is read: a reduced file, or matrices, mesh and interfaces. No file of it is read here."""
+"""Bodies of finite elements of a scene: a table [[flexible]] is read, and becomes a body.
+
+The table names a reduced file, or matrices, mesh and interfaces; no file of it is read before the body is built.
+"""
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from importlib import resources
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+from ehdmaps.errors import InputError
+from ehdmaps.inputs import read_text
+from ehdmaps.jobs import toml_text
 from ehdmaps.jobs.table import Table
 from ehdmaps.units import LENGTH, short
-from mbs.flexible.orientation import AXES, Turn
+from mbs.flexible.attached import Attached, attach
+from mbs.flexible.orientation import AXES, Turn, rotation_of
 from mbs.flexible.plan import (
     FORMATS,
     KINDS,
@@ -24,11 +33,13 @@ from mbs.flexible.plan import (
     Triple,
     check_reduced,
 )
-from mbs.model.body import FREEDOMS
+from mbs.model.body import FREEDOMS, Body
 from mbs.scene import fields
-from mbs.scene.attached import read_attached
-from mbs.scene.fields import DEGREE, HERTZ
+from mbs.scene.fields import DEGREE, HERTZ, LONGEST_FILE
 from mbs.scene.specs import HIGHEST_DAMPING_RATIO, ORIGIN, FlexibleSpec
+
+if TYPE_CHECKING:
+    from mbs.flexible.reduced_body import ReducedBody
 
 _SURFACES = ("nodes", "cylinder", "plane")
 _AXES: dict[str, Triple] = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
@@ -257,3 +268,107 @@ def _point(section: Table, key: str) -> PlannedPoint | None:
             return None
         return value
     return fields.lengths(section, key, value)
+
+
+def content_of(source: Path | ReductionPlan | ReducedBody) -> str | None:
+    """Hash of what is in the files of a source; None of a reduced body that is at hand.
+
+    Parameters
+    ----------
+    source : Path, ReductionPlan or ReducedBody
+        What a body is made from.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be read.
+    """
+    from mbs.flexible.kept import file_digest, plan_key
+
+    if isinstance(source, ReductionPlan):
+        return plan_key(source)
+    if not isinstance(source, Path):
+        return None
+    check_reduced(source)
+    return f"{source.suffix}:{file_digest(source)}"
+
+
+def build_flexible(spec: FlexibleSpec) -> Body:
+    """The body of a reduced body, with what is fixed to it.
+
+    Parameters
+    ----------
+    spec : FlexibleSpec
+        The body.
+
+    Raises
+    ------
+    InputError
+        With everything that does not fit together.
+    AnalysisError
+        If the modes or static shapes of a reduction are not found.
+    """
+    from mbs.flexible.kept import reduced_body  # with finite elements; reading stays quick
+    from mbs.flexible.reduced_body import to_body
+    from mbs.flexible.reduced_file import read_reduced
+
+    source = spec.source
+    if isinstance(source, ReductionPlan):
+        reduced = reduced_body(source)
+    else:
+        reduced = read_reduced(source) if isinstance(source, Path) else source
+    turned = rotation_of(spec.rotation) if spec.rotation else None
+    body = to_body(reduced, spec.name, spec.position, spec.damping_ratio, rotation=turned)
+    return attach(body, spec.attached)
+
+
+def read_attached(section: Table) -> tuple[Attached, ...] | None:
+    """Read hollow cylinders on frames; none if the key is absent, None where a problem was noted.
+
+    Parameters
+    ----------
+    section : Table
+        The table of the body.
+    """
+    given = section.get("attached")
+    if "attached" not in section:
+        return ()
+    if not isinstance(given, list):
+        section.note("attached", f"got {short(given)}; allowed: a list of tables with at, from, to, diameter")
+        return None
+    before = len(section.problems)
+    parts = []
+    for index, values in enumerate(given):
+        table = Table(values, f"{section.where} attached[{index}]", section.problems)
+        frame = table.get("at", 'the name of a frame, such as "left"')
+        inertia = fields.cylinder(table)
+        if "at" in table and not isinstance(frame, str):
+            table.note("at", f"got {short(frame)}; allowed: the name of a frame")
+        elif inertia is not None and "at" in table:
+            parts.append(Attached(frame, inertia))
+    return tuple(parts) if len(section.problems) == before else None
+
+
+def read_body_file(path: Path) -> ReductionPlan:
+    """Read a file that says what is reduced and how.
+
+    Parameters
+    ----------
+    path : Path
+        TOML with the keys of a `[[flexible]]` table that has matrices, at top level.
+
+    Raises
+    ------
+    InputError
+        With every problem found, each beginning with the path.
+    """
+    values = toml_text.parse(read_text(path, LONGEST_FILE, "a body file in TOML"), str(path))
+    problems: list[str] = []
+    top = Table(values, "body file", problems)
+    plan = read_reduction(top, path.parent)
+    # What is an assumption concerns the reader of the file only.
+    top.get("assumed")
+    top.close()
+    if problems or plan is None:
+        raise InputError([f"{path}: {problem}" for problem in problems])
+    return dataclasses.replace(plan, source=path)

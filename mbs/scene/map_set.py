@@ -10,14 +10,16 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from ehdmaps.errors import InputError
-from ehdmaps.maps.emap import EHDMap
-from ehdmaps.maps.schema import FILMS_READ
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.units import LENGTH
-from mbs.scene.specs import BearingSpec
+
+if TYPE_CHECKING:
+    from ehdmaps.maps.emap import EHDMap
+    from mbs.scene.specs import BearingSpec
 
 _SAME = 1e-9
 _COMPARED = ("inner_raceway_diameter", "outer_raceway_diameter", "roller_diameter", "roller_length")
@@ -135,7 +137,14 @@ class MapSet:
 def _label(emap: EHDMap) -> str:
     """By which solver a map was made, in two words."""
     attributes = emap.dataset.attrs
-    return "film table" if FILMS_READ in attributes else _LABELS.get(str(attributes.get("solver", "")), "map")
+    return "film table" if reads_table(emap) else _LABELS.get(str(attributes.get("solver", "")), "map")
+
+
+def reads_table(emap: EHDMap) -> bool:
+    """Whether the films of a map are read from the film table."""
+    from ehdmaps.maps.schema import FILMS_READ
+
+    return FILMS_READ in emap.dataset.attrs
 
 
 def as_map_set(given: EHDMap | MapSet | Sequence[EHDMap] | None) -> MapSet | None:
@@ -153,7 +162,7 @@ def as_map_set(given: EHDMap | MapSet | Sequence[EHDMap] | None) -> MapSet | Non
     """
     if given is None or isinstance(given, MapSet):
         return given
-    return MapSet((given,) if isinstance(given, EHDMap) else tuple(given))
+    return MapSet(tuple(given) if isinstance(given, Sequence) else (given,))
 
 
 def map_sets(maps: Sequence[tuple[str, EHDMap]], bearings: Sequence[BearingSpec] | None) -> list[tuple[str, MapSet]]:
@@ -296,5 +305,5 @@ def _made_for(emap: EHDMap) -> str:
 def _made_by(emap: EHDMap) -> str:
     """How a map was made."""
     attributes = emap.dataset.attrs
-    films = "films from the film table" if FILMS_READ in attributes else f"solver {attributes.get('solver', '')}"
+    films = "films from the film table" if reads_table(emap) else f"solver {attributes.get('solver', '')}"
     return films + structure_words(emap)

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ehdmaps.errors import InputError
-from ehdmaps.jobs import toml_text
-from ehdmaps.jobs.table import Table
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.profiles import CrownedProfile, TabulatedProfile
 from ehdmaps.units import LENGTH, closest, short
 from mbs.scene.fields import MICROMETRE
+
+if TYPE_CHECKING:
+    from ehdmaps.jobs.table import Table
 
 RollerProfile = str | CrownedProfile | TabulatedProfile
 """What a scene holds as the profile of rollers: "iso", "straight", or an arc or table."""
@@ -38,6 +39,8 @@ def read_profile(section: Table, geometry: BearingGeometry | None) -> RollerProf
     if not isinstance(value, dict) or len({"crown_radius", "crown_drop", "positions"} & set(value)) != 1:
         section.note("profile", f"got {short(value)}{_closest(value)}; allowed: {_ALLOWED}")
         return "iso"
+    from ehdmaps.jobs.table import Table
+
     problems: list[str] = []
     table = Table(value, "profile", problems)
     found: RollerProfile | None = None
@@ -70,6 +73,11 @@ def profile_from_text(text: str, geometry: BearingGeometry | None, problems: lis
     >>> profile_from_text('{ crown_radius = "5 m" }', None, [])
     CrownedProfile(radius=5.0, straight=0.0)
     """
+    if text in NAMES:
+        return text
+    from ehdmaps.jobs import toml_text  # the reader of files; a name needs none
+    from ehdmaps.jobs.table import Table
+
     value: object = text
     if text.lstrip().startswith("{"):
         try:

@@ -25,20 +25,13 @@ from mbs.model.drive import Drive, DrivenSpeed
 from mbs.model.elements import Input, Load, Sensor, Spring
 from mbs.model.profiles import Constant, Course, Harmonic, LoadProfile, SpeedProfile
 from mbs.scene import fields, kinds
-from mbs.scene.campbell import read_campbell
-from mbs.scene.drive import read_drive
-from mbs.scene.fields import DEGREE, FORCE, HERTZ, MICROMETRE, MILLISECOND, MOMENT, Built
-from mbs.scene.flexible import read_flexible
+from mbs.scene.fields import DEGREE, FORCE, HERTZ, LONGEST_FILE, MICROMETRE, MILLISECOND, MOMENT, Built
 from mbs.scene.matrices import MatrixSpec, read_spring
+from mbs.scene.runs import read_campbell, read_drive, read_sweep
 from mbs.scene.scene import Scene
-from mbs.scene.shaft import read_shaft
-from mbs.scene.specs import ORIGIN, BodySpec, FlexibleSpec, RigidSpec
-from mbs.scene.sweep import read_sweep
+from mbs.scene.specs import ORIGIN, BodySpec, FlexibleSpec, RigidSpec, ShaftSpec
 from mbs.scene.turning import read_excitation, read_unbalance
 from mbs.settings import CampbellSettings, RunUp, Settings
-
-LONGEST_FILE = 1_000_000
-"""Bytes of a scene file."""
 
 _FREQUENCIES = AxisRule("frequencies", "Hz", 1e-3, 1e6, HERTZ)
 _QUANTITIES = ("displacement", "velocity", "acceleration")
@@ -129,7 +122,7 @@ class _Reader:
         surface = top.optional("surface", "[surface]", read_surface, self._close)
         bodies: list[BodySpec] = [
             *self._all("bodies", self._body),
-            *self._all("shafts", read_shaft),
+            *self._all("shafts", self._shaft),
             *self._all("flexible", self._flexible),
         ]
         springs = self._all("springs", read_spring)
@@ -232,8 +225,16 @@ class _Reader:
             lambda: RigidSpec(name, parts, freedoms, position or ORIGIN, frames, spin or 0.0),
         )
 
+    def _shaft(self, section: Table, name: str) -> ShaftSpec | None:
+        """Read a flexible shaft."""
+        from mbs.scene.shaft import read_shaft
+
+        return read_shaft(section, name)
+
     def _flexible(self, section: Table, name: str) -> FlexibleSpec | None:
         """Read a body of finite elements, and what is fixed to it."""
+        from mbs.scene.flexible import read_flexible
+
         return read_flexible(section, name, self._folder)
 
     def _parts(self, section: Table) -> list[Inertia]:

@@ -1,4 +1,4 @@
-"""Reading a flexible shaft: the tables [[shafts]] of a scene."""
+"""Flexible shafts of a scene: a table [[shafts]] is read, and becomes a body."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from ehdmaps.jobs.table import Table
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.units import LENGTH, PRESSURE, Display, short
 from mbs.flexible.shaft_parts import Disc, Section
-from mbs.model.body import FREEDOMS, Inertia
+from mbs.model.body import FREEDOMS, Body, Inertia
 from mbs.scene import fields
 from mbs.scene.fields import HERTZ, Built
 from mbs.scene.specs import ORIGIN, ShaftSpec
@@ -64,6 +64,35 @@ def read_shaft(section: Table, name: str) -> ShaftSpec | None:
             largest_element=largest,
             damping_ratio=ratio or 0.0,
         ),
+    )
+
+
+def build_shaft(spec: ShaftSpec) -> Body:
+    """The body of a flexible shaft.
+
+    Parameters
+    ----------
+    spec : ShaftSpec
+        The shaft.
+
+    Raises
+    ------
+    InputError
+        With everything that does not fit together.
+    """
+    from mbs.flexible.shaft import flexible_shaft  # with its finite elements; reading stays quick
+
+    return flexible_shaft(
+        spec.name,
+        spec.sections,
+        spec.discs,
+        spec.freedoms,
+        spec.position,
+        spec.frames,
+        spec.spin,
+        spec.largest_element,
+        spec.cutoff,
+        spec.damping_ratio,
     )
 
 

@@ -17,15 +17,14 @@ from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.profiles import CrownedProfile, TabulatedProfile
 from mbs.bearings.fits import Mounting
 from mbs.bearings.heat import GivenTemperatures, HeatPaths
-from mbs.flexible.attached import Attached
-from mbs.flexible.orientation import Turn
-from mbs.flexible.plan import ReductionPlan
-from mbs.flexible.shaft_layout import shaft_problems
-from mbs.flexible.shaft_parts import Disc, Section
 from mbs.model.body import Body, Inertia, rigid_problems
 
 if TYPE_CHECKING:
+    from mbs.flexible.attached import Attached
+    from mbs.flexible.orientation import Turn
+    from mbs.flexible.plan import ReductionPlan
     from mbs.flexible.reduced_body import ReducedBody
+    from mbs.flexible.shaft_parts import Disc, Section
 
 Triple = tuple[float, float, float]
 ORIGIN: Triple = (0.0, 0.0, 0.0)
@@ -118,6 +117,8 @@ class ShaftSpec:
     damping_ratio: float = 0.0
 
     def __post_init__(self) -> None:
+        from mbs.flexible.shaft_layout import shaft_problems  # with the beams, where a scene has shafts
+
         _freeze(self, "sections", "freedoms", "discs")
         problems = shaft_problems(
             self.sections,
@@ -172,6 +173,8 @@ class FlexibleSpec:
     @property
     def files(self) -> tuple[Path, ...]:
         """All files that are read for it."""
+        from mbs.flexible.plan import ReductionPlan
+
         if isinstance(self.source, Path):
             return (self.source,)
         return self.source.files if isinstance(self.source, ReductionPlan) else ()

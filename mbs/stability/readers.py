@@ -15,7 +15,6 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import DependencyError
 from ehdmaps.stability.findings import Check
 from ehdmaps.stability.fuzzing import Reader, fuzz
-from mbs.commands.reduce import read_body_file
 from mbs.flexible.carry_out import carry_out
 from mbs.flexible.reduced_body import ReducedBody
 from mbs.flexible.reduced_file import read_reduced, write_reduced
@@ -24,6 +23,7 @@ from mbs.modal.uff import Measurement
 from mbs.modal.uff_reading import read_uff
 from mbs.modal.uff_writing import write_uff
 from mbs.scene.assembly import assemble
+from mbs.scene.flexible import read_body_file
 from mbs.scene.reader import read_scene
 
 _SCENES = ("nu308_rigid", "n1014_rigid")

@@ -36,7 +36,7 @@ from ehdmaps.maps.law import ContactLaw
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.roughness import Surface
-from mbs.analyses.bearing_point import BearingPoint, bearing_point
+from mbs.analyses.bearing_point import bearing_point
 from mbs.analyses.film_criteria import (
     TOUCHING,
     closed_contact,
@@ -52,6 +52,7 @@ from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.film_relaxation import bearing_relaxation, natural_times, relaxation_times
 from mbs.bearings.films import DryContacts
+from mbs.bearings.point import BearingPoint
 from mbs.linearised.validity import FilmError
 
 TOLERANCES = (0.05, 10.0 ** (1.0 / 20.0) - 1.0)

@@ -6,7 +6,9 @@ Scenes call jobs. Nothing imports the examples.
 from __future__ import annotations
 
 import ast
+import os
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -261,6 +263,19 @@ def test_analyses_know_no_command_line(path: Path) -> None:
     assert not [name for name in names if name.startswith(("mbs.commands", "mbs.cli", "matplotlib"))]
 
 
+BELOW = (
+    (("output",), ("mbs.analyses", "mbs.report", "mbs.commands", "mbs.cli")),
+    (("report", "stability"), ("mbs.commands", "mbs.cli")),
+)
+"""Rooms of mbs, and what of mbs stands above them: no arrow points up there."""
+
+
+@pytest.mark.parametrize(("rooms", "above"), BELOW, ids=" ".join)
+def test_rooms_know_nothing_above_them(rooms, above) -> None:
+    for path in (path for room in rooms for path in (ROOT / "mbs" / room).glob("*.py")):
+        assert [name for name in _imported(path) if name.startswith(above)] == [], path
+
+
 @pytest.mark.parametrize("path", sorted((ROOT / "mbs" / "modal").glob("*.py")), ids=lambda p: p.stem)
 def test_modal_analysis_knows_no_machine(path: Path) -> None:
     names = {name for name in _imported(path) if name.partition(".")[0] in ("mbs", "ehdmaps")}
@@ -297,3 +312,36 @@ def test_import_is_light(statement: str) -> None:
     code = f"{statement}; import sys; print([m for m in {heavy!r} if m in sys.modules])"
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
     assert result.stdout.strip() == "[]"
+
+
+BEARING = "mbs bearing NU308 --law hertz --load '5 kN' --speed '1500 rpm'"
+STATICS = "mbs statics nu308_rigid --law hertz"
+
+SOLVING = ("ehdmaps.ehl", "ehdmaps.openfoam", "ehdmaps.table")
+LATER = ("matplotlib", "xarray", "pandas", "netCDF4", "scipy.interpolate", "scipy.optimize", "scipy.sparse")
+MACHINES = ("mbs.transient", "mbs.linearised", "mbs.flexible", "mbs.spectral", "mbs.timedata", "mbs.modal")
+
+BUDGETS = (
+    ("from mbs import Bearing", 60, (*SOLVING, *LATER, *MACHINES, "ehdmaps.jobs", "ehdmaps.maps", "numba", "pint")),
+    ("from mbs.bearings import bearing_force", 75, (*SOLVING, *LATER, *MACHINES, "ehdmaps.jobs", "ehdmaps.maps.law")),
+    (BEARING, 110, (*SOLVING, *LATER, *MACHINES, "ehdmaps.jobs", "ehdmaps.maps.law", "ehdmaps.maps.emap")),
+    (STATICS, 150, (*SOLVING, *LATER, *MACHINES, "ehdmaps.jobs.job", "ehdmaps.maps.law", "ehdmaps.maps.emap")),
+    ("import ehdmaps; ehdmaps.open_map(MAP).law('series')", 85, (*SOLVING, "matplotlib", "ehdmaps.jobs", "mbs")),
+)
+"""What a question loads of our own modules at most, and what it does not need."""
+
+
+@pytest.mark.parametrize(("asked", "most", "unneeded"), BUDGETS, ids=[asked for asked, _, _ in BUDGETS])
+def test_a_question_loads_what_it_needs(asked, most, unneeded, small_map) -> None:
+    code = f"MAP = {str(small_map)!r}\n{asked}"
+    if asked.startswith("mbs "):
+        code = f"from mbs.cli import main\nassert main({shlex.split(asked)[1:]!r}) == 0"
+    code += "\nimport sys\nprint('LOADED', *sys.modules)"
+    # Kernels as Python: nothing is compiled for a test of imports.
+    environment = {**os.environ, "NUMBA_DISABLE_JIT": "1", "PYTHONWARNINGS": "ignore"}
+    command = [sys.executable, "-c", code]
+    result = subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT, env=environment)
+    loaded = result.stdout.rpartition("LOADED ")[2].split()
+    own = [name for name in loaded if name.partition(".")[0] in ("ehdmaps", "mbs")]
+    assert [name for name in loaded if any(name == part or name.startswith(f"{part}.") for part in unneeded)] == []
+    assert 0 < len(own) <= most, f"{len(own)} modules: {' '.join(own)}"

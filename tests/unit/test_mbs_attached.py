@@ -9,7 +9,7 @@ from ehdmaps.errors import InputError
 from ehdmaps.jobs.table import Table
 from mbs.flexible.attached import Attached, attach
 from mbs.model.body import Inertia, rigid_body
-from mbs.scene.attached import read_attached
+from mbs.scene.flexible import read_attached
 
 FREEDOMS = ("x", "y", "z", "theta_x", "theta_y", "theta_z")
 PART = Inertia.cylinder(-0.01, 0.02, 0.09, 0.08)

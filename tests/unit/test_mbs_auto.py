@@ -32,7 +32,7 @@ from mbs.analyses.film_criteria import (
 )
 from mbs.analyses.film_verdicts import heat_verdict, shear_verdict, visited
 from mbs.analyses.planning import Needed
-from mbs.commands.auto import read_tolerance
+from mbs.commands.auto_maps import read_tolerance
 from mbs.model.elements import Operation
 from mbs.scene.changes import with_loads
 from tests.cases.commands import run

@@ -19,8 +19,8 @@ from mbs.analyses.changed_laws import law_changes, with_changed_laws
 from mbs.analyses.lsa import LsaSettings, lsa
 from mbs.analyses.modes import modes
 from mbs.analyses.ramp import silent_run
-from mbs.commands.common import band_lines
-from mbs.linearised.bands import NO_MAP, law_bands
+from mbs.bearings.bearing_element import NO_MAP
+from mbs.linearised.bands import law_bands
 from mbs.linearised.linear import frequency_response, input_matrix, responses
 from mbs.linearised.modal_response import seen_of_loads
 from mbs.linearised.modes import state_modes, undamped_modes
@@ -28,6 +28,7 @@ from mbs.linearised.sweep_point import along_load
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.model.relaxation import Relaxation
+from mbs.output.model_text import band_lines
 from mbs.scene.assembly import assemble
 from mbs.scene.reader import read_scene
 from tests.cases.laws import dataset_of

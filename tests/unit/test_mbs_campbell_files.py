@@ -15,7 +15,7 @@ from ehdmaps.jobs.table import Table
 from mbs.analyses.reach import Fade
 from mbs.output.campbell_data import campbell_dataset
 from mbs.output.campbell_plot import Overlay, Reach, campbell_figure
-from mbs.scene.campbell import read_campbell
+from mbs.scene.runs import read_campbell
 from mbs.settings import CampbellSettings
 from mbs.spectral.campbell import run_up_spectra
 from mbs.spectral.levels import Reference

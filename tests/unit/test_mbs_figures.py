@@ -12,12 +12,10 @@ import pytest
 from matplotlib.colors import to_hex
 
 from ehdmaps.errors import InputError
-from mbs.analyses.film_errors import film_errors, notable_from
-from mbs.analyses.reach import Fade, axes_outside, fade_of, share_below
+from mbs.analyses.film_errors import film_course, film_errors, notable_from
+from mbs.analyses.reach import Fade, axes_outside, fade_lines, fade_of, outside_lines, share_below
 from mbs.bearings.bearing_force import BearingForce
 from mbs.commands import modes as modes_command
-from mbs.commands.common import film_course, film_lines
-from mbs.commands.reach import fade_lines, outside_lines
 from mbs.commands.runup import _changes
 from mbs.linearised.linear import frequency_response
 from mbs.linearised.modes import Modes, modes
@@ -25,6 +23,7 @@ from mbs.linearised.sweep import sweep
 from mbs.linearised.tracking import numbers
 from mbs.linearised.validity import FilmError, memory_error
 from mbs.model.equilibrium import equilibrium
+from mbs.output.model_text import film_lines
 from mbs.output.modes_plot import modes_figure
 from mbs.output.modes_text import kinds
 from mbs.output.page import SHADE

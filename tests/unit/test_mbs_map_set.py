@@ -23,7 +23,7 @@ from mbs import assemble
 from mbs.analyses.reach import source_of
 from mbs.bearings.bearing import Bearing
 from mbs.commands.cases import load_cases, read_compared
-from mbs.commands.common import heading
+from mbs.output.model_text import heading
 from mbs.report.examination import examined
 from mbs.report.machine import machine, warnings
 from mbs.scene.assembly import law_attributes

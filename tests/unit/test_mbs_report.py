@@ -13,7 +13,7 @@ import xarray as xr
 from ehdmaps.errors import InputError
 from mbs.bearings.roller_loads import RollerLoads
 from mbs.cli import main
-from mbs.output.results import write_dataset
+from mbs.output.files import write_dataset
 from mbs.report.bearings import roller_drawing
 from mbs.report.campbell import Lines, campbell, read_result, saved_campbell
 from mbs.scene.reader import read_scene

@@ -9,9 +9,9 @@ import pytest
 
 from ehdmaps.physics.catalogue import static_rating
 from mbs import assemble, plan, read_scene, statics
-from mbs.commands.common import heading
 from mbs.model.elements import GROUND
 from mbs.output.gear_data import gear_forces
+from mbs.output.model_text import heading
 from mbs.scene.changes import with_slices
 
 

@@ -14,11 +14,12 @@ from ehdmaps.maps import schema
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from mbs import assemble, read_scene
-from mbs.analyses.varied import VARIED, LawChoice, Subject
+from mbs.analyses.case import LawChoice, Subject
+from mbs.analyses.varied import VARIED
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.films import MapFilms
 from mbs.commands.cases import read_compared
-from mbs.output.bearing_text import FLOODED_NOTE, flooded_note
+from mbs.output.state_text import FLOODED_NOTE, flooded_note
 from mbs.scene.assembly import law_attributes
 from mbs.scene.contact_laws import ContactLaws, supply_words
 from mbs.scene.map_set import MapSet

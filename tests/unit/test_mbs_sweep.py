@@ -26,7 +26,7 @@ from mbs.output.sweep_data import RESPONSES, VARIABLES, sweep_dataset
 from mbs.output.sweep_plot import sweep_figure
 from mbs.scene.assembly import assemble
 from mbs.scene.reader import read_scene
-from mbs.scene.sweep import read_sweep
+from mbs.scene.runs import read_sweep
 from mbs.settings import SweepRange
 
 RPM = math.pi / 30.0

@@ -12,11 +12,11 @@ import pytest
 from ehdmaps.errors import InputError
 from mbs import parse_scene, read_scene
 from mbs.analyses.campbell import campbell
+from mbs.analyses.case import LawChoice, Subject
 from mbs.analyses.numerics import Numerics
 from mbs.analyses.ramp_parts import WINDOWS, ramp_of
 from mbs.analyses.sensors import looked_at
 from mbs.analyses.tolerance import drift, read_tolerance, within
-from mbs.analyses.varied import LawChoice, Subject
 from mbs.model.profiles import Advanced, Course, Harmonic, SpeedProfile
 from mbs.scene import changes
 

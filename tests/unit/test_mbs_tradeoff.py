@@ -13,9 +13,9 @@ from ehdmaps.trade.data import trade_json
 from ehdmaps.trade.text import trade_text
 from mbs import assemble, parse_scene, read_scene
 from mbs.analyses import tradeoff as analysis
+from mbs.analyses.case import LawChoice
 from mbs.analyses.linear_look import LinearReference, linear_look
 from mbs.analyses.tradeoff import TradeoffSettings, tradeoff
-from mbs.analyses.varied import LawChoice
 from mbs.cli import main
 from mbs.scene import changes
 from mbs.scene.map_set import MapSet

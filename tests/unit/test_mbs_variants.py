@@ -16,9 +16,9 @@ from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.maps.emap import EHDMap
 from mbs import assemble, campbell, read_scene
 from mbs.analyses import variants as analysis
-from mbs.analyses.case import Case
+from mbs.analyses.case import Case, LawChoice, Subject
 from mbs.analyses.variants import Variation, variants
-from mbs.analyses.varied import VARIED, LawChoice, Subject
+from mbs.analyses.varied import VARIED
 from mbs.cli import VARIED_KEYS
 from mbs.output.variants_plot import variants_figure
 from mbs.scene import changes

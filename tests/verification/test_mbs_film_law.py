@@ -19,7 +19,6 @@ from ehdmaps.maps.emap import EHDMap
 from ehdmaps.physics.lubricant import Lubricant
 from mbs.analyses.film_errors import film_errors
 from mbs.analyses.modes import modes as analysed
-from mbs.commands.common import band_lines, film_law_line, film_lines
 from mbs.commands.modes import _table
 from mbs.linearised.dynamic import element_dynamic_stiffness
 from mbs.linearised.film_law import FilmLawPart
@@ -27,6 +26,7 @@ from mbs.linearised.modes import modes
 from mbs.linearised.steady import steady_system
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
+from mbs.output.model_text import band_lines, film_law_line, film_lines
 from mbs.scene.assembly import assemble
 from mbs.scene.reader import read_scene
 from tests.cases.exact_films import ExactMachine

@@ -12,10 +12,11 @@ from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.rolling import RIGID_ROLLING_CONSTANT
 from ehdmaps.physics.solids import STEEL
 from mbs import SweepRange, SweepSettings, assemble, read_scene, statics, sweep
-from mbs.analyses.bearing_point import BearingPoint, bearing_points
+from mbs.analyses.bearing_point import bearing_points
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.films import FormulaFilms, MapFilms
 from mbs.bearings.laws import hertz
+from mbs.bearings.point import BearingPoint
 from mbs.model.elements import Operation
 from tests.cases.catalogue import skf_rolling_moment
 

@@ -14,9 +14,8 @@ import pytest
 from scipy.linalg import eigh
 
 from mbs.bearings.bearing import Bearing
-from mbs.bearings.bearing_element import BearingElement
+from mbs.bearings.bearing_element import BearingElement, ring_matrices
 from mbs.bearings.bearing_force import BearingForce
-from mbs.bearings.roller_element import ring_matrices
 from mbs.linearised.linear import frequency_response, responses
 from mbs.linearised.modes import modes, undamped_modes
 from mbs.linearised.sweep import sweep

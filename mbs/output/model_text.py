@@ -1,0 +1,227 @@
+"""A model, and what is found at it, in words: headings, temperatures, clearances, weight, bands, films.
+
+Commands, reports and figures say these things alike, by the functions here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ehdmaps.units import RPM, TEMPERATURE
+from mbs.bearings.bearing_element import error_words
+from mbs.bearings.heat import HeatPaths
+from mbs.model.relaxation import NOTABLE
+from mbs.output.state_text import state_lines
+from mbs.scene.assembly import Model
+from mbs.scene.contact_laws import FILM_WORDS, supply_words
+from mbs.scene.fields import MICROMETRE
+
+if TYPE_CHECKING:
+    from mbs.linearised.validity import FilmError
+
+ROUND_OFF = 1e-12
+"""Size below which a part or a ratio is shown as zero: round-off."""
+
+
+def clearance_text(model: Model) -> str:
+    """The diametral clearances of all bearings in words, such as ``20 um``; empty without bearings.
+
+    Parameters
+    ----------
+    model : Model
+        Those of a model in operation are its own, else those that the scene states.
+    """
+    if model.states:
+        return span([1e6 * state.clearance.operating for state in model.states], MICROMETRE.unit)
+    clearances = sorted({entry.geometry.diametral_clearance for entry in model.scene.bearings})
+    words = " stated" if any(entry.changes_in_operation for entry in model.scene.bearings) else ""
+    return ", ".join(MICROMETRE.text(value) for value in clearances) + words
+
+
+def temperature_text(model: Model) -> str:
+    """The temperatures of the raceways of all bearings in words, such as ``40 degC``.
+
+    Parameters
+    ----------
+    model : Model
+        Those of a model in operation are its own, else that of the scene.
+    """
+    if model.states:
+        raceways = [TEMPERATURE.value(kelvin) for state in model.states for kelvin in (state.inner, state.outer)]
+        return f"raceways at {span(raceways, TEMPERATURE.unit)}"
+    words = " around the bearings" if any(entry.changes_in_operation for entry in model.scene.bearings) else ""
+    return TEMPERATURE.text(model.scene.temperature) + words
+
+
+def weight_text(model: Model) -> str:
+    """Whether the weight of the bodies is in what an analysis finds, in words.
+
+    Parameters
+    ----------
+    model : Model
+        Scene with its law.
+    """
+    along = np.array(model.scene.gravity)
+    if not along.any():
+        return "without weight (no gravity in [operation])"
+    axes = [f"{'-' if value < 0.0 else ''}{name}" for name, value in zip("xyz", along, strict=True) if value]
+    words = f"along {axes[0]}" if len(axes) == 1 else f"in {', '.join(axes)}"
+    return f"with weight ({np.linalg.norm(along):.4g} m/s2 {words})"
+
+
+def span(values: Sequence[float], unit: str) -> str:
+    """The range of some values, such as "20 to 30 um".
+
+    Parameters
+    ----------
+    values : sequence of float
+        The values, in the unit.
+    unit : str
+        Unit as it is written.
+    """
+    low, high = f"{min(values):.4g}", f"{max(values):.4g}"
+    return f"{low} {unit}" if low == high else f"{low} to {high} {unit}"
+
+
+def common_supply(models: Iterable[Model]) -> str:
+    """The oil supply of all models whose law has films, for titles; empty where they differ, and without films."""
+    found = {supply_words(model.supplies) for model in models if model.supplies}
+    return f"films {found.pop()}" if len(found) == 1 else ""
+
+
+def heading(model: Model, speed: float | None = None) -> list[str]:
+    """What was analysed, and which of its numbers are assumptions."""
+    at = "" if speed is None else f"{RPM.text(speed)}, "
+    return [
+        f"{model.scene.title}: law {model.law}",
+        f"  {at}{temperature_text(model)}, clearance {clearance_text(model) or 'none'}, {weight_text(model)}; assumed: "
+        + (f"{len(model.scene.assumed)} keys of the scene, marked there" if model.scene.assumed else "nothing"),
+        *_estimated(model),
+        *(
+            f"  the weight of {name} is left out: its finite elements are held themselves, so that it bears on no "
+            "other body"
+            for name in model.system.weightless
+        ),
+        *state_lines(model.states),
+        *model.warnings,
+    ]
+
+
+def _estimated(model: Model) -> list[str]:
+    """A line for each kind of bearing whose inner geometry is an estimate."""
+    found: dict[tuple[str, str], list[str]] = {}
+    for entry in model.scene.bearings:
+        if entry.geometry.estimated:
+            found.setdefault((entry.geometry.name, entry.geometry.estimated), []).append(entry.name)
+    return [f"  {name} ({', '.join(bearings)}): {words}" for (name, words), bearings in found.items()]
+
+
+def band_lines(model: Model) -> list[str]:
+    """A line on what the bands of a result hold; none without bearings.
+
+    Parameters
+    ----------
+    model : Model
+        The model.
+    """
+    words = error_words(model.system)
+    return [f"  bands (+-): {words}"] if words else []
+
+
+def film_law_line(model: Model, known: bool) -> list[str]:
+    """A line on what films leave out of modes, and of their bands; none for laws without films, and at rest.
+
+    Parameters
+    ----------
+    model : Model
+        The model.
+    known : bool
+        Whether it is listed beside each mode.
+    """
+    if not model.scene.speed or not model.supplies:
+        return []
+    if known:
+        return [
+            "  film law: what one relaxation time of a slice leaves out of the response of the film solver, which the "
+            "map holds: true less printed, to first order; in no band"
+        ]
+    if model.memory == "slow":
+        return ["  film law: not known; films of slow motion leave out how films relax (--films memory has it)"]
+    return ["  film law: not known; the law holds no response of the film solver, and no band holds this part"]
+
+
+def clean(value: float) -> float:
+    """The value, or 0 where it is round-off: of parts and ratios.
+
+    Parameters
+    ----------
+    value : float
+        A damping ratio, or a relative change.
+    """
+    return float(value) if abs(value) > ROUND_OFF else 0.0
+
+
+def free_words(count: int) -> str:
+    """How free motions are told, which have no frequency and no damping ratio.
+
+    Parameters
+    ----------
+    count : int
+        How many there are.
+    """
+    what = "1 free motion" if count == 1 else f"{count} free motions"
+    return f"{what} at 0 Hz without strain energy, such as unloaded rollers"
+
+
+def film_lines(errors: Sequence[FilmError], frequencies: Iterable[float], words: str = "") -> list[str]:
+    """Lines on the estimated error of the films of each bearing at the highest frequency; none where there is none.
+
+    Parameters
+    ----------
+    errors : sequence of FilmError
+        Errors of the bearings.
+    frequencies : iterable of float
+        Frequencies of the result [Hz].
+    words : str
+        What follows the frequency, such as a speed.
+    """
+    highest = max(frequencies, default=0.0)
+    lines = []
+    for entry in errors:
+        if entry.at_rest:
+            lines.append(
+                f"warning: {entry.bearing}: at rest no film: the stiffness is that of dry contacts, no damping"
+            )
+        elif highest > 0.0:
+            lines.append(_film_line(entry, highest, words))
+    return lines
+
+
+def _film_line(entry: FilmError, frequency: float, words: str) -> str:
+    """A line on one bearing; a warning where the error is notable."""
+    error = entry.at(frequency)
+    line = (
+        f"{entry.bearing}: {FILM_WORDS[entry.films]}; estimated error of the dynamic stiffness along the load at "
+        f"{frequency:.5g} Hz{words}: {100.0 * error:.2g} %"
+        + (", by the response that the map holds" if entry.contacts else "")
+    )
+    if error <= NOTABLE:
+        return line
+    more = f"warning: {line}, from {entry.frequency:.4g} Hz on more than {100.0 * NOTABLE:g} %"
+    return more + ("; with --films memory films follow at their own frequency" if entry.films == "slow" else "")
+
+
+def held_lines(model: Model) -> list[str]:
+    """A line on the temperatures of a run in time, where they follow from heat.
+
+    Parameters
+    ----------
+    model : Model
+        The model of the run.
+    """
+    if not any(isinstance(bearing.thermal, HeatPaths) for bearing in model.scene.bearings):
+        return []
+    return [f"  temperatures and clearances are held at those of {RPM.text(model.scene.speed)}, of [operation]"]
