@@ -143,21 +143,42 @@ def _multipliers(row: FloatArray, first: int) -> tuple[float, float, float, floa
     return row[first], row[first + 1], row[first + 2], row[first + 3]
 
 
-@njit(error_model="numpy", fastmath={"contract", "reassoc"})
+@njit(error_model="numpy")
 def solved(found: Factorised, right: FloatArray) -> FloatArray:
     """Solve matrix z = right, both of shape (size,); infinite where the matrix is singular."""
-    size = right.size
+    factors, size = found.factors, right.size
     if found.singular:
         return np.full(size, np.inf)
-    z = np.empty(size)
+    z = np.zeros(factors.shape[0])
     for i in range(size):
-        row, total = found.factors[i], found.scale[found.order[i]] * right[found.order[i]]
-        for j in range(i):
-            total -= row[j] * z[j]
-        z[i] = total
-    for i in range(size - 1, -1, -1):
-        row, total = found.factors[i], z[i]
-        for j in range(i + 1, size):
-            total -= row[j] * z[j]
-        z[i] = total / row[i]
-    return z
+        z[i] = found.scale[found.order[i]] * right[found.order[i]]
+    for first in range(0, z.size, _BLOCK):
+        _take(factors, first, 0, first, z)
+        for i in range(first + 1, first + _BLOCK):
+            for j in range(first, i):
+                z[i] -= factors[i, j] * z[j]
+    for first in range(z.size - _BLOCK, -1, -_BLOCK):
+        end = first + _BLOCK
+        _take(factors, first, end, z.size, z)
+        for i in range(end - 1, first - 1, -1):
+            for j in range(i + 1, end):
+                z[i] -= factors[i, j] * z[j]
+            z[i] /= factors[i, i]
+    return z[:size]
+
+
+@njit(fastmath={"contract", "reassoc"})
+def _take(factors: FloatArray, first: int, begin: int, end: int, z: FloatArray) -> None:
+    """Take from four sums of z what their rows make of the unknowns from begin to end, which are known."""
+    a, b, known = factors[first, begin:end], factors[first + 1, begin:end], z[begin:end]
+    c, d = factors[first + 2, begin:end], factors[first + 3, begin:end]
+    s0 = s1 = s2 = s3 = 0.0
+    for j in range(known.size):
+        s0 += a[j] * known[j]
+        s1 += b[j] * known[j]
+        s2 += c[j] * known[j]
+        s3 += d[j] * known[j]
+    z[first] -= s0
+    z[first + 1] -= s1
+    z[first + 2] -= s2
+    z[first + 3] -= s3

@@ -185,14 +185,15 @@ def zone_width(film: float) -> float:
 @njit
 def _index(x: float, edge: float, blur: float, core: float, terms: FloatArray) -> tuple[float, float]:
     """The uniform index s at x, and ds/dx."""
-    left = math.hypot(x - edge, blur)
-    right = math.hypot(x, blur)
+    left = math.sqrt((x - edge) * (x - edge) + blur * blur)
+    right = math.sqrt(x * x + blur * blur)
     index = core * (left - right)
     slope = core * ((x - edge) / left - x / right)
     for k in range(terms.shape[1]):
         ratio = (x - terms[0, k]) / terms[1, k]
-        index += terms[2, k] * math.asinh(ratio)
-        slope += terms[2, k] / (terms[1, k] * math.sqrt(1.0 + ratio * ratio))
+        root = math.sqrt(1.0 + ratio * ratio)
+        index += math.copysign(terms[2, k] * math.log(abs(ratio) + root), ratio)  # asinh, in a third of its time
+        slope += terms[2, k] / (terms[1, k] * root)
     return index, slope
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from ehdmaps.ehl.linearisation import Linearisation
 from ehdmaps.ehl.moving_grid import linearised_profile
 from ehdmaps.ehl.newton import CONVERGED, STAGNATED
-from ehdmaps.ehl.profile import Profile, films_of, front_cell
+from ehdmaps.ehl.profile import Profile
 from ehdmaps.ehl.resolution import Resolution
 from ehdmaps.ehl.warm_response import WarmLinearisation
 from ehdmaps.physics.isotherm import log_viscosity
@@ -94,7 +94,7 @@ def assembled(
     by_offset = SECOND if starved else _offset_share(M, fine.spike is not None)
     by_response = SECOND if starved else response_share(M, L, fine.spike is not None)
     inlet = 0.0 if starved else 1.0 / resolution.inlet_length**2
-    central, minimum = films_of(fine)
+    central, minimum = fine.central_and_minimum_film
     # the coarse grid of a starved contact has the same part of its own flooded flow; films go with the layer
     scale = fine.mass_flow / coarse.mass_flow if starved else 1.0
     central_error, minimum_error = _film_errors(fine, coarse, scale, by_offset)
@@ -146,7 +146,7 @@ def _film_errors(fine: Profile, coarse: Profile, scale: float, share: float) -> 
     Behind a spike the smallest film follows the spike's place, which is found to first order, and it moves with the
     whole film, to second order.
     """
-    (central, minimum), (rough, rough_minimum) = films_of(fine), films_of(coarse)
+    (central, minimum), (rough, rough_minimum) = fine.central_and_minimum_film, coarse.central_and_minimum_film
     moved_by, narrowed = abs(scale * rough / central - 1.0), abs(scale * rough_minimum / minimum - 1.0)
     if fine.spike is None:
         return share * moved_by, share * narrowed
@@ -183,7 +183,7 @@ def tip_pressure(profile: Profile) -> float:
         A solution with a spike.
     """
     pressure, x = profile.pressure, profile.grid.x
-    cell = front_cell(profile)
+    cell = profile.front_cell
     top = max(cell - 2, 1) + int(np.argmax(pressure[max(cell - 2, 1) : cell + 2]))
     law = profile.problem.isotherm
     log_eta = float(log_viscosity(law, float(pressure[top]))[0])

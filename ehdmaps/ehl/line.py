@@ -52,6 +52,8 @@ def solve_groups(
     if _at_valley_bottom(M, L):
         resolution = replace(resolution, density=VALLEY_REFINEMENT * resolution.density)
     solution = _solve_once(problem, M, L, resolution, previous)
+    if solution.outcome == CONVERGED and (solution.loss > 0.0 or M < THIN_FILM):
+        return solution
     steps = solution.steps
     nearby = [replace(resolution, density=factor * resolution.density) for factor in OTHER_PLACES]
     others, last = (nearby, []) if problem.shear.form == LIMITING else ([], nearby)

@@ -64,6 +64,24 @@ class Response(NamedTuple):
     loss: float
 
 
+class Masses(NamedTuple):
+    """What the rate of the stored mass needs of a steady film.
+
+    Attributes
+    ----------
+    stored : StoredOil
+        Stored oil of the nodes.
+    carried : ndarray, shape (n + 1,)
+        Mass per length that a face which moves with the exit sweeps.
+    by_spike : ndarray, shape (n + 1,)
+        Stored mass per shift of the spike; zero where the grid follows none.
+    """
+
+    stored: StoredOil
+    carried: FloatArray
+    by_spike: FloatArray
+
+
 class Arrays(NamedTuple):
     """A `Linearisation` for compiled code.
 
@@ -75,31 +93,25 @@ class Arrays(NamedTuple):
         Nodes and deflection.
     exit_at : float
         Place of the exit.
-    stored : StoredOil
-        Stored oil of the nodes.
-    carried : ndarray, shape (n + 1,)
-        Mass per length that a face which moves with the exit sweeps.
-    grid_mass : ndarray, shape (n + 1,)
-        Stored mass per shift of the spike; zero where the grid follows none.
+    masses : Masses
+        What the rate of the stored mass needs.
     """
 
     found: Factorised
     x: FloatArray
     kernel: FloatArray
     exit_at: float
-    stored: StoredOil
-    carried: FloatArray
-    grid_mass: FloatArray
+    masses: Masses
 
 
 @njit
 def storage(linear: Arrays, rate: FloatArray) -> FloatArray:
     """What the time derivative adds to the equations for a rate of the unknowns, both of shape (size,)."""
     n = linear.x.size - 1
-    mass_rate = stored_mass_rate(linear.stored, linear.x, linear.kernel, linear.exit_at, rate[: n + 2])
-    mass_rate -= linear.carried * rate[n]
+    mass_rate = stored_mass_rate(linear.masses.stored, linear.x, linear.kernel, linear.exit_at, rate[: n + 2])
+    mass_rate -= linear.masses.carried * rate[n]
     if rate.size > n + 2:
-        mass_rate += linear.grid_mass * rate[n + 2]
+        mass_rate += linear.masses.by_spike * rate[n + 2]
     added = np.zeros(rate.size)
     for i in range(n):
         added[i] = -mass_rate[i]
@@ -115,14 +127,6 @@ def unit_load(linear: Arrays) -> FloatArray:
     return unit
 
 
-@njit
-def _slow(linear: Arrays) -> tuple[float, float]:
-    """H0 of the static response, and of what its storage brings about."""
-    static = solved(linear.found, unit_load(linear))
-    slow = solved(linear.found, -storage(linear, static))
-    return static[linear.x.size], slow[linear.x.size]
-
-
 @dataclass(frozen=True)
 class Linearisation:
     """The transient equations to first order about a steady solution: matrix z + storage(dz/dT) = unit dW.
@@ -133,12 +137,15 @@ class Linearisation:
         Derivative of the steady equations; size is n + 2, or n + 3 where the grid follows the spike.
     arrays : Arrays
         The same for compiled code, the matrix factorised.
+    slow : Response
+        Film compliance and loss in the limit of slow motion.
     inlet : Inlet or None
         What the place of the meniscus adds, of a starved contact. In the matrix the meniscus is held.
     """
 
     matrix: FloatArray
     arrays: Arrays
+    slow: Response
     inlet: Inlet | None = None
 
     @property
@@ -171,8 +178,7 @@ class Linearisation:
 
     def slow_response(self) -> Response:
         """Film compliance and loss in the limit of slow motion."""
-        static, slow = _slow(self.arrays)
-        return Response(compliance=-static - DRY_COMPLIANCE, loss=slow)
+        return self.slow
 
     def supplied_compliance(self) -> float:
         """Film compliance of a starved contact whose meniscus follows until it takes the layer again.
@@ -225,8 +231,12 @@ def linearised(
     """
     follows = Neighbour(grid, 0.0, 0) if neighbour is None else neighbour
     lengthened = GridShift(grid, 0.0) if longer is None else longer
-    matrix, arrays, inlet = _linearised(problem, grid, kernel, unknowns, load, follows, lengthened)
-    return Linearisation(matrix, arrays, None if longer is None else inlet)
+    matrix, found, masses, static, slow, *inlet = _linearised(
+        problem, grid, kernel, unknowns, load, follows, lengthened
+    )
+    arrays = Arrays(found, grid.x, kernel, float(unknowns[-2]), masses)
+    response = Response(compliance=-static - DRY_COMPLIANCE, loss=slow)
+    return Linearisation(matrix, arrays, response, None if longer is None else Inlet(*inlet))
 
 
 @njit
@@ -238,15 +248,15 @@ def _linearised(
     load: float,
     neighbour: Neighbour,
     longer: GridShift,
-) -> tuple[FloatArray, Arrays, Inlet]:
-    """Matrix, its factors with all that storage needs, and what a longer inlet does; a shift of zero is no shift."""
+) -> tuple[FloatArray, Factorised, Masses, float, float, FloatArray, FloatArray]:
+    """Matrix, factors, masses, H0 of the static and of the next response, and the `Inlet`; a shift of zero is none."""
     size = unknowns.size
     n = size - 2
     here, jacobian = np.empty(size), np.empty((size, size))
     residual(problem, grid.x, grid.step, grid.face_step, kernel, unknowns, load, here, jacobian)
     mass, carried = stored_mass(problem, grid.x, grid.step, kernel, unknowns)
     stored = stored_oil(problem, grid.x, grid.step, kernel, unknowns)
-    matrix, by_spike, by_length = jacobian, np.zeros(n + 1), Inlet(np.zeros(size), np.zeros(n + 1))
+    matrix, by_spike, longer_residual, longer_mass = jacobian, np.zeros(n + 1), np.zeros(size), np.zeros(n + 1)
     if neighbour.shift != 0.0:
         by_grid, by_spike = _by_grid(
             problem, grid, unknowns, load, here, mass, carried, neighbour.grid, neighbour.shift
@@ -257,13 +267,18 @@ def _linearised(
             matrix[i, size] = by_grid[i]
         matrix[size, neighbour.node - 1] = 1.0
     if longer.shift != 0.0:
-        by_length = Inlet(*_by_grid(problem, grid, unknowns, load, here, mass, carried, longer.grid, longer.shift))
+        longer_residual, longer_mass = _by_grid(
+            problem, grid, unknowns, load, here, mass, carried, longer.grid, longer.shift
+        )
         # the length is the exit less the held meniscus
         for i in range(size):
-            matrix[i, n] += by_length.residual[i]
-        carried = carried - by_length.mass
-    arrays = Arrays(factorised(matrix), grid.x, kernel, unknowns[n], stored, carried, by_spike)
-    return matrix, arrays, by_length
+            matrix[i, n] += longer_residual[i]
+        carried = carried - longer_mass
+    masses = Masses(stored, carried, by_spike)
+    linear = Arrays(factorised(matrix), grid.x, kernel, unknowns[n], masses)
+    static = solved(linear.found, unit_load(linear))
+    slow = solved(linear.found, storage(linear, static))
+    return matrix, linear.found, masses, static[n + 1], -slow[n + 1], longer_residual, longer_mass
 
 
 @njit

@@ -92,7 +92,7 @@ class Profile:
         """Mean stress across the film and difference of the stresses at both walls, at the faces, shape (n,)."""
         problem, grid, pressure = self.problem, self.grid, self.pressure
         faces = np.asarray(face_films(self.film))
-        rise = 12.0 / problem.wedge * faces * np.diff(pressure) / grid.face_step
+        rise = 12.0 / problem.wedge * faces * (pressure[1:] - pressure[:-1]) / grid.face_step
         if problem.shear.form == NEWTONIAN and self.warmth is None:
             log_eta = log_viscosity(problem.isotherm, 0.5 * (pressure[1:] + pressure[:-1]))[0]
             return problem.slide * np.exp(np.minimum(log_eta, MOST_LOG_VISCOSITY)) / faces, rise
@@ -116,47 +116,47 @@ class Profile:
         """Integral of the mean stress along the film, of the sign of the slide-to-roll ratio [eta0 u R/b]."""
         return float(self.stresses[0] @ self.grid.face_step)
 
+    @cached_property
+    def front_cell(self) -> int:
+        """The cell in which the pressure falls fastest behind its maximum."""
+        top = int(np.argmax(self.pressure))
+        pressure, x = self.pressure[top:], self.grid.x[top:]
+        return top + int(np.argmax((pressure[:-1] - pressure[1:]) / (x[1:] - x[:-1])))
+
+    @cached_property
+    def central_and_minimum_film(self) -> tuple[float, float]:
+        """Film at X = 0 and smallest film, by parabolas through three nodes."""
+        position, gap = self.position, self.film
+        last = gap.size - 2
+        centre = min(max(int(np.argmin(np.abs(position))), 1), last)
+        lowest = min(max(int(np.argmin(gap)), 1), last)
+        value, slope, curvature = _parabola(position, gap, centre)
+        away = -float(position[centre])
+        central = value + slope * away + 0.5 * curvature * away * away
+        value, slope, curvature = _parabola(position, gap, lowest)
+        return central, value - 0.5 * slope * slope / curvature if curvature > 0.0 else value
+
     @property
     def fourth_order_share(self) -> float:
         """What the terms of fourth order change in the rolling force, as a share of it."""
-        film, rise = self.film, np.diff(self.pressure)
+        film, rise = self.film, self.pressure[1:] - self.pressure[:-1]
         plain = float(0.5 * (film[1:] + film[:-1]) @ rise)
         return abs(plain - film_times_rise(film, self.pressure)) / self.rolling_force
 
 
-def front_cell(profile: Profile) -> int:
-    """The cell in which the pressure falls fastest behind its maximum."""
-    pressure = profile.pressure
-    top = int(np.argmax(pressure))
-    return top + int(np.argmax(-np.diff(pressure[top:]) / np.diff(profile.grid.x[top:])))
-
-
 def front(profile: Profile) -> tuple[float, float]:
     """Where the pressure falls fastest behind its maximum, relative to the exit [b], and how fast [p_H/b]."""
-    pressure, x, cell = profile.pressure, profile.grid.x, front_cell(profile)
+    pressure, x, cell = profile.pressure, profile.grid.x, profile.front_cell
     fall = (pressure[cell] - pressure[cell + 1]) / (x[cell + 1] - x[cell])
     return float(profile.grid.face[cell]), float(fall)
 
 
 def front_node(profile: Profile) -> int:
     """The node half-way down the front."""
-    pressure, cell = profile.pressure, front_cell(profile)
+    pressure, cell = profile.pressure, profile.front_cell
     around = 0.5 * (pressure[max(cell - 1, 0)] + pressure[min(cell + 2, pressure.size - 1)])
     node = cell if abs(pressure[cell] - around) < abs(pressure[cell + 1] - around) else cell + 1
     return min(max(node, 1), pressure.size - 2)
-
-
-def films_of(profile: Profile) -> tuple[float, float]:
-    """Film at X = 0 and smallest film, by parabolas through three nodes."""
-    position, gap = profile.position, profile.film
-    last = gap.size - 2
-    centre = min(max(int(np.argmin(np.abs(position))), 1), last)
-    lowest = min(max(int(np.argmin(gap)), 1), last)
-    value, slope, curvature = _parabola(position, gap, centre)
-    away = -float(position[centre])
-    central = value + slope * away + 0.5 * curvature * away * away
-    value, slope, curvature = _parabola(position, gap, lowest)
-    return central, value - 0.5 * slope * slope / curvature if curvature > 0.0 else value
 
 
 def _parabola(x: FloatArray, y: FloatArray, i: int) -> tuple[float, float, float]:
@@ -193,7 +193,7 @@ def moved(profile: Profile, grid: Grid, by_index: bool) -> FloatArray:
     exit_at = profile.unknowns[-2]
     excess = profile.pressure - _hertz(profile.position)
     if by_index:
-        excess = np.interp(np.linspace(0.0, 1.0, grid.x.size), np.linspace(0.0, 1.0, excess.size), excess)
+        excess = np.interp(np.arange(grid.x.size) * (profile.cells / grid.face.size), np.arange(excess.size), excess)
     else:
         excess = np.interp(grid.x, profile.grid.x, excess)
     pressure = excess + _hertz(grid.x + exit_at)

@@ -348,6 +348,17 @@ def upwind(f: int) -> tuple[float, float, float, float]:
 
 
 @njit
+def _subtract_deflections(kernel: FloatArray, f: int, by_film: FloatArray, row: FloatArray) -> None:
+    """Take the deflections of the nodes f-3 .. f+3 from a row of the Jacobian, in one pass."""
+    last = kernel.shape[0] - 1  # nodes beyond the ends have no factor
+    c0, c1, c2, c3, c4, c5, c6 = by_film[0], by_film[1], by_film[2], by_film[3], by_film[4], by_film[5], by_film[6]
+    k0, k1, k2 = kernel[max(f - 3, 0), 1:], kernel[max(f - 2, 0), 1:], kernel[max(f - 1, 0), 1:]
+    k3, k4, k5, k6 = kernel[f, 1:], kernel[f + 1, 1:], kernel[min(f + 2, last), 1:], kernel[min(f + 3, last), 1:]
+    for j in range(last - 1):
+        row[j] -= c0 * k0[j] + c1 * k1[j] + c2 * k2[j] + c3 * k3[j] + c4 * k4[j] + c5 * k5[j] + c6 * k6[j]
+
+
+@njit
 def residual(
     problem: LineProblem,
     x: FloatArray,
@@ -495,15 +506,12 @@ def residual_with(
                         if weights[q] != 0.0:
                             by_film[first + q - f + 3] += c * slopes[2] * weights[q]
         row[n - 1] += 1.0
-        for k in range(7):
-            c = by_film[k]
-            if wanted and c != 0.0:
-                i = f - 3 + k
-                line = kernel[i]
-                for j in range(1, n):
-                    row[j - 1] -= c * line[j]
-                row[n] += c * (exit_at + x[i])
-                row[n + 1] += c
+        if wanted:
+            for k in range(7):
+                if by_film[k] != 0.0:
+                    row[n] += by_film[k] * (exit_at + x[f - 3 + k])
+                    row[n + 1] += by_film[k]
+            _subtract_deflections(kernel, f, by_film, row)
     # the exit of a warm film takes the factor on the walls' flow from the last two faces; there is no other's
     carriage = 1.0
     if sheared and factors.mobility_slopes.shape[0] == 0:

@@ -10,6 +10,7 @@ import sys
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -166,7 +167,7 @@ class ReynoldsSolver(ContactSolverDefaults):
         """Name of the solver."""
         return "reynolds"
 
-    @property
+    @cached_property
     def shear_law(self) -> ShearLaw:
         """Law of shear in SI."""
         return shear_law(self.shear, self.shear_stress, self.limiting_ratio, self.carreau_exponent)
@@ -185,7 +186,7 @@ class ReynoldsSolver(ContactSolverDefaults):
         """
         return (0.5, 1.0, 2.0, 4.0, 8.0) if self.physics != THERMAL else ()
 
-    @property
+    @cached_property
     def resolution(self) -> Resolution:
         """The same settings, as the solve in groups takes them."""
         return Resolution(density=self.density, inlet_length=self.inlet_length, tolerance=self.tolerance)

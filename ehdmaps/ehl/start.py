@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.line import solve_groups
 from ehdmaps.ehl.newton import CONVERGED
-from ehdmaps.ehl.profile import films_of
 from ehdmaps.ehl.resolution import Resolution
 from ehdmaps.ehl.solver import NEWTONIAN_LAW, _beyond_reach, line_problem
 from ehdmaps.physics.contact import LineContact
@@ -94,7 +93,7 @@ def reynolds_start(
     return ReynoldsStart(
         x=profile.position * half,
         pressure=profile.pressure * peak,
-        central_film=films_of(profile)[0] * half * half / contact.radius,
+        central_film=profile.central_and_minimum_film[0] * half * half / contact.radius,
         expected_film=profile.layout.film,
         spike_position=0.0 if spike is None else exit_at + spike.position,
         spike_width=0.0 if spike is None else spike.width,

@@ -62,11 +62,15 @@ def peak_sampling_error(position: FloatArray, pressure: FloatArray, cusp: bool) 
     highest = float(np.max(pressure))
     if tops.size == 0 or highest <= 0.0:
         return 0.0
-    left, right = position[tops] - position[tops - 1], position[tops + 1] - position[tops]
-    rise, fall = (pressure[tops] - pressure[tops - 1]) / left, (pressure[tops + 1] - pressure[tops]) / right
-    if cusp:
-        above = 0.5 * np.maximum(rise * right, -fall * left)
-    else:
+    top = highest
+    for i in tops:
+        left, right = position[i] - position[i - 1], position[i + 1] - position[i]
+        rise, fall = (pressure[i] - pressure[i - 1]) / left, (pressure[i + 1] - pressure[i]) / right
         slope, curvature = (rise * right + fall * left) / (left + right), 2.0 * (fall - rise) / (left + right)
-        above = np.where(curvature < 0.0, -0.5 * slope**2 / np.minimum(curvature, -1e-300), 0.0)
-    return max(float(np.max(pressure[tops] + above)) / highest - 1.0, 0.0)
+        above = 0.0
+        if cusp:
+            above = 0.5 * max(rise * right, -fall * left)
+        elif curvature < 0.0:
+            above = -0.5 * slope**2 / min(curvature, -1e-300)
+        top = max(top, float(pressure[i] + above))
+    return top / highest - 1.0

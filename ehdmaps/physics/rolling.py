@@ -40,7 +40,7 @@ def film_times_rise(film: FloatArray, pressure: FloatArray) -> float:
     bend = film[:-3] - film[1:-2] - film[2:-1] + film[3:]
     # h half-way less h''/24: -1/16 and -1/48 of the bend, which is 2 h''
     middle[1:-1] -= bend / 12.0
-    return float(middle @ np.diff(pressure))
+    return float(middle @ (pressure[1:] - pressure[:-1]))
 
 
 def rolling_force_of_inlet(distance: float, film: float, flow: float, wedge: float, radius: float) -> float:

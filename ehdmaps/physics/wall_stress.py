@@ -46,7 +46,7 @@ def wall_stress_share(position: FloatArray, pressure: FloatArray, film: FloatArr
     0.125
     """
     between = 0.5 * (pressure[1:] + pressure[:-1])
-    stress = 0.25 * (film[1:] + film[:-1]) * np.abs(np.diff(pressure)) / np.diff(position)
+    stress = 0.25 * (film[1:] + film[:-1]) * np.abs(pressure[1:] - pressure[:-1]) / (position[1:] - position[:-1])
     counted = (between > LOADED * float(np.max(pressure))) & (stress > NEWTONIAN_STRESS)
     return float(np.max(stress[counted] / between[counted], initial=0.0))
 
