@@ -25,7 +25,6 @@
 | `line` | the story of one solve: coarse grid, place of the spike, fine grid, response, error estimate |
 | `meniscus` | a starved contact: the place of the inlet's meniscus behind a given oil layer |
 | `frequency` | film compliance over frequency, with its error from both grids |
-| `transient` | the film in time under a load that moves: the check of the linear response |
 | `limits` | allowed settings of the solver |
 | `solver` | `ReynoldsSolver`: operating points in SI, one line of loads after another |
 | `start` | what the solution of a point gives to another solver |

@@ -22,7 +22,6 @@ from ehdmaps.ehl.line import solve_groups
 from ehdmaps.ehl.one_grid import LOAD
 from ehdmaps.ehl.resolution import Resolution
 from ehdmaps.ehl.solver import ReynoldsSolver, line_problem
-from ehdmaps.ehl.transient import follow
 from ehdmaps.jobs.generate import generate_in_memory
 from ehdmaps.jobs.job import Job
 from ehdmaps.maps.emap import EHDMap
@@ -38,6 +37,7 @@ from ehdmaps.physics.moes import moes_groups, valley_load_number
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.spectrum import contact_spectrum
+from tests.cases.film_in_time import follow
 
 CONTACT = LineContact("line", 5.515e-3, STEEL, "iso16281", roller_length=15e-3)
 

@@ -20,7 +20,6 @@ from ehdmaps.ehl.one_grid import LOAD
 from ehdmaps.ehl.resolution import Resolution
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.ehl.spectrum import film_compliances, film_space
-from ehdmaps.ehl.transient import follow
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import DRY_COMPLIANCE, half_width
@@ -31,6 +30,7 @@ from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.solution import ContactSolverDefaults, contact_solution
 from ehdmaps.physics.spectrum import contact_spectrum
 from tests.cases.ehl import isoviscous_problem, roelands_problem, solved
+from tests.cases.film_in_time import follow
 from tests.cases.laws import CONTACTS, OIL
 
 SOLIDS = 1.75

@@ -72,7 +72,7 @@ def follow(profile: Profile, loads: FloatArray, time_step: float, tolerance: flo
     return Motion(height, newton_steps)
 
 
-@njit
+@njit(cache=False)  # the code that is kept belongs to the packages
 def _follow(
     problem: LineProblem,
     x: FloatArray,
@@ -123,7 +123,7 @@ def _follow(
     return height, total
 
 
-@njit
+@njit(cache=False)  # the code that is kept belongs to the packages
 def _one_step(
     problem: LineProblem,
     x: FloatArray,
