@@ -1,7 +1,7 @@
-"""Making of the film table: lines of films solved in their groups, node by node.
+"""Making of the film table: lines of films solved in their groups, through nodes and through the middles of cells.
 
-Each line holds L, alpha and the bend, and goes through all nodes of zeta from light to heavy, every film from the one
-before.
+Each line holds the oil and the size, and goes through all places of zeta from light to heavy, every film from the one
+before. What is read at the middles is held against what is solved there: these are the errors of the table.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
@@ -23,22 +24,22 @@ from ehdmaps.ehl.newton import CONVERGED
 from ehdmaps.ehl.resolution import Resolution
 from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.physics.isotherm import PressureViscosity
-from ehdmaps.physics.moes import viscosity_exponent
 from ehdmaps.physics.pressure_viscosity import ROELANDS_PRESSURE
 from ehdmaps.physics.rheology import ShearLaw
-from ehdmaps.table.coordinates import exponent_of, load_number_at
+from ehdmaps.table.coordinates import exponent_of, load_number_at, valley_shift
 from ehdmaps.table.family import GRID
-from ehdmaps.table.fields import FIELDS, FILMS, NATURAL_FREQUENCIES
-from ehdmaps.table.file import ROUNDING, TableFile, rounded
-from ehdmaps.table.films import LARGEST_ERROR, FilmTable, encoded
-from ehdmaps.table.interpolation import Axes, left_out
+from ehdmaps.table.fields import FIELDS, FILMS, LAW, NATURAL_FREQUENCIES, RESPONSES
+from ehdmaps.table.file import TableFile, rounded
+from ehdmaps.table.films import FilmTable
+from ehdmaps.table.interpolation import Axes, heavier_films, place_of
+from ehdmaps.table.nodes import BEYOND_HEAVY, OTHER_FILMS, Nodes, encoded
 from ehdmaps.version import version
 
 RESOLUTION = Resolution(**GRID)
 """Of all solves: with half as many cells the grid's errors are what limits the table, with more the nodes are."""
 
-LARGEST_EXPONENT = 250.0
-"""alpha p_H up to which films are solved; beyond, lines go on with their slope. At 10 GPa it is that of 25 1/GPa."""
+LARGEST_EXPONENT, LARGEST_PEAK = 250.0, 15e9
+"""alpha p_H, and p_H [Pa], up to which films are solved; beyond, lines go on with their slope."""
 
 
 def _steps(*parts: tuple[float, float, float]) -> FloatArray:
@@ -50,77 +51,118 @@ def _steps(*parts: tuple[float, float, float]) -> FloatArray:
     return np.round(places, 6)
 
 
-AXES = Axes(
+PIEZOVISCOUS = Axes(
     zeta=_steps(
         (-6.0, -1.6, 0.55),
         (-1.6, -0.6, 0.125),
-        (-0.6, -0.3, 0.1),
-        (-0.3, 0.45, 0.05),
-        (0.45, 0.8, 0.07),
+        (-0.6, -0.4, 0.067),
+        (-0.4, 0.2, 0.04),
+        (0.2, 0.5, 0.06),
+        (0.5, 0.8, 0.075),
         (0.8, 1.4, 0.12),
         (1.4, 2.6, 0.24),
         (2.6, 8.6, 0.5),
     ),
-    log_l=np.log([0.2, 0.7, 1.6, 3.0, 5.0, 7.5, 10.5, 14.0, 18.5, 24.0, 31.0, 40.0, 52.0, 68.0, 90.0, 118.0, 150.0]),
-    log_alpha=np.log([5e-9, 8.5e-9, 17e-9, 34e-9, 60e-9]),
-    bend=np.array([-0.35, 0.0, 0.35, 0.8, 1.4]),
+    size=np.log([0.2, 0.5, 1.0, 1.8, 3.1, 5, 7.5, 10.5, 14, 18.5, 24, 31, 40, 52, 70, 100, 150]),
+    alpha=np.log([5e-9, 8.5e-9, 17e-9, 34e-9, 60e-9]),
+    bend=np.array([-0.35, 0.0, 0.35, 0.75, 1.25, 1.85]),
 )
 """Nodes for oils that are compressed. The steps of zeta are what the narrow valley of large L needs."""
 
-INCOMPRESSIBLE = replace(AXES, log_alpha=np.log([5e-9, 15e-9, 60e-9]), bend=np.array([-0.35, 0.1, 0.7, 1.4]))
+ISOVISCOUS = Axes(
+    zeta=_steps(
+        (-6.0, -1.6, 0.55), (-1.6, -0.6, 0.15), (-0.6, 0.8, 0.08), (0.8, 1.4, 0.15), (1.4, 2.6, 0.3), (2.6, 8.6, 0.6)
+    ),
+    size=np.log([3e7, 1e8, 2.5e8, 5e8, 8e8, 1.2e9, 1.8e9, 2.6e9, 3.8e9, 5.5e9, 8e9, 1.2e10]),
+    alpha=np.array([0.0, 1.2e-9, 2.8e-9, 4.8e-9, 7e-9]),
+    bend=np.array([-0.23, 0.2, 0.7, 1.19]),
+)
+"""Nodes for oils of hardly any piezoviscosity."""
+
+INCOMPRESSIBLE = replace(
+    PIEZOVISCOUS,
+    size=np.log([0.2, 0.7, 1.8, 4, 7.5, 12, 18.5, 28, 40, 60, 95, 150]),
+    alpha=np.log([5e-9, 15e-9, 60e-9]),
+    bend=np.array([-0.35, 0.15, 0.9, 1.85]),
+)
+INCOMPRESSIBLE_ISOVISCOUS = replace(ISOVISCOUS, alpha=np.array([0.0, 2.5e-9, 7e-9]), bend=np.array([-0.23, 0.45, 1.19]))
 """Nodes for oils of constant density: alpha then says how far Roelands' law bends, and less hangs on it."""
+
+
+class Oil(NamedTuple):
+    """An oil on the axes of a table: P = L/alpha [Pa], alpha [1/Pa], Roelands' z, and the shift of zeta."""
+
+    pressure: float
+    alpha: float
+    exponent: float
+    shift: float = 0.0
+
+
+OilOf = Callable[[float, float, float], Oil]
+"""The oil at a place of size, alpha and bend."""
+
+
+def piezoviscous_oil(size: float, alpha: float, bend: float) -> Oil:
+    """The oil at a place of the piezoviscous part; parameters as of `Axes`."""
+    value = math.exp(alpha)
+    exponent = exponent_of(value, bend)
+    shift = float(valley_shift(*(np.array(x) for x in (math.exp(size), value, exponent))))
+    return Oil(math.exp(size) / value, value, exponent, shift)
+
+
+def isoviscous_oil(size: float, alpha: float, bend: float) -> Oil:
+    """The oil at a place of the isoviscous part; parameters as of `Axes`."""
+    return Oil(math.exp(size), alpha, 1.0 - bend)
 
 
 @dataclass(frozen=True, eq=False)
 class SolvedLine:
-    """Films along one line of the table, shape (n_zeta, fields): reduced numbers and their relative errors."""
+    """Films along one line of the table, shape (n_zeta, fields): smooth forms and their errors."""
 
     values: FloatArray
     errors: FloatArray
 
 
-def solve_table_line(
-    zeta: FloatArray,
-    oil_number: float,
-    alpha: float,
-    bend: float,
-    compressible: bool,
-    resolution: Resolution = RESOLUTION,
-) -> SolvedLine:
+def solve_table_line(zeta: FloatArray, oil: Oil, compressible: bool, resolution: Resolution = RESOLUTION) -> SolvedLine:
     """Films at each zeta; NaN where there is no solution.
 
     Parameters
     ----------
     zeta : ndarray, shape (n,)
         Rising places.
-    oil_number, alpha, bend : float
-        L, alpha [1/Pa] and the bend.
+    oil : Oil
+        The oil.
     compressible : bool
         Whether the density is that of Dowson and Higginson.
     resolution : Resolution
         Accuracy of the solves.
     """
-    exponent = exponent_of(alpha, bend)
-    loads = load_number_at(zeta, *(np.array(x) for x in (oil_number, alpha, exponent)))
-    isotherm = PressureViscosity(alpha, exponent, ROELANDS_PRESSURE)
+    isotherm, oil_number = PressureViscosity(oil.alpha, oil.exponent, ROELANDS_PRESSURE), oil.alpha * oil.pressure
+    loads = load_number_at(zeta, np.array(oil_number), oil.shift)
     values, errors = (np.full((zeta.size, len(FIELDS)), math.nan) for _ in range(2))
     previous = None
     for i, M in enumerate(map(float, loads)):
-        exponent_there = viscosity_exponent(M, oil_number)
-        if exponent_there > LARGEST_EXPONENT:
+        peak = oil.pressure * math.sqrt(M / (2.0 * math.pi))
+        if peak > LARGEST_PEAK or oil.alpha * peak > LARGEST_EXPONENT:
             break
-        peak = exponent_there / alpha
         problem = LineProblem(3.0 * math.pi**2 / (8.0 * M * M), isotherm.isotherm(peak, compressible), ShearLaw(), 0.0)
         try:
             with np.errstate(all="ignore"):
                 groups = solve_groups(problem, M, oil_number, resolution, previous)
                 if groups.outcome != CONVERGED:
                     continue
-                values[i], errors[i] = _reduced(M, oil_number, groups)
+                values[i], errors[i] = _smooth(*_reduced(M, oil_number, groups))
         except (np.linalg.LinAlgError, OverflowError, ZeroDivisionError):
             continue
         previous = groups.profile
     return SolvedLine(values, errors)
+
+
+def _smooth(reduced: FloatArray, relative: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Smooth forms of a film's reduced numbers and their errors; NaN where any of them has none."""
+    lifted = np.array([field.lifted(x) for field, x in zip(FIELDS, reduced, strict=True)])
+    wrong = np.array([field.lifted_error(x, e) for field, x, e in zip(FIELDS, reduced, relative, strict=True)])
+    return (lifted, wrong) if np.all(np.isfinite(lifted)) else (lifted * math.nan, wrong * math.nan)
 
 
 def _reduced(M: float, L: float, groups: GroupSolution) -> tuple[FloatArray, FloatArray]:
@@ -171,77 +213,79 @@ def _reduced(M: float, L: float, groups: GroupSolution) -> tuple[FloatArray, Flo
     )
 
 
-def filled(axes: Axes, values: FloatArray, errors: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Smooth forms and their errors with what is missing filled in along zeta, so that polynomials can go through all.
+def filled(zeta: FloatArray, values: FloatArray) -> FloatArray:
+    """Smooth forms with what is missing filled in along zeta, so that polynomials can go through all.
 
-    A hole between solved films is bridged by a cubic; beyond the last solved film of a line the values go on with
-    their slope there. What is filled in gets an error by which no film of it is taken.
+    A hole between solved films is bridged by a cubic; beyond the last solved film of a line the values go on as beyond
+    the end of a table.
 
     Parameters
     ----------
-    axes : Axes
+    zeta : ndarray, shape (n_zeta,)
         The nodes.
-    values, errors : ndarray, shape (n_zeta, n_L, n_alpha, n_bend, fields)
-        Reduced numbers and their relative errors; NaN where there is no film.
+    values : ndarray, shape (n_zeta, n_size, n_alpha, n_bend, fields)
+        Smooth forms; NaN where there is no film.
     """
-    lifted, wrong = np.empty_like(values), np.empty_like(values)
-    for k, field in enumerate(FIELDS):
-        lifted[..., k] = field.lifted(values[..., k])
-        wrong[..., k] = field.lifted_error(values[..., k], errors[..., k])
-    solved: BoolArray = np.asarray(np.isfinite(lifted).all(axis=-1))
+    found = values.copy()
+    solved: BoolArray = np.asarray(np.isfinite(values).all(axis=-1))
     for place in np.ndindex(solved.shape[1:]):
-        known = solved[(slice(None), *place)]
-        line = lifted[(slice(None), *place)]
-        line[:] = _along(axes.zeta, line, known)
-        wrong[(~known, *place)] = np.nan
-    return lifted, wrong
-
-
-def _along(zeta: FloatArray, line: FloatArray, known: BoolArray) -> FloatArray:
-    """A line with what is missing."""
-    z, held = zeta[known], line[known]
-    found = line.copy()
-    inside = np.asarray(~known & (zeta < z[-1]))
-    found[inside] = PchipInterpolator(z, held)(zeta[inside])
-    beyond = zeta > z[-1]
-    slope = (held[-1] - held[-3]) / (z[-1] - z[-3])
-    found[beyond] = held[-1] + slope * (zeta[beyond] - z[-1])[:, None]
+        line, known = found[(slice(None), *place)], solved[(slice(None), *place)]
+        z, held = zeta[known], line[known]
+        inside, beyond = ~known & (zeta < z[-1]), zeta > z[-1]
+        line[inside] = PchipInterpolator(z, held)(zeta[inside])
+        slope = (held[-1] - held[-3]) / (z[-1] - z[-3])
+        for k, field in enumerate(FIELDS):
+            line[beyond, k] = heavier_films(field, held[-1:, k], slope[k : k + 1], zeta[beyond] - z[-1])
     return found
 
 
-def assembled_table(axes: Axes, values: FloatArray, errors: FloatArray, compressible: bool) -> FilmTable:
-    """A table of solved films.
+def middles(nodes: FloatArray) -> FloatArray:
+    """Middles between nodes."""
+    return 0.5 * (nodes[1:] + nodes[:-1])
 
-    Its errors are those that the solver states, what reading between the nodes is wrong by, from leaving nodes out, and
-    what rounding takes; the worst of neighbouring nodes along zeta and ln L.
+
+def measured(nodes: Nodes, values: FloatArray, errors: FloatArray) -> FloatArray:
+    """Errors of the smooth forms in each cell, shape (n_zeta - 1, n_size - 1, n_alpha - 1, n_bend - 1, fields).
+
+    They are what films in the middle of the cells are read wrong by, and what the solver says that these are wrong by;
+    the worst of neighbouring cells along zeta and the size. Above the heaviest film that was solved they grow as above
+    the end of a table.
 
     Parameters
     ----------
-    axes : Axes
-        The nodes.
-    values, errors : ndarray, shape (n_zeta, n_L, n_alpha, n_bend, fields)
-        Reduced numbers and their relative errors; NaN where there is no film.
-    compressible : bool
-        Whether the density is that of Dowson and Higginson.
+    nodes : Nodes
+        The nodes; their errors count for nothing.
+    values, errors : ndarray, shape as of what is returned
+        Smooth forms of solved films in the middle of the cells, and their errors; NaN where there is none.
     """
-    lifted, wrong = filled(axes, values, errors)
-    total = np.nan_to_num(wrong, nan=LARGEST_ERROR) + left_out(axes, lifted) + ROUNDING * np.abs(lifted)
-    nearby = maximum_filter(total, size=(3, 3, 1, 1, 1), mode="nearest")
-    return FilmTable(axes, rounded(lifted), encoded(nearby), compressible)
+    axes = nodes.axes
+    places = np.meshgrid(*(middles(x) for x in (axes.zeta, axes.size, axes.alpha, axes.bend)), indexing="ij")
+    place = place_of(axes, *(x.ravel() for x in places))
+    read = np.hstack([nodes.read(place, fields) for fields in (LAW, OTHER_FILMS, RESPONSES)]).reshape(values.shape)
+    wrong = np.abs(read - values) + errors
+    nearby = maximum_filter(np.nan_to_num(wrong, nan=-1.0), size=(3, 3, 1, 1, 1), mode="nearest")
+    for i in range(1, nearby.shape[0]):
+        # a unit above the last film
+        carried = nearby[i - 1] + BEYOND_HEAVY * (axes.zeta[i + 1] - axes.zeta[i])
+        nearby[i] = np.where(nearby[i] < 0.0, carried, nearby[i])
+    return np.asarray(np.where(nearby < 0.0, math.nan, nearby))
 
 
-def make_table(
+def make_nodes(
     axes: Axes,
+    oil_of: OilOf,
     compressible: bool,
     resolution: Resolution = RESOLUTION,
     progress: Callable[[int, int], None] = lambda done, of: None,
-) -> FilmTable:
-    """Solve all nodes of a table.
+) -> Nodes:
+    """Solve all nodes of one part of a table, and films in the middle of its cells, every second one along zeta.
 
     Parameters
     ----------
     axes : Axes
         The nodes.
+    oil_of : callable
+        The oil at their places.
     compressible : bool
         Whether the density is that of Dowson and Higginson.
     resolution : Resolution
@@ -249,14 +293,26 @@ def make_table(
     progress : callable
         Told the lines that are done, and all of them.
     """
-    values, errors = (np.full((*axes.shape, len(FIELDS)), math.nan) for _ in range(2))
-    places = list(np.ndindex(axes.shape[1:]))
-    for done, (j, k, p) in enumerate(places):
-        oil = float(np.exp(axes.log_l[j])), float(np.exp(axes.log_alpha[k])), float(axes.bend[p])
-        line = solve_table_line(axes.zeta, *oil, compressible, resolution)
-        values[:, j, k, p], errors[:, j, k, p] = line.values, line.errors
-        progress(done + 1, len(places))
-    return assembled_table(axes, values, errors, compressible)
+    of, done = int(np.prod(axes.shape[1:]) + np.prod(axes.cells[1:])), 0
+    held = []
+    for between in (False, True):
+        zeta, *oil = (middles(x) if between else x for x in (axes.zeta, axes.size, axes.alpha, axes.bend))
+        values, errors = (np.full((*(x.size for x in (zeta, *oil)), len(FIELDS)), math.nan) for _ in range(2))
+        for j, k, p in np.ndindex(values.shape[1:-1]):
+            place = oil_of(float(oil[0][j]), float(oil[1][k]), float(oil[2][p]))
+            part = slice((j + k + p) % 2, None, 2) if between else slice(None)
+            if place.alpha == 0.0 and p > 0:
+                values[:, j, k, p], errors[:, j, k, p] = values[:, j, k, 0], errors[:, j, k, 0]
+            else:
+                line = solve_table_line(zeta[part], place, compressible, resolution)
+                values[part, j, k, p], errors[part, j, k, p] = line.values, line.errors
+            done += 1
+            progress(done, of)
+        held.append((values, errors))
+    (values, _), (between_values, between_errors) = held
+    empty = np.zeros((*axes.cells, len(FIELDS)), dtype=np.uint8)
+    nodes = Nodes(axes, rounded(filled(axes.zeta, values)), empty)
+    return replace(nodes, codes=encoded(measured(nodes, between_values, between_errors)))
 
 
 def make_tables(progress: Callable[[str, int, int], None] = lambda law, done, of: None) -> TableFile:
@@ -265,12 +321,21 @@ def make_tables(progress: Callable[[str, int, int], None] = lambda law, done, of
     Parameters
     ----------
     progress : callable
-        Told the density law, the lines that are done, and all of them.
+        Told what is solved, the lines that are done, and all of them.
     """
-    tables = {
-        law: make_table(axes, law != "incompressible", progress=partial(progress, law))
-        for law, axes in (("dowson-higginson", AXES), ("incompressible", INCOMPRESSIBLE))
-    }
+    tables = {}
+    for law, piezoviscous, isoviscous in (
+        ("dowson-higginson", PIEZOVISCOUS, ISOVISCOUS),
+        ("incompressible", INCOMPRESSIBLE, INCOMPRESSIBLE_ISOVISCOUS),
+    ):
+        compressible = law != "incompressible"
+        tables[law] = FilmTable(
+            make_nodes(
+                piezoviscous, piezoviscous_oil, compressible, progress=partial(progress, f"{law}, piezoviscous")
+            ),
+            make_nodes(isoviscous, isoviscous_oil, compressible, progress=partial(progress, f"{law}, isoviscous")),
+            compressible,
+        )
     return TableFile(
         tables,
         {

@@ -2,7 +2,8 @@
 
 Reduced by its unit, every number of a film is a function of the coordinates of `ehdmaps.table.coordinates` alone. What
 has one sign is held as a logarithm. Film compliance, loss compliance and response run through zero in the damping
-valley: they are held as asinh(x/scale), a logarithm of large numbers that is linear for small ones.
+valley: they are held as asinh(x/scale), a logarithm of large numbers that is linear for small ones. The scale is one at
+which what dives through the valley is a smooth wave; errors of what a law is made from are judged at a smaller one.
 """
 
 from __future__ import annotations
@@ -33,12 +34,15 @@ class Field:
         d ln|x|/d ln M of the reduced number x of a rigid film, the limit of light loads.
     fades : bool
         Whether it goes to zero as a power of the load where this is high, though it is held as asinh.
+    judged : float
+        Scale of the asinh in which a law's errors are told; 0 for the form in which it is held.
     """
 
     name: str
     scale: float
     rigid_slope: float
     fades: bool = False
+    judged: float = 0.0
 
     def lifted(self, reduced: FloatArray) -> FloatArray:
         """Smooth form of reduced numbers; NaN of what has none."""
@@ -60,15 +64,21 @@ class Field:
     def relative_error(self, reduced: FloatArray, lifted: FloatArray) -> FloatArray:
         """Relative error of the number from one of its smooth form."""
         if not self.scale:
-            return lifted
+            return np.expm1(lifted)
         with np.errstate(divide="ignore"):
             return lifted * np.hypot(reduced, self.scale) / np.abs(reduced)
+
+    def judged_error(self, reduced: FloatArray, lifted: FloatArray) -> FloatArray:
+        """Error of asinh(x/judged) from one of the smooth form."""
+        if not self.judged:
+            return lifted
+        return lifted * np.hypot(reduced, self.scale) / np.hypot(reduced, self.judged)
 
 
 FILMS = (
     Field("film_offset", 0.0, -1.0),
-    Field("film_compliance", 0.3, -2.0, True),
-    Field("loss_compliance", 0.5, -3.0, True),
+    Field("film_compliance", 1.0, -2.0, True, 0.3),
+    Field("loss_compliance", 2.0, -3.0, True, 0.5),
     Field("central_film", 0.0, -1.0),
     Field("minimum_film", 0.0, -1.0),
     Field("max_pressure", 0.0, 1.0),
@@ -82,7 +92,7 @@ LAW = FILMS[:3]
 """What a contact law is made from."""
 
 RESPONSES = tuple(
-    Field(f"response_{part}_{natural:g}", 0.3, -2.0)
+    Field(f"response_{part}_{natural:g}", 1.0, -2.0)
     for natural in NATURAL_FREQUENCIES
     for part in ("real", "imaginary")
 )

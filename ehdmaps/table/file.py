@@ -1,4 +1,4 @@
-"""The file of the film table: a netCDF file with a group for each density law, its provenance and its checksum.
+"""The file of the film table: a netCDF file with provenance, checksum and a group for each part of each density law.
 
 It is read by netCDF4 alone: a table opens in some 20 ms.
 """
@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from importlib import resources
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -23,24 +24,32 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.table.fields import FIELDS
 from ehdmaps.table.films import FilmTable
 from ehdmaps.table.interpolation import Axes
+from ehdmaps.table.nodes import Nodes
 
 SHIPPED = "film_table.nc"
 """Name of the shipped file in this package."""
 
-KIND, FORMAT, CHECKSUM = "film table", "1", "content_sha256"
+KIND, FORMAT, CHECKSUM = "film table", "2", "content_sha256"
 
-AXES = ("zeta", "oil_number", "pressure_viscosity", "bend")
+AXES = ("zeta", "size", "alpha", "bend")
 _MEANING = {
-    "zeta": ("ln(M/M_valley(L)) - shift(L, alpha, z), see ehdmaps.table.coordinates", "1"),
-    "oil_number": ("Moes' oil number L", "1"),
-    "pressure_viscosity": ("alpha, d ln eta/dp at p = 0", "1/Pa"),
-    "bend": ("(1 - z) sqrt(17/GPa / alpha) with the exponent z of Roelands' law", "1"),
+    "piezoviscous": (
+        ("ln(M/M_valley(L)) - shift(L, alpha, z), see ehdmaps.table.coordinates", "1"),
+        ("ln L, of Moes' oil number L", "1"),
+        ("ln alpha, alpha = d ln eta/dp at p = 0 in 1/Pa", "1"),
+        ("(1 - z) sqrt(17/GPa / alpha) with the exponent z of Roelands' law", "1"),
+    ),
+    "isoviscous": (
+        ("ln(M/M_valley(L)) - shift(L, alpha, z), see ehdmaps.table.coordinates", "1"),
+        ("ln(L/alpha), L/alpha in Pa", "1"),
+        ("alpha = d ln eta/dp at p = 0", "1/Pa"),
+        ("1 - z, z the exponent of Roelands' law", "1"),
+    ),
 }
-_BITS = 17
-"""Bits of a value's mantissa that are kept."""
+"""Parts of a table, and what their axes mean."""
 
-ROUNDING = 2.0 ** -(_BITS + 1)
-"""What keeping these changes a value by, relatively, at most."""
+_BITS = 16
+"""Binary digits of a value that are kept: behind the point, or of its mantissa where it is smaller than one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,20 +129,24 @@ def read_tables(path: Path) -> TableFile:
                 raise MapError(f"{path}: is no film table of this version; make one by `ehdmaps table make`")
             tables = {}
             for law, group in file.groups.items():
-                group.set_auto_mask(False)
-                nodes = [np.asarray(group[name][:], dtype=float) for name in AXES]
-                axes = Axes(nodes[0], np.log(nodes[1]), np.log(nodes[2]), nodes[3])
-                fields = [str(name) for name in group.getncattr("fields").split()]
-                if fields != [field.name for field in FIELDS]:
-                    raise MapError(f"{path}: holds other fields than this version reads; make it again")
-                values, codes = (np.moveaxis(group[name][:], 0, -1) for name in ("values", "error_codes"))
-                tables[law] = FilmTable(axes, values, codes, law != "incompressible")
+                parts = {part: _read_nodes(group.groups[part], path) for part in _MEANING}
+                tables[law] = FilmTable(**parts, compressible=law != "incompressible")
     except (OSError, KeyError, IndexError, AttributeError) as error:
         raise MapError(f"{path}: cannot be read as a film table ({error}); make it again") from None
     found = TableFile(tables, attributes)
     if attributes.get(CHECKSUM) != content_sha256(found):
         raise MapError(f"{path}: was changed since it was made: its content does not match {CHECKSUM}; make it again")
     return found
+
+
+def _read_nodes(group: Any, path: Path) -> Nodes:
+    """One part of a table from its group."""
+    group.set_auto_mask(False)
+    if group.getncattr("fields").split() != [field.name for field in FIELDS]:
+        raise MapError(f"{path}: holds other fields than this version reads; make it again")
+    axes = Axes(*(np.asarray(group[name][:], dtype=float) for name in AXES))
+    values, codes = (np.moveaxis(group[name][:], 0, -1) for name in ("values", "error_codes"))
+    return Nodes(axes, values, codes)
 
 
 def write_tables(path: Path, tables: TableFile) -> None:
@@ -152,27 +165,31 @@ def write_tables(path: Path, tables: TableFile) -> None:
         attributes = {**tables.attributes, MADE_AS: KIND, "table_format": FORMAT, CHECKSUM: content_sha256(tables)}
         file.setncatts(attributes)
         for law, table in tables.tables.items():
-            group = file.createGroup(law)
-            group.setncattr("fields", " ".join(field.name for field in FIELDS))
-            group.createDimension("field", len(FIELDS))
-            axes = table.axes
-            for name, nodes in zip(
-                AXES, (axes.zeta, np.exp(axes.log_l), np.exp(axes.log_alpha), axes.bend), strict=True
-            ):
-                group.createDimension(name, nodes.size)
-                variable = group.createVariable(name, "f8", (name,))
-                variable[:] = nodes
-                variable.setncatts(dict(zip(("long_name", "units"), _MEANING[name], strict=True)))
-            for name, kind, held, meaning in (
-                ("values", "f4", table.values, "smooth forms of reduced films, see ehdmaps.table.fields"),
-                ("error_codes", "u1", table.codes, "their errors, see ehdmaps.table.films.encoded"),
-            ):
-                variable = group.createVariable(
-                    name, kind, ("field", *AXES), compression="zlib", complevel=6, shuffle=True,
-                    chunksizes=(1, *held.shape[:-1]),
-                )  # fmt: skip
-                variable[:] = np.moveaxis(held, -1, 0)
-                variable.setncattr("long_name", meaning)
+            for part, meanings in _MEANING.items():
+                _write_nodes(file.createGroup(f"{law}/{part}"), getattr(table, part), meanings)
+
+
+def _write_nodes(group: Any, nodes: Nodes, meanings: tuple[tuple[str, str], ...]) -> None:
+    """One part of a table to its group."""
+    group.setncattr("fields", " ".join(field.name for field in FIELDS))
+    group.createDimension("field", len(FIELDS))
+    for name, (meaning, unit) in zip(AXES, meanings, strict=True):
+        places = getattr(nodes.axes, name)
+        group.createDimension(name, places.size)
+        group.createDimension(f"{name}_cell", places.size - 1)
+        variable = group.createVariable(name, "f8", (name,))
+        variable[:] = places
+        variable.setncatts({"long_name": meaning, "units": unit})
+    for name, kind, held, suffix, meaning in (
+        ("values", "f4", nodes.values, "", "smooth forms of reduced films, see ehdmaps.table.fields"),
+        ("error_codes", "u1", nodes.codes, "_cell", "their errors between nodes, see ehdmaps.table.nodes.encoded"),
+    ):
+        variable = group.createVariable(
+            name, kind, ("field", *(f"{axis}{suffix}" for axis in AXES)), compression="zlib", complevel=6, shuffle=True,
+            chunksizes=(1, *held.shape[:-1]),
+        )  # fmt: skip
+        variable[:] = np.moveaxis(held, -1, 0)
+        variable.setncattr("long_name", meaning)
 
 
 def content_sha256(tables: TableFile) -> str:
@@ -185,33 +202,29 @@ def content_sha256(tables: TableFile) -> str:
     """
     digest = hashlib.sha256(f"{KIND} {FORMAT}".encode())
     for law, table in sorted(tables.tables.items()):
-        axes = table.axes
-        nodes: tuple[FloatArray, ...] = (axes.zeta, axes.log_l, axes.log_alpha, axes.bend)
-        digest.update(json.dumps([law, *table.values.shape]).encode())
-        for held in nodes:
-            # 12 digits: nodes stand in the file as L and alpha, and come back through a logarithm
-            digest.update(np.char.mod("%.12g", held).tobytes())
-        digest.update(_bytes(np.moveaxis(table.values, -1, 0)))
-        digest.update(_bytes(np.moveaxis(table.codes, -1, 0)))
+        for part in _MEANING:
+            nodes: Nodes = getattr(table, part)
+            digest.update(json.dumps([law, part, *nodes.values.shape]).encode())
+            for name in AXES:
+                digest.update(_bytes(getattr(nodes.axes, name)))
+            digest.update(_bytes(np.moveaxis(nodes.values, -1, 0)))
+            digest.update(_bytes(np.moveaxis(nodes.codes, -1, 0)))
     return digest.hexdigest()
 
 
-def _bytes(values: npt.NDArray[np.float32] | ByteArray) -> bytes:
+def _bytes(values: FloatArray | npt.NDArray[np.float32] | ByteArray) -> bytes:
     """Values as little-endian bytes."""
     return np.ascontiguousarray(values, dtype=values.dtype.newbyteorder("<")).tobytes()
 
 
 def rounded(values: FloatArray) -> npt.NDArray[np.float32]:
-    """Values with the bits that a file holds.
+    """Values as a file holds them.
 
     Parameters
     ----------
     values : ndarray
-        Finite values.
+        Finite smooth forms.
     """
-    single = np.ascontiguousarray(values, dtype=np.float32)
-    dropped = 23 - _BITS
-    bits = single.view(np.uint32)
-    half = np.uint32(1 << (dropped - 1))
-    kept = np.uint32(0xFFFFFFFF << dropped & 0xFFFFFFFF)
-    return ((bits + half) & kept).view(np.float32).reshape(values.shape)
+    _, power = np.frexp(np.minimum(np.abs(values), 0.5))
+    step = np.ldexp(1.0, power - _BITS)
+    return np.asarray(step * np.round(values / step), dtype=np.float32)

@@ -2,19 +2,21 @@
 
 The family: smooth line contacts, fully flooded, with a Newtonian, isothermal oil whose density goes after Dowson and
 Higginson, or is constant where the table holds such an oil too.
+
+A table has two parts, one for oils with a piezoviscosity to speak of and one for all that have less, down to none.
+Where both know an oil, the one goes over into the other smoothly.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from ehdmaps.arrays import BoolArray, ByteArray, ComplexArray, FloatArray, IndexArray
+from ehdmaps.arrays import BoolArray, ComplexArray, FloatArray, IndexArray
 from ehdmaps.errors import InputError
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.film_limits import (
@@ -28,28 +30,14 @@ from ehdmaps.physics.hertz import LARGEST_PRESSURE
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solution import Status
-from ehdmaps.table.coordinates import bend_of, zeta_of
-from ehdmaps.table.fields import FIELDS, FILMS, LAW, NATURAL_FREQUENCIES, RESPONSES, Field, Units, units
-from ehdmaps.table.interpolation import Axes, Place, coefficients, place_of
-from ehdmaps.table.interpolation import read as read_fields
-from ehdmaps.table.oils import BESIDE, OilStates, exponent_at, matched_pressure, oil_states
-
-BEYOND_HEAVY, BEYOND_FLAT, BEYOND_LIGHT = 0.1, 0.05, 5e-3
-"""What smooth forms are wrong by, a unit of zeta above the table; at L = 0 below it; and far below its lowest zeta.
-
-Measured there, down to M = 1e-8: largest pressures 4e-3, as nodes of a grid sample them; films and compliances 2e-4."""
-
-FARTHEST = 3.0
-"""Units of zeta above the table up to which its ends are taken."""
+from ehdmaps.table.coordinates import LEAST_ALPHA, bend_of, valley_shift, zeta_of
+from ehdmaps.table.fields import FILMS, LAW, NATURAL_FREQUENCIES, RESPONSES, Field, Units, units
+from ehdmaps.table.interpolation import Place, place_of
+from ehdmaps.table.nodes import FARTHEST, OTHER_FILMS, Nodes
+from ehdmaps.table.oils import BESIDE, OilStates, exponent_at, mapping_factor, matched_pressure, oil_states
 
 WORST_ERROR = 0.5
 """Error of the smooth form of a film above which the table has no number there."""
-
-CODES = 255
-LEAST_ERROR, LARGEST_ERROR = 1e-7, 1e2
-"""Errors are held in a byte each, as logarithms between these."""
-
-OTHER_FILMS = FILMS[len(LAW) :]
 
 _SLACK = 1e-9
 _TINY = float(np.finfo(float).tiny)
@@ -63,8 +51,8 @@ _CAUSES = (
     "film table: groups M and L are not finite: load, speed or viscosity is absurd",
     f"film table: Hertz pressure above {LARGEST_PRESSURE / 1e9:g} GPa",
     f"film table: M outside {LIGHTEST_LOAD_NUMBER:g} to {HEAVIEST_LOAD_NUMBER:g}",
-    "film table: L above its range",
-    "film table: pressure-viscosity coefficient outside its range",
+    "film table: L above its range, or L/alpha of an oil of hardly any piezoviscosity",
+    "film table: pressure-viscosity coefficient above its range",
     "film table: viscosity bends over pressure as none of its oils does",
     "film table: beyond its highest loads",
     f"film thicker than {THICKEST_FILM:g} of the radius: neither thin-film theory nor a parabolic gap holds",
@@ -96,8 +84,8 @@ class TableFilms:
     viscosity_extrapolated : ndarray of bool
         The pressure left the range in which the viscosity law was fitted.
     law_error : ndarray
-        Largest error of the smooth forms of film offset, film compliance and loss compliance, see
-        `ehdmaps.table.fields`: unlike a relative error it stays finite where these run through zero.
+        Largest error of ln(film offset), asinh(E' film compliance/0.3) and asinh(u E' loss compliance/(0.5 b)): unlike
+        a relative error it stays finite where these run through zero.
     """
 
     status: npt.NDArray[np.int8]
@@ -133,37 +121,20 @@ class FilmTable:
 
     Attributes
     ----------
-    axes : Axes
-        The nodes.
-    values : ndarray of float32, shape (n_zeta, n_L, n_alpha, n_bend, fields)
-        Smooth forms of `FIELDS` at the nodes.
-    codes : ndarray of uint8
-        Their errors, see `decoded`; of the same shape.
+    piezoviscous, isoviscous : Nodes
+        The two parts, see `ehdmaps.table.coordinates`. The second one ends where the first one has begun.
     compressible : bool
         Whether the density is that of Dowson and Higginson; constant if not.
     """
 
-    axes: Axes
-    values: npt.NDArray[np.float32]
-    codes: ByteArray
+    piezoviscous: Nodes
+    isoviscous: Nodes
     compressible: bool
 
-    @cached_property
-    def _law(self) -> FloatArray:
-        return self._coefficients(LAW)
-
-    @cached_property
-    def _others(self) -> FloatArray:
-        return self._coefficients(OTHER_FILMS)
-
-    @cached_property
-    def _responses(self) -> FloatArray:
-        return self._coefficients(RESPONSES)
-
-    def _coefficients(self, fields: tuple[Field, ...]) -> FloatArray:
-        """Coefficients of neighbouring fields."""
-        first = FIELDS.index(fields[0])
-        return coefficients(self.axes, self.values[..., first : first + len(fields)].astype(float))
+    @property
+    def _seam(self) -> tuple[float, float]:
+        """Where the piezoviscous part begins, and the isoviscous one ends: ln alpha."""
+        return float(self.piezoviscous.axes.alpha[0]), float(np.log(self.isoviscous.axes.alpha[-1]))
 
     def films(
         self,
@@ -211,22 +182,26 @@ class FilmTable:
         read = self._reader(points, good)
         numbers, errors = ({field.name: np.full(w.size, np.nan) for field in FILMS} for _ in range(2))
         law_error = np.full(w.size, np.nan)
-        for fields, held in ((LAW, self._law), *(((OTHER_FILMS, self._others),) if others else ())):
-            reduced, wrong = read(fields, held)
+        hole = np.zeros(w.size, dtype=bool)
+        for fields in (LAW, OTHER_FILMS) if others else (LAW,):
+            reduced, wrong = read(fields)
             if fields is LAW:
-                law_error[good] = np.max(wrong, axis=1)
+                law_error[good] = np.max(
+                    [f.judged_error(reduced[:, k], wrong[:, k]) for k, f in enumerate(LAW)], axis=0
+                )
+                hole[good] = ~np.all(wrong < WORST_ERROR, axis=1)
             for k, field in enumerate(fields):
                 numbers[field.name][good] = reduced[:, k] * points.unit.of(field)[good]
                 errors[field.name][good] = field.relative_error(reduced[:, k], wrong[:, k])
         complex_response = np.full((w.size, len(NATURAL_FREQUENCIES) if response else 0), complex(np.nan, np.nan))
         errors["response"] = np.full(complex_response.shape, np.nan)
         if response:
-            reduced, wrong = read(RESPONSES, self._responses)
+            reduced, wrong = read(RESPONSES)
             wrong *= np.hypot(reduced, [field.scale for field in RESPONSES])
             found = reduced[:, 0::2] + 1j * reduced[:, 1::2]
             complex_response[good] = found * points.unit.compliance[good, None]
             errors["response"][good] = np.hypot(wrong[:, 0::2], wrong[:, 1::2]) / np.abs(found)
-        cause[good] = _noted(numbers, law_error, thickest_film * contact.radius, contact.radius, good)
+        cause[good] = _noted(numbers, hole, thickest_film * contact.radius, contact.radius, good)
         refused, dry = cause > _DRY, cause == _DRY
         for number in (*numbers.values(), *errors.values(), complex_response, law_error):
             number[refused], number[dry] = np.nan, 0.0
@@ -250,8 +225,10 @@ class FilmTable:
 
     def _refused(self, points: _Points) -> npt.NDArray[np.int8]:
         """Why there is no film at points, before it is read."""
-        axes, M, L = self.axes, points.load_number, points.oil_number
-        alpha = np.fmax(points.alpha, _TINY)
+        iso, piezo = self.isoviscous.axes, self.piezoviscous.axes
+        M, L, alpha = points.load_number, points.oil_number, points.alpha
+        begin, end = np.exp(self._seam)
+        fastest, fastest_thin = (np.exp(axes.size[-1]) * (1.0 + _SLACK) for axes in (piezo, iso))
         with np.errstate(invalid="ignore"):
             tests = (
                 (points.speed == 0.0, _DRY),
@@ -259,48 +236,69 @@ class FilmTable:
                 (~(np.isfinite(M) & np.isfinite(L) & (M > 0.0)), _ABSURD),
                 (points.unit.pressure > LARGEST_PRESSURE, _PRESSURE),
                 ((M > HEAVIEST_LOAD_NUMBER) | (M < LIGHTEST_LOAD_NUMBER), _LOAD),
-                (np.exp(axes.log_l[-1]) * (1.0 + _SLACK) < L, _SPEED),
-                (~_within(np.log(alpha), axes.log_alpha), _ALPHA),
-                (~_within(bend_of(alpha, points.exponent), axes.bend), _BEND),
-                (points.zeta > axes.zeta[-1] + FARTHEST, _HEAVY),
+                ((fastest < L) | ((alpha < end) & (fastest_thin * alpha < L)), _SPEED),
+                (np.log(alpha) > piezo.alpha[-1] + _SLACK, _ALPHA),
+                (~_within(bend_of(np.maximum(alpha, begin), points.exponent), piezo.bend), _BEND),
+                (points.zeta > piezo.zeta[-1] + FARTHEST, _HEAVY),
             )
         return np.select([test for test, _ in tests], [cause for _, cause in tests], _NONE).astype(np.int8)
 
     def _reader(
         self, points: _Points, good: IndexArray
-    ) -> Callable[[tuple[Field, ...], FloatArray], tuple[FloatArray, FloatArray]]:
+    ) -> Callable[[tuple[Field, ...]], tuple[FloatArray, FloatArray]]:
         """What reads reduced numbers of some points, and the errors of their smooth forms, both (n, fields)."""
-        place = self._place(points, good, points.exponent[good])
+        pieces = self._pieces(points, good, points.exponent[good])
         mapped = np.flatnonzero(points.beside[good] != points.exponent[good])
-        other = None
+        other = []
         if mapped.size:
             at = good[mapped]
             alpha, exponent, beside = points.alpha[at], points.exponent[at], points.beside[at]
             # an oil that is beyond the nodes counts on the other side
-            inside = _within(bend_of(alpha, beside), self.axes.bend)
-            other = self._place(points, at, np.where(inside, beside, 2.0 * exponent - beside))
+            begin = np.exp(self._seam[0])
+            inside = _within(bend_of(np.maximum(alpha, begin), beside), self.piezoviscous.axes.bend)
+            other = self._pieces(points, at, np.where(inside, beside, 2.0 * exponent - beside))
 
-        def read(fields: tuple[Field, ...], held: FloatArray) -> tuple[FloatArray, FloatArray]:
-            lifted = read_fields(place, held, fields)
-            wrong = self._errors(place, fields)
-            if other is not None:
-                wrong[mapped] += np.abs(read_fields(other, held, fields) - lifted[mapped])
+        def read(fields: tuple[Field, ...]) -> tuple[FloatArray, FloatArray]:
+            lifted, wrong = (np.zeros((good.size, len(fields))) for _ in range(2))
+            for piece in pieces:
+                lifted[piece.at] += piece.share * piece.nodes.read(piece.place, fields)
+                wrong[piece.at] += piece.share * piece.nodes.errors(piece.place, fields)
+            moved = lifted[mapped]
+            for piece in other:
+                moved[piece.at] -= piece.share * piece.nodes.read(piece.place, fields)
+            wrong[mapped] += np.abs(moved) * [mapping_factor(field.name, points.fitted) for field in fields]
             return np.column_stack([field.reduced(lifted[:, k]) for k, field in enumerate(fields)]), wrong
 
         return read
 
-    def _place(self, points: _Points, at: IndexArray, exponent: FloatArray) -> Place:
-        """Place of points with one z or another."""
+    def _pieces(self, points: _Points, at: IndexArray, exponent: FloatArray) -> list[_Piece]:
+        """Which parts say how much of some points, with one z or another."""
         M, L, alpha = points.load_number[at], points.oil_number[at], points.alpha[at]
-        bend = np.clip(bend_of(alpha, exponent), self.axes.bend[0], self.axes.bend[-1])
-        return place_of(self.axes, zeta_of(M, L, alpha, exponent), np.log(L), np.log(alpha), bend)
+        begin, end = self._seam
+        t = np.clip((np.log(alpha) - begin) / (end - begin), 0.0, 1.0)
+        share = t * t * (3.0 - 2.0 * t)
+        shift, bend = valley_shift(L, alpha, exponent), bend_of(alpha, exponent)
+        pieces = []
+        for nodes, part, coordinates in (
+            (self.piezoviscous, share, (zeta_of(M, L, shift), np.log(L), np.log(alpha), bend)),
+            (self.isoviscous, 1.0 - share, (zeta_of(M, L), np.log(L / alpha), alpha, 1.0 - exponent)),
+        ):
+            (told,) = np.nonzero(part)
+            if told.size:
+                zeta, size, by_alpha, by_bend = (x[told] for x in coordinates)
+                by_bend = np.clip(by_bend, nodes.axes.bend[0], nodes.axes.bend[-1])
+                place = place_of(nodes.axes, zeta, size, by_alpha, by_bend)
+                pieces.append(_Piece(nodes, told, part[told, None], place))
+        return pieces
 
-    def _errors(self, place: Place, fields: tuple[Field, ...]) -> FloatArray:
-        """Errors of smooth forms, shape (n, fields)."""
-        first = FIELDS.index(fields[0])
-        codes = self.codes.reshape(-1, len(FIELDS))[place.nearest, first : first + len(fields)]
-        beyond = BEYOND_HEAVY * place.above - BEYOND_FLAT * place.flatter - BEYOND_LIGHT * np.expm1(place.below)
-        return _DECODED[codes] + beyond[:, None]
+
+class _Piece(NamedTuple):
+    """What one part of a table says of points: which of them, shape (n,), and with what share, shape (n, 1)."""
+
+    nodes: Nodes
+    at: IndexArray
+    share: FloatArray
+    place: Place
 
 
 class _Points(NamedTuple):
@@ -315,6 +313,7 @@ class _Points(NamedTuple):
     beside: FloatArray
     zeta: FloatArray
     fitted_pressure: float
+    fitted: bool
 
 
 def _points(
@@ -324,15 +323,16 @@ def _points(
     _check(load, speed, temperature)
     unique, index = np.unique(temperature, return_inverse=True)
     oil = oil_states(lubricant, unique)
-    viscosity, density, alpha = (x[index] for x in (oil.viscosity, oil.density, oil.alpha))
+    viscosity, density = oil.viscosity[index], oil.density[index]
+    alpha = np.maximum(oil.alpha, LEAST_ALPHA)[index]
     R, E = contact.radius, contact.reduced_modulus
     with np.errstate(all="ignore"):
         unit = units(load, np.maximum(speed, _TINY), viscosity, density, R, E)
         number = 2.0 * viscosity * speed / (E * R)
         M, L = load / (E * R) / np.sqrt(number), alpha * E * np.sqrt(np.sqrt(number))
         exponent, beside = _on_axes(oil, index, M, L, alpha)
-        zeta = zeta_of(M, L, alpha, exponent)
-    return _Points(speed, unit, M, L, alpha, exponent, beside, zeta, oil.fitted_pressure)
+        zeta = zeta_of(M, L, valley_shift(L, alpha, exponent))
+    return _Points(speed, unit, M, L, alpha, exponent, beside, zeta, oil.fitted_pressure, oil.fitted)
 
 
 def _on_axes(
@@ -344,7 +344,7 @@ def _on_axes(
     own = np.all(oil.exponents == oil.exponents[:, 1:2], axis=1)[index]
     if np.all(own | np.isnan(middle)):
         return middle, middle
-    matched = matched_pressure(zeta_of(M, L, alpha, middle), L)
+    matched = matched_pressure(zeta_of(M, L, valley_shift(L, alpha, middle)), L)
     return (
         np.where(own, middle, exponent_at(exponents, matched)),
         np.where(own, middle, exponent_at(exponents, BESIDE * matched)),
@@ -352,12 +352,12 @@ def _on_axes(
 
 
 def _noted(
-    numbers: Mapping[str, FloatArray], law_error: FloatArray, thickest: float, radius: float, good: IndexArray
+    numbers: Mapping[str, FloatArray], hole: BoolArray, thickest: float, radius: float, good: IndexArray
 ) -> npt.NDArray[np.int8]:
     """What is said of films that were read."""
     film = numbers["film_offset"][good]
     tests = (
-        (~(law_error[good] < WORST_ERROR), _HOLE),
+        (hole[good], _HOLE),
         (film > thickest, _TOO_THICK),
         (film > THIN_FILM_LIMIT * radius, _THICK),
         (numbers["loss_compliance"][good] < 0.0, _NEGATIVE),
@@ -377,19 +377,3 @@ def _check(load: FloatArray, speed: FloatArray, temperature: FloatArray) -> None
     wrong |= ~((temperature > 0.0) & np.isfinite(temperature))
     for i in np.flatnonzero(wrong)[:1]:
         OperatingPoint(float(load[i]), float(speed[i]), float(temperature[i]))
-
-
-def encoded(errors: FloatArray) -> ByteArray:
-    """Errors in a byte each, rounded up; NaN becomes the largest.
-
-    Parameters
-    ----------
-    errors : ndarray
-        Errors of smooth forms, >= 0.
-    """
-    held = np.clip(np.where(np.isnan(errors), LARGEST_ERROR, errors), LEAST_ERROR, LARGEST_ERROR)
-    span = np.log(LARGEST_ERROR / LEAST_ERROR)
-    return np.asarray(np.ceil(CODES * np.log(held / LEAST_ERROR) / span - 1e-9).astype(np.uint8))
-
-
-_DECODED = LEAST_ERROR * (LARGEST_ERROR / LEAST_ERROR) ** (np.arange(CODES + 1) / CODES)

@@ -1,8 +1,8 @@
-"""Between the nodes: cubic splines along zeta and ln L, polynomials through all nodes of ln alpha and the bend.
+"""Between the nodes: cubic splines along zeta and the size, polynomials through all nodes of the oil's two coordinates.
 
 Beyond the ends the numbers go on with the slope that they have there. Below the lowest zeta they go over to the powers
 of a rigid film. Above the highest one films go on as powers of M, film compliance and loss fade, and responses come to
-rest. Below the lowest L all are linear in L, as an oil of hardly any piezoviscosity is.
+rest. Below the lowest L or P all are linear in it, as an oil of hardly any piezoviscosity and compressibility is.
 """
 
 from __future__ import annotations
@@ -12,8 +12,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.interpolate import BSpline, make_interp_spline
-from scipy.ndimage import maximum_filter1d
+from scipy.interpolate import BSpline
 
 from ehdmaps.arrays import FloatArray, IndexArray
 from ehdmaps.table.fields import Field
@@ -29,24 +28,31 @@ class Axes:
 
     Attributes
     ----------
-    zeta, log_l, log_alpha, bend : ndarray
-        Rising nodes of zeta, ln L, ln alpha [ln 1/Pa] and the bend, see `ehdmaps.table.coordinates`.
+    zeta, size, alpha, bend : ndarray
+        Rising nodes. Size, alpha and bend are ln L, ln alpha [ln 1/Pa] and the bend in the piezoviscous part of a
+        table, and ln P [ln Pa], alpha [1/Pa] and 1 - z in the isoviscous one, see `ehdmaps.table.coordinates`.
     """
 
     zeta: FloatArray
-    log_l: FloatArray
-    log_alpha: FloatArray
+    size: FloatArray
+    alpha: FloatArray
     bend: FloatArray
 
     @property
     def shape(self) -> tuple[int, int, int, int]:
         """Nodes along each axis."""
-        return self.zeta.size, self.log_l.size, self.log_alpha.size, self.bend.size
+        return self.zeta.size, self.size.size, self.alpha.size, self.bend.size
+
+    @property
+    def cells(self) -> tuple[int, int, int, int]:
+        """Cells between them."""
+        n, m, k, p = self.shape
+        return n - 1, m - 1, k - 1, p - 1
 
     @cached_property
     def knots(self) -> tuple[FloatArray, FloatArray]:
-        """Knots of the splines along zeta and ln L."""
-        return _knots(self.zeta), _knots(self.log_l)
+        """Knots of the splines along zeta and the size."""
+        return _knots(self.zeta), _knots(self.size)
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,66 +62,62 @@ class Place:
     Attributes
     ----------
     first : ndarray, shape (n, 2)
-        First coefficient along zeta and ln L.
-    zeta, log_l : ndarray, shape (n, 4)
+        First coefficient along zeta and the size.
+    zeta, size : ndarray, shape (n, 4)
         Weights of four coefficients each.
-    zeta_slope, log_l_slope : ndarray, shape (n, 4)
+    zeta_slope, size_slope : ndarray, shape (n, 4)
         Their derivatives.
     oil : ndarray, shape (n, n_alpha n_bend)
-        Weights of the nodes of ln alpha and the bend.
+        Weights of the nodes of alpha and bend.
     below, above : ndarray, shape (n,)
         How far zeta lies below the first node, <= 0, and above the last, >= 0.
     flatter : ndarray, shape (n,)
-        L over that of the first node, less one, where it lies below; 0 elsewhere.
-    nearest : ndarray, shape (n,)
-        Nearest node of the table, counted through all axes.
+        L or P over that of the first node, less one, where it lies below; 0 elsewhere.
+    cell : ndarray, shape (n,)
+        Cell of the table, counted through all axes.
     """
 
     first: IndexArray
     zeta: FloatArray
-    log_l: FloatArray
+    size: FloatArray
     zeta_slope: FloatArray
-    log_l_slope: FloatArray
+    size_slope: FloatArray
     oil: FloatArray
     below: FloatArray
     above: FloatArray
     flatter: FloatArray
-    nearest: IndexArray
+    cell: IndexArray
 
 
-def place_of(axes: Axes, zeta: FloatArray, log_l: FloatArray, log_alpha: FloatArray, bend: FloatArray) -> Place:
-    """Place of points, arrays of one shape (n,); ln alpha and the bend have to lie within their nodes.
+def place_of(axes: Axes, zeta: FloatArray, size: FloatArray, alpha: FloatArray, bend: FloatArray) -> Place:
+    """Place of points, arrays of one shape (n,); alpha and bend have to lie within their nodes.
 
     Parameters
     ----------
     axes : Axes
         Nodes of the table.
-    zeta, log_l, log_alpha, bend : ndarray, shape (n,)
+    zeta, size, alpha, bend : ndarray, shape (n,)
         Coordinates of the points.
     """
-    held, held_l = np.clip(zeta, axes.zeta[0], axes.zeta[-1]), np.clip(log_l, axes.log_l[0], axes.log_l[-1])
+    held, held_size = np.clip(zeta, axes.zeta[0], axes.zeta[-1]), np.clip(size, axes.size[0], axes.size[-1])
     away = zeta - held
-    (i, along, slope), (j, along_l, slope_l) = (
-        _weights(knots, x) for knots, x in zip(axes.knots, (held, held_l), strict=True)
+    (i, along, slope), (j, along_size, slope_size) = (
+        _weights(knots, x) for knots, x in zip(axes.knots, (held, held_size), strict=True)
     )
-    by_alpha, by_bend = lagrange_weights(axes.log_alpha, log_alpha), lagrange_weights(axes.bend, bend)
-    near = [
-        _nearest(nodes, x)
-        for nodes, x in zip(
-            (axes.zeta, axes.log_l, axes.log_alpha, axes.bend), (held, held_l, log_alpha, bend), strict=True
-        )
-    ]
+    by_alpha, by_bend = lagrange_weights(axes.alpha, alpha), lagrange_weights(axes.bend, bend)
+    all_nodes = axes.zeta, axes.size, axes.alpha, axes.bend
+    cell = [_cell(nodes, x) for nodes, x in zip(all_nodes, (zeta, size, alpha, bend), strict=True)]
     return Place(
         first=np.column_stack([i, j]),
         zeta=along,
-        log_l=along_l,
+        size=along_size,
         zeta_slope=slope,
-        log_l_slope=slope_l,
+        size_slope=slope_size,
         oil=(by_alpha[:, :, None] * by_bend[:, None, :]).reshape(zeta.size, by_alpha.shape[1] * by_bend.shape[1]),
         below=np.minimum(away, 0.0),
         above=np.maximum(away, 0.0),
-        flatter=np.expm1(np.minimum(log_l - held_l, 0.0)),
-        nearest=np.ravel_multi_index(near, axes.shape),
+        flatter=np.expm1(np.minimum(size - held_size, 0.0)),
+        cell=np.ravel_multi_index(cell, axes.cells),
     )
 
 
@@ -126,15 +128,15 @@ def coefficients(axes: Axes, values: FloatArray) -> FloatArray:
     ----------
     axes : Axes
         The nodes.
-    values : ndarray, shape (n_zeta, n_L, n_alpha, n_bend, fields)
+    values : ndarray, shape (n_zeta, n_size, n_alpha, n_bend, fields)
         Values there.
 
     Returns
     -------
-    ndarray, shape (n_zeta, n_L, n_alpha n_bend, fields)
+    ndarray, shape (n_zeta, n_size, n_alpha n_bend, fields)
     """
     n, m, k, p, fields = values.shape
-    first, second = (_inverse(nodes, knots) for nodes, knots in zip((axes.zeta, axes.log_l), axes.knots, strict=True))
+    first, second = (_inverse(nodes, knots) for nodes, knots in zip((axes.zeta, axes.size), axes.knots, strict=True))
     along = (first @ values.reshape(n, -1)).reshape(n, m, k * p * fields)
     return np.ascontiguousarray((second @ along).reshape(n, m, k * p, fields))
 
@@ -146,7 +148,7 @@ def read(place: Place, coefficients: FloatArray, fields: Sequence[Field]) -> Flo
     ----------
     place : Place
         The points.
-    coefficients : ndarray, shape (n_zeta, n_L, oils, fields)
+    coefficients : ndarray, shape (n_zeta, n_size, oils, fields)
         Coefficients of these fields.
     fields : sequence of Field
         The fields.
@@ -161,37 +163,53 @@ def read(place: Place, coefficients: FloatArray, fields: Sequence[Field]) -> Flo
 
 
 def _read(
-    place: Place, part: slice | IndexArray, coefficients: FloatArray, zeta: bool = False, log_l: bool = False
+    place: Place, part: slice | IndexArray, coefficients: FloatArray, zeta: bool = False, size: bool = False
 ) -> FloatArray:
-    """Values of some points, or their derivatives along zeta or ln L, shape (n, fields)."""
+    """Values of some points, or their derivatives along zeta or the size, shape (n, fields)."""
     by_zeta = (place.zeta_slope if zeta else place.zeta)[part]
-    by_l = (place.log_l_slope if log_l else place.log_l)[part]
+    by_size = (place.size_slope if size else place.size)[part]
     first, four = place.first[part], np.arange(DEGREE + 1)
     near = coefficients[(first[:, 0, None] + four)[:, :, None], (first[:, 1, None] + four)[:, None, :]]
     n, fields = first.shape[0], coefficients.shape[-1]
-    weights = (by_zeta[:, :, None] * by_l[:, None, :]).reshape(n, 1, -1)
+    weights = (by_zeta[:, :, None] * by_size[:, None, :]).reshape(n, 1, -1)
     oils = coefficients.shape[2]
     summed = np.matmul(weights, near.reshape(n, (DEGREE + 1) ** 2, oils * fields)).reshape(n, oils, fields)
     return np.asarray(np.matmul(place.oil[part][:, None, :], summed)[:, 0, :])
 
 
 def _go_on(place: Place, coefficients: FloatArray, fields: Sequence[Field], found: FloatArray) -> None:
-    """Continue values beyond the nodes, in place: along zeta at the last L, and the derivative of this along L."""
+    """Continue values beyond the nodes, in place: along zeta at the last size, and the derivative of this along it."""
     away = np.flatnonzero((place.below < 0.0) | (place.above > 0.0) | (place.flatter < 0.0))
     below, above, flatter = place.below[away], place.above[away], place.flatter[away]
     value, slope = found[away], _read(place, away, coefficients, zeta=True)
-    by_l, slope_by_l = (_read(place, away, coefficients, zeta=zeta, log_l=True) for zeta in (False, True))
+    by_size, slope_by_size = (_read(place, away, coefficients, zeta=zeta, size=True) for zeta in (False, True))
     for k, field in enumerate(fields):
         # all but what fades is linear in value and slope
-        v, s = value[:, k] + flatter * by_l[:, k], slope[:, k] + flatter * slope_by_l[:, k]
+        v, s = value[:, k] + flatter * by_size[:, k], slope[:, k] + flatter * slope_by_size[:, k]
         rigid = field.rigid_slope * (np.sign(v) if field.scale else 1.0)
         lighter = v + rigid * below + (s - rigid) * np.expm1(below)
+        heavier = heavier_films(field, v, s, above)
         if field.fades:
             rate = np.minimum(slope[:, k] / value[:, k], 0.0)
-            heavier = (v + flatter * above * (slope_by_l[:, k] - rate * by_l[:, k])) * np.exp(rate * above)
-        else:
-            heavier = v - s * np.expm1(-above) if field.scale else v + s * above
+            heavier = (v + flatter * above * (slope_by_size[:, k] - rate * by_size[:, k])) * np.exp(rate * above)
         found[away, k] = np.where(below < 0.0, lighter, heavier)
+
+
+def heavier_films(field: Field, value: FloatArray, slope: FloatArray, above: FloatArray) -> FloatArray:
+    """Smooth forms above a place where value and slope along zeta are known.
+
+    Parameters
+    ----------
+    field : Field
+        The number.
+    value, slope : ndarray
+        Its smooth form there, and the derivative.
+    above : ndarray
+        How far zeta lies above, >= 0.
+    """
+    if field.fades:
+        return np.asarray(value * np.exp(np.minimum(slope / value, 0.0) * above))
+    return np.asarray(value - slope * np.expm1(-above) if field.scale else value + slope * above)
 
 
 def _knots(nodes: FloatArray) -> FloatArray:
@@ -244,59 +262,6 @@ def lagrange_weights(nodes: FloatArray, x: FloatArray) -> FloatArray:
     return weights
 
 
-def _nearest(nodes: FloatArray, x: FloatArray) -> IndexArray:
-    """Index of the nearest node."""
-    return np.searchsorted(0.5 * (nodes[1:] + nodes[:-1]), x)
-
-
-def left_out(axes: Axes, values: FloatArray) -> FloatArray:
-    """What reading between the nodes is wrong by, at each node, from leaving nodes out; shape of the values.
-
-    Along zeta and ln L each value is read from the spline through every second node and from that through every fourth.
-    What all nodes leave is what every second one does, times the ratio of the two: a sixteenth where the spline
-    converges, all of it where values scatter. Along ln alpha and the bend each node is read from all others; the
-    polynomial with one node more is taken to be wrong by a third of that.
-
-    Parameters
-    ----------
-    axes : Axes
-        The nodes.
-    values : ndarray, shape (n_zeta, n_L, n_alpha, n_bend, fields)
-        Values there.
-    """
-    total = np.zeros_like(values)
-    for axis, nodes in enumerate((axes.zeta, axes.log_l, axes.log_alpha, axes.bend)):
-        moved = np.moveaxis(values, axis, 0)
-        found = _spline_error(nodes, moved) if axis < 2 else _node_left_out(nodes, moved) / 3.0
-        total += np.moveaxis(found, 0, axis)
-    return total
-
-
-def _spline_error(nodes: FloatArray, values: FloatArray) -> FloatArray:
-    """What the spline through all nodes is wrong by between them, at each node."""
-    second, fourth = _spline_left_out(nodes, values, 2), _spline_left_out(nodes, values, 4)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        ratio = np.where(fourth > 0.0, second / fourth, 1.0)
-    return np.asarray(second * np.clip(ratio, 1.0 / 16.0, 1.0))
-
-
-def _spline_left_out(nodes: FloatArray, values: FloatArray, every: int) -> FloatArray:
-    """Largest difference nearby of values from splines through every so many nodes."""
-    found = np.zeros_like(values)
-    for start in range(every):
-        kept = np.unique(np.r_[0, np.arange(start, nodes.size, every), nodes.size - 1])
-        if kept.size <= DEGREE:
-            return np.full_like(values, np.inf) if every == 2 else np.zeros_like(values)
-        spline = make_interp_spline(nodes[kept], values[kept], k=DEGREE)
-        found = np.maximum(found, np.abs(spline(nodes) - values))
-    return np.asarray(maximum_filter1d(found, 2 * every + 1, axis=0, mode="nearest"))
-
-
-def _node_left_out(nodes: FloatArray, values: FloatArray) -> FloatArray:
-    """Difference of each node's value from the polynomial through all others."""
-    found = np.empty_like(values)
-    for k in range(nodes.size):
-        others = np.delete(np.arange(nodes.size), k)
-        weights = lagrange_weights(nodes[others], nodes[k : k + 1])[0]
-        found[k] = np.abs(np.tensordot(weights, values[others], axes=1) - values[k])
-    return found
+def _cell(nodes: FloatArray, x: FloatArray) -> IndexArray:
+    """Index of the cell between nodes; that at the end for places beyond."""
+    return np.clip(np.searchsorted(nodes, x, side="right") - 1, 0, nodes.size - 2)

@@ -43,13 +43,17 @@ def _shown(tables: TableFile) -> str:
     """Nodes, provenance and errors as text."""
     lines = [f"{name}: {value}" for name, value in sorted(tables.attributes.items())]
     for law, table in tables.tables.items():
-        axes = table.axes
-        ends = (
-            ("zeta", axes.zeta, ""),
-            ("L", np.exp(axes.log_l), ""),
-            ("alpha", 1e9 * np.exp(axes.log_alpha), " 1/GPa"),
-            ("bend", axes.bend, ""),
-        )
-        nodes = ", ".join(f"{name} {x[0]:.3g} to {x[-1]:.3g}{unit} ({x.size})" for name, x, unit in ends)
-        lines.append(f"{law}: {nodes}; {np.prod(axes.shape)} films")
+        piezo, iso = table.piezoviscous.axes, table.isoviscous.axes
+        for part, shape, ends in (
+            ("piezoviscous", piezo.shape, (
+                ("zeta", piezo.zeta, ""), ("L", np.exp(piezo.size), ""),
+                ("alpha", 1e9 * np.exp(piezo.alpha), " 1/GPa"), ("bend", piezo.bend, ""),
+            )),
+            ("isoviscous", iso.shape, (
+                ("zeta", iso.zeta, ""), ("L/alpha", 1e-9 * np.exp(iso.size), " GPa"),
+                ("alpha", 1e9 * iso.alpha, " 1/GPa"), ("1 - z", iso.bend, ""),
+            )),
+        ):  # fmt: skip
+            nodes = ", ".join(f"{name} {x[0]:.3g} to {x[-1]:.3g}{unit} ({x.size})" for name, x, unit in ends)
+            lines.append(f"{law}, {part}: {nodes}; {np.prod(shape)} films")
     return "\n".join(lines)

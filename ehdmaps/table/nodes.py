@@ -1,0 +1,103 @@
+"""One part of a table: what is known at its nodes, how it is read between them, and how wrong that is.
+
+The errors are measured ones, a number for each cell between the nodes, see `ehdmaps.jobs.table_make.measured`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from ehdmaps.arrays import ByteArray, FloatArray
+from ehdmaps.table.fields import FIELDS, FILMS, LAW, RESPONSES, Field
+from ehdmaps.table.interpolation import Axes, Place, coefficients
+from ehdmaps.table.interpolation import read as read_fields
+
+BEYOND_HEAVY, BEYOND_FLAT, BEYOND_LIGHT = 0.1, 0.05, 5e-3
+"""What smooth forms are wrong by, a unit of zeta above solved films; at size 0 below them; far below the lowest zeta.
+
+Measured there, down to M = 1e-8: largest pressures 4e-3, as nodes of a grid sample them; films and compliances 2e-4."""
+
+FARTHEST = 3.0
+"""Units of zeta above solved films up to which their ends are taken."""
+
+CODES = 255
+LEAST_ERROR, LARGEST_ERROR = 1e-7, 1e2
+"""Errors are held in a byte each, as logarithms between these."""
+
+OTHER_FILMS = FILMS[len(LAW) :]
+
+
+@dataclass(frozen=True, eq=False)
+class Nodes:
+    """Films at the nodes of one part of a table.
+
+    Attributes
+    ----------
+    axes : Axes
+        The nodes.
+    values : ndarray of float32, shape (n_zeta, n_size, n_alpha, n_bend, fields)
+        Smooth forms of `FIELDS` there.
+    codes : ndarray of uint8, shape (n_zeta - 1, n_size - 1, n_alpha - 1, n_bend - 1, fields)
+        Their errors in each cell, see `encoded`.
+    """
+
+    axes: Axes
+    values: npt.NDArray[np.float32]
+    codes: ByteArray
+
+    @cached_property
+    def _law(self) -> FloatArray:
+        return self._coefficients(LAW)
+
+    @cached_property
+    def _others(self) -> FloatArray:
+        return self._coefficients(OTHER_FILMS)
+
+    @cached_property
+    def _responses(self) -> FloatArray:
+        return self._coefficients(RESPONSES)
+
+    def _coefficients(self, fields: tuple[Field, ...]) -> FloatArray:
+        """Coefficients of neighbouring fields."""
+        first = FIELDS.index(fields[0])
+        return coefficients(self.axes, self.values[..., first : first + len(fields)].astype(float))
+
+    def read(self, place: Place, fields: tuple[Field, ...]) -> FloatArray:
+        """Smooth forms at points, shape (n, fields).
+
+        Parameters
+        ----------
+        place : Place
+            The points.
+        fields : tuple of Field
+            `LAW`, `OTHER_FILMS` or `RESPONSES`.
+        """
+        held = {LAW: "_law", OTHER_FILMS: "_others", RESPONSES: "_responses"}[fields]
+        return read_fields(place, getattr(self, held), fields)
+
+    def errors(self, place: Place, fields: tuple[Field, ...]) -> FloatArray:
+        """Errors of these, shape (n, fields)."""
+        first = FIELDS.index(fields[0])
+        codes = self.codes.reshape(-1, len(FIELDS))[place.cell, first : first + len(fields)]
+        beyond = BEYOND_HEAVY * place.above - BEYOND_FLAT * place.flatter - BEYOND_LIGHT * np.expm1(place.below)
+        return np.asarray(_DECODED[codes] + beyond[:, None])
+
+
+def encoded(errors: FloatArray) -> ByteArray:
+    """Errors in a byte each, rounded up; NaN becomes the largest.
+
+    Parameters
+    ----------
+    errors : ndarray
+        Errors of smooth forms, >= 0.
+    """
+    held = np.clip(np.where(np.isnan(errors), LARGEST_ERROR, errors), LEAST_ERROR, LARGEST_ERROR)
+    span = np.log(LARGEST_ERROR / LEAST_ERROR)
+    return np.asarray(np.ceil(CODES * np.log(held / LEAST_ERROR) / span - 1e-9).astype(np.uint8))
+
+
+_DECODED = LEAST_ERROR * (LARGEST_ERROR / LEAST_ERROR) ** (np.arange(CODES + 1) / CODES)
