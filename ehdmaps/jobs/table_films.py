@@ -12,8 +12,7 @@ import numpy.typing as npt
 from ehdmaps.arrays import BoolArray
 from ehdmaps.errors import MapError
 from ehdmaps.jobs.job import Job
-from ehdmaps.jobs.law_check import SHARES
-from ehdmaps.jobs.law_points import DAMPING_BARS, READ_COMPLIANCE_BARS
+from ehdmaps.jobs.law_points import COMPLIANCE_BARS, DAMPING_BARS
 from ehdmaps.jobs.sampling import SamplePoint, draw_apart, drawable
 from ehdmaps.maps.low_loads import looked_at
 from ehdmaps.maps.table_field import TableField
@@ -24,6 +23,11 @@ from ehdmaps.table.fields import FILMS
 from ehdmaps.table.file import film_table
 from ehdmaps.table.films import TableFilms
 
+STIFFNESS_BAR, SHARES = 5e-3, (0.95, 0.9)
+"""What the table has to state for a job that it serves: errors of the stiffness of no more than this, or of 1 % of the
+film compliance, and of the damping within the bar of contact laws, at these shares of the points over the map and in
+the damping valley. True errors are smaller than stated ones at 19 of 20 points; the check of the laws proves it."""
+
 _LOOKED_AT, _SEED = 1000, 4
 """Random points at which the errors of the table are looked at, and where their numbers start."""
 
@@ -31,8 +35,8 @@ _LOOKED_AT, _SEED = 1000, 4
 def unserved(job: Job) -> str:
     """Why the laws of a job cannot be read from the film table; empty where they can.
 
-    The table has to have films wherever a law looks, and the errors that it states have to lie within the bars of the
-    check of laws at as many random points as are wanted of fresh solves there.
+    The table has to have films wherever a law looks, and the errors that it states have to be small enough at enough
+    random points, see `STIFFNESS_BAR`.
 
     Parameters
     ----------
@@ -56,18 +60,18 @@ def unserved(job: Job) -> str:
         return str(error)
     over, valley = draw_apart(job, np.random.default_rng(_SEED), _LOOKED_AT)
     regions = (over, "over the map"), (valley, "in the damping valley")
-    for (points, where), wanted in zip(regions, SHARES.values(), strict=True):
+    for (points, where), wanted in zip(regions, SHARES, strict=True):
         found = float(np.mean(within_bars(job.lubricant, points))) if points else 1.0
         if found < wanted:
             return (
-                f"film table: its stated errors are within the bars of contact laws at {found:.1%} of the points "
-                f"{where}; wanted {wanted:.0%}"
+                f"film table: states errors within {STIFFNESS_BAR:.1%} of the stiffness and {DAMPING_BARS[0]:.0%} of "
+                f"the damping at {found:.1%} of the points {where}; wanted {wanted:.0%}"
             )
     return ""
 
 
 def within_bars(lubricant: Lubricant, points: list[SamplePoint]) -> BoolArray:
-    """Whether the errors that the table states are within the bars of contact laws.
+    """Whether the errors that the table states are small enough, see `STIFFNESS_BAR`.
 
     Parameters
     ----------
@@ -76,7 +80,7 @@ def within_bars(lubricant: Lubricant, points: list[SamplePoint]) -> BoolArray:
     points : list of SamplePoint
         The points.
     """
-    good, bars = np.empty(len(points), dtype=bool), READ_COMPLIANCE_BARS
+    good, bars = np.empty(len(points), dtype=bool), (COMPLIANCE_BARS[0], STIFFNESS_BAR)
     for contact in {point.contact for point in points}:
         here = np.array([point.contact == contact for point in points])
         w, u, T = (

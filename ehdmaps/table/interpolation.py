@@ -15,11 +15,10 @@ import numpy as np
 from scipy.interpolate import BSpline
 
 from ehdmaps.arrays import FloatArray, IndexArray
+from ehdmaps.compiled import njit
 from ehdmaps.table.fields import Field
 
 DEGREE = 3
-_BLOCK = 4096
-"""Points that are read at a time: their coefficients stay in the cache of the processor."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,10 +152,7 @@ def read(place: Place, coefficients: FloatArray, fields: Sequence[Field]) -> Flo
     fields : sequence of Field
         The fields.
     """
-    found = np.empty((place.below.size, len(fields)))
-    for start in range(0, found.shape[0], _BLOCK):
-        part = slice(start, start + _BLOCK)
-        found[part] = _read(place, part, coefficients)
+    found = _read(place, slice(None), coefficients)
     if np.any(place.below) or np.any(place.above) or np.any(place.flatter):
         _go_on(place, coefficients, fields, found)
     return found
@@ -168,13 +164,29 @@ def _read(
     """Values of some points, or their derivatives along zeta or the size, shape (n, fields)."""
     by_zeta = (place.zeta_slope if zeta else place.zeta)[part]
     by_size = (place.size_slope if size else place.size)[part]
-    first, four = place.first[part], np.arange(DEGREE + 1)
-    near = coefficients[(first[:, 0, None] + four)[:, :, None], (first[:, 1, None] + four)[:, None, :]]
-    n, fields = first.shape[0], coefficients.shape[-1]
-    weights = (by_zeta[:, :, None] * by_size[:, None, :]).reshape(n, 1, -1)
-    oils = coefficients.shape[2]
-    summed = np.matmul(weights, near.reshape(n, (DEGREE + 1) ** 2, oils * fields)).reshape(n, oils, fields)
-    return np.asarray(np.matmul(place.oil[part][:, None, :], summed)[:, 0, :])
+    found = np.zeros((by_zeta.shape[0], coefficients.shape[-1]))
+    _sum_up(place.first[part], by_zeta, by_size, place.oil[part], coefficients, found)
+    return found
+
+
+@njit(error_model="numpy")
+def _sum_up(
+    first: IndexArray,
+    by_zeta: FloatArray,
+    by_size: FloatArray,
+    by_oil: FloatArray,
+    coefficients: FloatArray,
+    found: FloatArray,
+) -> None:
+    """Add to zeros (n, fields) the coefficients around each point times their weights."""
+    for i in range(found.shape[0]):
+        for p in range(by_zeta.shape[1]):
+            for q in range(by_size.shape[1]):
+                near, weight = coefficients[first[i, 0] + p, first[i, 1] + q], by_zeta[i, p] * by_size[i, q]
+                for oil in range(near.shape[0]):
+                    share = weight * by_oil[i, oil]
+                    for field in range(near.shape[1]):
+                        found[i, field] += share * near[oil, field]
 
 
 def _go_on(place: Place, coefficients: FloatArray, fields: Sequence[Field], found: FloatArray) -> None:
