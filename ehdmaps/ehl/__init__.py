@@ -6,6 +6,7 @@
 | `elastic` | deflection of the half-spaces: logarithmic kernel, fifth order |
 | `column` | one column of an oil that is not Newtonian: what it lets flow and what it carries |
 | `reynolds` | the discrete equations and their exact Jacobian |
+| `dense` | linear systems: rows scaled, LU factors, and what they solve |
 | `stored_mass` | the oil that a film stores, and how it changes |
 | `newton` | damped Newton with the dense Jacobian |
 | `warm_oil` | groups of heat, and the oil's laws over temperature for compiled code |
