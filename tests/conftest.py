@@ -109,3 +109,9 @@ def small_map(tmp_path_factory: pytest.TempPathFactory) -> str:
 def reynolds_map(tmp_path_factory: pytest.TempPathFactory) -> str:
     """File of a map of NU308 by the Reynolds equation, which takes some seconds of processor time."""
     return made_map(tmp_path_factory.mktemp("reynolds"), FINE)
+
+
+@pytest.fixture(scope="session")
+def solved_map(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """The same with all films solved, and with refinement lines."""
+    return made_map(tmp_path_factory.mktemp("solved"), f'{FINE}films = "solved"\n')

@@ -46,6 +46,11 @@ _BEYOND = 2.0
 _WIDEST_CONTACT = 0.9
 
 
+TABLE_STEP = 0.26
+"""Distance of nodes of ln u of a law with films from the film table: it makes k wrong by 6e-6 in the median and 3e-5 at
+95 % (NU308, FVA 3), less than films that are read are."""
+
+
 @dataclass(frozen=True)
 class Resolution:
     """Spacing of the nodes of a table.

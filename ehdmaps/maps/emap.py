@@ -15,6 +15,7 @@ from ehdmaps.errors import InputError, MapError
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone import FILMS
 from ehdmaps.maps.checksum import check_content, content_sha256
+from ehdmaps.maps.compilation import TABLE_STEP, Resolution
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.grid_field import GridField
 from ehdmaps.maps.law import ContactLaw, LawKind, OutsidePolicy
@@ -33,7 +34,6 @@ from ehdmaps.maps.records import (
 )
 from ehdmaps.maps.rolling_film import RollingFilm, rolling_film
 from ehdmaps.maps.structure import completed, restructured
-from ehdmaps.maps.table_field import TABLE_RESOLUTION, TableField, table_lines
 from ehdmaps.maps.usable import check_backbone, check_grid, check_loads
 from ehdmaps.maps.validation import check_tables, validate
 from ehdmaps.physics.approach import StructuralLaw
@@ -214,7 +214,7 @@ class EHDMap:
             self.lubricant,
             self.film_field(names),
             outside,
-            TABLE_RESOLUTION if self.from_table else None,
+            self._resolution,
             rolling=self.rolling_film,
             supply=supply or self.supply,
             surface=self.surface if surface is None else surface,
@@ -253,6 +253,8 @@ class EHDMap:
         self._check_films(chosen)
         ranges = (self._range(axis) for axis in ("load", "entrainment_speed", "temperature"))
         if self.from_table:
+            from ehdmaps.maps.table_field import TableField  # with the film table, that other maps do not need
+
             return TableField(chosen, self.lubricant, *ranges)
         if self.backbone is not None:
             return line_field(self.backbone, chosen, self.lubricant, *ranges)
@@ -274,6 +276,8 @@ class EHDMap:
         """
         lines: xr.Dataset | Callable[[], xr.Dataset] | None = self.backbone
         if self.from_table:
+            from ehdmaps.maps.table_field import table_lines
+
             ranges = (self._range(axis) for axis in ("load", "entrainment_speed", "temperature"))
             lines = partial(table_lines, self.contacts, self.lubricant, *ranges)
         return rolling_film(self.dataset, lines, self.contacts, self.lubricant)
@@ -322,6 +326,11 @@ class EHDMap:
             ranges = self._range("load"), self._range("entrainment_speed")
             for group, reference, read in lines_by_contact(self.backbone, chosen):
                 check_backbone(group, reference, read, self.lubricant, *ranges)
+
+    @property
+    def _resolution(self) -> Resolution | None:
+        """Nodes of laws with films from the film table; None for those that others have."""
+        return Resolution(log_speed=TABLE_STEP) if self.from_table else None
 
     def _range(self, axis: str) -> tuple[float, float]:
         """Lowest value above zero, and highest value, of an axis."""

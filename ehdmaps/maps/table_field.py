@@ -23,7 +23,6 @@ from ehdmaps.errors import MapError
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone import ERROR, IMAGINARY, LOSS_SCALE, REAL, BackboneField, OffsetLine
 from ehdmaps.maps.backbone_plan import NAME, STEPS, plan_backbone, zeta_axis
-from ehdmaps.maps.compilation import Resolution
 from ehdmaps.maps.film_field import lifted_loss
 from ehdmaps.maps.low_loads import RIGID, first_loads
 from ehdmaps.maps.records import reference_json
@@ -41,10 +40,6 @@ _STEP = 0.05
 
 _BESIDE = 2
 """Nodes of a line beyond its loads on either side."""
-
-TABLE_RESOLUTION = Resolution(log_speed=0.26)
-"""Nodes of a law with films from the table: by their distance k is off by 6e-6 in the median and 3e-5 at 95 % (NU308,
-FVA 3), less than films that are read."""
 
 _KEPT = 6
 """Sets of lines that are kept: a law asks for those of each of its contacts several times."""

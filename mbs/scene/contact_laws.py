@@ -447,4 +447,3 @@ class BearingLaws:
             supply=self.supply,
             surface=surface,
         )
-

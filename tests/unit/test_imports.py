@@ -45,8 +45,9 @@ ALLOWED = {
         "ehdmaps.netcdf_structure",
         "ehdmaps.units",
         "ehdmaps.physics",
+        "ehdmaps.table",
     },
-    "ehdmaps.table": {"ehdmaps.arrays", "ehdmaps.errors", "ehdmaps.outputs", "ehdmaps.physics"},
+    "ehdmaps.table": {"ehdmaps.arrays", "ehdmaps.compiled", "ehdmaps.errors", "ehdmaps.outputs", "ehdmaps.physics"},
     "ehdmaps.openfoam": {
         "ehdmaps.arrays",
         "ehdmaps.errors",

@@ -35,7 +35,7 @@ narrow_law = partial(law, LINE, OIL, loads=(2e3, 4e5), entrainment_speeds=(0.5, 
 
 @pytest.mark.slow
 def test_a_law_from_the_table_is_that_from_solved_lines() -> None:
-    """Load and stiffness within 0.05 %; damping within 2 % of itself or of 0.02 k b/u, the errors of the table."""
+    """Load and stiffness within 0.1 %, the bar of films that are read; damping within 2 % of max(c, 0.02 k b/u)."""
     read, solved = narrow_law(outside="clamp"), narrow_law(outside="clamp", solver=ReynoldsSolver())
     random = np.random.default_rng(4)
     n = 400
@@ -44,8 +44,10 @@ def test_a_law_from_the_table_is_that_from_solved_lines() -> None:
     (w, k, c), (w0, k0, c0) = read(delta, 0.0, u, T), solved(delta, 0.0, u, T)
     within = (w0 > 2e3) & (w0 < 4e5)
     assert np.count_nonzero(within) > 100
-    assert np.max(np.abs(w / w0 - 1.0)[within]) < 5e-4
-    assert np.max(np.abs(k / k0 - 1.0)[within]) < 5e-4
+    for one, other in ((w, w0), (k, k0)):
+        wrong = np.abs(one / other - 1.0)[within]
+        assert np.max(wrong) < 1e-3
+        assert np.median(wrong) < 1e-4
     half = np.sqrt(8.0 * w0 * LINE.radius / (np.pi * LINE.reduced_modulus))
     wrong = np.abs(c - c0) / np.maximum(c0, 0.02 * k0 * half / u)
     assert np.quantile(wrong[within], 0.95) < 0.02
@@ -59,10 +61,10 @@ def test_a_kind_that_there_is_not_is_refused() -> None:
 
 
 @pytest.mark.slow
-def test_a_machine_runs_on_the_table_as_on_a_map(reynolds_map: str) -> None:
+def test_a_machine_runs_on_the_table_as_on_a_map(solved_map: str) -> None:
     """Stiffness within 0.1 % and damping within 2 %: the errors of table and map."""
     scene = read_scene("nu308_rigid")
-    read, solved = statics(assemble(scene, "table")), statics(assemble(scene, "map", reynolds_map))
+    read, solved = statics(assemble(scene, "table")), statics(assemble(scene, "map", solved_map))
     assert read.model.label == "film table"
     assert solved.model.label == "Reynolds map"
     for name, bound in (("stiffness", 1e-3), ("damping", 0.02)):
@@ -115,16 +117,14 @@ def test_films_with_heat_are_all_solved() -> None:
     assert film.film_offset == same.film_offset
 
 
-READ = FINE.replace('name = "reynolds"\n', 'name = "reynolds"\nfilms = "table"\n').replace(
-    "law_check = 0", "law_check = 40"
-)
+READ = FINE.replace("law_check = 0", 'law_check = 40\nfilms = "table"')
 
 
 @pytest.mark.slow
-def test_a_map_with_films_from_the_table_is_that_of_solved_films(reynolds_map: str, tmp_path: Path) -> None:
+def test_a_map_with_films_from_the_table_is_that_of_solved_films(solved_map: str, tmp_path: Path) -> None:
     """Within the errors that both state; its laws are checked by fresh solves."""
-    read, solved = open_map(made_map(tmp_path, READ, statuses=(0, 1))).dataset, open_map(reynolds_map).dataset
-    assert read.attrs["films_read"] > 4 * read.attrs["films_solved"] > 0
+    read, solved = open_map(made_map(tmp_path, READ, statuses=(0, 1))).dataset, open_map(solved_map).dataset
+    assert (read.attrs["films_read"], read.attrs["films_solved"]) == (read["status"].size, 0)
     assert "films_read" not in solved.attrs
     usable = (read["status"] <= 1) & (solved["status"] <= 1)
     assert float(usable.mean()) > 0.95
@@ -136,7 +136,7 @@ def test_a_map_with_films_from_the_table_is_that_of_solved_films(reynolds_map: s
     settings = json.loads(read.attrs["solver_settings"])
     assert settings["density"] == 10.0 and "film_table" in settings
     (line,) = films_lines(read)
-    assert line.startswith(f"films: {read.attrs['films_read']} of points and lines read from the film table")
+    assert line.startswith(f"films: {read.attrs['films_read']} points read from the film table")
     assert not list(films_lines(solved))
 
 
