@@ -40,7 +40,20 @@ def with_own_maps(
     analyse: Callable[[A], R],
     looks_at: Callable[[A], Looked],
 ) -> Done[R]:
-    """The analysis of a command with maps that are made for it; see `mbs.commands.auto.analysed`."""
+    """The analysis of a command with maps that are made for it.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        Arguments of the command.
+    ask, analyse, looks_at : callable
+        See `mbs.commands.auto.analysed`.
+
+    Raises
+    ------
+    InputError
+        With every problem of the arguments; before a map is made.
+    """
     scene, looked, settings = _asked(arguments, ask, looks_at)
 
     def of_subject(subject: Subject) -> R:

@@ -58,7 +58,17 @@ def varied_key(key: str) -> VariedKey:
 
 
 def read_varied(key: str, text: str, problems: list[str]) -> Value | None:
-    """Read what was given for the option of a key that is varied; None where a problem was noted."""
+    """Read what was given for the option of a key that is varied; None where a problem was noted.
+
+    Parameters
+    ----------
+    key : str
+        A key of `mbs.analyses.varied.VARIED`.
+    text : str
+        What was given.
+    problems : list of str
+        Appended to.
+    """
     try:
         return varied_key(key).read(text)
     except InputError as error:
