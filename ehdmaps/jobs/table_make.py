@@ -103,7 +103,13 @@ OilOf = Callable[[float, float, float], Oil]
 
 
 def piezoviscous_oil(size: float, alpha: float, bend: float) -> Oil:
-    """The oil at a place of the piezoviscous part; parameters as of `Axes`."""
+    """The oil at a place of the piezoviscous part.
+
+    Parameters
+    ----------
+    size, alpha, bend : float
+        ln L, ln alpha [ln 1/Pa] and the bend.
+    """
     value = math.exp(alpha)
     exponent = exponent_of(value, bend)
     shift = float(valley_shift(*(np.array(x) for x in (math.exp(size), value, exponent))))
@@ -111,7 +117,13 @@ def piezoviscous_oil(size: float, alpha: float, bend: float) -> Oil:
 
 
 def isoviscous_oil(size: float, alpha: float, bend: float) -> Oil:
-    """The oil at a place of the isoviscous part; parameters as of `Axes`."""
+    """The oil at a place of the isoviscous part.
+
+    Parameters
+    ----------
+    size, alpha, bend : float
+        ln P [ln Pa], alpha [1/Pa] and 1 - z.
+    """
     return Oil(math.exp(size), alpha, 1.0 - bend)
 
 

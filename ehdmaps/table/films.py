@@ -57,9 +57,10 @@ _CAUSES = (
     "film table: beyond its highest loads",
     f"film thicker than {THICKEST_FILM:g} of the radius: neither thin-film theory nor a parabolic gap holds",
     "film table: no solved film near",
+    "film table: viscosity over pressure goes too far from the law of Roelands that is nearest to it",
 )
 _NONE, _THICK, _NEGATIVE, _DRY, _NO_STATE, _ABSURD, _PRESSURE = range(7)
-_LOAD, _SPEED, _ALPHA, _BEND, _HEAVY, _TOO_THICK, _HOLE = range(7, len(_CAUSES))
+_LOAD, _SPEED, _ALPHA, _BEND, _HEAVY, _TOO_THICK, _HOLE, _FAR = range(7, len(_CAUSES))
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,14 +183,15 @@ class FilmTable:
         read = self._reader(points, good)
         numbers, errors = ({field.name: np.full(w.size, np.nan) for field in FILMS} for _ in range(2))
         law_error = np.full(w.size, np.nan)
-        hole = np.zeros(w.size, dtype=bool)
+        hole = np.full(w.size, _NONE, dtype=np.int8)
         for fields in (LAW, OTHER_FILMS) if others else (LAW,):
             reduced, wrong = read(fields)
             if fields is LAW:
                 law_error[good] = np.max(
                     [f.judged_error(reduced[:, k], wrong[:, k]) for k, f in enumerate(LAW)], axis=0
                 )
-                hole[good] = ~np.all(wrong < WORST_ERROR, axis=1)
+                unknown = np.where((points.beside != points.exponent)[good], _FAR, _HOLE)
+                hole[good] = np.where(np.all(wrong < WORST_ERROR, axis=1), _NONE, unknown)
             for k, field in enumerate(fields):
                 numbers[field.name][good] = reduced[:, k] * points.unit.of(field)[good]
                 errors[field.name][good] = field.relative_error(reduced[:, k], wrong[:, k])
@@ -352,12 +354,13 @@ def _on_axes(
 
 
 def _noted(
-    numbers: Mapping[str, FloatArray], hole: BoolArray, thickest: float, radius: float, good: IndexArray
+    numbers: Mapping[str, FloatArray], hole: npt.NDArray[np.int8], thickest: float, radius: float, good: IndexArray
 ) -> npt.NDArray[np.int8]:
     """What is said of films that were read."""
     film = numbers["film_offset"][good]
     tests = (
-        (hole[good], _HOLE),
+        (hole[good] == _HOLE, _HOLE),
+        (hole[good] == _FAR, _FAR),
         (film > thickest, _TOO_THICK),
         (film > THIN_FILM_LIMIT * radius, _THICK),
         (numbers["loss_compliance"][good] < 0.0, _NEGATIVE),

@@ -215,7 +215,7 @@ def heavier_films(field: Field, value: FloatArray, slope: FloatArray, above: Flo
     field : Field
         The number.
     value, slope : ndarray
-        Its smooth form there, and the derivative.
+        Smooth form there, and the derivative of it.
     above : ndarray
         How far zeta lies above, >= 0.
     """

@@ -182,7 +182,7 @@ def mapping_factor(field: str, fitted: bool) -> float:
     Parameters
     ----------
     field : str
-        Its name.
+        Name of the number.
     fitted : bool
         That of `OilStates`.
     """

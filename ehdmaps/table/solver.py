@@ -30,8 +30,7 @@ from ehdmaps.table.file import CHECKSUM, film_table, shipped_tables
 from ehdmaps.table.films import TableFilms
 
 TOLERANCE = 0.05
-"""`TableFilms.law_error` above which a film is solved: some per mille of a stiffness. What is read is as a rule ten
-times better than its stated error."""
+"""`TableFilms.law_error` above which a film is solved: some per mille of a stiffness."""
 
 
 @dataclass(frozen=True)

@@ -42,7 +42,7 @@ from ehdmaps.table.films import TableFilms
 from ehdmaps.table.interpolation import Axes, place_of
 from ehdmaps.table.nodes import BEYOND_HEAVY, Nodes
 from ehdmaps.table.solver import TOLERANCE
-from tests.benchmarks.film_table import BESIDE, LOADS, SPEEDS, TEMPERATURES, bearings, oils
+from tests.benchmarks.film_table import BESIDE, LOADS, SPEEDS, SQUALANE, TEMPERATURES, bearings, oils
 
 CERAMIC = Material(youngs_modulus=310e9, poisson_ratio=0.26)
 NUMBERS = tuple(field.name for field in FILMS)
@@ -241,6 +241,16 @@ def test_what_is_not_in_the_table_says_why(oil: Lubricant, load: float, speed: f
     assert np.isnan(films.film_offset)
 
 
+def test_an_oil_with_another_law_has_films_with_errors_or_says_that_it_has_a_law_too_far() -> None:
+    """Squalane's law of Tait and Doolittle: errors are larger than those of Roelands' law, some points have no film."""
+    contact = bearings()["N1014"][0]
+    random = np.random.default_rng(6)
+    w, u = (np.exp(random.uniform(math.log(low), math.log(high), 2000)) for low, high in (LOADS, SPEEDS))
+    films = read(contact, oils()[SQUALANE], w, u, random.uniform(*TEMPERATURES, 2000))
+    assert any("goes too far from the law of Roelands" in reason for reason in films.reason)
+    assert 0.05 < np.mean(~(films.usable & (films.law_error <= TOLERANCE))) < 0.6
+
+
 def test_a_cold_oil_without_a_state_says_so() -> None:
     """FVA 3 ends at -14.67 degC."""
     films = read(bare(), Lubricant.named("FVA3"), 1e4, 1.0, np.array([250.0, 313.15]))
@@ -328,7 +338,7 @@ def test_hardly_any_film_of_the_shipped_ranges_is_left_to_be_solved() -> None:
         for name, oil in oils().items():
             for contact in contacts if name not in BESIDE else ():
                 n = 1000
-                w, u = (np.exp(random.uniform(*np.log(ends), n)) for ends in (LOADS, SPEEDS))
+                w, u = (np.exp(random.uniform(math.log(low), math.log(high), n)) for low, high in (LOADS, SPEEDS))
                 films = film_table(oil).films(contact, oil, w, u, random.uniform(*TEMPERATURES, n), others=False)
                 sure.append(films.usable & (films.law_error <= TOLERANCE))
     assert np.mean(sure) > 0.995
@@ -377,7 +387,7 @@ def _linear_nodes() -> tuple[Nodes, FloatArray]:
 
     def numbers(*at: FloatArray) -> FloatArray:
         places = np.meshgrid(*at, indexing="ij")
-        return np.repeat((5.0 + sum(places))[..., None], len(FIELDS), axis=-1)
+        return np.repeat(5.0 + np.sum(places, axis=0)[..., None], len(FIELDS), axis=-1)
 
     four = axes.zeta, axes.size, axes.alpha, axes.bend
     codes = np.zeros((*axes.cells, len(FIELDS)), dtype=np.uint8)
