@@ -335,7 +335,7 @@ def _with_films(laws: list[LawChoice], given: list[str], problems: list[str]) ->
     having = [law for law in laws if law.name in ("map", "formula")]
     if not having:
         problems.append(
-            f"--films: got {', '.join(given)} without a law that has films; allowed: with --map or --law formula"
+            f"--films: got {', '.join(given)} without a law that has films; allowed: with --map, --law table or formula"
         )
     found: list[LawChoice] = []
     for law in laws:
@@ -360,7 +360,7 @@ def _with_supplies(
     supplies = read_supplies(given, problems)
     if given and not any(law.has_films for law in laws):
         problems.append(
-            f"--supply: got {', '.join(given)} without a law that has films; allowed: with --map or --law formula"
+            f"--supply: got {', '.join(given)} without a law that has films; allowed: with --map, --law table or formula"
         )
     if not given:
         return [law if scene is None else _labelled(law, _stated_label(law, scene)) for law in laws]

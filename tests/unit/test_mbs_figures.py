@@ -325,7 +325,7 @@ class TestModes:
         return argparse.Namespace(**{**dict.fromkeys(names), "scene": "n1014_rigid", "workers": 1, **more})
 
     def test_text_has_the_modes_up_to_the_highest_frequency(self):
-        text, status = modes_command.run(self.given(highest="1 kHz"))
+        text, status = modes_command.run(self.given(law="hertz", highest="1 kHz"))
         assert status == 0
         rows = [line for line in text.splitlines() if line[:6].strip().isdigit() and "rpm" not in line]
         assert [int(row.split()[0]) for row in rows] == [1, 2, 3, 4]
@@ -334,7 +334,7 @@ class TestModes:
         assert all(row.split()[2] == "0" for row in rows)
 
     def test_the_default_is_the_highest_frequency_of_the_responses(self):
-        text, _ = modes_command.run(self.given())
+        text, _ = modes_command.run(self.given(law="hertz"))
         assert "12 more modes above 10000 Hz" in text
 
     def test_free_motions_are_one_line_and_creeping_ones_apart(self, tmp_path):

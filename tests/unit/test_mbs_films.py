@@ -42,7 +42,7 @@ structural_law = "iso16281"
 
 
 def a_map(folder, solver, problem='[bearing]\nname = "NU308"', temperatures='["40 degC", "60 degC"]'):
-    more = 'backbone = "none"' if solver == "reynolds" else ""
+    more = 'backbone = "none"\nfilms = "solved"' if solver == "reynolds" else ""
     (folder / "job.toml").write_text(JOB.format(solver=solver, problem=problem, more=more, temperatures=temperatures))
     path = str(folder / "map.nc")
     assert cli.main(["generate", str(folder / "job.toml"), "-o", path, "--workers", "1"]) == 0

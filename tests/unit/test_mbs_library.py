@@ -80,7 +80,8 @@ def written(path, tmp_path, capsys):
 
     def run(command, *options):
         out = tmp_path / "out.nc"
-        assert cli.main([command, str(path), *options, "-o", str(out)]) == 0
+        law = () if "--law" in options else ("--law", "hertz")
+        assert cli.main([command, str(path), *law, *options, "-o", str(out)]) == 0
         capsys.readouterr()
         with xr.open_dataset(out) as data:
             found = data.load()
@@ -187,7 +188,7 @@ class TestAsTheCommand:
     @pytest.mark.parametrize("nonlinear", [False, True])
     def test_hammer(self, path, model, tmp_path, capsys, nonlinear):
         out = tmp_path / "hits.uff"
-        options = ["--hits", "2", "--duration", "50 ms", *(["--nonlinear"] if nonlinear else [])]
+        options = ["--law", "hertz", "--hits", "2", "--duration", "50 ms", *(["--nonlinear"] if nonlinear else [])]
         assert cli.main(["hammer", str(path), *options, "-o", str(out)]) == 0
         capsys.readouterr()
         told, progress = counted()

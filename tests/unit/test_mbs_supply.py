@@ -182,7 +182,7 @@ def test_one_supply_is_in_the_label_where_it_is_not_flooded(shaft):
     ("arguments", "message"),
     [
         (
-            ("statics", "shaft.toml", "--supply", "grease"),
+            ("statics", "shaft.toml", "--law", "hertz", "--supply", "grease"),
             "--supply: got grease without a law that has films",
         ),
         (
@@ -228,7 +228,7 @@ def test_the_file_of_a_bearing_may_state_its_supply(shaft, capsys):
     alone = '[bearing]\nname = "NU308"\n[supply]\nlubrication = "grease"\n'
     (shaft / "alone.toml").write_text(alone)
     (shaft / "wrong.toml").write_text(alone.replace("grease", "greese"))
-    asked = ("--load", "1 kN", "--speed", "1000 rpm")
+    asked = ("--law", "hertz", "--load", "1 kN", "--speed", "1000 rpm")
     status, out, _ = run(capsys, "bearing", "alone.toml", *asked)
     assert status == 0 and "for FVA3, grease (oil layer 0.7 um)\n" in out
     status, out, _ = run(capsys, "bearing", "alone.toml", *asked, "--supply", "flooded")
