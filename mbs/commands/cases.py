@@ -360,7 +360,8 @@ def _with_supplies(
     supplies = read_supplies(given, problems)
     if given and not any(law.has_films for law in laws):
         problems.append(
-            f"--supply: got {', '.join(given)} without a law that has films; allowed: with --map, --law table or formula"
+            f"--supply: got {', '.join(given)} without a law that has films; allowed: with --map, --law table or "
+            "formula"
         )
     if not given:
         return [law if scene is None else _labelled(law, _stated_label(law, scene)) for law in laws]
