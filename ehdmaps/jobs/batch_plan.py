@@ -55,7 +55,7 @@ class Planned:
     @property
     def tasks(self) -> tuple[LineTask, ...]:
         """All that is known to be solved for it; nothing of a map that is read, which is made in less than a second."""
-        return () if self.reads and not unserved(self.job) else planned_tasks(self.job)
+        return planned_tasks(self.job) if unserved(self.job, self.solver) else ()
 
 
 @dataclass(frozen=True)

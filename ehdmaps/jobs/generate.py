@@ -16,7 +16,7 @@ from ehdmaps.jobs import solvers
 from ehdmaps.jobs.assemble import assemble, placed, with_correction
 from ehdmaps.jobs.correction import Correction, correction
 from ehdmaps.jobs.job import Job
-from ehdmaps.jobs.law_check import HALVED, REFUSED, LawCheck, checked_laws, coarse_axis, met, plan_check
+from ehdmaps.jobs.law_check import HALVED, REFUSED, LawCheck, checked_laws, coarse_axis, films_met, met, plan_check
 from ehdmaps.jobs.refinement import MOST_LINE_POINTS, Refinement, backbone_group, refinement
 from ehdmaps.jobs.status import StatusFile, about
 from ehdmaps.jobs.store import Arrays, NoStore, Results, Store, store_path
@@ -200,6 +200,8 @@ def read_map(job: Job, output: Path, attributes: Mapping[str, str | int]) -> xr.
         return None
     result = sweep(planned.everything, NoStore(), 1)
     dataset, _ = _finished(planned, result, str(output))
+    if not _served(planned, dataset, result):
+        return None
     dataset.attrs.update(attributes)
     write_map(dataset, output, None)
     return dataset
@@ -273,11 +275,13 @@ def _corrector(job: Job, instead: ContactSolver | None) -> ContactSolver | None:
 
 def _plan(job: Job, solver: ContactSolver, corrector: ContactSolver | None) -> _Plan:
     """Lay out what is to be solved."""
-    why = ""
-    if isinstance(solver, TableSolver) and job.backbone == "law" and job.corrected_by is None:
-        why = unserved(job)
-        if not why:
-            return _Plan(job, solver, corrector, (), None, plan_check(job, solver), from_table=True)
+    if not (why := unserved(job, solver)):
+        return _Plan(job, solver, corrector, (), None, plan_check(job, solver), from_table=True)
+    return _with_lines(job, solver, corrector, why)
+
+
+def _with_lines(job: Job, solver: ContactSolver, corrector: ContactSolver | None, why: str) -> _Plan:
+    """Lay out points and lines, of which a solver that reads films reads those that it knows."""
     lines = refinement(job, solver)
     return _Plan(job, solver, corrector, line_tasks(job, solver), lines, plan_check(job, solver), unserved=why)
 
@@ -306,11 +310,24 @@ def _refined(
     `solve` adds to the result.
     """
     dataset, group = _finished(planned, result, where)
+    if planned.from_table and not _served(planned, dataset, result):
+        missed = "film table: the laws that it makes miss their bars beside fresh solves"
+        planned = _with_lines(planned.job, planned.solver, planned.corrector, missed)
+        solve(planned.everything)
+        dataset, group = _finished(planned, result, where)
     while len(planned.halved) < MOST_HALVINGS and (finer := _finer(planned, dataset, group, result)) is not None:
         planned = finer
         solve(finer.refined.tasks if finer.refined else ())
         dataset, group = _finished(planned, result, where)
     return dataset, group
+
+
+def _served(planned: _Plan, dataset: xr.Dataset, result: SweepResult) -> bool:
+    """Whether the film table has served a map: it makes laws, and films miss no bars that these miss."""
+    if REFUSED in dataset.attrs:
+        return False
+    check = planned.check
+    return met(dataset.attrs) or check is None or films_met(check, EHDMap(dataset), result.arrays)
 
 
 def _finer(planned: _Plan, dataset: xr.Dataset, group: xr.Dataset | None, result: SweepResult) -> _Plan | None:

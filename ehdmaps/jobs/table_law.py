@@ -22,7 +22,6 @@ from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.roughness import Surface
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.physics.solution import ContactSolver
-from ehdmaps.table.solver import TableSolver
 
 LOADS, SPEEDS, TEMPERATURES = (100.0, 1e6), (0.05, 10.0), (293.15, 393.15)
 """Ranges of a law for which nothing else is said: those of the shipped jobs [N/m], [m/s], [K]."""
@@ -103,7 +102,7 @@ def job_map(job: Job, source: str) -> EHDMap:
         If its films have to be solved.
     """
     solver = solvers.of_map(job)
-    why = unserved(job) if isinstance(solver, TableSolver) else "the film table has none of its solver and settings"
+    why = unserved(job, solver)
     if why:
         raise InputError(f"{source}: its films have to be solved ({why}); give the map that `ehdmaps generate` makes")
     made = generate_in_memory(replace(job, law_check=0), 1, solver=solver)

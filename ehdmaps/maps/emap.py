@@ -15,10 +15,10 @@ from ehdmaps.errors import InputError, MapError
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone import FILMS
 from ehdmaps.maps.checksum import check_content, content_sha256
-from ehdmaps.maps.compilation import TABLE_STEP, Resolution
+from ehdmaps.maps.compilation import OF_TABLE, Resolution
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.grid_field import GridField
-from ehdmaps.maps.law import ContactLaw, LawKind, OutsidePolicy
+from ehdmaps.maps.law import SPEED_REACH, ContactLaw, LawKind, OutsidePolicy
 from ehdmaps.maps.law_errors import LawErrors
 from ehdmaps.maps.low_loads import RIGID, FirstLoads, LowLoads, first_loads, known_from, low_loads, same_load
 from ehdmaps.maps.own_lines import line_field, lines_by_contact
@@ -278,8 +278,8 @@ class EHDMap:
         if self.from_table:
             from ehdmaps.maps.table_field import table_lines
 
-            ranges = (self._range(axis) for axis in ("load", "entrainment_speed", "temperature"))
-            lines = partial(table_lines, self.contacts, self.lubricant, *ranges)
+            loads, speeds, kelvins = (self._range(axis) for axis in ("load", "entrainment_speed", "temperature"))
+            lines = partial(table_lines, self.contacts, self.lubricant, loads, speeds, kelvins, SPEED_REACH)
         return rolling_film(self.dataset, lines, self.contacts, self.lubricant)
 
     @cached_property
@@ -330,7 +330,7 @@ class EHDMap:
     @property
     def _resolution(self) -> Resolution | None:
         """Nodes of laws with films from the film table; None for those that others have."""
-        return Resolution(log_speed=TABLE_STEP) if self.from_table else None
+        return OF_TABLE if self.from_table else None
 
     def _range(self, axis: str) -> tuple[float, float]:
         """Lowest value above zero, and highest value, of an axis."""

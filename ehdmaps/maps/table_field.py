@@ -253,6 +253,7 @@ def table_lines(
     loads: Range,
     speeds: Range,
     temperatures: Range,
+    reach: float = 1.0,
 ) -> xr.Dataset:
     """The group "backbone" of a map, with films and responses read from the film table.
 
@@ -262,8 +263,10 @@ def table_lines(
         Contacts and oil of the map.
     loads, speeds, temperatures : (float, float)
         Ranges of the map [N/m], [m/s], > 0, and [K].
+    reach : float
+        Up to this multiple of the highest speed lines are laid, where the table has films there.
     """
-    plan = plan_backbone(contacts, lubricant, loads, speeds, temperatures, STEPS)
+    plan = plan_backbone(contacts, lubricant, loads, (speeds[0], reach * speeds[1]), temperatures, STEPS)
     assert plan is not None
     shape = (len(plan.zeta), len(plan.speeds), len(plan.temperatures))
     of = [(line.place[0] + i, *line.place[1:]) for line in plan.lines for i in range(len(line.loads))]
@@ -271,6 +274,8 @@ def table_lines(
     w = np.concatenate([line.loads for line in plan.lines])
     u, T = np.array(plan.speeds)[at[1]], np.array(plan.temperatures)[at[2]]
     read = film_table(lubricant).films(plan.contact, lubricant, w, u, T, response=True, thickest_film=math.inf)
+    if reach > 1.0 and not np.all(read.usable):
+        return table_lines(contacts, lubricant, loads, speeds, temperatures)
     values = {}
     for name in ("film_offset", "film_compliance", "loss_compliance", "rolling_force", "mass_flow"):
         values[name] = np.full(shape, np.nan)

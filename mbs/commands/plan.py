@@ -12,10 +12,9 @@ from pathlib import Path
 from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.commands.check import estimated_time
+from ehdmaps.jobs.generate import planned_tasks
 from ehdmaps.jobs.job import Job
-from ehdmaps.jobs.law_check import check_points
 from ehdmaps.jobs.reader import read_job, shipped_jobs
-from ehdmaps.jobs.refinement import refinement
 from ehdmaps.outputs import SEALED, Output, output_problems, sealed, write_text
 from ehdmaps.units import LOAD, RPM, SPEED, TEMPERATURE, Display
 from mbs.analyses import planning
@@ -178,12 +177,15 @@ def _described(planned: _Planned) -> list[str]:
         assert axis == name
         lines.append(f"  {axis:18s} {text:28s} {ends:28s} {count:6d}")
     points = _points(job)
+    if points < job.points:
+        lines.append(
+            f"  points             {job.points} read from the film table, {points} solved to check its contact laws"
+        )
+        return lines
     lines.append(f"  points             {points}, {points - job.points} of them for the contact laws")
-    solver = solvers.build(job.solver, job.solver_options)
-    lines.append(f"  time               {estimated_time(job, solver, points).words}")
+    lines.append(f"  time               {estimated_time(job, solvers.of_map(job), points).words}")
     shipped = (job.bearing.name if job.bearing else job.title).lower()
-    if shipped in shipped_jobs():
-        whole = _points(read_job(shipped))
+    if shipped in shipped_jobs() and (whole := _points(read_job(shipped))) > points:
         lines.append(f"  the shipped job {shipped} has {whole} points, {whole / points:.3g} times as many")
     return lines
 
@@ -213,8 +215,7 @@ def _span(ends: tuple[float, float], display: Display) -> str:
 
 def _points(job: Job) -> int:
     """Points that a job solves in all."""
-    refined = refinement(job, solvers.build(job.solver, job.solver_options))
-    return job.points + (refined.points if refined else 0) + check_points(job.law_check)
+    return sum(task.points for task in planned_tasks(job))
 
 
 def _next_steps(written: Sequence[Path], scene: str) -> list[str]:

@@ -10,17 +10,18 @@ from dataclasses import dataclass
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.batch import is_batch, read_batch
 from ehdmaps.jobs.batch_plan import plan_batch
+from ehdmaps.jobs.generate import planned_tasks
 from ehdmaps.jobs.job import CorrectedBy, Job
-from ehdmaps.jobs.law_check import check_points
 from ehdmaps.jobs.reader import read_job
-from ehdmaps.jobs.refinement import refinement
 from ehdmaps.jobs.report import AXES, span
 from ehdmaps.jobs.shards import unique
 from ehdmaps.jobs.supply import supply_words
 from ehdmaps.jobs.surface import surface_words
+from ehdmaps.jobs.table_films import unserved
 from ehdmaps.jobs.tasks import LineTask, line_tasks
 from ehdmaps.physics.sensitivity import film_change
 from ehdmaps.physics.solution import ContactSolver, Status
+from ehdmaps.table.solver import TableSolver
 from ehdmaps.units import LOAD, SPEED, TEMPERATURE
 from ehdmaps.workers import available_cores
 
@@ -46,18 +47,19 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     if is_batch(arguments.job):
         return _batch(arguments.job, arguments.solver)
     job = read_job(arguments.job, arguments.solver, to_run=True)
-    solver = solvers.build(job.solver, job.solver_options)
+    solver = solvers.of_map(job)
     values = (job.loads, job.entrainment_speeds, job.temperatures)
     axes = [
         f"  {name:20s} {len(axis):6d}  {span(np.array(axis), display)}"
         for (name, display), axis in zip(AXES, values, strict=True)
     ]
     names = ", ".join(contact.name for contact in job.contacts)
-    refined = refinement(job, solver)
+    planned = sum(task.points for task in planned_tasks(job))
+    read = isinstance(solver, TableSolver) and not unserved(job, solver)
     by = job.corrected_by
-    extra = (refined.points if refined else 0) + check_points(job.law_check)
+    extra = planned if read else planned - job.points
     corrected = f", {by.points} for its correction" if by else ""
-    cheap = job.points + extra + (by.points if by else 0)
+    cheap = planned + (by.points if by else 0)
     estimates = [estimated_time(job, solver, cheap)]
     if by is not None:
         estimates.append(estimated_time(job, solvers.build(by.solver, by.options), by.points))
@@ -71,7 +73,9 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         f"  surfaces {surface_words(job.surface)}",
         f"  {'contact':20s} {len(job.contacts):6d}  {names}",
         *axes,
-        f"  points  {job.points} of the map, {extra} for its contact laws{corrected}",
+        f"  points  {job.points} of the map read from the film table, {extra} solved to check its contact laws"
+        if read
+        else f"  points  {job.points} of the map, {extra} for its contact laws{corrected}",
         f"  time    {estimates[0].words}",
         *([] if by is None else _correction_lines(by, estimates[1])),
         f"  memory  about {max(100.0 + cheap * _BYTES_PER_POINT / 1e6, 1.0):.0f} MB",
@@ -95,7 +99,7 @@ def _batch(source: str, solver: str | None) -> tuple[str, int]:
         f"  points  {points} in {len(tasks)} tasks, which is what shards can be made of",
     ]
     job = batch.members[0].job
-    estimate = estimated_time(job, solvers.build(job.solver, job.solver_options), points)
+    estimate = estimated_time(job, solvers.of_map(job), points)
     return "\n".join([*lines, f"  time    {estimate.words}, and that of putting maps together"]), 0
 
 
@@ -140,6 +144,8 @@ def estimated_time(job: Job, solver: ContactSolver, points: int) -> Estimate:
     points : int
         How many points in all.
     """
+    # what is not read is solved
+    solver = solver.other if isinstance(solver, TableSolver) else solver
     tasks = line_tasks(job, solver)
     if solver.slow:
         return _time_of_slow(tasks[len(tasks) // 2], points)
