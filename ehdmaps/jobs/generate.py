@@ -35,6 +35,9 @@ from ehdmaps.table.file import CHECKSUM, shipped_tables
 from ehdmaps.table.solver import TableSolver
 from ehdmaps.workers import available_cores
 
+FEW = 200
+"""Points that are solved sooner than a process has started: those of the check of a map from the film table."""
+
 MOST_HALVINGS = 3
 """How often the steps of the lines of a law are halved, each time along one axis."""
 
@@ -133,7 +136,8 @@ def generate(
                 status.more(points)
             if missing:
                 told = progress(points) if progress else None
-                result.add(sweep(missing, store, processes, told, [status], executor))
+                few = isinstance(chosen_solver, TableSolver) and points <= FEW
+                result.add(sweep(missing, store, 1 if few else processes, told, [status], executor))
             status.write()
             return result.arrays
 

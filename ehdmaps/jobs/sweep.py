@@ -25,9 +25,6 @@ _MOST_DEATHS = 4
 """Processes that die one after the other before any finishes a task: what one task does to its process, or somebody
 who kills one, is no reason to stop. Half as many where none of them begins a task."""
 
-_FEW = 200
-"""Points that are solved here sooner than a process has started, where a point takes some milliseconds."""
-
 MOST_OUT = 2000
 """Tasks handed out to an executor that was given, of which nobody knows how many workers it has."""
 
@@ -192,8 +189,7 @@ def sweep(
     if executor is not None:
         outcomes = _in_executor(todo, executor, store)
     else:
-        alone = workers <= 1 or (not any(task.slow for task in todo) and sum(task.points for task in todo) <= _FEW)
-        outcomes = _in_process(todo) if alone else _in_pool(todo, min(workers, len(todo)), store)
+        outcomes = _in_process(todo) if workers <= 1 else _in_pool(todo, min(workers, len(todo)), store)
     try:
         for task, arrays, final in outcomes:
             if final and task.is_final(arrays):

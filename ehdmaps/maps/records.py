@@ -236,9 +236,10 @@ def check_oil(lubricant: Lubricant, temperatures: Iterable[float]) -> None:
     try:
         for temperature in temperatures:
             state = lubricant.at(temperature)
-            numbers = (state.viscosity, state.pressure_viscosity.pressure_viscosity, state.density_ratio(1e8))
-            if not all(math.isfinite(number) and number > 0.0 for number in numbers):
-                raise ValueError(f"viscosity and density of {numbers} at {temperature:g} K")
+            numbers = (state.viscosity, state.density_ratio(1e8))
+            alpha = state.pressure_viscosity.pressure_viscosity  # 0 of an isoviscous oil
+            if not all(math.isfinite(number) and number > 0.0 for number in numbers) or not 0.0 <= alpha < math.inf:
+                raise ValueError(f"viscosity, density and alpha of {(*numbers, alpha)} at {temperature:g} K")
     except _UNREADABLE as error:
         raise _broken("lubricant", error) from error
 
