@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, MapError
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.generate import generate_in_memory
 from ehdmaps.jobs.job import Job
@@ -98,13 +98,13 @@ def job_map(job: Job, source: str) -> EHDMap:
 
     Raises
     ------
-    InputError
+    MapError
         If its films have to be solved.
     """
     solver = solvers.of_map(job)
     why = unserved(job, solver)
     if why:
-        raise InputError(f"{source}: its films have to be solved ({why}); give the map that `ehdmaps generate` makes")
+        raise MapError(f"{source}: its films have to be solved ({why}); give the map that `ehdmaps generate` makes")
     made = generate_in_memory(replace(job, law_check=0), 1, solver=solver)
     return EHDMap(made.dataset, made.backbone)
 

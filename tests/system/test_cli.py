@@ -180,7 +180,7 @@ def test_a_backslash_in_a_name_is_refused_at_once(here, capsys):
 
 def test_two_runs_of_a_job_have_one_checksum(here, capsys):
     text = map_job(spaced("1 N/mm", "100 N/mm", 3), '["0.5 m/s"]', '["40 degC"]', solver="reynolds")
-    (here / "solved.toml").write_text(f'{text}backbone = "none"\n')
+    (here / "solved.toml").write_text(f'{text}backbone = "none"\nfilms = "solved"\n')
     sums = []
     for name in ("one.nc", "two.nc"):
         assert run(capsys, "generate", "solved.toml", "-o", name, "--workers", "1")[0] == 0

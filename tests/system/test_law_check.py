@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import ehdmaps
+from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.jobs.generate import Generated, generate
 from ehdmaps.jobs.law_check import check_points
 from ehdmaps.jobs.reader import parse_job
@@ -17,7 +18,7 @@ from ehdmaps.maps.schema import BACKBONE
 pytestmark = pytest.mark.slow  # its map is checked against forty fresh solves
 
 OIL = (Path(__file__).parents[1] / "references" / "n1014_thin_oil.toml").read_text()
-TEXT = OIL.replace('"10 N/mm", "100 N/mm"', '"2 N/mm", "15 N/mm", "100 N/mm"') + "law_check = 40\n"
+TEXT = OIL.replace('"10 N/mm", "100 N/mm"', '"2 N/mm", "15 N/mm", "100 N/mm"') + 'law_check = 40\nfilms = "solved"\n'
 
 
 @pytest.fixture(scope="module")
@@ -32,7 +33,7 @@ def test_map_has_its_backbone(made: tuple[Generated, Path]) -> None:
     assert emap.backbone is not None
     assert {"film_offset", "film_compliance", "loss_compliance", "status"} <= set(emap.backbone.data_vars)
     lines = int((emap.backbone["status"] >= 0).sum())
-    assert generated.sweep.solved == emap.dataset["status"].size + lines + check_points(40)
+    assert generated.sweep.solved == emap.dataset["status"].size + lines + check_points(40, ReynoldsSolver())
 
 
 def test_laws_are_checked_against_fresh_solves(made: tuple[Generated, Path]) -> None:

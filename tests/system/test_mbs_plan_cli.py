@@ -23,7 +23,7 @@ def test_a_planned_map_serves_its_scene_and_is_as_good_as_it_should_be(tmp_path,
     assert ehdmaps_cli.main(["generate", "job.toml", "-o", "map.nc", "--workers", "1"]) == 0
     assert "unmet" not in capsys.readouterr().out
     emap = ehdmaps.open_map("map.nc")
-    assert emap.dataset.attrs["law_check_usable"] == 500
+    assert emap.dataset.attrs["law_check_usable"] == 100
     assert emap.dataset.attrs["law_damping_within_bar"] >= 0.99
     assert emap.dataset.attrs["law_valley_damping_within_bar"] >= 0.95
 

@@ -35,7 +35,7 @@ def scene(here, *changes):
 
 
 def test_dry_contacts_have_a_pressure_and_no_film(here, capsys):
-    status, out, _ = run(capsys, "statics", scene(here, STRAIGHT), "-o", "a.nc")
+    status, out, _ = run(capsys, "statics", scene(here, STRAIGHT), "--law", "hertz", "-o", "a.nc")
     assert status == 0
     assert "  Hertz pressure up to 0.1" in out and "film down to" not in out and "warning" not in out
     with xr.open_dataset("a.nc") as data:
@@ -54,7 +54,7 @@ def test_dry_contacts_have_a_pressure_and_no_film(here, capsys):
 
 
 def test_the_loads_of_all_loaded_rollers_are_listed(here, capsys):
-    _, out, _ = run(capsys, "statics", "nu308_rigid")
+    _, out, _ = run(capsys, "statics", "nu308_rigid", "--law", "hertz")
     line = next(line for line in out.splitlines() if line.startswith("  rollers, from y towards z: "))
     found = np.array(re.findall(r"([0-9.e+-]+) N at ([0-9.e+-]+) deg", line), dtype=float)
     assert np.all(np.diff(found[:, 0]) <= 0.0)

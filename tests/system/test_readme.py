@@ -93,7 +93,7 @@ def test_a_whole_machine_from_python(made_map, monkeypatch):
     monkeypatch.chdir(made_map)
     Path("machine.py").write_text(block)
     found = runpy.run_path("machine.py")
-    assert found["over_speed"]["case"].values.tolist() == ["dry Hertz", "Reynolds map"]
+    assert found["over_speed"]["case"].values.tolist() == ["dry Hertz", "film table"]
 
 
 @pytest.mark.slow

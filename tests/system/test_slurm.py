@@ -19,7 +19,7 @@ from tests.cases.slurm import running_slurm
 
 JOB = (
     map_job(spaced("1 N/mm", "300 N/mm", 8), spaced("0.5 m/s", "4 m/s", 3), '["40 degC"]', solver="reynolds")
-    + "law_check = 20\nline_steps = { entrainment_speed = 0.3 }\n"
+    + 'law_check = 20\nline_steps = { entrainment_speed = 0.3 }\nfilms = "solved"\n'
 )
 """Some seconds of solving, so that a task can be killed in the middle."""
 

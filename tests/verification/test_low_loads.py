@@ -38,6 +38,7 @@ temperature = ["40 degC"]
 name = "reynolds"
 structural_law = "iso16281"
 backbone = "{backbone}"
+films = "solved"
 """
     generated = generate_in_memory(parse_job(text, "low", "low"), workers=1)
     return EHDMap(generated.dataset, generated.backbone)

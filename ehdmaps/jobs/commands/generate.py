@@ -56,6 +56,7 @@ def _shard(arguments: argparse.Namespace) -> tuple[str, int]:
     """Solve one shard of a job or a batch."""
     beside = {"several JOB": len(arguments.jobs) > 1, "--tolerance": arguments.tolerance is not None}
     beside["--keep-cases"] = arguments.keep_cases is not None
+    beside['--fresh-films (say films = "solved" in [solver])'] = arguments.fresh_films
     problems = [
         f"--shard: stands beside {option}; allowed: one job or batch, with --workers, --solver, --fresh and -o"
         for option, given in beside.items()
@@ -79,6 +80,7 @@ def _batch(source: str, arguments: argparse.Namespace) -> tuple[str, int]:
         "JOB": len(arguments.jobs) > 1,
         "--tolerance": arguments.tolerance is not None,
         "--keep-cases": arguments.keep_cases is not None,
+        '--fresh-films (say films = "solved" in [solver])': arguments.fresh_films,
     }
     problems = [
         f"{option}: stands beside a batch file, {source}; allowed: with jobs; leave it out, or give a job"

@@ -25,6 +25,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             tolerance=None,
             workers=arguments.workers,
             fresh=False,
+            fresh_films=False,
             keep_cases=None,
             shard=None,
         )
