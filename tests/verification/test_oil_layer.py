@@ -69,9 +69,9 @@ def test_a_layer_as_thick_as_the_asperities_are_high_gives_a_law_that_rises(reyn
         assert np.all(np.diff(load) >= 0.0) and np.all(stiffness >= 0.0), speed
 
 
-def test_a_grid_that_is_too_coarse_beyond_its_speeds_is_refused_with_the_way_out(reynolds_map):
+def test_a_grid_that_is_too_coarse_beyond_its_speeds_is_refused_with_the_way_out(solved_map):
     """Without refinement lines film and flow are read from the grid, and do not go on alike to ten times the speed."""
-    grid = EHDMap(open_map(reynolds_map).dataset)
+    grid = EHDMap(open_map(solved_map).dataset)
     for layer in (1e-6, 5e-6):
         grid.law("inner", outside="clamp", supply=OilSupply(layer))
     with pytest.raises(MapError, match="ends at 5 m/s, and its films do not go on so far: take outside='clamp'"):
