@@ -140,7 +140,8 @@ def test_a_map_of_the_table_has_no_lines_and_all_laws(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_memory_layers_and_rolling_forces_of_the_table_are_those_of_solved_lines() -> None:
-    """Locked films within 5 % and rolling force, mass flow, layers within 1 %: lines read and lines solved."""
+    """Rolling force, mass flow and layers within 1 %: lines read and lines solved. The factors of locked films are fits,
+    no closer than the stated errors of the responses ask: within 12 %."""
     small = job(loads=(1e4, 1e5), entrainment_speeds=(1.0, 2.0), temperatures=(330.0, 340.0), law_check=0)
     read, solved = (
         generate_in_memory(replace(small, solver_options={"films": films}), workers=1) for films in ("table", "solved")
@@ -153,7 +154,7 @@ def test_memory_layers_and_rolling_forces_of_the_table_are_those_of_solved_lines
         np.testing.assert_allclose(one, other, rtol=0.01)
     flooded = [emap.law("inner") for emap in maps]
     factors = [law.locked_factors(1.3, 333.0)[2] for law in flooded]
-    np.testing.assert_allclose(*factors, rtol=0.05)
+    np.testing.assert_allclose(*factors, rtol=0.12)
     rolling = [emap.rolling_film for emap in maps]
     for name in ("rolling_force", "mass_flow"):
         loads = np.geomspace(2.0, 9e4, 9)
