@@ -230,7 +230,7 @@ def _assumed(arguments: argparse.Namespace, given: _Given, emap: EHDMap | None, 
         found.append(f"combined rms roughness {MICROMETRE.text(ROUGHNESS)} (for Lambda only)")
     if arguments.clearance is None and given.geometry.diametral_clearance == 0.0:
         found.append("no clearance")
-    if arguments.oil is None and given.oil is None and emap is None:
+    if arguments.oil is None and given.oil is None and arguments.map is None:
         found.append(f"oil {OIL}")
     return tuple(found)
 

@@ -244,9 +244,9 @@ def _depth(points: Drawn, i: int) -> float:
 def _told(values: FloatArray) -> str:
     """Median, 95 % and largest of errors in per cent."""
     if not values.size:
-        return f"{'-':>8s}{'-':>8s}{'-':>8s}"
+        return 3 * f"{'-':>10s}"
     values = np.where(np.isfinite(values), values, np.inf)
-    return "".join(f"{100.0 * x:8.3g}" for x in (np.median(values), np.quantile(values, 0.95), np.max(values)))
+    return "".join(f"{100.0 * x:10.3g}" for x in (np.median(values), np.quantile(values, 0.95), np.max(values)))
 
 
 def main(count: int = 62) -> None:
@@ -268,8 +268,8 @@ def main(count: int = 62) -> None:
         both += int(np.count_nonzero(solved & films.usable))
         found.setdefault((bearing, oil), []).append(compared(drawn_points, films))
     print(f"{points} points, {usable} with a solved film, {both} of these in the table")
-    head = f"{'median':>8s}{'95 %':>8s}{'largest':>8s}"
-    print(f"{'[%]':46s}{'k':^24s}{'c':^24s}{'c in the valley':^24s}{'film':^24s}{'Z at natural frequencies':^24s}")
+    head = f"{'median':>10s}{'95 %':>10s}{'largest':>10s}"
+    print(f"{'[%]':46s}{'k':^30s}{'c':^30s}{'c in the valley':^30s}{'film':^30s}{'Z at natural frequencies':^30s}")
     print(f"{'bearing, oil':32s}{'n':>6s}{'solved':>8s}" + 5 * head)
     rows = {", ".join(key): value for key, value in found.items()}
     rows["all"] = [one for (_, oil), value in found.items() for one in value if oil not in BESIDE]

@@ -140,8 +140,8 @@ def test_a_map_of_the_table_has_no_lines_and_all_laws(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_memory_layers_and_rolling_forces_of_the_table_are_those_of_solved_lines() -> None:
-    """Rolling force, mass flow and layers within 1 %: lines read and lines solved. The factors of locked films are fits,
-    no closer than the stated errors of the responses ask: within 12 %."""
+    """Rolling force, mass flow and layers within 1 %: lines read and lines solved. Factors of locked films are fits, no
+    closer than the stated errors of the responses ask: within 12 %."""
     small = job(loads=(1e4, 1e5), entrainment_speeds=(1.0, 2.0), temperatures=(330.0, 340.0), law_check=0)
     read, solved = (
         generate_in_memory(replace(small, solver_options={"films": films}), workers=1) for films in ("table", "solved")
