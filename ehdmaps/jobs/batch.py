@@ -90,7 +90,7 @@ class Batch:
     members : tuple of Member
         Bearing by bearing, oil by oil.
     checked : int
-        Of the maps of one oil with films from the film table, so many have their laws checked as the jobs say.
+        Number of maps of one oil, with films from the film table, whose laws are checked as the jobs say.
     """
 
     name: str

@@ -350,7 +350,10 @@ def _finer(planned: _Plan, dataset: xr.Dataset, group: xr.Dataset | None, result
 def _finished(planned: _Plan, result: SweepResult, where: str) -> tuple[xr.Dataset, xr.Dataset | None]:
     """Put results together, with the check of the laws and a checksum: the map and its backbone."""
     found = _results(planned, result)
-    films = table_films(planned.job) if planned.from_table else placed(planned.job, planned.tasks, found)
+    if planned.from_table and isinstance(planned.solver, TableSolver):
+        films = table_films(planned.job, planned.solver.thickest_film)
+    else:
+        films = placed(planned.job, planned.tasks, found)
     dataset = assemble(planned.job, planned.solver, films)
     if planned.from_table:
         dataset.attrs[schema.FILM_TABLE] = shipped_tables().attributes[CHECKSUM]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -22,6 +23,7 @@ from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.roughness import Surface
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.physics.solution import ContactSolver
+from ehdmaps.table.solver import TableSolver
 
 LOADS, SPEEDS, TEMPERATURES = (100.0, 1e6), (0.05, 10.0), (293.15, 393.15)
 """Ranges of a law for which nothing else is said: those of the shipped jobs [N/m], [m/s], [K]."""
@@ -82,7 +84,11 @@ def table_map(
         solver_options={"films": TABLE},
         structural_law=structural_law,
     )
-    made = generate_in_memory(job, workers=1, solver=solver)
+    chosen = solver or solvers.of_map(job)
+    if isinstance(chosen, TableSolver):
+        # laws let films fade where they are too thick for a map's points
+        chosen = replace(chosen, thickest_film=math.inf)
+    made = generate_in_memory(job, workers=1, solver=chosen)
     return EHDMap(made.dataset, made.backbone)
 
 

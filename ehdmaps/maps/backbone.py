@@ -88,7 +88,7 @@ class OffsetLine:
         Parameters
         ----------
         zeta : ndarray, shape (n,)
-            Nodes.
+            Nodes of the lines.
         value, slope : ndarray, shape (n,) or (n, lines)
             ln(film offset) and its derivative there.
         """
