@@ -30,6 +30,7 @@ from ehdmaps.physics.hertz import LARGEST_PRESSURE
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solution import Status
+from ehdmaps.physics.wall_stress import NEWTONIAN_LIMIT, NEWTONIAN_STRESS
 from ehdmaps.table.coordinates import LEAST_ALPHA, bend_of, valley_shift, zeta_of
 from ehdmaps.table.fields import FILMS, LAW, NATURAL_FREQUENCIES, RESPONSES, Field, Units, units
 from ehdmaps.table.interpolation import Place, place_of
@@ -46,6 +47,7 @@ _CAUSES = (
     "",
     THICK_NOTE,
     "negative damping at the valley of an isothermal, Newtonian film; a contact law takes zero",
+    f"wall stress above {NEWTONIAN_LIMIT:g} of the largest pressure: no oil is Newtonian there",
     "no entrainment: dry contact",
     "film table: the oil has no state at this temperature",
     "film table: groups M and L are not finite: load, speed or viscosity is absurd",
@@ -59,8 +61,8 @@ _CAUSES = (
     "film table: no solved film near",
     "film table: viscosity over pressure goes too far from the law of Roelands that is nearest to it",
 )
-_NONE, _THICK, _NEGATIVE, _DRY, _NO_STATE, _ABSURD, _PRESSURE = range(7)
-_LOAD, _SPEED, _ALPHA, _BEND, _HEAVY, _TOO_THICK, _HOLE, _FAR = range(7, len(_CAUSES))
+_NONE, _THICK, _NEGATIVE, _STRESSED, _DRY, _NO_STATE, _ABSURD, _PRESSURE = range(8)
+_LOAD, _SPEED, _ALPHA, _BEND, _HEAVY, _TOO_THICK, _HOLE, _FAR = range(8, len(_CAUSES))
 
 
 @dataclass(frozen=True, eq=False)
@@ -357,13 +359,14 @@ def _noted(
     numbers: Mapping[str, FloatArray], hole: npt.NDArray[np.int8], thickest: float, radius: float, good: IndexArray
 ) -> npt.NDArray[np.int8]:
     """What is said of films that were read."""
-    film = numbers["film_offset"][good]
+    film, stress = numbers["film_offset"][good], numbers["wall_stress"][good]  # the latter NaN where not asked for
     tests = (
         (hole[good] == _HOLE, _HOLE),
         (hole[good] == _FAR, _FAR),
         (film > thickest, _TOO_THICK),
         (film > THIN_FILM_LIMIT * radius, _THICK),
         (numbers["loss_compliance"][good] < 0.0, _NEGATIVE),
+        (stress > np.fmax(NEWTONIAN_STRESS, NEWTONIAN_LIMIT * numbers["max_pressure"][good]), _STRESSED),
     )
     return np.select([test for test, _ in tests], [cause for _, cause in tests], _NONE).astype(np.int8)
 

@@ -14,13 +14,13 @@ from tests.benchmarks.printed_tables import NUMBER, Mode, Output, one_case, swee
 def shaft_bearing_modes(outputs: Sequence[Output]) -> list[Figure]:
     """Modes that fall, over clearance, load and cage angle."""
     clearances, loads, *angles = (output.text for output in outputs)
-    middle = one_case([clearances], "Reynolds map, 30 um")
+    middle = one_case([clearances], "film table, 30 um")
     found: list[Figure] = given("1.5 30")
     for mode in middle.bearing_modes():
         found += [mode.first, mode.last, mode.change]
     for clearance in ("40", "20"):
         found += given(clearance)
-        found += [mode.change for mode in one_case([clearances], f"Reynolds map, {clearance} um").bearing_modes()]
+        found += [mode.change for mode in one_case([clearances], f"film table, {clearance} um").bearing_modes()]
     found += [*given("75 30"), one_case([loads], "0.9146 x").steepest()]
     across = max(mode.change for mode in middle.complex.values() if mode.first < 1200.0)
     found += [*given("1.2"), across, *given("30 0 7.5 15 22.5 30")]
@@ -30,19 +30,19 @@ def shaft_bearing_modes(outputs: Sequence[Output]) -> list[Figure]:
 
 def without_clearance(outputs: Sequence[Output]) -> list[Figure]:
     """Largest rise without clearance."""
-    return [one_case([outputs[0].text], "Reynolds map, 0 um").highest_rise()]
+    return [one_case([outputs[0].text], "film table, 0 um").highest_rise()]
 
 
 def stiffness_of_bearings(outputs: Sequence[Output]) -> list[Figure]:
     """k along the load, by clearance and map."""
-    own, other = (one_case([outputs[0].text], f"Reynolds map, {c} um").along for c in ("30", "0"))
+    own, other = (one_case([outputs[0].text], f"film table, {c} um").along for c in ("30", "0"))
     cfd = one_case([outputs[1].text], "OpenFOAM").along
     return [*given("30"), own.changes[0], *own.k, *given("0"), other.changes[0], *given("30"), cfd.changes[0]]
 
 
 def damping_of_bearings(outputs: Sequence[Output]) -> list[Figure]:
     """c along the load, by clearance and map."""
-    own, other = (one_case([outputs[0].text], f"Reynolds map, {c} um").along for c in ("30", "0"))
+    own, other = (one_case([outputs[0].text], f"film table, {c} um").along for c in ("30", "0"))
     cfd = one_case([outputs[1].text], "OpenFOAM").along
     ends = [significant(value, 3) for value in own.c]
     return [*given("30"), own.changes[1], *ends, *given("0"), other.changes[1], *given("30"), cfd.changes[1]]
@@ -69,7 +69,7 @@ def loads_of_the_gearbox(outputs: Sequence[Output]) -> list[Figure]:
 
 def energy_theorem(outputs: Sequence[Output]) -> list[Figure]:
     """Check that changes and those by energy, summed, agree as printed (30 um); a wrong pair is a figure too many."""
-    case = one_case([outputs[0].text], "Reynolds map, 30 um")
+    case = one_case([outputs[0].text], "film table, 30 um")
     rows = re.findall(rf"(?m)^ +\d+ +\S+ to +\S+ +{NUMBER} % +{NUMBER} %, ", case.text)
     wrong: list[Figure] = [float(first) for first, second in rows if first != second]
     return [*given("1 2 30"), *wrong]
@@ -77,7 +77,7 @@ def energy_theorem(outputs: Sequence[Output]) -> list[Figure]:
 
 def widths_of_resonances(outputs: Sequence[Output]) -> list[Figure]:
     """Widths 2 zeta f of the modes along the load at the first and last speed [Hz]; falls of damping ratios [%]."""
-    modes = one_case([outputs[0].text], "Reynolds map, 30 um").bearing_modes()
+    modes = one_case([outputs[0].text], "film table, 30 um").bearing_modes()
     widths = [(2.0 * m.damping_ratio * m.first, 2.0 * m.last_ratio * m.last) for m in modes]
     falls = [100.0 * (1.0 - m.last_ratio / m.damping_ratio) for m in modes]
     return [*given("2 500 2500 30"), *(round(width) for pair in widths for width in pair), min(falls), max(falls)]
@@ -87,7 +87,7 @@ def slow_and_memory(outputs: Sequence[Output]) -> list[Figure]:
     """Fall and damping of the modes along the load with slow films and with memory, and the errors of both."""
     found: list[Figure] = given("30 0")
     for films, speeds in (("slow films", "500 2500"), ("films with memory", "")):
-        modes = one_case([outputs[0].text], f"Reynolds map, {films}").bearing_modes()
+        modes = one_case([outputs[0].text], f"film table, {films}").bearing_modes()
         found += [-mode.change for mode in modes]
         found += [*given(speeds), *(100.0 * mode.damping_ratio for mode in modes), *given("500")]
     words = rf"estimated error of the dynamic stiffness along the load at {NUMBER} Hz and {NUMBER} rpm: {NUMBER} %"
@@ -133,7 +133,7 @@ def stiffness_of_the_flexible(outputs: Sequence[Output]) -> list[Figure]:
     """k of a bearing of nu308_flexible dry, and with the map at the first and last speed; fall of c over the speeds."""
     found: list[Figure] = []
     for factor, load in (("1", "141"), ("2", "283")):
-        dry, film = (one_case([outputs[0].text], f"{law}, {factor} x").along for law in ("dry Hertz", "Reynolds map"))
+        dry, film = (one_case([outputs[0].text], f"{law}, {factor} x").along for law in ("dry Hertz", "film table"))
         changes = [100.0 * (value / dry.k[0] - 1.0) for value in film.k]
         found += [*given(load), *changes, film.changes[1]]
     return [*given("200 2000 20"), *found]
@@ -180,7 +180,7 @@ def loads_of_the_flexible(outputs: Sequence[Output]) -> list[Figure]:
     """Mode along the load at three loads, with the map and dry, at the lowest speed; with the map at the highest."""
     film, dry = (
         [_along_load(outputs[0].text, f"{law}, {factor} x") for factor in ("1", "1.5", "2")]
-        for law in ("Reynolds map", "dry Hertz")
+        for law in ("film table", "dry Hertz")
     )
     slow = [mode.first for mode in (*film, *dry)]
     return [*given("200 20"), *slow, *given("2000"), *(mode.last for mode in film)]
@@ -188,7 +188,7 @@ def loads_of_the_flexible(outputs: Sequence[Output]) -> list[Figure]:
 
 def lower_than_dry(outputs: Sequence[Output]) -> list[Figure]:
     """Mode along the load, dry and with the map."""
-    dry, film = (_along_load(outputs[0].text, f"{law}, 1 x") for law in ("dry Hertz", "Reynolds map"))
+    dry, film = (_along_load(outputs[0].text, f"{law}, 1 x") for law in ("dry Hertz", "film table"))
     return [*given("20"), dry.first, film.first, *given("200"), film.last, *given("2000 141")]
 
 
@@ -319,7 +319,7 @@ def peaks_beside_modes(text: str, law: str) -> list[tuple[float, float]]:
 
 def peaks_with_films(outputs: Sequence[Output]) -> list[Figure]:
     """Peaks beside modes, with the Reynolds map."""
-    return [value for pair in peaks_beside_modes(outputs[0].text, "Reynolds map") for value in pair]
+    return [value for pair in peaks_beside_modes(outputs[0].text, "film table") for value in pair]
 
 
 def peaks_dry(outputs: Sequence[Output]) -> list[Figure]:
@@ -340,7 +340,7 @@ def readme_of_the_gearbox(outputs: Sequence[Output]) -> list[Figure]:
     base = rows["base", "-"]
     damped = [row.median for sensor in ("S1", "S2", "S3") for row in variants(beside_damped, sensor).values()]
     least, most, *_ = films_beside_dry(outputs[:1])
-    middle = one_case([clearances], "Reynolds map, 30 um")
+    middle = one_case([clearances], "film table, 30 um")
     cases = [middle, *(sweep_cases(text)[0] for text in angles)]
     falls, rises = ([getattr(case, name)() for case in cases] for name in ("steepest", "highest_rise"))
     return [

@@ -167,3 +167,13 @@ def test_lines_of_the_table_reach_down_to_rigid_films() -> None:
     assert group["zeta"].values[0] <= RIGID
     known = np.isfinite(group["film_compliance_real"].values).all(axis=-1)
     np.testing.assert_array_equal(known, group["status"].values != schema.NOT_NEEDED)
+
+
+def test_films_that_no_newtonian_oil_has_are_told() -> None:
+    """As the solver tells it, beside the pressure at the same place: a cold loaded contact, and a warm one."""
+    contact = CONTACTS[0]
+    for w, u, T, told in ((2e5, 3.0, 303.15, True), (2e4, 0.5, 380.0, False)):
+        (solved,) = ReynoldsSolver().solve_line(contact, OIL, (w,), u, T)
+        read = film_table(OIL).films(contact, OIL, w, u, T)
+        for reason in (solved.reason, str(read.reason)):
+            assert ("no oil is Newtonian there" in reason) == told, reason
