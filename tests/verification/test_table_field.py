@@ -177,3 +177,23 @@ def test_films_that_no_newtonian_oil_has_are_told() -> None:
         read = film_table(OIL).films(contact, OIL, w, u, T)
         for reason in (solved.reason, str(read.reason)):
             assert ("no oil is Newtonian there" in reason) == told, reason
+
+
+def test_a_map_of_an_isoviscous_oil_makes_laws() -> None:
+    thin = Lubricant.barus(viscosity=2e-3, pressure_viscosity=0.0, density=870.0)
+    made = generate_in_memory(job(lubricant=thin, law_check=0, solver_options={"films": "table"}), workers=1)
+    emap = EHDMap(made.dataset)
+    assert emap.from_table and emap.lubricant == thin
+    w, k, c = emap.law("inner", "clamp")(5e-6, 0.0, 2.0, 330.0)
+    assert w > 0.0 and k > 0.0 and c > 0.0
+
+
+@pytest.mark.slow
+def test_a_map_whose_films_miss_their_bars_gets_lines(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("ehdmaps.jobs.generate._served", lambda *_: False)
+    small = job(loads=(1e4, 1e5), entrainment_speeds=(1.0, 2.0), temperatures=(330.0, 340.0), law_check=5)
+    made = generate_in_memory(small, workers=1)
+    assert made.backbone is not None and schema.FILM_TABLE not in made.dataset.attrs
+    assert "miss their bars" in made.dataset.attrs[schema.UNSERVED]
+    assert made.dataset.attrs[schema.FILMS_READ] > 0
+    assert not EHDMap(made.dataset, made.backbone).from_table
