@@ -71,7 +71,7 @@ def refinement(job: Job, solver: ContactSolver, steps: Steps | None = None) -> R
     if not plans:
         return None
     # these lines stand for their groups: how thick their own film is does not matter
-    of_groups = _of_groups(solver)
+    generous = of_groups(solver)
     tasks = tuple(
         LineTask(
             contact=plan.contact,
@@ -79,7 +79,7 @@ def refinement(job: Job, solver: ContactSolver, steps: Steps | None = None) -> R
             loads=line.loads,
             entrainment_speed=line.speed,
             temperature=line.temperature,
-            solver=of_groups,
+            solver=generous,
             natural_frequencies=solver.natural_frequencies,
         )
         for plan in plans
@@ -88,10 +88,16 @@ def refinement(job: Job, solver: ContactSolver, steps: Steps | None = None) -> R
     return Refinement(plans, steps, tasks)
 
 
-def _of_groups(solver: ContactSolver) -> ContactSolver:
-    """The solver for lines whose own thickness does not matter."""
+def of_groups(solver: ContactSolver) -> ContactSolver:
+    """The solver for films whose own thickness does not matter.
+
+    Parameters
+    ----------
+    solver : ContactSolver
+        Any solver; `reynolds`, and the film table above it, then refuse no thick film.
+    """
     if isinstance(solver, TableSolver):
-        return replace(solver, other=_of_groups(solver.other), thickest_film=math.inf)
+        return replace(solver, other=of_groups(solver.other), thickest_film=math.inf)
     return replace(solver, thickest_film=math.inf) if isinstance(solver, ReynoldsSolver) else solver
 
 

@@ -53,7 +53,7 @@ def unserved(job: Job, solver: ContactSolver) -> str:
         return "film table: is read for whole laws that nothing corrects"
     speeds = [u for u in job.entrainment_speeds if u > 0.0]
     if not speeds or not drawable(job):
-        return "film table: laws need more than one load, and a speed"
+        return "film table: is read for maps of more than one point, with a speed"
     ranges = (
         (min(job.loads), max(job.loads)),
         (min(speeds), max(speeds)),
@@ -126,20 +126,14 @@ def table_films(job: Job, thickest_film: float) -> dict[str, npt.NDArray[Any]]:
     w, u, T = np.meshgrid(*axes, indexing="ij")
     table = film_table(job.lubricant)
     read = [
-        film_arrays_of(table.films(contact, job.lubricant, w, u, T, thickest_film=thickest_film))
+        _film_arrays(table.films(contact, job.lubricant, w, u, T, thickest_film=thickest_film))
         for contact in job.contacts
     ]
     return {name: np.stack([one[name] for one in read]) for name in read[0]}
 
 
-def film_arrays_of(films: TableFilms) -> dict[str, npt.NDArray[Any]]:
-    """Films by the names of `FilmSolution`, of one shape.
-
-    Parameters
-    ----------
-    films : TableFilms
-        Films from the table.
-    """
+def _film_arrays(films: TableFilms) -> dict[str, npt.NDArray[Any]]:
+    """Films by the names of `FilmSolution`, of one shape."""
     numbers = {field.name: getattr(films, field.name) for field in FILMS}
     errors = {f"{name}_error": films.errors[name] for name in numbers if name != "wall_stress"}
     found: dict[str, npt.NDArray[Any]] = {

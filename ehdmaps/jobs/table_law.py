@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -11,6 +10,7 @@ from ehdmaps.errors import InputError, MapError
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.generate import generate_in_memory
 from ehdmaps.jobs.job import Job
+from ehdmaps.jobs.refinement import of_groups
 from ehdmaps.jobs.solvers import TABLE
 from ehdmaps.jobs.table_films import unserved
 from ehdmaps.maps.emap import EHDMap
@@ -23,13 +23,12 @@ from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.roughness import Surface
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.physics.solution import ContactSolver
-from ehdmaps.table.solver import TableSolver
 
 LOADS, SPEEDS, TEMPERATURES = (100.0, 1e6), (0.05, 10.0), (293.15, 393.15)
 """Ranges of a law for which nothing else is said: those of the shipped jobs [N/m], [m/s], [K]."""
 
 _POINTS = (25, 12, 6)
-"""Loads, speeds and temperatures of a map in memory: for its error estimates, as laws read lines."""
+"""Loads, speeds and temperatures of a map in memory: for its error estimates, as laws read the film table."""
 
 
 def table_map(
@@ -44,7 +43,7 @@ def table_map(
     surface: Surface | None = None,
     solver: ContactSolver | None = None,
 ) -> EHDMap:
-    """Make a map in memory, in some seconds, with few points: it is there for its laws.
+    """Make a map in memory, in about a second, with few points: it is there for its laws.
 
     Films come from the film table; what it does not know is solved. The laws are not checked by fresh solves.
 
@@ -84,11 +83,8 @@ def table_map(
         solver_options={"films": TABLE},
         structural_law=structural_law,
     )
-    chosen = solver or solvers.of_map(job)
-    if isinstance(chosen, TableSolver):
-        # laws let films fade where they are too thick for a map's points
-        chosen = replace(chosen, thickest_film=math.inf)
-    made = generate_in_memory(job, workers=1, solver=chosen)
+    # laws let films fade where they are too thick for the points of a map
+    made = generate_in_memory(job, workers=1, solver=of_groups(solver or solvers.of_map(job)))
     return EHDMap(made.dataset, made.backbone)
 
 
