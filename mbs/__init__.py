@@ -54,8 +54,7 @@ if TYPE_CHECKING:
     from mbs.analyses.variants import Variation, variants
     from mbs.bearings.bearing import Bearing
     from mbs.bearings.bearing_force import BearingForce
-    from mbs.bearings.fits import Mounting, Seat
-    from mbs.bearings.heat import GivenTemperatures, HeatPaths
+    from mbs.bearings.thermal import GivenTemperatures, HeatPaths, Mounting, Seat
     from mbs.flexible.attached import Attached
     from mbs.flexible.plan import ReductionPlan
     from mbs.flexible.shaft_parts import Disc, Section
@@ -135,23 +134,23 @@ _HOMES = {
     "Disc": "flexible.shaft_parts",
     "FlexibleSpec": "scene.specs",
     "GearPair": "gears.pair",
-    "GivenTemperatures": "bearings.heat",
+    "GivenTemperatures": "bearings.thermal",
     "HammerSettings": "analyses.hammer",
-    "HeatPaths": "bearings.heat",
+    "HeatPaths": "bearings.thermal",
     "Inertia": "model.body",
     "Input": "model.elements",
     "LawChoice": "analyses.case",
     "Load": "model.elements",
     "LsaSettings": "analyses.lsa",
     "Model": "scene.assembly",
-    "Mounting": "bearings.fits",
+    "Mounting": "bearings.thermal",
     "Operation": "model.elements",
     "PlanSettings": "analyses.plan",
     "ReductionPlan": "flexible.plan",
     "RigidSpec": "scene.specs",
     "RunUp": "settings",
     "Scene": "scene.scene",
-    "Seat": "bearings.fits",
+    "Seat": "bearings.thermal",
     "Section": "flexible.shaft_parts",
     "Sensor": "model.elements",
     "Settings": "settings",

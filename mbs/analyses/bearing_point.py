@@ -18,6 +18,7 @@ from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.contact_report import (
+    BearingPoint,
     bearing_contacts,
     extrapolated,
     fading,
@@ -25,12 +26,11 @@ from mbs.bearings.contact_report import (
     heated,
     outside_map,
     overload,
+    rolling_loss,
     spike_tip,
 )
 from mbs.bearings.films import FilmSource
 from mbs.bearings.laws import Law
-from mbs.bearings.point import BearingPoint
-from mbs.bearings.rolling_loss import rolling_loss
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import Load, Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium

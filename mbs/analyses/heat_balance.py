@@ -15,13 +15,18 @@ from mbs.analyses.losses import contacts_and_losses
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
-from mbs.bearings.fits import Mounting, operating_clearance
-from mbs.bearings.friction import load_torque, viscous_torque
-from mbs.bearings.heat import HeatPaths, heat_of_contacts, steady_temperatures
+from mbs.bearings.contact_report import RollingLoss, load_torque, viscous_torque
 from mbs.bearings.roller_contacts import RollerContacts
 from mbs.bearings.roller_element import RollerElement
-from mbs.bearings.rolling_loss import RollingLoss
-from mbs.bearings.state import BearingHeat, BearingState
+from mbs.bearings.thermal import (
+    BearingHeat,
+    BearingState,
+    HeatPaths,
+    Mounting,
+    heat_of_contacts,
+    operating_clearance,
+    steady_temperatures,
+)
 from mbs.linearised.steady import steady_system
 from mbs.model.elements import Element, Operation
 from mbs.model.equilibrium import equilibrium

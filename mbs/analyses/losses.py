@@ -10,9 +10,8 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.physics.solids import STEEL
 from mbs.bearings.bearing_element import BearingElement
-from mbs.bearings.contact_report import BearingContacts, bearing_contacts
+from mbs.bearings.contact_report import BearingContacts, RollingLoss, bearing_contacts, rolling_loss
 from mbs.bearings.films import DryContacts, FilmSource
-from mbs.bearings.rolling_loss import RollingLoss, rolling_loss
 from mbs.model.elements import Operation
 from mbs.scene.assembly import Model, ring_motions
 

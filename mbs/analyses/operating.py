@@ -11,8 +11,7 @@ thin, that of the other is too thick.
 
 from __future__ import annotations
 
-from mbs.bearings.fits import Clearance
-from mbs.bearings.state import BearingState
+from mbs.bearings.thermal import BearingState, Clearance
 from mbs.scene.assembly import Model
 
 

@@ -13,8 +13,7 @@ from ehdmaps.units import LOAD, RPM
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.contact_report import axes_left
-from mbs.bearings.laws import DryLaw, Law
-from mbs.bearings.table_law import TableLaw
+from mbs.bearings.laws import DryLaw, Law, TableLaw
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import Equilibrium
 from mbs.model.matrices import MatrixElement

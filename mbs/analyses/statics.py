@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 from mbs.analyses.losses import contacts_and_losses
 from mbs.analyses.operating import operating, states_of
 from mbs.analyses.soundness import Unsound, unsound_at_rest, with_unsound
-from mbs.bearings.contact_report import BearingContacts, overload
-from mbs.bearings.rolling_loss import RollingLoss
+from mbs.bearings.contact_report import BearingContacts, RollingLoss, overload
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.model.free_motion import free_lines, free_motions

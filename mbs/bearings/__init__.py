@@ -1,1 +1,24 @@
-"""The bearing force element: geometry, contact laws, the force with its derivatives, and rollers as bodies."""
+"""The bearing force element: geometry, contact laws, the force with its derivatives, and rollers as bodies.
+
+=====================  ================================================================================================
+`bearing`              geometry, clearance, profile, slices; spins, relative pose, forces and moments on both rings
+`thermal`              fits and the clearance that they leave, the state in operation, the balance of heat
+`laws`                 contact laws: Hertz, constant, points, film formula; a law as arrays for compiled code
+`films`                pressure, films and rolling force at a load: dry, by formula, by map
+`slice_table`          a law at one speed as a table that slices read
+`slices`               where rollers stand, how they move, and what their slices carry
+`bearing_kernel`       the sums over slices and rollers: force, stiffness, damping
+`special_kernels`      the same for slices that are coupled, and for conditions that change
+`force_at_point`       the force at one speed, temperature and centrifugal load; loads of the rollers
+`bearing_force`        the force element, with films at once or in time, its energy and the moment on its cage
+`roller_contacts`      contacts one by one: films that relax, rollers as bodies between two contacts
+`contact_report`       what the contacts feel in an equilibrium, what rolling costs, which limits are passed
+`bearing_element`      a bearing in a system, with massless rollers
+`roller_element`       a bearing in a system, with rollers as bodies
+`speed_tables`         tables of a law over the speed of a run
+`rings`                bearings of a run as arrays: rings and rollers
+`bearing_block`        compiled runs with slow films or dry contacts
+`memory_kernel`        slices whose films have a memory: one step in time
+`memory_block`         compiled runs with such films
+=====================  ================================================================================================
+"""

@@ -1,29 +1,34 @@
-"""A bearing in a system: the bearing force between two places, at the speed and cage angle that the system has."""
+"""A bearing in a system: the bearing force between two places, at the speed and cage angle that the system has.
+
+Films follow at once, or need time: then each slice has a state in runs (`MemoryBearing`).
+"""
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from mbs.bearings.bearing import Bearing
-from mbs.bearings.bearing_force import NO_COUPLED_MEMORY, BearingForce
-from mbs.bearings.contact_energy import brought_by_speed, cage_moment, energy_at_rest
-from mbs.bearings.force_at_point import Arrays
+from mbs.bearings.bearing_force import NO_COUPLED_MEMORY, BearingForce, brought_by_speed, cage_moment, energy_at_rest
+from mbs.bearings.force_at_point import Arrays, RollerLoads
 from mbs.bearings.laws import DryLaw
-from mbs.bearings.roller_loads import RollerLoads
-from mbs.bearings.roller_motion import approaches_of_arrays
+from mbs.bearings.slices import approaches_of_arrays
 from mbs.model.elements import ElementDefaults, Excitation, Forces, Operation, Port, Powers
 from mbs.model.relaxation import Films, Relaxation
 
 if TYPE_CHECKING:
-    from mbs.bearings.contact_groups import ContactGroup
+    from ehdmaps.maps.law import ContactLaw
+    from ehdmaps.maps.memory import FilmMemory, FilmState
+    from mbs.bearings.roller_contacts import ContactGroup
     from mbs.model.system import System
+
 
 NO_CENTRIFUGAL = "got 'memory' with centrifugal = true; allowed: films with memory without it, or slow films"
 
@@ -205,7 +210,7 @@ class BearingElement(RingElement):
         """See `RingElement.film_relaxation`; with centrifugal load the times are those without it, as an estimate."""
         if not isinstance(self.force, BearingForce) or isinstance(self.force.law, DryLaw):
             return None
-        from mbs.bearings.film_relaxation import bearing_relaxation  # dry bearings have no films
+        from mbs.bearings.roller_contacts import bearing_relaxation
 
         law = self.force.law.at(self.entrainment_speed(operation), self.temperature)
         return bearing_relaxation(law, self.rollers(displacement, operation), self.bearing.slice_length)
@@ -214,7 +219,7 @@ class BearingElement(RingElement):
         """See `RingElement.natural_times`."""
         if not isinstance(self.force, BearingForce) or isinstance(self.force.law, DryLaw):
             return np.zeros(0)
-        from mbs.bearings.film_relaxation import natural_times
+        from mbs.bearings.roller_contacts import natural_times
 
         law = self.force.law.at(self.entrainment_speed(operation), self.temperature)
         return natural_times(law, self.rollers(displacement, operation).approach).reshape(-1)
@@ -233,8 +238,7 @@ class BearingElement(RingElement):
             return ()
         if not isinstance(self.force, BearingForce) or isinstance(self.force.law, DryLaw):
             return ()
-        from mbs.bearings.contact_groups import ContactGroup
-        from mbs.bearings.film_relaxation import massless_rows
+        from mbs.bearings.roller_contacts import ContactGroup, massless_rows
 
         u, q = self.entrainment_speed(operation), self.centrifugal_load(operation)
         rollers = self.rollers(displacement, operation)
@@ -277,7 +281,7 @@ class BearingElement(RingElement):
         return energy + 0.5 * self.bearing.slice_length * float(np.sum((w @ coupling) * w))
 
     def brought_by_speed(self, displacements: FloatArray, operations: Sequence[Operation]) -> float:
-        """Energy that changes of the speed brought into its films, see `mbs.bearings.contact_energy`."""
+        """Energy that changes of the speed brought into its films, see `mbs.bearings.bearing_force`."""
         if not isinstance(self.force, BearingForce):
             return 0.0
         conditions = [(self.entrainment_speed(op), self.temperature, self.centrifugal_load(op)) for op in operations]
@@ -339,3 +343,111 @@ def ring_following(stiffness: FloatArray) -> FloatArray:
     loaded = np.nonzero(np.diag(own) > 0.0)[0]
     following[12 + loaded] = -np.linalg.solve(own[np.ix_(loaded, loaded)], stiffness[12 + loaded, :6])
     return following
+
+
+class FilmStates(NamedTuple):
+    """States of a bearing's films after a step.
+
+    Attributes
+    ----------
+    films : FilmState
+        Films of all slices of all rollers, shape (Z, n).
+    time : float
+        End of the step [s].
+    before : FilmState or None
+        Films at its beginning; None where that is not known.
+    """
+
+    films: FilmState
+    time: float
+    before: FilmState | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class MemoryBearing(BearingElement):
+    """A bearing whose films have a memory in time, see `ehdmaps.maps.memory_table`.
+
+    At rest it is the `BearingElement` with the same force; small oscillations see films that relax.
+
+    Raises
+    ------
+    InputError
+        With a force that has no contact law with films, or with centrifugal loads: such films have no memory.
+    """
+
+    films: Films = "memory"
+
+    def __post_init__(self) -> None:
+        BearingElement.__post_init__(self)
+        if not isinstance(self.force, BearingForce) or isinstance(self.force.law, DryLaw):
+            raise InputError(
+                f"bearing {self.name!r}, films: got 'memory' with a law without films; allowed: laws map and formula"
+            )
+
+    @property
+    def law(self) -> ContactLaw:
+        """The law of a roller between both raceways."""
+        assert isinstance(self.force, BearingForce) and not isinstance(self.force.law, DryLaw)
+        return self.force.law
+
+    def advance(
+        self, states: FilmStates | None, displacement: FloatArray, velocity: FloatArray, operation: Operation
+    ) -> tuple[Forces, FilmStates]:
+        """A step in time up to the time of `operation`, as `ContactLaw.advance` for all slices.
+
+        Parameters
+        ----------
+        states : FilmStates or None
+            States after the last step; None for films in equilibrium.
+        displacement, velocity : array, shape (6,)
+            Motion of the inner ring against the outer one at the end of the step; the rates have no effect.
+        operation : Operation
+            Speed, angle and time there.
+
+        Raises
+        ------
+        InputError, OutsideMapError
+            As the law does.
+        """
+        assert isinstance(self.force, BearingForce)
+        forces, films = self.force.advance(
+            None if states is None else states.films,
+            displacement,
+            _AT_REST if states is None else operation.time - states.time,
+            cage_angle=self.cage_angle(operation),
+            entrainment_speed=self.entrainment_speed(operation),
+            temperature=self.temperature,
+            centrifugal_load=self.centrifugal_load(operation),
+        )
+        # A run begins with films that have not moved yet.
+        if states is None:
+            return forces, FilmStates(dataclasses.replace(films, step=0.0), operation.time)
+        return forces, FilmStates(films, operation.time, states.films)
+
+    def powers(
+        self,
+        states: FilmStates,
+        force: FloatArray,
+        displacement: FloatArray,
+        velocity: FloatArray,
+        operation: Operation,
+    ) -> Powers:
+        """What its films take up, and what the turning of the cage brings in, see `Element.powers`."""
+        driven, spent = cage_moment(force, displacement, 1) * self.rates[0] * operation.speed, 0.0
+        if states.before is not None:
+            spent = float(np.sum(self._memory(operation).spent(states.before, states.films)))
+        return Powers(0.0, driven, spent * self.bearing.slice_length)
+
+    def stored(self, states: FilmStates, displacement: FloatArray, operation: Operation) -> float:
+        """Energy of its contacts [J]: of the solids and of the films that follow; see `Element.stored`."""
+        return float(np.sum(self._memory(operation).stored(states.films))) * self.bearing.slice_length
+
+    def _memory(self, operation: Operation) -> FilmMemory:
+        """The law with memory at the speed."""
+        assert isinstance(self.force, BearingForce)
+        conditions = self.entrainment_speed(operation), self.temperature, self.centrifugal_load(operation)
+        return self.force.in_time(*conditions).law.memory
+
+
+_AT_REST = 1e6
+"""A step so long that films are in equilibrium at its end [s]."""

@@ -7,34 +7,259 @@ are held fixed in the derivatives.
 
 Each slice of each roller carries w(delta, rate) times its length, w the law of the roller between both raceways. By
 default no slice knows of its neighbours; those of a `Bearing` with `coupled` do, see `ehdmaps.solids.slices` and
-`mbs.bearings.coupled_kernel`. Slip and traction, contacts
-with the cage and with the ribs are left out too. An EHD law takes the contacts as fully flooded all round: without
-clearance the films of the unloaded side preload the bearing.
+`mbs.bearings.special_kernels`. Slip and traction, contacts with the cage and with the ribs are left out too. An EHD law
+takes the contacts as fully flooded all round: without clearance the films of the unloaded side preload the bearing.
+
+`ForceInTime` is the same with films that need time to follow: each slice has a state. The energy of the contacts at
+rest, and the moment that a bearing asks of its cage, follow from the same laws.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from mbs.bearings.bearing import Bearing
-from mbs.bearings.flat_law import FlatLaw
-from mbs.bearings.force_at_point import Arrays, ForceAtPoint, Triple, check_conditions, coupling_beside
-from mbs.bearings.force_in_time import ForceInTime
-from mbs.bearings.kinematics import RingState
-from mbs.bearings.laws import DryLaw, Law
-from mbs.bearings.ring_forces import RingForces, ring_forces
-from mbs.bearings.roller_loads import RollerLoads
+from ehdmaps.maps.kernel import LOAD_TOLERANCE
+from mbs.bearings.bearing import Bearing, RingForces, RingState, ring_forces
+from mbs.bearings.bearing_kernel import assemble_arrays
+from mbs.bearings.force_at_point import (
+    Arrays,
+    ForceAtPoint,
+    RollerLoads,
+    Triple,
+    check_conditions,
+    coupling_beside,
+    raise_state,
+    six_numbers,
+)
+from mbs.bearings.laws import DryLaw, FlatLaw, Law
+from mbs.bearings.slices import NOT_FINITE, approaches_of_arrays
 from mbs.model.elements import Forces
 
 if TYPE_CHECKING:
-    from ehdmaps.maps.law import ContactLaw
+    from ehdmaps.maps.law import ContactLaw, LawAtPoint
     from ehdmaps.maps.memory import FilmState
+
+
+LoadsOf = Callable[[FloatArray], FloatArray]
+"""Loads of contacts at rest by their approaches."""
+
+Potential = Callable[[FloatArray], FloatArray]
+"""Energies of contacts at rest by their approaches."""
+
+Conditions = tuple[float, float, float]
+"""u [m/s], T [K], centrifugal load [N/m]."""
+
+_CELLS = 400
+_PARTS, _SAMPLES = 100, 16
+_PLACES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
+_NEAR, _FAR = 1e-12, 0.1
+
+
+def cage_moment(force: FloatArray, displacement: FloatArray, rings: int) -> float:
+    """Moment that a bearing asks of its cage [N m].
+
+    Turning cage and rings together does no work, so that the cage has to give what the forces on the rings turn:
+    y f_z - z f_y + theta_y M_z - theta_z M_y of each.
+
+    Parameters
+    ----------
+    force, displacement : array (6 rings + ...,)
+        Forces on the rings, and displacements of these [N or N m], [m or rad].
+    rings : int
+        How many rings there are.
+    """
+    total = 0.0
+    for first in range(0, 6 * rings, 6):
+        for i in (first + 1, first + 4):
+            total += float(displacement[i] * force[i + 1] - displacement[i + 1] * force[i])
+    return total
+
+
+def energy_at_rest(law: Law, conditions: Conditions, bearing: Bearing, approach: FloatArray) -> float:
+    """Energy of contacts at rest [J]: the integral of their loads over the approach.
+
+    Parameters
+    ----------
+    law : DryLaw or ContactLaw
+        Law of the contacts.
+    conditions : (float, float, float)
+        u [m/s], T [K] and centrifugal load [N/m] of the law of a map.
+    bearing : Bearing
+        The bearing, for the length of its slices.
+    approach : array
+        Approach of slices [m].
+    """
+    return float(np.sum(potential(law, conditions, bearing, float(np.max(approach)))(approach)))
+
+
+def potential(law: Law, conditions: Conditions, bearing: Bearing, deepest: float) -> Potential:
+    """Energy of slices by their approach, up to the deepest one [m].
+
+    By Gauss points in cells that grow with the distance from where a film begins to carry, and a cubic within a cell.
+
+    Parameters
+    ----------
+    law, conditions, bearing
+        What `energy_at_rest` takes.
+    deepest : float
+        [m].
+    """
+    if isinstance(law, DryLaw):
+        return lambda approach: np.asarray(law.energy(approach) / bearing.slices)
+    point = law.at(*conditions)
+
+    def loads(delta: FloatArray) -> FloatArray:
+        return np.asarray(point.evaluate(delta, np.zeros_like(delta))[0])
+
+    first = _lift_off(loads, deepest)
+    if first >= deepest:
+        return np.zeros_like
+    centre, inverse = point.point.film * point.point.own.offset, point.point.own.inverse_scale
+    ends = np.arcsinh((np.array([first, deepest]) - centre) * inverse)
+    nodes = centre + np.sinh(np.linspace(ends[0], ends[1], _CELLS + 1)) / inverse
+    widths = np.diff(nodes)
+    at = nodes[:-1, None] + 0.5 * widths[:, None] * (1.0 + _PLACES)
+    cells = 0.5 * widths * (loads(at.ravel()).reshape(at.shape) @ _WEIGHTS)
+    sums, slopes = np.concatenate([[0.0], np.cumsum(cells)]), loads(nodes)
+
+    def energies(approach: FloatArray) -> FloatArray:
+        cell = np.clip(np.searchsorted(nodes, approach, side="right") - 1, 0, _CELLS - 1)
+        h = widths[cell]
+        t = np.clip((approach - nodes[cell]) / h, 0.0, 1.0)
+        # Hermite's cubic through the sums, whose slopes are the loads.
+        low, rise = slopes[cell] * h, sums[cell + 1] - sums[cell]
+        bend = slopes[cell + 1] * h + low - 2.0 * rise
+        return np.asarray(sums[cell] + t * (low + t * (rise - low - bend + t * bend))) * bearing.slice_length
+
+    return energies
+
+
+def brought_by_speed(
+    law: Law,
+    bearing: Bearing,
+    conditions: Sequence[Conditions],
+    approaches: Callable[[int], FloatArray],
+) -> float:
+    """Energy that changes of the speed bring into contacts by changing their law [J].
+
+    At a held approach a thicker film is pressed harder. The energy of the approaches of a few samples in each part of
+    the run is taken with the laws at both ends of the part. Films with memory are taken as at rest. It is an estimate:
+    what it leaves out is how approaches go on between the samples.
+
+    Parameters
+    ----------
+    law, bearing
+        What `energy_at_rest` takes.
+    conditions : sequence of (float, float, float)
+        Conditions of the law at all samples of a run.
+    approaches : callable
+        Approaches of all slices at a sample [m], by its index.
+    """
+    count = len(conditions)
+    if isinstance(law, DryLaw) or len(set(conditions)) == 1:
+        return 0.0
+    ends = np.unique(np.linspace(0, count - 1, min(_PARTS, count - 1) + 1).astype(int)).tolist()
+    total = 0.0
+    for begin, end in pairwise(ends):
+        if conditions[begin] == conditions[end]:
+            continue
+        width = end - begin
+        inside = begin + (np.arange(min(_SAMPLES, width)) + 0.5) * (width / min(_SAMPLES, width))
+        found = np.stack([approaches(int(index)) for index in inside])
+        deepest = float(np.max(found))
+        first, last = (potential(law, conditions[at], bearing, deepest)(found) for at in (begin, end))
+        total += float(np.sum(last - first)) / found.shape[0]
+    return total
+
+
+def _lift_off(loads: LoadsOf, deepest: float) -> float:
+    """An approach without load, close below the first one with load [m]; `deepest` where there is none."""
+    if not loads(np.array([deepest]))[0] > 0.0:
+        return deepest
+    step = 1e-9
+    while step < _FAR and loads(np.array([deepest - step]))[0] > 0.0:
+        step *= 2.0
+    low, high = deepest - step, deepest
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        if loads(np.array([middle]))[0] > 0.0:
+            high = middle
+        else:
+            low = middle
+        if high - low < _NEAR:
+            break
+    return low
+
+
+class ForceInTime:
+    """A `BearingForce` at one speed, temperature and centrifugal load, whose films go from step to step.
+
+    Parameters
+    ----------
+    law : LawAtPoint
+        Law of a roller between both raceways, of a map or by formula.
+    arrays : Arrays
+        Constants of the bearing, and work space.
+    """
+
+    def __init__(self, law: LawAtPoint, arrays: Arrays) -> None:
+        self.law = law
+        self._state, self._states = np.zeros(13), np.zeros_like(arrays.states)
+        self._sizes, self._shape = arrays.sizes, (np.array(arrays.sizes), arrays.slices, arrays.angles)
+
+    def settled(self, pose: npt.ArrayLike, cage_angle: float = 0.0) -> FilmState:
+        """Films in equilibrium at a pose, shape (Z, n).
+
+        Parameters
+        ----------
+        pose : array (6,)
+            Pose of the inner ring in O [m], [rad].
+        cage_angle : float
+            Angle of the first roller [rad].
+        """
+        return self.law.memory.settled(self._approaches(pose, cage_angle))
+
+    def advance(
+        self, state: FilmState | None, pose: npt.ArrayLike, dt: float, cage_angle: float = 0.0
+    ) -> tuple[Forces, FilmState]:
+        """A step in time; see `BearingForce.advance`.
+
+        Parameters
+        ----------
+        state : FilmState or None
+            Films at the beginning of the step; None for films in equilibrium at `pose`.
+        pose : array (6,)
+            Pose of the inner ring at its end [m], [rad].
+        dt : float
+            Length of the step [s].
+        cage_angle : float
+            Angle of the first roller at its end [rad].
+        """
+        memory, approaches = self.law.memory, self._approaches(pose, cage_angle)
+        before = memory.settled(approaches) if state is None else state
+        self._states[0], self._states[1], after = memory.advance(before, approaches, dt)
+        out = np.empty((13, 6))
+        assemble_arrays(self._state, *self._shape, self._states, out)
+        above = float(np.max(self._states[0])) > self.law.point.highest_load * (1.0 + LOAD_TOLERANCE)
+        return Forces(out[0], out[1:7], out[7:], self.law.outside or above), after
+
+    def _approaches(self, pose: npt.ArrayLike, cage_angle: float) -> FloatArray:
+        """Approach of all slices (Z, n) [m]."""
+        self._state[:6], self._state[12] = six_numbers("pose", pose), cage_angle
+        approaches = np.empty(self._states.shape[1:])
+        wrong = approaches_of_arrays(self._state, *self._shape, approaches)
+        if wrong != 0:
+            raise_state(self._state, self._sizes, wrong == NOT_FINITE)
+        return approaches
+
 
 NO_COUPLED_MEMORY = "got coupled slices with films that have a memory; allowed: slow films, or slices on their own"
 
@@ -326,7 +551,7 @@ class BearingForce:
             The same as for a call.
         outer_spin, outer_spin_rate : float
             How far frame O lags behind the outer ring's body about its axis, because O does not spin [rad], [rad/s];
-            zero for a ring that does not turn, see `mbs.bearings.kinematics.spin`.
+            zero for a ring that does not turn, see `mbs.bearings.bearing.spin`.
         """
         point = self._prepared(entrainment_speed, temperature, centrifugal_load)
         return ring_forces(

@@ -2,24 +2,38 @@
 
 The law is that of `ehdmaps.maps.memory_table`. Each slice carries parabolas of p, y and G around a state and of a
 around a load; they stand for the cubics of its cells, from which they differ in third order, and are read anew where
-the slice leaves their reach, and every few steps, as the law follows the speed (`mbs.bearings.film_course`). So
+the slice leaves their reach, and every few steps, as the law follows the speed (`mbs.bearings.speed_tables`). So
 Newton's method for the states is arithmetic alone, in vector instructions over all slices. A slice that leaves them
-within a step is solved from the table itself, with a bracket.
+within a step is solved from the table itself, with a bracket. Tables of the law over the speed are as those of
+`mbs.bearings.speed_tables`.
 
 A step is `begin`, `loads` as often as the system asks for them, and `commit`.
+
+The first question at the end of a new step begins it, with the states of the last step that was made, here or in
+Python. Questions at other motions, and steps that are tried again with another length, leave these alone. Tables over
+the speed are mixed as often as slices read them, see `Course.kept`.
 """
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
-from ehdmaps.arrays import FloatArray
+import numpy as np
+
+from ehdmaps.arrays import BoolArray, FloatArray, IntArray
 from ehdmaps.compiled import njit
 from ehdmaps.copies import put
+from ehdmaps.errors import EhdmapsError
 from ehdmaps.maps.film_energy import spent_by
+from ehdmaps.maps.kernel import LOAD_TOLERANCE
+from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.lines import FAST
+from ehdmaps.maps.memory import FilmState
 from ehdmaps.maps.memory_table import (
     LIGHTEST,
+    LOAD_ROWS,
+    ROWS,
     MemoryTable,
     Step,
     advanced,
@@ -29,6 +43,165 @@ from ehdmaps.maps.memory_table import (
     rate_of,
     state_cell,
 )
+from mbs.bearings.speed_tables import Course, Made, SpeedWindow
+from mbs.model.blocks import Moment
+
+STEP = 4e-3
+"""Distance of the nodes in ln of the speed: the straight blend between two is right to some 1e-6 of the load."""
+
+NODES = 8
+"""How many tables are held."""
+
+_ROUND_OFF = 1e-12
+
+CENTRE, INVERSE_SCALE, LIFT_OFF, HIGHEST = range(4)
+"""Numbers of a table: as of `MemoryTable`, and the load above which slices are counted [N/m]."""
+
+
+class MemoryFilms(NamedTuple):
+    """Tables of the laws at nodes over the speed, and the tables in use.
+
+    Attributes
+    ----------
+    cells, load_cells, numbers : array (films, NODES, 2 ROWS, 12), (films, NODES, LOAD_ROWS, 4), (films, NODES, 4)
+        Tables, as of `ehdmaps.maps.memory_table`.
+    mixed_cells, mixed_load_cells, mixed : array (films, 2 ROWS, 12), (films, LOAD_ROWS, 4), (films, 4)
+        The table in use.
+    in_use : array (films, 2)
+        Node and weight of those; negative for none.
+    """
+
+    cells: FloatArray
+    load_cells: FloatArray
+    numbers: FloatArray
+    mixed_cells: FloatArray
+    mixed_load_cells: FloatArray
+    mixed: FloatArray
+    in_use: FloatArray
+
+
+def room(films: int) -> MemoryFilms:
+    """Room for the tables of so many laws."""
+    return MemoryFilms(
+        cells=np.zeros((films, NODES, 2 * ROWS, 12)),
+        load_cells=np.zeros((films, NODES, LOAD_ROWS, 4)),
+        numbers=np.zeros((films, NODES, 4)),
+        mixed_cells=np.zeros((films, 2 * ROWS, 12)),
+        mixed_load_cells=np.zeros((films, LOAD_ROWS, 4)),
+        mixed=np.zeros((films, 4)),
+        in_use=np.full((films, 2), -1.0),
+    )
+
+
+@njit(error_model="numpy", fastmath=FAST)
+def mix(films: MemoryFilms, film: int, node: int, weight: float) -> None:
+    """Bring the table in use to a place between two nodes, straight in ln of the speed.
+
+    Parameters
+    ----------
+    films : MemoryFilms
+        Tables over the speed; those in use are written.
+    film : int
+        Index of the law.
+    node : int
+        The lower node.
+    weight : float
+        Weight of the upper node, 0 to 1.
+    """
+    if films.in_use[film, 0] == node and films.in_use[film, 1] == weight:
+        return
+    films.in_use[film, 0], films.in_use[film, 1] = node, weight
+    other = (node + 1) % films.numbers.shape[1] if weight > 0.0 else node
+    _straight(films.cells[film, node].reshape(-1), films.cells[film, other].reshape(-1), weight,
+              films.mixed_cells[film].reshape(-1))  # fmt: skip
+    _straight(films.load_cells[film, node].reshape(-1), films.load_cells[film, other].reshape(-1), weight,
+              films.mixed_load_cells[film].reshape(-1))  # fmt: skip
+    _straight(films.numbers[film, node], films.numbers[film, other], weight, films.mixed[film])
+
+
+@njit(error_model="numpy", fastmath=FAST)
+def _straight(low: FloatArray, high: FloatArray, weight: float, out: FloatArray) -> None:
+    """Straight between two arrays."""
+    for i in range(out.size):
+        out[i] = low[i] + weight * (high[i] - low[i])
+
+
+@njit(error_model="numpy")
+def table_in_use(films: MemoryFilms, film: int) -> MemoryTable:
+    """The table in use.
+
+    Parameters
+    ----------
+    films : MemoryFilms
+        Tables over the speed.
+    film : int
+        Index of the law.
+    """
+    numbers = films.mixed[film]
+    return MemoryTable(
+        films.mixed_cells[film],
+        films.mixed_load_cells[film],
+        numbers[CENTRE],
+        numbers[INVERSE_SCALE],
+        numbers[LIFT_OFF],
+    )
+
+
+class MemoryTables:
+    """Tables of one law at one temperature, for a window of speeds.
+
+    Parameters
+    ----------
+    law : ContactLaw
+        The law of a roller between both raceways; all bearings with the same one, the same temperature and rate share
+        the tables.
+    temperature : float
+        [K].
+    rate : float
+        Entrainment speed for each speed of the system [m/rad].
+    """
+
+    def __init__(self, law: ContactLaw, temperature: float, rate: float) -> None:
+        self._law, self._temperature, self._rate = law, temperature, rate
+        self._window = SpeedWindow(STEP, NODES, law.plain_table.lowest_speed / abs(rate) if rate else 1.0)
+
+    def places(self, speeds: FloatArray) -> tuple[IntArray, FloatArray]:
+        """Nodes and weights of speeds [rad/s], see `SpeedWindow.places`."""
+        return self._window.places(speeds)
+
+    def prepare(
+        self, speeds: FloatArray, nodes: IntArray, weights: FloatArray, films: MemoryFilms, film: int
+    ) -> tuple[IntArray, BoolArray, IntArray]:
+        """Make the tables for the first of some speeds, see `SpeedWindow.prepare`.
+
+        Parameters
+        ----------
+        speeds : array (n,)
+            Speeds [rad/s].
+        nodes, weights : array (n,)
+            Nodes and weights from `places`.
+        films : MemoryFilms
+            Room for the tables.
+        film : int
+            Index of this law there.
+        """
+        return self._window.prepare(speeds, nodes, weights, lambda slot, speed, _: self._made(slot, speed, films, film))
+
+    def _made(self, slot: int, speed: float, films: MemoryFilms, film: int) -> Made:
+        """Make the table of a speed."""
+        before = dict(self._law.outside_counts)
+        try:
+            # the node at the lowest speed has its whole film, whatever the rounding
+            lowest, u = self._law.plain_table.lowest_speed, abs(self._rate * speed)
+            at = self._law.at(lowest if abs(u - lowest) < _ROUND_OFF * lowest else u, self._temperature)
+            table = at.memory.table
+        except EhdmapsError:
+            return Made(sound=False)  # the step that asks for it will be told why
+        films.cells[film, slot], films.load_cells[film, slot] = table.cells, table.load_cells
+        highest = at.point.highest_load * (1.0 + LOAD_TOLERANCE)
+        films.numbers[film, slot] = table.centre, table.inverse_scale, table.lift_off, highest
+        return Made(sound=True, outside=self._law.outside_counts != before)
+
 
 LATEST, BEFORE, CHANGE, FADE, LOAD, TRIAL, AROUND, REACH, LOADED, LOAD_REACH = range(10)
 P, Y, G, A = 10, 13, 16, 19
@@ -293,3 +466,85 @@ def spent(table: MemoryTable, memory: FloatArray, load: FloatArray, weights: Flo
             if not (abs(trial[i] - around[i]) <= reach[i] and abs(latest[i] - around[i]) <= reach[i]):
                 total += weights[i % weights.size] * spent_by(table, latest[i], last[i], trial[i], load[i])
     return total
+
+
+ACCEPTED, LAST, TRIED, STEPS = range(4)
+"""Times of a run: end of the last step that was made [s]; its length [s], 0 if there was none; end of the step that is
+tried [s], NaN before that is known; and how many were made."""
+
+
+def new_clock() -> FloatArray:
+    """Times of a run that has made no step, shape (4,)."""
+    return np.array([math.nan, 0.0, math.nan, 0.0])
+
+
+@njit(error_model="numpy")
+def begin_step(clock: FloatArray, films: MemoryFilms, course: Course, moment: Moment) -> float:
+    """Begin a step: its time, and the tables; the length of the step by that of the last one, 0 at the first.
+
+    Parameters
+    ----------
+    clock : array (4,)
+        Times of the run; written.
+    films : MemoryFilms
+        Tables of the laws; mixed anew where it is their turn.
+    course : Course
+        Places of the steps on them.
+    moment : Moment
+        The step.
+    """
+    clock[TRIED] = moment.time
+    for film in range(films.in_use.shape[0]):
+        if films.in_use[film, 0] < 0.0 or int(clock[STEPS]) % course.kept[moment.step] == 0:
+            mix(films, film, course.nodes[moment.step, film], course.weights[moment.step, film])
+    return (moment.time - clock[ACCEPTED]) / clock[LAST] if clock[LAST] > 0.0 else 0.0
+
+
+@njit(error_model="numpy")
+def make_step(clock: FloatArray, moment: Moment) -> None:
+    """Count a step that is made.
+
+    Parameters
+    ----------
+    clock : array (4,)
+        Times of the run; written.
+    moment : Moment
+        The step.
+    """
+    clock[LAST] = moment.time - clock[ACCEPTED]
+    clock[ACCEPTED] = moment.time
+    clock[STEPS] += 1.0
+
+
+def films_of_rows(rows: FloatArray, shape: tuple[int, int], last: float) -> FilmState:
+    """Films of slices after a step, from their memory in compiled code.
+
+    Parameters
+    ----------
+    rows : array (MEMORY, Z n)
+        Memory of the slices, see `mbs.bearings.memory_kernel`.
+    shape : (int, int)
+        Rollers Z and slices n.
+    last : float
+        Length of the step [s].
+    """
+    approach, change, load = (rows[row].reshape(shape).copy() for row in (LATEST, CHANGE, LOAD))
+    return FilmState(approach, change, load, last)
+
+
+def resume_rows(films: FilmState, time: float, rows: FloatArray, clock: FloatArray) -> None:
+    """Go on from films that Python has.
+
+    Parameters
+    ----------
+    films : FilmState
+        Films after the last step.
+    time : float
+        End of that step [s].
+    rows : array (MEMORY, Z n)
+        Memory of the slices in compiled code; written.
+    clock : array (4,)
+        Times of the run; written.
+    """
+    resume(films.approach.reshape(-1), films.change.reshape(-1), films.load.reshape(-1), rows)
+    clock[: TRIED + 1] = time, films.step, math.nan

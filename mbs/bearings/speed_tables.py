@@ -6,13 +6,18 @@ it comes to them, and takes between two nodes the straight blend of cells, centr
 that the blend is wrong by less than the tables are: `STEP` makes some 1e-8 of load and stiffness of a bearing.
 
 Below the speeds with a whole film one table serves all: what is left of the film moves its knots, see `fade` of
-`mbs.bearings.faded_table`. With a centrifugal load, which changes with the speed, each step has a table of its own.
+`mbs.bearings.slice_table`. With a centrifugal load, which changes with the speed, each step has a table of its own.
+
+A few slots hold the nodes and are used again and again. Below a lowest speed, where a film fades out, laws change with
+the speed itself and not with its logarithm: nodes there are evenly spaced in the speed, as closely as at the lowest
+one.
 """
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterable, Sequence
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -20,13 +25,113 @@ from ehdmaps.arrays import BoolArray, FloatArray, IntArray
 from ehdmaps.errors import EhdmapsError
 from mbs.bearings import slice_table as table
 from mbs.bearings.bearing import Bearing
-from mbs.bearings.flat_law import FlatLaw, tabulate_law
 from mbs.bearings.force_at_point import ForceAtPoint, is_faded, is_one_power, part_of_film
-from mbs.bearings.laws import DryLaw
-from mbs.bearings.speed_window import Made, SpeedWindow
+from mbs.bearings.laws import DryLaw, FlatLaw, tabulate_law
 
 if TYPE_CHECKING:
     from ehdmaps.maps.law import ContactLaw
+
+
+class Made(NamedTuple):
+    """What there is to say of a table that was made.
+
+    Attributes
+    ----------
+    sound : bool
+        Whether it holds the law; else compiled code has no answer at this speed.
+    outside : bool
+        Whether every call counts as outside the map.
+    kind : int
+        Tables of two kinds cannot be blended.
+    """
+
+    sound: bool
+    outside: bool = False
+    kind: int = 0
+
+
+Maker = Callable[[int, float, bool], Made]
+"""Makes the table of a slot for a speed [rad/s], which is a node or the only speed of the run so far."""
+
+
+class SpeedWindow:
+    """The slots of the tables of one law.
+
+    Parameters
+    ----------
+    step : float
+        Distance of the nodes in ln of the speed.
+    slots : int
+        How many tables are held.
+    lowest : float
+        Speed at which the nodes change from even in ln of the speed to even in the speed [rad/s], > 0.
+    varies : bool
+        Whether the law changes with speed; a dry one has one table for all.
+    """
+
+    def __init__(self, step: float, slots: int, lowest: float, varies: bool = True) -> None:
+        self._step, self._slots, self._lowest, self._varies = step, slots, lowest, varies
+        self._held: list[tuple[bool, float] | None] = [None] * slots
+        self._sound, self._outside = np.zeros(slots, dtype=np.bool_), np.zeros(slots, dtype=np.bool_)
+        self._kinds = np.zeros(slots, dtype=np.int64)
+
+    def places(self, speeds: FloatArray) -> tuple[IntArray, FloatArray]:
+        """Nodes below speeds [rad/s], and parts of the way to the next nodes; both zero for one speed alone."""
+        size = np.abs(speeds)
+        if not self._varies or np.all(size == size[0]):
+            return np.zeros(size.size, dtype=np.int64), np.zeros(size.size)
+        by_lowest = size / self._lowest
+        place = np.where(by_lowest < 1.0, by_lowest - 1.0, np.log(np.maximum(by_lowest, 1.0))) / self._step
+        node = np.floor(place)
+        return node.astype(np.int64), place - node
+
+    def speed_of(self, node: int) -> float:
+        """Speed of a node [rad/s]; exactly the lowest one for the node 0."""
+        place = node * self._step
+        return self._lowest * (math.exp(place) if node > 0 else max(1.0 + place, 0.0))
+
+    def prepare(
+        self, speeds: FloatArray, nodes: IntArray, weights: FloatArray, make: Maker
+    ) -> tuple[IntArray, BoolArray, IntArray]:
+        """Have the tables made for the first of some speeds, as many as are held at once.
+
+        Parameters
+        ----------
+        speeds : array (n,)
+            Speeds [rad/s].
+        nodes, weights : array (n,)
+            Nodes and weights from `places`.
+        make : callable
+            Makes the table of a slot.
+
+        Returns
+        -------
+        slots : array (k,)
+            Slots of the tables of the first k speeds.
+        sound : array (k,)
+            Whether tables hold the law there.
+        outside : array (k,), of int
+            One where every call counts as outside the map.
+        """
+        if not self._varies or not (np.any(weights) or np.any(nodes)):
+            speed = abs(float(speeds[0]))
+            self._hold(0, (True, speed if self._varies else 0.0), speed, make)
+            sound, outside = self._sound[:1], self._outside[:1]
+            return np.zeros_like(nodes), np.repeat(sound, nodes.size), np.repeat(outside, nodes.size).astype(np.int64)
+        low, high = np.minimum.accumulate(nodes), np.maximum.accumulate(nodes)
+        count = int(np.searchsorted(high - low, self._slots - 2, side="right"))
+        for node in range(int(low[count - 1]), int(high[count - 1]) + 2):
+            self._hold(node % self._slots, (False, float(node)), self.speed_of(node), make)
+        slots, following = nodes[:count] % self._slots, (nodes[:count] + 1) % self._slots
+        alike = self._kinds[slots] == self._kinds[following]
+        return slots, alike & self._sound[slots] & self._sound[following], self._outside[slots].astype(np.int64)
+
+    def _hold(self, slot: int, key: tuple[bool, float], speed: float, make: Maker) -> None:
+        """Have the table of a slot made, unless it is there."""
+        if self._held[slot] != key:
+            self._held[slot] = key
+            self._sound[slot], self._outside[slot], self._kinds[slot] = make(slot, speed, key[0])
+
 
 STEP = 1e-3
 """Distance of the nodes in ln of the speed."""
@@ -185,3 +290,152 @@ def _leading(marked: BoolArray) -> int:
 def _told(sound: bool, outside: bool, numbers: FloatArray) -> Made:
     """What there is to say of a table; only tables of the same kind that count alike are blended."""
     return Made(sound, outside, 2 * int(numbers[_KIND]) + int(outside))
+
+
+ArraysOfFilms = TypeVar("ArraysOfFilms", bound=Any)
+"""Named tuple of arrays with the fields `films`, tables of the laws, and `course`, a `Course`."""
+
+
+class Course(NamedTuple):
+    """Where the tables of some steps lie.
+
+    Attributes
+    ----------
+    nodes, weights : array (steps, films)
+        Node below the speed, and the part of the way to the next one.
+    outside : array (steps, films), of int
+        Whether speed or temperature lie outside the map.
+    kept : array (steps,), of int
+        Steps for which what was read from the tables holds.
+    """
+
+    nodes: IntArray
+    weights: FloatArray
+    outside: IntArray
+    kept: IntArray
+
+
+MOST_KEPT = 8
+"""Steps for which what was read from a table is kept at most."""
+
+MOVED = 1.0 / 64.0
+"""Part of the distance of two tables by which the speed may move meanwhile, 6e-5 of the speed for films with memory:
+their load then lags behind by some 1e-5, as much as their parabolas are wrong. Slices are read in turns, so that more
+would shake the machine at an eighth of the rate of the steps, the more the faster a run-up begins."""
+
+
+Places = tuple[IntArray, FloatArray]
+Prepared = tuple[IntArray, BoolArray, IntArray]
+
+
+class CourseOfFilms:
+    """Where the tables of the films of a run lie, step after step.
+
+    Parameters
+    ----------
+    places : sequence of callable
+        Nodes and weights of speeds (n,) [rad/s], a function for each film.
+    prepare : callable
+        Function that makes the tables of a film, by its index, for the first of some speeds, their nodes and weights.
+    """
+
+    def __init__(
+        self,
+        places: Sequence[Callable[[FloatArray], Places]],
+        prepare: Callable[[int, FloatArray, IntArray, FloatArray], Prepared],
+    ) -> None:
+        self._place, self._prepare = places, prepare
+        self._places: list[Places] = []
+        self._speeds = np.zeros(0)
+        self._kept = np.zeros(0, dtype=np.int64)
+
+    def begin(self, speeds: FloatArray) -> None:
+        """Find the places of the speeds [rad/s] on the tables."""
+        self._speeds = speeds
+        self._places = [place(speeds) for place in self._place]
+        self._kept = _kept(self._places, speeds.size)
+
+    def prepare(self, first: int, last: int) -> tuple[Course, BoolArray]:
+        """Have the tables of the next steps made, as many as are held at once, and say which steps have one.
+
+        Parameters
+        ----------
+        first, last : int
+            Steps of those that `begin` was told.
+        """
+        part = slice(first, last)
+        found = [
+            (*self._prepare(film, self._speeds[part], nodes[part], weights[part]), weights[part])
+            for film, (nodes, weights) in enumerate(self._places)
+        ]
+        count = min((slots.size for slots, _, _, _ in found), default=last - first)
+        course, whole = course_of(count, len(found)), np.ones(count, dtype=np.bool_)
+        course.kept[:] = self._kept[first : first + count]
+        for film, (slots, sound, outside, weights) in enumerate(found):
+            course.nodes[:, film], course.weights[:, film] = slots[:count], weights[:count]
+            course.outside[:, film] = outside[:count]
+            whole &= sound[:count]
+        return course, whole
+
+
+def course_of(steps: int, films: int) -> Course:
+    """Room for the course of some steps."""
+    shape = (steps, films)
+    nodes, outside = np.zeros((2, *shape), dtype=np.int64)
+    return Course(nodes, np.zeros(shape), outside, np.ones(steps, dtype=np.int64))
+
+
+def _kept(places: Sequence[Places], steps: int) -> IntArray:
+    """Steps for which what was read holds, shape (steps,): a power of two; 1 for a step alone, whose speed may move."""
+    if steps < 2:
+        return np.ones(steps, dtype=np.int64)
+    moved = np.zeros(steps - 1)
+    for nodes, weights in places:
+        moved = np.maximum(moved, np.abs(np.diff(nodes.astype(np.float64) + weights)))
+    most = np.clip(MOVED / np.maximum(moved, MOVED / MOST_KEPT), 1.0, MOST_KEPT)
+    kept = 2 ** np.floor(np.log2(most)).astype(np.int64)
+    return np.concatenate([kept[:1], kept])
+
+
+def shared(keys: Iterable[tuple[object, ...]]) -> tuple[list[int], list[int]]:
+    """Number of the film of each bearing, by what makes films alike; and which bearing is the first with each film."""
+    numbers: dict[tuple[object, ...], int] = {}
+    films_of: list[int] = []
+    firsts: list[int] = []
+    for place, key in enumerate(keys):
+        if key not in numbers:
+            numbers[key] = len(firsts)
+            firsts.append(place)
+        films_of.append(numbers[key])
+    return films_of, firsts
+
+
+class FilmBlock(Generic[ArraysOfFilms]):
+    """Bearings of a run that look their films up in tables over the speed; see `mbs.model.blocks.Block`.
+
+    Parameters
+    ----------
+    course : CourseOfFilms
+        Places of the tables, step after step.
+    arrays : named tuple
+        The bearings, with `films` and `course`.
+    """
+
+    def __init__(self, course: CourseOfFilms, arrays: ArraysOfFilms) -> None:
+        self._course, self._arrays = course, arrays
+
+    def begin(self, speeds: FloatArray) -> None:
+        """Find the places of the speeds [rad/s] on the tables."""
+        self._course.begin(speeds)
+
+    def prepare(self, first: int, last: int) -> tuple[ArraysOfFilms, BoolArray]:
+        """Make the tables of the next steps, as many as are held at once.
+
+        Parameters
+        ----------
+        first, last : int
+            Steps of those that `begin` was told.
+        """
+        course, sound = self._course.prepare(first, last)
+        self._arrays.films.in_use[:] = -1.0
+        return self._arrays._replace(course=course), sound

@@ -24,8 +24,7 @@ from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.units import RPM, TEMPERATURE, Display, closest, quantity, short
 from mbs.bearings.bearing import MOST_COUPLED, Bearing
 from mbs.bearings.films import SIDES, FilmSource, FormulaFilms, MapFilms
-from mbs.bearings.fits import Mounting, operating_clearance
-from mbs.bearings.state import BearingState
+from mbs.bearings.thermal import BearingState, Mounting, operating_clearance
 from mbs.commands.options import NO_MAP, read_clearance, read_supplies
 from mbs.output.bearing_data import WIDE_RANGE, BearingDescription, result_kind
 from mbs.scene.contact_laws import (

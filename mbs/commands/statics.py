@@ -14,7 +14,7 @@ from mbs.analyses.reach import fade_lines, outside_at
 from mbs.analyses.statics import statics
 from mbs.bearings.bearing_element import ring_matrices
 from mbs.bearings.contact_report import BearingContacts
-from mbs.bearings.roller_loads import RollerLoads
+from mbs.bearings.force_at_point import RollerLoads
 from mbs.commands.auto import analysed
 from mbs.commands.cases import load_model
 from mbs.commands.common import Looked, unsound_lines, write

@@ -31,7 +31,7 @@ from scipy.interpolate import CubicSpline
 
 from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
 from mbs.bearings.bearing_element import RingElement, ring_following
-from mbs.bearings.contact_groups import ContactGroup
+from mbs.bearings.roller_contacts import ContactGroup
 from mbs.model.equilibrium import Equilibrium
 
 if TYPE_CHECKING:

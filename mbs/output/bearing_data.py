@@ -16,9 +16,9 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.roughness import Surface
 from mbs.bearings.bearing import Bearing
+from mbs.bearings.contact_report import BearingPoint
 from mbs.bearings.films import SIDES
-from mbs.bearings.point import BearingPoint
-from mbs.bearings.state import BearingState
+from mbs.bearings.thermal import BearingState
 from mbs.output.files import RESULT, described
 from mbs.scene.contact_laws import surface_label
 

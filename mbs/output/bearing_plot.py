@@ -16,8 +16,8 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.figures import COLOURS, WARNING, typeset
 from ehdmaps.units import PRESSURE, RPM
 from mbs.bearings.bearing import STATIC_LIMIT
+from mbs.bearings.contact_report import BearingPoint
 from mbs.bearings.films import SIDES
-from mbs.bearings.point import BearingPoint
 from mbs.output.bearing_data import WIDE_RANGE, BearingDescription, Points, bearing_row
 from mbs.output.bearing_text import bearing_heading, without_numbers
 from mbs.output.page import grid as quiet_grid

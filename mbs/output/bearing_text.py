@@ -9,8 +9,8 @@ import numpy as np
 
 from ehdmaps.units import DAMPER, FILM, PRESSURE, RPM, SPRING, TEMPERATURE
 from mbs.bearings.bearing import Bearing
+from mbs.bearings.contact_report import BearingPoint
 from mbs.bearings.films import SIDES
-from mbs.bearings.point import BearingPoint
 from mbs.output.bearing_data import BearingDescription, Points, bearing_row
 from mbs.output.state_text import flooded_note, loss_words, state_words
 from mbs.scene.contact_laws import surface_label

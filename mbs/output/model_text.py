@@ -12,7 +12,7 @@ import numpy as np
 
 from ehdmaps.units import RPM, TEMPERATURE
 from mbs.bearings.bearing_element import error_words
-from mbs.bearings.heat import HeatPaths
+from mbs.bearings.thermal import HeatPaths
 from mbs.model.relaxation import NOTABLE
 from mbs.output.state_text import state_lines
 from mbs.scene.assembly import Model

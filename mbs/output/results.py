@@ -17,8 +17,7 @@ from mbs.model.elements import Input, Sensor
 from mbs.model.system import System
 
 if TYPE_CHECKING:
-    from mbs.bearings.contact_report import BearingContacts
-    from mbs.bearings.rolling_loss import RollingLoss
+    from mbs.bearings.contact_report import BearingContacts, RollingLoss
     from mbs.linearised.linear import StateSpace
     from mbs.linearised.modes import Modes
     from mbs.model.equilibrium import Equilibrium

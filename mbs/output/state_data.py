@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from mbs.bearings.state import BearingHeat, BearingState
+from mbs.bearings.thermal import BearingHeat, BearingState
 
 _STATE: tuple[tuple[str, str, str, Callable[[BearingState], float]], ...] = (
     ("inner_raceway_temperature", "K", "temperature of the inner raceway", lambda state: state.inner),

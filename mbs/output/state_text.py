@@ -7,8 +7,8 @@ from collections.abc import Iterable
 
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.units import TEMPERATURE
-from mbs.bearings.rolling_loss import RollingLoss
-from mbs.bearings.state import BearingHeat, BearingState
+from mbs.bearings.contact_report import RollingLoss
+from mbs.bearings.thermal import BearingHeat, BearingState
 from mbs.scene.fields import MICROMETRE
 
 FLOODED_NOTE = (

@@ -15,7 +15,7 @@ from ehdmaps.report.tables import pairs, table
 from ehdmaps.units import DAMPER, FILM, PRESSURE, SPEED, SPRING
 from mbs.bearings.bearing_element import ring_matrices
 from mbs.bearings.films import ContactState
-from mbs.bearings.roller_loads import RollerLoads
+from mbs.bearings.force_at_point import RollerLoads
 from mbs.output.state_text import DAMPINGS, STIFFNESSES, loss_words
 from mbs.report.examination import Examination
 from mbs.scene.assembly import ring_motions

@@ -17,7 +17,7 @@ from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.roughness import Surface
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.films import FilmSource
-from mbs.bearings.state import BearingState
+from mbs.bearings.thermal import BearingState
 from mbs.model.elements import Operation
 from mbs.model.places import Places
 from mbs.model.relaxation import Films

@@ -118,7 +118,7 @@ def build_bearing(spec: BearingSpec, surroundings: Surroundings) -> Built:
     memory = surroundings.laws.memory == "memory"
     kind = BearingElement
     if memory and not spec.rollers_as_bodies:
-        from mbs.bearings.memory_element import MemoryBearing
+        from mbs.bearings.bearing_element import MemoryBearing
 
         kind = MemoryBearing
     plain = kind(
@@ -142,6 +142,6 @@ def build_bearing(spec: BearingSpec, surroundings: Surroundings) -> Built:
     contacts = RollerContacts(bearing, *laws.single)
     if not memory:
         return Built(RollerElement(plain, contacts, body.name), plain, (body,))
-    from mbs.bearings.memory_rollers import MemoryRollers
+    from mbs.bearings.roller_element import MemoryRollers
 
     return Built(MemoryRollers(plain, contacts, body.name), plain, (body,))

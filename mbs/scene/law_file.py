@@ -12,7 +12,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.inputs import read_text
 from ehdmaps.units import quantity
-from mbs.bearings.table_law import TableLaw, curve_problems
+from mbs.bearings.laws import TableLaw, curve_problems
 
 _LONGEST, _MOST = 1_000_000, 10_000
 """Longest file [bytes], and most points."""

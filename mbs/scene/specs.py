@@ -15,8 +15,7 @@ from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.profiles import CrownedProfile, TabulatedProfile
-from mbs.bearings.fits import Mounting
-from mbs.bearings.heat import GivenTemperatures, HeatPaths
+from mbs.bearings.thermal import GivenTemperatures, HeatPaths, Mounting
 from mbs.model.body import Body, Inertia, rigid_problems
 
 if TYPE_CHECKING:

@@ -6,8 +6,7 @@ from ehdmaps.jobs.table import Table
 from ehdmaps.physics.operating_point import OIL_TEMPERATURES
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.units import LENGTH, PRESSURE, TEMPERATURE, Display
-from mbs.bearings.fits import EXPANSIONS, STEEL_EXPANSION, Mounting, Seat
-from mbs.bearings.heat import GivenTemperatures, HeatPaths
+from mbs.bearings.thermal import EXPANSIONS, STEEL_EXPANSION, GivenTemperatures, HeatPaths, Mounting, Seat
 from mbs.scene import fields
 from mbs.scene.fields import MICROMETRE
 

@@ -19,8 +19,7 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.stability.findings import Check, Tally
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement
-from mbs.bearings.bearing_force import BearingForce
-from mbs.bearings.contact_energy import energy_at_rest
+from mbs.bearings.bearing_force import BearingForce, energy_at_rest
 from mbs.bearings.laws import Law, formula, hertz
 from mbs.model.elements import Operation
 

@@ -50,9 +50,9 @@ from mbs.analyses.planning import LIGHT, LIGHTEST, MARGIN, Needed
 from mbs.bearings import laws
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
-from mbs.bearings.film_relaxation import bearing_relaxation, natural_times, relaxation_times
+from mbs.bearings.contact_report import BearingPoint
 from mbs.bearings.films import DryContacts
-from mbs.bearings.point import BearingPoint
+from mbs.bearings.roller_contacts import bearing_relaxation, natural_times, relaxation_times
 from mbs.linearised.validity import FilmError
 
 TOLERANCES = (0.05, 10.0 ** (1.0 / 20.0) - 1.0)

@@ -21,9 +21,9 @@ from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from mbs.analyses.bearing_point import bearing_points
 from mbs.bearings.bearing import Bearing
+from mbs.bearings.contact_report import BearingPoint
 from mbs.bearings.films import MapFilms
 from mbs.bearings.laws import hertz
-from mbs.bearings.point import BearingPoint
 from tests.cases.catalogue import skf_rolling_moment
 
 LOAD, WARM, RPM = 923.0, 313.15, math.pi / 30.0

@@ -21,7 +21,7 @@ import numpy as np
 from ehdmaps.maps.emap import open_map
 from mbs import Model, assemble, read_scene, runup
 from mbs.analyses.runup import RunUpResult
-from mbs.bearings.speed_window import Maker, SpeedWindow
+from mbs.bearings.speed_tables import Maker, SpeedWindow
 from mbs.model.profiles import Course, SpeedProfile
 from mbs.scene.scene import Scene
 from mbs.transient import run_elements

@@ -34,9 +34,8 @@ from mbs import (
     variants,
 )
 from mbs.analyses.operating import held, operating
-from mbs.bearings.fits import Mounting, Seat
-from mbs.bearings.friction import load_torque, viscous_torque
-from mbs.bearings.heat import HeatPaths, heat_of_contacts, steady_temperatures
+from mbs.bearings.contact_report import load_torque, viscous_torque
+from mbs.bearings.thermal import HeatPaths, Mounting, Seat, heat_of_contacts, steady_temperatures
 from mbs.model.profiles import SpeedProfile
 from mbs.settings import RunUp, Settings
 from tests.cases.commands import check_units, run

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from ehdmaps.errors import InputError
-from mbs.bearings.kinematics import RingState, axial_rotation, relative_motion, spin
+from mbs.bearings.bearing import RingState, axial_rotation, relative_motion, spin
 from tests.cases.bearings import AT, bearing, force
 
 

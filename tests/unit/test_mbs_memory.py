@@ -16,12 +16,11 @@ from ehdmaps.maps.memory_table import advanced, equilibrium_at, step_of
 from ehdmaps.physics.oil_supply import OilSupply
 from mbs import assemble, read_scene
 from mbs.bearings.bearing import Bearing
+from mbs.bearings.bearing_element import MemoryBearing
 from mbs.bearings.bearing_force import BearingForce
-from mbs.bearings.film_course import MOST_KEPT, CourseOfFilms
 from mbs.bearings.laws import hertz
-from mbs.bearings.memory_element import MemoryBearing
-from mbs.bearings.memory_kernel import MEMORY, begin, commit, loads, resume
-from mbs.bearings.memory_tables import STEP
+from mbs.bearings.memory_kernel import MEMORY, STEP, begin, commit, loads, resume
+from mbs.bearings.speed_tables import MOST_KEPT, CourseOfFilms
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import Load, Operation
 from mbs.model.equilibrium import equilibrium

@@ -11,7 +11,7 @@ import pytest
 import xarray as xr
 
 from ehdmaps.errors import InputError
-from mbs.bearings.roller_loads import RollerLoads
+from mbs.bearings.force_at_point import RollerLoads
 from mbs.cli import main
 from mbs.output.files import write_dataset
 from mbs.report.bearings import roller_drawing

@@ -12,12 +12,9 @@ from ehdmaps.errors import AnalysisError, InputError, OutsideMapError
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
-from mbs.bearings.faded_table import fade
-from mbs.bearings.flat_law import FlatLaw
-from mbs.bearings.laws import hertz
-from mbs.bearings.slice_table import LawNumbers
-from mbs.bearings.speed_tables import NODES, STEP, SpeedTables
-from mbs.bearings.speed_window import SpeedWindow
+from mbs.bearings.laws import FlatLaw, hertz
+from mbs.bearings.slice_table import LawNumbers, fade
+from mbs.bearings.speed_tables import NODES, STEP, SpeedTables, SpeedWindow
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import ElementDefaults, Forces, Load, Operation, Port, Sensor, Spring
 from mbs.model.equilibrium import equilibrium

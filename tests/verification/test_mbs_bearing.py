@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 
 from mbs.bearings import laws
-from mbs.bearings.bearing import Bearing
+from mbs.bearings.bearing import Bearing, RingState
 from mbs.bearings.bearing_force import BearingForce
-from mbs.bearings.kinematics import RingState
 from mbs.bearings.roller_contacts import RollerContacts
 from tests.cases.bearings import AT, PLANE, bearing, equilibrium, map_law, single_law
 

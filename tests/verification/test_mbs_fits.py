@@ -10,7 +10,7 @@ import pytest
 from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.solids import STEEL, Material
-from mbs.bearings.fits import Mounting, Seat, operating_clearance, pressed_on
+from mbs.bearings.thermal import Mounting, Seat, operating_clearance, pressed_on
 
 NU308 = dataclasses.replace(BearingGeometry.named("NU308"), diametral_clearance=30e-6)
 IRON = Material(110e9, 0.26)

@@ -14,9 +14,9 @@ from ehdmaps.physics.solids import STEEL
 from mbs import SweepRange, SweepSettings, assemble, read_scene, statics, sweep
 from mbs.analyses.bearing_point import bearing_points
 from mbs.bearings.bearing import Bearing
+from mbs.bearings.contact_report import BearingPoint
 from mbs.bearings.films import FormulaFilms, MapFilms
 from mbs.bearings.laws import hertz
-from mbs.bearings.point import BearingPoint
 from mbs.model.elements import Operation
 from tests.cases.catalogue import skf_rolling_moment
 

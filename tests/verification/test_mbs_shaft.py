@@ -17,7 +17,7 @@ import pytest
 from scipy.linalg import eig, eigh, expm
 from scipy.optimize import brentq
 
-from mbs.bearings.film_relaxation import relaxing
+from mbs.bearings.roller_contacts import relaxing
 from mbs.flexible.beam import (
     CrossSection,
     element_gyroscopic,

@@ -1,0 +1,449 @@
+"""The slices of a bearing in compiled code: where rollers stand, how they move, and what their slices carry at rest.
+
+Each kind of law finds its slices in its own way: a power law by its formula, tables by their cells. Above the load that
+the law is held at, all go on along its tangent.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.compiled import njit
+from ehdmaps.maps.binary_cells import FIRST, SHIFT
+from ehdmaps.maps.elementary import log
+from ehdmaps.maps.lines import FAST
+from mbs.bearings.slice_table import CELLS, LAST, POWER, ROWS, LawNumbers, PreparedLaw, fixed_tuple, read_cells
+
+_LOG2_E = 1.4426950408889634
+_LN2_HIGH, _LN2_LOW = 6.93147180369123816490e-01, 1.90821492927058770002e-10
+_ROUNDING = 1.5 * 2.0**52
+_MANTISSA = np.uint64(52)
+_BIAS = np.uint64(1023)
+
+
+@njit(error_model="numpy", fastmath={"contract", "nsz"}, forceinline=True)
+def power(x: float, b: float) -> float:
+    """x^b for a positive normal x, and a result between 1e-300 and 1e300; to some 1e-15 relative."""
+    y = b * log(x)
+    # Adding this number leaves the nearest whole number in the lowest bits.
+    shifted = y * _LOG2_E + _ROUNDING
+    n = shifted - _ROUNDING
+    r = (y - n * _LN2_HIGH) - n * _LN2_LOW
+    r2 = r * r
+    r4 = r2 * r2
+    low = (1.0 + r) + r2 * (1.0 / 2.0 + r * (1.0 / 6.0))
+    middle = (1.0 / 24.0 + r * (1.0 / 120.0)) + r2 * (1.0 / 720.0 + r * (1.0 / 5040.0))
+    high = (1.0 / 40320.0 + r * (1.0 / 362880.0)) + r2 * (1.0 / 3628800.0 + r * (1.0 / 39916800.0))
+    series = low + r4 * (middle + r4 * (high + r4 * (1.0 / 479001600.0)))
+    bits = np.uint64(np.uint64(np.float64(shifted).view(np.uint64) + _BIAS) << _MANTISSA)
+    value: float = series * bits.view(np.float64)
+    return value
+
+
+NOT_FINITE, TOO_FAR = -1, -2
+"""What `check_motion` finds: values that are no finite numbers, and poses beyond reason."""
+
+
+class Sizes(NamedTuple):
+    """Sizes of a bearing.
+
+    Attributes
+    ----------
+    half_clearance, slice_length : float
+        Half the diametral clearance [m], and how long a slice is [m].
+    most_travel, most_tilt : float
+        Largest accepted displacement [m] and tilt [rad] of the ring.
+    half_length : float
+        Half the length of a roller [m].
+    least_profile : float
+        The smallest of `Shape.profile` [m].
+    """
+
+    half_clearance: float
+    slice_length: float
+    most_travel: float
+    most_tilt: float
+    half_length: float
+    least_profile: float
+
+
+class Shape(NamedTuple):
+    """What does not change of a bearing.
+
+    Attributes
+    ----------
+    sizes : Sizes
+        Clearance, lengths, limits.
+    positions, profile : array (n,)
+        Places of the slices along the roller, and twice the depth of the profile there [m].
+    cos, sin : array (Z,)
+        Directions of the rollers in the cage.
+    """
+
+    sizes: Sizes
+    positions: FloatArray
+    profile: FloatArray
+    cos: FloatArray
+    sin: FloatArray
+
+
+class RingMotion(NamedTuple):
+    """Motion of the inner ring against the outer one, as far as rollers feel it, and where the cage stands.
+
+    Attributes
+    ----------
+    y, z, theta_y, theta_z : float
+        Displacements [m] and tilts [rad].
+    y_rate, z_rate, theta_y_rate, theta_z_rate : float
+        Their rates.
+    cage_cos, cage_sin : float
+        Direction of the first roller.
+    """
+
+    y: float
+    z: float
+    theta_y: float
+    theta_z: float
+    y_rate: float
+    z_rate: float
+    theta_y_rate: float
+    theta_z_rate: float
+    cage_cos: float
+    cage_sin: float
+
+
+class Roller(NamedTuple):
+    """Motion of a roller.
+
+    Attributes
+    ----------
+    cos, sin : float
+        Direction of the roller.
+    gap, tilt : float
+        Approach in its middle [m], and how it grows along it.
+    rate, tilt_rate : float
+        Their rates.
+    deepest : float
+        A bound that no approach of a slice is above [m].
+    """
+
+    cos: float
+    sin: float
+    gap: float
+    tilt: float
+    rate: float
+    tilt_rate: float
+    deepest: float
+
+
+class Work(NamedTuple):
+    """Work space, which holds the slices at rest after a call, per unit length.
+
+    Attributes
+    ----------
+    rows : array (Z, n), of int
+        Row of the table of each slice.
+    states : array (4, Z, n)
+        Load w, dw/d approach, damping c, dc/d approach; the derivatives to be multiplied by `LawNumbers.slope`.
+    """
+
+    rows: IntArray
+    states: FloatArray
+
+
+@njit(error_model="numpy", fastmath=FAST, forceinline=True)
+def roller_of(motion: RingMotion, shape: Shape, j: int) -> Roller:
+    """Where a roller stands, and how it moves.
+
+    Parameters
+    ----------
+    motion : RingMotion
+        Motion of the ring.
+    shape : Shape
+        The bearing.
+    j : int
+        Which roller.
+    """
+    cos = motion.cage_cos * shape.cos[j] - motion.cage_sin * shape.sin[j]
+    sin = motion.cage_sin * shape.cos[j] + motion.cage_cos * shape.sin[j]
+    sizes = shape.sizes
+    gap = motion.y * cos + motion.z * sin - sizes.half_clearance
+    tilt = motion.theta_z * cos - motion.theta_y * sin
+    return Roller(
+        cos=cos,
+        sin=sin,
+        gap=gap,
+        tilt=tilt,
+        rate=motion.y_rate * cos + motion.z_rate * sin,
+        tilt_rate=motion.theta_z_rate * cos - motion.theta_y_rate * sin,
+        deepest=gap + (sizes.half_length * abs(tilt) - sizes.least_profile),
+    )
+
+
+@njit(error_model="numpy", fastmath=FAST)
+def slice_approaches(motion: RingMotion, shape: Shape, out: FloatArray) -> None:
+    """Approach of all slices of all rollers.
+
+    Parameters
+    ----------
+    motion : RingMotion
+        Motion of the ring.
+    shape : Shape
+        The bearing.
+    out : array (Z n,)
+        Approaches, written [m].
+    """
+    x, lost = shape.positions, shape.profile
+    for j in range(shape.cos.size):
+        roller = roller_of(motion, shape, j)
+        row = out[j * x.size : (j + 1) * x.size]
+        for i in range(x.size):
+            row[i] = roller.gap + x[i] * roller.tilt - lost[i]
+
+
+@njit(error_model="numpy")
+def check_motion(motion: RingMotion, sizes: Sizes) -> int:
+    """Zero, or what is wrong about the motion: `NOT_FINITE`, `TOO_FAR`."""
+    total = abs(motion.y) + abs(motion.z) + abs(motion.theta_y) + abs(motion.theta_z)
+    total += abs(motion.y_rate) + abs(motion.z_rate) + abs(motion.theta_y_rate) + abs(motion.theta_z_rate)
+    if not total + abs(motion.cage_cos) < math.inf:
+        return NOT_FINITE
+    far, tilted = sizes.most_travel, sizes.most_tilt
+    within = abs(motion.y) <= far and abs(motion.z) <= far
+    within = within and abs(motion.theta_y) <= tilted and abs(motion.theta_z) <= tilted
+    return 0 if within else TOO_FAR
+
+
+@njit(error_model="numpy")
+def sizes_of(numbers: FloatArray) -> Sizes:
+    """Sizes from an array (6,) in their order."""
+    return Sizes(*fixed_tuple(numbers, 6))
+
+
+@njit(error_model="numpy")
+def ring_motion(state: FloatArray) -> RingMotion:
+    """What rollers feel of pose (6,), velocity (6,) and cage angle in a row."""
+    c, s = math.cos(state[12]), math.sin(state[12])
+    return RingMotion(state[1], state[2], state[4], state[5], state[7], state[8], state[10], state[11], c, s)
+
+
+@njit(error_model="numpy")
+def all_finite(state: FloatArray) -> bool:
+    """Whether all numbers are finite, and their sum is."""
+    total = 0.0
+    for value in state:
+        total += abs(value)
+    return total < math.inf
+
+
+@njit(error_model="numpy")
+def rollers_of_arrays(state: FloatArray, sizes: FloatArray, slices: FloatArray, angles: FloatArray) -> FloatArray:
+    """Gap, tilt and their rates of all rollers, shape (4, Z), for callers in Python.
+
+    Parameters
+    ----------
+    state, sizes, slices, angles
+        The same arrays as for `force_of_arrays`.
+    """
+    shape = Shape(sizes_of(sizes), slices[0], slices[1], angles[0], angles[1])
+    motion = ring_motion(state)
+    found = np.empty((4, shape.cos.size))
+    for j in range(shape.cos.size):
+        roller = roller_of(motion, shape, j)
+        found[0, j], found[1, j], found[2, j], found[3, j] = roller.gap, roller.tilt, roller.rate, roller.tilt_rate
+    return found
+
+
+@njit(error_model="numpy")
+def approaches_of_arrays(
+    state: FloatArray, sizes: FloatArray, slices: FloatArray, angles: FloatArray, out: FloatArray
+) -> int:
+    """Approaches of all slices into `out` (Z, n) [m], for callers in Python; zero, or what is wrong about the pose.
+
+    Parameters
+    ----------
+    state, sizes, slices, angles
+        The same arrays as for `force_of_arrays`.
+    out : array (Z, n)
+        Approaches, written [m].
+    """
+    if not all_finite(state):
+        return NOT_FINITE
+    shape = Shape(sizes_of(sizes), slices[0], slices[1], angles[0], angles[1])
+    motion = ring_motion(state)
+    slice_approaches(motion, shape, out.reshape(-1))
+    wrong: int = check_motion(motion, shape.sizes)
+    return wrong
+
+
+_NO_APPROACH = 1e-30
+
+
+@njit(error_model="numpy", fastmath=FAST)
+def find_cells(motion: RingMotion, shape: Shape, numbers: LawNumbers, rows: IntArray, places: FloatArray) -> None:
+    """Row of the table of each slice, and the place in the cell.
+
+    Parameters
+    ----------
+    motion : RingMotion
+        Motion of the ring.
+    shape : Shape
+        The bearing.
+    numbers : LawNumbers
+        Centre and scale of the cells.
+    rows : array (Z, n), of int
+        Rows, written.
+    places : array (Z, n)
+        Places in the cells, written.
+    """
+    x, lost = shape.positions, shape.profile
+    inverse = numbers.inverse_scale
+    for j in range(rows.shape[0]):
+        roller = roller_of(motion, shape, j)
+        start, tilt = (roller.gap - numbers.centre) * inverse, roller.tilt * inverse
+        row, place = rows[j], places[j]
+        for i in range(x.size):
+            z = start + x[i] * tilt - lost[i] * inverse
+            a = 1.0 + abs(z)
+            a = a if a < LAST else LAST
+            cell = np.uint64(np.float64(a).view(np.uint64) >> SHIFT)
+            t = a - np.uint64(cell << SHIFT).view(np.float64)
+            place[i] = t if z >= 0.0 else -t
+            row[i] = np.int64(cell) - FIRST + (0 if z >= 0.0 else ROWS)
+
+
+@njit(error_model="numpy", fastmath=FAST)
+def power_states(motion: RingMotion, shape: Shape, numbers: LawNumbers, states: FloatArray) -> None:
+    """States of w = a delta^b with c = damping + damping_time dw; rollers without load are left out.
+
+    Parameters
+    ----------
+    motion : RingMotion
+        Motion of the ring.
+    shape : Shape
+        The bearing.
+    numbers : LawNumbers
+        The power law.
+    states : array (4, Z, n)
+        States of the slices, written.
+    """
+    x, lost = shape.positions, shape.profile
+    a, b, damping, time = numbers.coefficient, numbers.exponent, numbers.damping, numbers.damping_time
+    bend = time * (b - 1.0) / b
+    for j in range(shape.cos.size):
+        roller = roller_of(motion, shape, j)
+        w, dw, c, dc = states[0, j], states[1, j], states[2, j], states[3, j]
+        if roller.deepest <= 0.0:
+            for i in range(x.size):
+                w[i] = dw[i] = c[i] = dc[i] = 0.0
+            continue
+        for i in range(x.size):
+            delta = roller.gap + x[i] * roller.tilt - lost[i]
+            safe = delta if delta > _NO_APPROACH else _NO_APPROACH
+            slope = a * b * power(safe, b - 1.0)
+            dw[i] = slope if delta > 0.0 else 0.0
+            w[i] = slope * safe / b if delta > 0.0 else 0.0
+        for i in range(x.size):
+            loaded = w[i] > 0.0
+            c[i] = damping + time * dw[i] if loaded else 0.0
+            # The second derivative of the power, from load and slope.
+            dc[i] = bend * dw[i] * dw[i] / (w[i] if loaded else 1.0)
+
+
+@njit(error_model="numpy", fastmath=FAST)
+def find_knots(motion: RingMotion, shape: Shape, knots: FloatArray, rows: IntArray, places: FloatArray) -> None:
+    """Cell between knots of each slice, and the place there, as `find_cells`.
+
+    Parameters
+    ----------
+    motion, shape : RingMotion, Shape
+        Motion of the ring, and the bearing.
+    knots : array (2 ROWS,)
+        Approaches at which cells begin [m].
+    rows, places : array (Z, n)
+        Written: cells, and places there [m].
+    """
+    x, lost = shape.positions, shape.profile
+    last = knots.size - 2
+    for j in range(rows.shape[0]):
+        roller = roller_of(motion, shape, j)
+        row, place = rows[j], places[j]
+        found = 0
+        for i in range(x.size):
+            delta = roller.gap + x[i] * roller.tilt - lost[i]
+            if delta <= knots[0]:
+                row[i], place[i] = 0, 0.0
+                continue
+            if not knots[found] <= delta < knots[found + 1]:  # not that of the slice before
+                low, high = 0, last + 1
+                while high - low > 1:
+                    middle = (low + high) // 2
+                    if knots[middle] <= delta:
+                        low = middle
+                    else:
+                        high = middle
+                found = low
+            row[i], place[i] = found, delta - knots[found]
+
+
+@njit(error_model="numpy", fastmath=FAST)
+def _hold(motion: RingMotion, shape: Shape, numbers: LawNumbers, states: FloatArray) -> None:
+    """States on the tangent, for slices above the held load."""
+    x, lost = shape.positions, shape.profile
+    for j in range(shape.cos.size):
+        roller = roller_of(motion, shape, j)
+        if roller.deepest <= numbers.safe_approach:
+            continue
+        w, dw, c, dc = states[0, j], states[1, j], states[2, j], states[3, j]
+        for i in range(x.size):
+            above = roller.gap + x[i] * roller.tilt - lost[i] - numbers.held_approach
+            if above > 0.0:
+                w[i] = numbers.held_load + numbers.held_stiffness * above
+                dw[i], c[i], dc[i] = numbers.held_stiffness / numbers.slope, numbers.held_damping, 0.0
+
+
+@njit(error_model="numpy", fastmath=FAST)
+def read_states(motion: RingMotion, shape: Shape, law: PreparedLaw, work: Work) -> None:
+    """States of all slices at rest, from the rows of a table and the places there.
+
+    Parameters
+    ----------
+    motion, shape, law
+        The same as for `rest_states`.
+    work : Work
+        Rows, and places where the load is written; overwritten by the states.
+    """
+    read_cells(law.cells, work.rows.reshape(-1), work.states.reshape(4, -1))
+    _hold(motion, shape, law.numbers, work.states)
+
+
+@njit(error_model="numpy", fastmath=FAST)
+def rest_states(motion: RingMotion, shape: Shape, law: PreparedLaw, work: Work) -> None:
+    """States of all slices at rest.
+
+    Parameters
+    ----------
+    motion : RingMotion
+        Motion of the ring.
+    shape : Shape
+        The bearing.
+    law : PreparedLaw
+        Law of a roller between both raceways, at a speed and temperature.
+    work : Work
+        Work space, overwritten.
+    """
+    states, numbers = work.states, law.numbers
+    if numbers.kind == POWER:
+        power_states(motion, shape, numbers, states)
+        _hold(motion, shape, numbers, states)
+        return
+    # The places lie where the load is written, at the same time as they are read.
+    if numbers.kind == CELLS:
+        find_cells(motion, shape, numbers, work.rows, states[0])
+    else:
+        find_knots(motion, shape, law.knots, work.rows, states[0])
+    read_states(motion, shape, law, work)
