@@ -40,9 +40,8 @@ if TYPE_CHECKING:
     from ehdmaps.maps.emap import EHDMap, open_map
     from ehdmaps.maps.law import ContactLaw, LawAtPoint
     from ehdmaps.physics.bearing import BearingGeometry
-    from ehdmaps.physics.contact import LineContact
+    from ehdmaps.physics.contact import LineContact, OperatingPoint
     from ehdmaps.physics.lubricant import Lubricant
-    from ehdmaps.physics.operating_point import OperatingPoint
     from ehdmaps.physics.solids import STEEL, Material
     from ehdmaps.physics.solution import ContactSolution, Status
 
@@ -89,7 +88,7 @@ _HOMES = {
     "BearingGeometry": "physics.bearing",
     "LineContact": "physics.contact",
     "Lubricant": "physics.lubricant",
-    "OperatingPoint": "physics.operating_point",
+    "OperatingPoint": "physics.contact",
     "STEEL": "physics.solids",
     "Material": "physics.solids",
     "ContactSolution": "physics.solution",

@@ -13,8 +13,7 @@ from scipy import io, linalg, sparse, spatial
 
 from ehdmaps.outputs import write_figure
 from mbs.flexible.matrix_files import NodePositions, assemble_model, read_matrix_market
-from mbs.flexible.reduction import reduce
-from mbs.flexible.spiders import Interface, nodes_in_plane
+from mbs.flexible.reduction import Interface, nodes_in_plane, reduce
 
 FOLDER, SPACING = Path(sys.argv[1] if len(sys.argv) > 1 else "."), 0.02
 places = SPACING * np.array(list(np.ndindex(12, 4, 4)), dtype=float)

@@ -55,8 +55,7 @@ if TYPE_CHECKING:
     from mbs.bearings.bearing import Bearing
     from mbs.bearings.bearing_force import BearingForce
     from mbs.bearings.thermal import GivenTemperatures, HeatPaths, Mounting, Seat
-    from mbs.flexible.attached import Attached
-    from mbs.flexible.plan import ReductionPlan
+    from mbs.flexible.plan import Attached, ReductionPlan
     from mbs.flexible.shaft_parts import Disc, Section
     from mbs.gears.pair import GearPair
     from mbs.model.body import Inertia
@@ -124,7 +123,7 @@ __all__ = [
 ]
 
 _HOMES = {
-    "Attached": "flexible.attached",
+    "Attached": "flexible.plan",
     "AutoSettings": "analyses.auto",
     "Bearing": "bearings.bearing",
     "BearingForce": "bearings.bearing_force",

@@ -1,12 +1,4 @@
-"""Nodes of one line contact: a smooth map from a uniform index, so that the scheme keeps its order on a graded grid.
-
-x(s) is defined by its inverse s(x), a sum of asinh terms: uniform within the width of a term, logarithmic outside.
-One term sits in the inlet, one at the exit, one over the Hertz zone, and, when its place is known, one at the pressure
-spike, which is far narrower than anything else in the contact.
-
-All lengths are in Hertz half-widths b. The grid is fixed to the exit of the film: x = X - X_exit <= 0, because the
-exit is an unknown and the elastic kernel depends on differences only.
-"""
+"""Nodes of one line contact by a smooth map from a uniform index, and the elastic deflection of half-spaces on them."""
 
 from __future__ import annotations
 
@@ -232,3 +224,41 @@ def _nodes(
         step[i] = spacing / slope
         growth = step[i] / step[i + 1]
     return x, step
+
+
+ZETA_PRIME_MINUS_TWO = -0.030448457058393270780
+"""zeta'(-2) = -zeta(3)/(4 pi^2): weight of the second difference at the singular node."""
+
+DRY_DATUM = -0.25 * (1.0 + 2.0 * math.log(2.0))
+"""H0 of the dry Hertz contact for this kernel: H(X) = H0 + X^2/2 - (1/pi) Int P ln|X - S| dS vanishes for |X| <= 1."""
+
+
+@njit
+def log_kernel(x: FloatArray, step: FloatArray) -> FloatArray:
+    """Matrix K with (K P)_i = (1/pi) Int P ln|x_i - S| dS.
+
+    Parameters
+    ----------
+    x, step : ndarray, shape (n,)
+        Nodes and dx/ds [b].
+
+    Returns
+    -------
+    ndarray, shape (n, n)
+    """
+    n = x.size
+    kernel = np.empty((n, n))
+    weight = step / math.pi
+    correction = ZETA_PRIME_MINUS_TWO
+    for i in range(n):
+        for j in range(i):
+            value = math.log(x[i] - x[j])
+            kernel[i, j] = value * weight[j]
+            kernel[j, i] = value * weight[i]
+    for i in range(n):
+        kernel[i, i] = (math.log(step[i] / (2.0 * math.pi)) - 2.0 * correction) * weight[i]
+        if i > 0:
+            kernel[i, i - 1] += correction * weight[i - 1]
+        if i < n - 1:
+            kernel[i, i + 1] += correction * weight[i + 1]
+    return kernel

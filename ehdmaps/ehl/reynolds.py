@@ -31,8 +31,7 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.compiled import njit
 from ehdmaps.copies import put
-from ehdmaps.ehl.column import sheared_column
-from ehdmaps.ehl.warm_oil import NO_HEAT, Heat
+from ehdmaps.ehl.column import NO_HEAT, Heat, sheared_column
 from ehdmaps.physics.isotherm import Isotherm, density, log_viscosity
 from ehdmaps.physics.rheology import LIMITING, NEWTONIAN, ShearLaw
 

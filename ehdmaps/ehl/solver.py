@@ -15,20 +15,17 @@ from functools import cached_property
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.ehl.frequency import group_spectrum
+from ehdmaps.ehl.column import heat_groups
 from ehdmaps.ehl.grid import GridShape
 from ehdmaps.ehl.group_solution import GroupSolution
 from ehdmaps.ehl.limits import SETTING_LIMITS
-from ehdmaps.ehl.line import solve_groups
+from ehdmaps.ehl.line import group_spectrum, solve_groups
 from ehdmaps.ehl.meniscus import starved_groups
 from ehdmaps.ehl.newton import CONVERGED, DIVERGED
-from ehdmaps.ehl.profile import Profile
-from ehdmaps.ehl.resolution import Resolution
+from ehdmaps.ehl.profile import Profile, Resolution
 from ehdmaps.ehl.reynolds import LineProblem
-from ehdmaps.ehl.warm_oil import heat_groups
 from ehdmaps.errors import InputError
-from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.film_limits import (
+from ehdmaps.physics.closed_form import (
     HEAVIEST_LOAD_NUMBER,
     LIGHTEST_LOAD_NUMBER,
     THICK_NOTE,
@@ -36,14 +33,22 @@ from ehdmaps.physics.film_limits import (
     THIN_FILM_LIMIT,
     too_thick,
 )
-from ehdmaps.physics.heat import INLET_HEAT, ISOTHERMAL, PHYSICS, THERMAL, heat_data
+from ehdmaps.physics.contact import LineContact, OperatingPoint
+from ehdmaps.physics.heat import (
+    INLET_HEAT,
+    ISOTHERMAL,
+    PHYSICS,
+    THERMAL,
+    heat_data,
+    heated,
+    heated_spectrum,
+    inlet_heat,
+)
 from ehdmaps.physics.hertz import LARGEST_PRESSURE, half_width, max_pressure
-from ehdmaps.physics.inlet_heat import heated, heated_spectrum, inlet_heat
 from ehdmaps.physics.lubricant import Lubricant, LubricantState
 from ehdmaps.physics.moes import moes_groups
 from ehdmaps.physics.oil_supply import OilSupply
-from ehdmaps.physics.operating_point import OperatingPoint
-from ehdmaps.physics.rheology import CARREAU, LIMITING, NEWTONIAN, ShearLaw, shear_law
+from ehdmaps.physics.rheology import CARREAU, LIMITING, NEWTONIAN, FilmProfile, ShearLaw, shear_law, wall_stress_note
 from ehdmaps.physics.solution import (
     ContactSolverDefaults,
     FilmSolution,
@@ -53,8 +58,6 @@ from ehdmaps.physics.solution import (
     no_spectrum,
     slow_spectrum,
 )
-from ehdmaps.physics.traction import FilmProfile
-from ehdmaps.physics.wall_stress import wall_stress_note
 
 LARGEST_OIL_NUMBER = 150.0
 """Moes' L above which no solve is tried."""
@@ -115,7 +118,7 @@ class ReynoldsSolver(ContactSolverDefaults):
     thickest_film : float
         Largest h/R that is no refusal; infinite for lines that stand for their groups only.
     physics : {"isothermal", "inlet-heat", "thermal"}
-        What films know of heat: nothing, that of the inlet by the rule of `ehdmaps.physics.inlet_heat`, or temperatures
+        What films know of heat: nothing, that of the inlet by the rule of `ehdmaps.physics.heat`, or temperatures
         of film and surfaces, solved for besides.
     shear : str
         Law of shear, one of `ehdmaps.physics.rheology.SHEARS`.

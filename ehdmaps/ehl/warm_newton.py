@@ -1,6 +1,6 @@
-"""Full Newton for a film with its temperatures, which follow the film's unknowns by their own equations.
+"""Heat in the surfaces of a contact: moving half-spaces, warmed by what flows into them.
 
-Nothing here is compiled: numba compiles what a function calls once more with it, and these call all that is large.
+T(X) = T_0 + B Int q(S)/sqrt(X - S) dS        J. C. Jaeger, Proc. R. Soc. NSW 76, 1942, 203-224
 """
 
 from __future__ import annotations
@@ -11,25 +11,51 @@ from typing import NamedTuple
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.compiled import njit
 from ehdmaps.ehl.dense import factorised, solved
-from ehdmaps.ehl.energy import ROWS, EnergyEquations, energy
-from ehdmaps.ehl.newton import (
-    CONVERGED,
-    DIVERGED,
-    SOFT_ABOVE,
-    STAGNATED,
-    YIELDING_STEP,
-    lifted,
-    relaxed,
-    step_length,
-)
+from ehdmaps.ehl.energy import ROWS, EnergyEquations, energy, followed, marched
+from ehdmaps.ehl.newton import CONVERGED, DIVERGED, SOFT_ABOVE, STAGNATED, YIELDING_STEP, lifted, relaxed, step_length
 from ehdmaps.ehl.newton import step_size as size_of
 from ehdmaps.ehl.reynolds import Factors, LineProblem, film, node_pressure, residual_with
-from ehdmaps.ehl.wall_heat import wall_weights
-from ehdmaps.ehl.warm_column import POINTS, Columns, empty_columns
-from ehdmaps.ehl.warm_film import asked_flows, fill_columns, first_column, hold_gradients
-from ehdmaps.ehl.warm_march import followed, marched
+from ehdmaps.ehl.warm_column import (
+    POINTS,
+    Columns,
+    asked_flows,
+    empty_columns,
+    fill_columns,
+    first_column,
+    hold_gradients,
+)
 from ehdmaps.physics.rheology import LIMITING
+
+
+@njit
+def wall_weights(x: FloatArray, first: int) -> FloatArray:
+    """Matrix of Int q(S)/sqrt(X - S) dS from place `first` on, q linear between places.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n,)
+        Places along the wall [b].
+    first : int
+        Place before which nothing flows.
+    """
+    n = x.size
+    weights = np.zeros((n, n))
+    for i in range(first + 1, n):
+        for j in range(first, i):
+            far, near = x[i] - x[j], x[i] - x[j + 1]
+            if j + 1 == i:
+                near = 0.0
+            width = far - near
+            a, b = math.sqrt(far), math.sqrt(near)
+            total = 2.0 * width / (a + b)
+            # Int of sqrt(t) dt, and of the distance from the nearer place, without differences of nearly equal numbers
+            part = 2.0 / 3.0 * width * (far + a * b + near) / (a + b) - near * total
+            weights[i, j] += part / width
+            weights[i, j + 1] += total - part / width
+    return weights
+
 
 LOOSE, TIGHT, LITTLE = 0.1, 1e-7, 1e-4
 """Last step of the temperatures for a film that is far from its solution, for one that is near, and the one that leaves

@@ -19,17 +19,13 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.compiled import njit
 from ehdmaps.ehl.dense import Factorised, factorised, solved
-from ehdmaps.ehl.elastic import log_kernel
-from ehdmaps.ehl.energy import EnergyEquations, fitted
-from ehdmaps.ehl.grid import Grid
-from ehdmaps.ehl.linearisation import Neighbour, Response
+from ehdmaps.ehl.energy import EnergyEquations, fitted, followed, marched, stored
+from ehdmaps.ehl.grid import Grid, log_kernel
+from ehdmaps.ehl.linearisation import Neighbour, Response, StoredOil, accumulated, carried_mass, stored_mass_rate
 from ehdmaps.ehl.reynolds import Factors, LineProblem, face_films, film, node_pressure, residual_with
 from ehdmaps.ehl.spectrum import FilmSpace, arnoldi
-from ehdmaps.ehl.stored_mass import StoredOil, accumulated, carried_mass, stored_mass_rate
-from ehdmaps.ehl.wall_heat import wall_weights
 from ehdmaps.ehl.warm_column import HEIGHTS, POINTS, WEIGHTS, Columns, empty_columns
-from ehdmaps.ehl.warm_march import followed, marched, stored
-from ehdmaps.ehl.warm_newton import MOST_STEPS, warm_factors, warm_temperatures
+from ehdmaps.ehl.warm_newton import MOST_STEPS, wall_weights, warm_factors, warm_temperatures
 from ehdmaps.physics.hertz import DRY_COMPLIANCE
 from ehdmaps.physics.isotherm import density
 

@@ -1,20 +1,271 @@
-"""The ways to a coarse solution: from the point before, from Hertz, up a ladder of loads, with heat let in by parts.
-
-Grids that are finer than one on which the spike is found start from the solution there.
-"""
+"""The ways to a solution: Newton on one grid, a point on two, starts from before, from Hertz, up ladders of loads."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import replace
 
-from ehdmaps.ehl.newton import CONVERGED, STAGNATED
-from ehdmaps.ehl.profile import Profile
-from ehdmaps.ehl.resolution import SEARCH_DENSITY, Resolution
+import numpy as np
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.ehl.column import NO_HEAT
+from ehdmaps.ehl.grid import Grid, Layout, Spike, lay_out, log_kernel, thick_film_exit, zone_width
+from ehdmaps.ehl.newton import CONVERGED, DIVERGED, STAGNATED, hertz_start, newton
+from ehdmaps.ehl.profile import (
+    SEARCH_DENSITY,
+    Profile,
+    Resolution,
+    Warmth,
+    front,
+    moved,
+    refined,
+    starved_start,
+    warm_start,
+)
 from ehdmaps.ehl.reynolds import LineProblem
-from ehdmaps.ehl.two_grids import expected_film, on_coarse_grid
-from ehdmaps.ehl.warm_oil import NO_HEAT
-from ehdmaps.physics.rheology import NEWTONIAN
+from ehdmaps.ehl.warm_newton import warm_newton
+from ehdmaps.physics.films import moes_central
+from ehdmaps.physics.rheology import LIMITING, NEWTONIAN
+
+LOAD = 0.5 * math.pi
+"""Int P dX of a pressure in units of p_H over lengths in units of b."""
+
+MOST_STEPS = 60
+"""Newton steps on one grid after which a point counts as stagnated."""
+
+MOST_WARM_STEPS = 30
+"""The same for a film with temperatures, whose steps take longer."""
+
+LOOSE_TOLERANCE = 1e-2
+"""Newton tolerance while the place of the spike is still being looked for."""
+
+STRONGEST = 64.0
+"""Largest strength of the oil, a factor on its stresses, with which the way to an oil that yields may begin."""
+
+WEAKENING, LEAST_WEAKENING = 0.5, 0.98
+"""First factor from one strength to the next on that way, and the factor closest to one that is tried."""
+
+
+def converged(
+    problem: LineProblem,
+    layout: Layout,
+    grid: Grid,
+    start: FloatArray | None,
+    spike: Spike | None,
+    tolerance: float,
+    near: Profile | None = None,
+) -> tuple[Profile | None, int, int]:
+    """Newton on one grid: profile (None unless converged), steps, outcome.
+
+    Parameters
+    ----------
+    problem : LineProblem
+        The groups that enter the equations.
+    layout, grid
+        Grid, and the layout that it was made of.
+    start : ndarray, shape (n + 2,), or None
+        Unknowns to start from; None for a start from Hertz' pressure.
+    spike : Spike or None
+        Spike for which the grid is laid.
+    tolerance : float
+        Newton tolerance.
+    near : Profile, optional
+        Solution nearby that gives temperatures to start from, and the kernel where it has the same grid.
+    """
+    kernel = near.kernel if near is not None and near.grid is grid else log_kernel(grid.x, grid.step)
+    if start is None:
+        guess = layout.film
+        start = hertz_start(grid.x, grid.step, kernel, guess, thick_film_exit(guess), LOAD)
+    if problem.heat.log_eta.size > 0:
+        return _converged_warm(problem, layout, grid, kernel, start, spike, tolerance, near)
+    unknowns, steps, outcome = _isothermal(problem, grid, kernel, start, tolerance)
+    if outcome != CONVERGED and problem.shear.form != NEWTONIAN:
+        unknowns, more, outcome = _weakened(problem, grid, kernel, start, tolerance)
+        steps += more
+    if outcome != CONVERGED:
+        return None, steps, outcome
+    return Profile(problem, layout, grid, kernel, unknowns, spike), steps, CONVERGED
+
+
+def _isothermal(
+    problem: LineProblem, grid: Grid, kernel: FloatArray, start: FloatArray, tolerance: float
+) -> tuple[FloatArray, int, int]:
+    """Newton on one grid without temperatures: unknowns, steps, outcome."""
+    result = newton(problem, grid.x, grid.step, grid.face_step, kernel, start, LOAD, tolerance, MOST_STEPS)
+    return result.unknowns, result.steps, result.outcome
+
+
+def _weakened(
+    problem: LineProblem, grid: Grid, kernel: FloatArray, start: FloatArray, tolerance: float
+) -> tuple[FloatArray, int, int]:
+    """Newton on one grid for an oil that bears more stress, which is let yield more and more."""
+    strength, total, outcome, unknowns = 1.0, 0, STAGNATED, start
+    while outcome != CONVERGED and strength < STRONGEST:
+        strength /= WEAKENING
+        unknowns, steps, outcome = _isothermal(_stronger(problem, strength), grid, kernel, start, tolerance)
+        total += steps
+    weakening = WEAKENING
+    while outcome == CONVERGED and strength > 1.0:
+        weaker = max(1.0, strength * weakening)
+        trial, steps, found = _isothermal(_stronger(problem, weaker), grid, kernel, unknowns, tolerance)
+        total += steps
+        if found == CONVERGED:
+            unknowns, strength, weakening = trial, weaker, weakening**1.5
+        else:
+            weakening = math.sqrt(weakening)
+            outcome = found if weakening > LEAST_WEAKENING else CONVERGED
+    return unknowns, total, outcome
+
+
+def _stronger(problem: LineProblem, factor: float) -> LineProblem:
+    """The same with an oil that bears more stress before it yields."""
+    shear = problem.shear
+    return problem._replace(shear=shear._replace(stress=factor * shear.stress, ratio=factor * shear.ratio))
+
+
+def _converged_warm(
+    problem: LineProblem,
+    layout: Layout,
+    grid: Grid,
+    kernel: FloatArray,
+    start: FloatArray,
+    spike: Spike | None,
+    tolerance: float,
+    near: Profile | None,
+) -> tuple[Profile | None, int, int]:
+    """Newton on one grid for a film with its temperatures."""
+    rises = warm_start(near, grid)
+    metric = (grid.x, grid.step, grid.face, grid.face_step, kernel)
+    steps = 0
+    try:
+        here = near is not None and near.warmth is not None and near.grid is grid and near.problem is problem
+        result = warm_newton(problem, *metric, start, rises, LOAD, tolerance, MOST_WARM_STEPS, here)
+        steps = result.steps
+        if result.outcome != CONVERGED and problem.shear.form == LIMITING:
+            # a start from another grid asks for more stress than the oil bears: the isothermal film has soft tangents
+            cold = problem._replace(heat=NO_HEAT)
+            iso = newton(cold, *metric[:2], *metric[3:], start, LOAD, LOOSE_TOLERANCE, MOST_STEPS)
+            steps += iso.steps
+            if iso.outcome == CONVERGED:
+                result = warm_newton(problem, *metric, iso.unknowns, rises, LOAD, tolerance, MOST_WARM_STEPS, False)
+                steps += result.steps
+    except np.linalg.LinAlgError:
+        return None, steps, DIVERGED
+    if result.outcome != CONVERGED:
+        return None, steps, result.outcome
+    warmth = Warmth(result.rises, result.first)
+    return Profile(problem, layout, grid, kernel, result.unknowns, spike, warmth), steps, CONVERGED
+
+
+LEAST_SPAN = 8.0
+"""e-folds of distance for which a starved film gets cells at least: it can be short beside the gap's own length."""
+
+MOST_MOVES = 6
+"""Coarse grids laid in search of the spike."""
+
+NARROWING = 2.0
+"""Ratio of two spikes' widths up to which both grids have the spike at about the same share of their nodes."""
+
+
+def expected_film(M: float, L: float) -> float:
+    """Film H [b^2/R] about which the grid is laid: 0.8 of the Moes central film."""
+    return 0.8 * float(moes_central(M, max(L, 1e-6))) * math.pi / (8.0 * M)
+
+
+def problem_load(problem: LineProblem) -> float:
+    """Moes' M of the groups."""
+    return math.sqrt(3.0 * math.pi**2 / (8.0 * problem.wedge))
+
+
+def on_coarse_grid(
+    problem: LineProblem,
+    guess: float,
+    resolution: Resolution,
+    previous: Profile | None,
+    length: float | None = None,
+) -> tuple[Profile | None, int, int]:
+    """Solve on one coarse grid after another, loosely at first, until the spike stands where the grid expects it.
+
+    From a neighbouring load the spike is expected where it was, times the ratio of loads to the power of -0.7 (seen
+    over L = 10 to 50), and the start is carried over by index, so that the front moves with its cells: Newton moves it
+    by one cell a step only.
+
+    Parameters
+    ----------
+    problem : LineProblem
+        The groups that enter the equations.
+    guess : float
+        Film about which the grid is laid [b^2/R].
+    resolution : Resolution
+        Accuracy and cost.
+    previous : Profile or None
+        Solution nearby to start from; None for a start from Hertz' pressure.
+    length : float, optional
+        Distance from the meniscus of a starved contact to the exit [b]; left out where it is flooded.
+
+    Returns
+    -------
+    profile : Profile or None
+        Solution on the last grid; None where Newton found none.
+    steps, outcome : int
+        Newton steps, all grids together, and how the last of them ended.
+    """
+    total = 0
+    zone = zone_width(guess)
+    finest = resolution.finest_spike * min(1.0, zone / 0.3)
+    spike, same_share = None, False
+    if previous is not None and previous.spike is not None:
+        ratio = problem_load(problem) / problem_load(previous.problem)
+        same_share = previous.spike.width < NARROWING * finest and finest < NARROWING * previous.spike.width
+        place = previous.spike.position if same_share else front(previous)[0]
+        spike = Spike(place * ratio**-0.7, finest)
+    solution = near = previous
+    for attempt in range(MOST_MOVES):
+        layout = lay_out(guess, resolution.inlet_length, resolution.shape, spike, length)
+        span = layout.span if length is None else max(layout.span, LEAST_SPAN)
+        grid = layout.grid(math.ceil(0.5 * resolution.density * span))
+        if solution is None:
+            unknowns = None
+        elif length is None:
+            unknowns = moved(solution, grid, by_index=attempt == 0 and same_share)
+        else:
+            unknowns = starved_start(solution, grid)
+        for tolerance in (LOOSE_TOLERANCE, resolution.tolerance):
+            solution, steps, outcome = converged(problem, layout, grid, unknowns, spike, tolerance, near)
+            total += steps
+            if solution is None:
+                return None, total, outcome
+            unknowns, near = solution.unknowns, solution
+            place, steepness = front(solution)
+            if spike is None:
+                settled = steepness * zone < resolution.spike_steepness * max(1.0, problem_load(problem) / 100.0)
+            else:
+                settled = abs(place - spike.position) < 0.5 * finest and spike.width == finest
+            if not settled and attempt < MOST_MOVES - 1:
+                spike = Spike(place, finest)
+                break
+        else:
+            break
+    return solution, total, CONVERGED
+
+
+def on_fine_grid(coarse: Profile, tolerance: float) -> tuple[Profile | None, int, int]:
+    """Newton on the grid with twice the cells, by way of one with half as many more if need be."""
+    problem, layout, spike = coarse.problem, coarse.layout, coarse.spike
+    grid = layout.grid(2 * coarse.cells)
+    start = starved_start(coarse, grid) if layout.starved else refined(coarse, grid)
+    fine, total, outcome = converged(problem, layout, grid, start, spike, tolerance, coarse)
+    if fine is None:
+        halfway = layout.grid(3 * coarse.cells // 2)
+        start = moved(coarse, halfway, by_index=False)
+        between, steps, _ = converged(problem, layout, halfway, start, spike, tolerance, coarse)
+        total += steps
+        if between is not None:
+            start = moved(between, grid, by_index=False)
+            fine, steps, outcome = converged(problem, layout, grid, start, spike, tolerance, between)
+            total += steps
+    return fine, total, outcome
+
 
 COLD_START_BELOW = 1.0
 """Load M below which the cold start is as good as any other."""

@@ -2,10 +2,8 @@
 
 | module | idea |
 |---|---|
-| `target` | what a target of `ehdmaps export` is, and which ones are registered |
-| `header` | what every export says of itself: axes, signs, range, provenance |
+| `target` | what a target of `ehdmaps export` is, which ones are registered; axes, signs, range, provenance in each |
 | `csv` | curves over load of a law as a table |
-| `matlab_file` | how files of MATLAB are written |
 | `mat` | points and law of a map as a struct for MATLAB and Octave |
 | `resampled` | the law on a grid that linear interpolation reads |
 | `modelica` | the law at one speed and temperature as pure functions in Modelica |

@@ -1,28 +1,70 @@
-"""Target `mat` of `ehdmaps export`: points and law of a map as a MATLAB v5 file, which MATLAB and Octave `load`.
-
-The file holds one struct `map`: the axes `load`, `entrainment_speed` and `temperature` as columns, one struct a contact
-with its fields as arrays of load x speed x temperature, `law` with the contact law resampled for linear interpolation
-(see `ehdmaps.exports.resampled`), `units`, `meaning`, `provenance` and `header`.
-"""
+"""Files of MATLAB version 5: texts that MATLAB and Octave both read, our mark in the header, one writer."""
 
 from __future__ import annotations
 
 import argparse
+import io
 import re
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ehdmaps.errors import InputError, MapError
-from ehdmaps.exports.header import origin
-from ehdmaps.exports.matlab_file import KIND, ascii_text, write_matlab
 from ehdmaps.exports.resampled import QUANTITIES, Resampled, differences, resampled, struct
-from ehdmaps.exports.target import Target
+from ehdmaps.exports.target import Target, origin
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.schema import DIMS
-from ehdmaps.outputs import Output, check_outputs
+from ehdmaps.outputs import MARK, Kind, Output, check_outputs, has_mark, written_aside
 from ehdmaps.program import plain
+from ehdmaps.version import version
+
+KIND = Kind("a MATLAB file of ehdmaps", (".mat",), has_mark)
+
+_TEXT = 116
+"""Bytes of text at the beginning of a MATLAB v5 file (MAT-File Format, MathWorks, "Level 5 MAT-File Header")."""
+
+
+def ascii_text(text: str) -> str:
+    """Return a text without control characters and with escapes beyond ASCII, of which Octave loses some.
+
+    Parameters
+    ----------
+    text : str
+        Any text, such as a name in a scene.
+    """
+    return plain(text).encode("ascii", "backslashreplace").decode("ascii")
+
+
+def write_matlab(path: Path, variables: Mapping[str, Any], advice: str) -> None:
+    """Write variables as a file of MATLAB version 5 that carries our mark.
+
+    Parameters
+    ----------
+    path : Path
+        The file; look at it with `check_outputs` and `KIND` first.
+    variables : mapping of str to object
+        What `scipy.io.savemat` takes: dictionaries are structs, arrays of object are cells.
+    advice : str
+        What to do where they cannot be written.
+
+    Raises
+    ------
+    InputError
+        If they cannot be written, or something else stands there.
+    """
+    from scipy.io import savemat
+
+    buffer = io.BytesIO()
+    try:
+        savemat(buffer, dict(variables), long_field_names=True, do_compression=True, oned_as="column")
+    except (ValueError, UnicodeError) as error:
+        raise InputError(f"{path}: cannot be written as a MATLAB file ({error}); {advice}") from error
+    title = f"MATLAB 5.0 MAT-file, {MARK} {version()}".encode("ascii", "replace")
+    with written_aside(path, KIND) as aside:
+        aside.write_bytes(title.ljust(_TEXT)[:_TEXT] + buffer.getvalue()[_TEXT:])
+
 
 _FIELD = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,62}")
 """Names that a field of a struct may have in MATLAB; others are left out."""

@@ -16,8 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from ehdmaps.errors import InputError
-from ehdmaps.exports.header import origin
-from ehdmaps.exports.target import Target
+from ehdmaps.exports.target import Target, origin
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.law import LawAtPoint, LawKind
 from ehdmaps.maps.lines import line_approach

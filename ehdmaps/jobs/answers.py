@@ -19,10 +19,9 @@ from dataclasses import dataclass, field
 from textwrap import shorten
 
 from ehdmaps.jobs.law_points import COMPLIANCE_BARS, DAMPING_BARS
-from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solution import FilmSolution, contact_solution
 from ehdmaps.units import LOAD, SPEED, TEMPERATURE
 

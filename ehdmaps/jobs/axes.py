@@ -8,7 +8,7 @@ from itertools import pairwise
 
 from ehdmaps.jobs.table import Table
 from ehdmaps.physics.bearing import BearingGeometry
-from ehdmaps.physics.operating_point import OIL_TEMPERATURES
+from ehdmaps.physics.contact import OIL_TEMPERATURES
 from ehdmaps.units import LOAD, RPM, SPEED, TEMPERATURE, Display, short
 
 MOST_VALUES = 100_000

@@ -28,9 +28,8 @@ from ehdmaps.jobs.spectrum import spectrum_dataset
 from ehdmaps.jobs.sweep import Progress
 from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.outputs import MAP, TABLE, Output, check_outputs
-from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solution import ContactSolution, ContactSolver, contact_solution
 
 

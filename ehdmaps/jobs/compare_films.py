@@ -12,7 +12,7 @@ from ehdmaps.errors import MapError
 from ehdmaps.jobs.report import AXES, span
 from ehdmaps.jobs.sampling import log_uniform
 from ehdmaps.maps.emap import EHDMap
-from ehdmaps.physics.structure import structured
+from ehdmaps.physics.contact import structured
 
 COMPARED_FILMS = (
     "stiffness",

@@ -24,9 +24,9 @@ from ehdmaps.maps.rolling_film import FlowFilm
 from ehdmaps.maps.rough_layer import RoughLayer
 from ehdmaps.maps.tail import Tail
 from ehdmaps.physics.oil_supply import OilSupply
-from ehdmaps.physics.roughness import Surface
 from ehdmaps.physics.solution import ContactSolver, FilmSolution
 from ehdmaps.physics.spectrum import contact_spectrum
+from ehdmaps.physics.surface import Surface
 
 _STEP = 0.01
 """Step of the load over which the flow of the flooded film is read, relative."""

@@ -28,8 +28,8 @@ from ehdmaps.jobs.job import Job
 from ehdmaps.physics.closed_form import FilmFormula, FormulaSolver
 from ehdmaps.physics.heat import INLET_HEAT, THERMAL
 from ehdmaps.physics.oil_supply import OilSupply
-from ehdmaps.physics.roughness import Surface
 from ehdmaps.physics.solution import ContactSolver
+from ehdmaps.physics.surface import Surface
 
 REFINEMENT = 4.0
 """Grid density of the reference over that of the job; its inlet is twice as long."""

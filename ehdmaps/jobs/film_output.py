@@ -10,8 +10,8 @@ from ehdmaps.extras import lacking
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.job import Job
 from ehdmaps.outputs import FIELDS, FIGURE, Output, output_problems
+from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.hertz import half_width
-from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solution import ContactSolver, FilmSolution
 from ehdmaps.units import LOAD, SPEED, TEMPERATURE
 

@@ -18,8 +18,8 @@ from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import OilSupply
-from ehdmaps.physics.roughness import Surface
 from ehdmaps.physics.solids import STEEL, Material
+from ehdmaps.physics.surface import Surface
 
 MOST_POINTS = 2_000_000
 """Points of one map: a week of the default solver, and 300 MB. More is a slip in the job file."""

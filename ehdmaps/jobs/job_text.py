@@ -18,9 +18,9 @@ from ehdmaps.physics.catalogue import estimate, estimate_from_dimensions, static
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import LUBRICANTS, Lubricant
 from ehdmaps.physics.oil_supply import OilSupply
-from ehdmaps.physics.pressure_viscosity import PRESSURE_LAWS
-from ehdmaps.physics.roughness import Surface
 from ehdmaps.physics.solids import STEEL, Material
+from ehdmaps.physics.surface import Surface
+from ehdmaps.physics.viscosity import PRESSURE_LAWS
 from ehdmaps.units import quantity
 
 Entry = str | int | float | bool

@@ -29,8 +29,8 @@ from ehdmaps.maps.tail import THICK_FILM
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.oil_supply import FLOODED
-from ehdmaps.physics.roughness import SMOOTH
 from ehdmaps.physics.solution import ContactSolution, ContactSolver, Status
+from ehdmaps.physics.surface import SMOOTH
 from ehdmaps.table.solver import TableSolver
 
 SEED = 20260

@@ -14,9 +14,8 @@ from ehdmaps.jobs.store import Arrays
 from ehdmaps.jobs.tasks import LineTask
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.law import ContactLaw
-from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.hertz import half_width
-from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solution import ContactSolution, ContactSolver, FilmSolution, Status, contact_solution
 from ehdmaps.units import LOAD, SPEED, TEMPERATURE
 

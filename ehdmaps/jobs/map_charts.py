@@ -21,10 +21,21 @@ from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.rough_films import BOUNDARY, FILM_PARAMETER, MIXED
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.solution import Status
-from ehdmaps.report.axis import Axis, log_axis, symlog_axis
-from ehdmaps.report.chart import GREY, SEQUENCE, Chart, Curve, Points, Shade, figure
-from ehdmaps.report.markup import Markup, tag
-from ehdmaps.report.numbers import number, shown
+from ehdmaps.report.chart import (
+    GREY,
+    SEQUENCE,
+    Axis,
+    Chart,
+    Curve,
+    Points,
+    Shade,
+    figure,
+    log_axis,
+    number,
+    shown,
+    symlog_axis,
+)
+from ehdmaps.report.page import Markup, tag
 from ehdmaps.units import DAMPING, FILM, LOAD, PRESSURE, SPEED, STIFFNESS, TEMPERATURE, Display
 
 MOST_CURVES = 6

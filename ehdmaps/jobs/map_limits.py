@@ -15,9 +15,8 @@ from ehdmaps.jobs.supply import supply_words
 from ehdmaps.maps import schema
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.physics.solution import Status
-from ehdmaps.report.markup import Markup, joined, tag
-from ehdmaps.report.numbers import number
-from ehdmaps.report.tables import sentences, table
+from ehdmaps.report.chart import number
+from ehdmaps.report.page import Markup, joined, sentences, table, tag
 from ehdmaps.units import LOAD, SPEED, TEMPERATURE
 
 MOST_TEMPERATURES = 6

@@ -24,10 +24,8 @@ from ehdmaps.jobs.report import AXES, NONE_STATED, error_rows, holes, law_rows, 
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.program import plain
-from ehdmaps.report.markup import Markup, joined, tag
-from ehdmaps.report.numbers import shown
-from ehdmaps.report.page import Section, document
-from ehdmaps.report.tables import pairs, sentences, table
+from ehdmaps.report.chart import shown
+from ehdmaps.report.page import Markup, Section, document, joined, pairs, sentences, table, tag
 from ehdmaps.units import DAMPING, FILM, LOAD, SPEED, STIFFNESS, TEMPERATURE
 from ehdmaps.version import version
 

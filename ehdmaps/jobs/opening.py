@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.surface import surface_from_text
 from ehdmaps.physics.approach import STRUCTURAL_LAWS
-from ehdmaps.physics.roughness import Surface
+from ehdmaps.physics.surface import Surface
 from ehdmaps.units import closest
 
 if TYPE_CHECKING:

@@ -22,14 +22,12 @@ from ehdmaps.maps.rough_films import (
 )
 from ehdmaps.maps.rough_layer import RoughLayer
 from ehdmaps.physics import hertz
-from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.film_limits import too_thin
+from ehdmaps.physics.closed_form import too_thin
+from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import moes_groups
-from ehdmaps.physics.operating_point import OperatingPoint
-from ehdmaps.physics.peak import tip_words
-from ehdmaps.physics.roughness import SMOOTH, Surface
-from ehdmaps.physics.solution import ContactSolution, Status
+from ehdmaps.physics.solution import ContactSolution, Status, tip_words
+from ehdmaps.physics.surface import SMOOTH, Surface
 from ehdmaps.units import (
     DAMPER,
     DAMPING,

@@ -18,9 +18,8 @@ from ehdmaps.jobs.sweep import sweep
 from ehdmaps.jobs.tasks import LONGEST_LINE, LineTask, solver_version
 from ehdmaps.maps import schema
 from ehdmaps.maps.records import contacts_json
-from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solution import ContactSolver
 from ehdmaps.provenance import code_hash
 

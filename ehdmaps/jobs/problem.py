@@ -15,11 +15,10 @@ from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
 from ehdmaps.physics.catalogue import designations, estimate, estimate_from_dimensions
 from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.correlations import CORRELATIONS
 from ehdmaps.physics.lubricant import DENSITY_LAWS, LUBRICANTS, Lubricant
-from ehdmaps.physics.own_oil import Stated, stated_problems
-from ehdmaps.physics.pressure_viscosity import PRESSURE_LAWS, Parameter
+from ehdmaps.physics.own_oil import CORRELATIONS, Stated, stated_problems
 from ehdmaps.physics.solids import STEEL, Material
+from ehdmaps.physics.viscosity import PRESSURE_LAWS, Parameter
 from ehdmaps.units import LENGTH, Display, closest, short
 
 Built = TypeVar("Built")

@@ -12,9 +12,8 @@ import xarray as xr
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.maps.records import lubricant_from_json
 from ehdmaps.maps.schema import FILM_TABLE, FILMS_READ, FILMS_SOLVED, UNSERVED
-from ehdmaps.physics.film_limits import BELOW_ROUGHNESS, CONTINUUM, NO_CONTINUUM
-from ehdmaps.physics.peak import tip_words
-from ehdmaps.physics.solution import Status
+from ehdmaps.physics.closed_form import BELOW_ROUGHNESS, CONTINUUM, NO_CONTINUUM
+from ehdmaps.physics.solution import Status, tip_words
 from ehdmaps.program import plain
 from ehdmaps.units import (
     DAMPING,

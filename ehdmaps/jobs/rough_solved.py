@@ -15,12 +15,11 @@ from scipy.optimize import brentq
 
 from ehdmaps.errors import SolverError
 from ehdmaps.maps.asperities import asperity_pressure, mean_gap
-from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.hertz import max_pressure
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.operating_point import OperatingPoint
-from ehdmaps.physics.roughness import Surface
 from ehdmaps.physics.solution import ContactSolver
+from ehdmaps.physics.surface import Surface
 
 LEAST_SHARE = 1e-3
 """Share of the film below which no balance is sought."""

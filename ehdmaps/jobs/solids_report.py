@@ -25,7 +25,7 @@ def solids_text(record: Mapping[str, Any], bearing: BearingGeometry) -> str:
     Parameters
     ----------
     record : mapping
-        See `ehdmaps.solids.plane_record.bearing_record`.
+        See `ehdmaps.solids.plane_bearing.bearing_record`.
     bearing : BearingGeometry
         The bearing.
     """

@@ -11,10 +11,9 @@ import xarray as xr
 
 from ehdmaps.errors import InputError
 from ehdmaps.maps import schema
-from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solution import ContactSolver
 from ehdmaps.physics.spectrum import ContactSpectrum, checked_frequencies, contact_spectrum
 

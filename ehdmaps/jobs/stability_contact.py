@@ -38,10 +38,9 @@ from ehdmaps.jobs.stability_judges import (
 )
 from ehdmaps.jobs.stability_points import DECADE, WildPoint, refusals, wild_point
 from ehdmaps.physics.closed_form import FormulaSolver, HertzSolver
-from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.heat import INLET_HEAT, THERMAL
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solution import ContactSolution, ContactSolver, FilmSolution, contact_solution
 from ehdmaps.stability.findings import Check, Tally
 

@@ -7,12 +7,12 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from ehdmaps.jobs.stability_points import WildPoint
-from ehdmaps.physics.film_limits import THICKEST_FILM, THIN_FILM_LIMIT
+from ehdmaps.physics.closed_form import THICKEST_FILM, THIN_FILM_LIMIT
 from ehdmaps.physics.films import MARTIN_CONSTANT, asymptotes
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.moes import film_from_moes, moes_groups
-from ehdmaps.physics.pressure_viscosity import Barus
 from ehdmaps.physics.solution import ContactSolution, FilmSolution, Status
+from ehdmaps.physics.viscosity import Barus
 
 HAIR = 1e-6
 """Relative change of load and speed between points a hair apart; a thousandth of a degree of temperature."""

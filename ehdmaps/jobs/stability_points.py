@@ -15,11 +15,10 @@ from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.sampling import SamplePoint, log_uniform
 from ehdmaps.jobs.solids import FE_APPROACHES
 from ehdmaps.physics.approach import STRUCTURAL_LAWS
-from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.contact import OIL_TEMPERATURES, LineContact
 from ehdmaps.physics.lubricant import DENSITY_LAWS, LUBRICANTS, Lubricant
-from ehdmaps.physics.operating_point import OIL_TEMPERATURES
-from ehdmaps.physics.pressure_viscosity import PRESSURE_LAWS
 from ehdmaps.physics.solids import Material
+from ehdmaps.physics.viscosity import PRESSURE_LAWS
 
 DECADE = 10.0
 """Factor by which every range is left at both ends."""

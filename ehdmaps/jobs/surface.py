@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ehdmaps.jobs.table import Table
-from ehdmaps.physics.roughness import FINEST, LIMITS, ROUGHEST, SMOOTH, Surface
+from ehdmaps.physics.surface import FINEST, LIMITS, ROUGHEST, SMOOTH, Surface
 from ehdmaps.units import FILM, PRESSURE, quantity_within, short
 
 _ROUGHNESSES = f"{FILM.text(FINEST)} to {FILM.text(ROUGHEST)}"

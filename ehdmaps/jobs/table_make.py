@@ -17,15 +17,14 @@ from scipy.interpolate import PchipInterpolator
 from scipy.ndimage import maximum_filter
 
 from ehdmaps.arrays import BoolArray, FloatArray
-from ehdmaps.ehl.frequency import group_spectrum
 from ehdmaps.ehl.group_solution import GroupSolution
-from ehdmaps.ehl.line import solve_groups
+from ehdmaps.ehl.line import group_spectrum, solve_groups
 from ehdmaps.ehl.newton import CONVERGED
-from ehdmaps.ehl.resolution import Resolution
+from ehdmaps.ehl.profile import Resolution
 from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.physics.isotherm import PressureViscosity
-from ehdmaps.physics.pressure_viscosity import ROELANDS_PRESSURE
 from ehdmaps.physics.rheology import ShearLaw
+from ehdmaps.physics.viscosity import ROELANDS_PRESSURE
 from ehdmaps.table.coordinates import exponent_of, load_number_at, valley_shift
 from ehdmaps.table.family import GRID
 from ehdmaps.table.fields import FIELDS, FILMS, LAW, NATURAL_FREQUENCIES, RESPONSES

@@ -9,12 +9,16 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.solver import ReynoldsSolver
-from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.operating_point import OperatingPoint
-from ehdmaps.physics.rheology import LIMITING_STRESS_AT_REST
+from ehdmaps.physics.rheology import (
+    LIMITING_STRESS_AT_REST,
+    eyring_stress,
+    limiting_stress,
+    newtonian_stress,
+    traction_coefficients,
+)
 from ehdmaps.physics.solution import FilmSolution
-from ehdmaps.physics.traction import eyring_stress, limiting_stress, newtonian_stress, traction_coefficients
 from ehdmaps.units import Display
 
 LAWS = ("newtonian", "eyring", "limiting")

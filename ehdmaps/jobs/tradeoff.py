@@ -32,7 +32,7 @@ from ehdmaps.jobs.trade_frame import (
     truth_words,
 )
 from ehdmaps.physics.closed_form import FormulaSolver
-from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.solution import natural_to_hertz
 from ehdmaps.physics.spectrum import HIGHEST_FREQUENCY, LOWEST_FREQUENCY
 from ehdmaps.trade.record import Choice, ErrorSummary, Judged, Trade

@@ -49,8 +49,8 @@ from ehdmaps.physics.approach import STRUCTURAL_LAWS
 from ehdmaps.physics.bearing import with_law
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.oil_supply import FLOODED
-from ehdmaps.physics.roughness import SMOOTH
 from ehdmaps.physics.solution import ContactSolver
+from ehdmaps.physics.surface import SMOOTH
 from ehdmaps.trade.record import Choice, ErrorSummary, Judged, Trade
 from ehdmaps.units import KELVIN
 

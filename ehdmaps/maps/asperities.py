@@ -18,7 +18,7 @@ import numpy.typing as npt
 from scipy.special import erfcx, gamma, ndtr, pbdv
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.physics.roughness import Surface
+from ehdmaps.physics.surface import Surface
 
 _SHARPNESS = 4.0
 

@@ -36,7 +36,7 @@ from ehdmaps.physics.approach import highest_fe_load
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
-from ehdmaps.physics.roughness import SMOOTH, Surface
+from ehdmaps.physics.surface import SMOOTH, Surface
 
 _SCALE = 0.25
 _LAYERED_STEP, _ROOT_STEP = 0.02, 0.1

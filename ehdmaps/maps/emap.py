@@ -41,7 +41,7 @@ from ehdmaps.physics.bearing import BearingGeometry, with_law
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
-from ehdmaps.physics.roughness import SMOOTH, Surface
+from ehdmaps.physics.surface import SMOOTH, Surface
 
 
 class EHDMap:

@@ -40,7 +40,7 @@ from ehdmaps.maps.lines import (
 )
 from ehdmaps.maps.roller_balance import LEAST_LOAD, balanced_state
 from ehdmaps.maps.tables import HALF_SPACE, LOAD, NOT_FINITE, SPEED, TEMPERATURE, LawTable, Point
-from ehdmaps.physics.unilateral import Force
+from ehdmaps.physics.contact import Force
 
 LOAD_TOLERANCE = 1e-3
 """Part of the highest load by which a load may pass it: the error of a table, not of a caller."""

@@ -38,7 +38,7 @@ from ehdmaps.maps.tables import LOAD, ApproachTable, LawTable, Point
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
-from ehdmaps.physics.roughness import SMOOTH, Surface
+from ehdmaps.physics.surface import SMOOTH, Surface
 
 LawKind = Literal["series", "inner", "outer", "line"]
 OutsidePolicy = Literal["error", "clamp", "asymptote"]

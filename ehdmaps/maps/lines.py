@@ -13,8 +13,8 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.compiled import njit
 from ehdmaps.maps.elementary import exp, log
 from ehdmaps.maps.tables import COLDEST, ApproachTable, Line
-from ehdmaps.physics.unilateral import Force
-from ehdmaps.physics.unilateral import unilateral_force as rule
+from ehdmaps.physics.contact import Force
+from ehdmaps.physics.contact import unilateral_force as rule
 
 State = tuple[float, float, float, float]
 Triple = tuple[float, float, float]
@@ -101,7 +101,7 @@ def state_of(g: float, dg: float, log_ratio: float, dlog_ratio: float) -> State:
 
 @njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def force_of(state: State, rate: float) -> Force:
-    """Force of a state at a rate, and its derivatives, see `ehdmaps.physics.unilateral`."""
+    """Force of a state at a rate, and its derivatives, see `ehdmaps.physics.contact`."""
     w, dw, ratio, dc = state
     force: Force = unilateral_force(w, dw, w * ratio, dc, rate)
     return force

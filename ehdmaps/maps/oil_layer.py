@@ -7,8 +7,8 @@ contact where that is less. With r = min(1, h_oil/m) at equal load, speed and te
 
 S the compliance of the structure, s and b the compliance and the loss compliance of the film with the meniscus where it
 is: at the frequencies of noise it has no time to move. F, s(r) and b(r) are of the starved contact between rigid
-surfaces (`ehdmaps.physics.starved`), n = -d ln(h)/d ln(w) of the flooded film is one for light loads and near zero in a
-loaded contact, which keeps b: numerically it is 0.95 to 3.3 times that of the flooded one, at r = 0.9 to 0.4.
+surfaces (`ehdmaps.physics.oil_supply`), n = -d ln(h)/d ln(w) of the flooded film is one for light loads and near zero
+in a loaded contact, which keeps b: numerically it is 0.95 to 3.3 times that of the flooded one, at r = 0.9 to 0.4.
 
 F runs from 1 to 1.2257 as r goes to zero: the film of a lightly loaded contact goes to the layer itself, and the load
 to nothing. A gap wider than the layer is dry.
@@ -36,7 +36,7 @@ from ehdmaps.maps.contact_curve import FilmSamples, dry_slope
 from ehdmaps.maps.rolling_film import FlowFilm, RollingFilm
 from ehdmaps.maps.tail import Tail
 from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.starved import CORNER, RIGID_FLOW, compliance_ratio, damping_ratio, film_ratio
+from ehdmaps.physics.oil_supply import CORNER, RIGID_FLOW, compliance_ratio, damping_ratio, film_ratio
 
 ROUNDED = 0.2
 """Cube root of the flow ratio r below which sqrt(r) is rounded."""

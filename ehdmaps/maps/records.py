@@ -16,10 +16,9 @@ from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import HEAT_CAPACITY, Lubricant
 from ehdmaps.physics.oil_supply import OilSupply
-from ehdmaps.physics.pressure_viscosity import law_from_record
-from ehdmaps.physics.roughness import Surface
 from ehdmaps.physics.solids import STEEL, Material
-from ehdmaps.physics.viscosity import AstmViscosity, ConstantViscosity, ViscosityLaw, VogelViscosity
+from ehdmaps.physics.surface import Surface
+from ehdmaps.physics.viscosity import AstmViscosity, ConstantViscosity, ViscosityLaw, VogelViscosity, law_from_record
 
 _UNREADABLE = (ValueError, KeyError, TypeError, AttributeError, ArithmeticError, RecursionError, InputError)
 """What reading an invalid record raises."""

@@ -35,11 +35,10 @@ from ehdmaps.maps.own_lines import lines_by_contact
 from ehdmaps.maps.schema import BACKBONE_DIMS, DIMS
 from ehdmaps.maps.splines import spline_weights
 from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.films import RIGID_ROLLING_CONSTANT
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import moes_groups, moes_speed_number, valley_load_number
-from ehdmaps.physics.oil_supply import FLOODED, OilSupply
-from ehdmaps.physics.rolling import RIGID_ROLLING_CONSTANT
-from ehdmaps.physics.starved import rolling_ratio
+from ehdmaps.physics.oil_supply import FLOODED, OilSupply, rolling_ratio
 
 NAMES = ("rolling_force", "mass_flow")
 """Variables of the map and of its backbone."""
@@ -142,7 +141,7 @@ class RollingFilm:
         entrainment_speed, temperature : float
             u [m/s], of either sign, and T [K].
         supply : OilSupply, optional
-            Oil before the contact. On a layer the force is less, see `ehdmaps.physics.starved.rolling_ratio`.
+            Oil before the contact. On a layer the force is less, see `ehdmaps.physics.oil_supply.rolling_ratio`.
         """
         force = self._found(0, contact, load, entrainment_speed, temperature)
         if supply.flooded:

@@ -19,7 +19,7 @@ from ehdmaps.maps.schema import DIMS
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import max_pressure
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.roughness import Surface
+from ehdmaps.physics.surface import Surface
 
 FILM_PARAMETER, FILM_SHARE, MEAN_DISTANCE = "film_parameter", "film_share", "mean_distance"
 """Names of the three variables."""

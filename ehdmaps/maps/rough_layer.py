@@ -42,7 +42,7 @@ from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import max_pressure
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import moes_groups
-from ehdmaps.physics.roughness import Surface
+from ehdmaps.physics.surface import Surface
 
 OIL_EXPONENT, FULL_FROM = 0.12, 3.0
 """n of the scaled film where it is elastic, and the load number M where half of it is reached."""

@@ -16,8 +16,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.maps import schema
 from ehdmaps.maps.records import contacts_json
-from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.structure import Structured, structured
+from ehdmaps.physics.contact import LineContact, Structured, structured
 
 DERIVED = Structured._fields
 """Variables that are derived."""

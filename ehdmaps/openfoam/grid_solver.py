@@ -15,9 +15,8 @@ from ehdmaps.openfoam.installation import Installation
 from ehdmaps.openfoam.parameters import Parameters, Start
 from ehdmaps.openfoam.results import THIN_FILM, FilmTable, Results, read_film, read_results
 from ehdmaps.openfoam.run import KilledError, RunError, log_tail, run
-from ehdmaps.physics.rheology import NEWTONIAN
+from ehdmaps.physics.rheology import NEWTONIAN, wall_stress_note
 from ehdmaps.physics.solution import Status
-from ehdmaps.physics.wall_stress import wall_stress_note
 
 MOVED_COLUMNS = 1.1
 """Columns of a second try, over those asked for."""

@@ -20,28 +20,24 @@ from ehdmaps.openfoam.isotherms import isotherms
 from ehdmaps.openfoam.parameters import FLOWS, Flow, Heat, Mesh, Parameters, Start
 from ehdmaps.openfoam.results import FilmTable
 from ehdmaps.openfoam.run import RunError
-from ehdmaps.physics.closed_form import HertzSolver
-from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.film_limits import THIN_FILM_LIMIT, too_thick
-from ehdmaps.physics.films import moes_central
+from ehdmaps.physics.closed_form import THIN_FILM_LIMIT, HertzSolver, too_thick
+from ehdmaps.physics.contact import LineContact, OperatingPoint
+from ehdmaps.physics.films import film_times_rise, moes_central, rolling_force_of_inlet
 from ehdmaps.physics.heat import ISOTHERMAL, THERMAL, heat_data
 from ehdmaps.physics.hertz import DRY_COMPLIANCE, LARGEST_PRESSURE, half_width, max_pressure
 from ehdmaps.physics.lubricant import Lubricant, LubricantState
 from ehdmaps.physics.moes import film_from_moes, moes_groups
-from ehdmaps.physics.operating_point import OperatingPoint
-from ehdmaps.physics.peak import peak_sampling_error
-from ehdmaps.physics.rheology import ShearLaw, shear_law
-from ehdmaps.physics.rolling import film_times_rise, rolling_force_of_inlet
+from ehdmaps.physics.rheology import ShearLaw, shear_law, wall_stress_note
 from ehdmaps.physics.solution import (
     ContactSolverDefaults,
     FilmSolution,
     FilmSpectrum,
     Status,
     no_spectrum,
+    peak_sampling_error,
     slow_spectrum,
 )
 from ehdmaps.physics.spectrum import neighbours, read_beside
-from ehdmaps.physics.wall_stress import wall_stress_note
 
 CAVITATION_RANGE = 1e-6
 """Pressure over which liquid turns into the cavitated mixture, over the largest of the film (about)."""

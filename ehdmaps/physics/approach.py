@@ -1,23 +1,19 @@
-"""Structural laws: the elastic part of the approach of one contact over its load, and its derivative.
-
-A plane log kernel has no absolute approach, so it is taken from one of four laws that name their
-reference: `iso16281` and `palmgren` for a steel roller of finite length, `half_space` for a stated depth, and
-`finite_elements` for roller, rings and their seats as they are.
-Each law is zero for loads at and below zero, where its compliance is inf (an unloaded contact has no
-stiffness).
-"""
+"""Structural laws: the elastic part of the approach of one contact over its load, and its derivative."""
 
 from __future__ import annotations
 
+import json
 import math
-from typing import Literal
+from collections.abc import Mapping
+from functools import lru_cache
+from importlib import resources
+from typing import Any, Literal
 
 import numpy as np
 
-from ehdmaps.arrays import FloatArray
+from ehdmaps.arrays import FloatArray, Values, as_given
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import Values, as_given
-from ehdmaps.physics.solids import STEEL, reduced_modulus
+from ehdmaps.physics.solids import STEEL, Material, reduced_modulus
 
 StructuralLaw = Literal["iso16281", "palmgren", "half_space", "fe"]
 STRUCTURAL_LAWS: tuple[StructuralLaw, ...] = ("iso16281", "palmgren", "half_space", "fe")
@@ -339,3 +335,87 @@ def _half_space_terms(
         )
     with np.errstate(divide="ignore"):
         return as_given(positive, load), as_given(np.divide(reference_depth, half_width), load)
+
+
+_GEOMETRY = ("inner_raceway_diameter", "outer_raceway_diameter", "roller_diameter", "rollers")
+_SAME = 1e-9
+
+
+def shipped_names() -> tuple[str, ...]:
+    """Names of the bearings whose approaches come with the package."""
+    return tuple(sorted(_shipped()))
+
+
+def shipped_record(name: str) -> Mapping[str, Any]:
+    """Everything that `ehdmaps solids` wrote about a bearing.
+
+    Parameters
+    ----------
+    name : str
+        One of `shipped_names`.
+    """
+    return _shipped()[name]
+
+
+def shipped_approaches(geometry: Mapping[str, Any], material: Material) -> dict[str, float] | None:
+    """Approaches of both contacts at `FE_LOAD` by their names [m]; None where none come with the package.
+
+    Parameters
+    ----------
+    geometry : mapping
+        Name and dimensions of the bearing, as of `BearingGeometry.record`.
+    material : Material
+        Material of all bodies. Another modulus is accounted for exactly; another Poisson's ratio is another solid.
+
+    Examples
+    --------
+    >>> shipped_approaches({"name": "NU310"}, Material(210e9, 0.3)) is None
+    True
+    """
+    found = _shipped().get(str(geometry.get("name")))
+    if found is None or any(not _same(geometry.get(key), found["geometry"][key]) for key in _GEOMETRY):
+        return None
+    made_of = found["sections"]["material"]
+    if not _same(material.poisson_ratio, made_of["poisson_ratio"]):
+        return None
+    own = reduced_modulus(material, material)
+    made = Material(made_of["youngs_modulus"], made_of["poisson_ratio"])
+    return {
+        name: rescaled(contact["fe_approach"], reduced_modulus(made, made), own)
+        for name, contact in found["contacts"].items()
+    }
+
+
+def rescaled(fe_approach: float, made: float, own: float) -> float:
+    """Approach at `FE_LOAD` of the same bodies of another modulus [m].
+
+    The approach over the load falls as 1/E', and the contact is narrower: delta_0 E'/w_0 rises by (2/pi) times the
+    logarithm of the ratio of the moduli.
+
+    Parameters
+    ----------
+    fe_approach : float
+        Approach [m] of the bodies of the modulus `made`.
+    made, own : float
+        E' [Pa] of both.
+
+    Examples
+    --------
+    >>> rescaled(3e-6, 230e9, 230e9)
+    3e-06
+    """
+    return (fe_approach * made + FE_LOAD * 2.0 / math.pi * math.log(own / made)) / own
+
+
+def _same(a: object, b: object) -> bool:
+    """Whether two numbers are the same."""
+    return isinstance(a, (int, float)) and isinstance(b, (int, float)) and math.isclose(a, b, rel_tol=_SAME)
+
+
+@lru_cache(maxsize=1)
+def _shipped() -> dict[str, dict[str, Any]]:
+    """All files that come with the package, by the names of the bearings."""
+    folder = resources.files("ehdmaps.physics") / "shipped"
+    texts = [entry.read_text("utf-8") for entry in folder.iterdir() if entry.name.endswith(".json")]
+    records = [json.loads(text) for text in texts]
+    return {record["geometry"]["name"]: record for record in records}

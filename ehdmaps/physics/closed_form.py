@@ -1,9 +1,4 @@
-"""The solvers without a discretisation: `hertz` (dry) and `formula` (a published central film formula).
-
-They state no errors (NaN): a closed form has no numerical error, and how far it is from a full solution, a model error,
-is not known here. Against `reynolds` the damping of a formula is often wrong by most of its size. Both are
-low-frequency limits: their film compliance and loss compliance do not depend on frequency.
-"""
+"""The solvers without a discretisation, `hertz` and `formula`; how far their films have a meaning."""
 
 from __future__ import annotations
 
@@ -15,22 +10,84 @@ from typing import Literal
 import numpy as np
 
 from ehdmaps.errors import InputError
-from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.damping import rolling_film_damping
-from ehdmaps.physics.film_limits import THICKEST_FILM, THIN_FILM_LIMIT, too_thick
+from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.films import (
     dowson_higginson_minimum,
     dowson_toyoda_central,
     elastic_piezoviscous,
     martin_minimum,
+    moes_central,
     moes_central_and_slope,
     pan_hamrock_central,
+    rolling_film_damping,
 )
 from ehdmaps.physics.hertz import max_pressure
 from ehdmaps.physics.lubricant import Lubricant, LubricantState
 from ehdmaps.physics.moes import dowson_groups, film_from_moes, moes_groups
-from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solution import ContactSolverDefaults, FilmSolution, Status
+
+THIN_FILM_LIMIT = 0.01
+"""h/R above which a film is outside thin-film theory, and is said to be an asymptote."""
+
+THICK_NOTE = "film thicker than 1 % of the radius: limit of thin-film theory, Reynolds with a parabolic gap"
+"""What is said of a film above `THIN_FILM_LIMIT`."""
+
+THICKEST_FILM = 0.3
+"""h/R above which a film is refused."""
+
+CONTINUUM = 1e-9
+"""Film below which there is no continuum [m]."""
+
+NO_CONTINUUM, BELOW_ROUGHNESS = "film below 1 nm: no continuum", "film below the roughness"
+"""What is said of films that are too thin for their solution to be taken as it is."""
+
+HEAVIEST_LOAD_NUMBER = 2e6
+"""Moes' M above which the film is too thin for double precision to see it beside the elastic deflection."""
+
+LIGHTEST_LOAD_NUMBER = 1e-12
+"""Moes' M below which double precision does not see the elastic deflection, of size b^2/R, beside the film, H ~ 1/M:
+the linear response, made of both, loses digits, and its equations are singular from 1e-16 on."""
+
+
+def too_thick(film: float, radius: float, thickest: float = THICKEST_FILM) -> str:
+    """Why a film is refused; empty where it is not.
+
+    Lines that stand for their groups only, from which contact laws are made, have no thickness of their own: for them
+    the limit is infinite.
+
+    Parameters
+    ----------
+    film : float
+        Film offset h [m].
+    radius : float
+        Reduced radius R [m].
+    thickest : float
+        Largest h/R that is taken.
+    """
+    if not film > thickest * radius:
+        return ""
+    return (
+        f"film h/R = {film / radius:.3g} above {thickest:g}: neither thin-film theory nor a parabolic gap holds; "
+        "take a higher load, a lower speed or a thinner oil"
+    )
+
+
+def too_thin(film: float, roughness: float = 0.0) -> str:
+    """What a film is too thin for, in words that follow its status; empty where it is not.
+
+    Parameters
+    ----------
+    film : float
+        Minimum film [m]; 0 is the dry contact, of which nobody is told that it has a thin film.
+    roughness : float
+        Combined rms roughness [m]; 0 where none is known.
+    """
+    if not film > 0.0:
+        return ""
+    if film < CONTINUUM:
+        return NO_CONTINUUM
+    return BELOW_ROUGHNESS if film < roughness else ""
+
 
 FilmFormula = Literal["moes", "dowson-toyoda", "pan-hamrock"]
 
@@ -227,3 +284,25 @@ def _group_arguments(
     """Arguments of the dimensionless groups."""
     alpha = state.pressure_viscosity.pressure_viscosity
     return load, speed, state.viscosity, alpha, contact.radius, contact.reduced_modulus
+
+
+def film_change(contact: LineContact, state: LubricantState, load: float, speed: float, factor: float) -> float:
+    """Relative change of the central film where alpha is `factor` times what is taken.
+
+    Only L changes: it goes with alpha. In the piezoviscous-elastic regime a film goes with about the square root of
+    alpha; where the oil is nearly isoviscous or the contact nearly rigid, with less or a little more.
+
+    Parameters
+    ----------
+    contact : LineContact
+        The contact.
+    state : LubricantState
+        The oil at its temperature.
+    load, speed : float
+        w [N/m] and entrainment speed u [m/s], both > 0.
+    factor : float
+        alpha over the alpha of the oil, >= 0.
+    """
+    alpha = state.pressure_viscosity.pressure_viscosity
+    M, L = moes_groups(load, speed, state.viscosity, alpha, contact.radius, contact.reduced_modulus)
+    return float(moes_central(M, factor * L) / moes_central(M, L) - 1.0)

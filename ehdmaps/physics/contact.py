@@ -1,15 +1,97 @@
-"""One line contact: its reduced radius, its solids, and the law of its structural approach."""
+"""One line contact: radius, solids, structural law, operating point; a film between solids that cannot pull."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import Generic, NamedTuple
 
+from ehdmaps.arrays import Values
 from ehdmaps.errors import InputError
 from ehdmaps.physics import approach
-from ehdmaps.physics._values import Values
 from ehdmaps.physics.approach import STRUCTURAL_LAWS, StructuralLaw
 from ehdmaps.physics.solids import STEEL, Material, reduced_modulus
+
+OIL_TEMPERATURES = (213.15, 573.15)
+"""Lowest and highest temperature that an input may give to an oil, -60 and 300 degC [K]: a number beyond stands in
+the wrong unit. The laws of an oil break down earlier, and say so."""
+
+
+@dataclass(frozen=True)
+class OperatingPoint:
+    """One point of a map.
+
+    Attributes
+    ----------
+    load : float
+        Load per unit length w [N/m], > 0.
+    entrainment_speed : float
+        Mean u of the two surface speeds [m/s], >= 0 (the contact does not care about the sign).
+    temperature : float
+        Temperature of both surfaces, and so of the oil between them [K], > 0.
+
+    Raises
+    ------
+    InputError
+        If a value is no number, not finite or out of these limits.
+    """
+
+    load: float
+    entrainment_speed: float
+    temperature: float
+
+    def __post_init__(self) -> None:
+        problems = []
+        for name, unit, allowed, standstill in (
+            ("load", "N/m", "finite and > 0", False),
+            ("entrainment_speed", "m/s", "finite and >= 0; give its magnitude", True),
+            ("temperature", "K", "finite and > 0 K", False),
+        ):
+            value = getattr(self, name)
+            try:
+                possible = math.isfinite(value) and (value > 0 or (standstill and value == 0))
+            except (TypeError, OverflowError):
+                problems.append(f"{name}: got {value!r:.60}, no number of type float; allowed: [{unit}], {allowed}")
+            else:
+                if not possible:
+                    problems.append(f"{name}: got {value!r} {unit}; allowed: {allowed}")
+        if problems:
+            raise InputError(problems)
+
+
+Force = tuple[float, float, float]
+
+
+def unilateral_force(w: float, dw: float, c: float, dc: float, rate: float) -> Force:
+    """Load of a contact in motion, never a tension, and its derivatives by approach and rate.
+
+    Parameters
+    ----------
+    w, dw : float
+        Load at rest, >= 0, and its derivative by the approach [N/m], [N/m2]. All may be per unit length, as here, or
+        of a whole body.
+    c, dc : float
+        Damping, >= 0, and its derivative by the approach [N s/m2], [N s/m3]; zero where w is.
+    rate : float
+        Rate of the approach [m/s].
+
+    Returns
+    -------
+    load, stiffness, damping : float
+        F [N/m], dF/d delta [N/m2], dF/d rate [N s/m2].
+
+    Examples
+    --------
+    >>> unilateral_force(8.0, 2.0, 4.0, 0.0, rate=-1.0)
+    (4.0, 2.0, 4.0)
+    >>> unilateral_force(8.0, 2.0, 4.0, 0.0, rate=-4.0)
+    (1.0, 0.5, 0.25)
+    """
+    part = c * rate
+    if part >= -0.5 * w:
+        return w + part, dw + dc * rate, c
+    ratio = w / part
+    return -0.25 * w * ratio, 0.25 * ratio * (ratio * dc * rate - 2.0 * dw), 0.25 * ratio * ratio * c
 
 
 @dataclass(frozen=True)
@@ -136,3 +218,66 @@ class LineContact:
     def _fe_approach(self) -> float:
         """Approach by finite elements; its presence was checked when the contact was made."""
         return math.nan if self.fe_approach is None else self.fe_approach
+
+
+class Structured(NamedTuple, Generic[Values]):
+    """What depends on the structural law, per unit length; numbers or arrays.
+
+    Attributes
+    ----------
+    approach : float or array
+        delta_el(w) - h_eff [m], > 0 when the bodies come together.
+    stiffness : float or array
+        k [N/m2].
+    damping : float or array
+        c [N s/m2].
+    stiffness_error, damping_error : float or array
+        Estimated relative numerical errors.
+    """
+
+    approach: Values
+    stiffness: Values
+    damping: Values
+    stiffness_error: Values
+    damping_error: Values
+
+
+def structured(
+    contact: LineContact,
+    load: Values,
+    film_offset: Values,
+    film_compliance: Values,
+    loss_compliance: Values,
+    film_compliance_error: Values,
+    loss_compliance_error: Values,
+) -> Structured[Values]:
+    """Add the solids of a contact to its film.
+
+    Errors are carried over to first order: 1/k has the absolute error of the film compliance, and c = loss k^2 has that
+    of the loss plus twice that of k, with their signs, and a twentieth of both magnitudes in case they cancel.
+
+    Parameters
+    ----------
+    contact : LineContact
+        The contact, with its structural law.
+    load : float or array
+        w [N/m].
+    film_offset : float or array
+        h_eff [m].
+    film_compliance : float or array
+        -d(h_eff)/dw [m2/N].
+    loss_compliance : float or array
+        c/k^2 [m2 s/N].
+    film_compliance_error, loss_compliance_error : float or array
+        Estimated relative errors with their signs; only the sign of one against the other matters.
+    """
+    compliance = contact.structural_compliance(load) + film_compliance
+    stiffness_error = -film_compliance * film_compliance_error / compliance
+    both = abs(loss_compliance_error) + 2.0 * abs(stiffness_error)
+    return Structured(
+        approach=contact.structural_approach(load) - film_offset,
+        stiffness=1.0 / compliance,
+        damping=loss_compliance / compliance**2,
+        stiffness_error=abs(stiffness_error),
+        damping_error=abs(loss_compliance_error + 2.0 * stiffness_error) + 0.05 * both,
+    )

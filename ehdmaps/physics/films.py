@@ -1,14 +1,12 @@
-"""Published film thickness formulas of lubricated line contacts, one function each.
-
-Groups: M, L, H = h/R (eta0 us/(E'R))^(-1/2) of Moes; U, W, G of Dowson and Higginson, which give h/R
-(see `ehdmaps.physics.moes`). All are isothermal, Newtonian and fully flooded.
-"""
+"""Published formulas of lubricated line contacts: film thickness, damping, rolling force; one function each."""
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
-from ehdmaps.physics._values import Values, as_given
+from ehdmaps.arrays import FloatArray, Values, as_given
 
 MARTIN_CONSTANT = 2.447484
 """H M of the rigid isoviscous rolling film: half of w h/(eta u R) = 4.894968 (mean speed u)."""
@@ -251,3 +249,234 @@ def moes_central_and_slope(load_number: Values, oil_number: float) -> tuple[Valu
         log_slope = slope_Q + weight * (slope_P - slope_Q)
         log_slope = log_slope + slope_s * (weight * log_quotient / s - log_sum / s**2)
     return as_given(H, load_number), as_given(log_slope * H / M, load_number)
+
+
+ROLLING_FILM_CONSTANT = 6.548276
+"""c/(eta (R/h)^1.5) of the rigid isoviscous rolling film with the Reynolds exit."""
+
+
+def rolling_film_damping(film: Values, viscosity: float, radius: float) -> Values:
+    """Damping of a rigid isoviscous rolling film, c = 6.548 eta (R/h)^1.5 [N s/m2].
+
+    The exit of the film is free (Reynolds condition) and moves with the squeeze; linear in the squeeze
+    velocity, at a rate small against the rolling.
+
+    Parameters
+    ----------
+    film : float or array
+        h, the smallest film [m], h << R.
+    viscosity : float
+        eta [Pa s].
+    radius : float
+        R [m].
+
+    Examples
+    --------
+    >>> round(rolling_film_damping(1e-6, viscosity=0.1, radius=5e-3))
+    231517
+    """
+    return as_given(ROLLING_FILM_CONSTANT * viscosity * (radius / film) ** 1.5, film)
+
+
+def squeeze_film_damping(film: Values, viscosity: float, radius: float) -> Values:
+    """Damping of a rigid isoviscous squeeze film without cavitation, c = 3 sqrt(2) pi eta (R/h)^1.5 [N s/m2].
+
+    The whole parabola carries, under tension too when the bodies part.
+
+    Parameters
+    ----------
+    film : float or array
+        h, the smallest film [m], h << R.
+    viscosity : float
+        eta [Pa s].
+    radius : float
+        R [m].
+
+    Examples
+    --------
+    >>> round(squeeze_film_damping(1e-6, viscosity=0.1, radius=5e-3))
+    471239
+    """
+    return as_given(3.0 * math.sqrt(2.0) * math.pi * viscosity * (radius / film) ** 1.5, film)
+
+
+def rigid_inlet_damping(film: Values, viscosity: float, radius: float) -> Values:
+    """Damping of the inlet half of a rigid squeeze film, c = (3/sqrt 2) pi eta (R/h)^1.5 [N s/m2].
+
+    Half of `squeeze_film_damping`, as if the gap ended at its narrowest place. A bound only: elastic contacts
+    yield, and share the velocity between film and solids.
+
+    Parameters
+    ----------
+    film : float or array
+        h, the smallest film [m], h << R.
+    viscosity : float
+        eta [Pa s].
+    radius : float
+        R [m].
+
+    Examples
+    --------
+    >>> round(rigid_inlet_damping(1e-6, viscosity=0.1, radius=5e-3))
+    235619
+    """
+    return as_given(0.5 * squeeze_film_damping(film, viscosity, radius), film)
+
+
+def dietl_damping(
+    load: Values,
+    sum_speed: float,
+    viscosity: float,
+    pressure_viscosity: float,
+    radius: float,
+    reduced_modulus: float,
+    length: float,
+    inlet_length_factor: float,
+) -> Values:
+    """Dietl's regression for the damping of a whole contact [N s/m], not per unit length.
+
+    c = K0 R^0.781 l^0.769 E'^1.069 eta0^0.531 alpha^0.424 q^-0.136 us^-0.434 f^-0.563, K0 = 0.1963,
+    everything in SI units (the further factor 1e-3 of the source converts to N s/mm).
+
+    Parameters
+    ----------
+    load : float or array
+        q [N/m], per unit length: only so do the dimensions close, with K0 in kg^-0.04 m^0.06 s^0.115.
+    sum_speed : float
+        us, the sum of the surface speeds, 2u [m/s].
+    viscosity, pressure_viscosity : float
+        eta0 [Pa s] and alpha [1/Pa] at ambient pressure.
+    radius : float
+        Reduced radius [m].
+    reduced_modulus : float
+        E' [Pa].
+    length : float
+        l of the contact [m]. The formula is not additive over slices.
+    inlet_length_factor : float
+        f, the length factor of the inlet zone [-]. The accessible sources do not say how to find it, so
+        that the formula cannot be reproduced from them alone: compare with it, do not build on it.
+
+    References
+    ----------
+    P. Dietl, Damping and stiffness characteristics of rolling element bearings, PhD thesis, TU Wien, 1997;
+    the regression is taken from later work that quotes it.
+
+    Examples
+    --------
+    >>> c = dietl_damping(88571.4, 3.4, 0.0845, 2.24e-8, 5.5152e-3, 230.769e9, 0.7e-3, 1.0)
+    >>> f"{c:.4g}"
+    '341.5'
+    """
+    lengths: float = 0.1963 * radius**0.781 * length**0.769
+    oil = viscosity**0.531 * pressure_viscosity**0.424
+    speed = sum_speed**-0.434 * inlet_length_factor**-0.563
+    return as_given(lengths * reduced_modulus**1.069 * oil * load**-0.136 * speed, load)
+
+
+RIGID_ROLLING_CONSTANT = 4.159245
+"""F/sqrt(eta u w) of the rigid isoviscous rolling film with the Reynolds exit; see `rigid_rolling_force`."""
+
+
+def film_times_rise(film: FloatArray, pressure: FloatArray) -> float:
+    """Int h dp over the nodes of a grid, to fourth order in the index of the nodes.
+
+    The nodes may be graded, as long as they are smoothly so; dp vanishes at both ends, as it does at the exit of a film
+    and far before it. The unit is that of film times pressure.
+
+    Parameters
+    ----------
+    film, pressure : ndarray, shape (n,)
+        h and p at the nodes, along the rolling; n >= 4.
+
+    Examples
+    --------
+    >>> x = np.linspace(-1.0, 1.0, 41)
+    >>> round(film_times_rise(1.0 - x, (1.0 - x**2) ** 2), 5), round(16 / 15, 5)
+    (1.06667, 1.06667)
+    """
+    middle = 0.5 * (film[1:] + film[:-1])
+    bend = film[:-3] - film[1:-2] - film[2:-1] + film[3:]
+    # h half-way less h''/24: -1/16 and -1/48 of the bend, which is 2 h''
+    middle[1:-1] -= bend / 12.0
+    return float(middle @ (pressure[1:] - pressure[:-1]))
+
+
+def rolling_force_of_inlet(distance: float, film: float, flow: float, wedge: float, radius: float) -> float:
+    """Int h dp/dx dx over all of the inlet before a place, where the gap is a parabola and the oil as at rest.
+
+    dp/dx = wedge (h - flow)/h^3 and h = film + (s^2 - distance^2)/(2 radius) at the distances s beyond. In SI wedge is
+    12 eta0 u.
+
+    Parameters
+    ----------
+    distance : float
+        Distance of the place before the contact centre, many film lengths sqrt(2 h R).
+    film : float
+        h at the place.
+    flow : float
+        Mass flow over density at rest and speed: the film whose oil at rest the contact takes in.
+    wedge : float
+        Factor of Reynolds' equation.
+    radius : float
+        Reduced radius R; it is 1 where films are in b^2/R and lengths in b.
+    """
+    least = film - 0.5 * distance**2 / radius
+    once = 2.0 * radius / distance * (1.0 - 2.0 * least * radius / (3.0 * distance**2))
+    twice = 4.0 * radius**2 / (3.0 * distance**3)
+    return wedge * (once - flow * twice)
+
+
+def rigid_rolling_force(load: Values, speed: float, viscosity: float) -> Values:
+    """Rolling force of a rigid isoviscous film, F = 4.159 sqrt(eta u w) [N/m], both walls together.
+
+    The limit of light loads, whatever the radius: w = 4.895 eta u R/h and F = 9.202 eta u sqrt(R/h), with the free exit
+    of Reynolds' condition.
+
+    Parameters
+    ----------
+    load : float or array
+        w [N/m].
+    speed : float
+        Entrainment speed u [m/s].
+    viscosity : float
+        eta [Pa s].
+
+    Examples
+    --------
+    >>> round(rigid_rolling_force(100.0, speed=2.0, viscosity=0.1), 3)
+    18.601
+    """
+    return as_given(RIGID_ROLLING_CONSTANT * np.sqrt(viscosity * speed * np.asarray(load)), load)
+
+
+def matsuyama_rolling_force(
+    load_number: Values, speed_number: float, material_number: float, radius: float, reduced_modulus: float
+) -> Values:
+    """Rolling force of a loaded contact, F = 14.2 E' R U^0.75 G^-0.04 W^0.08 [N/m], both walls together.
+
+    A fit to numerical solutions of isothermal line contacts; its moment on a roller, per length, is F R.
+
+    Parameters
+    ----------
+    load_number : float or array
+        W = w/(E'R).
+    speed_number : float
+        U = eta0 u/(E'R), u the mean of the surface speeds; see `ehdmaps.physics.moes.dowson_groups`.
+    material_number : float
+        G = alpha E'.
+    radius : float
+        R [m].
+    reduced_modulus : float
+        E' [Pa].
+
+    References
+    ----------
+    Matsuyama's fit as quoted in Machines 11, 2023, 801.
+
+    Examples
+    --------
+    >>> round(matsuyama_rolling_force(2e-4, 1e-10, 3745.0, 0.01, 2.2753e11), 2)
+    371.94
+    """
+    number = speed_number**0.75 * material_number**-0.04 * load_number**0.08
+    return as_given(14.2 * reduced_modulus * radius * number, load_number)

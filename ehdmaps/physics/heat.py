@@ -1,13 +1,143 @@
-"""Data that heat in a contact needs besides the laws of oil and solids, in one place."""
+"""Heat of a contact: its data, the film's reduction by shear in the inlet, and `physics = "inlet-heat"`."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
 
 from ehdmaps.errors import InputError
+from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.lubricant import HEAT_CAPACITY, Lubricant
+from ehdmaps.physics.moes import moes_groups, valley_load_number
 from ehdmaps.physics.solids import STEEL, Material
+from ehdmaps.physics.solution import FilmSolution, FilmSpectrum, Status, no_spectrum
+
+_KELVIN = 0.01
+"""Step of the difference quotient by temperature."""
+
+
+def viscosity_slope(lubricant: Lubricant, temperature: float) -> float:
+    """d eta0/dT [Pa s/K], <= 0, of an oil at a temperature [K].
+
+    Parameters
+    ----------
+    lubricant : Lubricant
+        The oil.
+    temperature : float
+        T [K].
+
+    Examples
+    --------
+    >>> round(1e3 * viscosity_slope(Lubricant.named("FVA3"), 313.15), 2)
+    -4.31
+    """
+    at, above = (lubricant.at(temperature + more).viscosity for more in (0.0, _KELVIN))
+    return min((above - at) / _KELVIN, 0.0)
+
+
+def thermal_loading(viscosity_slope: float, speed: float, conductivity: float) -> float:
+    """Thermal loading parameter L = -(d eta0/dT) u^2/k_f [-].
+
+    Parameters
+    ----------
+    viscosity_slope : float
+        d eta0/dT at the inlet temperature [Pa s/K], <= 0.
+    speed : float
+        Entrainment speed u, the mean of the surface speeds [m/s].
+    conductivity : float
+        Thermal conductivity k_f of the oil [W/(m K)], > 0.
+
+    Raises
+    ------
+    InputError
+        With every value that is not finite or out of these limits.
+
+    Examples
+    --------
+    FVA 3 at 40 degC, where d eta0/dT = -B/(C + theta)^2 eta0 = -4.31e-3 Pa s/K:
+
+    >>> round(thermal_loading(-4.31e-3, speed=10.0, conductivity=0.134), 2)
+    3.22
+    """
+    problems = []
+    if not (math.isfinite(viscosity_slope) and viscosity_slope <= 0):
+        problems.append(f"viscosity_slope: got {viscosity_slope!r} Pa s/K; allowed: finite and <= 0; check its sign")
+    if not math.isfinite(speed):
+        problems.append(f"speed: got {speed!r} m/s; allowed: finite")
+    if not (math.isfinite(conductivity) and conductivity > 0):
+        problems.append(
+            f"conductivity: got {conductivity!r} W/(m K); allowed: finite and > 0; mineral oils have about 0.13"
+        )
+    if problems:
+        raise InputError(problems)
+    return -viscosity_slope * speed**2 / conductivity
+
+
+def inlet_shear_heating_factor(
+    max_pressure: float, reduced_modulus: float, thermal_loading: float, slide_to_roll: float = 0.0
+) -> float:
+    """Factor C_T on the isothermal film [-].
+
+    C_T = (1 - 13.2 (p_H/E') L^0.42)/(1 + 0.213 (1 + 2.23 S^0.83) L^0.64).
+
+    Parameters
+    ----------
+    max_pressure : float
+        p_H [Pa], >= 0.
+    reduced_modulus : float
+        E' = 2/(...) [Pa], > 0.
+    thermal_loading : float
+        L of `thermal_loading`, >= 0.
+    slide_to_roll : float
+        S = |u1 - u2|/u with the mean speed u, >= 0.
+
+    Raises
+    ------
+    InputError
+        With every value out of its limits, and where 13.2 (p_H/E') L^0.42 >= 1: the regression gives no
+        film there and is outside its range. It is never clipped.
+
+    Notes
+    -----
+    A regression of thermal solutions of hard contacts. The original was not at hand: coefficients and the
+    meaning of its symbols (mean speed, E' = 2/(...)) follow the textbooks that quote it, and the range of
+    its fit is not known here.
+
+    References
+    ----------
+    P. K. Gupta, H. S. Cheng, D. Zhu, N. H. Forster, J. B. Schrand, Viscoelastic effects in MIL-L-7808-type
+    lubricant, part I: analytical formulation, Tribology Transactions 35, 1992, 269-274.
+
+    Examples
+    --------
+    >>> round(inlet_shear_heating_factor(1e9, 230.77e9, thermal_loading=1.0), 4)
+    0.7772
+    """
+    problems = [
+        f"{key}: got {value!r}; allowed: finite and >= 0"
+        for key, value in (
+            ("max_pressure", max_pressure),
+            ("thermal_loading", thermal_loading),
+            ("slide_to_roll", slide_to_roll),
+        )
+        if not (math.isfinite(value) and value >= 0)
+    ]
+    if not (math.isfinite(reduced_modulus) and reduced_modulus > 0):
+        problems.append(f"reduced_modulus: got {reduced_modulus!r} Pa; allowed: finite and > 0")
+    if problems:
+        raise InputError(problems)
+    reduction: float = 13.2 * max_pressure / reduced_modulus * thermal_loading**0.42
+    if reduction >= 1.0:
+        raise InputError(
+            f"inlet shear heating: got 13.2 (p_H/E') L^0.42 = {reduction:.4g}, outside the range of the "
+            "regression; "
+            "allowed: < 1; lower the speed or the pressure, or solve with temperatures"
+        )
+    heating: float = 0.213 * (1.0 + 2.23 * slide_to_roll**0.83) * thermal_loading**0.64
+    return (1.0 - reduction) / (1.0 + heating)
+
 
 ISOTHERMAL, INLET_HEAT, THERMAL = "isothermal", "inlet-heat", "thermal"
 PHYSICS = (ISOTHERMAL, INLET_HEAT, THERMAL)
@@ -86,4 +216,203 @@ def heat_data(lubricant: Lubricant, material: Material) -> HeatData:
         solid_conductivity=material.conductivity,
         solid_heat_capacity=material.heat_capacity,
         solid_density=material.density,
+    )
+
+
+LIGHTEST = 0.25
+"""M at which the factor's heating is half of that of a loaded contact."""
+
+LARGEST_LOADING = 3.0
+"""QL above which no factor is given."""
+
+LIGHT = 0.2
+"""M below which none is given for loadings above `LIGHT_LOADING`: the inlet turns back so much oil there that
+convection along the film counts."""
+
+LIGHT_LOADING = 0.5
+
+VALLEY = 0.35
+"""Distance from the bottom of the damping valley, in ln M, within which film compliance and loss pass through zero or
+nearly so, and no factor of theirs is right."""
+
+VALLEY_OIL_NUMBER = 14.0
+"""L above which the valley is that deep."""
+
+UNNOTICED = 0.99
+"""Factor above which nothing is refused: films change by less than what the rule is wrong by elsewhere."""
+
+
+@dataclass(frozen=True)
+class InletHeat:
+    """What heat in the inlet makes of one isothermal film.
+
+    Attributes
+    ----------
+    factor : float
+        Factor phi of the film; 1 without heat.
+    refused : str
+        Why the rule does not hold there; empty where it does.
+    slope : float
+        Derivative of phi by load [m/N].
+    exponent : float
+        n: the loss compliance goes with phi^n.
+    film_error, loss_error : float
+        How far the film, and film compliance and loss compliance, may be from those of a film with temperatures,
+        relative: bounds of the rule itself, beside the numerical errors of the isothermal film.
+    """
+
+    factor: float
+    refused: str
+    slope: float
+    exponent: float
+    film_error: float
+    loss_error: float
+
+    @property
+    def note(self) -> str:
+        """What is said of a film; nothing where heat changes it by less than a per cent."""
+        if self.factor > UNNOTICED:
+            return ""
+        return (
+            f"inlet heat by a formula: film x {self.factor:.3f} within {100.0 * self.film_error:.1f} %, loss x "
+            f"{self.factor**self.exponent:.3f}, loss and film compliance within {100.0 * self.loss_error:.0f} %"
+        )
+
+
+def inlet_heat_factor(load_number: float, loading: float) -> float:
+    """Factor phi of the film.
+
+    Parameters
+    ----------
+    load_number : float
+        Moes' M of the isothermal contact, > 0.
+    loading : float
+        QL, see `ehdmaps.physics.heat.thermal_loading`, >= 0.
+
+    Notes
+    -----
+    A fit to films with temperatures, FVA 3 between steel, nu308: see `ehdmaps/REFERENCE.md` for what it is worth on
+    contacts that it was not made for.
+
+    Examples
+    --------
+    >>> round(inlet_heat_factor(20.0, 0.5), 3)
+    0.876
+    """
+    heating: float = 0.236 * loading**0.72 * load_number / (load_number + LIGHTEST)
+    return 1.0 / (1.0 + heating)
+
+
+def inlet_heat(contact: LineContact, lubricant: Lubricant, point: OperatingPoint) -> InletHeat:
+    """What heat in the inlet makes of the isothermal film of a point.
+
+    Parameters
+    ----------
+    contact : LineContact
+        The contact.
+    lubricant : Lubricant
+        The oil; its conductivity has to be known.
+    point : OperatingPoint
+        Load, speed and temperature.
+
+    Raises
+    ------
+    InputError
+        Without the conductivity of the oil.
+    """
+    conductivity = heat_data(lubricant, contact.material).oil_conductivity
+    if point.entrainment_speed == 0.0:
+        return InletHeat(1.0, "", 0.0, 1.0, 0.0, 0.0)
+    state = lubricant.at(point.temperature)
+    loading = thermal_loading(viscosity_slope(lubricant, point.temperature), point.entrainment_speed, conductivity)
+    alpha = state.pressure_viscosity.pressure_viscosity
+    M, L = moes_groups(
+        point.load, point.entrainment_speed, state.viscosity, alpha, contact.radius, contact.reduced_modulus
+    )
+    M, factor = float(M), inlet_heat_factor(float(M), loading)
+    zeta = math.log(M / float(valley_load_number(L)))
+    square = M * M
+    share = 0.8 if abs(zeta) > 1.0 else 4.0
+    return InletHeat(
+        factor=factor,
+        refused=_refused(M, L, zeta, loading, factor),
+        slope=-(1.0 - factor) * factor * LIGHTEST / (M + LIGHTEST) / point.load,
+        exponent=1.0 + square / (1.0 + square),
+        film_error=0.4 * (1.0 - factor),
+        loss_error=share * (1.0 - factor),
+    )
+
+
+def _refused(M: float, L: float, zeta: float, loading: float, factor: float) -> str:
+    """Why the rule does not hold; empty where it does."""
+    instead = "solve with physics thermal"
+    if loading > LARGEST_LOADING:
+        return f"inlet heat: loading QL = {loading:.3g} above {LARGEST_LOADING:g}, where no factor is known; {instead}"
+    if factor > UNNOTICED:
+        return ""
+    if M < LIGHT and loading > LIGHT_LOADING:
+        return (
+            f"inlet heat: M = {M:.3g} below {LIGHT:g} at a loading QL = {loading:.3g} above {LIGHT_LOADING:g}, where "
+            f"no factor is known; {instead}"
+        )
+    if abs(zeta) < VALLEY and L > VALLEY_OIL_NUMBER:
+        return (
+            f"inlet heat: M = {M:.3g} is {abs(zeta):.2f} in ln M from the bottom of the damping valley, below "
+            f"{VALLEY:g} at L = {L:.3g} above {VALLEY_OIL_NUMBER:g}, where no factor holds; {instead}"
+        )
+    return ""
+
+
+def heated(film: FilmSolution, heat: InletHeat) -> FilmSolution:
+    """An isothermal film with heat in its inlet.
+
+    Parameters
+    ----------
+    film : FilmSolution
+        The isothermal film; one that is not usable stays what it is.
+    heat : InletHeat
+        The heat of the same point.
+    """
+    if not film.status.usable:
+        return film
+    if heat.refused:
+        return FilmSolution(
+            Status.OUTSIDE_VALIDITY, heat.refused, iterations=film.iterations, solve_seconds=film.solve_seconds
+        )
+    thinner = ("film_offset", "central_film", "minimum_film", "rolling_force", "mass_flow")
+    return replace(
+        film,
+        reason="; ".join(filter(None, (film.reason, heat.note))),
+        film_compliance=film.film_compliance * heat.factor - film.film_offset * heat.slope,
+        loss_compliance=film.loss_compliance * heat.factor**heat.exponent,
+        **{name: getattr(film, name) * heat.factor for name in thinner},
+    )
+
+
+def heated_spectrum(spectrum: FilmSpectrum, heat: InletHeat) -> FilmSpectrum:
+    """An isothermal film over frequency with heat in its inlet.
+
+    The real part of the film compliance goes as that of slow motion, the imaginary part as the loss compliance.
+
+    Parameters
+    ----------
+    spectrum : FilmSpectrum
+        The isothermal film over frequency.
+    heat : InletHeat
+        The heat of the same point.
+
+    Notes
+    -----
+    Known in the limit of slow motion only; at high frequencies an assumption.
+    """
+    film = heated(spectrum.film, heat)
+    if not film.status.usable:
+        return no_spectrum(film, spectrum.frequencies)
+    kept, lost = heat.factor, heat.factor**heat.exponent
+    more = -spectrum.film.film_offset * heat.slope
+    return replace(
+        spectrum,
+        film=film,
+        compliance=np.asarray(kept * spectrum.compliance.real + more + 1j * lost * spectrum.compliance.imag),
+        errors=np.asarray(kept * spectrum.errors.real + 1j * lost * spectrum.errors.imag),
     )

@@ -9,8 +9,7 @@ import math
 
 import numpy as np
 
-from ehdmaps.arrays import FloatArray
-from ehdmaps.physics._values import Values, as_given
+from ehdmaps.arrays import FloatArray, Values, as_given
 
 DRY_COMPLIANCE = math.log(2.0) / math.pi
 """-dH0/dW of dry Hertz: lengths by b, film by b^2/R, pressure by p_H, log kernel with reference length b."""

@@ -13,8 +13,8 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
+from ehdmaps.arrays import Values, as_given
 from ehdmaps.errors import InputError
-from ehdmaps.physics._values import Values, as_given
 
 DENSITY_PRESSURE = 0.59e9
 """Pressure in the density law of Dowson and Higginson [Pa]."""

@@ -12,22 +12,24 @@ from typing import Any, Literal, Required, TypedDict, Unpack
 
 import numpy as np
 
+from ehdmaps.arrays import Values, as_given
 from ehdmaps.errors import InputError
 from ehdmaps.physics._labels import label_problem
-from ehdmaps.physics._values import Values, as_given
-from ehdmaps.physics.correlations import CORRELATIONS
 from ehdmaps.physics.isotherm import FreeVolume, Isotherm, IsothermLaw, PressureViscosity, density
-from ehdmaps.physics.own_oil import Stated, estimated_coefficient, own_laws
-from ehdmaps.physics.pressure_viscosity import (
+from ehdmaps.physics.own_oil import CORRELATIONS, Stated, estimated_coefficient, own_laws
+from ehdmaps.physics.viscosity import (
     ROELANDS_LOG,
     ROELANDS_PRESSURE,
     ZERO_CELSIUS,
+    AstmViscosity,
+    ConstantViscosity,
     Fva3,
     PressureViscosityLaw,
     Roelands,
+    ViscosityLaw,
+    VogelViscosity,
     law_record,
 )
-from ehdmaps.physics.viscosity import AstmViscosity, ConstantViscosity, ViscosityLaw, VogelViscosity
 
 __all__ = ["DENSITY_LAWS", "LUBRICANTS", "DensityLaw", "FreeVolume", "Lubricant", "LubricantState", "PressureViscosity"]
 

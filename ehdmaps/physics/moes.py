@@ -17,7 +17,7 @@ import math
 
 import numpy as np
 
-from ehdmaps.physics._values import Values, as_given
+from ehdmaps.arrays import Values, as_given
 
 
 def moes_groups(

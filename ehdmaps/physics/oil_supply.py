@@ -1,27 +1,17 @@
-"""Oil that a contact gets: flooded, or a layer of a given thickness on the surfaces before it.
-
-A flooded contact takes as much oil as its film needs. On a layer, no more can pass than the layer brings: the film of a
-light load, which would be thicker, is capped by it, and a roller that finds a gap wider than the layer runs dry. There
-is no side flow, so a layer stands for what is left of the oil before the contact in the steady state.
-
-The layers of the named kinds of lubrication are estimates, from the side flow of a layer against its supply and from
-the torque of a catalogue bearing in oil; within a kind they scatter by a factor of two or more. Who knows the layer
-gives its thickness.
-
-References
-----------
-M. T. van Zoelen, C. H. Venner, P. M. Lugt, "Prediction of film thickness decay in starved elasto-hydrodynamically
-lubricated contacts using a thin layer flow model", Proc. IMechE Part J 223, 2009, 541 (the balance of side flow and
-supply; its formula is known here from later work only).
-"""
+"""Oil that a contact gets: flooded, or a layer on the surfaces before it; a starved contact in closed form."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from types import MappingProxyType
 
+import numpy as np
+from numpy.polynomial.chebyshev import chebder, chebfit, chebval
+
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 
 LAYERS: Mapping[str, float] = MappingProxyType(
@@ -100,3 +90,239 @@ class OilSupply:
 
 FLOODED = OilSupply(math.inf, "flooded")
 """Contacts that take all the oil that they need."""
+
+
+RIGID_FLOW = 1.2257484409676
+"""Flow m of the flooded rigid contact over its smallest gap h0; h0 over the gap of a dry layer is its inverse."""
+
+CORNER = 8.0
+"""Exponent of the corner where the flow of the flooded contact is as much as the layer, see `passing`."""
+
+_DEGREE = 18
+_ORDER = 24
+_HALVINGS = 50
+
+
+def passing(flow: FloatArray | float, layer: float) -> FloatArray:
+    """Part r of the flooded contact's flow that a layer lets through, its corner rounded; both in m.
+
+    Parameters
+    ----------
+    flow : float or array
+        Flow of the flooded contact over density at rest and speed [m], > 0.
+    layer : float
+        Oil layer [m], > 0; inf lets everything through.
+
+    Examples
+    --------
+    >>> [round(float(r), 4) for r in passing(np.array([1e-7, 1e-6, 1e-5]), 1e-6)]
+    [1.0, 0.917, 0.1]
+    """
+    passed: FloatArray = (1.0 + (np.asarray(flow, dtype=np.float64) / layer) ** CORNER) ** (-1.0 / CORNER)
+    return passed
+
+
+def film_ratio(root: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Film of the starved contact over r times that of the flooded one, and its derivative by s; see `passing`.
+
+    Parameters
+    ----------
+    root : array
+        s = sqrt(r), r the flow over that of the flooded contact at the same load; <= 1. Below 0, where there is no
+        load, the ratios go on straight.
+
+    Examples
+    --------
+    >>> [round(float(film), 4) for film in film_ratio(np.sqrt([0.0, 0.2, 0.6, 0.9, 1.0]))[0]]
+    [1.2257, 1.0839, 1.0213, 1.0023, 1.0]
+    """
+    place = np.sqrt(1.0 - np.clip(root, 0.0, 1.0))
+    slopes = 2.0 * chebder(_polynomials()[:, 0])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        slope: FloatArray = np.where(place > 0.0, -0.5 * chebval(2.0 * place - 1.0, slopes) / place, 0.0)
+    return _ratio(root, 0), slope
+
+
+def damping_ratio(root: FloatArray) -> FloatArray:
+    """c of the starved contact, its meniscus held, over that of the flooded one, times s^(3/2): 1.654 at s = 0.
+
+    Parameters
+    ----------
+    root : array
+        s, as of `film_ratio`.
+    """
+    return _ratio(root, 1)
+
+
+def compliance_ratio(root: FloatArray) -> FloatArray:
+    """Film compliance of the starved contact, its meniscus held, over that of the flooded one, over s^2.
+
+    The loss compliance has the ratio of c times the square of this one.
+
+    Parameters
+    ----------
+    root : array
+        s, as of `film_ratio`.
+
+    Examples
+    --------
+    >>> s = np.sqrt([0.2, 0.6, 0.9])
+    >>> [round(float(ratio), 3) for ratio in compliance_ratio(s) * s**2]
+    [0.105, 0.427, 0.82]
+    """
+    return _ratio(root, 4)
+
+
+def rolling_ratio(root: FloatArray, exponent: FloatArray | float = 1.0) -> FloatArray:
+    """Rolling force of the starved contact over that of the flooded one; 0 at s = 0.
+
+    Between rigid surfaces it is one closed form (exponent 1), in the inlet of a heavily loaded contact another one
+    (exponent 0), `loaded_rolling_ratio`; between them the power of one times that of the other.
+
+    Parameters
+    ----------
+    root : array
+        s, as of `film_ratio`.
+    exponent : float or array
+        -d ln(m)/d ln(w) of the flow of the flooded contact, 0 to 1: how far the contact is from rigid surfaces.
+
+    Examples
+    --------
+    >>> [round(float(force), 3) for force in rolling_ratio(np.sqrt([0.0, 0.2, 0.6, 0.9, 1.0]))]
+    [0.0, 0.133, 0.375, 0.666, 1.0]
+    """
+    rigid = np.maximum(root, 0.0) ** 1.5 * _ratio(root, 2)
+    loaded: FloatArray = rigid**exponent * loaded_rolling_ratio(root) ** (1.0 - np.asarray(exponent))
+    return loaded
+
+
+def loaded_rolling_ratio(root: FloatArray) -> FloatArray:
+    """Rolling force of a starved, heavily loaded contact over that of the flooded one, by Grubin's inlet.
+
+    The Hertzian gap before the contact is h = m (1 + x^1.5) in units of its own, and the reduced pressure is 1/alpha at
+    the contact. With J(X) = Int_0^X x^1.5/(1 + x^1.5)^3 dx up to the meniscus X, r^(4/3) = J(X)/J(inf), and the force,
+    Int (h - m) dp, goes with r^(-1/3) Int_0^X x^3/(1 + x^1.5)^3 J(X)/J(x) dx. Within 1e-3.
+
+    Parameters
+    ----------
+    root : array
+        s, as of `film_ratio`.
+
+    Examples
+    --------
+    >>> [round(float(force), 2) for force in loaded_rolling_ratio(np.sqrt([0.0, 0.25, 0.5, 0.9, 1.0]))]
+    [0.0, 0.02, 0.08, 0.38, 1.0]
+    """
+    ratios, forces = _grubin()
+    flow = np.clip(np.asarray(root, dtype=np.float64), 0.0, 1.0) ** 2
+    found: FloatArray = np.interp(flow, ratios, forces)
+    return found
+
+
+@cache
+def _grubin() -> tuple[FloatArray, FloatArray]:
+    """r and the ratio of the forces of Grubin's inlet, rising, from a meniscus at the contact to one far away."""
+    t = np.concatenate((np.linspace(0.0, 2.0, 4001)[:-1], np.geomspace(2.0, 1e4, 8001)))  # x = t^2
+    inlet = _integral(2.0 * t**4 / (1.0 + t**3) ** 3, t)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        part = np.where(t > 0.0, 2.0 * t**7 / (1.0 + t**3) ** 3 / inlet, 0.0)
+    ratios = (inlet / inlet[-1]) ** 0.75
+    with np.errstate(invalid="ignore", divide="ignore"):
+        forces = np.where(t > 0.0, ratios ** (-1.0 / 3.0) * inlet * _integral(part, t), 0.0)
+    return ratios, forces / forces[-1]
+
+
+def _integral(values: FloatArray, places: FloatArray) -> FloatArray:
+    """Integral from the first place on, by the trapezoidal rule."""
+    steps = 0.5 * (values[1:] + values[:-1]) * np.diff(places)
+    return np.concatenate(([0.0], np.cumsum(steps)))
+
+
+def pressure_ratio(root: FloatArray) -> FloatArray:
+    """Largest pressure of the starved contact over that of the flooded one, times s^(3/2): 1.492 at s = 0.
+
+    Parameters
+    ----------
+    root : array
+        s, as of `film_ratio`.
+    """
+    return _ratio(root, 3)
+
+
+def _ratio(root: FloatArray, which: int) -> FloatArray:
+    """One of the polynomials; below s = 0 its tangent."""
+    polynomial = _polynomials()[:, which]
+    place = np.sqrt(1.0 - np.clip(root, 0.0, 1.0))
+    end = float(chebval(1.0, chebder(polynomial)))
+    ratio: FloatArray = chebval(2.0 * place - 1.0, polynomial) - end * np.minimum(root, 0.0)
+    return ratio
+
+
+@cache
+def _polynomials() -> FloatArray:
+    """The five ratios, free of their powers of s, over 2 sqrt(1 - s) - 1, in which the end at s = 1 is smooth."""
+    place = 0.5 + 0.5 * np.cos(np.pi * (np.arange(_DEGREE + 1) + 0.5) / (_DEGREE + 1))
+    solved = np.stack([_solved(float(1.0 - z**2)) for z in place]) / _solved(1.0)
+    return np.asarray(chebfit(2.0 * place - 1.0, solved, _DEGREE), dtype=np.float64)
+
+
+def _solved(s: float) -> tuple[float, ...]:
+    """Film, c, rolling force, pressure and compliance over what they go with in s, in units of their own, at s > 0.
+
+    In units of h0 and sqrt(2 R h0), with x = tan(theta): the pressure is zero at the meniscus and at the exit x_e,
+    where h is m = 1 + x_e^2, and h_in is m/(1 - s).
+    """
+
+    def ends(exit_square: float) -> tuple[float, float]:
+        return -math.atan2(math.sqrt(exit_square + s), math.sqrt(1.0 - s)), math.atan(math.sqrt(exit_square))
+
+    def rise(share: float) -> float:
+        theta, weight = _nodes(*ends(share * s))
+        return float(weight @ ((np.sin(theta) ** 2 - share * s * np.cos(theta) ** 2) * np.cos(theta) ** 2))
+
+    low, high = 0.2, 0.4  # a third at s = 0, 0.2257 at s = 1; the pressure at the exit falls with it
+    for _ in range(_HALVINGS):
+        share = 0.5 * (low + high)
+        low, high = (share, high) if rise(share) > 0.0 else (low, share)
+    square = s * share
+    inlet, outlet = ends(square)
+    flow = 1.0 + square
+    theta, weight = _nodes(inlet, outlet)
+    x, inverse = np.tan(theta), np.cos(theta) ** 2
+    area = float(weight @ inverse**2)
+    mean = (weight @ (x * inverse**2)) / area
+    squeeze = float(weight @ ((x - mean) ** 2 * inverse**2))
+    force = float(weight @ (np.sin(theta) ** 2 - square * inverse))
+    theta, weight = _nodes(inlet, -outlet)
+    pressure = float(weight @ ((np.sin(theta) ** 2 - square * np.cos(theta) ** 2) * np.cos(theta) ** 2))
+    return (
+        1.0 / flow,
+        squeeze * (flow / s) ** 1.5,
+        force * math.sqrt(flow) / s**2.5,
+        pressure * (flow / s) ** 1.5,
+        1.0 / (flow * _load_exponent(inlet, flow, s, area)),
+    )
+
+
+def _load_exponent(inlet: float, flow: float, s: float, area: float) -> float:
+    """-d ln(w)/d ln(h0) at a meniscus that is held, from w h0 = 24 eta u R s^2/(4 m); `area` is Int dx/h^3."""
+    part = 1.0 - s  # m/h_in
+    at, inverse = -math.tan(inlet), math.cos(inlet) ** 2  # 1/h_in
+    if inverse < 1e-30:
+        return 1.0
+    change = (1.0 - part) * inverse**2 / area  # dm/dx_in
+    per_inlet = 2.0 * (2.0 * at * part * inverse - change * inverse) / s - change / flow
+    return 1.0 + 0.5 * at * per_inlet
+
+
+def _nodes(low: float, high: float) -> tuple[FloatArray, FloatArray]:
+    """Places and weights of a quadrature over an angle."""
+    place, weight = _gauss()
+    half = 0.5 * (high - low)
+    return low + half * (1.0 + place), half * weight
+
+
+@cache
+def _gauss() -> tuple[FloatArray, FloatArray]:
+    """Gauss' places and weights on (-1, 1)."""
+    return np.polynomial.legendre.leggauss(_ORDER)

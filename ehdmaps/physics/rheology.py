@@ -1,34 +1,17 @@
-"""How an oil answers to shear: stress over rate of shear, the only place of the formulas.
-
-`ShearLaw` is the law as plain numbers; `thinning` evaluates it by the stress, `yielding` by the rate of shear. They
-call nothing but `math`, so that the same lines work as they stand and compiled for a solver by numba; `ehlFoam` has the
-same formulas under the same names. `eta` is the viscosity at low shear, at the pressure and temperature of the place.
-
-=========  ============================================================  =======================================
-newtonian  eta rate = tau
-eyring     eta rate = tau0 sinh(tau/tau0)                                Eyring 1936
-carreau    eta rate = tau (1 + (tau/tau0)^2)^((1/n - 1)/2)               Carreau's law in stresses, Bair 2007
-limiting   eta rate = tau/sqrt(1 - (tau/tau_L)^2), tau_L = tau0 + L p    circular law, Lee and Hamrock 1990
-=========  ============================================================  =======================================
-
-The circular law has a bound that no stress reaches. Above `NEAR` of it the law goes on as the power law that touches it
-there: stress hardly rises any more, but its slope by the rate is never zero, and trial stresses beyond the bound are
-defined. A stress beyond the bound by more than a few per cent means that the film has no solution with that law.
-
-References
-----------
-H. Eyring, Journal of Chemical Physics 4, 1936, 283-291. S. Bair, High-Pressure Rheology for Quantitative
-Elastohydrodynamics, Elsevier, 2007. R.-T. Lee, B. J. Hamrock, A circular non-Newtonian fluid model: part I - used in
-elastohydrodynamic lubrication, Journal of Tribology 112, 1990, 486-496.
-"""
+"""Oil under shear: its laws, the stress at the walls in pure rolling, traction over the slide-to-roll ratio."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import NamedTuple
 
+import numpy as np
+
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
+from ehdmaps.physics.lubricant import LubricantState
 
 NEWTONIAN, EYRING, CARREAU, LIMITING = range(4)
 """Forms of `ShearLaw`."""
@@ -235,3 +218,154 @@ def yielding(law: ShearLaw, newton: float, p: float) -> tuple[float, float]:
     s = math.exp(log_s)
     share = s * s / (1.0 + s * s)
     return s / y, s / (y * (1.0 + 2.0 * power * share))
+
+
+NEWTONIAN_LIMIT = 0.1
+"""Wall stress over pressure above which a point is flagged: a choice, above the limiting stresses that oils have."""
+
+NEWTONIAN_STRESS = 1e6
+"""Shear stress up to which every oil is taken as Newtonian [Pa], a choice: mineral oils have Eyring stresses of 2 to
+10 MPa. Thick films under little load have small pressures, steep beside themselves, and hardly any stress."""
+
+LOADED = 0.1
+"""Part of the largest pressure below which a place does not count: at the exit the pressure itself goes to zero."""
+
+
+def wall_stress_share(position: FloatArray, pressure: FloatArray, film: FloatArray) -> float:
+    """Largest ratio of wall stress to pressure, between neighbouring places.
+
+    At the front of a pressure spike it is that of the steepest cell; narrower cells show more.
+
+    Parameters
+    ----------
+    position, pressure, film : ndarray, shape (n,)
+        Rising places, pressures that are not negative [Pa], and film thicknesses there; lengths in one unit.
+
+    Returns
+    -------
+    float
+        max of (h/2) abs(dp/dx)/p where p is above a tenth of the largest pressure and the stress above
+        `NEWTONIAN_STRESS`; 0 where there is no such place.
+
+    Examples
+    --------
+    A film of 1 um, whose pressure falls from 1 to 0.6 GPa over 2 um:
+
+    >>> x = np.array([0.0, 2e-6])
+    >>> wall_stress_share(x, np.array([1e9, 0.6e9]), np.array([1e-6, 1e-6]))
+    0.125
+    """
+    between = 0.5 * (pressure[1:] + pressure[:-1])
+    stress = 0.25 * (film[1:] + film[:-1]) * np.abs(pressure[1:] - pressure[:-1]) / (position[1:] - position[:-1])
+    counted = (between > LOADED * float(np.max(pressure))) & (stress > NEWTONIAN_STRESS)
+    return float(np.max(stress[counted] / between[counted], initial=0.0))
+
+
+def wall_stress_note(position: FloatArray, pressure: FloatArray, film: FloatArray) -> str:
+    """What a solution says of a wall stress that no Newtonian oil has; empty where it is admissible.
+
+    Parameters
+    ----------
+    position, pressure, film : ndarray, shape (n,)
+        The arguments of `wall_stress_share`.
+    """
+    share = wall_stress_share(position, pressure, film)
+    if share <= NEWTONIAN_LIMIT:
+        return ""
+    return f"wall stress {share:.2g} of the pressure, above {NEWTONIAN_LIMIT:g}: no oil is Newtonian there"
+
+
+_LARGEST = 300.0
+
+StressLaw = Callable[[FloatArray, FloatArray, FloatArray], FloatArray]
+"""From viscosity [Pa s], shear rate du/h [1/s] and h/2 dp/dx [Pa] to the mean stress [Pa]."""
+
+
+@dataclass(frozen=True)
+class FilmProfile:
+    """Pressure and film along a contact, from the inlet to the exit of the film.
+
+    Attributes
+    ----------
+    x, pressure, film : ndarray, shape (n,)
+        Positions from the contact centre, increasing [m]; p [Pa]; h [m].
+    """
+
+    x: FloatArray
+    pressure: FloatArray
+    film: FloatArray
+
+
+def newtonian_stress(viscosity: FloatArray, rate: FloatArray, gradient_stress: FloatArray) -> FloatArray:
+    """Mean stress of a Newtonian film, eta du/h [Pa]; it knows no bound, and leaves what oils can bear above 0.6 GPa.
+
+    Parameters
+    ----------
+    viscosity, rate : ndarray
+        eta [Pa s] and du/h [1/s].
+    gradient_stress : ndarray
+        Stress h/2 dp/dx that the pressure gradient adds on the walls [Pa]: of no effect here.
+    """
+    return np.asarray(viscosity * rate)
+
+
+def eyring_stress(stress: float) -> StressLaw:
+    """Law of Eyring, rate = (tau0/eta) sinh(tau/tau0) at every height, with the stress tau0 [Pa].
+
+    The mean stress is tau0 asinh(eta du/(h tau0) q/sinh q) with q = h/(2 tau0) dp/dx: the pressure gradient thins too.
+    """
+
+    def law(viscosity: FloatArray, rate: FloatArray, gradient_stress: FloatArray) -> FloatArray:
+        q = np.minimum(np.abs(gradient_stress) / stress, _LARGEST)
+        thinning = np.where(q > 1e-6, q / np.sinh(np.maximum(q, 1e-6)), 1.0)
+        return np.asarray(stress * np.arcsinh(viscosity * rate / stress * thinning))
+
+    return law
+
+
+def limiting_stress(pressure: FloatArray, ratio: float, stress: float = LIMITING_STRESS_AT_REST) -> StressLaw:
+    """Law with a limiting stress that rises with pressure, that of `ehdmaps.physics.rheology`.
+
+    The shear of the pressure gradient is left out: where the bound acts, it is far below it.
+
+    Parameters
+    ----------
+    pressure : ndarray, shape (n,)
+        p along the film [Pa].
+    ratio, stress : float
+        Lambda, and tau0 [Pa].
+    """
+    shear = ShearLaw(LIMITING, stress, ratio)
+
+    def law(viscosity: FloatArray, rate: FloatArray, gradient_stress: FloatArray) -> FloatArray:
+        newton = viscosity * rate
+        factors = [yielding(shear, y, p)[0] for y, p in zip(newton.tolist(), pressure.tolist(), strict=True)]
+        return np.asarray(newton * np.array(factors))
+
+    return law
+
+
+def traction_coefficients(
+    profile: FilmProfile, oil: LubricantState, load: float, speed: float, slide_to_roll: FloatArray, law: StressLaw
+) -> FloatArray:
+    """Traction coefficient at each slide-to-roll ratio, of the sign of that, shape (k,).
+
+    Parameters
+    ----------
+    profile : FilmProfile
+        The film.
+    oil : LubricantState
+        The oil at the temperature of the film.
+    load, speed : float
+        w [N/m], u [m/s].
+    slide_to_roll : ndarray, shape (k,)
+        S = (u2 - u1)/u.
+    law : callable
+        `newtonian_stress`, or one that `eyring_stress` or `limiting_stress` gives.
+    """
+    viscosity = oil.viscosity * np.exp(oil.pressure_viscosity.log_ratio(profile.pressure))
+    gradient = 0.5 * profile.film * np.gradient(profile.pressure, profile.x)
+    found = [
+        np.trapezoid(law(viscosity, abs(slip) * speed / profile.film, gradient), profile.x) for slip in slide_to_roll
+    ]
+    return np.asarray(np.sign(slide_to_roll) * np.array(found) / load)

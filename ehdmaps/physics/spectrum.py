@@ -17,8 +17,7 @@ import numpy as np
 
 from ehdmaps.arrays import ComplexArray, FloatArray, IndexArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.solution import ContactSolution, FilmSpectrum, contact_solution
 
 LOWEST_FREQUENCY, HIGHEST_FREQUENCY = 1e-3, 1e7

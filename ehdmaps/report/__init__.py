@@ -3,12 +3,8 @@
 The modules in the order in which data pass through them:
 
 =============  ====================================================================================
-markup         text and tags; whatever is no markup is escaped
-numbers        numbers as people read them
-axis           linear, logarithmic and two-sided logarithmic axes: places and ticks
-chart          curves over a common axis as inline SVG, with the numbers that a cursor reads off
-tables         tables of rows, and pairs of names and values
-page           the whole document: style, script, and the rule that nothing is loaded
+chart          curves over a common axis as inline SVG, with ticks and the numbers that a cursor reads off
+page           the whole document: escaped markup, tables, style, script, and the rule that nothing is loaded
 document.css   how it looks on a screen and on paper
 document.js    reads values off the charts; all else works without it
 =============  ====================================================================================

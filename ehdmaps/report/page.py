@@ -1,10 +1,11 @@
-"""The whole document: head, style, script, sections, and the rule that nothing is loaded."""
+"""The whole document: escaped markup, tables, head, style, script, sections, and the rule that nothing is loaded."""
 
 from __future__ import annotations
 
 import base64
 import hashlib
-from collections.abc import Sequence
+import html
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
@@ -12,7 +13,140 @@ from pathlib import Path
 
 from ehdmaps.errors import InputError
 from ehdmaps.outputs import MARK, Kind, has_mark, write_text
-from ehdmaps.report.markup import Child, Markup, joined, tag
+
+_LINES = "\n\t"
+_NAMES = {"class_": "class", "for_": "for"}
+_VOID = frozenset({"meta", "br", "hr"})
+
+
+class Markup(str):
+    """A text that is markup already, made by `tag` and `joined` alone."""
+
+    __slots__ = ()
+
+
+Child = str | Markup | None
+"""What a tag may contain; None is left out."""
+
+
+def escaped(text: str) -> Markup:
+    r"""Return a text as a browser shows it, letter by letter.
+
+    Characters that cannot be printed, such as control characters and those that turn the direction of writing around,
+    become U+FFFD; ends of lines and tabs stay.
+
+    Parameters
+    ----------
+    text : str
+        Any text; markup stays as it is.
+
+    Examples
+    --------
+    >>> escaped("<b> & \x07'")
+    '&lt;b&gt; &amp; \ufffd&#x27;'
+    """
+    if isinstance(text, Markup):
+        return text
+    shown = "".join(letter if letter.isprintable() or letter in _LINES else "\ufffd" for letter in text)
+    return Markup(html.escape(shown))
+
+
+def joined(*children: Child) -> Markup:
+    """Return markup and texts one after the other.
+
+    Parameters
+    ----------
+    *children : str or Markup or None
+        Texts are escaped.
+    """
+    return Markup("".join(escaped(child) for child in children if child is not None))
+
+
+def tag(element: str, /, *children: Child, **attributes: str | float | None) -> Markup:
+    """Return an element.
+
+    Parameters
+    ----------
+    element : str
+        Name of the element.
+    *children : str or Markup or None
+        What it contains; texts are escaped.
+    **attributes : str or float or None
+        Attributes of the element; underscores in names become hyphens, numbers have four digits, None leaves one out.
+
+    Examples
+    --------
+    >>> tag("p", "a < b", tag("b", "!"), class_="note")
+    '<p class="note">a &lt; b<b>!</b></p>'
+    """
+    words = [element]
+    for key, value in attributes.items():
+        if value is not None:
+            text = value if isinstance(value, str) else f"{value:.4g}"
+            words.append(f'{_NAMES.get(key, key.replace("_", "-"))}="{escaped(text)}"')
+    head = f"<{' '.join(words)}>"
+    return Markup(head if element in _VOID else f"{head}{joined(*children)}</{element}>")
+
+
+def table(heads: Sequence[Child], rows: Iterable[Sequence[Child]], caption: str, texts: Sequence[int] = (0,)) -> Markup:
+    """Return a table.
+
+    Parameters
+    ----------
+    heads : sequence of str
+        Heads of the columns, with units.
+    rows : iterable of sequence of str
+        One text a column; the first names the row.
+    caption : str
+        What the table holds.
+    texts : sequence of int
+        Columns of text; the others hold numbers, which stand to the right.
+    """
+
+    def cell(name: str, index: int, child: Child, **more: str) -> Markup:
+        return tag(name, child, class_=None if index in texts else "number", **more)
+
+    body = [
+        tag(
+            "tr",
+            *(
+                cell("td", index, child) if index else cell("th", index, child, scope="row")
+                for index, child in enumerate(row)
+            ),
+        )
+        for row in rows
+    ]
+    head = tag("tr", *(cell("th", index, child, scope="col") for index, child in enumerate(heads)))
+    return tag(
+        "div",
+        tag("table", tag("caption", caption), tag("thead", head), tag("tbody", *body)),
+        class_="wide",
+    )
+
+
+def pairs(rows: Iterable[tuple[str, Child]]) -> Markup:
+    """Return names with their values; a name that is empty goes on with the one before.
+
+    Parameters
+    ----------
+    rows : iterable of (str, str)
+        Names and values.
+    """
+    return tag(
+        "dl", *(Markup((tag("dt", name) if name else "") + tag("dd", value)) for name, value in rows), class_="pairs"
+    )
+
+
+def sentences(lines: Iterable[Child]) -> Markup:
+    """Return a list of sentences.
+
+    Parameters
+    ----------
+    lines : iterable of str
+        The sentences.
+    """
+    return tag("ul", *(tag("li", line) for line in lines), class_="sentences")
+
 
 REPORT = Kind("a report of ehdmaps", (".html", ".htm"), has_mark)
 

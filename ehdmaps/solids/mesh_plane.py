@@ -1,13 +1,12 @@
-"""Meshes of roller and rings across the bearing's axis: second-order triangles, graded to the contact.
-
-The contact is at (0, `surface`), its load acts along y, and the line x = 0 is a line of symmetry: half of a ring is
-meshed, and a quarter of a roller. The size of the elements grows in proportion to their distance from the contact, so
-that one mesh serves contacts of any width: `grading` is the size over the distance.
-"""
+"""Meshes of roller and rings across the bearing's axis by gmsh: second-order triangles, graded to the contact."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import importlib
+import signal
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from types import ModuleType
@@ -15,8 +14,72 @@ from types import ModuleType
 import numpy as np
 
 from ehdmaps.arrays import BoolArray, FloatArray, IntArray
-from ehdmaps.errors import AnalysisError, InputError
-from ehdmaps.solids.mesh import gmsh_session
+from ehdmaps.errors import AnalysisError, DependencyError, InputError
+from ehdmaps.extras import needs
+
+DEBIAN_PACKAGES = ("libgl1", "libglu1-mesa", "libgomp1", "libxcursor1", "libxft2", "libxinerama1")
+"""What the gmsh of PyPI needs of Debian 12 besides what every machine has."""
+
+
+def load_gmsh(purpose: str) -> ModuleType:
+    """Return gmsh.
+
+    Parameters
+    ----------
+    purpose : str
+        What needs it, for the message.
+
+    Raises
+    ------
+    DependencyError
+        If it is not installed, or a library of the system that it needs is not.
+    """
+    try:
+        with needs("solids", "gmsh", purpose):
+            return importlib.import_module("gmsh")
+    except DependencyError as error:
+        raise DependencyError(f"{error}; on Debian also apt-get install {' '.join(DEBIAN_PACKAGES)}") from error
+
+
+@contextmanager
+def gmsh_session(purpose: str) -> Iterator[ModuleType]:
+    """Gmsh with an empty model, quiet, one thread; all is gone after.
+
+    Parameters
+    ----------
+    purpose : str
+        What needs it, for messages.
+
+    Raises
+    ------
+    DependencyError
+        If gmsh is missing.
+    InputError
+        If it is in use already.
+    """
+    gmsh = load_gmsh(purpose)
+    if gmsh.isInitialized():
+        raise InputError(f"gmsh is already in use in this process; allowed: gmsh.finalize() before {purpose}")
+    # No configuration files of the user, and Ctrl-C stays Python's.
+    gmsh.initialize(readConfigFiles=False, interruptible=False)
+    _keep_broken_pipes_errors()
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.option.setNumber("General.NumThreads", 1)
+        gmsh.model.add("solid")
+        yield gmsh
+    finally:
+        gmsh.finalize()
+
+
+def _keep_broken_pipes_errors() -> None:
+    """Take SIGPIPE back from gmsh, with which a worker that dies would take its parent along."""
+    # Only the main thread may; Python itself sets the signal there.
+    if hasattr(signal, "SIGPIPE") and threading.current_thread() is threading.main_thread():
+        before = signal.getsignal(signal.SIGPIPE)
+        if before is not None:
+            signal.signal(signal.SIGPIPE, before)
+
 
 PURPOSE = "meshing roller and rings"
 

@@ -12,8 +12,7 @@ from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.solids.slices import balanced_loads, plane_law, slice_coupling
 from ehdmaps.solids.three_d import FiniteLine, LengthSolution, solve_length
-from ehdmaps.solids.three_d_make import profile_depths
-from ehdmaps.solids.three_d_reference import LengthCase, LengthReference
+from ehdmaps.solids.three_d_reference import LengthCase, LengthReference, profile_depths
 
 CELLS = (12, 80)
 """Cells of the solution over half the width and along the roller."""

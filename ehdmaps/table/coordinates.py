@@ -31,7 +31,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.physics.moes import valley_load_number
-from ehdmaps.physics.pressure_viscosity import ROELANDS_PRESSURE
+from ehdmaps.physics.viscosity import ROELANDS_PRESSURE
 
 ALPHA = 17e-9
 """alpha at which the bend is 1 - z [1/Pa]."""

@@ -18,19 +18,18 @@ import numpy.typing as npt
 
 from ehdmaps.arrays import BoolArray, ComplexArray, FloatArray, IndexArray
 from ehdmaps.errors import InputError
-from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.film_limits import (
+from ehdmaps.physics.closed_form import (
     HEAVIEST_LOAD_NUMBER,
     LIGHTEST_LOAD_NUMBER,
     THICK_NOTE,
     THICKEST_FILM,
     THIN_FILM_LIMIT,
 )
+from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.hertz import LARGEST_PRESSURE
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.rheology import NEWTONIAN_LIMIT, NEWTONIAN_STRESS
 from ehdmaps.physics.solution import Status
-from ehdmaps.physics.wall_stress import NEWTONIAN_LIMIT, NEWTONIAN_STRESS
 from ehdmaps.table.coordinates import LEAST_ALPHA, bend_of, valley_shift, zeta_of
 from ehdmaps.table.fields import FILMS, LAW, NATURAL_FREQUENCIES, RESPONSES, Field, Units, units
 from ehdmaps.table.interpolation import Place, place_of

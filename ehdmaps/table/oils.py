@@ -19,7 +19,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.physics.isotherm import PressureViscosity
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.pressure_viscosity import ROELANDS_PRESSURE
+from ehdmaps.physics.viscosity import ROELANDS_PRESSURE
 from ehdmaps.table.interpolation import lagrange_weights
 
 MATCHED = (0.7, 1.4, 2.8, 5.6)

@@ -11,10 +11,9 @@ from typing import Any
 import numpy as np
 
 from ehdmaps.arrays import BoolArray, FloatArray
-from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.film_limits import THICKEST_FILM
+from ehdmaps.physics.closed_form import THICKEST_FILM
+from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solution import (
     ContactSolver,
     ContactSolverDefaults,

@@ -3,12 +3,10 @@
 The modules in the order in which data pass through them:
 
 =======  ================================================================================
-record   `Trade`: choices with their cost, and the errors of what a user looks at
-pareto   which choices no other one beats in both cost and error
+record   `Trade`: choices with their cost, and the errors of what a user looks at; which no other one beats
 text     printed tables
-data     labelled dataset, and JSON
+data     labelled dataset and JSON, and their files by the rule of all files that are written
 figure   one picture, with the front of the best choices
-files    netCDF file and picture, by the rule of all files that are written
 =======  ================================================================================
 
 What is measured is no part of it: contacts and maps are in `ehdmaps.jobs`, systems in `mbs.analyses`.

@@ -9,8 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ehdmaps.figures import COLOURS, typeset, write_heading
-from ehdmaps.trade.pareto import front
-from ehdmaps.trade.record import Choice, Judged, Trade
+from ehdmaps.trade.record import Choice, Judged, Trade, front
 
 RESOLUTION = 150
 """Dots an inch."""

@@ -13,7 +13,7 @@ from types import ModuleType
 import numpy as np
 
 from ehdmaps.errors import AnalysisError, InputError
-from ehdmaps.solids.mesh import gmsh_session
+from ehdmaps.solids.mesh_plane import gmsh_session
 from ehdmaps.units import LENGTH
 from examples.housings.designs import GearboxShape, Housing, PedestalShape, Place
 from examples.housings.mesh import Mesh

@@ -14,7 +14,7 @@ from scipy.linalg import eigh
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.solids import calculix
-from ehdmaps.solids.mesh import load_gmsh
+from ehdmaps.solids.mesh_plane import load_gmsh
 from ehdmaps.units import LENGTH
 from ehdmaps.version import version
 from examples.housings import solve
@@ -23,8 +23,7 @@ from examples.housings.geometry import PURPOSE, mesh_housing
 from examples.housings.mesh import Mesh
 from mbs.flexible.finite_elements import FiniteElementModel
 from mbs.flexible.reduced_body import ReducedBody
-from mbs.flexible.reduction import reduce
-from mbs.flexible.spiders import Interface, nodes_on_cylinder
+from mbs.flexible.reduction import Interface, nodes_on_cylinder, reduce
 
 FREEDOMS = ("y", "z", "theta_y", "theta_z")
 """Of a seat: all that a cylindrical roller bearing passes on."""

@@ -25,10 +25,9 @@ from mbs.linearised.sweep import sweep
 from mbs.linearised.sweep_result import Sweep
 from mbs.model.drive import DrivenSpeed
 from mbs.model.elements import Sensor
-from mbs.output.campbell_data import campbell_dataset, of_sensors
+from mbs.output.campbell_table import campbell_dataset, of_sensors
 from mbs.output.files import described
-from mbs.output.results import BAND
-from mbs.output.state_data import with_states
+from mbs.output.results import BAND, with_states
 from mbs.scene.assembly import Model, law_attributes, supply_attributes
 from mbs.scene.scene import Scene
 from mbs.settings import CampbellSettings, RunUp

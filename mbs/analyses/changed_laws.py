@@ -19,7 +19,7 @@ from mbs.bearings.bearing_element import BearingElement, RingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.roller_contacts import RollerContacts
 from mbs.bearings.roller_element import RollerElement
-from mbs.linearised.steady import steady_system
+from mbs.linearised.averaged import steady_system
 from mbs.model.elements import Element, Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.scene.assembly import Model

@@ -25,8 +25,8 @@ from mbs.linearised.critical import (
 from mbs.linearised.sweep import sweep as sweep_system
 from mbs.linearised.sweep_result import Sweep
 from mbs.model.system import System
-from mbs.output.critical_data import critical_dataset
 from mbs.output.files import described
+from mbs.output.sweep_data import critical_dataset
 from mbs.scene.assembly import Model, law_attributes, laws_attributes
 
 

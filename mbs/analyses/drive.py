@@ -8,7 +8,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from mbs.analyses.losses import losses_over_speed
-from mbs.linearised.steady import steady_system
+from mbs.linearised.averaged import steady_system
 from mbs.model.drive import Drive, DrivenSpeed, TorqueCurve
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium

@@ -10,8 +10,8 @@ is the exponent of the film in the speed). c is k^2 times the loss.
 
 ================  ================================================================================================
 film memory       |dZ/Z| of the dynamic stiffness k + i omega c beside k + i omega c/(1 + i omega theta)
-oil supply        k and c on a layer, by the closed forms of starved rigid surfaces (`ehdmaps.physics.starved`)
-inlet heating     film by the factor of Gupta et al. (`ehdmaps.physics.thermal`), loss by its square
+oil supply        k and c on a layer, by the closed forms of starved rigid surfaces (`ehdmaps.physics.oil_supply`)
+inlet heating     film by the factor of Gupta et al. (`ehdmaps.physics.heat`), loss by its square
 roughness         Lambda, the smallest film over the roughness: asperities touch below `TOUCHING`
 ================  ================================================================================================
 """
@@ -27,11 +27,11 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.films import dowson_higginson_minimum, martin_minimum, moes_central_and_slope
+from ehdmaps.physics.heat import inlet_shear_heating_factor, thermal_loading, viscosity_slope
 from ehdmaps.physics.hertz import half_width, max_pressure, natural_time
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import dowson_groups, film_from_moes, moes_groups
-from ehdmaps.physics.starved import CORNER, compliance_ratio, damping_ratio, film_ratio, passing
-from ehdmaps.physics.thermal import inlet_shear_heating_factor, thermal_loading, viscosity_slope
+from ehdmaps.physics.oil_supply import CORNER, compliance_ratio, damping_ratio, film_ratio, passing
 
 TOUCHING = 3.0
 """Lambda below which asperities touch, as of the usual charts of rolling bearings."""

@@ -17,13 +17,12 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.jobs.job_text import Entry
 from ehdmaps.maps.low_loads import RIGID, load_at
-from ehdmaps.physics.heat import INLET_HEAT, ISOTHERMAL
-from ehdmaps.physics.inlet_heat import inlet_heat
+from ehdmaps.physics.contact import OperatingPoint
+from ehdmaps.physics.heat import INLET_HEAT, ISOTHERMAL, inlet_heat
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, THICKEST, THINNEST, OilSupply
-from ehdmaps.physics.operating_point import OperatingPoint
-from ehdmaps.physics.roughness import FINEST, SMOOTH, Surface
 from ehdmaps.physics.solids import STEEL
+from ehdmaps.physics.surface import FINEST, SMOOTH, Surface
 from ehdmaps.units import SPEED
 from mbs.analyses.film_criteria import (
     TOUCHING,
@@ -229,7 +228,7 @@ def roughness_verdict(found: Range, surface: Surface | None) -> Verdict:
 def heat_verdict(found: Range, asked: str | None = None) -> Verdict:
     """Whether heating of the inlet matters, and whether the map has it.
 
-    Where it matters the map has it by its rule (`ehdmaps.physics.inlet_heat`) where that holds all over the map. Films
+    Where it matters the map has it by its rule (`ehdmaps.physics.heat`) where that holds all over the map. Films
     with temperatures take some ten times as long, and are made where they are asked for.
 
     Parameters

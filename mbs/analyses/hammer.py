@@ -12,8 +12,8 @@ from mbs.analyses.film_errors import film_errors
 from mbs.analyses.operating import operating
 from mbs.analyses.progress import Progress, silent
 from mbs.analyses.side_by_side import Failed, side_by_side
+from mbs.linearised.averaged import steady_system
 from mbs.linearised.modes import Modes, modes
-from mbs.linearised.steady import steady_system
 from mbs.linearised.validity import FilmError
 from mbs.modal.records import Hits
 from mbs.model.equilibrium import Equilibrium, equilibrium

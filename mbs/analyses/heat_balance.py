@@ -27,7 +27,7 @@ from mbs.bearings.thermal import (
     operating_clearance,
     steady_temperatures,
 )
-from mbs.linearised.steady import steady_system
+from mbs.linearised.averaged import steady_system
 from mbs.model.elements import Element, Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.scene.assembly import Model

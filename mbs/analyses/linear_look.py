@@ -17,9 +17,9 @@ from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import AnalysisError
 from mbs.analyses.operating import operating
 from mbs.bearings.bearing_force import BearingForce
+from mbs.linearised.averaged import steady_system
 from mbs.linearised.linear import frequency_response, with_peaks
 from mbs.linearised.modes import Modes, modes
-from mbs.linearised.steady import steady_system
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.scene.assembly import Model, ring_motions

@@ -15,19 +15,16 @@ from ehdmaps.errors import InputError
 from mbs.analyses.film_errors import film_errors
 from mbs.analyses.operating import operating, states_of
 from mbs.analyses.soundness import Unsound, unsound_at_rest, with_unsound
-from mbs.linearised.averaged import AveragedEquilibrium, averaged, over_pitch
-from mbs.linearised.level_bands import level_bands
-from mbs.linearised.linear import StateSpace, frequency_response, sensed, state_space, with_peaks
+from mbs.linearised.averaged import AveragedEquilibrium, averaged, over_pitch, steady_system
+from mbs.linearised.linear import StateSpace, frequency_response, level_bands, sensed, state_space, with_peaks
 from mbs.linearised.linear import responses as responses_of
 from mbs.linearised.modes import StateModes, modes_of, state_modes, undamped_modes
-from mbs.linearised.steady import steady_system
 from mbs.linearised.sweep import MOST_ANGLES
 from mbs.linearised.validity import DynamicLoad, FilmError, dynamic_loads
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.output.files import described
-from mbs.output.results import linear_dataset
-from mbs.output.state_data import with_states
+from mbs.output.results import linear_dataset, with_states
 from mbs.scene.assembly import Model, law_attributes, laws_attributes
 from mbs.scene.scene import Scene
 

@@ -9,15 +9,14 @@ import xarray as xr
 from mbs.analyses.film_errors import film_errors
 from mbs.analyses.operating import operating, states_of
 from mbs.analyses.soundness import Unsound, unsound_at_rest, with_unsound
+from mbs.linearised.averaged import steady_system
 from mbs.linearised.modes import Modes
 from mbs.linearised.modes import modes as modes_at
-from mbs.linearised.steady import steady_system
 from mbs.linearised.validity import FilmError
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.output.files import described
-from mbs.output.results import modes_dataset
-from mbs.output.state_data import with_states
+from mbs.output.results import modes_dataset, with_states
 from mbs.scene.assembly import Model, law_attributes
 
 

@@ -14,7 +14,7 @@ from mbs.analyses.campbell import LawRun
 from mbs.analyses.followed import excited_orders, orders_in_band
 from mbs.analyses.sensors import ALL_SENSORS
 from mbs.model.elements import Sensor
-from mbs.output.campbell_data import campbell_dataset, of_sensors
+from mbs.output.campbell_table import campbell_dataset, of_sensors
 from mbs.output.files import described
 from mbs.scene.assembly import Model, law_attributes
 from mbs.settings import CampbellSettings

@@ -22,10 +22,8 @@ from mbs.analyses.soundness import Unsound, unsound_run, with_unsound
 from mbs.analyses.step_check import StepCheck, step_check
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
-from mbs.output.energy_data import with_energy
 from mbs.output.files import described
-from mbs.output.results import run_dataset
-from mbs.output.state_data import with_states
+from mbs.output.results import run_dataset, with_energy, with_states
 from mbs.scene.assembly import Model, law_attributes, supply_attributes
 from mbs.scene.scene import Scene
 from mbs.settings import RunUp

@@ -1,7 +1,7 @@
 """How much a limiting shear stress changes a contact: by two solutions, as no closed form says it.
 
 Where the pressure has a steep spike, a Newtonian oil would carry more shear stress at the walls than any oil bears
-(`ehdmaps.physics.wall_stress`). A solution takes some hundredths of a second.
+(`ehdmaps.physics.rheology`). A solution takes some hundredths of a second.
 """
 
 from __future__ import annotations
@@ -10,8 +10,8 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.jobs import solvers
+from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solution import ContactSolution, ContactSolver, contact_solution
 from mbs.analyses.film_criteria import ClosedContact
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.physics.hertz import half_width
-from ehdmaps.physics.roughness import HARDNESS
+from ehdmaps.physics.surface import HARDNESS
 from ehdmaps.units import PRESSURE
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce

@@ -11,8 +11,7 @@ from mbs.analyses.operating import operating, states_of
 from mbs.analyses.soundness import Unsound, unsound_at_rest, with_unsound
 from mbs.bearings.contact_report import BearingContacts, RollingLoss, overload
 from mbs.model.elements import Operation
-from mbs.model.equilibrium import Equilibrium, equilibrium
-from mbs.model.free_motion import free_lines, free_motions
+from mbs.model.equilibrium import Equilibrium, equilibrium, free_lines, free_motions
 from mbs.output.files import described
 from mbs.scene.assembly import Model, law_attributes
 
@@ -53,14 +52,13 @@ class StaticsResult:
     @cached_property
     def dataset(self) -> xr.Dataset:
         """What `mbs statics -o` writes; made when it is asked for."""
-        from mbs.output.results import statics_dataset
-        from mbs.output.state_data import with_states
+        from mbs.output.results import statics_dataset, with_states
 
         model = self.model
         dataset = statics_dataset(self.balance, self.contacts, self.losses, (*self.overloads, *self.free))
         dataset = with_states(dataset, states_of(model))
         if model.gears:
-            from mbs.output.gear_data import with_gears
+            from mbs.output.results import with_gears
 
             dataset = with_gears(dataset, model, self.balance)
         return with_unsound(described(dataset, **law_attributes(model)), self.unsound)

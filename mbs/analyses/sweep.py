@@ -17,7 +17,7 @@ from mbs.analyses.side_by_side import Failed, side_by_side
 from mbs.linearised.sweep import sweep as sweep_system
 from mbs.linearised.sweep_result import Sweep
 from mbs.output.files import described
-from mbs.output.state_data import with_states
+from mbs.output.results import with_states
 from mbs.output.sweep_data import sweep_dataset
 from mbs.scene.assembly import Model, law_attributes, supply_attributes
 from mbs.scene.scene import Scene

@@ -24,8 +24,8 @@ from mbs.analyses.ramp import recorded_run, run_course, silent_run
 from mbs.analyses.side_by_side import Failed, side_by_side
 from mbs.analyses.varied import VARIED, Value
 from mbs.model.elements import Sensor
+from mbs.output.campbell_table import variants_dataset
 from mbs.output.files import described
-from mbs.output.variants_data import variants_dataset
 from mbs.scene.assembly import Model, supply_attributes
 from mbs.scene.scene import Scene
 from mbs.settings import CampbellSettings, RunUp

@@ -13,7 +13,7 @@ from typing import Literal, get_args
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.supply import supply_from_text
-from ehdmaps.physics.operating_point import OIL_TEMPERATURES
+from ehdmaps.physics.contact import OIL_TEMPERATURES
 from ehdmaps.units import TEMPERATURE, Display, closest, quantity
 from mbs.analyses.case import LawChoice, Subject
 from mbs.model.relaxation import Films

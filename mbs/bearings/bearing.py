@@ -23,8 +23,8 @@ import numpy.typing as npt
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
-from ehdmaps.physics.profiles import iso_profile
 from ehdmaps.physics.solids import STEEL, Material
+from ehdmaps.physics.surface import iso_profile
 
 Profile = str | Callable[[FloatArray], npt.ArrayLike] | tuple[float, ...] | FloatArray
 

@@ -163,7 +163,7 @@ def write_plane(plane: Plane, length: float, out: FloatArray) -> None:
 def assemble(motion: RingMotion, shape: Shape, numbers: LawNumbers, states: FloatArray, out: FloatArray) -> int:
     """Force, stiffness and damping, into `out` (13, 6); returns how many rollers are above the mapped load.
 
-    The loads are those at the rate of each slice, see `ehdmaps.physics.unilateral`.
+    The loads are those at the rate of each slice, see `ehdmaps.physics.contact`.
 
     Parameters
     ----------
@@ -233,7 +233,7 @@ def roller_power(
         rate = roller.rate + x * roller.tilt_rate
         part = c[i] * rate
         parting = part < -0.5 * w[i]
-        # the rule of `ehdmaps.physics.unilateral`, less the load at rest
+        # the rule of `ehdmaps.physics.contact`, less the load at rest
         more = -0.25 * w[i] * w[i] / (part if parting else 1.0) - w[i] if parting else part
         lost += weights[i] * more * rate
         flat += weights[i] * w[i]

@@ -36,10 +36,10 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.maps.kernel import LOAD_TOLERANCE
+from ehdmaps.physics.heat import inlet_shear_heating_factor, thermal_loading, viscosity_slope
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.peak import tip_words
-from ehdmaps.physics.roughness import Surface
-from ehdmaps.physics.thermal import inlet_shear_heating_factor, thermal_loading, viscosity_slope
+from ehdmaps.physics.solution import tip_words
+from ehdmaps.physics.surface import Surface
 from ehdmaps.units import LOAD, PRESSURE, SPEED, TEMPERATURE
 from mbs.bearings.bearing import STATIC_LIMIT, Bearing
 from mbs.bearings.films import SIDES, ContactState, FilmSource

@@ -26,8 +26,7 @@ from ehdmaps.physics.films import dowson_higginson_minimum, martin_minimum, moes
 from ehdmaps.physics.hertz import max_pressure
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import dowson_groups, film_from_moes, moes_groups
-from ehdmaps.physics.oil_supply import FLOODED, OilSupply
-from ehdmaps.physics.starved import RIGID_FLOW, film_ratio, passing, pressure_ratio
+from ehdmaps.physics.oil_supply import FLOODED, RIGID_FLOW, OilSupply, film_ratio, passing, pressure_ratio
 
 if TYPE_CHECKING:
     from ehdmaps.maps.emap import EHDMap
@@ -54,7 +53,7 @@ class ContactState:
     rolling_force : array
         Force of both walls together against pure rolling [N/m]; zero without load, NaN where none is known.
     pressure_error : array
-        Stated error of the largest pressure, see `ehdmaps.physics.peak`; zero for that of Hertz, NaN where none is
+        Stated error of the largest pressure, see `ehdmaps.physics.solution`; zero for that of Hertz, NaN where none is
         stated.
     """
 
@@ -97,7 +96,7 @@ class FilmSource(Protocol):
 
 
 def on_supply(state: ContactState, flow: FloatArray, supply: OilSupply) -> ContactState:
-    """Contacts on an oil layer, from those that are flooded; see `ehdmaps.physics.starved`.
+    """Contacts on an oil layer, from those that are flooded; see `ehdmaps.physics.oil_supply`.
 
     The film has the ratio of the starved contact between rigid surfaces. So has the largest pressure, up to that of
     Hertz; a spike above it is left as it is. The rolling force is left alone.

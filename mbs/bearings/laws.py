@@ -3,7 +3,7 @@
 A law here means a roller between both raceways, over the total approach of both contacts. `single` makes the law of
 one of its two contacts, which are alike.
 
-The damping of all laws acts by the rule of `ehdmaps.physics.unilateral`, which knows no tension. Laws with a constant c
+The damping of all laws acts by the rule of `ehdmaps.physics.contact`, which knows no tension. Laws with a constant c
 have a jump of the force at lift-off, while bodies approach. A map's law is taken as it is.
 
 The law of points that a user has measured or computed has approach, line load and damping of a roller. Between the
@@ -32,12 +32,11 @@ from ehdmaps.maps.binary_cells import nodes_of
 from ehdmaps.maps.kernel import LOAD_TOLERANCE, collapse
 from ehdmaps.maps.tables import ApproachTable, LawTable, Point
 from ehdmaps.physics.approach import ISO_LINE_CONSTANT, STEEL_REDUCED_MODULUS, StructuralLaw
-from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.contact import LineContact, unilateral_force
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
-from ehdmaps.physics.roughness import SMOOTH, Surface
 from ehdmaps.physics.solids import reduced_modulus
-from ehdmaps.physics.unilateral import unilateral_force
+from ehdmaps.physics.surface import SMOOTH, Surface
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.slice_table import CELLS, POWER, ROWS, LawNumbers, fixed_tuple, tabulate, write_film
 
@@ -191,7 +190,7 @@ _unilateral_force = njit(error_model="numpy")(unilateral_force)
 def unilateral_forces(
     w: FloatArray, dw: FloatArray, c: FloatArray, dc: FloatArray, rate: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """`ehdmaps.physics.unilateral.unilateral_force` of many contacts.
+    """`ehdmaps.physics.contact.unilateral_force` of many contacts.
 
     Parameters
     ----------

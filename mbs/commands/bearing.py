@@ -10,8 +10,7 @@ from mbs.analyses.bearing_point import bearing_points
 from mbs.bearings import laws
 from mbs.bearings.laws import Law
 from mbs.commands.bearing_request import BearingRequest, read_request
-from mbs.output.bearing_data import bearing_dataset, write_csv
-from mbs.output.bearing_text import bearing_text
+from mbs.output.bearing_table import bearing_dataset, bearing_text, write_csv
 from mbs.output.files import write_dataset
 from mbs.scene.contact_laws import Damper, hertz_damper, table_path
 from mbs.scene.law_file import read_law

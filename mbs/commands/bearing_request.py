@@ -16,17 +16,17 @@ from ehdmaps.errors import EhdmapsError, InputError
 from ehdmaps.inputs import first_bytes, read_text
 from ehdmaps.outputs import FIGURE, Output, output_problems
 from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
+from ehdmaps.physics.contact import OIL_TEMPERATURES
 from ehdmaps.physics.lubricant import LUBRICANTS, Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
-from ehdmaps.physics.operating_point import OIL_TEMPERATURES
-from ehdmaps.physics.roughness import FINEST, ROUGHEST, SMOOTH, Surface
 from ehdmaps.physics.solids import STEEL, Material
+from ehdmaps.physics.surface import FINEST, ROUGHEST, SMOOTH, Surface
 from ehdmaps.units import RPM, TEMPERATURE, Display, closest, quantity, short
 from mbs.bearings.bearing import MOST_COUPLED, Bearing
 from mbs.bearings.films import SIDES, FilmSource, FormulaFilms, MapFilms
 from mbs.bearings.thermal import BearingState, Mounting, operating_clearance
 from mbs.commands.options import NO_MAP, read_clearance, read_supplies
-from mbs.output.bearing_data import WIDE_RANGE, BearingDescription, result_kind
+from mbs.output.bearing_table import WIDE_RANGE, BearingDescription, result_kind
 from mbs.scene.contact_laws import (
     HERTZ_FORMS,
     TABLE_FORM,

@@ -28,10 +28,17 @@ from mbs.commands.cases import load_cases
 from mbs.commands.common import Looked, Told, marked, unsound_lines, write
 from mbs.linearised.sweep_result import ComplexSweep, Sweep
 from mbs.model.elements import Sensor
-from mbs.output.campbell_data import with_measured
-from mbs.output.campbell_text import PEAKS, highest_line, peak_line, peak_lines, resolution_lines, sensor_line
-from mbs.output.energy_text import drive_lines, energy_lines
+from mbs.output.campbell_table import (
+    PEAKS,
+    highest_line,
+    peak_line,
+    peak_lines,
+    resolution_lines,
+    sensor_line,
+    with_measured,
+)
 from mbs.output.model_text import band_lines, clearance_text, common_supply, heading, held_lines, temperature_text
+from mbs.output.result_text import drive_lines, energy_lines
 from mbs.output.time_files import is_time_data, write_time_data
 from mbs.scene.assembly import Model
 from mbs.settings import CampbellSettings
@@ -183,8 +190,7 @@ def _asked(arguments: argparse.Namespace) -> _Asked:
 
 def _figure(found: CampbellResult, measured: RecordedRun | None) -> Figure:
     """The figure, with modes and with what is not valid marked; of several sensors the levels alone."""
-    from mbs.output.campbell_plot import campbell_figure
-    from mbs.output.sensors_plot import sensors_figure
+    from mbs.output.campbell_plot import campbell_figure, sensors_figure
 
     labels = [entry.case.label for entry in found.runs]
     results = [entry.spectra for entry in found.runs]

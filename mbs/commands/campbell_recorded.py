@@ -26,12 +26,12 @@ from mbs.analyses.recorded import (
 from mbs.analyses.sensors import ALL_SENSORS, chosen_sensors
 from mbs.commands.common import write
 from mbs.commands.options import read_option
-from mbs.output.campbell_text import highest_line, peak_lines, resolution_lines, sensor_line
+from mbs.output.campbell_table import highest_line, peak_lines, resolution_lines, sensor_line
 from mbs.output.files import RESULT
 from mbs.output.time_files import is_time_data, read_time_data, signal_outputs, write_time_data
 from mbs.scene.assembly import Model
 from mbs.scene.fields import HERTZ, MILLISECOND
-from mbs.scene.runs import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
+from mbs.scene.reader import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
 from mbs.settings import CampbellSettings
 from mbs.spectral.campbell import RunUpSpectra
 from mbs.spectral.levels import Reference, difference_text
@@ -301,8 +301,7 @@ def _run_lines(label: str, run: RecordedRun) -> list[str]:
 
 def _figure(data: TimeData, found: RecordedResult) -> Figure:
     """The figure of recorded runs."""
-    from mbs.output.campbell_plot import campbell_figure
-    from mbs.output.sensors_plot import sensors_figure
+    from mbs.output.campbell_plot import campbell_figure, sensors_figure
 
     labels = [run.record.label for run in found.runs]
     channels = found.runs[0].channels

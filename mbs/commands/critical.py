@@ -24,11 +24,11 @@ from mbs.commands.lsa import MOST_COMPARED_CASES
 from mbs.commands.sweep import read_speeds
 from mbs.linearised.critical import CriticalSpeed
 from mbs.linearised.linear import sensor_unit
-from mbs.output.critical_data import orbits, sensed
 from mbs.output.model_text import heading
+from mbs.output.sweep_data import orbits, sensed
 
 if TYPE_CHECKING:
-    from mbs.output.critical_plot import CriticalCurves
+    from mbs.output.sweep_plot import CriticalCurves
 
 _HEAD = "critical speeds      order       speed   frequency/Hz   damping ratio   whirl"
 _WIDTH = 102
@@ -66,7 +66,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         lines += _beside(found)
     figure = None
     if arguments.plot:
-        from mbs.output.critical_plot import critical_figure
+        from mbs.output.sweep_plot import critical_figure
 
         figure = critical_figure([_curves(label, entry) for label, entry in found])
     dataset = dataset_of_laws([label for label, _ in found], [entry for _, entry in found])
@@ -114,7 +114,7 @@ def _outside(found: CriticalResult) -> list[str]:
 
 def _curves(label: str, found: CriticalResult) -> CriticalCurves:
     """What is drawn of a law."""
-    from mbs.output.critical_plot import CriticalCurves
+    from mbs.output.sweep_plot import CriticalCurves
 
     return CriticalCurves(
         label, found.model, found.sweep, found.found, found.speeds, found.responses, orders(found.model.system)

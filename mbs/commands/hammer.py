@@ -20,8 +20,7 @@ from mbs.commands.auto import analysed
 from mbs.commands.cases import load_cases
 from mbs.commands.common import Looked, Told, unsound_lines
 from mbs.linearised.modes import Modes
-from mbs.modal.uff import UFF, Measurement
-from mbs.modal.uff_writing import write_uff
+from mbs.modal.uff import UFF, Measurement, write_uff
 from mbs.output.model_text import clean, film_lines, free_words, heading
 from mbs.scene.contact_laws import FILM_WORDS
 from mbs.scene.fields import MILLISECOND

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ehdmaps.errors import InputError
-from ehdmaps.exports.matlab_file import KIND
+from ehdmaps.exports.mat import KIND
 from ehdmaps.outputs import FIGURE, Output, output_problems
 from mbs.analyses.case import Case
 from mbs.analyses.lsa import LsaResult, LsaSettings, lsa_dataset, lsa_of, lsa_problems

@@ -13,14 +13,11 @@ from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.outputs import FIGURE, Output, output_problems, write_figure
 from ehdmaps.units import quantity
 from mbs.commands.common import RESOLUTION
-from mbs.modal.estimation import Estimate, estimate
+from mbs.modal.estimation import Estimate, estimate, needed_decay
 from mbs.modal.fit import identify
 from mbs.modal.records import Responses
 from mbs.modal.result import Method, ModalFit, fit_dataset
-from mbs.modal.uff import UFF, Measurement
-from mbs.modal.uff_reading import read_uff
-from mbs.modal.uff_writing import write_uff
-from mbs.modal.windows import needed_decay
+from mbs.modal.uff import UFF, Measurement, read_uff, write_uff
 from mbs.output.files import RESULT, described, write_dataset
 
 TOLERANCE = 0.2
@@ -193,7 +190,7 @@ def _write(
         write_uff(Path(arguments.responses), Measurement(measured.title, (), responses))
         lines.append(f"{arguments.responses}: written")
     if arguments.plot:
-        from mbs.output.modal_plot import fit_figure
+        from mbs.output.modes_plot import fit_figure
 
         write_figure(fit_figure(measured.title or Path(arguments.file).name, fits), arguments.plot, RESOLUTION)
         lines.append(f"{arguments.plot}: written")

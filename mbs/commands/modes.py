@@ -23,12 +23,12 @@ from mbs.linearised.modes import Modes
 from mbs.linearised.shapes import skeleton
 from mbs.output.files import RESULT
 from mbs.output.model_text import band_lines, clean, film_law_line, film_lines, free_words, heading
-from mbs.output.modes_text import kinds, share_words
+from mbs.output.result_text import kinds, share_words
 from mbs.output.shapes_file import MOST_SHAPES as MOST_WRITTEN
 from mbs.output.shapes_file import SHAPES, write_shapes
 from mbs.scene.assembly import Model
 from mbs.scene.fields import HERTZ, MILLISECOND
-from mbs.scene.runs import HIGHEST_HIGHEST, LOWEST_HIGHEST
+from mbs.scene.reader import HIGHEST_HIGHEST, LOWEST_HIGHEST
 from mbs.scene.scene import Scene
 
 HIGHEST = 10e3
@@ -98,7 +98,7 @@ def _shape_problems(arguments: argparse.Namespace, model: Model | None) -> list[
         wrong = [text for text in numbers if not (text.isascii() and text.isdigit() and 1 <= int(text[:9]) <= _LAST)]
         problems += [f"--shape-modes: got {text!r:.40}; allowed: numbers of modes from 1 on" for text in wrong]
         if picture is not None:
-            from mbs.output.shapes_plot import MOST_SHAPES
+            from mbs.output.modes_plot import MOST_SHAPES
 
             if len(numbers) > MOST_SHAPES:
                 problems.append(f"--shape-modes: got {len(numbers)} modes for a picture; allowed: up to {MOST_SHAPES}")
@@ -132,7 +132,7 @@ def _write_shapes(arguments: argparse.Namespace, result: ModesResult, shown: Int
         write_shapes(Path(file), result.modes, bones, wanted)
         lines.append(f"{file}: written, {min(len(wanted), MOST_WRITTEN)} modes")
     if picture is not None:
-        from mbs.output.shapes_plot import MOST_SHAPES, shapes_figure
+        from mbs.output.modes_plot import MOST_SHAPES, shapes_figure
 
         drawn = wanted[:MOST_SHAPES]
         at = RPM.text(result.model.scene.speed)

@@ -13,7 +13,7 @@ from ehdmaps.outputs import Output, output_problems
 from ehdmaps.units import LENGTH
 from ehdmaps.version import version
 from mbs.flexible.carry_out import read_model, reduce_model
-from mbs.flexible.extent import Extent, extent
+from mbs.flexible.finite_elements import Extent, extent
 from mbs.flexible.reduced_body import ReducedBody
 from mbs.flexible.reduced_file import REDUCED, write_reduced
 from mbs.scene.fields import HERTZ

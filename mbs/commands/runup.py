@@ -28,14 +28,13 @@ from mbs.commands.campbell_recorded import read_source, signal_problems
 from mbs.commands.cases import load_cases
 from mbs.commands.common import Looked, Told, unsound_lines, write
 from mbs.commands.options import read_option
-from mbs.output.energy_text import drive_lines, energy_lines
 from mbs.output.files import described
 from mbs.output.model_text import heading, held_lines
-from mbs.output.signal_text import signal_lines
-from mbs.output.spectrum_data import with_spectra
+from mbs.output.result_text import drive_lines, energy_lines, signal_lines
+from mbs.output.results import with_spectra
 from mbs.output.time_files import is_time_data, read_time_data, write_time_data
 from mbs.scene.fields import HERTZ, MICROSECOND, MILLISECOND
-from mbs.scene.runs import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
+from mbs.scene.reader import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
 from mbs.scene.scene import Scene
 from mbs.settings import HIGHEST
 from mbs.spectral.spectra import AmplitudeSpectrum

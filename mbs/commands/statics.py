@@ -38,7 +38,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     balance, contacts = found.balance, found.contacts
     figure = None
     if arguments.plot:
-        from mbs.output.plot import statics_figure
+        from mbs.output.bearing_plot import statics_figure
 
         figure = statics_figure(model, balance, contacts, found.overloads)
     lines = [
@@ -67,7 +67,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             *_matrix(f"C [{DAMPINGS}]", DAMPER.factor * damping),
         ]
     if model.gears:
-        from mbs.output.gear_data import gear_lines
+        from mbs.output.results import gear_lines
 
         lines += gear_lines(model, balance)
     lines += flooded_note(max((loss.torque for loss in found.losses), default=math.nan), model.supplies.values())

@@ -22,11 +22,10 @@ from mbs.analyses.sweep import SweepSettings, sweep, sweep_problems
 from mbs.commands.auto import analysed
 from mbs.commands.cases import load_cases
 from mbs.commands.common import Looked, marked, unsound_lines, write
-from mbs.linearised.crossings import exchanged
 from mbs.linearised.linear import response_display
 from mbs.linearised.modes import free_motions
 from mbs.linearised.sweep import MOST_ANGLES
-from mbs.linearised.sweep_result import Sweep
+from mbs.linearised.sweep_result import Sweep, exchanged
 from mbs.model.elements import Operation
 from mbs.output.model_text import (
     ROUND_OFF,

@@ -6,8 +6,7 @@ import argparse
 import dataclasses
 
 from ehdmaps.errors import InputError
-from ehdmaps.trade.data import trade_json
-from ehdmaps.trade.files import TRADE, write_trade
+from ehdmaps.trade.data import TRADE, trade_json, write_trade
 from ehdmaps.trade.text import trade_text
 from mbs.analyses.campbell import campbell_problems
 from mbs.analyses.case import LawChoice
@@ -16,7 +15,7 @@ from mbs.commands.cases import read_compared
 from mbs.commands.common import Told
 from mbs.commands.options import read_option
 from mbs.scene.fields import HERTZ, MILLISECOND
-from mbs.scene.runs import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
+from mbs.scene.reader import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
 from mbs.scene.scene import Scene
 
 

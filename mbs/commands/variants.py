@@ -18,7 +18,7 @@ from mbs.commands.common import Told, write
 from mbs.commands.options import read_option
 from mbs.output.model_text import clearance_text, common_supply, held_lines, temperature_text, weight_text
 from mbs.scene.fields import HERTZ, MILLISECOND
-from mbs.scene.runs import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
+from mbs.scene.reader import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
 from mbs.scene.scene import Scene
 from mbs.settings import CampbellSettings
 from mbs.spectral.levels import Reference
@@ -35,7 +35,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     title = f"{scene.title}\n{_base(found)}; one change at a time"
     figure = None
     if arguments.plot:
-        from mbs.output.variants_plot import variants_figure
+        from mbs.output.campbell_plot import variants_figure
 
         figure = variants_figure(title, found.dataset, found.labels)
     lines += write(arguments, found.dataset, figure)

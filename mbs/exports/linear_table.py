@@ -17,8 +17,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.exports.header import BEARING_AXES, origin
-from ehdmaps.exports.target import Target
+from ehdmaps.exports.target import BEARING_AXES, Target, origin
 from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.outputs import Kind, Output, check_outputs, write_text
 from ehdmaps.units import RPM, TEMPERATURE, Display, quantity

@@ -1,11 +1,12 @@
-"""Stiffness and mass as other programs write them: tables of numbers, Matrix Market, Abaqus matrix output.
-
-All readers give a sparse matrix and labels (node, direction) of its rows. A symmetric matrix may be given as one half
-or as a whole; which one it is, the entries say: each pair once, or each twice.
-"""
+"""Bodies as other programs write them: Matrix Market, Abaqus, CalculiX, tables of numbers, and places of the nodes."""
 
 from __future__ import annotations
 
+import math
+import re
+import subprocess
+import sys
+import tempfile
 from pathlib import Path
 from typing import NamedTuple
 
@@ -14,6 +15,8 @@ from scipy import io, sparse
 
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import InputError
+from ehdmaps.extras import needs
+from ehdmaps.units import short
 from mbs.flexible.finite_elements import MOST_FREEDOMS, FiniteElementModel
 from mbs.flexible.number_table import NumberTable, check_file, check_last_line, read_numbers
 from mbs.flexible.plan import UNIT_SYSTEMS
@@ -292,3 +295,209 @@ def _check_plain(path: Path) -> None:
                 raise InputError(
                     f"{path}: is no Matrix Market file (it has zero bytes); allowed: text; was it damaged?"
                 )
+
+
+DECKS = (".inp",)
+
+_SEVERAL = (".xdmf", ".xmf", ".xml", ".node", ".ele")
+"""Formats of meshio that open further files, whatever those are."""
+
+_PACKED = (".gz",)
+
+SHORTEST_READ, BYTES_PER_SECOND = 20.0, 1e6
+"""Seconds that meshio has, and what it reads in one more; it takes half a second to start, and 10 MB a second."""
+
+_NO_PACKAGE = 3
+"""Exit status of the process that reads, where meshio or a package that it needs is not installed."""
+
+# meshio prints what went wrong, and leaves the program.
+_READ = f"""
+import os, sys
+found = os.fdopen(os.dup(1), "wb")
+os.dup2(2, 1)
+try:
+    import meshio, numpy
+    numpy.save(found, numpy.asarray(meshio.read(sys.argv[1]).points, dtype=float))
+except ImportError as error:
+    sys.stderr.write(str(error))
+    sys.exit({_NO_PACKAGE})
+except (Exception, SystemExit) as error:
+    sys.stderr.write(f" {{error}}")
+"""
+
+
+def read_mesh_nodes(path: Path) -> NodePositions:
+    """Read the positions of the nodes, in the units of the file.
+
+    Parameters
+    ----------
+    path : Path
+        .inp: all *NODE blocks; anything else that meshio reads: .msh, .vtk, .vtu, .bdf ...
+
+    Raises
+    ------
+    InputError
+        With the file, and the line of a deck.
+    """
+    check_file(path)
+    if path.suffix.lower() in (*_SEVERAL, *_PACKED):
+        raise InputError(
+            f"{path}: got the ending {path.suffix!r}, of a mesh in several files or a packed one; allowed: a mesh in "
+            "one file, such as .inp, .msh, .vtk, .vtu, .bdf; convert it"
+        )
+    return _deck_nodes(path) if path.suffix.lower() in DECKS else _meshio_nodes(path)
+
+
+def _deck_nodes(path: Path) -> NodePositions:
+    """Nodes of a deck."""
+    found: dict[int, tuple[float, float, float]] = {}
+    inside = False
+    with path.open(encoding="utf-8", errors="replace") as file:
+        for number, line in enumerate(file, start=1):
+            text = line.strip()
+            if not text or text.startswith("**"):
+                continue
+            if text.startswith("*"):
+                keyword = text[1:].partition(",")[0].strip().upper()
+                if keyword == "INCLUDE":
+                    raise InputError(f"{path}, line {number}: got {short(text)}; allowed: a deck with its nodes in it")
+                inside = keyword == "NODE"
+                if inside and "SYSTEM" in text.upper().replace("SYSTEM=R", ""):
+                    raise InputError(f"{path}, line {number}: got {short(text)}; allowed: rectangular coordinates")
+                continue
+            if inside:
+                if not line.endswith("\n"):
+                    raise InputError(
+                        f"{path}, line {number}: got {short(text)}, which has no end; allowed: a deck that is whole; "
+                        "the file was cut off, or add a line break where it was not"
+                    )
+                node, position = _node(path, number, text)
+                found[node] = position
+    if not found:
+        raise InputError(f"{path}: has no *NODE block; allowed: the deck that has the nodes of the mesh")
+    return NodePositions(np.array(list(found), dtype=np.int64), np.array(list(found.values()), dtype=np.float64))
+
+
+def _node(path: Path, number: int, text: str) -> tuple[int, tuple[float, float, float]]:
+    """One line of a *NODE block."""
+    parts = [part.strip() for part in text.rstrip(",").split(",")]
+    try:
+        node = int(parts[0])
+        values = [float(part) if part else 0.0 for part in parts[1:4]]
+    except ValueError:
+        node, values = 0, []
+    # A coordinate that is left out is zero.
+    if not (1 <= node <= 10**12 and 1 <= len(values) <= 3 and all(math.isfinite(value) for value in values)):
+        raise InputError(f"{path}, line {number}: got {short(text)}; allowed: a node from 1, and x, y, z")
+    x, y, z = [*values, 0.0, 0.0][:3]
+    return node, (x, y, z)
+
+
+def _meshio_nodes(path: Path) -> NodePositions:
+    """Points of a mesh that meshio reads."""
+    points = _meshio_points(path)
+    if points.ndim != 2 or points.shape[0] == 0 or points.shape[1] not in (2, 3) or not np.all(np.isfinite(points)):
+        raise InputError(
+            f"{path}: got points of shape {points.shape}; allowed: finite positions in two or three dimensions"
+        )
+    flat = np.zeros((points.shape[0], 3 - points.shape[1]))
+    return NodePositions(np.arange(1, points.shape[0] + 1), np.hstack([points, flat]))
+
+
+def _meshio_points(path: Path) -> FloatArray:
+    """What meshio finds, in a process of its own: some of its readers never end where a file was cut off."""
+    seconds = SHORTEST_READ + path.stat().st_size / BYTES_PER_SECOND
+    with tempfile.TemporaryFile() as found:
+        try:
+            done = subprocess.run(
+                # -P: nothing is imported from the folder in which we are.
+                [sys.executable, "-P", "-c", _READ, str(path.absolute())],
+                stdin=subprocess.DEVNULL,
+                stdout=found,
+                stderr=subprocess.PIPE,
+                timeout=seconds,
+                check=False,
+            )
+            words = " ".join(done.stderr.decode("utf-8", "replace").split())
+            if done.returncode == _NO_PACKAGE:
+                with needs("flexible", "meshio", f"{path}: reading this format"):
+                    raise ImportError(f"{words:.120}")
+        except subprocess.TimeoutExpired:
+            words = f"it did not end within {seconds:.3g} s"
+        found.seek(0)
+        try:
+            return np.asarray(np.load(found, allow_pickle=False), dtype=np.float64)
+        except (OSError, ValueError, EOFError) as error:
+            raise InputError(
+                f"{path}: cannot be read as a mesh ({words:.120}); allowed: a format that meshio reads; was it cut off?"
+            ) from error
+
+
+_REFUSED = ("RIGIDBODY", "TRANSFORM", "MPC", "DISTRIBUTINGCOUPLING", "KINEMATIC", "DISTRIBUTING", "COUPLING")
+_ROW = re.compile(r"([0-9]{1,20})\.([0-9]{1,20})")
+
+
+def read_calculix(
+    stiffness: Path, mass: Path, dofs: Path, nodes: NodePositions, units: str = "SI"
+) -> FiniteElementModel:
+    """Read the matrices of a CalculiX run.
+
+    Parameters
+    ----------
+    stiffness, mass, dofs : Path
+        Files job.sti, job.mas and job.dof of one run.
+    nodes : NodePositions
+        Nodes of its mesh; see `mbs.flexible.matrix_files`.
+    units : {"SI", "mm-t-s"}
+        Units of deck and matrices.
+
+    Raises
+    ------
+    InputError
+        With file and line.
+    """
+    labels = read_dofs(dofs)
+    return assemble_model(read_triplets(stiffness, *labels), read_triplets(mass, *labels), nodes, units)
+
+
+def read_dofs(path: Path) -> tuple[IntArray, IntArray]:
+    """Read a .dof file.
+
+    Returns
+    -------
+    nodes, directions : array of int, shape (N,)
+        Directions counted from 0.
+
+    Raises
+    ------
+    InputError
+        With file and line.
+    """
+    # As numbers first, for length, line and finiteness; "12.10" would be direction 1 as a number, so as text then.
+    table = read_numbers(path, 1, "#")
+    with path.open(encoding="utf-8", errors="replace") as file:
+        found = [_ROW.fullmatch(text) for line in file if (text := line.partition("#")[0].strip())]
+    if None in found:
+        raise table.problem(found.index(None), 'allowed: "node.direction", such as 12.1')
+    whole = np.array([[int(part) for part in match.groups()] for match in found if match], dtype=object)
+    huge = np.flatnonzero((whole > 10**12).any(axis=1))
+    if huge.size:
+        raise table.problem(int(huge[0]), "allowed: a node from 1 and a direction from 1 to 6")
+    return checked_labels(table, whole.astype(np.int64))
+
+
+def check_deck(path: Path) -> None:
+    """Raise InputError if a deck has constraints that make its matrices unreadable: see the head of this module."""
+    check_file(path)
+    wrong = []
+    with path.open(encoding="utf-8", errors="replace") as file:
+        for number, line in enumerate(file, start=1):
+            if line.startswith("*") and not line.startswith("**"):
+                keyword = line[1:].partition(",")[0].strip().upper()
+                if keyword.replace(" ", "") in _REFUSED:
+                    wrong.append(
+                        f"{path}, line {number}: got *{keyword}; allowed: solid elements, fixed nodes, ties; "
+                        "interfaces follow by a spider of this program instead"
+                    )
+    if wrong:
+        raise InputError(wrong)

@@ -1,21 +1,141 @@
-"""What a finite-element body is made from, as plain data: a reduced file, or matrices and how to reduce them.
-
-Nothing is computed here, and no file is opened but to see that it is there: `mbs.flexible.carry_out` does the work.
-"""
+"""A finite-element body as plain data: its files, how they are reduced, how it is turned, what it carries."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Literal, get_args
 
+import numpy as np
+
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.inputs import check_input
 from mbs.flexible.number_table import check_file
-from mbs.model.body import FREEDOMS
+from mbs.model.body import FREEDOMS, Body, Inertia, lever_arm
+
+AXES = ("x", "y", "z")
+_WHOLE = 1e-13
+"""A sine this close to a whole number is one: angles in degrees read back with 15 digits."""
+
+
+@dataclass(frozen=True)
+class Turn:
+    """A turn of a body about an axis of the system.
+
+    Attributes
+    ----------
+    about : {"x", "y", "z"}
+        The axis.
+    angle : float
+        Angle by the right-hand rule [rad].
+
+    Raises
+    ------
+    InputError
+        For another axis, or an angle that is not finite.
+    """
+
+    about: str
+    angle: float
+
+    def __post_init__(self) -> None:
+        problems = []
+        if self.about not in AXES:
+            problems.append(f"rotation, about: got {self.about!r:.40}; allowed: {', '.join(AXES)}")
+        if not math.isfinite(self.angle):
+            problems.append(f"rotation, angle: got {self.angle!r} rad; allowed: finite")
+        if problems:
+            raise InputError(problems)
+
+    @property
+    def matrix(self) -> FloatArray:
+        """Matrix of the turn, shape (3, 3); that of a quarter turn has zeros and ones alone."""
+        cosine, sine = _snapped(math.cos(self.angle)), _snapped(math.sin(self.angle))
+        first, second = {"x": (1, 2), "y": (2, 0), "z": (0, 1)}[self.about]
+        matrix = np.eye(3)
+        matrix[first, first] = matrix[second, second] = cosine
+        matrix[first, second], matrix[second, first] = -sine, sine
+        return matrix
+
+
+def rotation_of(turns: Sequence[Turn]) -> FloatArray:
+    """Matrix of some turns, the first one first, shape (3, 3).
+
+    Parameters
+    ----------
+    turns : sequence of Turn
+        Turns about the axes of the system, which stay where they are.
+
+    Examples
+    --------
+    >>> quarter = math.pi / 2.0
+    >>> (rotation_of([Turn("z", quarter), Turn("x", quarter)]) @ [1.0, 0.0, 0.0]).tolist()
+    [0.0, 0.0, 1.0]
+    """
+    matrix = np.eye(3)
+    for turn in turns:
+        matrix = turn.matrix @ matrix
+    return matrix
+
+
+def _snapped(value: float) -> float:
+    """A sine or cosine without the round-off of quarter turns."""
+    whole = float(round(value))
+    return whole if abs(value - whole) < _WHOLE else value
+
+
+@dataclass(frozen=True)
+class Attached:
+    """A rigid part on a frame.
+
+    Attributes
+    ----------
+    frame : str
+        Name of the frame.
+    inertia : Inertia
+        Mass and moments of inertia; the offset is that of the centre of mass from the frame, along x.
+    """
+
+    frame: str
+    inertia: Inertia
+
+
+def attach(body: Body, parts: Sequence[Attached]) -> Body:
+    """The body with rigid parts fixed to its frames; they add mass, and stiffen nothing.
+
+    Parameters
+    ----------
+    body : Body
+        The reduced body. Modes that it was reduced to stay its coordinates, so parts much heavier than what they sit on
+        ask for a higher cut-off.
+    parts : sequence of Attached
+        Parts on frames whose six displacements are known.
+
+    Raises
+    ------
+    InputError
+        For frames that the body does not have.
+    """
+    problems = [
+        f"body {body.name!r}, attached: got the frame {part.frame!r}; allowed: {', '.join(body.frames)}"
+        for part in parts
+        if part.frame not in body.frames
+    ]
+    if problems:
+        raise InputError(problems)
+    mass, gyroscopic = body.mass.copy(), body.gyroscopic.copy()
+    for part in parts:
+        m, polar, transverse = part.inertia.mass, part.inertia.polar, part.inertia.transverse
+        transform = lever_arm((part.inertia.offset, 0.0, 0.0)) @ body.frames[part.frame].transform
+        mass += transform.T @ np.diag([m, m, m, polar, transverse, transverse]) @ transform
+        about_y, about_z = transform[4], transform[5]
+        gyroscopic += polar * (np.outer(about_y, about_z) - np.outer(about_z, about_y))
+    return replace(body, mass=mass, gyroscopic=gyroscopic)
+
 
 FORMATS = ("calculix", "matrix-market", "abaqus")
 

@@ -1,7 +1,7 @@
 """Force of a gear mesh along its line of action, in compiled code, without allocation.
 
 Each flank feels one compression and its rate. k and c act while it is compressed, by the rule of
-`ehdmaps.physics.unilateral` that knows no tension.
+`ehdmaps.physics.contact` that knows no tension.
 
 Within `TOUCH` of first contact the stiffness rises from zero in a straight line and the damping by 3 s^2 - 2 s^3, so
 that the force is C1 in compression and rate, at any rate. A compressed flank is thereby offset by TOUCH/2, which is
@@ -14,7 +14,7 @@ import math
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.compiled import njit
-from ehdmaps.physics.unilateral import Force, unilateral_force
+from ehdmaps.physics.contact import Force, unilateral_force
 
 _unilateral_force = njit(error_model="numpy")(unilateral_force)
 

@@ -1,18 +1,12 @@
-"""Small motion with the stiffness and damping that bearings have on average while their cages turn by a pitch.
-
-A linear system has one stiffness. Which one depends on where the rollers stand, which the start angle of a cage sets by
-assumption. Here equilibria are found at several angles within one pitch of the rollers, and stiffness, damping and what
-relaxes are averaged: that is the mean part of a system that repeats itself with the passing of rollers. What else it
-does, above all excitation at the passing frequency and its combinations with modes, is left out (a method of first
-order in the part that varies).
-"""
+"""Small motion with the stiffness and damping that bearings and gear meshes have on average over an angle."""
 
 from __future__ import annotations
 
+import copy
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -22,6 +16,30 @@ from mbs.linearised.dynamic import dynamic_stiffness
 from mbs.model.elements import Element
 from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.model.relaxation import Relaxation
+from mbs.model.system import Connected, System
+
+
+@runtime_checkable
+class Varying(Protocol):
+    """An element whose stiffness varies with the angle."""
+
+    def steady(self) -> Element:
+        """The same element, on the same ports, with its mean stiffness."""
+        ...
+
+
+def steady_system(system: System) -> System:
+    """The system with the mean stiffness of elements whose stiffness varies with the angle; else the same system."""
+    if not any(isinstance(connected.element, Varying) for connected in system.elements):
+        return system
+    steady = copy.copy(system)
+    steady.elements = tuple(
+        Connected(connected.element.steady(), connected.transform)
+        if isinstance(connected.element, Varying)
+        else connected
+        for connected in system.elements
+    )
+    return steady
 
 
 @dataclass(frozen=True, eq=False)

@@ -231,7 +231,7 @@ class LawBands:
     def of_bearings(self) -> FloatArray:
         """Bands of k [N/m] and c [N s/m] of each bearing along its force, either way, shape (2, bearings).
 
-        Those of `mbs.linearised.sweep_point.along_load`; NaN for a bearing without force.
+        Those of `mbs.linearised.sweep.along_load`; NaN for a bearing without force.
         """
         balance, found = self._balance, []
         for index in balance.system.select(RingElement):

@@ -14,9 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ehdmaps.arrays import ComplexArray, FloatArray
+from mbs.linearised.averaged import steady_system
 from mbs.linearised.dynamic import dynamic_stiffness, element_dynamic_stiffness
-from mbs.linearised.steady import steady_system
-from mbs.linearised.sweep_point import Point, solve_modes
+from mbs.linearised.sweep import Point, solve_modes
 from mbs.linearised.sweep_result import ComplexSweep
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium

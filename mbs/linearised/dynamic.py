@@ -1,19 +1,117 @@
-"""The dynamic stiffness of a system at any frequency, real or complex, with films that relax or without.
-
-    Z(s) = M s^2 + (D + speed G) s + K + what relaxing films add,    exactly, with all slices.
-
-Without relaxing films Z is that of stiffness and damping of slow motion.
-"""
+"""The dynamic stiffness of a system at any frequency, real or complex, and films that relax in states and modes."""
 
 from __future__ import annotations
 
-import numpy as np
-from scipy.linalg import eigh
+import enum
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import NamedTuple
 
-from ehdmaps.arrays import ComplexArray, FloatArray
-from mbs.linearised.film_states import FilmStates, film_states, together
+import numpy as np
+from scipy.linalg import block_diag, eigh, svd
+
+from ehdmaps.arrays import BoolArray, ComplexArray, FloatArray
+from ehdmaps.maps.film_response import law_stiffness
+from mbs.bearings.bearing_element import RingElement
 from mbs.model.equilibrium import Equilibrium
 from mbs.model.relaxation import Relaxation
+
+TOLERANCE = 1e-8
+"""Error of F on the frequency axis, as a part of F(0)."""
+
+_MOST_POLES = 16
+_FREQUENCIES = 61
+_ALIKE = 1e-12
+
+
+@dataclass(frozen=True, eq=False)
+class FilmStates:
+    """Some springs in series with dampers that act like many.
+
+    Attributes
+    ----------
+    relaxation : Relaxation
+        The few, q of them.
+    lift : array, shape (r, q)
+        Orthonormal columns: forces of the many, in the roots of their springs, by those of the few.
+    slowest : float
+        Longest time of the many [s].
+    """
+
+    relaxation: Relaxation
+    lift: FloatArray
+    slowest: float = 0.0
+
+    @property
+    def size(self) -> int:
+        """Number q of the few."""
+        return self.relaxation.times.size
+
+
+def film_states(relaxation: Relaxation, highest: float = math.inf) -> FilmStates:
+    """Reduce springs in series with dampers to few that act alike.
+
+    Parameters
+    ----------
+    relaxation : Relaxation
+        All of them, in ports that are few.
+    highest : float
+        Frequency up to which they do [rad/s].
+    """
+    rows, times = relaxation.rows, relaxation.times
+    if not np.any(rows):
+        return FilmStates(Relaxation(rows[:0], times[:0]), np.zeros((times.size, 0)))
+    left, sizes, right = svd(rows, full_matrices=False)
+    rank = int(np.count_nonzero(sizes > _ALIKE * sizes[0]))
+    begin, ports = left[:, :rank], sizes[:rank, None] * right[:rank]
+    low = 1e-2 / times.max()
+    omega = np.geomspace(low, max(min(1e2 / times.min(), highest), 10.0 * low), _FREQUENCIES)
+    exact = _transfer(begin, times, omega)
+    space = begin
+    for poles in range(_MOST_POLES + 1):
+        few = space.T @ (times[:, None] * space)
+        found, turned = np.linalg.eigh(0.5 * (few + few.T))
+        error = np.abs(_transfer((begin.T @ space @ turned).T, found, omega) - exact).max(axis=(1, 2))
+        if error.max() <= TOLERANCE or space.shape[1] >= times.size or poles == _MOST_POLES:
+            break
+        place = omega[int(np.argmax(error))] * times
+        seen = begin / (1.0 + place**2)[:, None]
+        space = _extended(space, np.hstack([seen, place[:, None] * seen]))
+    lift = space @ turned
+    slowest = float(times[np.any(rows != 0.0, axis=1)].max())
+    return FilmStates(Relaxation(lift.T @ begin @ ports, found), lift, slowest)
+
+
+def together(parts: Iterable[FilmStates]) -> FilmStates | None:
+    """The films of several elements, seen by the same coordinates, as one; None if there are none."""
+    given = list(parts)
+    if not given:
+        return None
+    rows = np.concatenate([part.relaxation.rows for part in given])
+    times = np.concatenate([part.relaxation.times for part in given])
+    lift = np.asarray(block_diag(*(part.lift for part in given)), dtype=np.float64)
+    return FilmStates(Relaxation(rows, times), lift, max(part.slowest for part in given))
+
+
+def _transfer(rows: FloatArray, times: FloatArray, omega: FloatArray) -> FloatArray:
+    """F at i omega (k,), real and imaginary part side by side, shape (k, m, 2 m)."""
+    weights = 1.0 / (1.0 + 1j * np.multiply.outer(omega, times))
+    m = rows.shape[1]
+    products = (rows[:, :, None] * rows[:, None, :]).reshape(-1, m * m)
+    values = (weights @ products).reshape(-1, m, m)
+    return np.concatenate([values.real, values.imag], axis=2)
+
+
+def _extended(space: FloatArray, added: FloatArray) -> FloatArray:
+    """Orthonormal columns of a space and of what is added to it."""
+    for _ in range(2):
+        added = added - space @ (space.T @ added)
+    left, sizes, _ = svd(added, full_matrices=False)
+    new = left[:, sizes > _ALIKE * max(float(sizes[0]), 1e-300)]
+    new = new - space @ (space.T @ new)
+    return np.hstack([space, np.linalg.qr(new)[0]])
+
 
 _BEYOND = 10.0
 
@@ -102,3 +200,203 @@ def relaxing_elements(balance: Equilibrium) -> list[tuple[FloatArray, Relaxation
         for connected, relaxation in zip(balance.system.elements, balance.relaxations, strict=True)
         if relaxation is not None
     ]
+
+
+SMALL = 1e-6
+"""Change of an eigenvalue, as a part of it, up to which its first order is enough."""
+
+FARTHEST = 0.05
+"""Change of an eigenvalue, as a part of it, above which another mode was found."""
+
+_CONVERGED = 1e-10
+_STEPS = 20
+
+
+class Reason(enum.Enum):
+    """Why a mode is lost."""
+
+    NOT_CONVERGED = "Newton's method does not converge"
+    ELSEWHERE = "Newton's method leads to another mode"
+    TWICE = "two modes become the same one"
+
+
+class LostMode(NamedTuple):
+    """A mode that could not be brought to the films of its own frequency.
+
+    Attributes
+    ----------
+    eigenvalue : complex
+        Place at which it was looked for [1/s].
+    reason : Reason
+        Why it is lost.
+    """
+
+    eigenvalue: complex
+    reason: Reason
+
+
+@dataclass(frozen=True, eq=False)
+class OwnFrequency:
+    """Modes at their own frequencies.
+
+    Attributes
+    ----------
+    eigenvalues : array, shape (modes,)
+        [1/s]; NaN for a mode that is lost.
+    found : array of bool, shape (modes,)
+        Which are not lost.
+    lost : tuple of LostMode
+        The others.
+    """
+
+    eigenvalues: ComplexArray
+    found: BoolArray
+    lost: tuple[LostMode, ...]
+
+
+def at_own_frequency(
+    balance: Equilibrium, films: FilmStates | None, eigenvalues: ComplexArray, right: ComplexArray, left: ComplexArray
+) -> OwnFrequency:
+    """Bring modes to their own frequency.
+
+    Parameters
+    ----------
+    balance : Equilibrium
+        Equilibrium to linearise at.
+    films : FilmStates or None
+        The films as a few states; None if nothing relaxes, so that nothing changes.
+    eigenvalues : array, shape (modes,)
+        Eigenvalues of the system with these states [1/s].
+    right : array, shape (n, modes)
+        Displacements of the right eigenvectors of the state.
+    left : array, shape (modes, n)
+        Velocities of the left ones, with left . right = 1 for the whole state.
+    """
+    values = eigenvalues.copy()
+    if films is None:
+        return OwnFrequency(values, np.ones(values.shape, dtype=np.bool_), ())
+    change = _first_order(balance, films, eigenvalues, right, left)
+    lost: dict[int, Reason] = {}
+    searched = np.flatnonzero(~(np.abs(change) <= SMALL * np.abs(values)))
+    start = values.copy()
+    values += change
+    for k in searched.tolist():
+        found = newton(balance, complex(start[k]), right[:, k])
+        if found is None:
+            lost[k] = Reason.NOT_CONVERGED
+        elif abs(found - start[k]) > FARTHEST * abs(start[k]):
+            lost[k] = Reason.ELSEWHERE
+        else:
+            values[k] = found
+            others = np.delete(values, [k, *lost])
+            if np.any(np.abs(others - found) <= _CONVERGED * abs(found)):
+                lost[k] = Reason.TWICE
+    values[list(lost)] = complex(np.nan, np.nan)
+    missing = tuple(LostMode(complex(start[k]), reason) for k, reason in sorted(lost.items()))
+    return OwnFrequency(values, np.isfinite(values), missing)
+
+
+def newton(balance: Equilibrium, eigenvalue: complex, shape: ComplexArray) -> complex | None:
+    """Eigenvalue of Z(lambda) phi = 0 near a first guess; None if Newton's method does not converge.
+
+    Parameters
+    ----------
+    balance : Equilibrium
+        Equilibrium to linearise at.
+    eigenvalue : complex
+        First guess [1/s].
+    shape : array, shape (n,)
+        First guess of phi.
+    """
+    n = balance.system.size
+    norm = shape.conj() / float(np.vdot(shape, shape).real)
+    bordered = np.zeros((n + 1, n + 1), dtype=np.complex128)
+    for _ in range(_STEPS):
+        at = np.array([eigenvalue])
+        matrix, slope = dynamic_stiffness(balance, at)[0], dynamic_slope(balance, at)[0]
+        bordered[:n, :n], bordered[:n, n], bordered[n, :n] = matrix, slope @ shape, norm
+        scale = 1.0 / np.max(np.abs(bordered), axis=1)
+        try:
+            step = np.linalg.solve(bordered * scale[:, None], scale * np.append(matrix @ shape, norm @ shape - 1.0))
+        except np.linalg.LinAlgError:
+            return None
+        shape, eigenvalue = shape - step[:n], eigenvalue - complex(step[n])
+        if not np.isfinite(eigenvalue):
+            return None
+        if abs(step[n]) <= _CONVERGED * abs(eigenvalue):
+            return eigenvalue
+    return None
+
+
+def _first_order(
+    balance: Equilibrium, films: FilmStates, eigenvalues: ComplexArray, right: ComplexArray, left: ComplexArray
+) -> ComplexArray:
+    """First-order change of eigenvalues from the films of a few states to all slices, shape (modes,) [1/s]."""
+    differing = -films.relaxation.more_of(eigenvalues, right)
+    for transform, relaxation in relaxing_elements(balance):
+        differing = differing + transform.T @ relaxation.more_of(eigenvalues, transform @ right)
+    return np.asarray(-np.sum(np.linalg.solve(balance.system.mass, left.T) * differing, axis=0))
+
+
+FIRST_ORDER = 0.3
+"""Change of an eigenvalue, by its imaginary part, above which the first order says nothing."""
+
+
+class FilmLawPart(NamedTuple):
+    """What the film law is estimated to be wrong by, true less found, shape (modes,) each.
+
+    Attributes
+    ----------
+    frequency : array
+        Part in |eigenvalue|/(2 pi) [Hz].
+    damping_ratio : array
+        Part in the damping ratio.
+    """
+
+    frequency: FloatArray
+    damping_ratio: FloatArray
+
+
+def film_law_part(
+    balance: Equilibrium, eigenvalues: ComplexArray, right: ComplexArray, left: ComplexArray
+) -> FilmLawPart | None:
+    """What films with memory leave out of modes.
+
+    Parameters
+    ----------
+    balance : Equilibrium
+        Equilibrium at which the system is linearised.
+    eigenvalues, right, left
+        The same as for `mbs.linearised.bands.LawBands.eigenvalue_changes`.
+
+    Returns
+    -------
+    FilmLawPart or None
+        None where films do not relax, or nothing is known of films that oscillate. NaN of motions that do not
+        oscillate, and where the first order says nothing, as near critical damping.
+    """
+    system = balance.system
+    turned = np.linalg.solve(system.mass, left.T)
+    swings = eigenvalues.imag > 0.0
+    s, change, known = eigenvalues[swings], np.zeros(np.count_nonzero(swings), dtype=np.complex128), False
+    for index in system.select(RingElement):
+        connected = system.elements[index]
+        element = connected.element
+        assert isinstance(element, RingElement)
+        for group in element.contact_groups(connected.transform @ balance.displacement, balance.operation):
+            response = group.film_response() if group.relaxes else None
+            if response is None:
+                return None
+            load, stiffness, damping, times = group.state()
+            rows = group.rows @ connected.transform
+            felt = np.where(load[:, None] > 0.0, (rows @ turned[:, swings]) * (rows @ right[:, swings]), 0.0)
+            left_out = law_stiffness(stiffness, damping, times, s) * response.correction(s)
+            change -= np.sum(left_out * felt.T, axis=1)
+            known = True
+    if not known:
+        return None
+    moved = np.where(np.abs(change) <= FIRST_ORDER * s.imag, s + change, np.nan)
+    found = np.full((2, eigenvalues.size), np.nan)
+    found[0, swings] = (np.abs(moved) - np.abs(s)) / (2.0 * np.pi)
+    found[1, swings] = s.real / np.abs(s) - moved.real / np.abs(moved)
+    return FilmLawPart(*found)

@@ -5,8 +5,8 @@ that complex modes become overdamped.
 
 Where films relax, each complex mode is one of the nonlinear eigenproblem Z(lambda) phi = 0, with the stiffness and
 damping that the films have at its own complex frequency. All of them are found together, as those of a linear system
-with some states for the films (`mbs.linearised.film_states`), and each is then brought to all slices
-(`mbs.linearised.own_frequency`). Undamped modes have the stiffness of slow motion, which does not relax.
+with some states for the films (`mbs.linearised.dynamic`), and each is then brought to all slices
+(`mbs.linearised.dynamic`). Undamped modes have the stiffness of slow motion, which does not relax.
 """
 
 from __future__ import annotations
@@ -19,10 +19,15 @@ from scipy.linalg import eigh
 from ehdmaps.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from ehdmaps.errors import AnalysisError
 from mbs.linearised.bands import ModeBands, law_bands
-from mbs.linearised.dynamic import system_film_states
-from mbs.linearised.film_law import FilmLawPart, film_law_part
-from mbs.linearised.film_states import FilmStates
-from mbs.linearised.own_frequency import LostMode, OwnFrequency, at_own_frequency
+from mbs.linearised.dynamic import (
+    FilmLawPart,
+    FilmStates,
+    LostMode,
+    OwnFrequency,
+    at_own_frequency,
+    film_law_part,
+    system_film_states,
+)
 from mbs.model.equilibrium import Equilibrium
 
 FREE = 1e-6
@@ -57,7 +62,7 @@ class Modes:
     bands : ModeBands or None
         What the errors that a map states may change, see `mbs.linearised.bands`; None for laws that state none.
     film_law : FilmLawPart or None
-        What films with memory leave out, see `mbs.linearised.film_law`; None where that is not known.
+        What films with memory leave out, see `mbs.linearised.dynamic`; None where that is not known.
     """
 
     eigenvalues: ComplexArray

@@ -10,14 +10,12 @@ from scipy.ndimage import uniform_filter1d
 
 from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
 from ehdmaps.errors import AnalysisError, InputError
-from mbs.modal.estimation import relative_deviation
-from mbs.modal.lscf import lscf_poles
-from mbs.modal.rational import IMPROPER, rational_poles
+from mbs.modal.estimation import relative_deviation, without_window
+from mbs.modal.lscf import IMPROPER, lscf_poles, rational_poles
 from mbs.modal.records import Responses
 from mbs.modal.residues import Parts, fit_residues, laplace, refine, synthesise
 from mbs.modal.result import Method, ModalFit
 from mbs.modal.stabilisation import Criteria, Stabilisation, stabilise
-from mbs.modal.windows import without_window
 
 ORDER = 24
 """Highest number of pole pairs, if it is left out."""

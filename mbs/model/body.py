@@ -68,7 +68,7 @@ class Body:
     line : tuple of Frame
         Places one after the other along a shaft, for pictures of its shape; none of other bodies.
     gravity : array, shape (n, 3), or None
-        Load on the coordinates by gravity along x, y, z of 1 m/s2 [kg or kg m]; None where `mbs.model.weight` finds it.
+        Load on the coordinates by gravity along x, y, z of 1 m/s2 [kg or kg m]; None where `mbs.model.system` finds it.
     """
 
     name: str

@@ -1,10 +1,4 @@
-"""The system: bodies, springs, loads and elements put together.
-
-    M q'' + (D + speed G) q' + K q = loads(t) + turning loads(speed, angle) + forces of the elements(q, q', operation)
-
-All displacements are small; spins are prescribed. A torque that drives a spin acts along the shaft's own axis, so
-that a change of speed brings no lateral term.
-"""
+"""The system: bodies, springs, loads and elements put together; its places and its weight."""
 
 from __future__ import annotations
 
@@ -16,12 +10,99 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from mbs.model.body import Body
+from ehdmaps.units import closest, short
+from mbs.model.body import CENTRE, Body, Frame
 from mbs.model.elements import GROUND, Element, Forces, Load, Operation, Port, Spring
-from mbs.model.places import Places
 from mbs.model.profiles import Constant, LoadProfile
 from mbs.model.turning import TurningLoad, put_together
-from mbs.model.weight import load_by_gravity
+
+_SMALL = 1e-6
+"""Part that may be rounding: of a translation of frames, of the stiffness that it strains."""
+
+
+def load_by_gravity(body: Body) -> FloatArray | None:
+    """Load on the coordinates of a body by gravity along x, y, z of 1 m/s2, shape (n, 3) [kg or kg m].
+
+    Parameters
+    ----------
+    body : Body
+        Rigid, a shaft, or of finite elements. A freedom that a body does not have carries its share unseen.
+
+    Returns
+    -------
+    array or None
+        None for a body of finite elements that are held themselves: how its mass is spread over what moves is not in
+        its reduced matrices.
+
+    Notes
+    -----
+    A rigid body says so itself. Of any other, M r is the load, where r are the coordinates of a translation. Static
+    shapes of interfaces have that translation exactly, and modes with held interfaces have no part in it.
+    """
+    if body.gravity is not None:
+        return body.gravity
+    frames = list(body.frames.values())
+    if not frames:
+        return np.zeros((body.size, 3))
+    seen = np.concatenate([frame.transform for frame in frames])
+    wanted = np.zeros((seen.shape[0], 3))
+    for place in range(len(frames)):
+        wanted[6 * place : 6 * place + 3] = np.eye(3)
+    plain = np.array([unit != "1" for unit in body.units])
+    translation = np.zeros((body.size, 3))
+    free = np.any(seen[:, plain] != 0.0, axis=1)
+    translation[plain] = np.linalg.lstsq(seen[np.ix_(free, plain)], wanted[free], rcond=None)[0]
+    missed = np.max(np.abs(seen[free] @ translation - wanted[free]), initial=0.0)
+    energy = np.einsum("id,ij,jd->d", translation, body.stiffness, translation)
+    stiff = np.einsum("id,i,id->d", translation, np.abs(np.diag(body.stiffness)), translation)
+    if missed > _SMALL or np.any(energy > _SMALL * stiff):
+        return None
+    return np.asarray(body.mass @ translation)
+
+
+class Places:
+    """Places on some bodies, written "body:frame", or "body" for its frame "centre", or "ground".
+
+    Parameters
+    ----------
+    bodies : sequence of Body
+        All bodies of a system.
+    """
+
+    def __init__(self, bodies: Sequence[Body]) -> None:
+        self._by_name = {body.name: body for body in bodies}
+
+    def problem(self, place: str) -> str:
+        """Return what is wrong about a place, in words; empty if it exists."""
+        body, _, frame = place.partition(":")
+        if place == GROUND:
+            return ""
+        if body not in self._by_name:
+            names = (*self._by_name, GROUND)
+            return f"got the body {short(body)}{closest(body, names)}; allowed: {', '.join(names)}"
+        frames = self._by_name[body].frames
+        if (frame or CENTRE) not in frames:
+            return f"got the frame {short(frame or CENTRE)} of {body!r}; allowed: {', '.join(frames)}"
+        return ""
+
+    def body_problem(self, body: str) -> str:
+        """Return what is wrong about the name of a body, in words; empty if it exists."""
+        names = tuple(self._by_name)
+        return "" if body in names else f"got the body {short(body)}{closest(body, names)}; allowed: {', '.join(names)}"
+
+    def frame(self, place: str) -> Frame:
+        """The frame of a place on a body."""
+        body, _, frame = place.partition(":")
+        return self._by_name[body].frames[frame or CENTRE]
+
+    def position(self, place: str) -> FloatArray:
+        """Where a place on a body is, shape (3,) [m]."""
+        return self.frame(place).position
+
+    def spin(self, place: str) -> float:
+        """Spin of the body of a place; 0 on the ground."""
+        return 0.0 if place == GROUND else self._by_name[place.partition(":")[0]].spin
+
 
 COINCIDENT = 1e-6
 """How far two places that an element connects may lie apart [m]."""
@@ -90,7 +171,7 @@ class System:
     turning : tuple of Turning
         Loads that follow the angle, put together.
     weightless : tuple of str
-        Bodies on which gravity acts, but whose weight is not known, see `mbs.model.weight`.
+        Bodies on which gravity acts, but whose weight is not known, see `mbs.model.system`.
 
     Raises
     ------

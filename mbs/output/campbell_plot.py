@@ -1,4 +1,4 @@
-"""The figure of a run-up: Campbell diagrams of all contact laws side by side, sum level and orders below."""
+"""Figures of levels of run-ups: Campbell diagrams of all laws, several sensors, differences between two laws."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import xarray as xr
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
@@ -17,8 +18,8 @@ from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.figures import COLOURS, SHADE, write_heading
-from mbs.output.page import BAND_ALPHA, BAND_WORDS, ESTIMATED, shade_handle
+from ehdmaps.figures import COLOURS, SHADE, WARNING, typeset, write_heading
+from mbs.output.page import BAND_ALPHA, BAND_WORDS, ESTIMATED, grid, shade_handle
 from mbs.spectral.campbell import Campbell, RunUpSpectra
 from mbs.spectral.levels import Reference, level
 from mbs.spectral.run_signal import RPM
@@ -328,3 +329,127 @@ def reference_text(reference: Reference) -> str:
     """
     prefix = {1e-12: "p", 1e-9: "n", 1e-6: "µ"}[reference.value]
     return f"dB re 1 {prefix}{reference.unit.replace('s2', 's²')}"
+
+
+MOST_SENSORS = 6
+"""Rows that are drawn."""
+
+_COLUMN, _ROW = 2.6, 1.9
+"""Size of a panel [inch]."""
+
+
+def sensors_figure(
+    title: str,
+    laws: Sequence[str],
+    results: Sequence[Sequence[RunUpSpectra]],
+    sensors: Sequence[tuple[str, Reference]],
+    orders: Sequence[tuple[float, str]] = (),
+) -> Figure:
+    """Draw up to `MOST_SENSORS` sensors; how many are left out is said.
+
+    Parameters
+    ----------
+    title : str
+        Heading of the page.
+    laws : sequence of str
+        Names of the runs: of the laws, of a measured one.
+    results : sequence of sequence of RunUpSpectra
+        Spectra of each run, one a sensor.
+    sensors : sequence of (str, Reference)
+        Names, and references of their levels.
+    orders : sequence of (float, str)
+        Lines to draw in, with their names.
+    """
+    rows = min(len(sensors), MOST_SENSORS)
+    figure = Figure(figsize=(_COLUMN * (len(laws) + 1) + 0.8, _ROW * rows + 1.0), layout="constrained")
+    write_heading(figure, title, 8)
+    axes = figure.subplots(rows, len(laws) + 1, squeeze=False, sharex=True)
+    for row, (name, reference) in enumerate(sensors[:rows]):
+        here = [spectra[row] for spectra in results]
+        colours = colour_scale(here)
+        for panel, law, result in zip(axes[row, :-1], laws, here, strict=True):
+            diagram(panel, result, colours)
+            order_lines(panel, result, orders)
+            if row == 0:
+                panel.set_title(textwrap.fill(law, 30), fontsize=8)
+        axes[row, 0].set_ylabel(f"{name}\nfrequency, {frequency_unit(here[0])[1]}", fontsize=7)
+        bar = figure.colorbar(ScalarMappable(colours, "viridis"), ax=axes[row, -2], pad=0.02, aspect=15, extend="min")
+        bar.ax.tick_params(labelsize=6)
+        sums = axes[row, -1]
+        for law, result, colour, dashes in zip(laws, here, COLOURS, _DASHES * 2, strict=False):
+            found = result.campbell
+            sums.plot(found.speeds * RPM, found.sum_level, dashes, color=colour, lw=0.9, label=law)
+        sums.set_ylabel(f"sum level,\n{reference_text(reference)}", fontsize=7)
+        grid(sums)
+    axes[0, -1].set_title("sum level", fontsize=8)
+    axes[0, 0].set_xlim(*speed_range([spectra[0] for spectra in results]))
+    for panel in axes.flat:
+        panel.tick_params(labelsize=7)
+    for panel in axes[-1]:
+        panel.set_xlabel("speed, rpm", fontsize=7)
+    left_out = len(sensors) - rows
+    if left_out or len(laws) > 1:
+        figure.legend(
+            handles=axes[0, -1].lines if len(laws) > 1 else [],
+            title=f"{left_out} more sensors not drawn" if left_out else None,
+            title_fontsize=7,
+            loc="outside lower center",
+            ncols=min(len(laws), 3),
+            fontsize=7,
+            frameon=False,
+        )
+    return figure
+
+
+_BROAD, _TOP, _LINE = 7.2, 1.6, 0.19
+"""Width of the page, what stands above and below, and height of a line [inch]."""
+
+_MARKS = (
+    ("highest_difference", "D", COLOURS[3], "highest of each, at any speed"),
+    ("energy_difference", "s", COLOURS[2], "mean energy"),
+    ("median_difference", "o", COLOURS[0], "median of the windows"),
+)
+
+
+def variants_figure(title: str, dataset: xr.Dataset, labels: Sequence[str]) -> Figure:
+    """Draw the table of `mbs variants`.
+
+    Parameters
+    ----------
+    title : str
+        Heading of the page.
+    dataset : xarray.Dataset
+        The table, see `mbs.output.campbell_table`.
+    labels : sequence of str
+        The two laws.
+    """
+    names = [
+        typeset(f"{key} {value}") if key else "base"
+        for key, value in zip(dataset["key"].values.tolist(), dataset["value"].values.tolist(), strict=True)
+    ]
+    sensors = dataset["sensor"].values.tolist()
+    figure = Figure(figsize=(_BROAD, _TOP + _LINE * len(names)), layout="constrained")
+    write_heading(figure, typeset(f"{title}\nsum level of {labels[1]} minus that of {labels[0]}"), 8)
+    panels = figure.subplots(1, len(sensors), sharex=True, sharey=True, squeeze=False)[0]
+    lines = np.arange(len(names))
+    for column, (panel, sensor) in enumerate(zip(panels, sensors, strict=True)):
+        data = dataset.isel(sensor=column)
+        panel.hlines(lines, data["low_difference"], data["high_difference"], color="0.75", lw=4.0)
+        for name, marker, colour, words in _MARKS:
+            panel.plot(data[name], lines, marker, color=colour, ms=3.5, ls="none", label=words)
+        for line in lines[np.isnan(data["median_difference"].values)].tolist():
+            panel.text(0.5, line, "no result", transform=panel.get_yaxis_transform(), color=WARNING, fontsize=6,
+                       ha="center", va="center")  # fmt: skip
+        panel.axvline(0.0, color="0.4", lw=0.7)
+        panel.axhline(0.5, color="0.4", lw=0.4)
+        panel.set_title(f"sensor {sensor}", fontsize=8)
+        panel.set_xlabel("dB", fontsize=7)
+        panel.tick_params(labelsize=7)
+        panel.grid(axis="x", lw=0.3)
+    panels[0].set_yticks(lines, names)
+    panels[0].invert_yaxis()
+    handles, words_of = panels[0].get_legend_handles_labels()
+    bar = panels[0].collections[0]
+    figure.legend([*handles, bar], [*words_of, "5 to 95 % of the windows"], loc="outside lower center", ncols=4,
+                  fontsize=7, frameon=False)  # fmt: skip
+    return figure

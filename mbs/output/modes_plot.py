@@ -1,15 +1,24 @@
-"""Figure of the modes at one speed: where their strain energy is."""
+"""Figures of modes: where their strain energy is, their shapes, and how they were identified from responses."""
 
 from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
-from ehdmaps.arrays import IntArray
+from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.figures import COLOURS, legend_columns, typeset, write_heading
+from ehdmaps.units import MOTIONS, Display
 from mbs.linearised.modes import Modes
+from mbs.linearised.shapes import AXIS, EDGE, JOINT, MARK, Skeleton
+from mbs.modal.records import Channel
+from mbs.modal.result import ModalFit
 from mbs.output.page import BAND_WORDS, ESTIMATED, headed, shade, shade_handle
 from mbs.scene.assembly import Model
 
@@ -90,3 +99,259 @@ def _bands(found: Modes, level: bool) -> str:
 def _quick(limit: float) -> str:
     """What the shade says."""
     return f"{ESTIMATED.replace(' of the films ', chr(10) + 'of the films ')}\n(from {limit:.4g} Hz on)"
+
+
+MOST_SHAPES = 6
+"""Modes on a page."""
+
+_LARGEST = 0.18
+"""Drawn displacement, as a part of the system."""
+
+_WIDTHS = {AXIS: 2.2, EDGE: 0.9, MARK: 1.4, JOINT: 1.6}
+_FLATTEST = 0.35
+"""Least extent of a box, as a part of the largest one."""
+
+_NOTHING, _LEAST_RATIO = 1e-9, 1e-12
+_CELL, _HEAD, _FOOT = (4.0, 3.1), 0.6, 0.4
+"""Size of the place of a mode, and least height of what is above and below all of them [inch]."""
+
+_ABOVE, _LINE = 0.3, 0.2
+"""Room above and below the heading, and height of a line of the legend [inch]."""
+
+_LETTERS = 68
+"""Letters of a legend that have room over a mode."""
+
+_ZOOM = 0.95
+_MOST_NAMES = 12
+
+
+def shapes_figure(model: Model, found: Modes, bones: Skeleton, shown: Sequence[int], words: str) -> Figure:
+    """Draw some modes: thick lines are shafts, thin ones other bodies, red ones bearings and gear meshes.
+
+    Parameters
+    ----------
+    model : Model
+        Whose modes they are.
+    found : Modes
+        All of them.
+    bones : Skeleton
+        Places and lines of the system.
+    shown : sequence of int
+        Indices of up to `MOST_SHAPES` modes.
+    words : str
+        What the heading says after the law.
+    """
+    columns = min(len(shown), 3) or 1
+    rows = math.ceil(len(shown) / columns) or 1
+    width = _CELL[0] * columns
+    figure = headed(model, words, (width, _CELL[1] * rows))
+    figure.set_layout_engine("none")
+    moving = [index for index in range(len(bones.bodies)) if np.any(bones.owners == index)]
+    handles = [
+        Line2D([], [], color=_colour(index), lw=2.0, label=bones.bodies[index]) for index in moving[:_MOST_NAMES]
+    ]
+    if JOINT in bones.kinds:
+        handles.append(Line2D([], [], color=COLOURS[1], lw=1.6, label="bearings and gears"))
+    handles.append(Line2D([], [], color="0.8", lw=1.2, label="at rest"))
+    names = legend_columns([str(handle.get_label()) for handle in handles], _LETTERS * columns, 3 * columns)
+    foot = max(_FOOT, _LINE * math.ceil(len(handles) / names))
+    (heading,) = figure.texts
+    head = max(_HEAD, heading.get_window_extent().height / figure.dpi + _ABOVE)
+    height = _CELL[1] * rows + head + foot
+    figure.set_size_inches(width, height)
+    heading.set_y(1.0 - 0.5 * _ABOVE / height)
+    # A picture in three dimensions has wide margins of its own, which may lie over those of its neighbours.
+    side = _ZOOM * _CELL[0]
+    for place, mode in enumerate(shown):
+        x = (place % columns + 0.5) * _CELL[0]
+        y = foot + (rows - place // columns - 0.5) * _CELL[1] - 0.15
+        where = ((x - 0.5 * side) / width, (y - 0.5 * side) / height, side / width, side / height)
+        panel: Any = figure.add_axes(where, projection="3d")
+        panel.patch.set_visible(False)
+        _mode(panel, found, bones, mode)
+        at = (x / width, (y + 0.5 * _CELL[1] + 0.1) / height)
+        figure.text(*at, _title(found, bones, mode), fontsize=9, ha="center", va="top")
+    figure.legend(handles=handles, loc="lower center", ncols=names, fontsize=8, frameon=False)
+    return figure
+
+
+def _mode(panel: Any, found: Modes, bones: Skeleton, mode: int) -> None:
+    """One mode."""
+    moved = bones.displacement(found.shapes[:, mode]).real
+    largest = float(np.max(np.abs(moved), initial=0.0))
+    scale = _LARGEST * bones.size / largest if _moves(largest, bones) else 0.0
+    places = bones.points + scale * moved
+    for (begin, end), kind in zip(bones.lines, bones.kinds, strict=True):
+        pair = [begin, end]
+        if kind != JOINT:
+            panel.plot(*bones.points[pair].T, color="0.82", lw=0.5 * _WIDTHS[kind], zorder=1)
+        colour = COLOURS[1] if kind == JOINT else _colour(int(bones.owners[begin]))
+        panel.plot(*places[pair].T, color=colour, lw=_WIDTHS[kind], solid_capstyle="round", zorder=3)
+    lines = zip(bones.lines, bones.kinds, strict=True)
+    joined = {int(place) for pair, kind in lines if kind in (AXIS, MARK) for place in pair}
+    alone = [place for place in range(len(places)) if place not in joined]
+    colours = [_colour(int(bones.owners[place])) for place in alone]
+    panel.scatter(*places[alone].T, s=7.0, c=colours, depthshade=False, zorder=4)
+    _box(panel, np.concatenate([bones.points, places]))
+
+
+def _moves(largest: float, bones: Skeleton) -> bool:
+    """Whether a place moves at all."""
+    return largest > _NOTHING * bones.size
+
+
+def _title(found: Modes, bones: Skeleton, mode: int) -> str:
+    """Number, frequency and damping ratio of a mode."""
+    largest = float(np.max(np.abs(bones.displacement(found.shapes[:, mode])), initial=0.0))
+    ratio = float(found.damping_ratio[mode])
+    text = f"{mode + 1}: {found.frequency[mode]:.5g} Hz, ζ {ratio if abs(ratio) > _LEAST_RATIO else 0.0:.2g}"
+    return text if _moves(largest, bones) else f"{text}; no place moves"
+
+
+def _box(panel: Any, places: FloatArray) -> None:
+    """Equal scales along all axes, and a small cross of axes in place of walls."""
+    low, high = places.min(axis=0), places.max(axis=0)
+    extent = np.maximum(high - low, _FLATTEST * float(np.max(high - low)))
+    middle = 0.5 * (low + high)
+    for name, centre, width in zip("xyz", middle, extent, strict=True):
+        getattr(panel, f"set_{name}lim")(centre - 0.5 * width, centre + 0.5 * width)
+    panel.set_box_aspect(tuple(extent))  # an array would be changed
+    panel.set_axis_off()
+    panel.view_init(elev=18.0, azim=-62.0)
+    corner = middle - 0.5 * extent
+    length = 0.12 * float(extent.max())
+    for axis, name in enumerate("xyz"):
+        tip = corner.copy()
+        tip[axis] += length
+        panel.plot(*np.column_stack([corner, tip]), color="0.45", lw=0.8)
+        panel.text(*tip, name, fontsize=6.5, color="0.35")
+    for artist in (*panel.lines, *panel.collections, *panel.texts):
+        artist.set_clip_on(False)
+
+
+def _colour(body: int) -> str:
+    """Colour of a body; red is for bearings."""
+    own = (COLOURS[0], *COLOURS[2:])
+    return own[body % len(own)]
+
+
+_SIZE = (9.0, 8.5)
+_MOST_ROWS = 5
+"""Responses drawn: those with the most energy; more would hide each other."""
+
+_MARKS = {"rfp": ("o", "rational fraction polynomials"), "lscf": ("^", "p-LSCF")}
+_UNITS = {"displacement": "m", "velocity": "m/s", "acceleration": "m/s2", "force": "N", "unknown": ""}
+
+
+def fit_figure(title: str, fits: Sequence[ModalFit]) -> Figure:
+    """Magnitude and phase of the responses with the fit, their coherence, and the poles over the order.
+
+    Parameters
+    ----------
+    title : str
+        Heading of the page.
+    fits : sequence of ModalFit
+        Fits of the same responses; the lines of the fit are those of the first one.
+    """
+    first = fits[0]
+    figure = Figure(figsize=_SIZE, layout="constrained")
+    write_heading(figure, f"{title}\n{_summary(first)}", 10)
+    shown = _shown_rows(first)
+    known = np.any(np.isfinite(first.responses.coherence[shown]))
+    units = list(dict.fromkeys(_display(*first.responses.pairs[row]).unit for row in shown))
+    heights = [*[3.0 / len(units) ** 0.5] * len(units), 1.4, *([1.0] if known else []), 2.2]
+    axes = list(figure.subplots(len(heights), 1, sharex=True, height_ratios=heights))
+    magnitudes = dict(zip(units, axes, strict=False))
+    _responses(magnitudes, axes[len(units)], first, shown)
+    if known:
+        _coherence(axes[len(units) + 1], first, shown)
+    _diagram(axes[-1], fits)
+    for panel in axes:
+        for frequency in first.frequency:
+            panel.axvline(frequency, color="0.75", lw=0.7, zorder=0)
+        panel.grid(color="0.9", lw=0.5)
+        panel.set_axisbelow(True)
+        panel.tick_params(labelsize=8)
+    axes[0].set_xlim(first.responses.frequency[0], first.responses.frequency[-1])
+    axes[-1].set_xlabel("frequency, Hz")
+    return figure
+
+
+def _responses(magnitudes: dict[str, Axes], phase: Axes, fit: ModalFit, shown: Sequence[int]) -> None:
+    """Measured responses as pale lines, the fit over them."""
+    frequency = fit.responses.frequency
+    fine = np.unique(np.concatenate([np.linspace(frequency[0], frequency[-1], 4000), *_near(fit)]))
+    made = fit.synthesise(fine)
+    for row, colour in zip(shown, COLOURS, strict=False):
+        measured = fit.responses.response[row]
+        display = _display(*fit.responses.pairs[row])
+        magnitude = magnitudes[display.unit]
+        label = f"{fit.responses.labels[row]}, {100.0 * fit.error[row]:.2g} % left"
+        magnitude.semilogy(frequency, display.factor * np.abs(measured), color=colour, lw=2.2, alpha=0.35)
+        magnitude.semilogy(fine, display.factor * np.abs(made[row]), color=colour, lw=0.9, label=label)
+        phase.plot(frequency, np.degrees(np.angle(measured)), ".", color=colour, ms=1.2, alpha=0.35)
+        phase.plot(fine, _broken(np.degrees(np.angle(made[row]))), color=colour, lw=0.9)
+    for unit, magnitude in magnitudes.items():
+        magnitude.set_ylabel(f"response, {unit}")
+        magnitude.legend(fontsize=8, frameon=False, title="pale: measured, thin: fit", title_fontsize=8)
+    phase.set(ylabel="phase, degrees", yticks=[-180, -90, 0, 90, 180])
+
+
+def _coherence(panel: Axes, fit: ModalFit, shown: Sequence[int]) -> None:
+    """Coherence of each response."""
+    for row, colour in zip(shown, COLOURS, strict=False):
+        panel.plot(fit.responses.frequency, fit.responses.coherence[row], color=colour, lw=0.7)
+    panel.set(ylabel=f"coherence,\n{fit.responses.hits} hits", ylim=(0.0, 1.05))
+
+
+def _diagram(panel: Axes, fits: Sequence[ModalFit]) -> None:
+    """Poles over the order: stable ones filled."""
+    highest = 1
+    for fit, colour in zip(fits, ("0.1", COLOURS[1]), strict=False):
+        mark, name = _MARKS[fit.method]
+        # The window is taken out, so that the poles stand over the peaks.
+        poles = np.array([entry.pole for entry in fit.candidates]) + fit.responses.decay
+        orders = np.array([entry.order for entry in fit.candidates])
+        stable = np.array([entry.stable for entry in fit.candidates], dtype=bool)
+        frequency = np.abs(poles) / (2.0 * np.pi)
+        panel.plot(frequency[stable], orders[stable], mark, color=colour, ms=3.5, label=f"{name}: stable")
+        panel.plot(frequency[~stable], orders[~stable], mark, color=colour, ms=2.5, mfc="none", mew=0.4, alpha=0.5)
+        highest = max(highest, int(orders.max()))
+    panel.set(ylabel="order, pole pairs\n(hollow: not stable)", ylim=(0, highest + 1))
+    panel.legend(fontsize=8, frameon=True, framealpha=0.9, edgecolor="none", loc="lower right")
+
+
+def _near(fit: ModalFit) -> list[np.ndarray[tuple[int], np.dtype[np.float64]]]:
+    """Frequencies around each mode, close enough to draw its peak."""
+    low, high = fit.responses.frequency[0], fit.responses.frequency[-1]
+    found = []
+    for pole in fit.poles:
+        centre, width = abs(pole) / (2.0 * np.pi), max(abs(pole.real), 1e-6 * abs(pole)) / (2.0 * np.pi)
+        found.append(np.clip(centre + width * np.linspace(-8.0, 8.0, 161), low, high))
+    return found
+
+
+def _broken(phase: np.ndarray[tuple[int], np.dtype[np.float64]]) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+    """Phase with gaps where it jumps from -180 to 180 degrees."""
+    broken = phase.copy()
+    broken[1:][np.abs(np.diff(phase)) > 180.0] = np.nan
+    return broken
+
+
+def _shown_rows(fit: ModalFit) -> list[int]:
+    """Rows that are drawn."""
+    energy = np.sum(np.abs(fit.responses.response) ** 2, axis=1)
+    return sorted(np.argsort(-energy, kind="stable")[:_MOST_ROWS].tolist())
+
+
+def _display(sensor: Channel, reference: Channel) -> Display:
+    """How a response is shown."""
+    unit = _UNITS[sensor.quantity].replace("m", "rad", 1) if sensor.rotational else _UNITS[sensor.quantity]
+    shown = MOTIONS.get(unit, Display(unit or "1"))
+    return Display(f"{typeset(shown.unit)}/{'(N m)' if reference.rotational else 'N'}", shown.factor)
+
+
+def _summary(fit: ModalFit) -> str:
+    """The modes in a line."""
+    modes = [f"{f:.5g} Hz, ζ {100.0 * z:.3g} %" for f, z in zip(fit.frequency[:5], fit.damping_ratio[:5], strict=True)]
+    return "; ".join(modes) + (" ..." if fit.poles.size > 5 else "")

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,16 +13,261 @@ import xarray as xr
 from ehdmaps.arrays import ComplexArray, FloatArray
 from mbs.bearings.bearing_element import RingElement, error_words, ring_matrices
 from mbs.bearings.films import SIDES
+from mbs.bearings.thermal import BearingHeat, BearingState
+from mbs.gears.gear import GearMesh
 from mbs.model.body import FREEDOMS
 from mbs.model.elements import Input, Sensor
+from mbs.model.equilibrium import Equilibrium
 from mbs.model.system import System
+from mbs.scene.assembly import Model
+from mbs.spectral.spectra import AmplitudeSpectrum
+from mbs.transient.energy import EnergyBalance
 
 if TYPE_CHECKING:
     from mbs.bearings.contact_report import BearingContacts, RollingLoss
     from mbs.linearised.linear import StateSpace
     from mbs.linearised.modes import Modes
-    from mbs.model.equilibrium import Equilibrium
     from mbs.transient.run import Recording
+
+
+_TERMS = (
+    ("energy_in", "energy that came in, by source; of an element that does not say what it stores its whole work"),
+    ("energy_out", "energy that was dissipated, by whom; integration: by the method of integration"),
+    ("energy_stored", "change of stored energy from beginning to end"),
+)
+
+
+def with_energy(dataset: xr.Dataset, energy: EnergyBalance) -> xr.Dataset:
+    """A dataset with the energy balance of its run, term by term [J].
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        What a run recorded.
+    energy : EnergyBalance
+        The balance of the run.
+    """
+    sources, sinks = {"loads": energy.loads}, dict(energy.parts)
+    stores = {"kinetic": energy.kinetic, "elastic": energy.elastic}
+    for entry in energy.elements:
+        if not entry.told:
+            sources[entry.name] = entry.work
+            continue
+        sources[f"turning of {entry.name}"] = entry.driven or 0.0
+        sources[f"speed on {entry.name}"] = entry.by_speed
+        sinks[entry.name], stores[entry.name] = entry.dissipated or 0.0, entry.change or 0.0
+    sinks["integration"] = energy.numerical
+    for (name, words), terms in zip(_TERMS, (sources, sinks, stores), strict=True):
+        dim, attributes = f"{name}_term", {"units": "J", "long_name": words}
+        dataset = dataset.assign({name: (dim, list(terms.values()), attributes)}).assign_coords({dim: list(terms)})
+    words = "what the energy balance of the run does not close"
+    return dataset.assign(energy_residual=((), energy.residual, {"units": "J", "long_name": words}))
+
+
+def with_spectra(dataset: xr.Dataset, spectra: Sequence[Sequence[Sequence[AmplitudeSpectrum]]]) -> xr.Dataset:
+    """The dataset of a run with spectra about some speeds; over the dim law where there is more than one run.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Result with the dim sensor, and law of several runs.
+    spectra : sequence of sequence of sequence of AmplitudeSpectrum
+        Spectra about each speed, of each run, of each sensor; all with one window.
+    """
+    if not spectra:
+        return dataset
+    values = np.array([[[found.amplitude for found in run] for run in about] for about in spectra])
+    values = np.moveaxis(values, 1, 0)
+    dims: tuple[str, ...] = ("law", "spectrum_speed", "sensor", "spectrum_frequency")
+    if values.shape[0] == 1:
+        values, dims = values[0], dims[1:]
+    first = [about[0][0] for about in spectra]
+    words = "amplitude of a sine at each line"
+    window = f"window of {first[0].window:.6g} s about the speed"
+    return dataset.assign(
+        spectrum_amplitude=(dims, values, {"units": "by signal_unit", "long_name": f"{words}, {window}"}),
+        spectrum_time=(
+            "spectrum_speed",
+            np.array([found.time for found in first]),
+            {"units": "s", "long_name": "middle of the window"},
+        ),
+    ).assign_coords(
+        spectrum_speed=(
+            "spectrum_speed",
+            np.array([found.speed for found in first]),
+            {"units": "rad/s", "long_name": "speed in the middle of the window"},
+        ),
+        spectrum_frequency=("spectrum_frequency", first[0].frequencies, {"units": "Hz", "long_name": "frequency"}),
+    )
+
+
+_STATE: tuple[tuple[str, str, str, Callable[[BearingState], float]], ...] = (
+    ("inner_raceway_temperature", "K", "temperature of the inner raceway", lambda state: state.inner),
+    ("outer_raceway_temperature", "K", "temperature of the outer raceway", lambda state: state.outer),
+    ("operating_clearance", "m", "diametral clearance in operation", lambda state: state.clearance.operating),
+)
+_CHANGES: tuple[tuple[str, str, str, Callable[[BearingState], float]], ...] = (
+    ("stated_clearance", "m", "diametral clearance at 20 degC, not mounted", lambda state: state.clearance.stated),
+    ("clearance_by_temperature", "m", "what expansion adds to it", lambda state: state.clearance.by_temperature),
+    ("clearance_by_fits", "m", "what the fits add to it", lambda state: state.clearance.by_fits),
+)
+
+
+def _heat(read: Callable[[BearingHeat], float]) -> Callable[[BearingState], float]:
+    """Read of the heat of a bearing; NaN where its temperatures are given."""
+    return lambda state: math.nan if state.heat is None else read(state.heat)
+
+
+_HEAT: tuple[tuple[str, str, str, Callable[[BearingState], float]], ...] = (
+    ("oil_temperature", "K", "temperature of the oil in the bearing", lambda state: state.oil),
+    ("friction_power", "W", "friction of the bearing", _heat(lambda heat: heat.friction)),
+    ("added_power", "W", "what of it the scene adds to the rolling", _heat(lambda heat: heat.added)),
+    ("heat_to_shaft", "W", "heat to the shaft", _heat(lambda heat: heat.to_shaft)),
+    ("heat_to_housing", "W", "heat to the housing", _heat(lambda heat: heat.to_housing)),
+    ("heat_to_oil", "W", "heat that the oil carries away", _heat(lambda heat: heat.to_oil)),
+)
+
+_States = Sequence[BearingState] | Sequence[Any]
+
+
+def with_states(dataset: xr.Dataset, states: _States, dims: tuple[str, ...] = ()) -> xr.Dataset:
+    """The dataset with temperatures and clearances of all bearings, and with their heat where there is any.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        A result.
+    states : sequence of BearingState
+        One a bearing; nested for each of `dims`.
+    dims : tuple of str
+        Dims over which there are more of them, such as ("case", "speed").
+    """
+    everything = list(_flat(states))
+    if not everything:
+        return dataset
+    rows = _STATE
+    if any(state.clearance.operating != state.clearance.stated for state in everything):
+        rows += _CHANGES
+    if any(state.heat is not None for state in everything):
+        rows += _HEAT
+    first: Any = states
+    for _ in dims:
+        first = first[0]
+    names = np.array([state.name for state in first], dtype=np.str_)
+    variables = {
+        name: ((*dims, "bearing"), np.array(_values(states, read)), {"units": unit, "long_name": words})
+        for name, unit, words, read in rows
+    }
+    return dataset.assign_coords(bearing=names).assign(variables)
+
+
+def _values(states: Any, read: Callable[[BearingState], float]) -> Any:
+    """A number of each state, nested as they are."""
+    return read(states) if isinstance(states, BearingState) else [_values(entry, read) for entry in states]
+
+
+def _flat(states: Any) -> Any:
+    """All states, one after the other."""
+    if isinstance(states, BearingState):
+        yield states
+    else:
+        for entry in states:
+            yield from _flat(entry)
+
+
+_ROUND_OFF = 1e-9
+_PARTS = ("tangential", "radial", "axial")
+
+
+def gear_forces(model: Model, balance: Equilibrium) -> dict[str, tuple[float, float, float]]:
+    """Tangential, radial and axial force on the first gear of each mesh [N], by its name.
+
+    Parameters
+    ----------
+    model : Model
+        Scene with its law.
+    balance : Equilibrium
+        Equilibrium of the model.
+
+    Returns
+    -------
+    dict of str to (float, float, float)
+        Tangential on the pitch circle, positive against the turn +x; radial away from the other gear; axial along x.
+    """
+    found = {}
+    for index in model.system.select(GearMesh):
+        mesh = model.system.elements[index].element
+        assert isinstance(mesh, GearMesh)
+        force = balance.forces[index][:3]
+        # the sum of both normals of the flanks is twice the radial part of one, along the centres
+        towards = mesh.rows[0, :3] + mesh.rows[1, :3]
+        towards = towards / np.linalg.norm(towards)
+        along = np.cross([1.0, 0.0, 0.0], towards)
+        found[mesh.name] = float(-force @ along), float(-force @ towards), float(force[0])
+    return found
+
+
+def with_gears(dataset: xr.Dataset, model: Model, balance: Equilibrium) -> xr.Dataset:
+    """The result of statics with the forces of its gear meshes; the same without gears.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        The result.
+    model : Model
+        Scene with its law.
+    balance : Equilibrium
+        Equilibrium of the model.
+    """
+    found = gear_forces(model, balance)
+    if not found:
+        return dataset
+    attributes = {"units": "N", "long_name": "force on the first gear: tangential (against +x), radial (apart), axial"}
+    forces = xr.DataArray(
+        np.array(list(found.values())),
+        {"gear_mesh": list(found), "part": list(_PARTS)},
+        ("gear_mesh", "part"),
+        attrs=attributes,
+    )
+    return dataset.assign(gear_force=forces)
+
+
+def gear_lines(model: Model, balance: Equilibrium) -> list[str]:
+    """Lines on the gear meshes of an equilibrium.
+
+    Parameters
+    ----------
+    model : Model
+        Scene with its law.
+    balance : Equilibrium
+        Equilibrium of the model.
+    """
+    pairs = {mesh.name: mesh.pair for mesh in model.gears}
+    lines = []
+    for name, (tangential, radial, axial) in gear_forces(model, balance).items():
+        pair = pairs[name]
+        size = max(abs(tangential), abs(radial))
+        if abs(axial) <= _ROUND_OFF * size:
+            lines.append(f"{name}: {abs(tangential):.6g} N tangential, {radial:.6g} N radial on each gear")
+            continue
+        lines.append(
+            f"{name}: {abs(tangential):.6g} N tangential, {radial:.6g} N radial, {axial:+.6g} N axial on {pair.on}, "
+            f"{-axial:+.6g} N on {pair.against}"
+        )
+        bodies = [place.partition(":")[0] for place in (pair.on, pair.against)]
+        rigid = [body for body in bodies if _is_rigid_in_x(model, body)]
+        if rigid:
+            lines.append(
+                f"  {' and '.join(rigid)}: no freedom x, so that the axial force is taken by what is not in the scene; "
+                "for a locating bearing give the body the freedom x, and a spring along x"
+            )
+    return lines
+
+
+def _is_rigid_in_x(model: Model, body: str) -> bool:
+    """Whether no coordinate of a body moves any of its frames along x."""
+    return not any(np.any(frame.transform[0]) for frame in model.system.body(body).frames.values())
+
 
 BAND = "band, either way, by the errors that the map states, of"
 """How datasets call the bands; they are NaN where none is stated."""

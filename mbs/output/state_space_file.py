@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from ehdmaps.exports.header import BEARING_AXES
-from ehdmaps.exports.matlab_file import ascii_text, write_matlab
+from ehdmaps.exports.mat import ascii_text, write_matlab
+from ehdmaps.exports.target import BEARING_AXES
 from ehdmaps.outputs import MARK
 from ehdmaps.units import RPM
 from ehdmaps.version import version
@@ -66,7 +66,7 @@ def write_spaces(path: Path, found: Sequence[tuple[str, LinearSystem]]) -> None:
     Parameters
     ----------
     path : Path
-        The file; look at it with `check_outputs` and `KIND` of `ehdmaps.exports.matlab_file` first.
+        The file; look at it with `check_outputs` and `KIND` of `ehdmaps.exports.mat` first.
     found : sequence of (str, LinearSystem)
         Label and result of each law.
 

@@ -9,9 +9,8 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.figures import typeset
-from ehdmaps.report.markup import Markup, joined, tag
-from ehdmaps.report.numbers import number, shown
-from ehdmaps.report.tables import pairs, table
+from ehdmaps.report.chart import number, shown
+from ehdmaps.report.page import Markup, joined, pairs, table, tag
 from ehdmaps.units import DAMPER, FILM, PRESSURE, SPEED, SPRING
 from mbs.bearings.bearing_element import ring_matrices
 from mbs.bearings.films import ContactState

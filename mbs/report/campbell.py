@@ -14,10 +14,8 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.figures import COLOURS
 from ehdmaps.netcdf_structure import DAMAGE, structure_problem
-from ehdmaps.report.axis import linear_axis
-from ehdmaps.report.chart import GREY, WIDE, Chart, Curve, Points, figure
-from ehdmaps.report.markup import Markup, joined, tag
-from ehdmaps.report.numbers import number, shown
+from ehdmaps.report.chart import GREY, WIDE, Chart, Curve, Points, figure, linear_axis, number, shown
+from ehdmaps.report.page import Markup, joined, tag
 from ehdmaps.units import RPM
 from mbs.linearised.sweep_result import Sweep
 from mbs.output.files import RESULT

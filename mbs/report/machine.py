@@ -8,17 +8,16 @@ from collections.abc import Iterator
 import numpy as np
 
 from ehdmaps.figures import typeset
-from ehdmaps.report.markup import Markup, joined, tag
-from ehdmaps.report.numbers import number, shown
-from ehdmaps.report.tables import pairs, table
+from ehdmaps.report.chart import number, shown
+from ehdmaps.report.page import Markup, joined, pairs, table, tag
 from ehdmaps.units import FILM, LENGTH, PRESSURE, RPM
 from mbs.analyses.film_errors import film_errors
 from mbs.analyses.reach import fade_lines, outside_at
 from mbs.model.elements import GROUND
 from mbs.model.relaxation import NOTABLE
-from mbs.output.bearing_text import regime
+from mbs.output.bearing_table import regime
 from mbs.output.model_text import clearance_text, temperature_text, weight_text
-from mbs.output.modes_text import kinds
+from mbs.output.result_text import kinds
 from mbs.output.state_text import flooded_note, state_lines
 from mbs.report.bearings import loaded
 from mbs.report.examination import Examination

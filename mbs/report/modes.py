@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 
-from ehdmaps.report.markup import Markup, joined, tag
-from ehdmaps.report.numbers import number, shown
-from ehdmaps.report.tables import table
+from ehdmaps.report.chart import number, shown
+from ehdmaps.report.page import Markup, joined, table, tag
 from mbs.analyses.modes import ModesResult
 from mbs.output.model_text import band_lines, clean, film_law_line, film_lines, free_words
-from mbs.output.modes_text import kinds, share_words
+from mbs.output.result_text import kinds, share_words
 from mbs.scene.fields import HERTZ
 
 MOST = 60

@@ -10,9 +10,7 @@ import xarray as xr
 from ehdmaps.figures import typeset
 from ehdmaps.jobs.map_report import job, provenance, written_by
 from ehdmaps.program import plain
-from ehdmaps.report.markup import Markup, joined, tag
-from ehdmaps.report.page import Section, document
-from ehdmaps.report.tables import pairs, sentences
+from ehdmaps.report.page import Markup, Section, document, joined, pairs, sentences, tag
 from ehdmaps.units import RPM
 from mbs.analyses.followed import excited_orders
 from mbs.report.bearings import bearings

@@ -13,7 +13,7 @@ from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
-from ehdmaps.physics.roughness import SMOOTH, Surface
+from ehdmaps.physics.surface import SMOOTH, Surface
 from ehdmaps.units import DAMPER, SPRING, closest, quantity
 from mbs.bearings import laws
 from mbs.bearings.bearing import Bearing

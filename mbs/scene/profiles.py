@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
-from ehdmaps.physics.profiles import CrownedProfile, TabulatedProfile
+from ehdmaps.physics.surface import CrownedProfile, TabulatedProfile
 from ehdmaps.units import LENGTH, closest, short
 from mbs.scene.fields import MICROMETRE
 

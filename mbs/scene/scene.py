@@ -9,10 +9,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ehdmaps.errors import InputError
+from ehdmaps.physics.contact import OIL_TEMPERATURES
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import OilSupply
-from ehdmaps.physics.operating_point import OIL_TEMPERATURES
-from ehdmaps.physics.roughness import Surface
+from ehdmaps.physics.surface import Surface
 from mbs.gears.pair import GearPair
 from mbs.model.elements import Input, Load, Sensor, Spring
 from mbs.scene.specs import ORIGIN, BearingSpec, BodySpec, ElementSpec, FlexibleSpec, Triple

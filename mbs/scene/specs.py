@@ -14,14 +14,12 @@ from typing import TYPE_CHECKING, Protocol
 from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.oil_supply import OilSupply
-from ehdmaps.physics.profiles import CrownedProfile, TabulatedProfile
+from ehdmaps.physics.surface import CrownedProfile, TabulatedProfile
 from mbs.bearings.thermal import GivenTemperatures, HeatPaths, Mounting
 from mbs.model.body import Body, Inertia, rigid_problems
 
 if TYPE_CHECKING:
-    from mbs.flexible.attached import Attached
-    from mbs.flexible.orientation import Turn
-    from mbs.flexible.plan import ReductionPlan
+    from mbs.flexible.plan import Attached, ReductionPlan, Turn
     from mbs.flexible.reduced_body import ReducedBody
     from mbs.flexible.shaft_parts import Disc, Section
 
@@ -116,7 +114,7 @@ class ShaftSpec:
     damping_ratio: float = 0.0
 
     def __post_init__(self) -> None:
-        from mbs.flexible.shaft_layout import shaft_problems  # with the beams, where a scene has shafts
+        from mbs.flexible.shaft_parts import shaft_problems
 
         _freeze(self, "sections", "freedoms", "discs")
         problems = shaft_problems(

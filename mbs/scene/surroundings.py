@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from mbs.model.body import Body
 from mbs.model.elements import Element
-from mbs.model.places import Places
+from mbs.model.system import Places
 
 if TYPE_CHECKING:
     from mbs.scene.contact_laws import ContactLaws

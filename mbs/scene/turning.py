@@ -21,7 +21,7 @@ from mbs.scene.fields import DEGREE
 from mbs.scene.specs import BodySpec, RigidSpec, ShaftSpec
 
 if TYPE_CHECKING:
-    from mbs.model.places import Places
+    from mbs.model.system import Places
 
 HIGHEST_ORDER = 1e5
 """Of an excitation."""

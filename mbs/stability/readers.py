@@ -19,9 +19,7 @@ from mbs.flexible.carry_out import carry_out
 from mbs.flexible.reduced_body import ReducedBody
 from mbs.flexible.reduced_file import read_reduced, write_reduced
 from mbs.modal.records import Channel, Hits, Responses
-from mbs.modal.uff import Measurement
-from mbs.modal.uff_reading import read_uff
-from mbs.modal.uff_writing import write_uff
+from mbs.modal.uff import Measurement, read_uff, write_uff
 from mbs.scene.assembly import assemble
 from mbs.scene.flexible import read_body_file
 from mbs.scene.reader import read_scene

@@ -13,9 +13,7 @@ import numpy as np
 
 from ehdmaps.errors import InputError
 from ehdmaps.units import RPM
-from mbs.modal.uff import CODES, TIME, Dataset
-from mbs.modal.uff_reading import time_records
-from mbs.modal.uff_writing import ascii_text, function_of, write_sets
+from mbs.modal.uff import CODES, TIME, Dataset, ascii_text, function_of, time_records, write_sets
 from mbs.timedata.quantities import Recorded, read_unit
 from mbs.timedata.records import TimeChannel, TimeData, TimeRecord
 

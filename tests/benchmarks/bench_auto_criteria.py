@@ -35,7 +35,7 @@ from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import OilSupply
-from ehdmaps.physics.roughness import Surface
+from ehdmaps.physics.surface import Surface
 from mbs.analyses.bearing_point import bearing_point
 from mbs.analyses.film_criteria import (
     TOUCHING,

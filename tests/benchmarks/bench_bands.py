@@ -27,10 +27,10 @@ from mbs.analyses.modes import modes as modes_of_model
 from mbs.analyses.sweep import SweepSettings, sweep
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.roller_element import RollerElement
+from mbs.linearised.averaged import steady_system
 from mbs.linearised.bands import law_bands
 from mbs.linearised.modes import Modes, modes
-from mbs.linearised.steady import steady_system
-from mbs.linearised.sweep_point import along_load
+from mbs.linearised.sweep import along_load
 from mbs.model.elements import Element, Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.scene.assembly import Model, assemble

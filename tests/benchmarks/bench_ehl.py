@@ -20,16 +20,15 @@ from threadpoolctl import threadpool_limits
 
 from ehdmaps.ehl.line import solve_groups
 from ehdmaps.ehl.newton import newton
-from ehdmaps.ehl.one_grid import LOAD
-from ehdmaps.ehl.profile import Profile, refined
-from ehdmaps.ehl.resolution import Resolution
+from ehdmaps.ehl.profile import Profile, Resolution, refined
 from ehdmaps.ehl.reynolds import FITTED_STEP, LineProblem, residual
 from ehdmaps.ehl.solver import ReynoldsSolver, line_problem
+from ehdmaps.ehl.ways import LOAD
 from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.isotherm import density as density_over_pressure
 from ehdmaps.physics.isotherm import log_viscosity
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.solution import contact_solution
 

@@ -20,16 +20,16 @@ from collections.abc import Callable
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from ehdmaps.ehl.group_solution import linearised_profile
 from ehdmaps.ehl.line import solve_groups
 from ehdmaps.ehl.linearisation import Linearisation
-from ehdmaps.ehl.moving_grid import linearised_profile
 from ehdmaps.ehl.solver import ReynoldsSolver, line_problem
 from ehdmaps.ehl.spectrum import film_compliances
 from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.hertz import DRY_COMPLIANCE, half_width
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import load_and_speed
-from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.spectrum import contact_spectrum
 from tests.cases.ehl import isoviscous_problem, roelands_problem

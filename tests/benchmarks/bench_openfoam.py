@@ -25,7 +25,7 @@ import numpy as np
 
 from ehdmaps.openfoam.installation import installation
 from ehdmaps.openfoam.parameters import Flow
-from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.contact import OperatingPoint
 from tests.benchmarks.bench_physics import drawn
 from tests.cases.openfoam_points import OIL, PLACES, SPIKED, THICK, Comparison, Place, agrees
 from tests.cases.physics_ways import Answer, answer, solver_of

@@ -21,9 +21,8 @@ from ehdmaps.errors import InputError
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.reader import read_job
 from ehdmaps.physics.bearing import BearingGeometry
-from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solids import STEEL
 from tests.cases.physics_ways import NOT_THERE, SOLVERS, WAYS, Answer, answer, solver_of
 

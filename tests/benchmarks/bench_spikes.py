@@ -24,17 +24,16 @@ from ehdmaps.ehl.grid import Spike, lay_out
 from ehdmaps.ehl.group_solution import GroupSolution
 from ehdmaps.ehl.line import solve_groups
 from ehdmaps.ehl.newton import CONVERGED
-from ehdmaps.ehl.one_grid import LOOSE_TOLERANCE, converged
-from ehdmaps.ehl.profile import Profile, front, moved
-from ehdmaps.ehl.resolution import Resolution
+from ehdmaps.ehl.profile import Profile, Resolution, front, moved
 from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.ehl.solver import line_problem
+from ehdmaps.ehl.ways import LOOSE_TOLERANCE, converged
 from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.contact import Structured, structured
 from ehdmaps.physics.hertz import half_width, max_pressure
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import load_and_speed
 from ehdmaps.physics.solids import STEEL
-from ehdmaps.physics.structure import Structured, structured
 
 CONTACT = BearingGeometry.named("NU308").contacts(STEEL, "iso16281")[0]
 OILS = (

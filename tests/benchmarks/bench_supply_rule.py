@@ -5,7 +5,7 @@ Run: python -m tests.benchmarks.bench_supply_rule [--table]
 Inner contact of NU308, FVA 3: 0.5 to 200 N/mm, 0.2 to 10 m/s, 20 to 100 degC, up to L = 30; at each point layers that
 bring 0.99 to 0.1 of the flooded flow. The solver finds the place of the meniscus. With --table all points are printed:
 film over r times the flooded film, and the other quantities over those of the flooded contact. Then the errors of the
-rule (`ehdmaps.physics.starved`, without the rounding of its corner at r = 1):
+rule (`ehdmaps.physics.oil_supply`, without the rounding of its corner at r = 1):
 
 - film offset h = r h_flooded F(r);
 - stiffness k at a given layer, the meniscus following: the slope of that film over the load, in series with the solids;
@@ -26,12 +26,11 @@ from threadpoolctl import threadpool_limits
 from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.solver import ReynoldsSolver, line_problem
 from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.oil_supply import OilSupply
-from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.oil_supply import OilSupply, compliance_ratio, damping_ratio, film_ratio, rolling_ratio
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.solution import FilmSolution
-from ehdmaps.physics.starved import compliance_ratio, damping_ratio, film_ratio, rolling_ratio
 
 CONTACT = BearingGeometry.named("NU308").contacts(STEEL, "iso16281")[0]
 OIL = Lubricant.named("FVA3")

@@ -25,11 +25,10 @@ import numpy as np
 import ehdmaps
 from ehdmaps.maps.emap import EHDMap
 from mbs.bearings.bearing import Bearing
+from mbs.linearised.averaged import steady_system
 from mbs.linearised.linear import frequency_response, state_space
 from mbs.linearised.modes import state_modes, undamped_modes
-from mbs.linearised.steady import steady_system
-from mbs.linearised.sweep import Sweep, sweep
-from mbs.linearised.sweep_point import along_load
+from mbs.linearised.sweep import Sweep, along_load, sweep
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.model.system import System

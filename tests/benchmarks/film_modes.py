@@ -25,9 +25,9 @@ from threadpoolctl import threadpool_limits
 from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.maps.emap import EHDMap, open_map
 from mbs.analyses.film_errors import film_errors
+from mbs.linearised.averaged import steady_system
 from mbs.linearised.dynamic import element_dynamic_stiffness
 from mbs.linearised.modes import Modes, modes
-from mbs.linearised.steady import steady_system
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.scene.assembly import Model, assemble

@@ -26,9 +26,9 @@ from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.catalogue import estimate
+from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solution import ContactSolution, contact_solution
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.laws import formula

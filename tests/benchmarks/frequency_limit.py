@@ -15,8 +15,8 @@ import numpy as np
 
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.jobs.reader import read_job
+from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.hertz import half_width
-from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.spectrum import contact_spectrum
 
 LOADS = (5e3, 2e4, 5e4, 1e5, 3e5, 8e5)

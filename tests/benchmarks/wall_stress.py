@@ -9,8 +9,8 @@ cells, so that what a grid shows is a lower bound.
 from __future__ import annotations
 
 from ehdmaps.ehl.solver import ReynoldsSolver
-from ehdmaps.physics.operating_point import OperatingPoint
-from ehdmaps.physics.wall_stress import wall_stress_share
+from ehdmaps.physics.contact import OperatingPoint
+from ehdmaps.physics.rheology import wall_stress_share
 from tests.cases.openfoam_points import OIL, PLACES, SPIKED
 
 FINER = (1, 2, 4)

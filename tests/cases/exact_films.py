@@ -18,8 +18,8 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from ehdmaps.arrays import ComplexArray, FloatArray
+from ehdmaps.ehl.group_solution import linearised_profile
 from ehdmaps.ehl.line import solve_groups
-from ehdmaps.ehl.moving_grid import linearised_profile
 from ehdmaps.ehl.solver import ReynoldsSolver, line_problem
 from ehdmaps.ehl.spectrum import FilmSpace, film_space
 from ehdmaps.physics.contact import LineContact

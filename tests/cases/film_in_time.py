@@ -19,10 +19,10 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.compiled import njit
 from ehdmaps.ehl.dense import factorised, solved
+from ehdmaps.ehl.linearisation import stored_mass, stored_mass_jacobian
 from ehdmaps.ehl.newton import LOG_VISCOSITY_STEP
 from ehdmaps.ehl.profile import Profile
 from ehdmaps.ehl.reynolds import LineProblem, film, residual, steepest_viscosity_step
-from ehdmaps.ehl.stored_mass import stored_mass, stored_mass_jacobian
 
 MOST_STEPS = 30
 """Newton steps of one time step after which it counts as failed."""

@@ -15,13 +15,12 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
 from ehdmaps.arrays import ComplexArray, FloatArray
-from ehdmaps.ehl.elastic import DRY_DATUM
-from ehdmaps.ehl.grid import GridShape
+from ehdmaps.ehl.grid import DRY_DATUM, GridShape
 from ehdmaps.ehl.group_solution import GroupSolution
 from ehdmaps.ehl.line import solve_groups
-from ehdmaps.ehl.one_grid import LOAD
-from ehdmaps.ehl.resolution import Resolution
+from ehdmaps.ehl.profile import Resolution
 from ehdmaps.ehl.solver import ReynoldsSolver, line_problem
+from ehdmaps.ehl.ways import LOAD
 from ehdmaps.jobs.generate import generate_in_memory
 from ehdmaps.jobs.job import Job
 from ehdmaps.maps.emap import EHDMap
@@ -30,11 +29,10 @@ from ehdmaps.maps.film_response import FilmsOfContact
 from ehdmaps.maps.law import LawAtPoint
 from ehdmaps.maps.locked_film import film_of, locked_stiffness
 from ehdmaps.maps.locked_fit import fitted_factor, law_differences, response_error
-from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.hertz import half_width, natural_time
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import moes_groups, valley_load_number
-from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.spectrum import contact_spectrum
 from tests.cases.film_in_time import follow

@@ -11,7 +11,7 @@ from skfem.helpers import dot
 from skfem.models.elasticity import lame_parameters, linear_elasticity
 
 from mbs.flexible.finite_elements import FiniteElementModel
-from mbs.flexible.spiders import Interface, nodes_in_plane
+from mbs.flexible.reduction import Interface, nodes_in_plane
 
 YOUNG, POISSON, DENSITY = 2.1e11, 0.3, 7850.0
 SIZE = (0.2, 0.05, 0.04)

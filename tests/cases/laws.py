@@ -15,12 +15,10 @@ from ehdmaps.maps.contact_curve import ContactCurve, Curve
 from ehdmaps.maps.records import contacts_json
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.closed_form import FormulaSolver, HertzSolver
-from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.damping import rolling_film_damping
-from ehdmaps.physics.films import moes_central_and_slope
+from ehdmaps.physics.contact import LineContact, OperatingPoint
+from ehdmaps.physics.films import moes_central_and_slope, rolling_film_damping
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import film_from_moes, moes_groups
-from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.solution import contact_solution
 

@@ -18,10 +18,9 @@ from ehdmaps.openfoam.installation import Installation, installation
 from ehdmaps.openfoam.parameters import Flow, Parameters
 from ehdmaps.openfoam.results import Results
 from ehdmaps.openfoam.solver import OpenFoamSolver
-from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import load_and_speed
-from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solids import STEEL
 
 CONTACT = LineContact("line", 10e-3, STEEL, "half_space", reference_depth=1e-3)

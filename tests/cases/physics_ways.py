@@ -12,9 +12,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from ehdmaps.errors import InputError
-from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solution import ContactSolver, FilmSolution
 
 WAYS: Mapping[str, Mapping[str, str]] = {

@@ -11,8 +11,8 @@ import pytest
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.ehl.start import reynolds_start
 from ehdmaps.openfoam.solver import OpenFoamSolver
+from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.hertz import half_width
-from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.spectrum import contact_spectrum
 from tests.cases import openfoam_runs
 from tests.cases.openfoam_points import OIL, Place

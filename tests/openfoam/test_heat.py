@@ -17,9 +17,9 @@ from ehdmaps.openfoam.isotherms import STEP, Isotherms
 from ehdmaps.openfoam.parameters import Heat, Parameters
 from ehdmaps.openfoam.solver import OpenFoamSolver
 from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.heat import HeatData
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solids import STEEL
 from tests.cases import openfoam_runs
 

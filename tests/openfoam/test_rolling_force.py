@@ -8,7 +8,7 @@ import pytest
 from ehdmaps import STEEL, BearingGeometry, Lubricant, OperatingPoint
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.openfoam.solver import OpenFoamSolver
-from ehdmaps.physics.rolling import rolling_force_of_inlet
+from ehdmaps.physics.films import rolling_force_of_inlet
 
 pytestmark = pytest.mark.openfoam
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.physics.oil_supply import OilSupply
-from ehdmaps.physics.roughness import SMOOTH, Surface
+from ehdmaps.physics.surface import SMOOTH, Surface
 from tests.cases.laws import CONTACTS, OIL, SMALL_FIELD
 
 speeds = st.floats(0.0, 3.0)

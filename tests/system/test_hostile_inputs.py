@@ -16,8 +16,7 @@ from scipy import sparse
 from ehdmaps.jobs import cli as ehdmaps_cli
 from mbs import cli as mbs_cli
 from mbs.flexible.reduced_file import write_reduced
-from mbs.modal.uff import Measurement
-from mbs.modal.uff_writing import write_uff
+from mbs.modal.uff import Measurement, write_uff
 from tests.cases.flexible import block, ends
 from tests.cases.modal import hits
 from tests.system import hostile_tables as tables

@@ -15,7 +15,7 @@ import ehdmaps
 from ehdmaps.jobs import cli
 from ehdmaps.maps.rough_films import OVERLAP
 from ehdmaps.physics.bearing import BEARINGS
-from ehdmaps.physics.peak import tip_words
+from ehdmaps.physics.solution import tip_words
 from mbs import Bearing, BearingForce
 from tests.cases import commands
 from tests.cases.commands import check_units

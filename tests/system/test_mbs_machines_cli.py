@@ -17,8 +17,8 @@ from ehdmaps.errors import InputError
 from ehdmaps.maps.emap import open_map
 from mbs.analyses import ramp
 from mbs.bearings.bearing_element import RingElement
+from mbs.linearised.averaged import steady_system
 from mbs.linearised.modes import modes
-from mbs.linearised.steady import steady_system
 from mbs.model.equilibrium import equilibrium
 from mbs.scene.assembly import assemble
 from mbs.scene.reader import parse_scene, read_scene

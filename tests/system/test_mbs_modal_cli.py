@@ -11,7 +11,7 @@ import pytest
 import xarray as xr
 
 from ehdmaps.outputs import MARK
-from mbs.modal.uff_reading import read_uff
+from mbs.modal.uff import read_uff
 from mbs.scene.reader import read_scene
 from tests.cases.commands import run
 from tests.cases.modal import DAMPING, FREQUENCY, hits, measured
@@ -26,8 +26,7 @@ def here(tmp_path, monkeypatch):
 
 
 def write(path, **what):
-    from mbs.modal.uff import Measurement
-    from mbs.modal.uff_writing import write_uff
+    from mbs.modal.uff import Measurement, write_uff
 
     write_uff(path, Measurement("a case", what.get("hits", ()), what.get("responses")))
 

@@ -9,7 +9,7 @@ from ehdmaps.jobs import cli as ehdmaps_cli
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.reader import read_job
 from ehdmaps.jobs.tasks import LineTask
-from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.solution import FilmSolution, Status, contact_solution
 from mbs import cli
 

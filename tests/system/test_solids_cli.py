@@ -9,8 +9,8 @@ import pytest
 from ehdmaps.jobs import cli
 from ehdmaps.jobs.commands import solids
 from ehdmaps.jobs.reader import parse_job
+from ehdmaps.physics.approach import shipped_record
 from ehdmaps.physics.bearing import BearingGeometry
-from ehdmaps.physics.fe_shipped import shipped_record
 from ehdmaps.physics.solids import STEEL
 from tests.cases.jobs import map_job
 

@@ -18,9 +18,9 @@ from ehdmaps.maps.film_field import LOSS_FLOOR
 from ehdmaps.maps.records import bearing_from_json, contacts_from_json, contacts_json, lubricant_from_json
 from ehdmaps.maps.structure import DERIVED
 from ehdmaps.physics.closed_form import FormulaSolver
+from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.lubricant import LUBRICANTS, Lubricant
-from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.solution import Status
 from tests.cases.laws import CONTACTS, LINE, NU308, OIL, dataset_of, dry_dataset

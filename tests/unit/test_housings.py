@@ -16,7 +16,7 @@ import pytest
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.solids import calculix
-from ehdmaps.solids.mesh import load_gmsh
+from ehdmaps.solids.mesh_plane import load_gmsh
 from examples.housings import __main__ as command_line
 from examples.housings import geometry, make, solve
 from examples.housings.deck import deck

@@ -11,12 +11,11 @@ import pytest
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
-from ehdmaps.physics.heat import INLET_HEAT
-from ehdmaps.physics.inlet_heat import UNNOTICED, InletHeat, heated, inlet_heat, inlet_heat_factor
+from ehdmaps.physics.contact import OperatingPoint
+from ehdmaps.physics.heat import INLET_HEAT, UNNOTICED, InletHeat, heated, inlet_heat, inlet_heat_factor
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import moes_groups
 from ehdmaps.physics.oil_supply import OilSupply
-from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.solution import FilmSolution, Status
 

@@ -14,11 +14,16 @@ import pytest
 from ehdmaps import inputs
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.reader import is_map, read_job
-from mbs.flexible.calculix import check_deck, read_dofs
-from mbs.flexible.matrix_files import read_abaqus_matrix, read_dof_table, read_matrix_market
-from mbs.flexible.mesh import read_mesh_nodes
+from mbs.flexible.matrix_files import (
+    check_deck,
+    read_abaqus_matrix,
+    read_dof_table,
+    read_dofs,
+    read_matrix_market,
+    read_mesh_nodes,
+)
 from mbs.flexible.reduced_file import read_reduced
-from mbs.modal.uff_reading import read_uff
+from mbs.modal.uff import read_uff
 from mbs.scene.flexible import read_body_file
 from mbs.scene.reader import parse_scene, read_scene
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from ehdmaps.ehl.line import solve_groups
-from ehdmaps.ehl.resolution import Resolution
+from ehdmaps.ehl.profile import Resolution
 from ehdmaps.ehl.reynolds import LineProblem, oil
 from ehdmaps.ehl.solver import ReynoldsSolver, line_problem
 from ehdmaps.errors import InputError
@@ -29,8 +29,8 @@ from ehdmaps.physics.isotherm import (
     log_viscosity,
 )
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.pressure_viscosity import PRESSURE_LAWS, TaitDoolittle
 from ehdmaps.physics.solids import STEEL
+from ehdmaps.physics.viscosity import PRESSURE_LAWS, TaitDoolittle
 
 LAWS = {
     LINEAR: PressureViscosity(2e-8, 1.0, math.inf),

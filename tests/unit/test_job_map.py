@@ -29,8 +29,8 @@ from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.maps.validation import validate
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.closed_form import FormulaSolver, HertzSolver
+from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.solution import ContactSolverDefaults, FilmSolution, Status, contact_solution
 from ehdmaps.provenance import code_hash

@@ -9,7 +9,7 @@ from ehdmaps.jobs.job import record_json
 from ehdmaps.jobs.reader import parse_job, read_job, shipped_jobs
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.pressure_viscosity import TaitDoolittle
+from ehdmaps.physics.viscosity import TaitDoolittle
 from tests.cases.jobs import map_job, spaced
 
 GOOD = map_job(spaced("0.1 N/mm", "1000 N/mm", 5), '["0.5 m/s", "1 m/s"]', '["20 degC", "40 degC"]')

@@ -7,7 +7,7 @@ import pytest
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.table import Table
-from mbs.flexible.attached import Attached, attach
+from mbs.flexible.plan import Attached, attach
 from mbs.model.body import Inertia, rigid_body
 from mbs.scene.flexible import read_attached
 

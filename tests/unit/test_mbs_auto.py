@@ -18,8 +18,8 @@ from ehdmaps.maps.emap import open_map
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
-from ehdmaps.physics.roughness import Surface
 from ehdmaps.physics.solids import STEEL
+from ehdmaps.physics.surface import Surface
 from mbs import AutoSettings, automatic, modes, parse_scene, plan, read_scene, statics
 from mbs.analyses import auto, kept_map, planned_job
 from mbs.analyses.auto import outside_calls, settled

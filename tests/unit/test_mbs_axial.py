@@ -9,7 +9,7 @@ import pytest
 
 from ehdmaps.errors import InputError
 from mbs import assemble, modes, statics
-from mbs.output.gear_data import gear_forces, gear_lines
+from mbs.output.results import gear_forces, gear_lines
 from mbs.scene.reader import parse_scene
 
 HELIX, TORQUE = math.radians(15.0), 40.0

@@ -21,10 +21,9 @@ from mbs.analyses.modes import modes
 from mbs.analyses.ramp import silent_run
 from mbs.bearings.bearing_element import NO_MAP
 from mbs.linearised.bands import law_bands
-from mbs.linearised.linear import frequency_response, input_matrix, responses
-from mbs.linearised.modal_response import seen_of_loads
+from mbs.linearised.linear import frequency_response, input_matrix, responses, seen_of_loads
 from mbs.linearised.modes import state_modes, undamped_modes
-from mbs.linearised.sweep_point import along_load
+from mbs.linearised.sweep import along_load
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.model.relaxation import Relaxation

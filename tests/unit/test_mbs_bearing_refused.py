@@ -10,8 +10,8 @@ import pytest
 from ehdmaps.errors import InputError, OutsideMapError, SolverError
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.physics.bearing import BearingGeometry
-from ehdmaps.physics.profiles import iso_profile
 from ehdmaps.physics.solids import STEEL, Material
+from ehdmaps.physics.surface import iso_profile
 from mbs.bearings import laws
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce

@@ -13,9 +13,9 @@ import xarray as xr
 
 from ehdmaps.jobs.table import Table
 from mbs.analyses.reach import Fade
-from mbs.output.campbell_data import campbell_dataset
 from mbs.output.campbell_plot import Overlay, Reach, campbell_figure
-from mbs.scene.runs import read_campbell
+from mbs.output.campbell_table import campbell_dataset
+from mbs.scene.reader import read_campbell
 from mbs.settings import CampbellSettings
 from mbs.spectral.campbell import run_up_spectra
 from mbs.spectral.levels import Reference

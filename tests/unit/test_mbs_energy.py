@@ -14,9 +14,8 @@ from mbs.model.elements import Load, Operation, Spring
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import Harmonic, SpeedProfile
 from mbs.model.system import System
-from mbs.output.energy_data import with_energy
-from mbs.output.energy_text import energy_lines
-from mbs.output.results import run_dataset
+from mbs.output.result_text import energy_lines
+from mbs.output.results import run_dataset, with_energy
 from mbs.settings import Settings
 from mbs.transient.run import WITH_STATES, Options, run
 from tests.cases.elements import OneSided, stiff

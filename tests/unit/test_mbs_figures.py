@@ -25,9 +25,9 @@ from mbs.linearised.validity import FilmError, memory_error
 from mbs.model.equilibrium import equilibrium
 from mbs.output.model_text import film_lines
 from mbs.output.modes_plot import modes_figure
-from mbs.output.modes_text import kinds
 from mbs.output.page import SHADE
 from mbs.output.response_plot import Curves, comparison_figure, response_figure
+from mbs.output.result_text import kinds
 from mbs.output.run_plot import run_figure
 from mbs.output.sweep_plot import sweep_figure
 from mbs.scene.assembly import assemble

@@ -17,7 +17,7 @@ from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.laws import hertz
 from mbs.bearings.roller_contacts import RollerContacts
 from mbs.bearings.roller_element import RollerElement
-from mbs.linearised.film_states import TOLERANCE, film_states, together
+from mbs.linearised.dynamic import TOLERANCE, film_states, together
 from mbs.model.elements import Operation
 from mbs.model.relaxation import Relaxation
 from tests.cases.laws import CONTACTS, OIL, SMALL_FIELD

@@ -13,8 +13,8 @@ from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.closed_form import FormulaSolver
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
-from ehdmaps.physics.peak import tip_words
 from ehdmaps.physics.solids import STEEL
+from ehdmaps.physics.solution import tip_words
 from mbs.bearings import laws
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.contact_report import BearingContacts, spike_tip

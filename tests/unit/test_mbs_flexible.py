@@ -8,8 +8,7 @@ from scipy import sparse
 
 from ehdmaps.errors import InputError
 from mbs.flexible.finite_elements import FiniteElementModel
-from mbs.flexible.reduction import reduce
-from mbs.flexible.spiders import Interface, nearest_node, nodes_in_plane, nodes_on_cylinder, spider
+from mbs.flexible.reduction import Interface, nearest_node, nodes_in_plane, nodes_on_cylinder, reduce, spider
 from mbs.model.body import FREEDOMS
 from tests.cases.flexible import SIZE, block, ends, rigid_motion, spring
 

@@ -8,18 +8,20 @@ import pytest
 from scipy import sparse
 
 from ehdmaps.errors import DependencyError, InputError
-from mbs.flexible.calculix import check_deck, read_calculix, read_dofs
 from mbs.flexible.matrix_files import (
     Labelled,
     NodePositions,
     assemble_model,
+    check_deck,
     read_abaqus_matrix,
+    read_calculix,
     read_dof_table,
+    read_dofs,
     read_matrix_market,
+    read_mesh_nodes,
     read_triplets,
     without_fixed,
 )
-from mbs.flexible.mesh import read_mesh_nodes
 from tests.cases.flexible import written
 
 ROUND_OFF = 1e-12
@@ -227,7 +229,7 @@ class TestReaders:
         with pytest.raises(InputError, match=r"got points of shape \(2, 3\); allowed: finite positions"):
             read_mesh_nodes(path)
         # A reader of meshio that waits for an end that was cut off.
-        monkeypatch.setattr("mbs.flexible.mesh.SHORTEST_READ", 2.0)
+        monkeypatch.setattr("mbs.flexible.matrix_files.SHORTEST_READ", 2.0)
         (tmp_path / "a.mdpa").write_text("Begin Nodes\n 1 0.0 0.0 0.0\n")
         with pytest.raises(InputError, match=r"cannot be read as a mesh \(it did not end within 2 s\)"):
             read_mesh_nodes(tmp_path / "a.mdpa")

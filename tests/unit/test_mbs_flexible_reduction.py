@@ -12,8 +12,7 @@ from mbs.flexible import held_body
 from mbs.flexible.finite_elements import FiniteElementModel
 from mbs.flexible.reduced_body import ReducedBody, to_body
 from mbs.flexible.reduced_file import read_reduced, write_reduced
-from mbs.flexible.reduction import reduce
-from mbs.flexible.spiders import Interface, nodes_in_plane
+from mbs.flexible.reduction import Interface, nodes_in_plane, reduce
 from mbs.model.body import Frame
 from tests.cases.flexible import block, ends, spring
 

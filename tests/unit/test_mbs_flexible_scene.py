@@ -14,8 +14,7 @@ from ehdmaps.errors import InputError
 from ehdmaps.jobs.table import Table
 from mbs import cli
 from mbs.commands import reduce as command
-from mbs.flexible.extent import Extent, extent
-from mbs.flexible.finite_elements import FiniteElementModel
+from mbs.flexible.finite_elements import Extent, FiniteElementModel, extent
 from mbs.flexible.reduced_file import read_reduced
 from mbs.model.body import FREEDOMS
 from mbs.scene.bodies import build_body

@@ -8,8 +8,7 @@ import pytest
 from ehdmaps.errors import AnalysisError
 from mbs.model.body import rigid_body
 from mbs.model.elements import Load, Spring
-from mbs.model.equilibrium import equilibrium
-from mbs.model.free_motion import free_lines, free_motions
+from mbs.model.equilibrium import equilibrium, free_lines, free_motions
 from mbs.model.system import System
 from mbs.scene.assembly import assemble
 from mbs.scene.reader import read_scene, shipped_systems

@@ -11,7 +11,7 @@ import pytest
 from scipy import io, sparse
 
 from ehdmaps.errors import InputError
-from mbs.flexible import kept
+from mbs.flexible import carry_out as kept
 from mbs.flexible.carry_out import carry_out
 from mbs.flexible.plan import PlaneSurface, PlannedInterface, ReductionPlan
 from mbs.scene.bodies import build_body

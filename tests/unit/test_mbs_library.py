@@ -44,7 +44,7 @@ from mbs import (
     sweep,
 )
 from mbs.linearised.linear import peak_places
-from mbs.modal.uff_reading import read_uff
+from mbs.modal.uff import read_uff
 from tests.cases.jobs import map_job
 
 JOB = map_job(

@@ -10,17 +10,23 @@ import numpy as np
 import pytest
 
 from ehdmaps.errors import AnalysisError, DependencyError, InputError
-from mbs.modal.estimation import HitLimits, estimate, relative_deviation, transfer
+from mbs.modal.estimation import (
+    HitLimits,
+    estimate,
+    exponential_window,
+    force_window,
+    needed_decay,
+    pulse,
+    relative_deviation,
+    transfer,
+    without_window,
+)
 from mbs.modal.fit import identify
-from mbs.modal.lscf import lscf_poles
-from mbs.modal.rational import orthogonal_basis, rational_poles, roots
+from mbs.modal.lscf import lscf_poles, orthogonal_basis, rational_poles, roots
 from mbs.modal.records import Channel
 from mbs.modal.residues import assurance
 from mbs.modal.stabilisation import Criteria, stabilise
-from mbs.modal.uff import Measurement
-from mbs.modal.uff_reading import LARGEST, read_uff
-from mbs.modal.uff_writing import write_uff
-from mbs.modal.windows import exponential_window, force_window, needed_decay, pulse, without_window
+from mbs.modal.uff import LARGEST, Measurement, read_uff, write_uff
 from tests.cases.modal import POLES, REFERENCE, SENSORS, STEP, hits, measured
 
 
@@ -317,7 +323,7 @@ def test_libraries_that_are_missing(monkeypatch, tmp_path):
 
 
 def test_libraries_are_loaded_late():
-    code = "import mbs.modal.fit, mbs.modal.uff_reading, mbs.modal.uff_writing, mbs.transient.hammer, sys; "
+    code = "import mbs.modal.fit, mbs.modal.uff, mbs.modal.uff, mbs.transient.hammer, sys; "
     code += "print('pyuff' in sys.modules, 'sdypy' in sys.modules)"
     result = subprocess.run([sys.executable, "-W", "error", "-c", code], capture_output=True, text=True, check=True)
     assert result.stdout.split() == ["False", "False"]

@@ -11,7 +11,7 @@ import pytest
 
 from ehdmaps.errors import InputError
 from mbs import Scene, assemble
-from mbs.flexible.orientation import Turn, rotation_of
+from mbs.flexible.plan import Turn, rotation_of
 from mbs.model.elements import GROUND, Load, Spring
 from mbs.scene.reader import parse_scene
 from mbs.scene.specs import FlexibleSpec

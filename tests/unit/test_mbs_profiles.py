@@ -11,7 +11,7 @@ import pytest
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
-from ehdmaps.physics.profiles import CrownedProfile, TabulatedProfile, iso_profile
+from ehdmaps.physics.surface import CrownedProfile, TabulatedProfile, iso_profile
 from mbs import assemble
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce

@@ -20,7 +20,7 @@ from ehdmaps.physics.lubricant import Lubricant
 from mbs.analyses.plan import plan
 from mbs.bearings.laws import hertz
 from mbs.commands.cases import load_cases
-from mbs.flexible.attached import Attached
+from mbs.flexible.plan import Attached
 from mbs.flexible.shaft_parts import Disc, Section
 from mbs.gears.pair import GearPair
 from mbs.model.body import Inertia, rigid_body

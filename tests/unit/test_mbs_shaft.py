@@ -19,7 +19,7 @@ from mbs.flexible.beam import (
     shear_coefficient,
     wave_length,
 )
-from mbs.flexible.damping import modal_damping
+from mbs.flexible.reduced_body import modal_damping
 from mbs.flexible.shaft import flexible_shaft
 from mbs.flexible.shaft_parts import Disc, Section
 from mbs.linearised.modes import modes
@@ -28,7 +28,7 @@ from mbs.model.elements import Operation, Spring
 from mbs.model.equilibrium import equilibrium
 from mbs.model.system import System
 from mbs.scene.bodies import build_body
-from mbs.scene.shaft import read_shaft
+from mbs.scene.flexible import read_shaft
 
 BENDING = ("y", "z", "theta_y", "theta_z")
 STEEL_BAR = CrossSection.annulus(0.04, 0.01, 210e9, 0.3, 7850.0)

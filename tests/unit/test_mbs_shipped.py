@@ -10,8 +10,8 @@ import pytest
 from ehdmaps.physics.catalogue import static_rating
 from mbs import assemble, plan, read_scene, statics
 from mbs.model.elements import GROUND
-from mbs.output.gear_data import gear_forces
 from mbs.output.model_text import heading
+from mbs.output.results import gear_forces
 from mbs.scene.changes import with_slices
 
 

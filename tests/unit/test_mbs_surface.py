@@ -12,7 +12,7 @@ from ehdmaps.errors import InputError
 from ehdmaps.maps import schema
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.records import surface_json
-from ehdmaps.physics.roughness import SMOOTH, Surface
+from ehdmaps.physics.surface import SMOOTH, Surface
 from mbs import assemble
 from mbs.scene.assembly import law_attributes
 from mbs.scene.contact_laws import ContactLaws

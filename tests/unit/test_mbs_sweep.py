@@ -14,9 +14,8 @@ from ehdmaps.jobs.table import Table
 from mbs.bearings.bearing_element import RingElement
 from mbs.commands import sweep as command
 from mbs.commands.cases import load_cases
-from mbs.linearised.steady import steady_system
-from mbs.linearised.sweep import sweep
-from mbs.linearised.sweep_point import along_load
+from mbs.linearised.averaged import steady_system
+from mbs.linearised.sweep import along_load, sweep
 from mbs.linearised.tracking import Match, ModeSet, assurance, compose, match, tracks
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import Forces, Input, Operation, Port, Sensor, Spring
@@ -25,8 +24,7 @@ from mbs.model.system import System
 from mbs.output.sweep_data import RESPONSES, VARIABLES, sweep_dataset
 from mbs.output.sweep_plot import sweep_figure
 from mbs.scene.assembly import assemble
-from mbs.scene.reader import read_scene
-from mbs.scene.runs import read_sweep
+from mbs.scene.reader import read_scene, read_sweep
 from mbs.settings import SweepRange
 
 RPM = math.pi / 30.0

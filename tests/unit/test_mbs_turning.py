@@ -14,7 +14,7 @@ from mbs import assemble, parse_scene, read_scene
 from mbs.analyses.followed import excited_orders
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import SpeedProfile
-from mbs.model.weight import load_by_gravity
+from mbs.model.system import load_by_gravity
 from mbs.settings import Settings
 from mbs.transient.run import Options, run
 

@@ -20,7 +20,7 @@ from mbs.analyses.case import Case, LawChoice, Subject
 from mbs.analyses.variants import Variation, variants
 from mbs.analyses.varied import VARIED
 from mbs.cli import VARIED_KEYS
-from mbs.output.variants_plot import variants_figure
+from mbs.output.campbell_plot import variants_figure
 from mbs.scene import changes
 from mbs.scene.bodies import build_body
 from mbs.scene.map_set import MapSet

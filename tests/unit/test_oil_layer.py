@@ -10,9 +10,8 @@ import pytest
 from ehdmaps.maps.contact_curve import ContactCurve
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.oil_layer import oil_layer
-from ehdmaps.physics.damping import rolling_film_damping
-from ehdmaps.physics.oil_supply import FLOODED, OilSupply
-from ehdmaps.physics.starved import RIGID_FLOW, compliance_ratio, damping_ratio, film_ratio
+from ehdmaps.physics.films import rolling_film_damping
+from ehdmaps.physics.oil_supply import FLOODED, RIGID_FLOW, OilSupply, compliance_ratio, damping_ratio, film_ratio
 from tests.cases.laws import CONTACTS, OIL, SMALL_FIELD, ValleyField
 
 SPEED, WARM = np.array([1.0]), np.array([320.0])

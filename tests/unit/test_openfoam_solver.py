@@ -25,8 +25,8 @@ from ehdmaps.openfoam.leftovers import CLAIM, PREFIX, claimed, remove_leftovers
 from ehdmaps.openfoam.pyfoam import parse
 from ehdmaps.openfoam.run import RunError, run
 from ehdmaps.openfoam.solver import OpenFoamSolver
+from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.hertz import DRY_COMPLIANCE
-from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solution import Status
 from tests.cases import openfoam_fake
 

@@ -17,10 +17,9 @@ from ehdmaps.maps import schema
 from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.maps.own_lines import has_own_lines, lines_by_contact
 from ehdmaps.physics.closed_form import FormulaSolver
-from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.inlet_heat import inlet_heat
+from ehdmaps.physics.contact import LineContact, OperatingPoint
+from ehdmaps.physics.heat import inlet_heat
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solution import FilmSolution
 
 JOB = """schema = 1

@@ -12,11 +12,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ehdmaps.errors import InputError
-from ehdmaps.physics import damping, films, hertz, moes
+from ehdmaps.physics import films, hertz, moes
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.closed_form import FILM_FORMULAS, FormulaSolver, HertzSolver
+from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.solution import ContactSolver, Status, contact_solution
 from ehdmaps.physics.spectrum import contact_spectrum
@@ -71,7 +71,7 @@ def test_formula_is_the_formula():
     expected = moes.film_from_moes(films.moes_central(M, L), 1.7, state.viscosity, INNER.radius, INNER.reduced_modulus)
     assert film.status is Status.CONVERGED
     assert film.film_offset == film.central_film == pytest.approx(expected, rel=ROUND_OFF)
-    c = damping.rolling_film_damping(film.central_film, state.viscosity, INNER.radius)
+    c = films.rolling_film_damping(film.central_film, state.viscosity, INNER.radius)
     assert film.loss_compliance == pytest.approx(c * film.film_compliance**2, rel=ROUND_OFF)
     assert 0 < film.minimum_film < film.central_film
 

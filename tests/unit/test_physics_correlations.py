@@ -11,8 +11,8 @@ import pytest
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.job import record_json
 from ehdmaps.maps.records import lubricant_from_json
-from ehdmaps.physics.correlations import CORRELATIONS, estimate, gold_mineral, so_klaus
 from ehdmaps.physics.lubricant import FITTED_PRESSURE, Lubricant
+from ehdmaps.physics.own_oil import CORRELATIONS, estimate, gold_mineral, so_klaus
 from ehdmaps.physics.viscosity import AstmViscosity
 
 VG32 = {"viscosity_40": 32e-6, "viscosity_100": 5.4e-6, "density": 870.0, "density_slope": -0.6}

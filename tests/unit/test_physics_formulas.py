@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ehdmaps.errors import InputError
-from ehdmaps.physics import damping, films, hertz, moes, thermal
+from ehdmaps.physics import films, heat, hertz, moes
 
 ROUND_OFF = 1e-12
 ALPHA, ETA, RADIUS, MODULUS = 2.2e-8, 0.08, 5.5e-3, 230.77e9
@@ -174,22 +174,22 @@ def test_exponents_of_the_power_laws(formula, speed, load, material):
 
 def test_damping_constants():
     unit = {"film": 1e-3, "viscosity": 2.0, "radius": 1e-3}
-    assert damping.rolling_film_damping(**unit) == pytest.approx(2 * 6.548, rel=1e-4)  # four printed digits
-    assert damping.squeeze_film_damping(**unit) == pytest.approx(6 * math.sqrt(2) * math.pi, rel=ROUND_OFF)
-    assert damping.rigid_inlet_damping(**unit) == pytest.approx(6 * math.pi / math.sqrt(2), rel=ROUND_OFF)
+    assert films.rolling_film_damping(**unit) == pytest.approx(2 * 6.548, rel=1e-4)  # four printed digits
+    assert films.squeeze_film_damping(**unit) == pytest.approx(6 * math.sqrt(2) * math.pi, rel=ROUND_OFF)
+    assert films.rigid_inlet_damping(**unit) == pytest.approx(6 * math.pi / math.sqrt(2), rel=ROUND_OFF)
 
 
 @given(film=st.floats(1e-8, 1e-4), factor=st.floats(1.1, 10.0))
 def test_damping_falls_with_the_film_to_the_power_of_one_and_a_half(film, factor):
-    for formula in (damping.rolling_film_damping, damping.squeeze_film_damping, damping.rigid_inlet_damping):
+    for formula in (films.rolling_film_damping, films.squeeze_film_damping, films.rigid_inlet_damping):
         thin, thick = formula(film, ETA, RADIUS), formula(factor * film, ETA, RADIUS)
         assert thin / thick == pytest.approx(factor**1.5, rel=ROUND_OFF)
 
 
 def test_rolling_film_damps_less_than_the_whole_and_the_half_squeeze_film():
     values = (1e-6, ETA, RADIUS)
-    inlet = damping.rigid_inlet_damping(*values)
-    assert damping.rolling_film_damping(*values) < inlet < damping.squeeze_film_damping(*values)
+    inlet = films.rigid_inlet_damping(*values)
+    assert films.rolling_film_damping(*values) < inlet < films.squeeze_film_damping(*values)
 
 
 def test_dietl_exponents():
@@ -205,10 +205,10 @@ def test_dietl_exponents():
     )
     exponents = (-0.136, -0.434, 0.531, 0.424, 0.781, 1.069, 0.769, -0.563)
     for (name, value), exponent in zip(base.items(), exponents, strict=True):
-        ratio = damping.dietl_damping(**(base | {name: 2 * value})) / damping.dietl_damping(**base)
+        ratio = films.dietl_damping(**(base | {name: 2 * value})) / films.dietl_damping(**base)
         assert ratio == pytest.approx(2**exponent, rel=ROUND_OFF)
     ones = dict.fromkeys(base, 1.0)
-    assert damping.dietl_damping(**ones) == 0.1963
+    assert films.dietl_damping(**ones) == 0.1963
 
 
 def test_dietl_dimensions_close():
@@ -231,21 +231,21 @@ def test_dietl_dimensions_close():
 
 
 def test_no_heating_no_reduction():
-    assert thermal.inlet_shear_heating_factor(1e9, MODULUS, 0.0) == 1.0
-    assert thermal.thermal_loading(0.0, 10.0, 0.134) == 0.0
+    assert heat.inlet_shear_heating_factor(1e9, MODULUS, 0.0) == 1.0
+    assert heat.thermal_loading(0.0, 10.0, 0.134) == 0.0
 
 
 @given(loading=st.floats(0.0, 10.0), slip=st.floats(0.0, 2.0))
 def test_heating_reduces_the_film(loading, slip):
-    factor = thermal.inlet_shear_heating_factor(0.8e9, MODULUS, loading, slip)
+    factor = heat.inlet_shear_heating_factor(0.8e9, MODULUS, loading, slip)
     assert 0 < factor <= 1
-    assert thermal.inlet_shear_heating_factor(0.8e9, MODULUS, loading + 0.1, slip) < factor
-    assert thermal.inlet_shear_heating_factor(0.8e9, MODULUS, loading + 0.1, slip + 0.1) < factor
+    assert heat.inlet_shear_heating_factor(0.8e9, MODULUS, loading + 0.1, slip) < factor
+    assert heat.inlet_shear_heating_factor(0.8e9, MODULUS, loading + 0.1, slip + 0.1) < factor
 
 
 def test_heating_is_never_clipped():
     with pytest.raises(InputError, match=r"inlet shear heating: got 13.2 .* = 1\.\d+, outside .*allowed: < 1"):
-        thermal.inlet_shear_heating_factor(3e9, MODULUS, 100.0)
+        heat.inlet_shear_heating_factor(3e9, MODULUS, 100.0)
 
 
 @pytest.mark.parametrize(
@@ -259,12 +259,12 @@ def test_heating_is_never_clipped():
 )
 def test_impossible_heating_input(values, text):
     with pytest.raises(InputError, match=text):
-        thermal.inlet_shear_heating_factor(*values)
+        heat.inlet_shear_heating_factor(*values)
 
 
 def test_impossible_thermal_loading():
     with pytest.raises(InputError) as caught:
-        thermal.thermal_loading(1e-3, math.inf, 0.0)
+        heat.thermal_loading(1e-3, math.inf, 0.0)
     slope, speed, conductivity = caught.value.problems
     assert slope == "viscosity_slope: got 0.001 Pa s/K; allowed: finite and <= 0; check its sign"
     assert speed == "speed: got inf m/s; allowed: finite"

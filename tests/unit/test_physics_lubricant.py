@@ -17,9 +17,8 @@ from ehdmaps.jobs.job_text import lubricant_keys
 from ehdmaps.maps.records import lubricant_from_json
 from ehdmaps.physics.heat import HeatData, heat_data
 from ehdmaps.physics.lubricant import FITTED_PRESSURE, LUBRICANTS, Lubricant, LubricantState, OilData, PressureViscosity
-from ehdmaps.physics.pressure_viscosity import Barus, Fva3, Roelands
 from ehdmaps.physics.solids import STEEL
-from ehdmaps.physics.viscosity import AstmViscosity, ConstantViscosity, VogelViscosity
+from ehdmaps.physics.viscosity import AstmViscosity, Barus, ConstantViscosity, Fva3, Roelands, VogelViscosity
 
 ROUND_OFF = 1e-12
 C40, C100 = 313.15, 373.15

@@ -6,9 +6,9 @@ import ehdmaps
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.jobs.cli import main
 from ehdmaps.physics.bearing import BearingGeometry
-from ehdmaps.physics.correlations import CORRELATIONS
+from ehdmaps.physics.closed_form import film_change
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.sensitivity import film_change
+from ehdmaps.physics.own_oil import CORRELATIONS
 from ehdmaps.physics.solids import STEEL
 
 CONTACT = BearingGeometry.named("NU308").contacts(STEEL, "iso16281")[0]

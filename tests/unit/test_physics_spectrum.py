@@ -9,7 +9,7 @@ import pytest
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
-from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.solution import FilmSolution, FilmSpectrum, Status, contact_solution, no_spectrum, slow_spectrum
 from ehdmaps.physics.spectrum import MOST_FREQUENCIES, checked_frequencies, contact_spectrum

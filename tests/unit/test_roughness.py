@@ -10,7 +10,7 @@ from scipy.integrate import quad
 
 from ehdmaps.errors import InputError
 from ehdmaps.maps.asperities import asperity_integral, asperity_pressure, mean_gap
-from ehdmaps.physics.roughness import SMOOTH, Surface
+from ehdmaps.physics.surface import SMOOTH, Surface
 
 MODULUS = 230.77e9
 

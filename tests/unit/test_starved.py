@@ -9,8 +9,8 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from ehdmaps.physics.rolling import RIGID_ROLLING_CONSTANT
-from ehdmaps.physics.starved import (
+from ehdmaps.physics.films import RIGID_ROLLING_CONSTANT
+from ehdmaps.physics.oil_supply import (
     RIGID_FLOW,
     compliance_ratio,
     damping_ratio,

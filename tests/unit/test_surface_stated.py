@@ -32,10 +32,9 @@ from ehdmaps.maps.rough_films import (
     rough_variables,
 )
 from ehdmaps.maps.rough_layer import RoughLayer
-from ehdmaps.physics.closed_form import FormulaSolver
-from ehdmaps.physics.film_limits import THICKEST_FILM, too_thick, too_thin
-from ehdmaps.physics.roughness import SMOOTH, Surface
+from ehdmaps.physics.closed_form import THICKEST_FILM, FormulaSolver, too_thick, too_thin
 from ehdmaps.physics.solution import Status
+from ehdmaps.physics.surface import SMOOTH, Surface
 from tests.cases.jobs import SMALL
 from tests.cases.laws import CONTACTS, OIL, dataset_of, dry_dataset
 

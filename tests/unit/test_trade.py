@@ -12,11 +12,9 @@ import xarray as xr
 from matplotlib.collections import LineCollection
 
 from ehdmaps.errors import InputError
-from ehdmaps.trade.data import trade_dataset, trade_json
+from ehdmaps.trade.data import check_trade_files, trade_dataset, trade_json, write_trade
 from ehdmaps.trade.figure import trade_figure
-from ehdmaps.trade.files import check_trade_files, write_trade
-from ehdmaps.trade.pareto import front
-from ehdmaps.trade.record import Choice, ErrorSummary, Judged, Trade
+from ehdmaps.trade.record import Choice, ErrorSummary, Judged, Trade, front
 from ehdmaps.trade.text import trade_text
 
 PLACES = ("inner, 1 N/mm", "outer, 30 N/mm", "inner, 7 N/mm")

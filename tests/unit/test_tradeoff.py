@@ -21,11 +21,11 @@ from ehdmaps.maps.contact_curve import ContactCurve
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.openfoam import installation
 from ehdmaps.physics.closed_form import FormulaSolver, HertzSolver
+from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.moes import moes_groups, valley_load_number
 from ehdmaps.physics.oil_supply import OilSupply
-from ehdmaps.physics.operating_point import OperatingPoint
-from ehdmaps.physics.roughness import Surface
 from ehdmaps.physics.solution import ContactSolverDefaults, FilmSolution, Status
+from ehdmaps.physics.surface import Surface
 from ehdmaps.trade.record import Choice, Trade
 from tests.cases.jobs import LINE, SMALL
 from tests.cases.laws import CONTACTS, OIL, SMALL_FIELD

@@ -9,10 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ehdmaps.ehl.elastic import DRY_DATUM, log_kernel
-from ehdmaps.ehl.grid import lay_out
+from ehdmaps.ehl.grid import DRY_DATUM, lay_out, log_kernel
 from ehdmaps.ehl.line import solve_groups
-from ehdmaps.ehl.resolution import Resolution
+from ehdmaps.ehl.profile import Resolution
 from ehdmaps.physics.films import dowson_higginson_minimum, dowson_toyoda_central, moes_central
 from ehdmaps.physics.hertz import DRY_COMPLIANCE
 from tests.cases.ehl import isoviscous_problem, moes_film, solved

@@ -8,14 +8,12 @@ import numpy as np
 import pytest
 
 from ehdmaps.ehl.group_solution import GroupSolution
-from ehdmaps.ehl.linearisation import Linearisation, linearised
+from ehdmaps.ehl.linearisation import Linearisation, linearised, stored_mass, stored_mass_rate, stored_oil
 from ehdmaps.ehl.newton import CONVERGED, newton
-from ehdmaps.ehl.one_grid import LOAD
 from ehdmaps.ehl.profile import Profile
 from ehdmaps.ehl.reynolds import residual
 from ehdmaps.ehl.spectrum import film_compliances
-from ehdmaps.ehl.stored_mass import stored_mass, stored_mass_rate, stored_oil
-from ehdmaps.ehl.ways import at_load
+from ehdmaps.ehl.ways import LOAD, at_load
 from ehdmaps.physics.hertz import DRY_COMPLIANCE
 from tests.cases.ehl import roelands_problem, solved
 
@@ -56,7 +54,7 @@ def test_grid_that_follows_the_spike_gives_the_secant(M: float, L: float) -> Non
     result = solved(M, L)
     assert _profile(result).spike is not None
     from ehdmaps.ehl.line import solve_groups
-    from ehdmaps.ehl.resolution import Resolution
+    from ehdmaps.ehl.profile import Resolution
 
     problem = roelands_problem(M, L)
     heights = []
@@ -72,7 +70,7 @@ def test_grid_that_follows_the_spike_gives_the_secant(M: float, L: float) -> Non
 @pytest.mark.parametrize(("M", "L"), [(1.0, 5.0), (5.0, 8.0)])
 def test_following_and_standing_grids_agree_where_the_front_is_resolved(M: float, L: float) -> None:
     from ehdmaps.ehl.line import solve_groups
-    from ehdmaps.ehl.resolution import Resolution
+    from ehdmaps.ehl.profile import Resolution
 
     problem = roelands_problem(M, L)
     following = solve_groups(problem, M, L, Resolution(density=20.0, spike_steepness=1e-3))

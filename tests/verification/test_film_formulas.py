@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from ehdmaps.physics import damping, films, hertz, moes
+from ehdmaps.physics import films, hertz, moes
 from ehdmaps.physics.approach import half_space_compliance
 from ehdmaps.physics.lubricant import Lubricant
 
@@ -55,13 +55,13 @@ def test_rigid_rolling_film_carries_martins_load():
 def test_rigid_rolling_film_damping():
     """Central difference in the squeeze rate, step 1e-3: truncation of the order 1e-6."""
     constant = (rolling_load(-1e-3) - rolling_load(1e-3)) / 2e-3
-    assert damping.rolling_film_damping(1.0, 1.0, 1.0) == pytest.approx(constant, rel=1e-5)
+    assert films.rolling_film_damping(1.0, 1.0, 1.0) == pytest.approx(constant, rel=1e-5)
     assert limit("rigid isoviscous rolling film")["damping"] == pytest.approx(constant, rel=1e-5)
 
 
 def test_squeeze_film_damping():
     constant = integral(lambda x: 12 * x**2 / (1 + x**2 / 2) ** 3, -math.inf, math.inf)
-    assert damping.squeeze_film_damping(1.0, 1.0, 1.0) == pytest.approx(constant, rel=QUADRATURE)
+    assert films.squeeze_film_damping(1.0, 1.0, 1.0) == pytest.approx(constant, rel=QUADRATURE)
 
 
 def test_dry_compliance_of_the_log_kernel():
@@ -123,7 +123,7 @@ def test_damping_against_the_light_isoviscous_reference():
     p_h = math.sqrt(M * math.sqrt(speed_number) / (2 * math.pi))
     film = point["minimum_film"] * math.sqrt(speed_number)
     reference = point["loss"] / point["compliance"] ** 2 * p_h
-    formula = damping.rolling_film_damping(film, speed_number / 2, 1.0)
+    formula = films.rolling_film_damping(film, speed_number / 2, 1.0)
     assert reference == pytest.approx(formula, rel=0.03)
 
 

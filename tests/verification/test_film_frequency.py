@@ -11,21 +11,18 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from ehdmaps.ehl import solver as reynolds
-from ehdmaps.ehl.frequency import group_spectrum
 from ehdmaps.ehl.grid import GridShape
-from ehdmaps.ehl.group_solution import GroupSolution
-from ehdmaps.ehl.line import solve_groups
-from ehdmaps.ehl.moving_grid import linearised_profile
-from ehdmaps.ehl.one_grid import LOAD
-from ehdmaps.ehl.resolution import Resolution
+from ehdmaps.ehl.group_solution import GroupSolution, linearised_profile
+from ehdmaps.ehl.line import group_spectrum, solve_groups
+from ehdmaps.ehl.profile import Resolution
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.ehl.spectrum import film_compliances, film_space
+from ehdmaps.ehl.ways import LOAD
 from ehdmaps.physics.bearing import BearingGeometry
-from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.hertz import DRY_COMPLIANCE, half_width
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import load_and_speed, moes_groups
-from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.solution import ContactSolverDefaults, contact_solution
 from ehdmaps.physics.spectrum import contact_spectrum

@@ -13,7 +13,7 @@ import pytest
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.maps.law import LawAtPoint
 from ehdmaps.maps.memory_table import equilibrium_at
-from ehdmaps.physics.operating_point import OperatingPoint
+from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.solution import natural_to_hertz
 from ehdmaps.physics.spectrum import contact_spectrum
 from tests.cases.film_memory import (

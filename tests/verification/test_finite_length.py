@@ -12,8 +12,8 @@ from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.approach import half_space, half_space_compliance
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.hertz import half_width, max_pressure
-from ehdmaps.physics.profiles import iso_profile
 from ehdmaps.physics.solids import STEEL, reduced_modulus
+from ehdmaps.physics.surface import iso_profile
 from ehdmaps.solids.slices import (
     balanced_loads,
     coupled_loads,
@@ -23,12 +23,12 @@ from ehdmaps.solids.slices import (
     without_ends,
 )
 from ehdmaps.solids.three_d import FiniteLine, depth_term, layer_response, love, solve_length
-from ehdmaps.solids.three_d_calculix import load_by_calculix
+from ehdmaps.solids.three_d_bricks import CORNERS, brick_stiffness
 from ehdmaps.solids.three_d_compare import compare_lengths, mesh_change
-from ehdmaps.solids.three_d_elements import CORNERS, brick_stiffness
 from ehdmaps.solids.three_d_reference import (
     LengthReference,
     MeshedContact,
+    load_by_calculix,
     quarter_model,
     save_reference,
     shipped_reference,

@@ -27,10 +27,9 @@ from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.flexible.finite_elements import FiniteElementModel
 from mbs.flexible.reduced_body import to_body
-from mbs.flexible.reduction import reduce
+from mbs.flexible.reduction import Interface, reduce
 from mbs.flexible.shaft import flexible_shaft
 from mbs.flexible.shaft_parts import Section
-from mbs.flexible.spiders import Interface
 from mbs.linearised.modes import modes, undamped_modes
 from mbs.model.body import FREEDOMS
 from mbs.model.elements import Load, Operation, Spring

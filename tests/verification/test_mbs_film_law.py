@@ -20,10 +20,9 @@ from ehdmaps.physics.lubricant import Lubricant
 from mbs.analyses.film_errors import film_errors
 from mbs.analyses.modes import modes as analysed
 from mbs.commands.modes import _table
-from mbs.linearised.dynamic import element_dynamic_stiffness
-from mbs.linearised.film_law import FilmLawPart
+from mbs.linearised.averaged import steady_system
+from mbs.linearised.dynamic import FilmLawPart, element_dynamic_stiffness
 from mbs.linearised.modes import modes
-from mbs.linearised.steady import steady_system
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.output.model_text import band_lines, film_law_line, film_lines

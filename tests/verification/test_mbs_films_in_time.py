@@ -13,8 +13,8 @@ import numpy as np
 from ehdmaps.arrays import ComplexArray, FloatArray
 from mbs.analyses.hammer import HammerSettings, hammer
 from mbs.analyses.lsa import LsaSettings, lsa
+from mbs.linearised.averaged import steady_system
 from mbs.linearised.linear import input_matrix, sensor_matrix
-from mbs.linearised.steady import steady_system
 from mbs.model.equilibrium import equilibrium
 from mbs.scene.assembly import Model, assemble
 from mbs.scene.reader import parse_scene, read_scene

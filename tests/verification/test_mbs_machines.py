@@ -14,9 +14,9 @@ import numpy as np
 import pytest
 
 from ehdmaps.maps.emap import open_map
+from mbs.linearised.averaged import steady_system
 from mbs.linearised.linear import frequency_response, with_peaks
 from mbs.linearised.modes import modes, undamped_modes
-from mbs.linearised.steady import steady_system
 from mbs.linearised.sweep import sweep
 from mbs.modal.estimation import estimate
 from mbs.modal.fit import identify

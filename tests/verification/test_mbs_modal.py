@@ -11,11 +11,10 @@ from scipy.signal import csd
 
 from mbs.linearised.linear import frequency_response, state_space
 from mbs.linearised.modes import modes
-from mbs.modal.estimation import estimate, transfer
+from mbs.modal.estimation import estimate, needed_decay, transfer
 from mbs.modal.fit import identify
-from mbs.modal.rational import rational_poles
+from mbs.modal.lscf import rational_poles
 from mbs.modal.residues import laplace
-from mbs.modal.windows import needed_decay
 from mbs.model.equilibrium import equilibrium
 from mbs.scene.assembly import assemble
 from mbs.scene.reader import read_scene

@@ -16,13 +16,10 @@ import pytest
 from ehdmaps.maps.emap import open_map
 from mbs.analyses.film_errors import film_errors
 from mbs.bearings.bearing_element import BearingElement, RingElement
-from mbs.linearised.dynamic import dynamic_stiffness, system_film_states
-from mbs.linearised.film_states import FilmStates
-from mbs.linearised.linear import frequency_response, state_space
-from mbs.linearised.modal_response import FILM_TOLERANCE
+from mbs.linearised.averaged import steady_system
+from mbs.linearised.dynamic import FilmStates, Reason, at_own_frequency, dynamic_stiffness, newton, system_film_states
+from mbs.linearised.linear import FILM_TOLERANCE, frequency_response, state_space
 from mbs.linearised.modes import modes, state_modes, undamped_modes
-from mbs.linearised.own_frequency import Reason, at_own_frequency, newton
-from mbs.linearised.steady import steady_system
 from mbs.linearised.sweep import sweep
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium

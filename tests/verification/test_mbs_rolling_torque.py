@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from ehdmaps.maps.emap import open_map
+from ehdmaps.physics.films import RIGID_ROLLING_CONSTANT
 from ehdmaps.physics.oil_supply import OilSupply
-from ehdmaps.physics.rolling import RIGID_ROLLING_CONSTANT
 from ehdmaps.physics.solids import STEEL
 from mbs import SweepRange, SweepSettings, assemble, read_scene, statics, sweep
 from mbs.analyses.bearing_point import bearing_points

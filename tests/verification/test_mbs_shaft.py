@@ -27,8 +27,7 @@ from mbs.flexible.beam import (
     wave_length,
 )
 from mbs.flexible.shaft import flexible_shaft
-from mbs.flexible.shaft_layout import WAVE_ERROR
-from mbs.flexible.shaft_parts import Disc, Section
+from mbs.flexible.shaft_parts import WAVE_ERROR, Disc, Section
 from mbs.linearised.modes import modes
 from mbs.model.body import Inertia, lever_arm
 from mbs.model.elements import ElementDefaults, Forces, Operation, Port, Spring

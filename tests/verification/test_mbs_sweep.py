@@ -14,13 +14,11 @@ import pytest
 import scipy.linalg
 
 from mbs.bearings.bearing_element import RingElement
-from mbs.linearised import crossings
-from mbs.linearised.averaged import averaged, over_pitch
+from mbs.linearised import sweep_result
+from mbs.linearised.averaged import averaged, over_pitch, steady_system
 from mbs.linearised.dynamic import dynamic_stiffness
-from mbs.linearised.linear import frequency_response, state_space
-from mbs.linearised.modal_response import TOLERANCE, checked_response, modal_response
+from mbs.linearised.linear import TOLERANCE, checked_response, frequency_response, modal_response, state_space
 from mbs.linearised.modes import state_modes, undamped_modes
-from mbs.linearised.steady import steady_system
 from mbs.linearised.sweep import sweep
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import Forces, Input, Operation, Port, Sensor, Spring
@@ -179,7 +177,7 @@ class TestVeering:
         # Complex modes cross by themselves; where they do, undamped ones are halves of both (the gap), and damping
         # lowers them by zeta^2/2 (5e-4).
         np.testing.assert_allclose(found.damped.frequency[:, :2] * 2.0 * np.pi, plain, rtol=5e-4, atol=gap)
-        assert crossings.exchanged(found.undamped) == []
+        assert sweep_result.exchanged(found.undamped) == []
         # trapezoidal rule over the steps, and the corner between two of them
         np.testing.assert_allclose(found.undamped.summed_shift[-1], found.undamped.shift[-1], rtol=0.02, atol=4e-3)
 
@@ -194,7 +192,7 @@ class TestVeering:
         ]
         rising = OverSpeed("bearing", "a", stiffness=lambda speed: 5e4 + 1.5e3 * speed, damping=lambda speed: 60.0)
         found = sweep(System(bodies, springs, (), [rising]), np.linspace(0.0, 100.0, 41)).undamped
-        assert crossings.exchanged(found) == []
+        assert sweep_result.exchanged(found) == []
         expected = np.sqrt(np.array([[5e4 + 600.0, 8e4 + 300.0, 1.4e5 + 300.0], [2e5 + 600.0, 8e4, 1.4e5]]) / MASS)
         # 0.3 %: the couplings to second order
         np.testing.assert_allclose(2.0 * np.pi * found.frequency[[0, -1]], expected, rtol=3e-3)
@@ -204,7 +202,7 @@ class TestVeering:
 
     def test_without_damping_they_turn_away_and_it_is_said(self):
         found = sweep(pair(4e2), np.linspace(0.0, 100.0, 10))
-        assert crossings.exchanged(found.undamped) == [(0, 1)]
+        assert sweep_result.exchanged(found.undamped) == [(0, 1)]
         assert found.undamped.bearing_share[-1, 0] < 0.01
 
     def test_energy_shares(self):

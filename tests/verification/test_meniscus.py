@@ -12,19 +12,19 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import ehdmaps.ehl.meniscus as meniscus_module
-from ehdmaps.ehl.elastic import log_kernel
+from ehdmaps.ehl.grid import log_kernel
+from ehdmaps.ehl.group_solution import linearised_profile
 from ehdmaps.ehl.meniscus import StarvedGroups, starved_groups
-from ehdmaps.ehl.moving_grid import linearised_profile
 from ehdmaps.ehl.newton import newton
-from ehdmaps.ehl.one_grid import LOAD
-from ehdmaps.ehl.resolution import Resolution
+from ehdmaps.ehl.profile import Resolution
 from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.ehl.solver import ReynoldsSolver, SuppliedFilm
+from ehdmaps.ehl.ways import LOAD
 from ehdmaps.jobs.reader import read_job
+from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.hertz import DRY_COMPLIANCE, half_width
 from ehdmaps.physics.isotherm import log_viscosity
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
-from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solution import FilmSolution, Status
 from tests.cases.ehl import incompressible_problem, isoviscous_problem, solved
 

@@ -10,9 +10,9 @@ from ehdmaps.errors import MapError
 from ehdmaps.maps.contact_curve import ContactCurve
 from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.maps.oil_layer import oil_layer
+from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.oil_supply import OilSupply
-from ehdmaps.physics.operating_point import OperatingPoint
-from ehdmaps.physics.roughness import SMOOTH, Surface
+from ehdmaps.physics.surface import SMOOTH, Surface
 
 SPEED, WARM = 1.0, 313.15
 

@@ -11,15 +11,14 @@ from scipy.optimize import brentq
 
 from ehdmaps import STEEL, BearingGeometry, Lubricant
 from ehdmaps.ehl.line import solve_groups
-from ehdmaps.ehl.profile import Profile
-from ehdmaps.ehl.resolution import Resolution
+from ehdmaps.ehl.profile import Profile, Resolution
 from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.ehl.solver import ReynoldsSolver, line_problem
 from ehdmaps.errors import MapError
 from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.maps.rolling_film import NAMES, RIGID_FLOW_NUMBER
+from ehdmaps.physics.films import RIGID_ROLLING_CONSTANT, matsuyama_rolling_force, rigid_rolling_force
 from ehdmaps.physics.isotherm import density, log_viscosity
-from ehdmaps.physics.rolling import RIGID_ROLLING_CONSTANT, matsuyama_rolling_force, rigid_rolling_force
 
 CONTACT = BearingGeometry.named("NU308").contacts(STEEL, "iso16281")[0]
 OIL = Lubricant.named("FVA3")

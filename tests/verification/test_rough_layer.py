@@ -17,12 +17,12 @@ from ehdmaps.maps.asperities import asperity_pressure
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.rough_layer import RoughLayer, _moes, scaled_film
+from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.films import moes_central_and_slope
 from ehdmaps.physics.hertz import max_pressure
 from ehdmaps.physics.moes import moes_groups
 from ehdmaps.physics.oil_supply import OilSupply
-from ehdmaps.physics.operating_point import OperatingPoint
-from ehdmaps.physics.roughness import Surface
+from ehdmaps.physics.surface import Surface
 from tests.cases.laws import CONTACTS, OIL, SMALL_FIELD
 
 INNER = CONTACTS[0]

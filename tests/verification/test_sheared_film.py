@@ -10,10 +10,9 @@ import pytest
 from ehdmaps.ehl.column import sheared_column
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import InputError
-from ehdmaps.physics.operating_point import OperatingPoint
-from ehdmaps.physics.rheology import CARREAU, EYRING, LIMITING, ShearLaw
+from ehdmaps.physics.contact import OperatingPoint
+from ehdmaps.physics.rheology import CARREAU, EYRING, LIMITING, ShearLaw, eyring_stress, traction_coefficients
 from ehdmaps.physics.solution import FilmSolution, Status, contact_solution
-from ehdmaps.physics.traction import eyring_stress, traction_coefficients
 from tests.cases.laws import CONTACTS, OIL
 
 NU308_INNER = CONTACTS[0]

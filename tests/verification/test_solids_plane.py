@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 
 from ehdmaps.errors import DependencyError, InputError
-from ehdmaps.physics.approach import FE_LOAD, half_space
+from ehdmaps.physics.approach import FE_LOAD, half_space, shipped_names, shipped_record
 from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
-from ehdmaps.physics.fe_shipped import shipped_names, shipped_record
 from ehdmaps.physics.solids import STEEL, reduced_modulus
 from ehdmaps.solids.law import fitted, series_of
 from ehdmaps.solids.mesh_plane import ring_mesh, roller_mesh
@@ -164,7 +163,7 @@ def test_a_pipe_that_breaks_after_meshing_is_an_error_and_not_the_end():
     """gmsh lets SIGPIPE end its process; a sweep with a dead worker writes into a broken pipe."""
     script = (
         "import os\n"
-        "from ehdmaps.solids.mesh import gmsh_session\n"
+        "from ehdmaps.solids.mesh_plane import gmsh_session\n"
         "with gmsh_session('a test'): pass\n"
         "read, write = os.pipe(); os.close(read)\n"
         "try: os.write(write, b'x')\n"

@@ -22,10 +22,10 @@ from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.low_loads import RIGID
 from ehdmaps.maps.table_field import TableField, table_lines
 from ehdmaps.physics.catalogue import estimate
+from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import OilSupply
-from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.solution import contact_solution
 from ehdmaps.table.file import film_table

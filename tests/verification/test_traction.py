@@ -10,8 +10,9 @@ from scipy.integrate import quad
 
 from ehdmaps import STEEL, BearingGeometry, Lubricant, OperatingPoint
 from ehdmaps.ehl.solver import ReynoldsSolver
-from ehdmaps.physics.rheology import EYRING_STRESS, LIMITING_RATIO
-from ehdmaps.physics.traction import (
+from ehdmaps.physics.rheology import (
+    EYRING_STRESS,
+    LIMITING_RATIO,
     FilmProfile,
     eyring_stress,
     limiting_stress,

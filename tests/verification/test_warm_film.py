@@ -8,11 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from ehdmaps.ehl.column import STEP, heat_groups, warm_viscosity
 from ehdmaps.ehl.group_solution import GroupSolution
 from ehdmaps.ehl.line import solve_groups
-from ehdmaps.ehl.resolution import Resolution
+from ehdmaps.ehl.profile import Resolution
 from ehdmaps.ehl.solver import ReynoldsSolver
-from ehdmaps.ehl.wall_heat import wall_weights
 from ehdmaps.ehl.warm_column import (
     CONDUCTION,
     HEIGHTS,
@@ -22,11 +22,11 @@ from ehdmaps.ehl.warm_column import (
     gradient_asked,
     lower_stress,
 )
-from ehdmaps.ehl.warm_oil import STEP, heat_groups, warm_viscosity
+from ehdmaps.ehl.warm_newton import wall_weights
 from ehdmaps.ehl.warm_response import WarmLinearisation
+from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.heat import HeatData
 from ehdmaps.physics.hertz import half_width
-from ehdmaps.physics.operating_point import OperatingPoint
 from ehdmaps.physics.rheology import LIMITING_RATIO, LIMITING_STRESS_AT_REST
 from ehdmaps.physics.solution import FilmSolution, Status
 from tests.cases.laws import CONTACTS, OIL

@@ -12,15 +12,15 @@ from functools import cache
 import numpy as np
 import pytest
 
+from ehdmaps.ehl.column import NO_HEAT, STEP, Heat
 from ehdmaps.ehl.group_solution import GroupSolution
 from ehdmaps.ehl.line import solve_groups
 from ehdmaps.ehl.newton import CONVERGED
-from ehdmaps.ehl.resolution import Resolution
+from ehdmaps.ehl.profile import Resolution
 from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.ehl.solver import ReynoldsSolver
-from ehdmaps.ehl.warm_oil import NO_HEAT, STEP, Heat
+from ehdmaps.physics.heat import thermal_loading, viscosity_slope
 from ehdmaps.physics.isotherm import LINEAR, Isotherm
-from ehdmaps.physics.thermal import thermal_loading, viscosity_slope
 from tests.cases.laws import CONTACTS, OIL
 
 BETA = 0.04

@@ -30,7 +30,7 @@ _INCLUDES = ("float.h", "math.h", "stddef.h", "stdint.h", "string.h")
 
 
 BEYOND: Mapping[OutsidePolicy, str] = {"error": "refused", "clamp": "held", "asymptote": "extended"}
-"""What happens outside the map, for `ehdmaps.exports.header.origin`."""
+"""What happens outside the map, for `ehdmaps.exports.target.origin`."""
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,7 @@ from typing import get_args
 
 from ehdmaps.exports.c.kernel import BEYOND, KernelOptions, ProfileName, kernel_files
 from ehdmaps.exports.folder import check_folder, write_folder
-from ehdmaps.exports.header import origin
-from ehdmaps.exports.target import Target
+from ehdmaps.exports.target import Target, origin
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.law import LawKind, OutsidePolicy
 from ehdmaps.units import quantity

@@ -20,8 +20,7 @@ from ehdmaps.exports.c.target import add_law_arguments, options_of
 from ehdmaps.exports.fmu.binaries import compiled, platforms
 from ehdmaps.exports.fmu.description import KIND, Identity, build_description, model_description
 from ehdmaps.exports.fmu.variables import LAG, MEMORY, MOTION, SLOW, VARIABLES, film_names
-from ehdmaps.exports.header import origin
-from ehdmaps.exports.target import Target
+from ehdmaps.exports.target import Target, origin
 from ehdmaps.maps import schema
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.outputs import MARK, Kind, Output, check_outputs, written_aside

@@ -19,7 +19,7 @@ from ehdmaps.jobs.supply import supply_words
 from ehdmaps.jobs.surface import surface_words
 from ehdmaps.jobs.table_films import unserved
 from ehdmaps.jobs.tasks import LineTask, line_tasks
-from ehdmaps.physics.sensitivity import film_change
+from ehdmaps.physics.closed_form import film_change
 from ehdmaps.physics.solution import ContactSolver, Status
 from ehdmaps.table.solver import TableSolver
 from ehdmaps.units import LOAD, SPEED, TEMPERATURE

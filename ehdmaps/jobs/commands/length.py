@@ -12,8 +12,7 @@ from ehdmaps.jobs.reader import read_job
 from ehdmaps.outputs import FIGURE, Output, output_problems, write_figure
 from ehdmaps.program import tell
 from ehdmaps.solids.three_d_compare import compare_lengths
-from ehdmaps.solids.three_d_make import make_reference
-from ehdmaps.solids.three_d_reference import read_reference, save_reference, shipped_reference
+from ehdmaps.solids.three_d_reference import make_reference, read_reference, save_reference, shipped_reference
 
 _RESOLUTION = 150
 

@@ -16,7 +16,7 @@ from ehdmaps.jobs.solids_report import COMPARED_LOADS, compared_laws, compared_t
 from ehdmaps.outputs import FIGURE, MARK, Kind, Output, check_outputs, has_mark, write_text
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.program import tell
-from ehdmaps.solids.plane_record import bearing_record
+from ehdmaps.solids.plane_bearing import bearing_record
 from ehdmaps.version import version
 
 SOLIDS = Kind("finite elements of a bearing", (".json",), has_mark)

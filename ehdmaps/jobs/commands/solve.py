@@ -35,9 +35,8 @@ from ehdmaps.jobs.traction import (
     traction_table,
 )
 from ehdmaps.outputs import FIGURE, Output, check_outputs
-from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.contact import OIL_TEMPERATURES, LineContact, OperatingPoint
 from ehdmaps.physics.oil_supply import OilSupply
-from ehdmaps.physics.operating_point import OIL_TEMPERATURES, OperatingPoint
 from ehdmaps.physics.rheology import EYRING_STRESS, LIMITING_RATIO
 from ehdmaps.physics.solution import ContactSolution, ContactSolver, Status, contact_solution
 from ehdmaps.physics.spectrum import HIGHEST_FREQUENCY, LOWEST_FREQUENCY, MOST_FREQUENCIES, contact_spectrum

@@ -8,8 +8,7 @@ from ehdmaps.jobs.reader import read_job
 from ehdmaps.jobs.tradeoff import measure
 from ehdmaps.jobs.tradeoff_map import measure_map
 from ehdmaps.program import tell
-from ehdmaps.trade.data import trade_json
-from ehdmaps.trade.files import check_trade_files, write_trade
+from ehdmaps.trade.data import check_trade_files, trade_json, write_trade
 from ehdmaps.trade.text import trade_text
 
 

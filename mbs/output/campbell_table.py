@@ -1,16 +1,19 @@
-"""Campbell diagrams of one run-up with several contact laws, as a labelled dataset with units."""
+"""Levels of run-ups: as labelled datasets with units, in words, and as differences between two laws."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 import xarray as xr
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.units import RPM, Display
+from mbs.model.elements import Sensor
 from mbs.spectral.campbell import RunUpSpectra
-from mbs.spectral.levels import Reference, level
+from mbs.spectral.levels import LevelDifference, Reference, level
+from mbs.spectral.orders import OrderPeak
 
 _PEAK = (
     ("order", "1", "order of a peak along the orders, strongest first"),
@@ -159,3 +162,169 @@ def _peaks(results: Sequence[RunUpSpectra], name: str) -> FloatArray:
     for row, result in zip(values, results, strict=True):
         row[: len(result.peaks)] = [getattr(peak, name) for peak in result.peaks]
     return values
+
+
+PEAKS = "  peaks along the orders: order   speed/rpm   frequency/Hz   level/dB   above its valleys/dB"
+"""Heading of the lines of peaks."""
+
+_HERTZ, _MILLISECOND = Display("Hz"), Display("ms", 1e3)
+
+
+def resolution_lines(spectra: RunUpSpectra, highest: float) -> list[str]:
+    """How finely speed and frequency are resolved.
+
+    Parameters
+    ----------
+    spectra : RunUpSpectra
+        Spectra of one run.
+    highest : float
+        Highest frequency that was asked for [Hz].
+    """
+    found = spectra.campbell
+    return [
+        f"band {_HERTZ.text(found.frequencies[0])} to {_HERTZ.text(highest)}; windows of "
+        f"{_MILLISECOND.text(found.window)}: lines are {found.line_width:.3g} Hz wide, the highest order sweeps by "
+        f"{found.smear:.3g} Hz in one; order spectra over {spectra.spectra.window:.3g} turns"
+        + (f", single orders over {spectra.tracks.window:.3g} turns" if spectra.tracks else "")
+    ]
+
+
+def highest_line(spectra: RunUpSpectra) -> str:
+    """The highest sum level, and where.
+
+    Parameters
+    ----------
+    spectra : RunUpSpectra
+        Spectra of one run.
+    """
+    found = spectra.campbell
+    at = int(np.argmax(found.sum_level))
+    return f"highest sum level {found.sum_level[at]:.1f} dB at {RPM.text(float(found.speeds[at]))}"
+
+
+def peak_line(peak: OrderPeak) -> str:
+    """Line of a peak, below `PEAKS`.
+
+    Parameters
+    ----------
+    peak : OrderPeak
+        The peak.
+    """
+    return (
+        f"  {peak.order:29.5g} {RPM.value(peak.speed):11.1f} {peak.frequency:14.5g} {peak.level:10.1f} "
+        f"{peak.prominence:22.1f}"
+    )
+
+
+def peak_lines(spectra: RunUpSpectra) -> list[str]:
+    """Lines of all peaks along the orders; none where no order was followed.
+
+    Parameters
+    ----------
+    spectra : RunUpSpectra
+        Spectra of one run.
+    """
+    if spectra.peaks:
+        return [PEAKS, *map(peak_line, spectra.peaks)]
+    return ["  no peak along the orders"] if spectra.tracks else []
+
+
+def sensor_line(name: str, reference: Reference, spectra: RunUpSpectra) -> str:
+    """One line on a sensor among several: highest sum level, and strongest peak along the orders.
+
+    Parameters
+    ----------
+    name : str
+        Name of the sensor.
+    reference : Reference
+        Reference of its levels.
+    spectra : RunUpSpectra
+        Levels of the sensor.
+    """
+    line = f"  {name} ({reference.text}): {highest_line(spectra)}"
+    if not spectra.peaks:
+        return line
+    best = max(spectra.peaks, key=lambda peak: peak.level)
+    return (
+        f"{line}; strongest peak along the orders {best.level:.1f} dB, order {best.order:.5g} at "
+        f"{RPM.text(best.speed)}, {best.frequency:.5g} Hz"
+    )
+
+
+_QUANTITIES = (
+    ("median_difference", "median", "median of the differences of the sum level at the same speed"),
+    ("low_difference", "low", "5 % of the windows differ by less"),
+    ("high_difference", "high", "95 % of the windows differ by less"),
+    ("energy_difference", "energy", "difference of the mean energies of all windows"),
+    ("highest_difference", "highest", "difference of the highest sum levels, at any speed"),
+)
+
+
+class VariantRow(Protocol):
+    """What is written of a change: see `mbs.analyses.variants.Variant`."""
+
+    @property
+    def key(self) -> str:
+        """What was changed."""
+        ...
+
+    @property
+    def value(self) -> str:
+        """To what."""
+        ...
+
+    @property
+    def differences(self) -> tuple[LevelDifference, ...]:
+        """One a sensor, or none."""
+        ...
+
+    @property
+    def problem(self) -> str:
+        """Why there is none."""
+        ...
+
+    @property
+    def outside(self) -> dict[str, int]:
+        """Calls outside the map."""
+        ...
+
+
+def variants_dataset(rows: Sequence[VariantRow], sensors: Sequence[Sensor]) -> xr.Dataset:
+    """The table of all changes and sensors; NaN where there is no result.
+
+    Parameters
+    ----------
+    rows : sequence of VariantRow
+        The base and all changes.
+    sensors : sequence of Sensor
+        The sensors, in the order of `VariantRow.differences`.
+    """
+    variables = {
+        name: (
+            ("variant", "sensor"),
+            np.array(
+                [
+                    [getattr(entry, part) for entry in row.differences] if row.differences else [np.nan] * len(sensors)
+                    for row in rows
+                ],
+                dtype=np.float64,
+            ),
+            {"units": "dB", "long_name": f"{words}, second law minus first"},
+        )
+        for name, part, words in _QUANTITIES
+    }
+    texts = {
+        name: ("variant", [str(getattr(row, name)) for row in rows], {"long_name": words})
+        for name, words in (
+            ("key", "what was changed; empty for the base"),
+            ("value", "to what it was changed"),
+            ("problem", "why there is no result"),
+        )
+    }
+    calls = np.array([sum(row.outside.values()) for row in rows], dtype=np.int64)
+    outside = {"outside_calls": ("variant", calls, {"units": "1", "long_name": "law calls outside the map"})}
+    return xr.Dataset(
+        {**variables, **texts, **outside},
+        coords={"sensor": [sensor.name for sensor in sensors]},
+        attrs={"reference": "; ".join(dict.fromkeys(Reference.of(sensor).text for sensor in sensors))},
+    )

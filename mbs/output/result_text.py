@@ -1,8 +1,16 @@
-"""The energy balance of a run in words."""
+"""What analyses find, in words: modes, the energy of a run, signals of sensors."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
+import numpy as np
+
+from ehdmaps.arrays import IntArray
+from ehdmaps.units import MOTIONS, RPM, Display
+from mbs.linearised.modes import Modes
 from mbs.model.drive import DriveAccount
+from mbs.timedata.records import TimeRecord
 from mbs.transient.energy import ElementEnergy, EnergyBalance
 
 NOTABLE = 0.01
@@ -78,3 +86,74 @@ def _method_lines(energy: EnergyBalance) -> list[str]:
 def _percent(part: float) -> str:
     """A part in percent."""
     return f"{100.0 * part:.2g} %"
+
+
+_LEAST_SHARE = 0.05
+
+
+def kinds(found: Modes) -> tuple[IntArray, IntArray, IntArray]:
+    """Return which modes are free, which creep back without oscillating, and which oscillate.
+
+    Parameters
+    ----------
+    found : Modes
+        The modes.
+    """
+    free = found.free
+    creeping = (found.eigenvalues.imag <= 0.0) & ~free
+    return np.flatnonzero(free), np.flatnonzero(creeping), np.flatnonzero(~free & ~creeping)
+
+
+def share_words(found: Modes, mode: int) -> str:
+    """Return the parts that have most of the strain energy of a mode.
+
+    Parameters
+    ----------
+    found : Modes
+        The modes.
+    mode : int
+        Which one, from 0 on.
+    """
+    order = np.argsort(-found.shares[:, mode], kind="stable")
+    shares = [
+        f"{found.parts[i]} {100.0 * found.shares[i, mode]:.3g} %"
+        for i in order
+        if found.shares[i, mode] >= _LEAST_SHARE
+    ]
+    return ", ".join(shares) or "none"
+
+
+def signal_lines(records: Sequence[TimeRecord]) -> list[str]:
+    """A short table, a line a sensor and run; none without sensors.
+
+    Parameters
+    ----------
+    records : sequence of TimeRecord
+        Runs of the same channels, with their speed where it is known.
+    """
+    named = len(records) > 1
+    widths = [max(map(len, [*texts, "sensor"])) for texts in ([c.name for c in records[0].sensors], _labels(records))]
+    if not records[0].sensors:
+        return []
+    run = f"  {'run':<{widths[1]}}" if named else ""
+    lines = [f"  {'sensor':<{widths[0]}}{run}         mean   rms about it    largest, at             unit"]
+    for channel in records[0].sensors:
+        for record in records:
+            shown = MOTIONS.get(channel.unit, Display(channel.unit))
+            values = shown.factor * record.column(channel)
+            mean = float(values.mean())
+            at = int(np.argmax(np.abs(values)))
+            where = f"{record.time[at]:.4g} s"
+            if record.speed is not None:
+                where += f", {RPM.text(abs(float(record.speed[at])))}"
+            of = f"  {record.label:<{widths[1]}}" if named else ""
+            lines.append(
+                f"  {channel.name:<{widths[0]}}{of} {mean:12.4g} {np.sqrt(np.mean((values - mean) ** 2)):14.4g} "
+                f"{values[at]:10.4g}, {where:<18} {shown.unit}"
+            )
+    return lines
+
+
+def _labels(records: Sequence[TimeRecord]) -> list[str]:
+    """Labels of the runs."""
+    return [record.label for record in records]
