@@ -22,7 +22,6 @@ correction   films of one solver corrected by few points of a dearer one; `corre
              `correction_report` says what came of it
 law_points   what contact laws give at random points, and how far that is from fresh solves
 law_check    the contact laws against fresh solves, as every map with `law_check` has it
-tolerance    settings that bring the contact laws within a tolerance, confirmed by fresh solves
 holes        isolated holes filled from their neighbours
 assemble     results -> dataset of the map
 write        dataset -> map file, aside and renamed
@@ -55,7 +54,6 @@ contestants  the table of the ways that are measured
 length_text  load and pressure over the length of a roller in words; `length_plot` draws them
 tradeoff     speed against accuracy of contacts, measured
 trade_frame  what a reader of that must know besides
-tradeoff_map speed against accuracy of whole maps: their contact laws against fresh solves
 commands     one module a command
 cli          the command line
 ===========  ====================================================================================

@@ -41,7 +41,6 @@ def generate(
     workers: int | None = 1,
     fresh: bool = False,
     progress: Callable[[int], Progress] | None = None,
-    tolerance: float | None = None,
     corrector: ContactSolver | None = None,
     executor: Executor | None = None,
 ) -> xr.Dataset:
@@ -68,10 +67,6 @@ def generate(
         Drop the store of the output file first.
     progress : callable, optional
         Takes the number of points, gives the `Progress` to tell.
-    tolerance : float, optional
-        Relative tolerance of stiffness, damping and film offset of the contact laws, 0.01 say: density of the grid and
-        refinement lines are chosen for it, fresh solves confirm it, and the attributes `tolerance_...` of the map say
-        what was found. It needs an output file.
     corrector : ContactSolver, optional
         Solver in place of the one that the job names in `corrected_by`.
     executor : concurrent.futures.Executor, optional
@@ -91,17 +86,11 @@ def generate(
     name = solver if isinstance(solver, str) else None
     chosen = _with_solver(job, name) if isinstance(job, Job) else read_job(job, name)
     made_by = None if isinstance(solver, str) else solver
-    if output is None and tolerance is not None:
-        raise InputError(
-            "tolerance: got one without output, and a map in memory has no refinement lines; allowed: with output"
-        )
     if output is None:
         plain = dataclasses.replace(chosen, backbone="none")
         return generating.generate_in_memory(plain, workers, progress, made_by, corrector, executor).dataset
     check_outputs([Output("output", Path(output), MAP)], [] if isinstance(job, Job) else [fspath(job)])
-    generated = generating.generate(
-        chosen, Path(output), workers, fresh, progress, made_by, tolerance, corrector, executor
-    )
+    generated = generating.generate(chosen, Path(output), workers, fresh, progress, made_by, corrector, executor)
     return generated.dataset
 
 

@@ -30,7 +30,7 @@ def parser() -> argparse.ArgumentParser:
         description="Elastohydrodynamic contact maps for roller bearings.",
         epilog="JOB is a job file, a map (its job is repeated), or the name of a shipped job: nu308, n1014, "
         "nu308_openfoam; for generate, check, merge, status and submit also a batch file, of many maps. "
-        "Exit status: 0 done; 1 done, with failed points or an unmet tolerance; 2 bad input, nothing "
+        "Exit status: 0 done; 1 done, with failed points or laws that miss their bars; 2 bad input, nothing "
         "written; 130 stopped with Ctrl-C, 143 by SIGTERM.",
     )
     top.add_version()
@@ -45,12 +45,6 @@ def parser() -> argparse.ArgumentParser:
         help="of one job; default: the job's name with .nc, in this folder; of a batch a folder, default: its name",
     )
     generate.add_argument("--solver", metavar="NAME", help=_SOLVER)
-    generate.add_argument(
-        "--tolerance",
-        metavar="SHARE",
-        help='of k, c and film offset of the contact laws, "1 %%": grid and refinement lines are chosen for it, and '
-        "confirmed by fresh solves; default: the settings of the job",
-    )
     generate.add_argument("--workers", metavar="N", type=count, help="processes; default: all cores")
     generate.add_argument("--fresh", action="store_true", help="forget what is solved already")
     generate.add_argument(
@@ -256,12 +250,6 @@ def _add_tradeoff(commands: argparse._SubParsersAction[Parser]) -> None:
     """Add the arguments of `ehdmaps tradeoff`."""
     tradeoff = commands.add_parser("tradeoff", help="measured speed and accuracy of solvers, settings and physics")
     tradeoff.add_argument("job", metavar="JOB")
-    tradeoff.add_argument(
-        "--level",
-        choices=("contact", "map"),
-        default="contact",
-        help="contact: single points by every solver; map: contact laws of whole maps between their points",
-    )
     tradeoff.add_argument("--points", metavar="N", type=count, default=60, help="random points; default: 60")
     tradeoff.add_argument("--seed", metavar="S", type=_count, default=1, help="seed of the points; default: 1")
     tradeoff.add_argument(
@@ -269,7 +257,7 @@ def _add_tradeoff(commands: argparse._SubParsersAction[Parser]) -> None:
         metavar="N",
         type=_count,
         default=3,
-        help="contact: how many of the points openfoam solves, some ten to hundred seconds each; 0: none; default: 3",
+        help="how many of the points openfoam solves, some ten to hundred seconds each; 0: none; default: 3",
     )
     tradeoff.add_argument("-o", "--output", metavar="OUT.nc", help="the numbers as netCDF; default: none")
     tradeoff.add_argument("--json", action="store_true", help="the numbers as one object")

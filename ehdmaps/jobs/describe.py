@@ -19,7 +19,6 @@ from ehdmaps.jobs.report import (
     law_lines,
     span,
     status_lines,
-    tolerance_lines,
     value_lines,
 )
 from ehdmaps.jobs.supply import supply_words
@@ -111,10 +110,6 @@ def _lines(emap: EHDMap, name: str) -> Iterator[str]:
     if corrected:
         yield ""
         yield from corrected
-    told = list(tolerance_lines(dataset))
-    if told:
-        yield ""
-        yield from told
     if emap.low_loads is not None:
         yield ""
         yield f"contact laws at low loads: {emap.low_loads.text}"

@@ -8,7 +8,6 @@ from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import numpy as np
 import xarray as xr
 
 from ehdmaps.errors import InputError
@@ -16,17 +15,15 @@ from ehdmaps.jobs import solvers
 from ehdmaps.jobs.assemble import assemble, placed, with_correction
 from ehdmaps.jobs.correction import Correction, correction
 from ehdmaps.jobs.job import Job
-from ehdmaps.jobs.law_check import HALVED, REFUSED, LawCheck, checked_laws, coarse_axis, films_met, met, plan_check
-from ehdmaps.jobs.refinement import MOST_LINE_POINTS, Refinement, backbone_group, refinement
+from ehdmaps.jobs.law_check import REFUSED, LawCheck, checked_laws, films_met, met, plan_check
+from ehdmaps.jobs.refinement import Refinement, backbone_group, refinement
 from ehdmaps.jobs.status import StatusFile, about
 from ehdmaps.jobs.store import Arrays, NoStore, Results, Store, store_path
 from ehdmaps.jobs.sweep import Progress, SweepResult, sweep
 from ehdmaps.jobs.table_films import table_films, unserved
 from ehdmaps.jobs.tasks import LineTask, line_tasks
-from ehdmaps.jobs.tolerance import check_tolerance, within_tolerance
 from ehdmaps.jobs.write import write_map
 from ehdmaps.maps import schema
-from ehdmaps.maps.backbone_plan import Axis
 from ehdmaps.maps.checksum import content_sha256
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.validation import validate
@@ -37,9 +34,6 @@ from ehdmaps.workers import available_cores
 
 FEW = 200
 """Points that are solved sooner than a process has started: those of the check of a map from the film table."""
-
-MOST_HALVINGS = 3
-"""How often the steps of the lines of a law are halved, each time along one axis."""
 
 
 @dataclass(frozen=True)
@@ -77,7 +71,6 @@ def generate(
     fresh: bool = False,
     progress: Callable[[int], Progress] | None = None,
     solver: ContactSolver | None = None,
-    tolerance: float | None = None,
     corrector: ContactSolver | None = None,
     executor: Executor | None = None,
     within: Within | None = None,
@@ -99,9 +92,6 @@ def generate(
         Takes the number of points, gives the `Progress` to tell.
     solver : ContactSolver, optional
         Instead of the job's; picklable.
-    tolerance : float, optional
-        Relative tolerance of the contact laws, for which density and refinement lines are chosen, see
-        `ehdmaps.jobs.tolerance`; those of the job if left out.
     corrector : ContactSolver, optional
         Instead of the dearer solver that the job names in `corrected_by`; picklable.
     executor : concurrent.futures.Executor, optional
@@ -115,16 +105,12 @@ def generate(
         With what to do; everything solved is kept.
     """
     chosen_solver = _solver(job, solver)
-    if tolerance is not None and isinstance(chosen_solver, TableSolver) and "films" not in job.solver_options:
-        chosen_solver = solvers.build(job.solver, {**job.solver_options, "films": solvers.SOLVED})
     planned = _plan(job, chosen_solver, _corrector(job, corrector))
-    adjusted = None if tolerance is None else check_tolerance(job, planned.solver, tolerance)
-    total = planned.points if adjusted is None else 0
     processes = workers or available_cores()
     with ExitStack() as stack:
         if within is None:
             store: Results = stack.enter_context(Store(store_path(output), fresh))
-            status = stack.enter_context(StatusFile(output, about(job), total, processes))
+            status = stack.enter_context(StatusFile(output, about(job), planned.points, processes))
         else:
             store, status = within.store, within.status
         result = SweepResult()
@@ -141,14 +127,9 @@ def generate(
             status.write()
             return result.arrays
 
-        found: dict[str, float | int | str] = {}
-        if tolerance is not None and adjusted is not None:
-            chosen = within_tolerance(job, adjusted, tolerance, solve)
-            planned, found = _plan(chosen.job, chosen.solver, planned.corrector), chosen.attributes
         planned = _corrected(planned, solve)
-        solve(planned.everything, more=adjusted is not None)
+        solve(planned.everything, more=False)
         dataset, group = _refined(planned, result, str(output), solve)
-        dataset.attrs.update(found)
         dataset.attrs.update(within.attributes if within else {})
         write_map(dataset, output, {schema.BACKBONE: group} if group is not None else None)
     return Generated(dataset, group, result)
@@ -231,8 +212,8 @@ class _Plan:
     """All that is solved for a map: its points, the lines of a contact law, and the check of the laws.
 
     With `from_table` points and laws are read from the film table, and the check is all that is solved; `unserved` says
-    why they are not. `halved` are the axes along which the steps of the lines were halved, in turn; `correction` is
-    what the points of the `corrector` made, once they are solved.
+    why they are not, where they were to be. `correction` is what the points of the `corrector` made, once they are
+    solved.
     """
 
     job: Job
@@ -243,18 +224,13 @@ class _Plan:
     check: LawCheck | None
     from_table: bool = False
     unserved: str = ""
-    halved: tuple[Axis, ...] = ()
     correction: Correction | None = None
 
     @property
     def everything(self) -> tuple[LineTask, ...]:
         """All tasks, in the order in which they are solved."""
-        return (*self.films, *(self.check.tasks if self.check else ()))
-
-    @property
-    def films(self) -> tuple[LineTask, ...]:
-        """Points and lines of the map, without the check of its laws."""
-        return (*self.tasks, *(self.refined.tasks if self.refined else ()))
+        parts = (self.refined, self.check)
+        return (*self.tasks, *(task for part in parts if part for task in part.tasks))
 
     @property
     def points(self) -> int:
@@ -281,11 +257,15 @@ def _plan(job: Job, solver: ContactSolver, corrector: ContactSolver | None) -> _
     """Lay out what is to be solved."""
     if not (why := unserved(job, solver)):
         return _Plan(job, solver, corrector, (), None, plan_check(job, solver), from_table=True)
-    return _with_lines(job, solver, corrector, why)
+    return _solved(job, solver, corrector, why)
 
 
-def _with_lines(job: Job, solver: ContactSolver, corrector: ContactSolver | None, why: str) -> _Plan:
-    """Lay out points and lines, of which a solver that reads films reads those that it knows."""
+def _solved(job: Job, solver: ContactSolver, corrector: ContactSolver | None, why: str) -> _Plan:
+    """Lay out points and lines that are solved, in place of the film table where that was to be read."""
+    if isinstance(solver, TableSolver):
+        solver = solvers.in_place_of_table(job, solver)
+    else:
+        why = ""
     lines = refinement(job, solver)
     return _Plan(job, solver, corrector, line_tasks(job, solver), lines, plan_check(job, solver), unserved=why)
 
@@ -309,19 +289,12 @@ def _results(planned: _Plan, result: SweepResult) -> Mapping[str, Arrays]:
 def _refined(
     planned: _Plan, result: SweepResult, where: str, solve: Callable[[Sequence[LineTask]], object]
 ) -> tuple[xr.Dataset, xr.Dataset | None]:
-    """Finish a map, with lines that are laid more closely as long as its laws miss their bars between them.
-
-    `solve` adds to the result.
-    """
+    """Finish a map; its films are solved where those of the film table turn out to miss. `solve` adds to the result."""
     dataset, group = _finished(planned, result, where)
     if planned.from_table and not _served(planned, dataset, result):
         missed = "film table: the laws that it makes miss their bars beside fresh solves"
-        planned = _with_lines(planned.job, planned.solver, planned.corrector, missed)
+        planned = _solved(planned.job, planned.solver, planned.corrector, missed)
         solve(planned.everything)
-        dataset, group = _finished(planned, result, where)
-    while len(planned.halved) < MOST_HALVINGS and (finer := _finer(planned, dataset, group, result)) is not None:
-        planned = finer
-        solve(finer.refined.tasks if finer.refined else ())
         dataset, group = _finished(planned, result, where)
     return dataset, group
 
@@ -332,19 +305,6 @@ def _served(planned: _Plan, dataset: xr.Dataset, result: SweepResult) -> bool:
         return False
     check = planned.check
     return met(dataset.attrs) or check is None or films_met(check, EHDMap(dataset), result.arrays)
-
-
-def _finer(planned: _Plan, dataset: xr.Dataset, group: xr.Dataset | None, result: SweepResult) -> _Plan | None:
-    """The plan with half the step along one axis of its lines; None where that would not help, or be too much."""
-    if planned.check is None or planned.refined is None or met(dataset.attrs) or REFUSED in dataset.attrs:
-        return None
-    axis = coarse_axis(planned.check, EHDMap(dataset, group), _results(planned, result))
-    if axis is None:
-        return None
-    lines = refinement(planned.job, planned.solver, planned.refined.steps.finer(axis))
-    if lines is None or lines.points > MOST_LINE_POINTS:
-        return None
-    return replace(planned, refined=lines, halved=(*planned.halved, axis))
 
 
 def _finished(planned: _Plan, result: SweepResult, where: str) -> tuple[xr.Dataset, xr.Dataset | None]:
@@ -363,14 +323,7 @@ def _finished(planned: _Plan, result: SweepResult, where: str) -> tuple[xr.Datas
     group = backbone_group(planned.refined, found) if planned.refined else None
     if planned.check:
         dataset.attrs.update(checked_laws(planned.check, EHDMap(dataset, group), found))
-    if planned.from_table:
-        dataset.attrs[schema.FILMS_READ], dataset.attrs[schema.FILMS_SOLVED] = planned.job.points, 0
-    elif isinstance(planned.solver, TableSolver):
+    if planned.unserved:
         dataset.attrs[schema.UNSERVED] = planned.unserved
-        read = sum(int(np.count_nonzero(found[task.key]["iterations"] == 0)) for task in planned.films)
-        total = sum(task.points for task in planned.films)
-        dataset.attrs[schema.FILMS_READ], dataset.attrs[schema.FILMS_SOLVED] = read, total - read
-    if planned.halved:
-        dataset.attrs[HALVED] = ", ".join(planned.halved)
     dataset.attrs[schema.CHECKSUM] = content_sha256(dataset, group)
     return dataset, group

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
@@ -182,23 +181,6 @@ def steps_keys(steps: Steps) -> dict[str, Entry]:
         "entrainment_speed": steps.entrainment_speed,
         "temperature": _quantity(steps.temperature, "K"),
     }
-
-
-def with_solver(text: str, solver: Mapping[str, Value]) -> str:
-    """Return the text of a job file with another table [solver]; comments and layout of the text are lost.
-
-    Parameters
-    ----------
-    text : str
-        Text of a job file that reads.
-    solver : mapping
-        All keys of [solver].
-    """
-    values = tomllib.loads(text)
-    lines = [f"schema = {values.pop('schema')}"]
-    for name, table in {**values, "solver": solver}.items():
-        lines += table_lines(name, table)
-    return "\n".join(lines) + "\n"
 
 
 def bearing_keys(geometry: BearingGeometry) -> BearingKeys:

@@ -20,7 +20,7 @@ from ehdmaps.jobs.describe import (
 from ehdmaps.jobs.map_charts import MapCurves, Operated, contact_charts, shown_speed, shown_temperature
 from ehdmaps.jobs.map_limits import limits
 from ehdmaps.jobs.plot import contact_words, what_is_mapped
-from ehdmaps.jobs.report import AXES, NONE_STATED, error_rows, holes, law_rows, span, tip_line, tolerance_lines
+from ehdmaps.jobs.report import AXES, NONE_STATED, error_rows, holes, law_rows, span, tip_line
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.program import plain
@@ -241,9 +241,8 @@ def accuracy(emap: EHDMap) -> Markup:
         parts.append(table(("check", "found"), law, "Contact laws at random points against fresh solves", (0, 1)))
     else:
         parts.append(tag("p", "The contact laws of this map were not checked against fresh solves."))
-    for lines in (list(tolerance_lines(dataset)), list(correction_lines(dataset))):
-        if lines:
-            parts += [tag("h3", typeset(lines[0])), sentences(typeset(line.strip()) for line in lines[1:])]
+    if lines := list(correction_lines(dataset)):
+        parts += [tag("h3", typeset(lines[0])), sentences(typeset(line.strip()) for line in lines[1:])]
     if emap.backbone is not None:
         first, *more = backbone_lines(emap.backbone)
         parts += [tag("h3", typeset(first[0].upper() + first[1:])), sentences(typeset(line.strip()) for line in more)]

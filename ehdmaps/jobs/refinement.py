@@ -16,29 +16,22 @@ from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.store import Arrays
 from ehdmaps.jobs.tasks import SPECTRUM_FIELDS, LineTask, knows_heat, with_later_fields
 from ehdmaps.maps import schema
-from ehdmaps.maps.backbone import ERROR, FILMS, IMAGINARY, REAL, BackboneField
-from ehdmaps.maps.backbone_plan import BackbonePlan, Steps, plan_backbone, plan_own_lines
-from ehdmaps.maps.own_lines import lines_by_contact
+from ehdmaps.maps.backbone import ERROR, FILMS, IMAGINARY, REAL
+from ehdmaps.maps.backbone_plan import BackbonePlan, plan_backbone, plan_own_lines
 from ehdmaps.maps.records import reference_json
 from ehdmaps.maps.rolling_film import NAMES as ROLLING
-from ehdmaps.maps.usable import check_backbone
-from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.solution import ContactSolver, Status
 from ehdmaps.table.solver import TableSolver
-
-MOST_LINE_POINTS = 40_000
-"""Points of the lines that are not exceeded by halving a step: minutes on one core."""
 
 
 @dataclass(frozen=True)
 class Refinement:
-    """Plans of a backbone, its steps, and its tasks, one a line and in the plans' order.
+    """Plans of a backbone and its tasks, one a line and in the plans' order.
 
     There is one plan for all contacts, or one a contact where films know heat, see `ehdmaps.maps.own_lines`.
     """
 
     plans: tuple[BackbonePlan, ...]
-    steps: Steps
     tasks: tuple[LineTask, ...]
 
     @property
@@ -47,7 +40,7 @@ class Refinement:
         return sum(task.points for task in self.tasks)
 
 
-def refinement(job: Job, solver: ContactSolver, steps: Steps | None = None) -> Refinement | None:
+def refinement(job: Job, solver: ContactSolver) -> Refinement | None:
     """Plan the backbone of a job; None where the solver does not ask for one or the job declines it.
 
     Parameters
@@ -56,13 +49,10 @@ def refinement(job: Job, solver: ContactSolver, steps: Steps | None = None) -> R
         What to make.
     solver : ContactSolver
         What solves it.
-    steps : Steps, optional
-        Largest steps of the backbone; those of the job if left out.
     """
-    steps = steps or job.line_steps
     if not solver.wants_backbone or job.backbone == "none":
         return None
-    axes = job.lubricant, job.loads, job.entrainment_speeds, job.temperatures, steps
+    axes = job.lubricant, job.loads, job.entrainment_speeds, job.temperatures, job.line_steps
     if knows_heat(solver):
         plans = plan_own_lines(job.contacts, *axes)
     else:
@@ -85,7 +75,7 @@ def refinement(job: Job, solver: ContactSolver, steps: Steps | None = None) -> R
         for plan in plans
         for line in plan.lines
     )
-    return Refinement(plans, steps, tasks)
+    return Refinement(plans, tasks)
 
 
 def of_groups(solver: ContactSolver) -> ContactSolver:
@@ -143,28 +133,3 @@ def _films(
             found = arrays[sources[name]]
             array[along, speed, temperature] = np.where(usable if found.ndim == 1 else usable[:, None], found, np.nan)
     return {**values, "status": status}
-
-
-def line_field(job: Job, group: xr.Dataset, contact: LineContact) -> BackboneField:
-    """Films of one contact between the lines: what its law is made from, without the points of the map.
-
-    Parameters
-    ----------
-    job : Job
-        The job whose axes the lines cover.
-    group : xarray.Dataset
-        The group "backbone".
-    contact : LineContact
-        A contact of the job.
-
-    Raises
-    ------
-    MapError
-        If the lines have holes that cannot be bridged.
-    """
-    speeds = [u for u in job.entrainment_speeds if u > 0.0]
-    load_range, speed_range = (min(job.loads), max(job.loads)), (min(speeds), max(speeds))
-    ((lines, reference, _),) = lines_by_contact(group, (contact,))
-    check_backbone(lines, reference, (contact,), job.lubricant, load_range, speed_range)
-    temperature_range = min(job.temperatures), max(job.temperatures)
-    return BackboneField(lines, reference, (contact,), job.lubricant, load_range, speed_range, temperature_range)

@@ -11,7 +11,7 @@ import xarray as xr
 
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.maps.records import lubricant_from_json
-from ehdmaps.maps.schema import FILM_TABLE, FILMS_READ, FILMS_SOLVED, UNSERVED
+from ehdmaps.maps.schema import FILM_TABLE, UNSERVED
 from ehdmaps.physics.closed_form import BELOW_ROUGHNESS, CONTINUUM, NO_CONTINUUM
 from ehdmaps.physics.solution import Status, tip_words
 from ehdmaps.program import plain
@@ -32,7 +32,6 @@ AXES = (("load", LOAD), ("entrainment_speed", SPEED), ("temperature", TEMPERATUR
 """Numeric axes and how people read them."""
 
 _LAW_PREFIX = "law_"
-_TOLERANCE = "tolerance"
 ERRORS = (
     "film_offset_error",
     "film_compliance_error",
@@ -212,18 +211,12 @@ def fitted_pressure(dataset: xr.Dataset) -> str:
 
 
 def films_lines(dataset: xr.Dataset) -> Iterator[str]:
-    """Say how many films of a map were read from the film table; nothing of a map whose films were all solved."""
-    if FILMS_READ in dataset.attrs:
-        read, solved = (int(dataset.attrs[name]) for name in (FILMS_READ, FILMS_SOLVED))
-        if FILM_TABLE in dataset.attrs:
-            yield f"films: {read} points read from the film table, as the films of the laws are; none solved"
-            return
-        yield (
-            f"films: {read} of points and lines read from the film table, {solved} solved, where the table has none or "
-            "states too large an error"
-        )
-        if why := dataset.attrs.get(UNSERVED):
-            yield f"       lines are solved as {why}"
+    """Say where the films of a map come from; nothing of a map that was to be solved."""
+    if FILM_TABLE in dataset.attrs:
+        points = dataset["status"].size
+        yield f"films: {points} points read from the film table, as the films of the laws are; none solved"
+    elif why := dataset.attrs.get(UNSERVED):
+        yield f"films: all solved; {why}"
 
 
 def error_lines(dataset: xr.Dataset) -> Iterator[str]:
@@ -297,16 +290,3 @@ def law_rows(dataset: xr.Dataset) -> Iterator[tuple[str, str]]:
         if key.startswith(_LAW_PREFIX):
             text = f"{value:.2%}" if key.endswith("_within_bar") else plain(value)
             yield key.removeprefix(_LAW_PREFIX).replace("_", " "), text
-
-
-def tolerance_lines(dataset: xr.Dataset) -> Iterator[str]:
-    """Yield the tolerance that a map was made for, what was confirmed, chosen and spent; nothing where it had none."""
-    found = {key: value for key, value in dataset.attrs.items() if key.startswith(_TOLERANCE)}
-    if not found:
-        return
-    met = "confirmed" if int(found.pop("tolerance_met", 0)) else "NOT MET"
-    asked = float(found.pop("tolerance", np.nan))
-    yield f"tolerance of the contact laws {100.0 * asked:.3g} %: {met} by fresh solves at new random points"
-    for key, value in found.items():
-        text = f"{value:.2%}" if key.endswith(("_within", "_itself")) else plain(value)
-        yield f"  {key.removeprefix(_TOLERANCE).strip('_').replace('_', ' '):36s} {text}"

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ehdmaps.ehl.limits import SETTING_LIMITS
 from ehdmaps.errors import InputError
@@ -16,6 +16,9 @@ from ehdmaps.physics.heat import ISOTHERMAL, PHYSICS, THERMAL
 from ehdmaps.physics.rheology import SHEAR_LIMITS, SHEARS
 from ehdmaps.physics.solution import ContactSolver
 from ehdmaps.units import Display, short
+
+if TYPE_CHECKING:
+    from ehdmaps.table.solver import TableSolver
 
 SOLVED, TABLE = "solved", "table"
 """Where the films of `reynolds` come from."""
@@ -257,6 +260,20 @@ def of_map(job: Job) -> ContactSolver:
 
     solved = build(job.solver, options)
     return solved if outside_family(solved) else build(job.solver, {**options, "films": TABLE})
+
+
+def in_place_of_table(job: Job, solver: TableSolver) -> ContactSolver:
+    """Make what solves the films of a job that the film table does not serve.
+
+    Parameters
+    ----------
+    job : Job
+        The job.
+    solver : TableSolver
+        What was to read them.
+    """
+    made = build(job.solver, {**job.solver_options, "films": SOLVED})
+    return replace(made, thickest_film=solver.thickest_film)  # type: ignore[type-var]
 
 
 def complete(solver: ContactSolver) -> ContactSolver:

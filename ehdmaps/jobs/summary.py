@@ -17,7 +17,6 @@ from ehdmaps.jobs.report import (
     holes,
     law_lines,
     status_lines,
-    tolerance_lines,
 )
 from ehdmaps.maps.records import record_from_json
 
@@ -51,7 +50,6 @@ def _lines(generated: Generated, output: Path) -> Iterator[str]:
     yield from error_lines(dataset)
     yield from law_lines(dataset)
     yield from correction_lines(dataset)
-    yield from tolerance_lines(dataset)
     seconds = float(np.nansum(dataset["solve_seconds"].values))
     yield f"time: {sweep.wall_seconds:.1f} s now; {seconds:.1f} s of solving in the whole map, all cores"
     if int(dataset.attrs["lubricant_verified"]) == 0:

@@ -45,7 +45,7 @@ def table_map(
 ) -> EHDMap:
     """Make a map in memory, in about a second, with few points: it is there for its laws.
 
-    Films come from the film table; what it does not know is solved. The laws are not checked by fresh solves.
+    Films come from the film table; where it does not serve, all are solved. The laws are not checked by fresh solves.
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ def law(
 ) -> ContactLaw:
     """Make a contact law without a map, in about a second.
 
-    Films come from the film table; what it does not know is solved.
+    Films come from the film table; where it does not serve, all are solved.
 
     Parameters
     ----------

@@ -324,7 +324,7 @@ ATTRIBUTES = {
 }
 """Attributes that every map has, and what they hold: a whole number the first, texts the others."""
 
-NUMBERS = ("lubricant_verified", "structural_scaling", "films_read", "films_solved")
+NUMBERS = ("lubricant_verified", "structural_scaling")
 """Attributes that are numbers, where a map has them; those of the check of the laws, `law_*`, may be."""
 
 CHECKSUM = "content_sha256"
@@ -348,11 +348,8 @@ CORRECTION = "correction"
 FILM_TABLE = "film_table"
 """Attribute of a map whose points were read from the film table, as its laws are: checksum of that table."""
 
-FILMS_READ, FILMS_SOLVED = "films_read", "films_solved"
-"""Attributes of a map with films from the film table: how many points of it and its lines were read, and solved."""
-
 UNSERVED = "film_table_unserved"
-"""Attribute of a map with lines some of whose films were read from the film table: why not all of them are."""
+"""Attribute of a map whose films were to be read from the film table, and were solved: why."""
 
 CODE = "code_hash"
 """Attribute with the hash of all that the map was computed with, see `ehdmaps.provenance.code_hash`."""

@@ -9,6 +9,6 @@ oils            an oil's isotherm in these coordinates
 family          which solvers' films these are
 films           `FilmTable.films`: films of points in SI with their errors
 file            the shipped file
-solver          `TableSolver`: the table as a contact solver, that has solved what it does not know
+solver          `TableSolver`: says of a map that its films are read, and what solves beside them
 ==============  ================================================================================================
 """

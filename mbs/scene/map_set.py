@@ -142,9 +142,7 @@ def _label(emap: EHDMap) -> str:
 
 def reads_table(emap: EHDMap) -> bool:
     """Whether the films of a map are read from the film table."""
-    from ehdmaps.maps.schema import FILMS_READ
-
-    return FILMS_READ in emap.dataset.attrs
+    return emap.from_table
 
 
 def as_map_set(given: EHDMap | MapSet | Sequence[EHDMap] | None) -> MapSet | None:

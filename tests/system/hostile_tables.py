@@ -350,8 +350,6 @@ EHDMAPS_OPTIONS: dict[str, tuple[str, int, str]] = {
     "workers many": ("generate job.toml --workers 99999", 2, "--workers: got '99999'"),
     "workers in other digits": ("generate job.toml --workers ²", 2, "--workers: got"),
     "output folder": ("generate job.toml -o .", 2, "-o"),
-    "tolerance of nothing": ("generate job.toml --tolerance 1e-9%", 2, "--tolerance: got '1e-9%'; allowed: a relative"),
-    "tolerance of a length": ("generate job.toml --tolerance 5mm", 2, "--tolerance: got '5mm'; allowed: a relative"),
     "output nowhere": ("generate job.toml -o none/a.nc", 2, "-o"),
     "keep cases": ("generate job.toml --keep-cases", 2, "--keep-cases"),
     "show no map": ("show job.toml", 2, "job.toml"),

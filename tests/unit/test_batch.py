@@ -200,7 +200,7 @@ def test_a_change_of_the_file_makes_the_maps_that_it_changes(tmp_path):
     assert {outcome.state for outcome in generate_batch(read(hot), folder, workers=1).outcomes} == {"made"}
 
 
-@pytest.mark.parametrize("option", [["--tolerance", "1 %"], ["--keep-cases"], ["nu308"]])
+@pytest.mark.parametrize("option", [["--fresh-films"], ["--keep-cases"], ["nu308"]])
 def test_what_a_batch_does_not_take(option, tmp_path, capsys):
     (tmp_path / "cat.toml").write_text(batch_text(SMALL_LISTS))
     assert cli.main(["generate", str(tmp_path / "cat.toml"), *option]) == 2

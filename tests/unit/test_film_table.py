@@ -41,8 +41,7 @@ from ehdmaps.table.file import SHIPPED, content_sha256, film_table, read_tables,
 from ehdmaps.table.films import TableFilms
 from ehdmaps.table.interpolation import Axes, place_of
 from ehdmaps.table.nodes import BEYOND_HEAVY, Nodes
-from ehdmaps.table.solver import TOLERANCE
-from tests.benchmarks.film_table import BESIDE, LOADS, SPEEDS, SQUALANE, TEMPERATURES, bearings, oils
+from tests.benchmarks.film_table import BESIDE, LOADS, SPEEDS, SQUALANE, SURE, TEMPERATURES, bearings, oils
 
 CERAMIC = Material(youngs_modulus=310e9, poisson_ratio=0.26)
 NUMBERS = tuple(field.name for field in FILMS)
@@ -248,7 +247,7 @@ def test_an_oil_with_another_law_has_films_with_errors_or_says_that_it_has_a_law
     w, u = (np.exp(random.uniform(math.log(low), math.log(high), 2000)) for low, high in (LOADS, SPEEDS))
     films = read(contact, oils()[SQUALANE], w, u, random.uniform(*TEMPERATURES, 2000))
     assert any("goes too far from the law of Roelands" in reason for reason in films.reason)
-    assert 0.05 < np.mean(~(films.usable & (films.law_error <= TOLERANCE))) < 0.6
+    assert 0.05 < np.mean(~(films.usable & (films.law_error <= SURE))) < 0.6
 
 
 def test_a_cold_oil_without_a_state_says_so() -> None:
@@ -340,7 +339,7 @@ def test_hardly_any_film_of_the_shipped_ranges_is_left_to_be_solved() -> None:
                 n = 1000
                 w, u = (np.exp(random.uniform(math.log(low), math.log(high), n)) for low, high in (LOADS, SPEEDS))
                 films = film_table(oil).films(contact, oil, w, u, random.uniform(*TEMPERATURES, n), others=False)
-                sure.append(films.usable & (films.law_error <= TOLERANCE))
+                sure.append(films.usable & (films.law_error <= SURE))
     assert np.mean(sure) > 0.995
 
 

@@ -147,7 +147,7 @@ def test_a_damaged_store_and_one_in_use(tmp_path):
 
 def test_what_stands_beside_shards(tmp_path, capsys):
     source = job_file(tmp_path)
-    for option in (["nu308"], ["--tolerance", "1 %"], ["--keep-cases"]):
+    for option in (["nu308"], ["--fresh-films"], ["--keep-cases"]):
         assert cli.main(["generate", source, *option, "--shard", "1/2"]) == 2
         assert "--shard: stands beside" in capsys.readouterr().err
 

@@ -1,4 +1,4 @@
-"""Contact laws from the film table beside laws from solved lines, and the table as a solver beside `reynolds`."""
+"""Contact laws and maps from the film table beside those from solved lines."""
 
 from __future__ import annotations
 
@@ -13,16 +13,13 @@ import pytest
 import ehdmaps
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import InputError
-from ehdmaps.jobs.reader import parse_job
 from ehdmaps.jobs.report import films_lines
 from ehdmaps.jobs.solvers import build
 from ehdmaps.jobs.table_law import law
-from ehdmaps.jobs.tolerance import check_tolerance
 from ehdmaps.maps.emap import open_map
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.solids import STEEL
-from ehdmaps.table.solver import TableSolver
 from mbs import assemble, read_scene, statics
 from mbs.cli import main
 from tests.cases.jobs import FINE
@@ -91,32 +88,6 @@ def test_what_the_law_of_the_table_needs(small_map: str, capsys: pytest.CaptureF
     assert "--law: got 'table' with a map; allowed: hertz or map with --map" in capsys.readouterr().err
 
 
-def test_the_table_as_a_solver_reads_what_it_knows_and_has_the_rest_solved() -> None:
-    """Films within a per mille; a load beyond its pressures is refused by the other solver's words."""
-    reynolds = ReynoldsSolver()
-    loads = (5e3, 1e5, 5e7)
-    read = TableSolver(reynolds).line_spectra(LINE, OIL, loads, 1.5, 330.0)
-    solved = reynolds.line_spectra(LINE, OIL, loads, 1.5, 330.0)
-    for one, other in zip(read[:2], solved[:2], strict=True):
-        assert one.film.iterations == 0
-        assert one.film.film_offset == pytest.approx(other.film.film_offset, rel=1e-3)
-        assert one.film.rolling_force == pytest.approx(other.film.rolling_force, rel=5e-3)
-        assert np.allclose(one.frequencies, other.frequencies, rtol=1e-3)
-        assert np.allclose(one.compliance, other.compliance, rtol=0.02)
-    assert read[2].film.status == solved[2].film.status
-    assert read[2].film.reason == solved[2].film.reason
-    assert "film_table" in TableSolver(reynolds).settings()
-    assert TableSolver(reynolds).solve_line(LINE, OIL, loads, 1.5, 330.0)[0] == read[0].film
-
-
-def test_films_with_heat_are_all_solved() -> None:
-    """The table knows none of them."""
-    warm = ReynoldsSolver(physics="inlet-heat")
-    (film,) = TableSolver(warm).solve_line(LINE, OIL, (1e5,), 1.5, 330.0)
-    (same,) = warm.solve_line(LINE, OIL, (1e5,), 1.5, 330.0)
-    assert film.film_offset == same.film_offset
-
-
 READ = FINE.replace("law_check = 0", 'law_check = 40\nfilms = "table"')
 
 
@@ -124,8 +95,7 @@ READ = FINE.replace("law_check = 0", 'law_check = 40\nfilms = "table"')
 def test_a_map_with_films_from_the_table_is_that_of_solved_films(solved_map: str, tmp_path: Path) -> None:
     """Within the errors that both state; its laws are checked by fresh solves."""
     read, solved = open_map(made_map(tmp_path, READ, statuses=(0, 1))).dataset, open_map(solved_map).dataset
-    assert (read.attrs["films_read"], read.attrs["films_solved"]) == (read["status"].size, 0)
-    assert "films_read" not in solved.attrs
+    assert "film_table" in read.attrs and "film_table" not in solved.attrs
     usable = (read["status"] <= 1) & (solved["status"] <= 1)
     assert float(usable.mean()) > 0.95
     for name in ("central_film", "film_offset"):
@@ -136,13 +106,11 @@ def test_a_map_with_films_from_the_table_is_that_of_solved_films(solved_map: str
     settings = json.loads(read.attrs["solver_settings"])
     assert settings["density"] == 10.0 and "film_table" in settings
     (line,) = films_lines(read)
-    assert line.startswith(f"films: {read.attrs['films_read']} points read from the film table")
+    assert line.startswith(f"films: {read['status'].size} points read from the film table")
     assert not list(films_lines(solved))
 
 
-def test_a_tolerance_and_films_with_heat_take_no_table(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r'tolerance: the job has \[solver\] films = "table"'):
-        check_tolerance(parse_job(READ, "a", "a.toml"), TableSolver(ReynoldsSolver()), 0.01)
+def test_films_with_heat_take_no_table() -> None:
     words = r"\[solver\] films: got 'table'; film table: knows nothing of heat in the film \(physics = thermal\)"
     with pytest.raises(InputError, match=words):
         build("reynolds", {"films": "table", "physics": "thermal"})

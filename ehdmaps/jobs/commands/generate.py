@@ -24,7 +24,6 @@ from ehdmaps.jobs.report import holes
 from ehdmaps.jobs.shards import shard_path
 from ehdmaps.jobs.store import store_path
 from ehdmaps.jobs.summary import summary
-from ehdmaps.jobs.tolerance import read_tolerance, unmet_tolerance
 from ehdmaps.jobs.work import read_work, run_shard
 from ehdmaps.outputs import MAP, TABLE, Output, check_outputs
 from ehdmaps.physics.solution import ContactSolver
@@ -41,10 +40,9 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     batches = [source for source in arguments.jobs if is_batch(source)]
     if batches:
         return _batch(batches[0], arguments)
-    tolerance = None if arguments.tolerance is None else read_tolerance(arguments.tolerance)
     texts, status = [], 0
     for job, output in _planned(arguments):
-        text, found = _made(job, output, arguments, tolerance)
+        text, found = _made(job, output, arguments)
         texts.append(text)
         status = max(status, found)
         if found == INTERRUPTED:
@@ -54,9 +52,11 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
 
 def _shard(arguments: argparse.Namespace) -> tuple[str, int]:
     """Solve one shard of a job or a batch."""
-    beside = {"several JOB": len(arguments.jobs) > 1, "--tolerance": arguments.tolerance is not None}
-    beside["--keep-cases"] = arguments.keep_cases is not None
-    beside['--fresh-films (say films = "solved" in [solver])'] = arguments.fresh_films
+    beside = {
+        "several JOB": len(arguments.jobs) > 1,
+        "--keep-cases": arguments.keep_cases is not None,
+        '--fresh-films (say films = "solved" in [solver])': arguments.fresh_films,
+    }
     problems = [
         f"--shard: stands beside {option}; allowed: one job or batch, with --workers, --solver, --fresh and -o"
         for option, given in beside.items()
@@ -78,7 +78,6 @@ def _batch(source: str, arguments: argparse.Namespace) -> tuple[str, int]:
     """Make the maps of a batch file."""
     beside = {
         "JOB": len(arguments.jobs) > 1,
-        "--tolerance": arguments.tolerance is not None,
         "--keep-cases": arguments.keep_cases is not None,
         '--fresh-films (say films = "solved" in [solver])': arguments.fresh_films,
     }
@@ -135,7 +134,7 @@ def _planned(arguments: argparse.Namespace) -> list[tuple[Job, Path]]:
     return planned
 
 
-def _made(job: Job, output: Path, arguments: argparse.Namespace, tolerance: float | None) -> tuple[str, int]:
+def _made(job: Job, output: Path, arguments: argparse.Namespace) -> tuple[str, int]:
     """Make one map."""
     by = job.corrected_by
     if arguments.fresh_films:
@@ -144,15 +143,12 @@ def _made(job: Job, output: Path, arguments: argparse.Namespace, tolerance: floa
     solver = _built(job.solver, job.solver_options, kept) if kept else None
     corrector = _built(by.solver, by.options, kept) if by else None
     try:
-        generated = generate(job, output, arguments.workers, arguments.fresh, progress, solver, tolerance, corrector)
+        generated = generate(job, output, arguments.workers, arguments.fresh, progress, solver, corrector)
     except KeyboardInterrupt:
         tell(f"\nstopped; what is solved is kept in {store_path(output)}: the same command goes on from there")
         return "", INTERRUPTED
     lost = holes(generated.dataset) + unsolved(generated.dataset)
-    missed = [
-        *unmet(generated.dataset, generated.backbone is not None),
-        *unmet_tolerance(generated.dataset.attrs),
-    ]
+    missed = unmet(generated.dataset, generated.backbone is not None)
     return "\n".join([summary(generated, output), *missed]), 1 if lost or missed else 0
 
 

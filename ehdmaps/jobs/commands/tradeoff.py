@@ -1,4 +1,4 @@
-"""`ehdmaps tradeoff`: speed against accuracy, of solvers at random points of a job or of whole maps of it."""
+"""`ehdmaps tradeoff`: speed against accuracy of solvers at random points of a job."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import argparse
 
 from ehdmaps.jobs.reader import read_job
 from ehdmaps.jobs.tradeoff import measure
-from ehdmaps.jobs.tradeoff_map import measure_map
 from ehdmaps.program import tell
 from ehdmaps.trade.data import check_trade_files, trade_json, write_trade
 from ehdmaps.trade.text import trade_text
@@ -16,10 +15,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Measure, write what is asked for, and print the tables or JSON."""
     check_trade_files(arguments.output, arguments.plot, [arguments.job])
     job = read_job(arguments.job)
-    if arguments.level == "map":
-        trade = measure_map(job, arguments.points, arguments.seed, tell=tell)
-    else:
-        trade = measure(job, arguments.points, arguments.seed, arguments.openfoam, tell=tell)
+    trade = measure(job, arguments.points, arguments.seed, arguments.openfoam, tell=tell)
     for line in write_trade(trade, arguments.output, arguments.plot):
         tell(line)
     return trade_json(trade) if arguments.json else trade_text(trade), 0
