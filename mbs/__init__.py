@@ -43,21 +43,20 @@ if TYPE_CHECKING:
     from mbs.analyses.auto import AutoSettings, automatic
     from mbs.analyses.campbell import campbell
     from mbs.analyses.case import Case, LawChoice
-    from mbs.analyses.critical import critical
     from mbs.analyses.hammer import HammerSettings, hammer
     from mbs.analyses.lsa import LsaSettings, lsa
     from mbs.analyses.modes import modes
     from mbs.analyses.plan import PlanSettings, plan
     from mbs.analyses.runup import runup
     from mbs.analyses.statics import statics
-    from mbs.analyses.sweep import SweepSettings, sweep
-    from mbs.analyses.variants import Variation, variants
+    from mbs.analyses.sweep import SweepSettings, critical, sweep
     from mbs.bearings.bearing import Bearing
     from mbs.bearings.bearing_force import BearingForce
     from mbs.bearings.thermal import GivenTemperatures, HeatPaths, Mounting, Seat
     from mbs.flexible.plan import Attached, ReductionPlan
     from mbs.flexible.shaft_parts import Disc, Section
     from mbs.gears.pair import GearPair
+    from mbs.instruments.variants import Variation, variants
     from mbs.model.body import Inertia
     from mbs.model.elements import Input, Load, Operation, Sensor, Spring
     from mbs.model.profiles import SpeedProfile
@@ -158,11 +157,11 @@ _HOMES = {
     "Spring": "model.elements",
     "SweepRange": "settings",
     "SweepSettings": "analyses.sweep",
-    "Variation": "analyses.variants",
+    "Variation": "instruments.variants",
     "assemble": "scene.assembly",
     "automatic": "analyses.auto",
     "campbell": "analyses.campbell",
-    "critical": "analyses.critical",
+    "critical": "analyses.sweep",
     "hammer": "analyses.hammer",
     "lsa": "analyses.lsa",
     "modes": "analyses.modes",
@@ -173,7 +172,7 @@ _HOMES = {
     "shipped_systems": "scene.reader",
     "statics": "analyses.statics",
     "sweep": "analyses.sweep",
-    "variants": "analyses.variants",
+    "variants": "instruments.variants",
 }
 
 

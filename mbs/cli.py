@@ -15,7 +15,7 @@ from mbs.model.relaxation import DEFAULT_FILMS
 VARIED_KEYS = (
     "clearance, temperature, films, supply, housing-damping, ramp, start-angle, load-factor, step, slices, cutoff, law"
 )
-"""The keys of `mbs.analyses.varied.VARIED`, which takes longer to import than a command to be refused."""
+"""The keys of `mbs.instruments.varied.VARIED`, which takes longer to import than a command to be refused."""
 
 _MORE = "; more than once to compare"
 _LAW = (

@@ -26,7 +26,6 @@ from ehdmaps.physics.rheology import SHEARS
 from mbs.analyses import film_verdicts, planning
 from mbs.analyses.campbell import CampbellResult
 from mbs.analyses.case import LawChoice, Subject
-from mbs.analyses.critical import CriticalResult
 from mbs.analyses.film_errors import film_errors
 from mbs.analyses.film_verdicts import Verdict
 from mbs.analyses.hammer import HammerResult
@@ -38,8 +37,8 @@ from mbs.analyses.plan import PlanResult, PlanSettings, plan
 from mbs.analyses.reach import faster_than_laws
 from mbs.analyses.runup import RunUpResult
 from mbs.analyses.statics import StaticsResult
-from mbs.analyses.sweep import SweepResult
-from mbs.analyses.tolerance import Tolerated
+from mbs.analyses.sweep import CriticalResult, SweepResult
+from mbs.instruments.tolerance import Tolerated
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.model.relaxation import Films

@@ -1,4 +1,4 @@
-"""The nonlinear run-up with one or more contact laws, as levels over speed, frequency and order."""
+"""The nonlinear run-up with one or more contact laws, as levels over speed, frequency and order, with their errors."""
 
 from __future__ import annotations
 
@@ -13,18 +13,22 @@ import xarray as xr
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
-from mbs.analyses.case import Case, as_cases
-from mbs.analyses.changed_laws import SIGNS, law_changes, with_changed_laws
-from mbs.analyses.followed import followed_orders
-from mbs.analyses.operating import held, states_of
-from mbs.analyses.progress import Progress, silent
+from ehdmaps.maps.law import ContactLaw
+from ehdmaps.maps.law_change import LawChange
+from mbs.analyses.case import Case, Failed, Progress, as_cases, side_by_side, silent
+from mbs.analyses.operating import held, operating, states_of
 from mbs.analyses.ramp import recorded_run, rehearsed, run_course
-from mbs.analyses.sensors import chosen_sensors
-from mbs.analyses.side_by_side import Failed, side_by_side
+from mbs.analyses.sensors import chosen_sensors, followed_orders
+from mbs.bearings.bearing_element import BearingElement, RingElement
+from mbs.bearings.bearing_force import BearingForce
+from mbs.bearings.roller_contacts import RollerContacts
+from mbs.bearings.roller_element import RollerElement
+from mbs.linearised.averaged import steady_system
 from mbs.linearised.sweep import sweep
 from mbs.linearised.sweep_result import Sweep
 from mbs.model.drive import DrivenSpeed
-from mbs.model.elements import Sensor
+from mbs.model.elements import Element, Operation, Sensor
+from mbs.model.equilibrium import equilibrium
 from mbs.output.campbell_table import campbell_dataset, of_sensors
 from mbs.output.files import described
 from mbs.output.results import BAND, with_states
@@ -35,6 +39,113 @@ from mbs.spectral.campbell import RunUpSpectra, run_up_spectra
 from mbs.spectral.levels import Reference
 from mbs.spectral.run_signal import RunSignal
 from mbs.transient.run import Recording
+
+SIGNS = (
+    (1.0, 1.0, 1.0),
+    (-1.0, -1.0, -1.0),
+    (1.0, -1.0, 1.0),
+    (-1.0, 1.0, -1.0),
+    (1.0, 1.0, -1.0),
+    (-1.0, -1.0, 1.0),
+    (1.0, -1.0, -1.0),
+    (-1.0, 1.0, 1.0),
+)
+"""Signs of the changes of stiffness, damping and film of each sample: all corners, each beside the opposite one."""
+
+Changes = dict[str, tuple[LawChange, ...]]
+"""By the names of the bearings: a change for each law of a bearing, that of massless rollers, or both of rollers."""
+
+
+def law_changes(model: Model, speeds: Sequence[float]) -> Changes | None:
+    """By how much the laws of each bearing may be wrong; None where a law states no errors.
+
+    Parameters
+    ----------
+    model : Model
+        Scene with its law.
+    speeds : sequence of float
+        Speeds of the system [rad/s]; that of standstill is passed over, as there are no films.
+
+    Raises
+    ------
+    AnalysisError
+        If there is no equilibrium at a speed.
+    """
+    found: dict[str, list[list[LawChange]]] = {}
+    for speed in speeds:
+        if speed == 0.0:
+            continue
+        operation = Operation(speed)
+        balance = equilibrium(steady_system(operating(model, speed).system), operation)
+        for index in balance.system.select(RingElement):
+            connected = balance.system.elements[index]
+            assert isinstance(connected.element, RingElement)
+            groups = connected.element.contact_groups(connected.transform @ balance.displacement, operation)
+            changes = []
+            for group in groups:
+                load, stiffness, damping, _ = group.state()
+                bounds = group.law.bounds(load)
+                if bounds is None:
+                    return None
+                changes.append(
+                    LawChange(
+                        _mean(bounds.stiffness, stiffness),
+                        _mean(bounds.damping, damping),
+                        _mean(bounds.film_offset, stiffness),
+                    )
+                )
+            if not changes:
+                return None
+            found.setdefault(connected.element.name, []).append(changes)
+    if not found:
+        return None
+    return {
+        name: tuple(LawChange(*np.max(of_law, axis=0).tolist()) for of_law in zip(*at_speeds, strict=True))
+        for name, at_speeds in found.items()
+    }
+
+
+def _mean(values: FloatArray, weights: FloatArray) -> float:
+    """Mean with weights; that of all where nothing has any."""
+    total = float(weights.sum())
+    return float(values @ weights / total) if total > 0.0 else float(values.mean())
+
+
+def with_changed_laws(model: Model, changes: Changes, signs: tuple[float, float, float]) -> Model:
+    """The model with laws that are wrong on purpose.
+
+    Parameters
+    ----------
+    model : Model
+        Scene with its law, for a run in time.
+    changes : Changes
+        What `law_changes` finds.
+    signs : tuple of float
+        Factors of the changes of stiffness, damping and film, such as one of `SIGNS`.
+    """
+    made: dict[tuple[int, LawChange], ContactLaw] = {}
+
+    def changed(law: object, change: LawChange) -> ContactLaw:
+        assert isinstance(law, ContactLaw)  # others state no errors
+        key = id(law), change
+        if key not in made:
+            made[key] = law.changed(change)
+        return made[key]
+
+    elements: list[Element] = [connected.element for connected in model.system.elements]
+    bearings = list(model.bearings)
+    for index, bearing in enumerate(bearings):
+        own, element = [change.times(signs) for change in changes[bearing.name]], elements[index]
+        if isinstance(element, RollerElement):
+            laws = [changed(law, change) for law, change in zip(element.contacts.laws, own, strict=True)]
+            contacts = RollerContacts(element.contacts.bearing, *laws)
+            elements[index] = dataclasses.replace(element, contacts=contacts)
+            continue
+        assert isinstance(element, BearingElement) and isinstance(element.force, BearingForce)
+        force = BearingForce(element.force.bearing, changed(element.force.law, own[0]))
+        elements[index] = bearings[index] = dataclasses.replace(element, force=force)
+    return dataclasses.replace(model, system=model.system.with_elements(elements), bearings=tuple(bearings))
+
 
 MOST_BANDS = len(SIGNS)
 """Runs of a law for its band, at most."""
@@ -132,7 +243,7 @@ def campbell(
         Whether Ctrl-C returns the laws that have come to the end, if there are any; else it is raised.
     bands : int
         Runs more of each law that states errors, up to `MOST_BANDS`: its stiffness, damping and films are wrong there
-        by the bounds of these errors, with all signs in turn (`mbs.analyses.changed_laws`). Each costs a run.
+        by the bounds of these errors, with all signs in turn (`mbs.analyses.campbell`). Each costs a run.
     workers : int
         Number of processes among which the runs are divided.
 

@@ -1,17 +1,32 @@
-"""What an analysis compares: a law as it was chosen, a scene with its law, and models with their labels."""
+"""What an analysis compares (laws, scenes, models with labels), computed side by side in processes of their own."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+import multiprocessing
+import signal
+import time
+import warnings
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from multiprocessing.connection import Connection, wait
+from typing import Any, Generic, TypeVar
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import AnalysisError, EhdmapsError, InputError
+from ehdmaps.interrupts import deaf_children
 from ehdmaps.physics.oil_supply import OilSupply
+from ehdmaps.workers import start_worker
 from mbs.model.relaxation import Films
 from mbs.scene.assembly import Model, assemble
 from mbs.scene.map_set import MapSet
 from mbs.scene.scene import Scene
+
+Progress = Callable[[int, int], None]
+"""Called with what is done and what there is to do in all: first with (0, total), last with (total, total)."""
+
+
+def silent(done: int, total: int) -> None:
+    """Tell nobody."""
 
 
 @dataclass(frozen=True)
@@ -128,3 +143,192 @@ def as_cases(models: Model | Case | Sequence[Model | Case]) -> tuple[Case, ...]:
             "label once; give a Case with a label of its own for each model"
         )
     return cases
+
+
+Result = TypeVar("Result")
+
+Work = Callable[[int, Callable[[int], None]], Result]
+"""Computes the result of a case by its index; tells how much of it is done."""
+
+_TELL_SECONDS = 0.1
+
+
+@dataclass(frozen=True)
+class Failed:
+    """Why a case has no result."""
+
+    error: EhdmapsError
+
+
+@dataclass
+class _Running:
+    """A case that is being computed."""
+
+    process: Any
+    pipe: Connection
+
+
+@dataclass(frozen=True)
+class _Bug:
+    """An exception that nobody expects."""
+
+    error: BaseException
+
+
+def side_by_side(
+    work: Work[Result], sizes: Sequence[int], workers: int, told: Callable[[int], None], label: Callable[[int], str]
+) -> Iterator[Result | Failed]:
+    """Compute all cases; results come in the order of the cases.
+
+    Parameters
+    ----------
+    work : callable
+        Computes a case; what it returns has to be picklable.
+    sizes : sequence of int
+        How much there is to do of each case; one that has ended counts as done.
+    workers : int
+        How many processes at most.
+    told : callable
+        Told how much is done of all cases together, in the units of `work`.
+    label : callable
+        Name of a case, for messages.
+
+    Yields
+    ------
+    result or Failed
+        Result of each case, or the error of this distribution that it ended with.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        On Ctrl-C, after all processes have been ended.
+    """
+    if min(workers, len(sizes)) <= 1 or "fork" not in multiprocessing.get_all_start_methods():
+        yield from _one_by_one(work, sizes, told)
+        return
+    yield from _Forks(work, sizes, workers, told, label).results()
+
+
+def _one_by_one(work: Work[Result], sizes: Sequence[int], told: Callable[[int], None]) -> Iterator[Result | Failed]:
+    """Compute all cases in this process."""
+    before = 0
+
+    def tell(amount: int) -> None:
+        told(before + amount)
+
+    found: Result | Failed
+    for index, size in enumerate(sizes):
+        try:
+            found = work(index, tell)
+        except EhdmapsError as error:
+            found = Failed(error)
+        before += size
+        told(before)
+        yield found
+
+
+class _Forks(Generic[Result]):
+    """Processes that compute cases."""
+
+    def __init__(
+        self,
+        work: Work[Result],
+        sizes: Sequence[int],
+        workers: int,
+        told: Callable[[int], None],
+        label: Callable[[int], str],
+    ) -> None:
+        self._work, self._sizes, self._workers, self._told, self._label = work, sizes, workers, told, label
+        self._context = multiprocessing.get_context("fork")
+        self._said = self._context.Value("b", False)
+        self._running: dict[int, _Running] = {}
+        self._found: dict[int, Any] = {}
+        self._done = [0] * len(sizes)
+        self._next = 0
+
+    def results(self) -> Iterator[Result | Failed]:
+        """Results in the order of the cases."""
+        try:
+            for index in range(len(self._sizes)):
+                while index not in self._found:
+                    self._begin()
+                    self._listen()
+                found = self._found.pop(index)
+                if isinstance(found, _Bug):
+                    raise found.error
+                yield found
+        finally:
+            for entry in self._running.values():
+                entry.process.terminate()
+            for entry in self._running.values():
+                entry.process.join()
+
+    def _begin(self) -> None:
+        """Begin as many cases as there is room for."""
+        while self._next < len(self._sizes) and len(self._running) < self._workers:
+            ours, theirs = self._context.Pipe(duplex=False)
+            process = self._context.Process(
+                target=_compute, args=(self._work, self._next, theirs, self._said), daemon=True
+            )
+            with deaf_children(signal.SIGTERM), warnings.catch_warnings():
+                # Of threads that a fork leaves behind none is needed in it.
+                warnings.simplefilter("ignore", DeprecationWarning)
+                process.start()
+            theirs.close()
+            self._running[self._next] = _Running(process, ours)
+            self._next += 1
+
+    def _listen(self) -> None:
+        """Wait until some process says something, and take it."""
+        pipes = {entry.pipe: index for index, entry in self._running.items()}
+        for pipe in wait(list(pipes)):
+            assert isinstance(pipe, Connection)
+            index = pipes[pipe]
+            try:
+                said = pipe.recv()
+            except EOFError:
+                self._end(index, Failed(AnalysisError(
+                    f"{self._label(index)}: its process died (killed, or out of memory); the same command tries "
+                    "again, with --workers 1 in one process"
+                )))  # fmt: skip
+                continue
+            if isinstance(said, int):
+                self._tell(index, said)
+            else:
+                self._end(index, said[0])
+
+    def _end(self, index: int, found: Any) -> None:
+        """Take the result of a case."""
+        entry = self._running.pop(index)
+        entry.process.join()
+        entry.pipe.close()
+        self._found[index] = found
+        self._tell(index, self._sizes[index])
+
+    def _tell(self, index: int, done: int) -> None:
+        """Tell how much is done of all cases."""
+        self._done[index] = done
+        self._told(sum(self._done))
+
+
+def _compute(work: Work[Result], index: int, pipe: Connection, said: Any) -> None:
+    """Compute a case in a process of its own."""
+    start_worker(said)
+    last = -_TELL_SECONDS
+
+    def told(amount: int) -> None:
+        nonlocal last
+        now = time.monotonic()
+        if now - last >= _TELL_SECONDS:
+            pipe.send(amount)
+            last = now
+
+    found: Any
+    try:
+        found = work(index, told)
+    except EhdmapsError as error:
+        found = Failed(error)
+    except Exception as error:  # a bug, which the parent raises
+        found = _Bug(error)
+    pipe.send((found,))
+    pipe.close()

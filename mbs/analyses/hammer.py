@@ -7,11 +7,9 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from ehdmaps.errors import AnalysisError, InputError
-from mbs.analyses.case import Case
+from mbs.analyses.case import Case, Failed, Progress, side_by_side, silent
 from mbs.analyses.film_errors import film_errors
 from mbs.analyses.operating import operating
-from mbs.analyses.progress import Progress, silent
-from mbs.analyses.side_by_side import Failed, side_by_side
 from mbs.linearised.averaged import steady_system
 from mbs.linearised.modes import Modes, modes
 from mbs.linearised.validity import FilmError

@@ -1,25 +1,74 @@
-"""The run-up of a scene with a sample a step: its course, a silent one before it, and the recording."""
+"""The run-up of a scene: its course, by torques too, what is recorded, and whether its steps are short enough."""
 
 from __future__ import annotations
 
 import dataclasses
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from mbs.analyses.drive import course_of
+from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import EhdmapsError
+from mbs.analyses.losses import losses_over_speed
+from mbs.linearised.averaged import steady_system
+from mbs.linearised.modes import free_motions, undamped_modes
+from mbs.model.drive import Drive, DrivenSpeed, TorqueCurve
 from mbs.model.elements import Operation, Sensor
-from mbs.model.equilibrium import equilibrium
+from mbs.model.equilibrium import Equilibrium, equilibrium
+from mbs.model.profiles import SpeedProfile
 from mbs.scene.assembly import Model
-from mbs.scene.fields import HERTZ
+from mbs.scene.fields import HERTZ, MICROSECOND, MILLISECOND
 from mbs.scene.scene import Scene
 from mbs.settings import CampbellSettings, RunUp
 from mbs.spectral.campbell import RunUpSpectra, run_up_spectra
 from mbs.spectral.run_signal import RunSignal
 from mbs.spectral.spectra import LEAST_OVERSAMPLING
-from mbs.transient.run import Recording
+from mbs.transient.numerical_damping import RESOLVED, energy_lost, numerical_damping_ratio
+from mbs.transient.run import Options, Recording
 from mbs.transient.run import run as run_system
+
+SPEEDS = 8
+"""Speeds at which the rolling torque is found, between rest and the highest one of the drive alone."""
+
+
+def course_of(model: Model, course: RunUp) -> SpeedProfile:
+    """The speed of a run; where it follows from torques, with the rolling torque of the bearings of a model.
+
+    Parameters
+    ----------
+    model : Model
+        Scene with its law, in operation. Its films take a torque where its map has rolling forces.
+    course : RunUp
+        The run.
+
+    Raises
+    ------
+    AnalysisError
+        If there is no equilibrium at a speed.
+    """
+    speed = course.speed
+    if not isinstance(speed, DrivenSpeed) or not model.bearings:
+        return speed
+    speeds = max(speed.course.values) * np.arange(1, SPEEDS + 1) / SPEEDS
+    if speeds[0] <= 0.0:
+        return speed
+    system = steady_system(model.system)
+    displacements = [equilibrium(system, Operation(at)).displacement for at in speeds.tolist()]
+    power = losses_over_speed([model] * SPEEDS, speeds, np.array(displacements))[1].sum(axis=1)
+    if not np.all(np.isfinite(power)):
+        return speed
+    return DrivenSpeed.of(_resisted(speed.drive, speeds, power / speeds), speed.course.values[0], course.duration)
+
+
+def _resisted(drive: Drive, speeds: FloatArray, torques: FloatArray) -> Drive:
+    """The drive with a torque over speed more that resists."""
+    rolling = TorqueCurve(tuple(speeds.tolist()), tuple(torques.tolist()))
+    at = tuple(sorted({*drive.load.speeds, *rolling.speeds}))
+    load = TorqueCurve(at, tuple(drive.load(w) + rolling(w) for w in at))
+    return dataclasses.replace(drive, load=load)
+
 
 LEAST_SAMPLES, MOST_SAMPLES = 64, 5_000_000
 """Steps of a run: the fewest that have a spectrum, and 50 s of 10 us, beyond any run-up that is waited for."""
@@ -141,3 +190,224 @@ def recorded_run(
         displacement=start.displacement + nudge,
         progress=told,
     )
+
+
+PART = 0.05
+"""Part of a run that is made again."""
+
+FEWEST = 500
+"""Fewest steps of it."""
+
+NOTABLE = 0.1
+"""Estimated error of a root mean square from which on it is warned of; 0.8 dB."""
+
+_LIMIT = 4.0 / 3.0
+
+
+@dataclass(frozen=True, eq=False)
+class StepCheck:
+    """Signals of the first part of a run with its step and with half of it.
+
+    Attributes
+    ----------
+    duration : float
+        Length of that part [s].
+    step : float
+        Step of the run [s].
+    names, units : tuple of str
+        Sensors, and units of their signals.
+    with_step, with_half : array, shape (sensors,)
+        Root mean square of each signal about its mean.
+    """
+
+    duration: float
+    step: float
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    with_step: FloatArray
+    with_half: FloatArray
+
+    @property
+    def errors(self) -> FloatArray:
+        """Estimated error of each root mean square with the step of the run, as a part of it, shape (sensors,)."""
+        size = np.maximum(self.with_half, 1e-300)
+        return np.where(self.with_half > 0.0, _LIMIT * np.abs(self.with_step - self.with_half) / size, 0.0)
+
+    @property
+    def converged(self) -> bool:
+        """Whether all are within `NOTABLE`."""
+        return bool(np.all(self.errors <= NOTABLE))
+
+
+def step_check(model: Model, course: RunUp, start: Equilibrium) -> StepCheck | None:
+    """Make the first part of a run with its step and with half of it.
+
+    Parameters
+    ----------
+    model : Model
+        Scene with its law, in operation.
+    course : RunUp
+        The run.
+    start : Equilibrium
+        Equilibrium where it begins.
+
+    Returns
+    -------
+    StepCheck or None
+        None without sensors, with steps that adapt to a tolerance, and where a part finds no solution.
+    """
+    sensors, settings = model.scene.sensors, course.settings
+    if not sensors or math.isfinite(settings.tolerance):
+        return None
+    duration = min(course.duration, max(PART * course.duration, FEWEST * settings.step))
+    sizes = []
+    for step in (settings.step, 0.5 * settings.step):
+        try:
+            record = run_system(
+                model.system,
+                course_of(model, course),
+                duration,
+                dataclasses.replace(settings, step=step),
+                sensors=sensors,
+                displacement=start.displacement,
+                options=Options(every_step=True),
+            )
+        except EhdmapsError:
+            return None
+        # At the same times, so that nothing is but the steps.
+        sizes.append(np.std(record.signals[:: round(settings.step / step)], axis=0))
+    names, units = tuple(sensor.name for sensor in sensors), tuple(_unit(sensor.quantity) for sensor in sensors)
+    return StepCheck(duration, settings.step, names, units, *sizes)
+
+
+def _unit(quantity: str) -> str:
+    """Unit of the signal of a sensor."""
+    return {"displacement": "m", "velocity": "m/s", "acceleration": "m/s2"}[quantity]
+
+
+@dataclass(frozen=True)
+class Resolution:
+    """What the steps of a run resolve.
+
+    Attributes
+    ----------
+    step, spectral_radius : float
+        Length of the steps [s]; spectral radius of the method.
+    highest : float
+        Highest frequency of which a period has `RESOLVED` steps [Hz].
+    lowest_mode : float
+        Lowest natural frequency at the first speed, without free motions and damping [Hz]; NaN if there is none.
+    excitation : float
+        Highest frequency at which gears mesh, or else rollers pass [Hz]; NaN without either.
+    looked_at : float
+        Highest frequency that is of interest [Hz].
+    """
+
+    step: float
+    spectral_radius: float
+    highest: float
+    lowest_mode: float
+    excitation: float
+    looked_at: float
+
+    @property
+    def unresolved(self) -> tuple[str, ...]:
+        """What steps are too long for, in words."""
+        named = (
+            ("the lowest mode of the system is at", self.lowest_mode),
+            ("it is excited with up to", self.excitation),
+        )
+        return tuple(f"{words} {value:.4g} Hz" for words, value in named if value > self.highest)
+
+    @property
+    def needed(self) -> float:
+        """Longest step that would resolve what is not [s]; the step itself where all is resolved."""
+        worst = np.nanmax([self.highest, self.lowest_mode, self.excitation])
+        return self.step * self.highest / float(worst)
+
+    def lost(self, frequency: float) -> float:
+        """Part of the energy of an oscillation that the method takes in a second, 0 to 1.
+
+        Parameters
+        ----------
+        frequency : float
+            Frequency of the oscillation [Hz].
+        """
+        return energy_lost(self.spectral_radius, self.step, frequency)
+
+    def ratio(self, frequency: float) -> float:
+        """Damping ratio that takes as much.
+
+        Parameters
+        ----------
+        frequency : float
+            Frequency of the oscillation [Hz].
+        """
+        return numerical_damping_ratio(self.spectral_radius, self.step, frequency)
+
+
+def resolution(model: Model, course: RunUp) -> Resolution:
+    """What the steps of a run resolve of its modes at the first speed, and of its excitation.
+
+    Parameters
+    ----------
+    model : Model
+        Scene with its law.
+    course : RunUp
+        Speed and steps.
+
+    Raises
+    ------
+    AnalysisError
+        If there is no equilibrium at the first speed.
+    """
+    balance = equilibrium(model.system, Operation(course.speed.at(0.0)[0]))
+    found = undamped_modes(balance).frequency
+    swinging = found[~free_motions(found)]
+    fastest = float(np.max(np.abs(course.speed.course.values))) / (2.0 * np.pi)
+    excitations = [entry for one in model.system.elements if (entry := one.element.excitation) is not None]
+    rank = max((entry.rank for entry in excitations), default=0)
+    orders = [entry.order for entry in excitations if entry.rank == rank]
+    settings = course.settings
+    return Resolution(
+        settings.step,
+        settings.spectral_radius,
+        1.0 / (RESOLVED * settings.step),
+        float(swinging.min()) if swinging.size else float("nan"),
+        max(orders) * fastest if orders else float("nan"),
+        model.scene.campbell.highest,
+    )
+
+
+def step_lines(found: Resolution) -> list[str]:
+    """Lines on what the steps of a run resolve, and on what the method takes from oscillations.
+
+    Parameters
+    ----------
+    found : Resolution
+        What they resolve.
+    """
+    high = min(found.highest, found.looked_at)
+    losses = " and ".join(_lost(found, part * high) for part in (0.5, 1.0))
+    taken = (
+        "the method of integration takes no energy (spectral radius 1)"
+        if found.spectral_radius == 1.0
+        else f"numerical damping (spectral radius {found.spectral_radius:g}) takes {losses} of the energy of an "
+        "oscillation in 1 s"
+    )
+    step = MICROSECOND.text(found.step) if found.step < 1e-3 else MILLISECOND.text(found.step)
+    lines = [f"steps of {step}: {RESOLVED:g} a period at {HERTZ.text(found.highest)}; {taken}"]
+    if found.unresolved:
+        needed = MICROSECOND.text(found.needed, 3) if found.needed < 1e-3 else MILLISECOND.text(found.needed, 3)
+        lines.append(
+            f"warning: steps of {step} do not resolve what moves here: {', and '.join(found.unresolved)}; this run "
+            f"is a row of equilibria at best; take steps of {needed} or less in [runup]"
+        )
+    return lines
+
+
+def _lost(found: Resolution, frequency: float) -> str:
+    """What an oscillation loses in a second, and the damping ratio that takes as much."""
+    part = found.lost(frequency)
+    words = f"{100.0 * part:.3g} %" if 1e-6 < part < 0.9995 else "less than 0.0001 %" if part < 0.5 else "all"
+    return f"{words} at {HERTZ.text(frequency)} (a damping ratio of {found.ratio(frequency):.2g})"

@@ -11,8 +11,7 @@ import xarray as xr
 
 from ehdmaps.errors import InputError
 from mbs.analyses.campbell import LawRun
-from mbs.analyses.followed import excited_orders, orders_in_band
-from mbs.analyses.sensors import ALL_SENSORS
+from mbs.analyses.sensors import ALL_SENSORS, excited_orders, orders_in_band
 from mbs.model.elements import Sensor
 from mbs.output.campbell_table import campbell_dataset, of_sensors
 from mbs.output.files import described

@@ -12,14 +12,11 @@ import numpy as np
 import xarray as xr
 
 from ehdmaps.errors import AnalysisError, InputError
-from mbs.analyses.case import Case
-from mbs.analyses.drive import course_of
+from mbs.analyses.case import Case, Failed, Progress, side_by_side, silent
 from mbs.analyses.operating import held, states_of
-from mbs.analyses.progress import Progress, silent
+from mbs.analyses.ramp import StepCheck, course_of, step_check
 from mbs.analyses.recorded import simulated
-from mbs.analyses.side_by_side import Failed, side_by_side
 from mbs.analyses.soundness import Unsound, unsound_run, with_unsound
-from mbs.analyses.step_check import StepCheck, step_check
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.output.files import described

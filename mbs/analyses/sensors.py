@@ -1,14 +1,16 @@
-"""Sensors whose levels are looked at: those of some names, or the first one of an acceleration."""
+"""What of a run is looked at: sensors of some names or the first of an acceleration, and orders that are followed."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from ehdmaps.errors import InputError
 from ehdmaps.units import closest
 from mbs.model.elements import Sensor
+from mbs.scene.assembly import Model
 from mbs.scene.scene import Scene
-from mbs.settings import CampbellSettings
+from mbs.settings import CampbellSettings, RunUp
 
 ALL_SENSORS = "all"
 """Stands for all sensors of a scene, or of a file."""
@@ -77,3 +79,81 @@ def _sensor(name: str | None, scene: Scene, problems: list[str]) -> Sensor | Non
         "or a [[sensors]] more"
     )
     return None
+
+
+_LEAST_ORDER = 1.0 - 1e-9
+"""Of a load that turns, to be followed where no orders are asked for."""
+
+_LEAST_PERIODS = 20.0
+"""Of such a load in the run: a window, a tenth of a short run, holds two of them."""
+
+
+def followed_orders(model: Model, settings: CampbellSettings, course: RunUp) -> list[tuple[float, str]]:
+    """Orders to follow, with their names: those of the settings, else what the model excites.
+
+    Parameters
+    ----------
+    model : Model
+        Scene with a law.
+    settings : CampbellSettings
+        Orders, if any are named, and the highest frequency.
+    course : RunUp
+        The run.
+    """
+    if settings.orders:
+        return [(order, f"{order:g}") for order in settings.orders]
+    # None that lies above the band at every speed.
+    slowest = min(course.speed.at(0.0)[0], course.speed.at(course.duration)[0])
+    return orders_in_band(excited_orders(model, _turns(course)), settings.highest, slowest)
+
+
+def orders_in_band(orders: Sequence[tuple[float, str]], highest: float, slowest: float) -> list[tuple[float, str]]:
+    """Those of some orders that do not lie above a band at every speed.
+
+    Parameters
+    ----------
+    orders : sequence of (float, str)
+        Orders, with their names.
+    highest : float
+        Highest frequency [Hz].
+    slowest : float
+        Lowest speed of the run [rad/s].
+
+    Examples
+    --------
+    >>> orders_in_band([(2.0, "2"), (200.0, "200")], 1000.0, 62.8)
+    [(2.0, '2')]
+    """
+    top = 2.0 * math.pi * highest / slowest if slowest > 0.0 else math.inf
+    return [(order, name) for order, name in orders if order < top]
+
+
+def excited_orders(model: Model, turns: float) -> list[tuple[float, str]]:
+    """Orders that a model excites itself, with their names: of gears, else of passing rollers, and of turning loads.
+
+    Parameters
+    ----------
+    model : Model
+        Scene with a law.
+    turns : float
+        Turns of the system in the run.
+
+    Notes
+    -----
+    Of unbalances and excitations, those of less than one period a turn of the system, or of less than 20 periods in
+    the run, are left out: the windows of all orders would have to be longer for them. Weight stands still, and has
+    no order; how rollers pass under it is in theirs.
+    """
+    given = [one for entry in model.system.elements if (one := entry.element.excitation) is not None]
+    highest_rank = max((entry.rank for entry in given), default=0)
+    # Rounded, for bearings that differ in the last bit only.
+    bases = {(round(entry.order, 9), entry.harmonics) for entry in given if entry.rank == highest_rank}
+    found = {round(k * base, 9) for base, count in bases for k in range(1, count + 1)}
+    least = max(_LEAST_ORDER, _LEAST_PERIODS / turns) if turns > 0.0 else math.inf
+    found |= {round(abs(load.order), 9) for load in model.system.turning if abs(load.order) >= least}
+    return [(order, f"{order:.4g}") for order in sorted(found)]
+
+
+def _turns(course: RunUp) -> float:
+    """Turns of the system in a run."""
+    return abs(course.speed.at(course.duration)[1] - course.speed.at(0.0)[1]) / (2.0 * math.pi)

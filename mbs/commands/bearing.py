@@ -1,19 +1,559 @@
-"""`mbs bearing`: one bearing under loads and speeds, without a scene."""
+"""`mbs bearing`: one bearing under loads and speeds, without a scene; its options read with every problem at once."""
 
 from __future__ import annotations
 
 import argparse
+import dataclasses
+import math
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from ehdmaps.outputs import write_figure
+import numpy as np
+
+from ehdmaps.errors import EhdmapsError, InputError
+from ehdmaps.inputs import first_bytes, read_text
+from ehdmaps.outputs import FIGURE, Output, output_problems, write_figure
+from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
+from ehdmaps.physics.contact import OIL_TEMPERATURES
+from ehdmaps.physics.lubricant import LUBRICANTS, Lubricant
+from ehdmaps.physics.oil_supply import FLOODED, OilSupply
+from ehdmaps.physics.solids import STEEL, Material
+from ehdmaps.physics.surface import FINEST, ROUGHEST, SMOOTH, Surface
+from ehdmaps.units import RPM, TEMPERATURE, Display, closest, quantity, short
 from mbs.analyses.bearing_point import bearing_points
 from mbs.bearings import laws
+from mbs.bearings.bearing import MOST_COUPLED, Bearing
+from mbs.bearings.films import SIDES, FilmSource, FormulaFilms, MapFilms
 from mbs.bearings.laws import Law
-from mbs.commands.bearing_request import BearingRequest, read_request
-from mbs.output.bearing_table import bearing_dataset, bearing_text, write_csv
+from mbs.bearings.thermal import BearingState, Mounting, operating_clearance
+from mbs.commands.options import NO_MAP, read_clearance, read_supplies
+from mbs.output.bearing_table import (
+    WIDE_RANGE,
+    BearingDescription,
+    bearing_dataset,
+    bearing_text,
+    result_kind,
+    write_csv,
+)
 from mbs.output.files import write_dataset
-from mbs.scene.contact_laws import Damper, hertz_damper, table_path
+from mbs.scene.contact_laws import (
+    HERTZ_FORMS,
+    TABLE_FORM,
+    TABLE_LAW,
+    Damper,
+    dry_words,
+    hertz_damper,
+    table_path,
+    table_problems,
+)
+from mbs.scene.fields import FORCE, MICROMETRE
 from mbs.scene.law_file import read_law
+from mbs.scene.map_set import geometry_problems, reads_table, structure_words
+from mbs.scene.profiles import profile_from_text
+
+if TYPE_CHECKING:
+    from ehdmaps.maps.emap import EHDMap
+
+
+LAWS = ("hertz", "formula", TABLE_LAW, "map")
+OIL, CELSIUS_40, ROUGHNESS = "FVA3", 313.15, 0.3e-6
+"""Assumed where nothing is given: the oil, the temperature of the raceways [K], the combined rms roughness [m]."""
+
+MOST_POINTS, MOST_SLICES = 500, 1000
+MOST_SLICES_IN_ALL = 5_000_000
+"""Of all rollers at all points: half a gigabyte."""
+
+_LOADS, _SPEEDS = (1e-3, 1e7), (0.0, 1e5 * math.pi / 30.0)
+_ROUGHNESSES = (FINEST, ROUGHEST)
+
+
+@dataclass(frozen=True, eq=False)
+class BearingRequest:
+    """What is asked.
+
+    Attributes
+    ----------
+    bearing : Bearing
+        Geometry with its clearance, profile, slices.
+    law : str
+        Law of the contacts: hertz, hertz:TIME, hertz:DAMPING, table:FILE, formula or map.
+    emap : EHDMap or None
+        The map.
+    oil : Lubricant
+        The oil.
+    supply : OilSupply
+        Oil supply of the contacts.
+    surface : Surface
+        Surfaces of the contacts, smooth where the roughness is only assumed.
+    films : FilmSource
+        Pressures and films.
+    loads : tuple of float
+        Sizes of the load on the inner ring [N].
+    direction : (float, float)
+        Direction of the load, y and z; a unit vector.
+    speeds : tuple of float
+        Speeds of the inner ring [rad/s].
+    temperature, roughness : float
+        Mean temperature of both raceways, which the law takes [K]; [m].
+    description : BearingDescription
+        The same in words.
+    """
+
+    bearing: Bearing
+    law: str
+    emap: EHDMap | None
+    oil: Lubricant
+    supply: OilSupply
+    surface: Surface
+    films: FilmSource
+    loads: tuple[float, ...]
+    direction: tuple[float, float]
+    speeds: tuple[float, ...]
+    temperature: float
+    roughness: float
+    description: BearingDescription
+
+    @property
+    def load_vectors(self) -> list[tuple[float, float]]:
+        """Loads on the inner ring, y and z [N]."""
+        return [(load * self.direction[0], load * self.direction[1]) for load in self.loads]
+
+
+@dataclass(frozen=True)
+class _Given:
+    """The bearing argument: geometry, material, and oil, oil supply and surfaces where the file states them."""
+
+    geometry: BearingGeometry
+    material: Material
+    oil: Lubricant | None = None
+    supply: OilSupply | None = None
+    surface: Surface | None = None
+
+
+def read_request(arguments: argparse.Namespace) -> BearingRequest:
+    """Read the bearing, the map and all options.
+
+    Raises
+    ------
+    InputError
+        With every problem.
+    """
+    problems: list[str] = []
+    given = _bearing(arguments.bearing, problems)
+    emap = _map(arguments.map, arguments.structure, problems)
+    law = _law(arguments.law, emap is not None or arguments.map is not None, problems)
+    loads = read_values("--load", arguments.load, "N", _LOADS, FORCE, problems)
+    speeds = read_values("--speed", arguments.speed, "rad/s", _SPEEDS, RPM, problems)
+    if len(loads) * len(speeds) > MOST_POINTS:
+        problems.append(f"--load, --speed: got {len(loads) * len(speeds)} points; allowed: at most {MOST_POINTS}")
+    if _all_slices(given, arguments.slices) * len(loads) * len(speeds) > MOST_SLICES_IN_ALL:
+        problems.append(
+            f"--slices: got {short(arguments.slices)} for all rollers at {len(loads) * len(speeds)} points; allowed: "
+            f"{MOST_SLICES_IN_ALL} slices in all; take fewer slices or points"
+        )
+    around = _one("--temperature", arguments.temperature, "K", OIL_TEMPERATURES, TEMPERATURE, CELSIUS_40, problems)
+    inner, outer = (
+        _one(f"--{side}-ring", getattr(arguments, f"{side}_ring"), "K", OIL_TEMPERATURES, TEMPERATURE, around, problems)
+        for side in SIDES
+    )
+    temperature = 0.5 * (inner + outer)
+    if None not in (arguments.temperature, arguments.inner_ring, arguments.outer_ring):
+        problems.append(
+            f"--temperature: got {short(arguments.temperature)} with --inner-ring and --outer-ring; allowed: two of "
+            "the three; it is the temperature of a ring that has none of its own"
+        )
+    stated = _surface(given, emap)
+    assumed = ROUGHNESS if stated.smooth else stated.roughness
+    roughness = _one("--roughness", arguments.roughness, "m", _ROUGHNESSES, MICROMETRE, assumed, problems)
+    surface = stated if arguments.roughness is None else dataclasses.replace(stated, roughness=roughness)
+    direction = _direction(arguments.direction, problems)
+    clearance = None if arguments.clearance is None else read_clearance(arguments.clearance, problems)
+    bearing = _sliced(given, clearance, arguments, problems)
+    state = None
+    if bearing is not None and (arguments.inner_ring, arguments.outer_ring) != (None, None):
+        warm = operating_clearance(bearing.geometry, Mounting(), inner, outer, bearing.material)
+        state = BearingState("bearing", inner, outer, warm)
+        geometry = dataclasses.replace(bearing.geometry, diametral_clearance=warm.operating)
+        bearing = dataclasses.replace(bearing, geometry=geometry)
+    if bearing is not None and emap is not None:
+        problems += geometry_problems("the bearing", bearing.geometry, emap)
+    oil = _oil(arguments, given, emap, temperature, problems)
+    supply = _supply(arguments.supply or [], given, emap, problems)
+    outputs = (
+        Output("-o", arguments.output, result_kind(arguments.output)),
+        Output("--plot", arguments.plot, FIGURE),
+    )
+    read = (arguments.bearing, arguments.map, table_path(law))
+    problems += output_problems(outputs, [path for path in read if path])
+    if problems or bearing is None or given is None or oil is None:
+        raise InputError(tuple(dict.fromkeys(problems)))
+    if law == TABLE_LAW:
+        law, emap = "map", _table_map(bearing.geometry, oil, given.material, speeds, temperature)
+    contacts = bearing.geometry.contacts(given.material, "iso16281")
+    films = MapFilms(emap, supply) if emap is not None else FormulaFilms(contacts, oil, supply)
+    return BearingRequest(
+        bearing=bearing,
+        law=law,
+        emap=emap,
+        oil=oil,
+        supply=supply,
+        surface=surface,
+        films=films,
+        loads=loads,
+        direction=direction,
+        speeds=speeds,
+        temperature=temperature,
+        roughness=roughness,
+        description=BearingDescription(
+            bearing=bearing,
+            law=_law_words(law, emap, oil),
+            films=films.words + ("" if oil.verified else " (unverified data of the oil)"),
+            supply=supply,
+            surface=surface if law in ("map", "formula") else SMOOTH,
+            oil=oil,
+            direction=math.degrees(math.atan2(direction[1], direction[0])),
+            temperature=temperature,
+            roughness=roughness,
+            assumed=_assumed(arguments, given, emap, surface),
+            state=state,
+        ),
+    )
+
+
+def _all_slices(given: _Given | None, slices: str) -> int:
+    """Slices of all rollers of a bearing; 0 where either is wrong."""
+    return given.geometry.rollers * int(slices) if given is not None and slices.isdecimal() and len(slices) < 10 else 0
+
+
+def _surface(given: _Given | None, emap: EHDMap | None) -> Surface:
+    """What file or map state of the surfaces, the file first."""
+    if given is not None and given.surface is not None:
+        return given.surface
+    return SMOOTH if emap is None else emap.surface
+
+
+def _assumed(arguments: argparse.Namespace, given: _Given, emap: EHDMap | None, surface: Surface) -> tuple[str, ...]:
+    """What was not given, in words."""
+    found = []
+    if arguments.temperature is None and None in (arguments.inner_ring, arguments.outer_ring):
+        found.append(f"temperature {TEMPERATURE.text(CELSIUS_40)}")
+    if surface.smooth:
+        found.append(f"combined rms roughness {MICROMETRE.text(ROUGHNESS)} (for Lambda only)")
+    if arguments.clearance is None and given.geometry.diametral_clearance == 0.0:
+        found.append("no clearance")
+    if arguments.oil is None and given.oil is None and arguments.map is None:
+        found.append(f"oil {OIL}")
+    return tuple(found)
+
+
+def _table_map(
+    geometry: BearingGeometry, oil: Lubricant, material: Material, speeds: Sequence[float], temperature: float
+) -> EHDMap:
+    """Map in memory over the usual ranges, and over the speeds [rad/s] and the temperature [K] that are asked for."""
+    from ehdmaps.jobs.table_law import SPEEDS, TEMPERATURES, table_map  # with the solver
+
+    entrainment = [geometry.entrainment_speed(speed) for speed in speeds if speed > 0.0]
+    return table_map(
+        dataclasses.replace(geometry, diametral_clearance=0.0),
+        oil,
+        entrainment_speeds=(min([SPEEDS[0], *entrainment]), max([SPEEDS[1], *entrainment])),
+        temperatures=(min(TEMPERATURES[0], temperature), max(TEMPERATURES[1], temperature)),
+        material=material,
+    )
+
+
+def _law_words(law: str, emap: EHDMap | None, oil: Lubricant) -> str:
+    """The law, for people."""
+    if law == "map" and emap is not None and reads_table(emap):
+        return f"film table, {oil.title}{structure_words(emap)}"
+    if law == "map" and emap is not None:
+        return f"map of {oil.title}, solver {emap.dataset.attrs.get('solver', '')}{structure_words(emap)}"
+    words = f"film formula moes, {oil.title} (its damping is far too low for loaded contacts)"
+    return words if law == "formula" else dry_words(law)
+
+
+def _bearing(source: str, problems: list[str]) -> _Given | None:
+    """The bearing of a name, a shipped job or a file."""
+    if source in BEARINGS:
+        return _Given(BEARINGS[source], STEEL)
+    from ehdmaps.jobs.reader import shipped_jobs  # with the readers of all tables of a job
+
+    allowed = f"{', '.join(BEARINGS)}, or a TOML file with [bearing], such as a job"
+    if source not in shipped_jobs() and not ("\0" not in source and os.path.isfile(source)):
+        problems.append(f"BEARING: got {short(source)}{closest(source, tuple(BEARINGS))}; allowed: {allowed}")
+        return None
+    try:
+        return _from_file(source)
+    except InputError as error:
+        problems += error.problems
+        return None
+
+
+def _from_file(source: str) -> _Given:
+    """The bearing of a job, or of a file that holds no more than the bearing, material, oil, supply and surfaces."""
+    from ehdmaps.jobs.reader import read_job, shipped_jobs
+
+    if source not in shipped_jobs():
+        alone = _alone(source)
+        if alone is not None:
+            return alone
+    job = read_job(source)
+    if job.bearing is None:
+        raise InputError(f"{source}: is the job of a bare [contact]; allowed: one with [bearing]")
+    return _Given(job.bearing, job.contacts[0].material, job.lubricant, job.supply, job.surface)
+
+
+def _alone(source: str) -> _Given | None:
+    """The bearing of a file without [grid] and [solver]; None for a job or a map, which have a reader of their own."""
+    from ehdmaps.jobs import toml_text
+    from ehdmaps.jobs.problem import read_contacts, read_lubricant
+    from ehdmaps.jobs.reader import LONGEST_FILE
+    from ehdmaps.jobs.supply import read_supply
+    from ehdmaps.jobs.surface import read_surface
+    from ehdmaps.jobs.table import Table
+
+    allowed = "a TOML file with [bearing]"
+    if first_bytes(source, 4, allowed).startswith((b"CDF", b"\x89HDF")):
+        return None
+    values = toml_text.parse(read_text(source, LONGEST_FILE, allowed), source)
+    if "grid" in values or "solver" in values:
+        return None
+    problems: list[str] = []
+    top = Table(values, "bearing file", problems)
+    top.get("schema")
+    geometry, contacts = read_contacts(top, "iso16281")
+    section = top.table("lubricant", "[lubricant]")
+    oil = read_lubricant(section) if section else None
+    supply = top.optional("supply", "[supply]", read_supply)
+    surface = top.optional("surface", "[surface]", read_surface)
+    top.close(others=("schema", "bearing", "material", "lubricant", "supply", "surface"))
+    if geometry is None and not problems:
+        problems.append("bearing file: has [contact]; allowed: [bearing] with a name or dimensions")
+    if problems or geometry is None:
+        raise InputError([f"{source}: {problem}" for problem in problems])
+    return _Given(geometry, contacts[0].material, oil, supply, surface)
+
+
+def _sliced(
+    given: _Given | None, clearance: float | None, arguments: argparse.Namespace, problems: list[str]
+) -> Bearing | None:
+    """The bearing with clearance, profile and slices; without the last three where they are wrong."""
+    before = len(problems)
+    profile = profile_from_text(arguments.profile, given.geometry if given else None, problems)
+    slices = _whole("--slices", arguments.slices, 1, MOST_COUPLED if arguments.coupled else MOST_SLICES, problems)
+    if given is None:
+        return None
+    geometry = given.geometry
+    if clearance is not None:
+        try:
+            geometry = dataclasses.replace(geometry, diametral_clearance=clearance)
+        except InputError as error:
+            problems += [f"--clearance: {problem}" for problem in error.problems]
+    if len(problems) > before:
+        return Bearing(given.geometry, "iso", 41, given.material)
+    return Bearing(geometry, profile, slices, given.material, arguments.coupled)
+
+
+def _map(path: str | None, structure: str | None, problems: list[str]) -> EHDMap | None:
+    """The map, by the structural law that is wanted."""
+    if path is None:
+        problems += [] if structure is None else [NO_MAP.format(structure)]
+        return None
+    from ehdmaps.jobs.opening import open_given
+
+    try:
+        return open_given(path, structure)
+    except InputError as error:
+        problems += error.problems
+        return None
+    except EhdmapsError as error:
+        problems += [f"--map: {line}" for line in str(error).splitlines()]
+        return None
+
+
+def _law(name: str | None, with_map: bool, problems: list[str]) -> str:
+    """The law that is meant."""
+    if name is None:
+        return "map" if with_map else TABLE_LAW
+    try:
+        damper = hertz_damper(name)
+    except InputError as error:
+        problems += error.problems
+        return name
+    if table_path(name) is not None:
+        problems += table_problems(name)
+    elif name not in LAWS and damper is None:
+        allowed = f"{', '.join(LAWS)}; {HERTZ_FORMS}; {TABLE_FORM}"
+        problems.append(f"--law: got {short(name)}{closest(name, LAWS)}; allowed: {allowed}")
+    elif name == "map" and not with_map:
+        problems.append("--law: got 'map' without a map; allowed: with --map MAP.nc, made by `ehdmaps generate`")
+    elif name in ("formula", TABLE_LAW) and with_map:
+        problems.append(f"--law: got {name!r} with a map; allowed: hertz or map with --map; leave one of the two out")
+    return name
+
+
+def _oil(
+    arguments: argparse.Namespace,
+    given: _Given | None,
+    emap: EHDMap | None,
+    temperature: float,
+    problems: list[str],
+) -> Lubricant | None:
+    """The oil: that of the map, of --oil, of the file, or FVA 3; the temperature must suit it."""
+    name = arguments.oil
+    oil = given.oil if given is not None and given.oil is not None else Lubricant.named(OIL)
+    if name is not None and arguments.map is not None:
+        problems.append(f"--oil: got {short(name)} with a map, which was made for an oil; leave one of the two out")
+    elif name is not None and name not in LUBRICANTS:
+        problems.append(f"--oil: got {short(name)}{closest(name, LUBRICANTS)}; allowed: {', '.join(LUBRICANTS)}")
+        return None
+    elif name is not None:
+        oil = Lubricant.named(name)
+    if emap is not None:
+        oil = emap.lubricant
+    try:
+        oil.at(temperature)
+    except InputError as error:
+        problems += [f"--temperature: {problem}" for problem in error.problems]
+        return None
+    return oil
+
+
+def _supply(texts: Sequence[str], given: _Given | None, emap: EHDMap | None, problems: list[str]) -> OilSupply:
+    """The oil supply: that of --supply, else of the file, else of the map, else flooded."""
+    if len(texts) > 1:
+        problems.append(f"--supply: got {len(texts)} of them; allowed: one; run the command again for another")
+    found = read_supplies(texts, problems)
+    if found:
+        return found[0]
+    stated = None if given is None else given.supply
+    return stated or (FLOODED if emap is None else emap.supply)
+
+
+def _direction(given: Sequence[str] | None, problems: list[str]) -> tuple[float, float]:
+    """Unit vector of the load: an angle from y towards z, or two components."""
+    allowed = 'an angle from y towards z, such as "30 deg", or two numbers, the parts along y and z, not both zero'
+    texts = list(given or ["0 deg"])
+    try:
+        if len(texts) == 1:
+            angle = math.radians(float(texts[0])) if _is_number(texts[0]) else quantity(texts[0], "rad")
+            parts = (math.cos(angle), math.sin(angle))
+        else:
+            y, z = (float(text) for text in texts)
+            size = math.hypot(y, z)
+            parts = (y / size, z / size)
+    except (ValueError, ZeroDivisionError, InputError):
+        parts = (math.nan, math.nan)
+    if not np.all(np.isfinite(parts)):
+        problems.append(f"--direction: got {' '.join(texts)!r:.80}; allowed: {allowed}")
+        return 1.0, 0.0
+    # No part of a load along an axis by round-off.
+    clean = [0.0 if abs(part) < 1e-15 else part for part in parts]
+    return clean[0], clean[1]
+
+
+def _is_number(text: str) -> bool:
+    """Whether a text is a bare number."""
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
+def read_values(
+    option: str,
+    given: Sequence[Sequence[str]],
+    unit: str,
+    limits: tuple[float, float],
+    display: Display,
+    problems: list[str],
+) -> tuple[float, ...]:
+    """Rising values of an option: single ones, and ranges FROM TO POINTS, evenly spaced, wide ones in the logarithm.
+
+    Parameters
+    ----------
+    option : str
+        Name of the option; begins the messages.
+    given : sequence of sequences of str
+        What was given for it, once for each time that it was given.
+    unit : str
+        Unit of the values.
+    limits : (float, float)
+        Smallest and largest allowed value [unit].
+    display : Display
+        How messages show values.
+    problems : list of str
+        Takes what is wrong.
+    """
+    found: list[float] = []
+    for texts in given:
+        if len(texts) not in (1, 3):
+            problems.append(
+                f"{option}: got {len(texts)} values ({' '.join(texts)!r:.60}); allowed: one, or FROM TO POINTS; give "
+                "the option more than once for a list"
+            )
+            continue
+        before = len(problems)
+        ends = [_quantity(option, text, unit, limits, display, problems) for text in texts[:2]]
+        if len(texts) == 1:
+            found += ends
+            continue
+        points = _whole(f"{option}, POINTS", texts[2], 2, MOST_POINTS, problems)
+        if len(problems) == before and not ends[0] < ends[1]:
+            problems.append(f"{option}: got {texts[0]!r} to {texts[1]!r}; allowed: rising")
+        elif len(problems) == before:
+            wide = 0.0 < WIDE_RANGE * ends[0] < ends[1]
+            space = np.geomspace if wide else np.linspace
+            # Numbers as they were typed, and not one bit beside.
+            found += [float(f"{value:.12g}") for value in space(ends[0], ends[1], points)]
+    return tuple(sorted(set(found)))
+
+
+def _one(
+    option: str,
+    text: str | None,
+    unit: str,
+    limits: tuple[float, float],
+    display: Display,
+    default: float,
+    problems: list[str],
+) -> float:
+    """One value, or its default where none was given, or where a problem was noted."""
+    if text is None:
+        return default
+    value = _quantity(option, text, unit, limits, display, problems)
+    return default if math.isnan(value) else value
+
+
+def _quantity(
+    option: str, text: str, unit: str, limits: tuple[float, float], display: Display, problems: list[str]
+) -> float:
+    """One quantity within its limits; NaN where a problem was noted."""
+    try:
+        value = quantity(text, unit)
+    except InputError as error:
+        problems.append(f"{option}: {error.problems[0]}")
+        return math.nan
+    if not limits[0] <= value <= limits[1]:
+        problems.append(
+            f"{option}: got {short(text)}; allowed: {display.text(limits[0])} to {display.text(limits[1])}; check its "
+            "unit"
+        )
+        return math.nan
+    return value
+
+
+def _whole(option: str, text: str, low: int, high: int, problems: list[str]) -> int:
+    """A whole number; the lowest one where a problem was noted."""
+    if text.isascii() and text.isdigit() and len(text) < 10 and low <= int(text) <= high:
+        return int(text)
+    problems.append(f"{option}: got {short(text)}; allowed: a whole number from {low} to {high}")
+    return low
+
 
 RESOLUTION = 150
 FORMULA_LOADS = (100.0, 1e8)
@@ -24,7 +564,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Compute all points, describe and write them; status 1 where one is outside of what the laws hold for."""
     request = read_request(arguments)
     points = bearing_points(
-        request.bearing, _law(request), request.films, request.load_vectors, request.speeds, request.temperature
+        request.bearing, _law_of(request), request.films, request.load_vectors, request.speeds, request.temperature
     )
     lines = bearing_text(request.description, points)
     if arguments.output:
@@ -43,7 +583,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     return "\n".join(lines), 1 if problems else 0
 
 
-def _law(request: BearingRequest) -> Law:
+def _law_of(request: BearingRequest) -> Law:
     """The law of a roller between both raceways, over what is asked of it."""
     if request.law == "map" and request.emap is not None:
         return request.emap.law("series", outside="clamp", supply=request.supply, surface=request.surface)

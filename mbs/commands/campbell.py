@@ -17,15 +17,15 @@ from ehdmaps.workers import available_cores
 from mbs.analyses.campbell import MODE_SPEEDS, MOST_BANDS, CampbellResult, LawRun, campbell, campbell_problems
 from mbs.analyses.case import Case
 from mbs.analyses.film_errors import film_course, notable_from
+from mbs.analyses.ramp import resolution, step_lines
 from mbs.analyses.reach import axes_outside, fade_lines, fade_of, outside_lines, sources_of
 from mbs.analyses.recorded import RecordedRun, simulated_campbell
-from mbs.analyses.resolution import resolution, step_lines
 from mbs.analyses.soundness import unsound_run
-from mbs.analyses.tolerance import Tolerated, read_tolerance, within
 from mbs.commands.auto import analysed
 from mbs.commands.campbell_recorded import measured_lines, measured_run, read_look, recorded_runs, signal_problems
 from mbs.commands.cases import load_cases
 from mbs.commands.common import Looked, Told, marked, unsound_lines, write
+from mbs.instruments.tolerance import Tolerated, read_tolerance, within
 from mbs.linearised.sweep_result import ComplexSweep, Sweep
 from mbs.model.elements import Sensor
 from mbs.output.campbell_table import (

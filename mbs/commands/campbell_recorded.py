@@ -13,7 +13,6 @@ from ehdmaps.errors import InputError
 from ehdmaps.outputs import FIGURE, Output, output_problems
 from ehdmaps.units import RPM, short
 from mbs.analyses.campbell import CampbellResult
-from mbs.analyses.followed import followed_orders
 from mbs.analyses.ramp import rehearsed, run_course
 from mbs.analyses.recorded import (
     RecordedResult,
@@ -23,7 +22,7 @@ from mbs.analyses.recorded import (
     recorded_campbell,
     recorded_run_of,
 )
-from mbs.analyses.sensors import ALL_SENSORS, chosen_sensors
+from mbs.analyses.sensors import ALL_SENSORS, chosen_sensors, followed_orders
 from mbs.commands.common import write
 from mbs.commands.options import read_option
 from mbs.output.campbell_table import highest_line, peak_lines, resolution_lines, sensor_line

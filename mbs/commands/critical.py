@@ -12,11 +12,10 @@ import numpy as np
 from ehdmaps.errors import InputError
 from ehdmaps.units import MOTIONS, RPM
 from mbs.analyses.case import Case
-from mbs.analyses.critical import CriticalResult, critical_of, dataset_of_laws, orders
 from mbs.analyses.operating import operating
 from mbs.analyses.reach import axes_outside, fade_lines, outside_lines, sources_of
 from mbs.analyses.soundness import unsound_over_speed
-from mbs.analyses.sweep import SweepSettings
+from mbs.analyses.sweep import CriticalResult, SweepSettings, critical_of, dataset_of_laws, orders
 from mbs.commands.auto import analysed
 from mbs.commands.cases import load_cases
 from mbs.commands.common import Looked, marked, unsound_lines, write

@@ -10,7 +10,7 @@ from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.units import Display, quantity
 
 if TYPE_CHECKING:
-    from mbs.analyses.varied import Value, VariedKey
+    from mbs.instruments.varied import Value, VariedKey
 
 NO_MAP = "--structure: got {!r:.60} without a map; allowed: with --map MAP.nc, made by `ehdmaps generate`"
 """What is said where a structural law is given for no map."""
@@ -52,7 +52,7 @@ def read_clearance(text: str, problems: list[str]) -> float | None:
 
 def varied_key(key: str) -> VariedKey:
     """The row of a key that is varied, with all that changes a scene."""
-    from mbs.analyses.varied import VARIED
+    from mbs.instruments.varied import VARIED
 
     return VARIED[key]
 
@@ -63,7 +63,7 @@ def read_varied(key: str, text: str, problems: list[str]) -> Value | None:
     Parameters
     ----------
     key : str
-        A key of `mbs.analyses.varied.VARIED`.
+        A key of `mbs.instruments.varied.VARIED`.
     text : str
         What was given.
     problems : list of str

@@ -17,12 +17,10 @@ from ehdmaps.units import RPM
 from ehdmaps.workers import available_cores
 from mbs.analyses.case import Case
 from mbs.analyses.film_errors import film_course
-from mbs.analyses.ramp import silent_run
+from mbs.analyses.ramp import NOTABLE, StepCheck, resolution, silent_run, step_lines
 from mbs.analyses.reach import POINTS, Fade, axes_outside, fade_lines, fade_of, outside_lines, source_of, sources_of
 from mbs.analyses.recorded import amplitudes_at, simulated
-from mbs.analyses.resolution import resolution, step_lines
 from mbs.analyses.runup import RunUpResult, RunUps, runup_problems, runups
-from mbs.analyses.step_check import NOTABLE, StepCheck
 from mbs.commands.auto import analysed
 from mbs.commands.campbell_recorded import read_source, signal_problems
 from mbs.commands.cases import load_cases

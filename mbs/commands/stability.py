@@ -9,9 +9,9 @@ from ehdmaps.outputs import Output, output_problems
 from ehdmaps.program import tell
 from ehdmaps.stability.findings import Check
 from ehdmaps.stability.report import CHECKS, told, unknown_part
-from mbs.stability.element import element_checks
-from mbs.stability.integrator import integrator_checks
-from mbs.stability.readers import reader_checks
+from mbs.instruments.element import element_checks
+from mbs.instruments.integrator import integrator_checks
+from mbs.instruments.readers import reader_checks
 
 PARTS = ("element", "integrator", "readers")
 

@@ -25,7 +25,7 @@ from mbs.analyses.bearing_point import RING, ring_at_rest
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.contact_report import axes_left
-from mbs.commands.bearing_request import BearingRequest, read_request, read_values
+from mbs.commands.bearing import BearingRequest, read_request, read_values
 from mbs.linearised.dynamic import element_dynamic_stiffness
 from mbs.model.elements import Operation
 from mbs.model.relaxation import DEFAULT_FILMS, Films

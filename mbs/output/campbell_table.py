@@ -261,7 +261,7 @@ _QUANTITIES = (
 
 
 class VariantRow(Protocol):
-    """What is written of a change: see `mbs.analyses.variants.Variant`."""
+    """What is written of a change: see `mbs.instruments.variants.Variant`."""
 
     @property
     def key(self) -> str:

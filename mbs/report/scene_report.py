@@ -12,7 +12,7 @@ from ehdmaps.jobs.map_report import job, provenance, written_by
 from ehdmaps.program import plain
 from ehdmaps.report.page import Markup, Section, document, joined, pairs, sentences, tag
 from ehdmaps.units import RPM
-from mbs.analyses.followed import excited_orders
+from mbs.analyses.sensors import excited_orders
 from mbs.report.bearings import bearings
 from mbs.report.campbell import campbell, lines_of, saved_campbell
 from mbs.report.examination import Examination

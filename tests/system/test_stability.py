@@ -10,7 +10,7 @@ from ehdmaps.jobs import stability_readers as of_ehdmaps
 from ehdmaps.jobs.cli import main
 from ehdmaps.stability.fuzzing import fuzz
 from ehdmaps.stability.report import checks_text
-from mbs.stability import readers as of_mbs
+from mbs.instruments import readers as of_mbs
 
 READERS = {**of_ehdmaps.READERS, **of_mbs.READERS}
 

@@ -169,7 +169,7 @@ ALLOWED = {
 }
 """What each layer may import besides itself and other distributions. `ehdmaps` itself is the shop window of all."""
 
-SCENES = ("__main__", "analyses", "cli", "commands", "exports", "output", "report", "scene", "stability")
+SCENES = ("__main__", "analyses", "cli", "commands", "exports", "instruments", "output", "report", "scene")
 """Modules of mbs that plan a scene or are its command line: they may call ehdmaps.jobs; no other module of mbs may
 call them."""
 
@@ -266,7 +266,7 @@ def test_analyses_know_no_command_line(path: Path) -> None:
 
 BELOW = (
     (("output",), ("mbs.analyses", "mbs.report", "mbs.commands", "mbs.cli")),
-    (("report", "stability"), ("mbs.commands", "mbs.cli")),
+    (("report", "instruments"), ("mbs.commands", "mbs.cli")),
 )
 """Rooms of mbs, and what of mbs stands above them: no arrow points up there."""
 

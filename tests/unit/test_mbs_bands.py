@@ -14,8 +14,7 @@ from ehdmaps.maps.law_change import LawChange
 from ehdmaps.maps.law_errors import LawBounds
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.solids import STEEL
-from mbs.analyses.campbell import campbell
-from mbs.analyses.changed_laws import law_changes, with_changed_laws
+from mbs.analyses.campbell import campbell, law_changes, with_changed_laws
 from mbs.analyses.lsa import LsaSettings, lsa
 from mbs.analyses.modes import modes
 from mbs.analyses.ramp import silent_run

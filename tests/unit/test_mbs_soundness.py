@@ -11,8 +11,8 @@ import pytest
 
 from mbs import assemble, lsa, modes, parse_scene, read_scene, runup, statics, sweep
 from mbs.analyses.lsa import LsaSettings
+from mbs.analyses.ramp import NOTABLE, step_check
 from mbs.analyses.soundness import Cause, Unsound, unsound_run, with_unsound
-from mbs.analyses.step_check import NOTABLE, step_check
 from mbs.analyses.sweep import SweepSettings
 from mbs.commands.common import unsound_lines
 from mbs.commands.runup import _step_check_lines

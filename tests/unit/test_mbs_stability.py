@@ -12,9 +12,9 @@ from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.laws import hertz
 from mbs.cli import main
+from mbs.instruments.element import element_checks
+from mbs.instruments.integrator import SCENARIOS, integrator_checks
 from mbs.model.elements import Forces
-from mbs.stability.element import element_checks
-from mbs.stability.integrator import SCENARIOS, integrator_checks
 from tests.cases.laws import CONTACTS, OIL, SMALL_FIELD
 
 

@@ -15,10 +15,10 @@ from ehdmaps.maps.emap import EHDMap
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from mbs import assemble, read_scene
 from mbs.analyses.case import LawChoice, Subject
-from mbs.analyses.varied import VARIED
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.films import MapFilms
 from mbs.commands.cases import read_compared
+from mbs.instruments.varied import VARIED
 from mbs.output.state_text import FLOODED_NOTE, flooded_note
 from mbs.scene.assembly import law_attributes
 from mbs.scene.contact_laws import ContactLaws, supply_words

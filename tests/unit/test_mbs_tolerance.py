@@ -13,10 +13,10 @@ from ehdmaps.errors import InputError
 from mbs import parse_scene, read_scene
 from mbs.analyses.campbell import campbell
 from mbs.analyses.case import LawChoice, Subject
-from mbs.analyses.numerics import Numerics
-from mbs.analyses.ramp_parts import WINDOWS, ramp_of
 from mbs.analyses.sensors import looked_at
-from mbs.analyses.tolerance import drift, read_tolerance, within
+from mbs.instruments.ramp_parts import WINDOWS, ramp_of
+from mbs.instruments.tolerance import drift, read_tolerance, within
+from mbs.instruments.varied import Numerics
 from mbs.model.profiles import Advanced, Course, Harmonic, SpeedProfile
 from mbs.scene import changes
 
@@ -153,12 +153,12 @@ class TestChoosing:
 
     def test_runs_that_drift_apart_have_no_level(self, swinging, monkeypatch):
         # An eighth of the time, in which two runs drift apart by e^8: rounding grows by e^64 in the whole.
-        monkeypatch.setattr("mbs.analyses.tolerance.LEAST_SCOUT", 0.0)
-        monkeypatch.setattr("mbs.analyses.tolerance.drift", lambda *_: 8.0)
+        monkeypatch.setattr("mbs.instruments.tolerance.LEAST_SCOUT", 0.0)
+        monkeypatch.setattr("mbs.instruments.tolerance.drift", lambda *_: 8.0)
         found = within(Subject(swinging, DRY), 1.0)
         assert not found.met
         assert "does not forget its start" in "\n".join(found.lines)
-        monkeypatch.setattr("mbs.analyses.tolerance.drift", lambda *_: 1.0)
+        monkeypatch.setattr("mbs.instruments.tolerance.drift", lambda *_: 1.0)
         assert within(Subject(swinging, DRY), 10.0).met
 
     def test_a_part_of_a_drift_counts(self):

@@ -12,11 +12,11 @@ from ehdmaps.maps.emap import EHDMap
 from ehdmaps.trade.data import trade_json
 from ehdmaps.trade.text import trade_text
 from mbs import assemble, parse_scene, read_scene
-from mbs.analyses import tradeoff as analysis
 from mbs.analyses.case import LawChoice
-from mbs.analyses.linear_look import LinearReference, linear_look
-from mbs.analyses.tradeoff import TradeoffSettings, tradeoff
 from mbs.cli import main
+from mbs.instruments import tradeoff as analysis
+from mbs.instruments.linear_look import LinearReference, linear_look
+from mbs.instruments.tradeoff import TradeoffSettings, tradeoff
 from mbs.scene import changes
 from mbs.scene.map_set import MapSet
 from tests.cases.laws import dataset_of

@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 
 from ehdmaps.errors import InputError
 from mbs import assemble, parse_scene, read_scene
-from mbs.analyses.followed import excited_orders
+from mbs.analyses.sensors import excited_orders
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import SpeedProfile
 from mbs.model.system import load_by_gravity

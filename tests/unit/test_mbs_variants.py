@@ -15,11 +15,11 @@ import xarray as xr
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.maps.emap import EHDMap
 from mbs import assemble, campbell, read_scene
-from mbs.analyses import variants as analysis
 from mbs.analyses.case import Case, LawChoice, Subject
-from mbs.analyses.variants import Variation, variants
-from mbs.analyses.varied import VARIED
 from mbs.cli import VARIED_KEYS
+from mbs.instruments import variants as analysis
+from mbs.instruments.variants import Variation, variants
+from mbs.instruments.varied import VARIED
 from mbs.output.campbell_plot import variants_figure
 from mbs.scene import changes
 from mbs.scene.bodies import build_body

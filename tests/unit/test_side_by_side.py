@@ -12,7 +12,7 @@ import time
 import pytest
 
 from ehdmaps.errors import AnalysisError, InputError
-from mbs.analyses.side_by_side import Failed, side_by_side
+from mbs.analyses.case import Failed, side_by_side
 from tests.cases.interruptible import start
 
 LAMBDA = {"a function that cannot be pickled": lambda value: value * value}
@@ -93,7 +93,7 @@ def test_leaving_early_ends_all():
 
 INTERRUPTED = """
 import os, time
-from mbs.analyses.side_by_side import side_by_side
+from mbs.analyses.case import side_by_side
 
 def work(index, told):
     os.write(1, f"{os.getpid()}\\n".encode())

@@ -28,13 +28,12 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.units import RPM
-from mbs.analyses.case import Subject
-from mbs.analyses.numerics import Numerics
+from mbs.analyses.case import Progress, Subject, silent
 from mbs.analyses.operating import held
-from mbs.analyses.progress import Progress, silent
 from mbs.analyses.ramp import recorded_run, run_course
-from mbs.analyses.ramp_parts import WINDOWS, PartRun, Ramp, RampPart, compressed, ramp_of, run_part
 from mbs.analyses.sensors import looked_at
+from mbs.instruments.ramp_parts import WINDOWS, PartRun, Ramp, RampPart, compressed, ramp_of, run_part
+from mbs.instruments.varied import Numerics
 from mbs.scene.fields import MILLISECOND
 from mbs.settings import CampbellSettings
 from mbs.spectral.campbell import campbell

@@ -24,15 +24,13 @@ from ehdmaps.jobs.supply import supply_from_text
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.trade.record import Choice, ErrorSummary, Judged, Trade
 from ehdmaps.units import RPM
-from mbs.analyses.case import LawChoice, Subject
-from mbs.analyses.linear_look import LinearLook, LinearReference, linear_look
-from mbs.analyses.numerics import Numerics
+from mbs.analyses.case import LawChoice, Progress, Subject, silent
 from mbs.analyses.operating import held
-from mbs.analyses.progress import Progress, silent
 from mbs.analyses.ramp import recorded_run, run_course
-from mbs.analyses.ramp_parts import PartRun, Ramp, RampPart, ramp_of, run_part
 from mbs.analyses.sensors import looked_at
-from mbs.analyses.varied import VARIED
+from mbs.instruments.linear_look import LinearLook, LinearReference, linear_look
+from mbs.instruments.ramp_parts import PartRun, Ramp, RampPart, ramp_of, run_part
+from mbs.instruments.varied import VARIED, Numerics
 from mbs.linearised.averaged import pitch
 from mbs.scene import changes
 from mbs.scene.contact_laws import law_label

@@ -16,13 +16,11 @@ import xarray as xr
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
-from mbs.analyses.case import LawChoice, Subject
-from mbs.analyses.followed import followed_orders
+from mbs.analyses.case import Failed, LawChoice, Progress, Subject, side_by_side, silent
 from mbs.analyses.operating import held
-from mbs.analyses.progress import Progress, silent
 from mbs.analyses.ramp import recorded_run, run_course, silent_run
-from mbs.analyses.side_by_side import Failed, side_by_side
-from mbs.analyses.varied import VARIED, Value
+from mbs.analyses.sensors import followed_orders
+from mbs.instruments.varied import VARIED, Value
 from mbs.model.elements import Sensor
 from mbs.output.campbell_table import variants_dataset
 from mbs.output.files import described
@@ -47,7 +45,7 @@ class Variation:
     Attributes
     ----------
     key : str
-        A key of `mbs.analyses.varied.VARIED`.
+        A key of `mbs.instruments.varied.VARIED`.
     value : float, int or str
         Value of the key, in SI.
     """

@@ -16,9 +16,9 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
 from mbs.analyses.case import Subject
-from mbs.analyses.followed import followed_orders
 from mbs.analyses.operating import held
 from mbs.analyses.ramp import recorded_run, run_course, silent_run
+from mbs.analyses.sensors import followed_orders
 from mbs.model.elements import Sensor
 from mbs.scene import changes
 from mbs.scene.assembly import Model

@@ -10,7 +10,7 @@ import time
 from dataclasses import dataclass
 
 import numpy as np
-import scipy  # its parts at first use: scipy.signal takes half a second
+import scipy
 from scipy.optimize import linear_sum_assignment
 
 from ehdmaps.arrays import FloatArray, IntArray
