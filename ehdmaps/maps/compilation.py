@@ -374,7 +374,7 @@ def _continued_log(line: FloatArray, logs: FloatArray, nodes: FloatArray) -> Flo
     """ln(c/w) at the nodes of s; its tangents outside the samples."""
     slope = spline_slopes(line, logs)
     below, above = np.minimum(nodes - line[0], 0.0), np.maximum(nodes - line[-1], 0.0)
-    return _between(line, logs, slope, nodes) + below * slope[0] + above * slope[-1]
+    return np.asarray(_between(line, logs, slope, nodes) + below * slope[0] + above * slope[-1])
 
 
 def _between(line: FloatArray, values: FloatArray, slope: FloatArray, nodes: FloatArray) -> FloatArray:
