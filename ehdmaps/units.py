@@ -30,6 +30,22 @@ _PLAIN_POWER = re.compile(r"(?<=[A-Za-zµμ])([1-9])")
 
 _UNIT = re.compile(rf"(?:1 ?/ ?)?\(?{_ATOM}(?:(?: ?[*/·] ?| )\(?{_ATOM}\)?)*")
 
+_COMMON: dict[str, dict[str, tuple[float, float]]] = {
+    "N": {"kN": (1e3, 0.0)},
+    "N/m": {"N/mm": (1e3, 0.0)},
+    "m": {"mm": (1e-3, 0.0), "um": (1e-6, 0.0)},
+    "K": {"degC": (1.0, 273.15)},
+    "Pa": {"MPa": (1e6, 0.0), "GPa": (1e9, 0.0)},
+    "1/Pa": {"1/GPa": (1e-9, 0.0)},
+    "Pa s": {"mPa s": (1e-3, 0.0)},
+    "m^2/s": {"mm^2/s": (1e-6, 0.0)},
+    "s": {"ms": (1e-3, 0.0), "us": (1e-6, 0.0)},
+    "Hz": {"kHz": (1e3, 0.0)},
+    "rad": {"deg": (0.0174532925199433, 0.0)},
+    "rad/s": {"rpm": (0.10471975511966, 0.0)},
+}
+"""Factor and offset of common units, as pint has them, which takes a third of a second to load."""
+
 _EXAMPLES = {
     "N/m": "62 N/mm",
     "N": "62 N",
@@ -88,7 +104,8 @@ def quantity(text: object, unit: str) -> float:
         raise InputError(
             f"got {short(text)}, where {short(unit_text)} does not read as a unit; allowed: {_allowed(unit)}"
         )
-    factor, offset = _conversion(unit_text, unit)
+    common = (1.0, 0.0) if unit_text == unit else _COMMON.get(unit, {}).get(unit_text)
+    factor, offset = common or _conversion(unit_text, unit)
     value = float(number.group()) * factor + offset
     if not math.isfinite(value):
         raise InputError(f"got {short(text)}, which is too large for a number; allowed: {_allowed(unit)}")

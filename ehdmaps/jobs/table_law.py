@@ -73,8 +73,8 @@ def table_map(
     job = Job.build(
         lubricant=lubricant,
         loads=np.geomspace(*loads, _POINTS[0]),
-        entrainment_speeds=np.geomspace(*entrainment_speeds, _POINTS[1]),
-        temperatures=np.linspace(*temperatures, _POINTS[2]),
+        entrainment_speeds=np.geomspace(*entrainment_speeds, _points(entrainment_speeds, _POINTS[1])),
+        temperatures=np.linspace(*temperatures, _points(temperatures, _POINTS[2])),
         bearing=bearing,
         contact=of if isinstance(of, LineContact) else None,
         material=material,
@@ -86,6 +86,11 @@ def table_map(
     # laws let films fade where they are too thick for the points of a map
     made = generate_in_memory(job, workers=1, solver=of_groups(solver or solvers.of_map(job)))
     return EHDMap(made.dataset, made.backbone)
+
+
+def _points(ends: tuple[float, float], most: int) -> int:
+    """Points of an axis: one where both ends are the same."""
+    return most if ends[1] > ends[0] else 1
 
 
 def job_map(job: Job, source: str) -> EHDMap:

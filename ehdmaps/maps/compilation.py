@@ -20,7 +20,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import MapError
@@ -30,7 +29,7 @@ from ehdmaps.maps.low_loads import valley_loads
 from ehdmaps.maps.oil_layer import oil_layer
 from ehdmaps.maps.rolling_film import RollingFilm
 from ehdmaps.maps.rough_layer import RoughLayer
-from ehdmaps.maps.splines import hermite, spline_coefficients
+from ehdmaps.maps.splines import hermite, spline_coefficients, spline_slopes
 from ehdmaps.maps.tables import COLDEST, HALF_SPACE, POWER_LAW, ApproachTable
 from ehdmaps.physics.approach import highest_fe_load
 from ehdmaps.physics.contact import LineContact
@@ -364,11 +363,7 @@ def _rising(coefficients: FloatArray) -> FloatArray:
 
 def _continued_root(line: FloatArray, root: FloatArray, slope: FloatArray, nodes: FloatArray) -> FloatArray:
     """g at the nodes of s; below the samples its tangent, above them ln g is linear."""
-    inside = np.clip(nodes, line[0], line[-1])
-    piece = np.clip(np.searchsorted(line, inside) - 1, 0, line.size - 2)
-    step = line[piece + 1] - line[piece]
-    ends = ((root[piece], slope[piece]), (root[piece + 1], slope[piece + 1]))
-    values, _ = hermite(*ends, (inside - line[piece]) / step, step)
+    values = _between(line, root, slope, nodes)
     below, above = nodes - line[0], nodes - line[-1]
     values = np.where(below < 0.0, root[0] + slope[0] * below, values)
     growth = slope[-1] / root[-1]
@@ -377,7 +372,15 @@ def _continued_root(line: FloatArray, root: FloatArray, slope: FloatArray, nodes
 
 def _continued_log(line: FloatArray, logs: FloatArray, nodes: FloatArray) -> FloatArray:
     """ln(c/w) at the nodes of s; its tangents outside the samples."""
-    spline = CubicSpline(line, logs)
+    slope = spline_slopes(line, logs)
+    below, above = np.minimum(nodes - line[0], 0.0), np.maximum(nodes - line[-1], 0.0)
+    return np.asarray(_between(line, logs, slope, nodes) + below * slope[0] + above * slope[-1])
+
+
+def _between(line: FloatArray, values: FloatArray, slope: FloatArray, nodes: FloatArray) -> FloatArray:
+    """Cubics through samples with slopes at the nodes of s; the values of the ends beyond them."""
     inside = np.clip(nodes, line[0], line[-1])
-    result: FloatArray = spline(inside) + (nodes - inside) * spline(inside, nu=1)
-    return result
+    piece = np.clip(np.searchsorted(line, inside) - 1, 0, line.size - 2)
+    step = line[piece + 1] - line[piece]
+    ends = ((values[piece], slope[piece]), (values[piece + 1], slope[piece + 1]))
+    return hermite(*ends, (inside - line[piece]) / step, step)[0]

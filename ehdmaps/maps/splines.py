@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 from scipy.interpolate import make_interp_spline
+from scipy.linalg.lapack import dgtsv
 
 from ehdmaps.arrays import FloatArray
 
@@ -71,6 +72,32 @@ def spline_weights(nodes: FloatArray, wanted: FloatArray) -> FloatArray:
     inside = np.clip(wanted, nodes[0], nodes[-1])
     weights: FloatArray = spline(inside) + (wanted - inside)[:, None] * spline(inside, nu=1)
     return weights
+
+
+def spline_slopes(nodes: FloatArray, values: FloatArray) -> FloatArray:
+    """Slopes at its nodes of a cubic spline, not-a-knot: those of `scipy.interpolate.CubicSpline`, with less overhead.
+
+    Parameters
+    ----------
+    nodes, values : array (n,)
+        Nodes, rising, at least four, and the values there.
+
+    Examples
+    --------
+    >>> spline_slopes(np.array([0.0, 1.0, 3.0, 4.0]), np.array([0.0, 1.0, 27.0, 64.0])).round(12)
+    array([ 0.,  3., 27., 48.])
+    """
+    step = np.diff(nodes)
+    rise = np.diff(values) / step
+    first, last = step[0] + step[1], step[-1] + step[-2]
+    lower, upper = np.append(step[1:], last), np.append(first, step[:-1])
+    middle, right = np.empty_like(values), np.empty_like(values)
+    middle[0], middle[1:-1], middle[-1] = step[1], 2.0 * (step[:-1] + step[1:]), step[-2]
+    right[0] = ((step[0] + 2.0 * first) * step[1] * rise[0] + step[0] ** 2 * rise[1]) / first
+    right[1:-1] = 3.0 * (step[1:] * rise[:-1] + step[:-1] * rise[1:])
+    right[-1] = (step[-1] ** 2 * rise[-2] + (2.0 * last + step[-1]) * step[-2] * rise[-1]) / last
+    slopes: FloatArray = dgtsv(lower, middle, upper, right)[3]
+    return slopes
 
 
 def hermite(

@@ -127,10 +127,11 @@ class TableField:
         zeta = np.log(loads * lines.groups.unit / lines.groups.valley).reshape(loads.shape[0], -1)
         inside = np.clip(zeta, *lines.ends)
         beyond = zeta - inside
-        slope = columns(lines.film.steep, inside) + lines.film.bent(inside, 1)
-        log_film = columns(lines.film.integral, inside) + lines.film.bent(inside, 0) + slope * beyond
-        share = columns(lines.damping, inside) + columns(lines.damping.derivative(), inside) * beyond
-        log_film, slope, share = (values.reshape(loads.shape) for values in (log_film, slope, share))
+        value, steep = columns(lines.film.integral, inside)
+        slope = steep + lines.film.bent(inside, 1)
+        log_film = value + lines.film.bent(inside, 0) + slope * beyond
+        share, rate = columns(lines.damping, inside)
+        log_film, slope, share = (values.reshape(loads.shape) for values in (log_film, slope, share + rate * beyond))
         offset = lines.groups.film * np.exp(log_film)
         compliance = -slope * offset / loads
         width = half_width(loads, chosen.radius, chosen.reduced_modulus)
@@ -229,8 +230,8 @@ def _go_on(axis: FloatArray, values: FloatArray) -> None:
         values[2] = np.where(outside, values[2, end, lines] + rate * away, values[2])
 
 
-def columns(lines: PPoly, x: FloatArray) -> FloatArray:
-    """Values of lines, each at places of its own.
+def columns(lines: PPoly, x: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Values and derivatives of lines, each at places of its own.
 
     Parameters
     ----------
@@ -241,10 +242,11 @@ def columns(lines: PPoly, x: FloatArray) -> FloatArray:
     """
     cell = np.clip(np.searchsorted(lines.x, x, side="right") - 1, 0, lines.x.size - 2)
     part, which = x - lines.x[cell], np.arange(x.shape[1])
-    found = np.zeros_like(x)
+    value, slope = np.zeros_like(x), np.zeros_like(x)
     for coefficient in lines.c:
-        found = found * part + coefficient[cell, which]
-    return found
+        slope = slope * part + value
+        value = value * part + coefficient[cell, which]
+    return value, slope
 
 
 def table_lines(

@@ -165,7 +165,8 @@ def _read(
     by_zeta = (place.zeta_slope if zeta else place.zeta)[part]
     by_size = (place.size_slope if size else place.size)[part]
     found = np.zeros((by_zeta.shape[0], coefficients.shape[-1]))
-    _sum_up(place.first[part], by_zeta, by_size, place.oil[part], coefficients, found)
+    flat = coefficients.reshape(*coefficients.shape[:2], -1)
+    _sum_up(place.first[part], by_zeta, by_size, place.oil[part], flat, found)
     return found
 
 
@@ -178,15 +179,20 @@ def _sum_up(
     coefficients: FloatArray,
     found: FloatArray,
 ) -> None:
-    """Add to zeros (n, fields) the coefficients around each point times their weights."""
+    """Add to zeros (n, fields) the coefficients (n_zeta, n_size, oils fields) around each point times their weights."""
+    fields = found.shape[1]
+    by_oils = np.empty(coefficients.shape[2])
     for i in range(found.shape[0]):
+        for k in range(by_oils.size):
+            by_oils[k] = 0.0
         for p in range(by_zeta.shape[1]):
             for q in range(by_size.shape[1]):
                 near, weight = coefficients[first[i, 0] + p, first[i, 1] + q], by_zeta[i, p] * by_size[i, q]
-                for oil in range(near.shape[0]):
-                    share = weight * by_oil[i, oil]
-                    for field in range(near.shape[1]):
-                        found[i, field] += share * near[oil, field]
+                for k in range(by_oils.size):  # long enough for vector instructions
+                    by_oils[k] += weight * near[k]
+        for oil in range(by_oil.shape[1]):
+            for field in range(fields):
+                found[i, field] += by_oil[i, oil] * by_oils[oil * fields + field]
 
 
 def _go_on(place: Place, coefficients: FloatArray, fields: Sequence[Field], found: FloatArray) -> None:
@@ -266,12 +272,14 @@ def lagrange_weights(nodes: FloatArray, x: FloatArray) -> FloatArray:
     x : ndarray, shape (n,)
         Places at which it is read.
     """
-    apart = x[:, None] - nodes
-    weights = np.empty_like(apart)
-    for k in range(nodes.size):
-        others = np.delete(np.arange(nodes.size), k)
-        weights[:, k] = np.prod(apart[:, others], axis=1) / np.prod(nodes[k] - nodes[others])
-    return weights
+    apart = x - nodes[:, None]
+    return np.stack(
+        [
+            np.prod(np.delete(apart, k, axis=0), axis=0) / np.prod(nodes[k] - np.delete(nodes, k))
+            for k in range(nodes.size)
+        ],
+        axis=-1,
+    )
 
 
 def _cell(nodes: FloatArray, x: FloatArray) -> IndexArray:

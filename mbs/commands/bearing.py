@@ -252,15 +252,17 @@ def _assumed(arguments: argparse.Namespace, given: _Given, emap: EHDMap | None, 
 def _table_map(
     geometry: BearingGeometry, oil: Lubricant, material: Material, speeds: Sequence[float], temperature: float
 ) -> EHDMap:
-    """Map in memory over the usual ranges, and over the speeds [rad/s] and the temperature [K] that are asked for."""
-    from ehdmaps.jobs.table_law import SPEEDS, TEMPERATURES, table_map  # with the solver
+    """Map in memory over the usual loads, and over the speeds [rad/s] and the temperature [K] that are asked for."""
+    from ehdmaps.jobs.table_law import SPEEDS, table_map  # with the solver
 
-    entrainment = [geometry.entrainment_speed(speed) for speed in speeds if speed > 0.0]
+    entrainment = [geometry.entrainment_speed(speed) for speed in speeds]
+    turning = [u for u in entrainment if u > 0.0]
+    slow, fast = (min(turning), max(turning)) if turning else SPEEDS
     return table_map(
         dataclasses.replace(geometry, diametral_clearance=0.0),
         oil,
-        entrainment_speeds=(min([SPEEDS[0], *entrainment]), max([SPEEDS[1], *entrainment])),
-        temperatures=(min(TEMPERATURES[0], temperature), max(TEMPERATURES[1], temperature)),
+        entrainment_speeds=(slow if len(turning) == len(speeds) else min(slow, SPEEDS[0]), fast),
+        temperatures=(temperature, temperature),
         material=material,
     )
 

@@ -117,6 +117,23 @@ def test_tables_over_load_and_speed(here, capsys):
     assert status == 2 and "is not a table of ehdmaps" in err
 
 
+@pytest.mark.parametrize("more", [("--roughness", "0.3 um"), ("--supply", "5 um"), ("--temperature", "95 degC")])
+def test_a_speed_alone_has_the_films_that_it_has_among_others(here, capsys, more):
+    """Alone the law is made for that speed; among others it is one over all of them, and of standstill."""
+    asked = ("NU308", "--load", "2 kN", *more)
+    for name, speeds in (("one.nc", ["700 rpm"]), ("all.nc", ["0 rpm", "150 rpm", "700 rpm", "6000 rpm"])):
+        options = [word for speed in speeds for word in ("--speed", speed)]
+        assert run(capsys, *asked, *options, "-o", name)[0] == 0
+    with xr.open_dataset("one.nc") as one, xr.open_dataset("all.nc") as among:
+        alone, other = one.isel(load=0, speed=0), among.isel(load=0, speed=2)
+        assert float(one["speed"][0]) == float(among["speed"][2])
+        # 1e-3 bounds what the law of all speeds misses between its nodes; damping falls with the valley.
+        assert float(alone["stiffness_along"]) == pytest.approx(float(other["stiffness_along"]), rel=1e-3)
+        assert float(alone["damping_along"]) == pytest.approx(float(other["damping_along"]), rel=5e-3)
+        films = [data["minimum_film"].min("contact") for data in (alone, other)]
+        assert float(films[0]) == pytest.approx(float(films[1]), rel=1e-3)
+
+
 def test_profiles_in_the_words_of_scenes(here, capsys):
     """An arc is what it is at measured points: straight lines between 4001 of them are 1e-12 m off the arc."""
     asked = ("NU308", "--load", "5 kN", "--speed", "0 rpm")

@@ -8,6 +8,7 @@ import math
 import numpy as np
 import pytest
 from numba import njit
+from scipy.interpolate import CubicSpline
 
 from ehdmaps.errors import MapError
 from ehdmaps.maps import elementary
@@ -16,7 +17,7 @@ from ehdmaps.maps.contact_curve import ContactCurve
 from ehdmaps.maps.dry import DryField
 from ehdmaps.maps.film_field import LOSS_FLOOR, lifted_loss
 from ehdmaps.maps.grid_field import GridField
-from ehdmaps.maps.splines import hermite, spline_coefficients, spline_weights
+from ehdmaps.maps.splines import hermite, spline_coefficients, spline_slopes, spline_weights
 from ehdmaps.maps.tail import Tail
 from tests.cases.laws import CONTACTS, LINE, OIL, SMALL_FIELD, ValleyField
 
@@ -51,6 +52,15 @@ def test_weights_are_a_spline_inside_and_a_tangent_outside():
     assert got == pytest.approx([0.027, 4.2**3, 125.0 + 75.0], rel=1e-12)
     assert spline_weights(np.array([2.0]), wanted) == pytest.approx(np.ones((3, 1)))
     assert spline_weights(np.array([0.0, 1.0]), np.array([2.0])) @ [1.0, 3.0] == pytest.approx([5.0])
+
+
+@pytest.mark.parametrize("count", [4, 5, 300])
+def test_slopes_of_a_spline_are_those_of_scipy(count):
+    rng = np.random.default_rng(count)
+    nodes, values = np.cumsum(rng.uniform(0.01, 1.0, count)), rng.normal(size=count)
+    # 1e-12 of the largest slope bounds round-off: both solve the same system.
+    wanted = CubicSpline(nodes, values)(nodes, 1)
+    assert spline_slopes(nodes, values) == pytest.approx(wanted, rel=0.0, abs=1e-12 * np.max(np.abs(wanted)))
 
 
 def test_hermite_has_the_given_values_and_slopes():

@@ -1,4 +1,6 @@
 import math
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -44,6 +46,17 @@ ELSEWHERE = {"TEMPERATURE", "KELVIN"}
 def test_quantity_reads_what_people_write(text, unit, value):
     # Decimal conversions are exact to the last digit written: a slip of 1e-15 would show in every file.
     assert quantity(text, unit) == value
+
+
+@pytest.mark.parametrize(("unit", "text"), [(unit, text) for unit in units._COMMON for text in units._COMMON[unit]])
+def test_common_units_have_the_factors_of_pint(unit, text):
+    assert units._COMMON[unit][text] == units._conversion(text, unit)
+    assert units._conversion(unit, unit) == (1.0, 0.0)
+
+
+def test_common_units_are_read_without_pint():
+    code = "import sys; from ehdmaps.units import quantity; quantity('5 kN', 'N'); quantity('2 Pa', 'Pa'); "
+    subprocess.run([sys.executable, "-c", f"{code} sys.exit('pint' in sys.modules)"], check=True, cwd=ROOT)
 
 
 def test_rotation_is_read_in_radians():
