@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -16,6 +17,8 @@ from ehdmaps.jobs.law_points import COMPLIANCE_BARS, DAMPING_BARS, READ_COMPLIAN
 from ehdmaps.jobs.sampling import SamplePoint, draw, draw_apart, drawable, log_uniform
 from ehdmaps.jobs.store import Arrays
 from ehdmaps.jobs.tasks import LineTask
+from ehdmaps.maps.backbone import BackboneField
+from ehdmaps.maps.backbone_plan import Axis
 from ehdmaps.maps.compilation import highest_structural_load
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.film_field import FilmField
@@ -52,20 +55,21 @@ MOST_OF_READ = 100
 SHARES = {"law_": 0.99, "law_valley_": 0.95}
 """Share of the points that should be within the bars, over the whole map and in the valley."""
 
-REFUSED = "law_refused"
-"""Attribute of the map: why it makes no law."""
+REFUSED, HALVED = "law_refused", "law_lines_halved_along"
+"""Attributes of the map: why it makes no law, and the axes along which the steps of its lines were halved."""
 
 STANDS_ON_LINES = (
-    "these laws are made from refinement lines: smaller steps ([solver] line_steps) bring them closer to their bars, "
-    "other axes of [grid] do not; the quantiles of their errors stand above; `ehdmaps solve` gives a single point "
-    "without a law"
+    "these laws are made from refinement lines, whose steps are halved where the films between them miss, three times "
+    "at most; what misses then is the table of the law, or lines that would take too many points; other axes of [grid] "
+    "do not bring them closer to their bars; the quantiles of their errors stand above; `ehdmaps solve` gives a single "
+    "point without a law"
 )
 STANDS_ON_POINTS = "these laws are made from the points of the map: more temperatures, speeds or loads help"
 STANDS_ON_TABLE = (
     "films from the film table are within these bars: what misses is the table of the law, at the bottom of the "
     "damping valley; the quantiles of its errors stand above; `ehdmaps solve` gives a single point without a law"
 )
-"""What can be done where a bar is unmet."""
+"""What can be done where a bar is unmet; for the lines see `coarse_axis`."""
 
 NOTHING = {
     "film_compliance": "none: no film to relate to",
@@ -73,6 +77,10 @@ NOTHING = {
     "film_offset": "none: no film to relate to",
 }
 """What stands in place of quantiles where no point has one."""
+
+
+_WORTH: Mapping[Axis, float] = {"load": 0.25}
+"""Weight of an axis in `coarse_axis`, where it is not 1."""
 
 
 @dataclass(frozen=True)
@@ -193,6 +201,38 @@ def _shares(attributes: Mapping[str, Any]) -> Iterator[tuple[str, str, float, fl
             found = attributes.get(f"{prefix}{name}_within_bar")
             if found is not None:
                 yield prefix, name, float(found), share
+
+
+def coarse_axis(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> Axis | None:
+    """Along which axis the lines of a backbone are too far apart; None where that is not what laws miss their bars by.
+
+    Only points count at which the films between the lines, without the table of a law, miss the bars of compliance or
+    damping. The axis is the one along which reading fewer points changes the loss most, at most of these points; every
+    second point of a cubic line changes it sixteen times as much as its own step is worth, four lines instead of six
+    less, so that the loads get a quarter of their say.
+
+    Parameters
+    ----------
+    check : LawCheck
+        The points.
+    emap : EHDMap
+        The finished map.
+    results : mapping
+        Arrays by key of the tasks.
+    """
+    votes: Counter[Axis] = Counter()
+    for contact in check.contacts:
+        field = emap.film_field((contact.name,))
+        if not isinstance(field, BackboneField):
+            return None
+        for i, task in enumerate(check.tasks):
+            arrays = results[task.key]
+            if task.contact != contact or not check.inside(i) or not Status(int(arrays["status"][0])).usable:
+                continue
+            if _missed_between(field, task, fresh_solution(task, arrays), check.compliance_bars):
+                changes = field.changes(contact.name, task.loads[0], task.entrainment_speed, task.temperature)
+                votes[max(changes, key=lambda axis: changes[axis] * _WORTH.get(axis, 1.0))] += 1
+    return votes.most_common(1)[0][0] if votes else None
 
 
 def films_met(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> bool:

@@ -27,9 +27,7 @@ hammer         a simulated hammer test
 plan           which ranges a scene needs of a contact map, and the jobs that cover them
 planning       operating points of a scene and the loads and speeds seen there
 planned_job    such a job, from the bearings and the oil of the scene
-coverage       whether a map covers what is needed
-auto           an analysis with a map that is planned, made or reused, and checked for it
-kept_map       a map for a planned job: one that is there, or a new one
+auto           an analysis that chooses its physics, and makes maps of what the film table has not
 film_verdicts  which physics of the films a scene requires
 film_criteria  such criteria at a contact, in closed form
 shear_effect   what a limiting shear stress changes there, by solving
