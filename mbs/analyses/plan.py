@@ -109,24 +109,13 @@ def plan(scene: Scene, settings: PlanSettings | None = None) -> PlanResult:
     ['NU308']
     """
     settings = settings or PlanSettings()
-    return needed_of(scene, dry_model(scene, settings), settings)
+    model = _dry_model(scene, settings)
+    speeds, needed = _needed(scene, model, settings)
+    return PlanResult(scene, model, speeds, needed)
 
 
-def dry_model(scene: Scene, settings: PlanSettings) -> Model:
-    """The scene with dry contacts, from which loads and speeds follow; the first half of `plan`.
-
-    Parameters
-    ----------
-    scene : Scene
-        What is planned for.
-    settings : PlanSettings
-        The clearance counts.
-
-    Raises
-    ------
-    InputError
-        With everything because of which no map can be planned.
-    """
+def _dry_model(scene: Scene, settings: PlanSettings) -> Model:
+    """The scene with dry contacts, from which loads and speeds follow; all problems at once."""
     problems: list[str] = []
     model = None
     try:
@@ -150,29 +139,6 @@ def dry_model(scene: Scene, settings: PlanSettings) -> Model:
     return model
 
 
-def needed_of(scene: Scene, model: Model, settings: PlanSettings) -> PlanResult:
-    """The ranges that follow from a scene with dry contacts; the second half of `plan`.
-
-    Parameters
-    ----------
-    scene : Scene
-        What is planned for.
-    model : Model
-        The scene with dry contacts, from `dry_model`.
-    settings : PlanSettings
-        The same.
-
-    Raises
-    ------
-    InputError
-        For a speed that no map has.
-    AnalysisError
-        If a bearing carries no load or does not roll, or there is no equilibrium.
-    """
-    speeds, needed = _needed(scene, model, settings)
-    return PlanResult(scene, model, speeds, needed)
-
-
 def _dry_scene(scene: Scene, rooms: tuple[float, ...] = ()) -> Scene:
     """The scene for dry contacts: massless rollers, no centrifugal load; rooms are taken from the clearances [m]."""
     bearings = tuple(
@@ -190,7 +156,7 @@ def _dry_scene(scene: Scene, rooms: tuple[float, ...] = ()) -> Scene:
 def _needed(scene: Scene, model: Model, settings: PlanSettings) -> tuple[tuple[float, float], tuple[Needed, ...]]:
     """Speeds of the system [rad/s], and the ranges that the scene needs."""
     oil = scene.lubricant
-    assert oil is not None  # `dry_model` saw to it
+    assert oil is not None  # `_dry_model` saw to it
     steady = (scene.speed, *(scene.sweep.speeds.tolist() if scene.sweep else ()))
     speeds = planning.speed_range(steady, scene.run_up.speed.course.values if scene.run_up else ())
     fastest = [entry.rates[1] * speeds[1] for entry in model.bearings]

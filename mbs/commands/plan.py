@@ -17,12 +17,11 @@ from ehdmaps.jobs.job import Job
 from ehdmaps.outputs import SEALED, Output, output_problems, sealed, write_text
 from ehdmaps.units import LOAD, RPM, SPEED, TEMPERATURE, Display
 from mbs.analyses import planning
-from mbs.analyses.plan import PlanResult, PlanSettings, dry_model, needed_of
+from mbs.analyses.plan import PlanResult, PlanSettings, plan
 from mbs.analyses.planning import Needed
 from mbs.commands.cases import scene_output_problems
 from mbs.commands.options import read_clearance
 from mbs.output.model_text import heading
-from mbs.scene.assembly import Model
 from mbs.scene.fields import MICROMETRE
 from mbs.scene.reader import read_scene
 from mbs.scene.scene import Scene
@@ -42,8 +41,8 @@ class _Planned:
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Tell the ranges, and write the jobs that cover them."""
-    model, scene, settings = _read(arguments)
-    found = needed_of(scene, model, settings)
+    scene, settings = _read(arguments)
+    found = plan(scene, settings)
     slowest, fastest = found.speeds
     lines = [
         *heading(found.model),
@@ -72,27 +71,20 @@ def _turning(found: PlanResult) -> list[str]:
     ]
 
 
-def _read(arguments: argparse.Namespace) -> tuple[Model, Scene, PlanSettings]:
-    """Read scene, clearance and margin, and put the scene together; all problems at once."""
+def _read(arguments: argparse.Namespace) -> tuple[Scene, PlanSettings]:
+    """Read scene, clearance and margin; all problems at once."""
     problems: list[str] = []
     scene: Scene | None = None
-    model: Model | None = None
     try:
         scene = read_scene(arguments.scene)
     except InputError as error:
         problems += error.problems
     clearance = read_clearance(arguments.clearance, problems) if arguments.clearance is not None else None
-    margin = _margin(arguments.margin, problems)
-    settings = PlanSettings(clearance, margin)
+    settings = PlanSettings(clearance, _margin(arguments.margin, problems))
     problems += scene_output_problems(arguments.scene, scene.files if scene else (), arguments.output, kind=SEALED)
-    if scene is not None:
-        try:
-            model = dry_model(scene, settings)
-        except InputError as error:
-            problems += error.problems
-    if problems or scene is None or model is None:
+    if problems or scene is None:
         raise InputError(tuple(dict.fromkeys(problems)))
-    return model, scene, settings
+    return scene, settings
 
 
 def _margin(text: str | None, problems: list[str]) -> float:
