@@ -399,13 +399,6 @@ def _plan(commands: Any) -> None:
     words = "which ranges a scene needs of a contact map, and the job that covers just these"
     command: argparse.ArgumentParser = commands.add_parser("plan", help=words, description=words)
     command.add_argument("scene", metavar="SCENE")
-    command.add_argument(
-        "--map",
-        metavar="MAP.nc",
-        action="append",
-        help="say whether this map covers the scene, instead of a job; with several types of bearing one for each",
-    )
-    command.add_argument("--law", metavar="LAW", default="hertz", help="hertz | constant:NAME, for the loads at rest")
     command.add_argument("--clearance", metavar="LENGTH", help='diametral clearance of all bearings, such as "20 um"')
     command.add_argument(
         "--margin", metavar="FACTOR", help="highest load of the map over the largest one at rest, for what moves (3)"
@@ -496,12 +489,12 @@ def _scene_command(
 
 
 def _auto(command: argparse.ArgumentParser, tolerance: bool = True) -> None:
-    """Add what makes a map and chooses the physics."""
+    """Add what chooses the physics."""
     command.add_argument(
         "--auto",
         action="store_true",
-        help="plan and make the map that the scene needs, or reuse the one of the same plan; switch film memory, oil "
-        "supply and roughness on where they matter; check that all of it lies inside, else plan wider",
+        help="films of the film table, with film memory, oil supply and roughness where they matter; where heat or a "
+        "limiting stress do, a map of its own, whose points are kept in a store beside it",
     )
     command.add_argument(
         "--maps",

@@ -200,7 +200,7 @@ def generate_batch(
     outcomes: dict[str, Outcome] = {}
     place = batch_path(batch, folder)
     with Store(store_path(place), fresh) as store:
-        due = [planned for planned in plan.maps if _is_due(planned, batch, folder, fresh, outcomes)]
+        due = [planned for planned in plan if _is_due(planned, batch, folder, fresh, outcomes)]
         about = f"batch {batch.name}, {len(batch.members)} maps"
         with StatusFile(place, about, 0, processes) as status:
             run = _Run(batch, folder, store, status, processes, progress, executor, told)

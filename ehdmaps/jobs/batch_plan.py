@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -58,21 +57,8 @@ class Planned:
         return planned_tasks(self.job) if unserved(self.job, self.solver) else ()
 
 
-@dataclass(frozen=True)
-class BatchPlan:
-    """The maps of a batch, in its order."""
-
-    batch: Batch
-    maps: tuple[Planned, ...]
-
-    def tasks(self) -> Iterator[LineTask]:
-        """Yield all that is known to be solved; tasks of equal keys may come again."""
-        for planned in self.maps:
-            yield from planned.tasks
-
-
-def plan_batch(batch: Batch) -> BatchPlan:
-    """Lay out what is made.
+def plan_batch(batch: Batch) -> tuple[Planned, ...]:
+    """Lay out the maps of a batch, in its order.
 
     Parameters
     ----------
@@ -91,4 +77,4 @@ def plan_batch(batch: Batch) -> BatchPlan:
         places = np.unique(np.linspace(0, len(ordered) - 1, count).round().astype(int)) if count else ()
         for index in set(indices) - {ordered[place] for place in places}:
             maps[index] = Planned(maps[index].member, replace(maps[index].job, law_check=0))
-    return BatchPlan(batch, tuple(maps))
+    return tuple(maps)

@@ -29,7 +29,7 @@ def parser() -> argparse.ArgumentParser:
         prog="ehdmaps",
         description="Elastohydrodynamic contact maps for roller bearings.",
         epilog="JOB is a job file, a map (its job is repeated), or the name of a shipped job: nu308, n1014, "
-        "nu308_openfoam; for generate, check, merge, status and submit also a batch file, of many maps. "
+        "nu308_openfoam; for generate, check and status also a batch file, of many maps. "
         "Exit status: 0 done; 1 done, with failed points or laws that miss their bars; 2 bad input, nothing "
         "written; 130 stopped with Ctrl-C, 143 by SIGTERM.",
     )
@@ -53,17 +53,13 @@ def parser() -> argparse.ArgumentParser:
         help='reynolds: have all films solved, none read from the film table; as films = "solved" of [solver]',
     )
     generate.add_argument("--keep-cases", metavar="FOLDER", nargs="?", const="ehdmaps-cases", help=_KEEP)
-    generate.add_argument(
-        "--shard", metavar="I/N", type=_shard, help="solve part I of N only, into a store of its own; see `merge`"
-    )
-    _add_shards(commands)
 
     status = commands.add_parser("status", help="how far a map is that is being made, or was interrupted")
     status.add_argument(
         "map",
         metavar="MAP.nc",
         nargs="?",
-        help="or its store, its JOB, or a batch file, with its shards; default: all maps in this folder",
+        help="or its store, its JOB, or a batch file; default: all maps in this folder",
     )
     status.add_argument(
         "-o", "--output", metavar="MAP.nc", help="of the job, or the folder of the batch, as for generate"
@@ -170,27 +166,6 @@ def parser() -> argparse.ArgumentParser:
     _add_stability(commands)
     _add_table(commands)
     return top
-
-
-def _add_shards(commands: argparse._SubParsersAction[Parser]) -> None:
-    """Add the arguments of `ehdmaps merge` and `ehdmaps submit`."""
-    merge = commands.add_parser("merge", help="the map of a job, or the maps of a batch, from the stores of its shards")
-    submit = commands.add_parser("submit", help="the script of a job array of Slurm that makes shards, and merges them")
-    for command in (merge, submit):
-        command.add_argument("job", metavar="JOB", help="or a batch file")
-        command.add_argument(
-            "-o", "--output", metavar="MAP.nc", help="of a job, or the folder of a batch; default: as for generate"
-        )
-        command.add_argument("--solver", metavar="NAME", help=_SOLVER)
-    merge.add_argument("--workers", metavar="N", type=count, help="processes; default: all cores")
-    merge.add_argument("--rest", action="store_true", help="solve here what shards have not")
-    submit.add_argument("--array", metavar="N", type=_shards, required=True, help="number of shards")
-    submit.add_argument("--cpus", metavar="N", type=count, default=1, help="cores of each shard; default: 1")
-    submit.add_argument("--time", metavar="LIMIT", help='of each shard, as Slurm has it, "02:00:00"; default: none')
-    submit.add_argument("--partition", metavar="NAME", help="of the cluster; default: the cluster's own")
-    submit.add_argument(
-        "--submit", action="store_true", help="submit the array and the merge by submitit, instead of printing a script"
-    )
 
 
 def _add_export(commands: argparse._SubParsersAction[Parser]) -> None:
@@ -311,22 +286,6 @@ def _command(arguments: argparse.Namespace) -> tuple[str, int]:
     """Load the command that is asked for, and do it."""
     result: tuple[str, int] = importlib.import_module(f"ehdmaps.jobs.commands.{arguments.command}").run(arguments)
     return result
-
-
-def _shard(text: str) -> object:
-    """Read a shard, where one is given: what reads it is not loaded for other commands."""
-    from ehdmaps.jobs.shards import read_shard
-
-    return read_shard(text)
-
-
-def _shards(text: str) -> int:
-    """Read a number of shards."""
-    from ehdmaps.jobs.shards import MOST_SHARDS
-
-    if not (text.isascii() and text.isdigit() and len(text) <= 6 and 1 <= int(text) <= MOST_SHARDS):
-        raise argparse.ArgumentTypeError(f"got {text[:40]!r}; allowed: a whole number from 1 to {MOST_SHARDS}")
-    return int(text)
 
 
 def _count(text: str) -> int:

@@ -15,8 +15,8 @@ from ehdmaps.jobs import solvers
 from ehdmaps.jobs.assemble import assemble, placed, with_correction
 from ehdmaps.jobs.correction import Correction, correction
 from ehdmaps.jobs.job import Job
-from ehdmaps.jobs.law_check import REFUSED, LawCheck, checked_laws, films_met, met, plan_check
-from ehdmaps.jobs.refinement import Refinement, backbone_group, refinement
+from ehdmaps.jobs.law_check import HALVED, REFUSED, LawCheck, checked_laws, coarse_axis, films_met, met, plan_check
+from ehdmaps.jobs.refinement import MOST_LINE_POINTS, Refinement, backbone_group, refinement
 from ehdmaps.jobs.status import StatusFile, about
 from ehdmaps.jobs.store import Arrays, NoStore, Results, Store, store_path
 from ehdmaps.jobs.sweep import Progress, SweepResult, sweep
@@ -24,6 +24,7 @@ from ehdmaps.jobs.table_films import table_films, unserved
 from ehdmaps.jobs.tasks import LineTask, line_tasks
 from ehdmaps.jobs.write import write_map
 from ehdmaps.maps import schema
+from ehdmaps.maps.backbone_plan import Axis
 from ehdmaps.maps.checksum import content_sha256
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.validation import validate
@@ -34,6 +35,9 @@ from ehdmaps.workers import available_cores
 
 FEW = 200
 """Points that are solved sooner than a process has started: those of the check of a map from the film table."""
+
+MOST_HALVINGS = 3
+"""How often the steps of the lines of a law are halved, each time along one axis."""
 
 
 @dataclass(frozen=True)
@@ -212,8 +216,8 @@ class _Plan:
     """All that is solved for a map: its points, the lines of a contact law, and the check of the laws.
 
     With `from_table` points and laws are read from the film table, and the check is all that is solved; `unserved` says
-    why they are not, where they were to be. `correction` is what the points of the `corrector` made, once they are
-    solved.
+    why they are not, where they were to be. `halved` are the axes along which the steps of the lines were halved, in
+    turn; `correction` is what the points of the `corrector` made, once they are solved.
     """
 
     job: Job
@@ -224,6 +228,7 @@ class _Plan:
     check: LawCheck | None
     from_table: bool = False
     unserved: str = ""
+    halved: tuple[Axis, ...] = ()
     correction: Correction | None = None
 
     @property
@@ -289,12 +294,19 @@ def _results(planned: _Plan, result: SweepResult) -> Mapping[str, Arrays]:
 def _refined(
     planned: _Plan, result: SweepResult, where: str, solve: Callable[[Sequence[LineTask]], object]
 ) -> tuple[xr.Dataset, xr.Dataset | None]:
-    """Finish a map; its films are solved where those of the film table turn out to miss. `solve` adds to the result."""
+    """Finish a map: films are solved where those of the film table miss, and lines laid more closely where these do.
+
+    `solve` adds to the result.
+    """
     dataset, group = _finished(planned, result, where)
     if planned.from_table and not _served(planned, dataset, result):
         missed = "film table: the laws that it makes miss their bars beside fresh solves"
         planned = _solved(planned.job, planned.solver, planned.corrector, missed)
         solve(planned.everything)
+        dataset, group = _finished(planned, result, where)
+    while len(planned.halved) < MOST_HALVINGS and (finer := _finer(planned, dataset, group, result)) is not None:
+        planned = finer
+        solve(finer.refined.tasks if finer.refined else ())
         dataset, group = _finished(planned, result, where)
     return dataset, group
 
@@ -305,6 +317,19 @@ def _served(planned: _Plan, dataset: xr.Dataset, result: SweepResult) -> bool:
         return False
     check = planned.check
     return met(dataset.attrs) or check is None or films_met(check, EHDMap(dataset), result.arrays)
+
+
+def _finer(planned: _Plan, dataset: xr.Dataset, group: xr.Dataset | None, result: SweepResult) -> _Plan | None:
+    """The plan with half the step along one axis of its lines; None where that would not help, or be too much."""
+    if planned.check is None or planned.refined is None or met(dataset.attrs) or REFUSED in dataset.attrs:
+        return None
+    axis = coarse_axis(planned.check, EHDMap(dataset, group), _results(planned, result))
+    if axis is None:
+        return None
+    lines = refinement(planned.job, planned.solver, planned.refined.steps.finer(axis))
+    if lines is None or lines.points > MOST_LINE_POINTS:
+        return None
+    return replace(planned, refined=lines, halved=(*planned.halved, axis))
 
 
 def _finished(planned: _Plan, result: SweepResult, where: str) -> tuple[xr.Dataset, xr.Dataset | None]:
@@ -325,5 +350,7 @@ def _finished(planned: _Plan, result: SweepResult, where: str) -> tuple[xr.Datas
         dataset.attrs.update(checked_laws(planned.check, EHDMap(dataset, group), found))
     if planned.unserved:
         dataset.attrs[schema.UNSERVED] = planned.unserved
+    if planned.halved:
+        dataset.attrs[HALVED] = ", ".join(planned.halved)
     dataset.attrs[schema.CHECKSUM] = content_sha256(dataset, group)
     return dataset, group

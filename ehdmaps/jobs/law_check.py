@@ -1,7 +1,8 @@
-"""The contact laws of a map against fresh solves at random points: how good they are between nodes and just outside."""
+"""The contact laws of a map against fresh solves at random points: how good they are between nodes."""
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -13,16 +14,16 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import MapError
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.law_points import COMPLIANCE_BARS, DAMPING_BARS, READ_COMPLIANCE_BARS, at_loads, fresh_solution
-from ehdmaps.jobs.sampling import SamplePoint, draw, draw_apart, drawable, log_uniform
+from ehdmaps.jobs.sampling import draw_apart, drawable
 from ehdmaps.jobs.store import Arrays
 from ehdmaps.jobs.tasks import LineTask
-from ehdmaps.maps.compilation import highest_structural_load
+from ehdmaps.maps.backbone import BackboneField
+from ehdmaps.maps.backbone_plan import Axis
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.film_field import FilmField
-from ehdmaps.maps.law import ContactLaw, OutsidePolicy
+from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.law_errors import quantiles_text
 from ehdmaps.maps.schema import FILM_TABLE
-from ehdmaps.maps.tail import THICK_FILM
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.oil_supply import FLOODED
@@ -33,18 +34,7 @@ from ehdmaps.table.solver import TableSolver
 SEED = 20260
 
 INSIDE = ("", "valley")
-"""Regions within the map, whose points are held to the bars."""
-
-OUTSIDE: Mapping[str, tuple[float, float]] = {
-    "above_load": (1.0, 2.0),
-    "above_speed": (1.0, 2.0),
-    "below_load": (1.0 / 30.0, 1.0),
-}
-"""Regions just outside the map, as multiples of the end of its axis: what the policy `asymptote` and the continuation
-of films to lower loads are worth there is told, and held to no bar."""
-
-OUTSIDE_SHARE = 0.1
-"""Points in each of these regions, as a share of those within the map."""
+"""Regions of the points: over the map, and in its damping valley."""
 
 MOST_OF_READ = 100
 """Points within a map with films from the film table: they prove that reading is right, and lay no lines."""
@@ -52,20 +42,21 @@ MOST_OF_READ = 100
 SHARES = {"law_": 0.99, "law_valley_": 0.95}
 """Share of the points that should be within the bars, over the whole map and in the valley."""
 
-REFUSED = "law_refused"
-"""Attribute of the map: why it makes no law."""
+REFUSED, HALVED = "law_refused", "law_lines_halved_along"
+"""Attributes of the map: why it makes no law, and the axes along which the steps of its lines were halved."""
 
 STANDS_ON_LINES = (
-    "these laws are made from refinement lines: smaller steps ([solver] line_steps) bring them closer to their bars, "
-    "other axes of [grid] do not; the quantiles of their errors stand above; `ehdmaps solve` gives a single point "
-    "without a law"
+    "these laws are made from refinement lines, whose steps are halved where the films between them miss, three times "
+    "at most; what misses then is the table of the law, or lines that would take too many points; other axes of [grid] "
+    "do not bring them closer to their bars; the quantiles of their errors stand above; `ehdmaps solve` gives a single "
+    "point without a law"
 )
 STANDS_ON_POINTS = "these laws are made from the points of the map: more temperatures, speeds or loads help"
 STANDS_ON_TABLE = (
     "films from the film table are within these bars: what misses is the table of the law, at the bottom of the "
     "damping valley; the quantiles of its errors stand above; `ehdmaps solve` gives a single point without a law"
 )
-"""What can be done where a bar is unmet."""
+"""What can be done where a bar is unmet; for the lines see `coarse_axis`."""
 
 NOTHING = {
     "film_compliance": "none: no film to relate to",
@@ -75,9 +66,13 @@ NOTHING = {
 """What stands in place of quantiles where no point has one."""
 
 
+_WORTH: Mapping[Axis, float] = {"load": 0.25}
+"""Weight of an axis in `coarse_axis`, where it is not 1."""
+
+
 @dataclass(frozen=True)
 class LawCheck:
-    """Random points: within the map, in its valley, and in each region of `OUTSIDE`; `regions` says which is which.
+    """Random points over the map and in its valley; `regions` says which is which.
 
     `compliance_bars` are those that the laws are held to.
     """
@@ -87,48 +82,26 @@ class LawCheck:
     regions: tuple[str, ...]
     compliance_bars: tuple[float, float] = COMPLIANCE_BARS
 
-    def inside(self, task: int) -> bool:
-        """Whether a task lies within the map."""
-        return self.regions[task] in INSIDE
-
 
 def check_points(count: int, solver: ContactSolver) -> int:
-    """How many points are solved for a check that a job wants of so many points within the map, at most."""
-    if isinstance(solver, TableSolver):
-        return min(count, MOST_OF_READ)
-    return count + len(OUTSIDE) * round(OUTSIDE_SHARE * count)
+    """How many points are solved for a check that a job wants of so many points, at most."""
+    return min(count, MOST_OF_READ) if isinstance(solver, TableSolver) else count
 
 
 def plan_check(job: Job, solver: ContactSolver) -> LawCheck | None:
     """Draw the points: load and speed log-uniform, temperature uniform, contact at random; None if `law_check` is 0."""
     read = isinstance(solver, TableSolver)
-    count = check_points(job.law_check, solver) if read else job.law_check
+    count = check_points(job.law_check, solver)
     if not count or not drawable(job):
         return None
     rng = np.random.default_rng(SEED)
     over, valley = draw_apart(job, rng, count)
     drawn = [("", point) for point in over] + [("valley", point) for point in valley]
-    # beyond the map, laws with films that are read go on as all others do
-    if len(job.loads) > 1 and not read:
-        drawn += [
-            (region, _moved(job, draw(job, rng), region, log_uniform(rng, *factors)))
-            for region, factors in OUTSIDE.items()
-            for _ in range(round(OUTSIDE_SHARE * count))
-        ]
     # the proof of films that are read is films that are solved
     fresh = solver.other if isinstance(solver, TableSolver) else solver
     tasks = tuple(LineTask(contact, job.lubricant, (w,), u, T, fresh) for _, (contact, w, u, T) in drawn)
     bars = READ_COMPLIANCE_BARS if read else COMPLIANCE_BARS
     return LawCheck(job.contacts, tasks, tuple(region for region, _ in drawn), bars)
-
-
-def _moved(job: Job, point: SamplePoint, region: str, factor: float) -> SamplePoint:
-    """A point of the map, moved along one axis to a multiple of its end."""
-    if region == "above_speed":
-        return point._replace(speed=factor * max(job.entrainment_speeds))
-    if region == "below_load":
-        return point._replace(load=factor * min(job.loads))
-    return point._replace(load=min(factor * max(job.loads), highest_structural_load(point.contact)))
 
 
 def checked_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> dict[str, float | int | str]:
@@ -146,7 +119,7 @@ def checked_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -
     try:
         return check_laws(check, emap, results)
     except MapError as error:
-        return {"law_check_points": sum(map(check.inside, range(len(check.tasks)))), REFUSED: str(error)}
+        return {"law_check_points": len(check.tasks), REFUSED: str(error)}
 
 
 def unmet(dataset: xr.Dataset, with_backbone: bool) -> list[str]:
@@ -195,6 +168,38 @@ def _shares(attributes: Mapping[str, Any]) -> Iterator[tuple[str, str, float, fl
                 yield prefix, name, float(found), share
 
 
+def coarse_axis(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> Axis | None:
+    """Along which axis the lines of a backbone are too far apart; None where that is not what laws miss their bars by.
+
+    Only points count at which the films between the lines, without the table of a law, miss the bars of compliance or
+    damping. The axis is the one along which reading fewer points changes the loss most, at most of these points; every
+    second point of a cubic line changes it sixteen times as much as its own step is worth, four lines instead of six
+    less, so that the loads get a quarter of their say.
+
+    Parameters
+    ----------
+    check : LawCheck
+        The points.
+    emap : EHDMap
+        The finished map.
+    results : mapping
+        Arrays by key of the tasks.
+    """
+    votes: Counter[Axis] = Counter()
+    for contact in check.contacts:
+        field = emap.film_field((contact.name,))
+        if not isinstance(field, BackboneField):
+            return None
+        for task in check.tasks:
+            arrays = results[task.key]
+            if task.contact != contact or not Status(int(arrays["status"][0])).usable:
+                continue
+            if _missed_between(field, task, fresh_solution(task, arrays), check.compliance_bars):
+                changes = field.changes(contact.name, task.loads[0], task.entrainment_speed, task.temperature)
+                votes[max(changes, key=lambda axis: changes[axis] * _WORTH.get(axis, 1.0))] += 1
+    return votes.most_common(1)[0][0] if votes else None
+
+
 def films_met(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> bool:
     """Whether films between the points, without the table of a law, are within the bars at as many points as wanted.
 
@@ -212,7 +217,7 @@ def films_met(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> b
         field = emap.film_field((contact.name,))
         for task, region in zip(check.tasks, check.regions, strict=True):
             arrays = results[task.key]
-            if task.contact == contact and region in missed and Status(int(arrays["status"][0])).usable:
+            if task.contact == contact and Status(int(arrays["status"][0])).usable:
                 missed[region].append(_missed_between(field, task, fresh_solution(task, arrays), check.compliance_bars))
     shares = zip(missed.values(), SHARES.values(), strict=True)
     return all(np.mean(found) <= 1.0 - share for found, share in shares if found)
@@ -248,52 +253,42 @@ def check_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> 
     -------
     dict
         Quantiles of the relative error in film compliance and damping of each contact's law, and the shares of the
-        points that are within the bars; within the map also quantiles of the error in stiffness and film offset. A law
-        has no damping below zero: where the solved one is, the law is held against zero by the second bar, and the
-        quantiles leave the point out. Where there is no film, only the second bars count. The same just outside the
-        map, see `OUTSIDE`, by the law of the policy `asymptote`; below it, points with a film so thick that a law lets
-        it fade are left out.
+        points that are within the bars, over the map and in its valley; quantiles of the error in stiffness and film
+        offset, too. A law has no damping below zero: where the solved one is, the law is held against zero by the
+        second bar, and the quantiles leave the point out. Where there is no film, only the second bars count.
     """
     rows: list[FloatArray] = []
     regions: list[str] = []
     for contact in check.contacts:
-        for inside in (True, False):
-            wanted = [i for i, task in enumerate(check.tasks) if task.contact == contact and check.inside(i) == inside]
-            chosen = [i for i in wanted if _known(check.tasks[i], results[check.tasks[i].key], check.regions[i])]
-            if chosen:
-                # Fresh solves are those of flooded films between smooth surfaces, whatever the job states.
-                policy: OutsidePolicy = "error" if inside else "asymptote"
-                law = emap.law(contact.name, policy, supply=FLOODED, surface=SMOOTH)  # type: ignore[arg-type]
-                points = [(check.tasks[i], results[check.tasks[i].key]) for i in chosen]
-                rows.append(_errors(law, points, check.compliance_bars))
-                regions += [check.regions[i] for i in chosen]
-    counted = [region in INSIDE for region in check.regions]
+        chosen = [
+            (task, results[task.key], region)
+            for task, region in zip(check.tasks, check.regions, strict=True)
+            if task.contact == contact and Status(int(results[task.key]["status"][0])).usable
+        ]
+        if chosen:
+            # Fresh solves are those of flooded films between smooth surfaces, whatever the job states.
+            law = emap.law(contact.name, "error", supply=FLOODED, surface=SMOOTH)  # type: ignore[arg-type]
+            rows.append(_errors(law, [(task, arrays) for task, arrays, _ in chosen], check.compliance_bars))
+            regions += [region for *_, region in chosen]
     record: dict[str, float | int | str] = {
         "law_check_seed": SEED,
-        "law_check_points": sum(counted),
-        "law_check_usable": sum(region in INSIDE for region in regions),
+        "law_check_points": len(check.tasks),
+        "law_check_usable": len(regions),
     }
     if not rows:
         return record
     table = np.concatenate(rows)
-    for region in (*INSIDE, *OUTSIDE):
+    for region in INSIDE:
         mask = np.array([found == region for found in regions])
         if not np.any(mask):
             continue
         where = f"_{region}" if region else ""
-        shown = ("film_compliance", 0), ("damping", 1), ("stiffness", 4), ("film_offset", 5)
-        for name, column in shown if region in INSIDE else shown[:2]:
+        for name, column in ("film_compliance", 0), ("damping", 1), ("stiffness", 4), ("film_offset", 5):
             known = table[mask, column][np.isfinite(table[mask, column])]
             record[f"law{where}_{name}_error"] = quantiles_text(known) if known.size else NOTHING[name]
             if column < 2:  # the two whose errors have bars
                 record[f"law{where}_{name}_within_bar"] = float(np.mean(table[mask, column + 2]))
     return record
-
-
-def _known(task: LineTask, arrays: Arrays, region: str) -> bool:
-    """Whether a fresh solve is usable, and its film, below the map, not so thick that a law lets it fade."""
-    fading = region == "below_load" and float(arrays["film_offset"][0]) > THICK_FILM * task.contact.radius
-    return Status(int(arrays["status"][0])).usable and not fading
 
 
 def _errors(law: ContactLaw, points: list[tuple[LineTask, Arrays]], bars: tuple[float, float]) -> FloatArray:

@@ -17,21 +17,25 @@ from ehdmaps.jobs.store import Arrays
 from ehdmaps.jobs.tasks import SPECTRUM_FIELDS, LineTask, knows_heat, with_later_fields
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone import ERROR, FILMS, IMAGINARY, REAL
-from ehdmaps.maps.backbone_plan import BackbonePlan, plan_backbone, plan_own_lines
+from ehdmaps.maps.backbone_plan import BackbonePlan, Steps, plan_backbone, plan_own_lines
 from ehdmaps.maps.records import reference_json
 from ehdmaps.maps.rolling_film import NAMES as ROLLING
 from ehdmaps.physics.solution import ContactSolver, Status
 from ehdmaps.table.solver import TableSolver
 
+MOST_LINE_POINTS = 40_000
+"""Points of the lines that are not exceeded by halving a step: minutes on one core."""
+
 
 @dataclass(frozen=True)
 class Refinement:
-    """Plans of a backbone and its tasks, one a line and in the plans' order.
+    """Plans of a backbone, its steps, and its tasks, one a line and in the plans' order.
 
     There is one plan for all contacts, or one a contact where films know heat, see `ehdmaps.maps.own_lines`.
     """
 
     plans: tuple[BackbonePlan, ...]
+    steps: Steps
     tasks: tuple[LineTask, ...]
 
     @property
@@ -40,7 +44,7 @@ class Refinement:
         return sum(task.points for task in self.tasks)
 
 
-def refinement(job: Job, solver: ContactSolver) -> Refinement | None:
+def refinement(job: Job, solver: ContactSolver, steps: Steps | None = None) -> Refinement | None:
     """Plan the backbone of a job; None where the solver does not ask for one or the job declines it.
 
     Parameters
@@ -49,10 +53,13 @@ def refinement(job: Job, solver: ContactSolver) -> Refinement | None:
         What to make.
     solver : ContactSolver
         What solves it.
+    steps : Steps, optional
+        Largest steps of the backbone; those of the job if left out.
     """
+    steps = steps or job.line_steps
     if not solver.wants_backbone or job.backbone == "none":
         return None
-    axes = job.lubricant, job.loads, job.entrainment_speeds, job.temperatures, job.line_steps
+    axes = job.lubricant, job.loads, job.entrainment_speeds, job.temperatures, steps
     if knows_heat(solver):
         plans = plan_own_lines(job.contacts, *axes)
     else:
@@ -75,7 +82,7 @@ def refinement(job: Job, solver: ContactSolver) -> Refinement | None:
         for plan in plans
         for line in plan.lines
     )
-    return Refinement(plans, tasks)
+    return Refinement(plans, steps, tasks)
 
 
 def of_groups(solver: ContactSolver) -> ContactSolver:

@@ -89,11 +89,6 @@ class Seen:
     running: bool
     known: bool = True
 
-    @property
-    def finished(self) -> bool:
-        """Whether all points have a result, and nobody works on more: of a shard, which leaves no map."""
-        return not self.running and 0 < self.status.total <= self.status.done
-
 
 class StatusFile:
     """Keeps the file of a map that is being made; use it in a `with` statement, while the store is held.
@@ -110,13 +105,10 @@ class StatusFile:
         Number of points.
     workers : int
         Number of processes.
-    stays : bool
-        Whether it stays at the end of a run that finishes: of a shard, which leaves no map that would say so.
     """
 
-    def __init__(self, output: Path, about: str, total: int, workers: int, stays: bool = False) -> None:
+    def __init__(self, output: Path, about: str, total: int, workers: int) -> None:
         self._path = status_path(output)
-        self._stays = stays
         self._about = {
             "job": about,
             "process": os.getpid(),
@@ -139,7 +131,7 @@ class StatusFile:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        if kind is not None or self._stays:
+        if kind is not None:
             self.write()
         elif self._held is not None:
             with contextlib.suppress(OSError):

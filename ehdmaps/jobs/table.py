@@ -205,16 +205,6 @@ class Table:
             return None
         return value
 
-    def switch(self, key: str) -> bool | None:
-        """Return true or false."""
-        value = self.get(key)
-        if key not in self:
-            return None
-        if not isinstance(value, bool):
-            self.note(key, f"got {short(value)}; allowed: true or false, without quotes")
-            return None
-        return value
-
     def choice(self, key: str, allowed: tuple[str, ...], *, required: bool = False) -> str | None:
         """Return one of some words.
 

@@ -30,7 +30,7 @@ from scipy.interpolate import CubicSpline, PchipInterpolator, PPoly
 from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
 from ehdmaps.errors import MapError
 from ehdmaps.maps import schema
-from ehdmaps.maps.backbone_plan import NEIGHBOURS, VALLEY
+from ehdmaps.maps.backbone_plan import NEIGHBOURS, VALLEY, Axis
 from ehdmaps.maps.film_field import lifted_loss
 from ehdmaps.maps.locked_film import film_of
 from ehdmaps.maps.locked_fit import MOST, fitted_factor, law_differences, response_error
@@ -54,6 +54,9 @@ valley it runs through zero, where a logarithm has no slope to follow."""
 
 LATTICE_STEP = 0.02
 """Step of zeta to which lines are refined for reading."""
+
+_FEWER = 4
+"""Lines in each direction, to tell what an interpolation is worth."""
 
 FILMS = ("film_offset", "film_compliance", "loss_compliance")
 """Variables of the group that a law is made from."""
@@ -203,8 +206,13 @@ class BackboneField:
         self._start = known_from(zeta, np.isfinite(offset) & np.isfinite(compliance) & np.isfinite(loss))
         self._nodes = nodes
         self._check_lines()
-        places = [(j, k) for j in range(self._log_speeds.size) for k in range(self._temperatures.size)]
-        self._lattice = np.array([self._line(j, k) for j, k in places])
+        self._lattice = self._lines(slice(None))
+
+    def _lines(self, which: slice) -> FloatArray:
+        """All lines on the common lattice, through some of their points, (lines, nodes, 5)."""
+        return np.array(
+            [self._line(which, j, k) for j in range(self._log_speeds.size) for k in range(self._temperatures.size)]
+        )
 
     def _check_lines(self) -> None:
         """Refuse lines that cannot be read."""
@@ -217,9 +225,14 @@ class BackboneField:
                 f"and {self._temperatures[k]:.2f} K; at least {FEWEST_NODES} are needed; generate the map again"
             )
 
-    def _line(self, j: int, k: int) -> FloatArray:
+    @cached_property
+    def _coarse_lattice(self) -> FloatArray:
+        """Lines through every second one of their points."""
+        return self._lines(slice(None, None, 2))
+
+    def _line(self, which: slice, j: int, k: int) -> FloatArray:
         """One line on the common lattice, shape (nodes, 5), linear beyond the line's own ends."""
-        zeta, (offset, compliance, loss) = self._zeta, (values[:, j, k] for values in self._films)
+        zeta, (offset, compliance, loss) = self._zeta[which], (values[which, j, k] for values in self._films)
         speed, temperature = math.exp(self._log_speeds[j]), float(self._temperatures[k])
         solved = np.isfinite(offset) & np.isfinite(compliance) & np.isfinite(loss) & (offset > 0.0)
         z, h, s, b = zeta[solved], offset[solved], compliance[solved], loss[solved]
@@ -280,6 +293,37 @@ class BackboneField:
                 weights = np.outer(row_weights, column_weights).ravel()
                 results[:, :, m, n] = self._at(chosen, loads[:, m, n], float(u), float(T), lines, weights)
         return results[0], results[1], results[2]
+
+    def changes(self, contact: str, load: float, speed: float, temperature: float) -> dict[Axis, float]:
+        """What the loss changes by, relatively, if it is read from fewer points along an axis.
+
+        From four lines instead of six along speed and temperature, from every second point along the loads.
+
+        Parameters
+        ----------
+        contact : str
+            Name of a contact.
+        load, speed, temperature : float
+            [N/m], [m/s] and [K].
+        """
+        chosen = self._contacts[contact]
+        at = math.log(speed * self._reference.radius / chosen.radius)
+
+        def loss(by_speed: int = NEIGHBOURS, by_temperature: int = NEIGHBOURS, coarse: bool = False) -> float:
+            rows, row_weights = lagrange(self._log_speeds, at, by_speed)
+            columns, column_weights = lagrange(self._temperatures, temperature, by_temperature)
+            lines = (rows[:, None] * self._temperatures.size + columns).ravel()
+            weights = np.outer(row_weights, column_weights).ravel()
+            lattice = self._coarse_lattice if coarse else self._lattice
+            return float(self._at(chosen, np.array([load]), speed, temperature, lines, weights, lattice)[2, 0])
+
+        full = loss()
+        fewer: dict[Axis, float] = {
+            "load": loss(coarse=True),
+            "entrainment_speed": loss(by_speed=_FEWER),
+            "temperature": loss(by_temperature=_FEWER),
+        }
+        return {axis: abs(value / full - 1.0) for axis, value in fewer.items()}
 
     def first_loads(self, speeds: FloatArray, temperatures: FloatArray) -> FloatArray:
         """Loads from which on the backbone is read [N/m], (n_u, n_T); see `FilmField.first_loads`.
@@ -385,12 +429,13 @@ class BackboneField:
         temperature: float,
         lines: IntArray,
         weights: FloatArray,
+        lattice: FloatArray | None = None,
     ) -> FloatArray:
         """Films along loads at one speed and temperature with their loss lifted, shape (3, n)."""
         unit, valley, scale = self._scales(contact, speed, temperature)
         mixed = np.empty((3, loads.size))
         zeta = np.log(loads * unit / valley)
-        mix_lines(self._lattice, self._first, LATTICE_STEP, lines, weights, zeta, mixed)
+        mix_lines(self._lattice if lattice is None else lattice, self._first, LATTICE_STEP, lines, weights, zeta, mixed)
         offset = scale * np.exp(mixed[0])
         compliance = -mixed[1] * offset / loads
         width = half_width(loads, contact.radius, contact.reduced_modulus)
@@ -429,7 +474,7 @@ class BackboneField:
         return np.log(loads * unit / valley)
 
 
-def lagrange(nodes: FloatArray, at: float) -> tuple[IntArray, FloatArray]:
+def lagrange(nodes: FloatArray, at: float, most: int = NEIGHBOURS) -> tuple[IntArray, FloatArray]:
     """Indices and Lagrange weights of the nodes around `at`; linear through the end nodes beyond them.
 
     Parameters
@@ -438,8 +483,10 @@ def lagrange(nodes: FloatArray, at: float) -> tuple[IntArray, FloatArray]:
         Places of the nodes, rising.
     at : float
         Place that is read.
+    most : int
+        Largest number of nodes.
     """
-    count = min(NEIGHBOURS, nodes.size)
+    count = min(most, nodes.size)
     if not nodes[0] <= at <= nodes[-1]:
         count = min(2, nodes.size)
     first = int(np.searchsorted(nodes, at)) - count // 2

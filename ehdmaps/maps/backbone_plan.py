@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -19,6 +19,8 @@ OUTER_STEP = 0.45
 
 VALLEY = (-1.1, 1.5)
 """zeta of the valley: from where film compliance and loss begin to fall to where they have recovered."""
+
+Axis = Literal["load", "entrainment_speed", "temperature"]
 
 NEIGHBOURS = 6
 """Lines in each direction that the interpolation between lines uses."""
@@ -45,9 +47,19 @@ class Steps:
     entrainment_speed: float = 0.66
     temperature: float = 17.0
 
+    def finer(self, axis: Axis) -> Steps:
+        """Half of the step along one axis.
+
+        Parameters
+        ----------
+        axis : {"load", "entrainment_speed", "temperature"}
+            Which one.
+        """
+        return replace(self, **{axis: 0.5 * getattr(self, axis)})
+
 
 STEPS = Steps()
-"""Those of a job that says nothing."""
+"""Where a backbone begins for which a job says nothing."""
 
 
 class StepLimits(NamedTuple):

@@ -1,44 +1,38 @@
-"""An analysis that makes its own maps: planned, made or reused, run, and checked; again with a wider plan where needed.
+"""An analysis that chooses its physics: what a scene requires, films of the film table, maps of what that has not.
 
 The order of things: the ranges of the scene (`mbs.analyses.plan`), the physics that they require
-(`mbs.analyses.film_verdicts`), a map for each type of bearing (`mbs.analyses.kept_map`), the analysis, and a look at
-what it visited. Loads outside a map widen its plan; films of slow motion that turn out too wrong at the bearings get
-their memory.
+(`mbs.analyses.film_verdicts`), films of each type of bearing, and the analysis. Films come from the film table; where
+heat or a limiting stress matter, a map is made by `ehdmaps.jobs.generate`, whose store beside it knows what is solved.
 """
 
 from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable, Mapping
+import re
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from types import NoneType
 from typing import Generic, TypeVar
 
-import numpy as np
-
 from ehdmaps.errors import InputError, MapError
+from ehdmaps.jobs.batch_generate import make_folder
+from ehdmaps.jobs.generate import Generated, generate
+from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.job_text import Entry
+from ehdmaps.jobs.law_check import unmet
+from ehdmaps.jobs.sweep import Progress
+from ehdmaps.maps.emap import EHDMap
+from ehdmaps.outputs import MAP, Output, check_outputs
 from ehdmaps.physics.heat import PHYSICS
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.rheology import SHEARS
-from mbs.analyses import film_verdicts, planning
-from mbs.analyses.campbell import CampbellResult
+from mbs.analyses import film_verdicts
 from mbs.analyses.case import LawChoice, Subject
 from mbs.analyses.film_errors import film_errors
 from mbs.analyses.film_verdicts import Verdict
-from mbs.analyses.hammer import HammerResult
-from mbs.analyses.kept_map import KeptMap, TellMap, kept_map
-from mbs.analyses.lsa import LsaResult
-from mbs.analyses.modes import ModesResult
 from mbs.analyses.operating import operating
 from mbs.analyses.plan import PlanResult, PlanSettings, plan
-from mbs.analyses.reach import faster_than_laws
-from mbs.analyses.runup import RunUpResult
-from mbs.analyses.statics import StaticsResult
-from mbs.analyses.sweep import CriticalResult, SweepResult
-from mbs.instruments.tolerance import Tolerated
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.model.relaxation import Films
@@ -46,25 +40,28 @@ from mbs.scene.assembly import Model
 from mbs.scene.contact_laws import law_label
 from mbs.scene.map_set import MapSet
 from mbs.scene.scene import Scene
+from mbs.scene.table_maps import table_maps
 
 R = TypeVar("R")
 
 TOLERANCE = 0.05
 """Change of a stiffness or damping of a contact above which physics is switched on, as a part of it."""
 
-MOST_MAPS = 3
-"""How many plans are tried."""
-
-WIDER = 3.0
-"""Highest load of the next plan over that of the last one."""
-
 MOST_TOLERANCE = 9.0
 """A tenfold stiffness or damping, 20 dB."""
+
+DIGITS = 12
+"""Digits of the job's hash in the name of its map."""
+
+_UNSAFE = re.compile(r"[^a-z0-9_-]+")
+
+TellMap = Callable[[int], Progress]
+"""Takes the number of points that are to be solved, gives what is told."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class AutoSettings:
-    """What an analysis that makes its own map is to look at.
+    """What an analysis that chooses its physics is to look at.
 
     Attributes
     ----------
@@ -73,9 +70,7 @@ class AutoSettings:
     highest : float or None
         Highest frequency that matters [Hz]; None for that of [linear] of the scene, else of [campbell]; 0 for none.
     folder : Path
-        Folder in which maps are made and kept.
-    others : tuple of Path
-        Further folders with maps.
+        Folder of the maps that are made.
     clearance : float or None
         Diametral clearance of all bearings [m]; None for those of the scene.
     films : {"slow", "memory"} or None
@@ -98,7 +93,6 @@ class AutoSettings:
     tolerance: float = TOLERANCE
     highest: float | None = None
     folder: Path = Path()
-    others: tuple[Path, ...] = ()
     clearance: float | None = None
     films: Films | None = None
     supply: OilSupply | None = None
@@ -119,8 +113,35 @@ class AutoSettings:
 
 
 @dataclass(frozen=True, eq=False)
+class MadeMap:
+    """A map that was made for an analysis.
+
+    Attributes
+    ----------
+    path : Path
+        File of the map.
+    generated : Generated
+        The map, and how it came about.
+    """
+
+    path: Path
+    generated: Generated
+
+    @property
+    def emap(self) -> EHDMap:
+        """The map."""
+        return EHDMap(self.generated.dataset, self.generated.backbone)
+
+    @property
+    def unmet(self) -> tuple[str, ...]:
+        """Which bars its contact laws miss, without the advice, as the job was planned."""
+        lines = unmet(self.generated.dataset, self.generated.backbone is not None)
+        return tuple(line for line in lines if line.startswith(("unmet", "no contact law")))
+
+
+@dataclass(frozen=True, eq=False)
 class Automatic(Generic[R]):
-    """An analysis with the maps that were made for it.
+    """An analysis with the physics that was chosen for it.
 
     Attributes
     ----------
@@ -128,28 +149,16 @@ class Automatic(Generic[R]):
         What the analysis gave.
     subject : Subject
         Scene and law that it was made with.
-    maps : tuple of KeptMap
-        Maps that were tried, plan by plan.
-    margins : tuple of float
-        Highest load of each of them over the largest one at rest.
-    kept : tuple of KeptMap
-        The last ones, which count: one for each type of bearing.
+    made : tuple of MadeMap
+        Maps that were made, of the types of bearing whose films the film table has not.
     verdicts : tuple of Verdict
-        Which physics is on, and why: memory, supply, roughness, and heat of each map.
-    left : mapping of str to int
-        How often each bearing was still outside its last map; empty where it never was.
-    too_fast : frozenset of str
-        Those of them that turned faster than their map, or their table over speed, goes.
+        Which physics is on, and why: memory, supply, roughness, and heat and shear of each type of bearing.
     """
 
     result: R
     subject: Subject
-    maps: tuple[KeptMap, ...]
-    margins: tuple[float, ...]
-    kept: tuple[KeptMap, ...]
+    made: tuple[MadeMap, ...]
     verdicts: tuple[Verdict, ...]
-    left: Mapping[str, int]
-    too_fast: frozenset[str]
 
 
 def automatic(
@@ -158,7 +167,7 @@ def automatic(
     settings: AutoSettings | None = None,
     progress: TellMap | None = None,
 ) -> Automatic[R]:
-    """Analyse a scene with maps that are planned and made, or reused, for it.
+    """Analyse a scene with the physics that it requires.
 
     Parameters
     ----------
@@ -181,12 +190,12 @@ def automatic(
 
     Examples
     --------
-    The map takes half a minute of processor time, and is there the next time::
+    Without heat and limiting stress no map is made::
 
         from mbs import automatic, modes, read_scene
 
         found = automatic(read_scene("nu308_rigid"), modes)
-        found.maps[-1].path, [verdict.line for verdict in found.verdicts]
+        [verdict.line for verdict in found.verdicts]
         found.result.dataset["frequency"]
     """
     return settled(scene, lambda subject: analysis(subject.model()), settings, progress)
@@ -219,39 +228,65 @@ def settled(
     if highest is None:
         highest = max(scene.frequencies, default=scene.campbell.highest)
     looked_at = planned_for or scene
-    found = _plan(looked_at, settings.clearance, planning.MARGIN)
-    plans = [found] * len(found.needed)
-    margins = [planning.MARGIN] * len(plans)
+    found = plan(looked_at, PlanSettings(settings.clearance))
     supplies = _supplies(scene, settings.supply)
     verdicts = _verdicts(scene, found, settings, supplies, highest)
-    tried: list[tuple[KeptMap, float]] = []
-    for attempt in range(1, MOST_MAPS + 1):
-        keys = _solver_keys(verdicts, len(plans))
-        jobs = [one.jobs(solvers=keys)[index] for index, one in enumerate(plans)]
-        kept = tuple(
-            kept_map(scene.name, job, settings.folder, settings.others, settings.workers, progress) for job in jobs
-        )
-        tried += zip(kept, margins, strict=True)
-        subject = _subject(scene, kept, verdicts, supplies, settings)
-        try:
-            result = analyse(subject)
-        except MapError as error:
-            raise MapError("\n".join([str(error), *_remedies(verdicts)])) from error
-        left = outside_calls(result)
-        more = _with_memory(subject, looked_at, found, verdicts, settings, highest)
-        widened = False
-        too_fast = left.keys() & _too_fast(result)
-        for index, one in enumerate(plans):
-            # Another margin of the load brings nothing to bearings that turn faster than their map goes.
-            if (left.keys() - too_fast) & set(one.needed[index].bearings):
-                wider = _wider(looked_at, settings.clearance, WIDER * margins[index])
-                if wider is not None:
-                    plans[index], margins[index], widened = wider, WIDER * margins[index], True
-        if attempt == MOST_MAPS or (not widened and more is None):
-            break
-        verdicts = more or verdicts
-    maps, their_margins = zip(*tried, strict=True)
-    return Automatic(result, subject, maps, their_margins, kept, verdicts, left, frozenset(too_fast))
+    films = _films(looked_at, found, verdicts, settings, progress)
+    maps = MapSet([one.emap if isinstance(one, MadeMap) else one for one in films])
+    try:
+        subject = _subject(scene, maps, verdicts, supplies, settings)
+        if (more := _with_memory(subject, looked_at, found, verdicts, settings, highest)) is not None:
+            verdicts, subject = more, _subject(scene, maps, more, supplies, settings)
+        result = analyse(subject)
+    except MapError as error:
+        raise MapError("\n".join([str(error), *_remedies(verdicts)])) from error
+    return Automatic(result, subject, tuple(one for one in films if isinstance(one, MadeMap)), verdicts)
+
+
+def map_name(scene: str, job: Job) -> str:
+    """Name of the map of a job: the scene, the bearing, the beginning of the job's sha256.
+
+    Parameters
+    ----------
+    scene : str
+        Name of the scene.
+    job : Job
+        The job.
+
+    Examples
+    --------
+    >>> from mbs import plan, read_scene
+    >>> job, = plan(read_scene("nu308_rigid")).jobs()
+    >>> map_name("nu308_rigid", job).startswith("nu308_rigid_nu308_")
+    True
+    """
+    bearing = job.bearing.name if job.bearing else job.title
+    words = (_UNSAFE.sub("-", text.lower()).strip("-") or "map" for text in (Path(scene).stem, bearing))
+    return "_".join((*words, job.sha256[:DIGITS])) + ".nc"
+
+
+def _films(
+    scene: Scene,
+    found: PlanResult,
+    verdicts: tuple[Verdict, ...],
+    settings: AutoSettings,
+    progress: TellMap | None,
+) -> list[EHDMap | MadeMap]:
+    """Films of each type of bearing: from the film table, or of a map where its verdicts ask for more."""
+    films: list[EHDMap | MadeMap] = []
+    keys = _solver_keys(verdicts, len(found.needed))
+    jobs = found.jobs(solvers=keys) if any(keys) else ()
+    for index, (needed, wanted) in enumerate(zip(found.needed, keys, strict=True)):
+        read = None if wanted else table_maps(scene).of(needed.geometry)
+        if read is not None:
+            films.append(read)
+            continue
+        make_folder(settings.folder, "--maps")
+        path = settings.folder / map_name(scene.name, jobs[index])
+        check_outputs([Output("--maps", path, MAP)])
+        job = dataclasses.replace(jobs[index], name=path.stem)
+        films.append(MadeMap(path, generate(job, path, settings.workers, progress=progress)))
+    return films
 
 
 def _remedies(verdicts: tuple[Verdict, ...]) -> list[str]:
@@ -263,85 +298,6 @@ def _remedies(verdicts: tuple[Verdict, ...]) -> list[str]:
         for verdict in verdicts
         if verdict.on and verdict.solver
     ]
-
-
-def outside_calls(result: object) -> dict[str, int]:
-    """How often each bearing was outside its map in an analysis, by name; none that never was.
-
-    Parameters
-    ----------
-    result : object
-        What an analysis gave: `StaticsResult`, `ModesResult`, `LsaResult`, `SweepResult`, `RunUpResult`,
-        `CampbellResult`, `HammerResult`, or a sequence of these, with labels or without.
-
-    Raises
-    ------
-    InputError
-        For anything else.
-    """
-    counts: list[Mapping[str, int]]
-    if isinstance(result, (list, tuple)):
-        # Labels stand beside results, and how numerical settings were chosen for them.
-        counts = [outside_calls(entry) for entry in result if not isinstance(entry, (str, Tolerated, NoneType))]
-    elif isinstance(result, (StaticsResult, ModesResult, LsaResult)):
-        counts = [result.balance.outside]
-    elif isinstance(result, HammerResult):
-        counts = [result.balance.outside, result.outside_hits]
-    elif isinstance(result, CriticalResult):
-        counts = [result.outside]
-    elif isinstance(result, SweepResult):
-        counts = list(result.outside)
-    elif isinstance(result, RunUpResult):
-        counts = [result.record.outside]
-    elif isinstance(result, CampbellResult):
-        counts = [run.record.outside for run in result.runs]
-    else:
-        raise InputError(
-            f"auto, analysis: got a result of the type {type(result).__name__}; allowed: what statics, modes, lsa, "
-            "sweep, critical, runup, campbell and hammer give"
-        )
-    total: dict[str, int] = {}
-    for entry in counts:
-        for name, count in entry.items():
-            if count:
-                total[name] = total.get(name, 0) + int(count)
-    return total
-
-
-def _too_fast(result: object) -> set[str]:
-    """Bearings, and elements by tables over speed, that turn faster in an analysis than their law goes."""
-    if isinstance(result, (list, tuple)):
-        return {name for entry in result for name in _too_fast(entry)}
-    visited: list[tuple[Model, float]] = []
-    if isinstance(result, (StaticsResult, ModesResult, LsaResult, HammerResult)):
-        visited = [(result.model, abs(result.balance.operation.speed))]
-    elif isinstance(result, CriticalResult):
-        visited = [(result.model, float(np.abs(result.sweep.speeds).max()))]
-    elif isinstance(result, SweepResult):
-        fastest = (float(np.abs(found.speeds).max()) for found in result.sweeps)
-        visited = list(zip((case.model for case in result.cases), fastest, strict=True))
-    elif isinstance(result, RunUpResult):
-        visited = [(result.model, float(np.abs(result.record.speed).max()))]
-    elif isinstance(result, CampbellResult):
-        visited = [(run.case.model, float(np.abs(run.record.speed).max())) for run in result.runs]
-    return {name for model, speed in visited for name in faster_than_laws(model, speed)}
-
-
-def _plan(scene: Scene, clearance: float | None, margin: float) -> PlanResult:
-    """The plan of a scene."""
-    return plan(scene, PlanSettings(clearance=clearance, margin=margin))
-
-
-def _wider(scene: Scene, clearance: float | None, margin: float) -> PlanResult | None:
-    """A plan with another margin; None beyond what a job allows."""
-    if margin > planning.MOST_MARGIN:
-        return None
-    try:
-        found = _plan(scene, clearance, margin)
-        found.jobs()
-    except InputError:
-        return None
-    return found
 
 
 def _supplies(scene: Scene, asked: OilSupply | None) -> tuple[OilSupply, ...]:
@@ -398,14 +354,13 @@ def _solver_keys(verdicts: tuple[Verdict, ...], types: int) -> list[dict[str, En
 
 def _subject(
     scene: Scene,
-    kept: tuple[KeptMap, ...],
+    maps: MapSet,
     verdicts: tuple[Verdict, ...],
     supplies: tuple[OilSupply, ...],
     settings: AutoSettings,
 ) -> Subject:
     """Scene and law with what is switched on."""
     memory, supply, rough = verdicts[:3]
-    maps = MapSet([one.emap for one in kept])
     surface = film_verdicts.surface_in_force(scene.surface, rough)
     law = LawChoice(
         law_label("map", maps),

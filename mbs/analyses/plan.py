@@ -10,18 +10,13 @@ from ehdmaps.errors import InputError
 from ehdmaps.jobs.axes import SPEED_AXIS
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.job_text import Entry
-from ehdmaps.maps.emap import EHDMap
-from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.units import RPM, SPEED
 from mbs.analyses import planning
 from mbs.analyses.operating import held
 from mbs.analyses.planned_job import planned_job
 from mbs.analyses.planning import Needed
 from mbs.scene.assembly import Model, assemble
-from mbs.scene.contact_laws import constant_name
-from mbs.scene.map_set import MapSet, as_map_set
 from mbs.scene.scene import Scene
-from mbs.scene.specs import BearingSpec
 
 
 @dataclass(frozen=True)
@@ -30,15 +25,12 @@ class PlanSettings:
 
     Attributes
     ----------
-    law : str
-        hertz or constant:NAME, for the loads at rest.
     clearance : float or None
         Diametral clearance of all bearings [m]; None for those of the scene.
     margin : float
         Highest load of the map over the largest one at rest, for what moves.
     """
 
-    law: str = "hertz"
     clearance: float | None = None
     margin: float = planning.MARGIN
 
@@ -92,19 +84,15 @@ class PlanResult:
         return tuple(jobs)
 
 
-def plan(
-    scene: Scene, settings: PlanSettings | None = None, emap: EHDMap | MapSet | Sequence[EHDMap] | None = None
-) -> PlanResult:
+def plan(scene: Scene, settings: PlanSettings | None = None) -> PlanResult:
     """Find the operating ranges that a scene needs of a contact map.
 
     Parameters
     ----------
     scene : Scene
-        Scene with bearings, and with a lubricant unless there is a map.
+        Scene with bearings and a lubricant.
     settings : PlanSettings, optional
         How the ranges are found.
-    emap : EHDMap, MapSet or sequence of EHDMap, optional
-        Maps that are to be looked at with `mbs.analyses.coverage.coverage`; their oil counts.
 
     Raises
     ------
@@ -121,46 +109,19 @@ def plan(
     ['NU308']
     """
     settings = settings or PlanSettings()
-    maps = as_map_set(emap)
-    return needed_of(scene, dry_model(scene, settings, maps), settings, maps)
+    model = _dry_model(scene, settings)
+    speeds, needed = _needed(scene, model, settings)
+    return PlanResult(scene, model, speeds, needed)
 
 
-def law_problems(law: str) -> list[str]:
-    """What is wrong about the law of the loads at rest."""
-    if law == "hertz" or constant_name(law) is not None:
-        return []
-    return [f"--law: got {law!r:.60}; allowed here: hertz, constant:NAME; loads at rest are those of dry contacts"]
-
-
-def dry_model(scene: Scene, settings: PlanSettings, maps: MapSet | None = None, mapped: bool = False) -> Model:
-    """The scene with dry contacts, from which loads and speeds follow; the first half of `plan`.
-
-    Parameters
-    ----------
-    scene : Scene
-        What is planned for.
-    settings : PlanSettings
-        Law and clearance.
-    maps : MapSet, optional
-        Maps that are to be looked at.
-    mapped : bool
-        Whether there is a map that could not be read, so that the scene needs no lubricant.
-
-    Raises
-    ------
-    InputError
-        With everything because of which no map can be planned.
-    """
+def _dry_model(scene: Scene, settings: PlanSettings) -> Model:
+    """The scene with dry contacts, from which loads and speeds follow; all problems at once."""
     problems: list[str] = []
     model = None
     try:
-        dry = settings.law if constant_name(settings.law) is not None else "hertz"
-        model = assemble(_dry_scene(scene), dry, clearance=settings.clearance)
+        model = assemble(_dry_scene(scene), "hertz", clearance=settings.clearance)
     except InputError as error:
         problems += error.problems
-    if maps is not None:
-        for entry in scene.bearings:
-            problems += maps.problems(f"bearing {entry.name!r}", entry.geometry)
     if not scene.bearings:
         problems.append("got no bearing; allowed: at least one [[bearings]], which is what a map is for")
     if warm := [entry.name for entry in scene.bearings if entry.thermal is not None]:
@@ -168,48 +129,14 @@ def dry_model(scene: Scene, settings: PlanSettings, maps: MapSet | None = None, 
             f"got thermal in {', '.join(warm)}; allowed: one temperature for all, that of [operation]; leave thermal "
             "out of a copy of the scene, or take a map over many temperatures, such as that of the shipped job nu308"
         )
-    if scene.lubricant is None and maps is None and not mapped:
+    if scene.lubricant is None:
         problems.append(
             'got no [lubricant], which a map is made for; add the table to the scene, such as name = "FVA3"'
         )
     named = [problem if problem.startswith("--") else f"{scene.name}: {problem}" for problem in problems]
-    found = [*law_problems(settings.law), *named]
-    if found or model is None:
-        raise InputError(tuple(dict.fromkeys(found)))
+    if named or model is None:
+        raise InputError(tuple(dict.fromkeys(named)))
     return model
-
-
-def needed_of(scene: Scene, model: Model, settings: PlanSettings, maps: MapSet | None = None) -> PlanResult:
-    """The ranges that follow from a scene with dry contacts; the second half of `plan`.
-
-    Parameters
-    ----------
-    scene : Scene
-        What is planned for.
-    model : Model
-        The scene with dry contacts, from `dry_model`.
-    settings : PlanSettings
-        The same.
-    maps : MapSet, optional
-        Whose oil counts where the scene has none.
-
-    Raises
-    ------
-    InputError
-        For a speed that no map has.
-    AnalysisError
-        If a bearing carries no load or does not roll, or there is no equilibrium.
-    """
-    speeds, needed = _needed(scene, model, settings, [_oil(scene, entry, maps) for entry in scene.bearings])
-    return PlanResult(scene, model, speeds, needed)
-
-
-def _oil(scene: Scene, bearing: BearingSpec, maps: MapSet | None) -> Lubricant:
-    """The oil of a bearing: that of the scene, else of its map."""
-    emap = None if maps is None else maps.of(bearing.geometry)
-    oil = scene.lubricant if scene.lubricant is not None or emap is None else emap.lubricant
-    assert oil is not None  # `dry_model` saw to it
-    return oil
 
 
 def _dry_scene(scene: Scene, rooms: tuple[float, ...] = ()) -> Scene:
@@ -226,10 +153,10 @@ def _dry_scene(scene: Scene, rooms: tuple[float, ...] = ()) -> Scene:
     return scene.with_bearings(bearings)
 
 
-def _needed(
-    scene: Scene, model: Model, settings: PlanSettings, oils: Sequence[Lubricant]
-) -> tuple[tuple[float, float], tuple[Needed, ...]]:
+def _needed(scene: Scene, model: Model, settings: PlanSettings) -> tuple[tuple[float, float], tuple[Needed, ...]]:
     """Speeds of the system [rad/s], and the ranges that the scene needs."""
+    oil = scene.lubricant
+    assert oil is not None  # `_dry_model` saw to it
     steady = (scene.speed, *(scene.sweep.speeds.tolist() if scene.sweep else ()))
     speeds = planning.speed_range(steady, scene.run_up.speed.course.values if scene.run_up else ())
     fastest = [entry.rates[1] * speeds[1] for entry in model.bearings]
@@ -247,9 +174,9 @@ def _needed(
         planning.film_room(entry.bearing.geometry, oil, max(load, planning.LIGHT), speed, scene.temperature)
         if speed > 0.0
         else 0.0
-        for entry, oil, load, speed in zip(model.bearings, oils, at_rest, fastest, strict=True)
+        for entry, load, speed in zip(model.bearings, at_rest, fastest, strict=True)
     )
-    filled = held(assemble(_dry_scene(model.scene, rooms), settings.law))
+    filled = held(assemble(_dry_scene(model.scene, rooms), "hertz"))
     preloaded = planning.largest_loads(filled.system, filled.bearings, speeds[1])
     centrifugal = [
         entry.bearing.centrifugal_load(entry.inner_spin, entry.outer_spin) * speeds[1] ** 2

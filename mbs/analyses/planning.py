@@ -46,10 +46,6 @@ SLOWEST = 1.0 / 20.0
 LIGHTEST = 1.0 / 1000.0
 """Lowest mapped load over the highest one."""
 
-LIGHT_ENOUGH = 1.0 / 100.0
-"""The same of a map that is there: planned maps begin lower for the damping of lightly loaded films. Where one of an
-NU308 begins at 1 N/mm instead of 0.1 N/mm, load and stiffness between the two are within 2 %, damping within 3 %."""
-
 LIGHT = 1e3
 """The lowest mapped load is not above this [N/m]: lightly loaded films carry the damping of unloaded rollers."""
 

@@ -60,9 +60,6 @@ def source_of(model: Model) -> str:
     return "the map" if model.law.startswith(("map ", "maps ")) else "the table of the film formula"
 
 
-SPEED_ROUND_OFF = 1e-9
-"""Of a speed, relative: a map that ends at it has it."""
-
 SPEED_TABLE = "its table of speeds"
 """What is left by a bearing or spring of matrices over speed."""
 
@@ -96,29 +93,6 @@ def share_below(model: Model, speeds: FloatArray) -> float:
     """Part of some speeds [rad/s] that lies below the law's films, from 0 to 1; 0 for laws without films."""
     fade = fade_of(model)
     return float(np.mean(fade.below(speeds))) if fade is not None and speeds.size else 0.0
-
-
-def faster_than_laws(model: Model, speed: float) -> set[str]:
-    """Bearings whose entrainment speed lies above their law, and elements whose table over speed ends below.
-
-    Parameters
-    ----------
-    model : Model
-        Model with its law.
-    speed : float
-        Highest speed of the system that is visited, without sign [rad/s].
-    """
-    found = {
-        entry.element.name
-        for entry in model.system.elements
-        if isinstance(entry.element, MatrixElement) and entry.element.beyond(speed)
-    }
-    for bearing in model.bearings:
-        law = _law_of(bearing)
-        fastest = bearing.entrainment_speed(Operation(speed))
-        if law is not None and not isinstance(law, DryLaw) and fastest > law.speed_range[1] * (1.0 + SPEED_ROUND_OFF):
-            found.add(bearing.name)
-    return found
 
 
 def axes_outside(model: Model, speed: float, loads: Mapping[str, float] | None = None) -> dict[str, str]:

@@ -1,4 +1,4 @@
-"""`--auto` of a command: its options, the maps that a scene requires, the analysis with them, lines that say so."""
+"""`--auto` of a command: its options, the physics that a scene requires, the analysis with it, lines that say so."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from ehdmaps.physics.heat import PHYSICS
 from ehdmaps.physics.rheology import SHEARS
 from ehdmaps.program import tell
 from ehdmaps.units import LOAD, SPEED, TEMPERATURE, closest
-from mbs.analyses.auto import MOST_TOLERANCE, TOLERANCE, Automatic, AutoSettings, settled
+from mbs.analyses.auto import MOST_TOLERANCE, TOLERANCE, Automatic, AutoSettings, MadeMap, settled
 from mbs.analyses.case import LawChoice, Subject
-from mbs.analyses.kept_map import KeptMap
+from mbs.analyses.planning import MARGIN
 from mbs.commands.cases import FILMS
 from mbs.commands.common import Done, Looked
 from mbs.commands.options import read_clearance, read_supplies
@@ -40,7 +40,7 @@ def with_own_maps(
     analyse: Callable[[A], R],
     looks_at: Callable[[A], Looked],
 ) -> Done[R]:
-    """The analysis of a command with maps that are made for it.
+    """The analysis of a command with the physics that is chosen for it.
 
     Parameters
     ----------
@@ -66,9 +66,7 @@ def with_own_maps(
         if stores:
             tell(f"\nstopped; what is solved of a map is kept ({stores}): the same command goes on from there")
         raise
-    return Done(
-        found.result, (*_lines(found, settings),), 1 if found.left or any(one.unmet for one in found.kept) else 0
-    )
+    return Done(found.result, (*_lines(found),), 1 if any(one.unmet for one in found.made) else 0)
 
 
 def read_tolerance(text: str | None, problems: list[str]) -> float:
@@ -105,7 +103,7 @@ def _asked(
 ) -> tuple[Scene, Looked, AutoSettings]:
     """Scene, what is looked at, and settings; all problems at once, before anything is made."""
     problems = [
-        f"--{option}: stands beside --auto, which makes or finds the map itself; leave one of them out"
+        f"--{option}: stands beside --auto, which has films of its own; leave one of them out"
         for option in _CONTRARY
         if getattr(arguments, option, None)
     ]
@@ -160,7 +158,6 @@ def _settings(arguments: argparse.Namespace, tolerance: float, folder: Path, hig
         tolerance=tolerance,
         highest=highest,
         folder=folder,
-        others=(Path(),),
         clearance=clearances[0] if clearances else None,
         films=kinds.get(films[0]) if films else None,
         supply=supplies[0] if supplies else None,
@@ -174,40 +171,22 @@ def _with(arguments: argparse.Namespace, subject: Subject) -> argparse.Namespace
     return argparse.Namespace(**{**vars(arguments), "subject": subject})
 
 
-def _lines(found: Automatic[Any], settings: AutoSettings) -> list[str]:
-    """What was planned and made, what is on, and what is not met."""
-    lines = []
-    for kept, margin in zip(found.maps, found.margins, strict=True):
-        lines += [line for line in _map_lines(kept, margin) if line not in lines]
+def _lines(found: Automatic[Any]) -> list[str]:
+    """What was made, what is on, and what is not met."""
+    maps = found.subject.law.maps
+    read = maps is not None and any(emap.from_table for emap in maps.maps)
+    lines = [*(["auto: films from the film table"] if read else []), *map(_map_line, found.made)]
     lines += [f"auto: {verdict.line}" for verdict in found.verdicts]
-    lines += [f"warning: auto: {one.path}: {line}" for one in found.kept for line in one.unmet]
-    if found.left:
-        names = ", ".join(f"{name} {count} times" for name, count in found.left.items())
-        plans = len(found.maps) // len(found.kept)
-        if found.left.keys() - found.too_fast:
-            lines.append(
-                f"warning: auto: after {plans} plans the analysis still left its map ({names}); the loads grow "
-                "beyond what the plan allows for: check clearance, loads and speeds of the scene, or make a map by "
-                "`mbs plan --margin` and `ehdmaps generate`"
-            )
-        if found.too_fast:
-            lines.append(
-                f"warning: auto: {', '.join(sorted(found.too_fast))}: turns faster in the analysis than its map, or "
-                "its table over speed, goes, which no plan for larger loads changes; give the scene the highest speed "
-                "in [operation], [sweep] or [runup], or the table more speeds"
-            )
-    else:
-        inside = "the map" if len(found.kept) == 1 else "the maps"
-        lines.append(f"auto: all loads, speeds and temperatures of the analysis lie inside {inside}")
-    return lines
+    return lines + [f"warning: auto: {one.path}: {line}" for one in found.made for line in one.unmet]
 
 
-def _map_lines(kept: KeptMap, margin: float) -> list[str]:
-    """Lines on a map: where it is, what it covers."""
-    data = kept.emap.dataset
+def _map_line(made: MadeMap) -> str:
+    """A line on a map: where it is, what it covers."""
+    data = made.generated.dataset
     load, speed, kelvin = (data[name].values for name in ("load", "entrainment_speed", "temperature"))
-    how = "reused" if kept.reused else f"made, {kept.solved} points solved"
-    return [
-        f"auto: {kept.path}: {how}; {LOAD.value(load[0]):.3g} to {LOAD.text(load[-1])} ({margin:g} times the largest "
-        f"load at rest), {SPEED.value(speed[0]):.3g} to {SPEED.text(speed[-1])}, {TEMPERATURE.text(kelvin[0])}"
-    ]
+    sweep = made.generated.sweep
+    return (
+        f"auto: {made.path}: {sweep.solved} points solved, {sweep.taken_over} taken over; "
+        f"{LOAD.value(load[0]):.3g} to {LOAD.text(load[-1])} ({MARGIN:g} times the largest load at rest), "
+        f"{SPEED.value(speed[0]):.3g} to {SPEED.text(speed[-1])}, {TEMPERATURE.text(kelvin[0])}"
+    )

@@ -14,20 +14,15 @@ from ehdmaps.jobs import solvers
 from ehdmaps.jobs.commands.check import estimated_time
 from ehdmaps.jobs.generate import planned_tasks
 from ehdmaps.jobs.job import Job
-from ehdmaps.jobs.reader import read_job, shipped_jobs
 from ehdmaps.outputs import SEALED, Output, output_problems, sealed, write_text
 from ehdmaps.units import LOAD, RPM, SPEED, TEMPERATURE, Display
 from mbs.analyses import planning
-from mbs.analyses.coverage import AxisCover, Coverage, coverage
-from mbs.analyses.plan import PlanResult, PlanSettings, dry_model, law_problems, needed_of
+from mbs.analyses.plan import PlanResult, PlanSettings, plan
 from mbs.analyses.planning import Needed
-from mbs.commands.cases import read_maps, scene_output_problems
+from mbs.commands.cases import scene_output_problems
 from mbs.commands.options import read_clearance
 from mbs.output.model_text import heading
-from mbs.scene.assembly import Model
 from mbs.scene.fields import MICROMETRE
-from mbs.scene.map_set import MapSet, map_sets
-from mbs.scene.oils import oil_warnings
 from mbs.scene.reader import read_scene
 from mbs.scene.scene import Scene
 
@@ -45,9 +40,9 @@ class _Planned:
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
-    """Tell the ranges; then write the job, or say whether a map covers them."""
-    model, scene, maps, settings = _read(arguments)
-    found = needed_of(scene, model, settings, maps)
+    """Tell the ranges, and write the jobs that cover them."""
+    scene, settings = _read(arguments)
+    found = plan(scene, settings)
     slowest, fastest = found.speeds
     lines = [
         *heading(found.model),
@@ -55,9 +50,6 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         f"dry, over {planning.ANGLES} cage angles of a pitch, times {settings.margin:g} for what moves",
         *_turning(found),
     ]
-    if maps is not None:
-        lines += oil_warnings(maps.oils(scene.bearings), scene.lubricant)
-        return _covered(lines, coverage(found.needed, maps), ", ".join(arguments.map))
     planned = _plan(found, arguments)
     for entry in planned:
         lines += _described(entry)
@@ -79,52 +71,20 @@ def _turning(found: PlanResult) -> list[str]:
     ]
 
 
-def _read(arguments: argparse.Namespace) -> tuple[Model, Scene, MapSet | None, PlanSettings]:
-    """Read scene, map, clearance and margin, and put the scene together; all problems at once."""
+def _read(arguments: argparse.Namespace) -> tuple[Scene, PlanSettings]:
+    """Read scene, clearance and margin; all problems at once."""
     problems: list[str] = []
     scene: Scene | None = None
-    model: Model | None = None
-    maps: MapSet | None = None
     try:
         scene = read_scene(arguments.scene)
     except InputError as error:
         problems += error.problems
-    if arguments.map is not None:
-        maps = _read_maps(arguments.map, scene, problems)
     clearance = read_clearance(arguments.clearance, problems) if arguments.clearance is not None else None
-    margin = _margin(arguments.margin, problems)
-    settings = PlanSettings(arguments.law, clearance, margin)
-    problems += law_problems(settings.law)
-    read = arguments.map or []
-    problems += scene_output_problems(
-        arguments.scene, [*read, *(scene.files if scene else ())], arguments.output, kind=SEALED
-    )
-    if arguments.output is not None and arguments.map is not None:
-        problems.append(
-            "--map: stands beside -o; allowed: a map to be looked at, or a job to be written; leave one out"
-        )
-    if scene is not None:
-        try:
-            model = dry_model(scene, settings, maps, mapped=arguments.map is not None)
-        except InputError as error:
-            problems += error.problems
-    if problems or scene is None or model is None:
+    settings = PlanSettings(clearance, _margin(arguments.margin, problems))
+    problems += scene_output_problems(arguments.scene, scene.files if scene else (), arguments.output, kind=SEALED)
+    if problems or scene is None:
         raise InputError(tuple(dict.fromkeys(problems)))
-    return model, scene, maps, settings
-
-
-def _read_maps(paths: list[str], scene: Scene | None, problems: list[str]) -> MapSet | None:
-    """Read --map: one map for each type of bearing."""
-    try:
-        sets = map_sets(read_maps(paths, None, problems), None if scene is None else scene.bearings)
-    except InputError as error:
-        problems += error.problems
-        return None
-    if len(sets) > 1:
-        problems.append(
-            f"--map: got {len(paths)} of them, several for one type of bearing; allowed: one for each type of bearing"
-        )
-    return sets[0][1] if sets else None
+    return scene, settings
 
 
 def _margin(text: str | None, problems: list[str]) -> float:
@@ -184,9 +144,6 @@ def _described(planned: _Planned) -> list[str]:
         return lines
     lines.append(f"  points             {points}, {points - job.points} of them for the contact laws")
     lines.append(f"  time               {estimated_time(job, solvers.of_map(job), points).words}")
-    shipped = (job.bearing.name if job.bearing else job.title).lower()
-    if shipped in shipped_jobs() and (whole := _points(read_job(shipped))) > points:
-        lines.append(f"  the shipped job {shipped} has {whole} points, {whole / points:.3g} times as many")
     return lines
 
 
@@ -229,25 +186,3 @@ def _next_steps(written: Sequence[Path], scene: str) -> list[str]:
         f"`ehdmaps generate {names}` makes the maps; `mbs statics {scene} {used}` and the other commands take them, "
         "each bearing its own",
     ]
-
-
-def _covered(lines: list[str], covers: Sequence[Coverage], name: str) -> tuple[str, int]:
-    """Say of each axis whether a map covers what is needed."""
-    for cover in covers:
-        lines += [*_head(cover.needed), f"  {'':18s} {'needed':28s} {'mapped':28s}"]
-        for (axis, text), mapped, display in zip(
-            _ranges(cover.needed), cover.axes, (LOAD, SPEED, TEMPERATURE), strict=True
-        ):
-            lines.append(f"  {axis:18s} {text:28s} {_span(mapped.mapped, display):28s} {_verdict(axis, mapped)}")
-    whole = all(cover.whole for cover in covers)
-    verb = "covers" if len(covers) == 1 else "cover"
-    does = "does" if len(covers) == 1 else "do"
-    word = f"{verb} the scene" if whole else f"{does} not cover the scene; plan a map for it with -o JOB.toml"
-    return "\n".join([*lines, f"{name}: {word}"]), 0 if whole else 1
-
-
-def _verdict(axis: str, mapped: AxisCover) -> str:
-    """Whether an axis is covered."""
-    sides = [word for word, short in (("below", mapped.below), ("above", mapped.above)) if short]
-    fades = ", where the film fades" if mapped.below and axis != "temperature" else ""
-    return f"short {' and '.join(sides)}{fades}" if sides else "ok"

@@ -177,11 +177,6 @@ def hertz_damper(law: str) -> Damper | None:
     raise InputError(f"--law: got {law!r:.60}; allowed: {HERTZ_FORMS}")
 
 
-def constant_name(law: str) -> str | None:
-    """NAME of a law constant:NAME, else None."""
-    return law.removeprefix(_CONSTANT) if law.startswith(_CONSTANT) else None
-
-
 def table_path(law: str) -> Path | None:
     """File of a law table:FILE, else None."""
     return Path(law.removeprefix(_TABLE)) if law.startswith(_TABLE) else None

@@ -145,24 +145,6 @@ def reads_table(emap: EHDMap) -> bool:
     return emap.from_table
 
 
-def as_map_set(given: EHDMap | MapSet | Sequence[EHDMap] | None) -> MapSet | None:
-    """One map, or several, as a set.
-
-    Parameters
-    ----------
-    given : EHDMap, MapSet, sequence of EHDMap, or None
-        What was given.
-
-    Raises
-    ------
-    InputError
-        If they are no set.
-    """
-    if given is None or isinstance(given, MapSet):
-        return given
-    return MapSet(tuple(given) if isinstance(given, Sequence) else (given,))
-
-
 def map_sets(maps: Sequence[tuple[str, EHDMap]], bearings: Sequence[BearingSpec] | None) -> list[tuple[str, MapSet]]:
     """Sort maps that are given together into sets, each with what tells it from the others.
 

@@ -159,7 +159,7 @@ def test_an_output_that_cannot_be_written(here, capsys, output, message):
 @pytest.mark.parametrize("name", ["a\rb", "a\u2028b", "a\x1b[31mb"])
 def test_a_job_whose_name_no_map_can_carry_is_refused_at_once(here, capsys, name):
     (here / "mine.toml").rename(here / f"{name}.toml")
-    for command in (["generate"], ["generate", "-o", "good.nc"], ["check"], ["submit", "--array", "2"]):
+    for command in (["generate"], ["generate", "-o", "good.nc"], ["check"]):
         status, out, err = run(capsys, *command, f"{name}.toml")
         assert (status, out, names(here)) == (2, "", [f"{name}.toml"])
         assert f"is called {name!r}; allowed: printable characters, which its map can carry; rename it" in err
@@ -169,8 +169,7 @@ def test_a_backslash_in_a_name_is_refused_at_once(here, capsys):
     (here / "mine.toml").rename(here / "a\\b.toml")
     (here / "c\\d").mkdir()
     before = names(here)
-    for command in (["generate"], ["generate", "--shard", "1/2"], ["submit", "--array", "2"],
-                    ["generate", "-o", "c\\d/e.nc"]):  # fmt: skip
+    for command in (["generate"], ["generate", "-o", "c\\d/e.nc"]):
         status, out, err = run(capsys, *command, "a\\b.toml")
         assert (status, out, names(here)) == (2, "", before)
         assert "allowed: no backslash in names of files and folders" in err

@@ -136,7 +136,6 @@ def test_from_a_job_to_the_modes_of_a_machine(tmp_path, monkeypatch):
 NEEDY = (
     ("openfoam", "PyFoam", ("ehdmaps.jobs.cli", "generate", "nu308_openfoam")),
     ("openfoam", "PyFoam", ("ehdmaps.jobs.cli", "check", "nu308_openfoam")),
-    ("cluster", "submitit", ("ehdmaps.jobs.cli", "submit", "nu308", "--array", "2", "--submit")),
     ("modal", "pyuff", ("mbs.cli", "modal-fit", "hits.uff")),
     ("modal", "pyuff", ("mbs.cli", "campbell", "hits.uff")),
     ("modal", "pyuff", ("mbs.cli", "runup", "nu308_rigid", "--signals", "new.uff")),

@@ -45,11 +45,6 @@ def test_laws_are_checked_against_fresh_solves(made: tuple[Generated, Path]) -> 
     assert attributes["law_damping_within_bar"] >= 30 / 32
     for name in ("film_compliance", "damping"):
         assert attributes.get(f"law_valley_{name}_within_bar", 1.0) >= 7 / 8
-    for region in ("above_load", "above_speed", "below_load"):  # told, and held to no bar
-        assert "median" in attributes[f"law_{region}_film_compliance_error"]
-        assert attributes[f"law_{region}_damping_within_bar"] <= 1.0
-    # 1.0: the film below the lowest load, which the lines hold too, is as good as that within the map
-    assert attributes["law_below_load_film_compliance_within_bar"] == 1.0
     assert "accuracy of the contact laws" in summary(generated, path)
 
 

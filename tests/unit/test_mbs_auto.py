@@ -1,4 +1,4 @@
-"""Analyses that make their own map: planned, reused, checked, widened; physics that they choose; what is refused."""
+"""Analyses that choose their physics: films from the table, maps that they make, what is refused."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import dataclasses
 import re
 from importlib import resources
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,15 +13,14 @@ import pytest
 from ehdmaps.errors import AnalysisError, InputError, MapError
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.generate import generate
-from ehdmaps.maps.emap import open_map
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.surface import Surface
-from mbs import AutoSettings, automatic, modes, parse_scene, plan, read_scene, statics
-from mbs.analyses import auto, kept_map, planned_job
-from mbs.analyses.auto import outside_calls, settled
+from mbs import AutoSettings, automatic, modes, parse_scene, statics
+from mbs.analyses import auto, planned_job
+from mbs.analyses.auto import settled
 from mbs.analyses.film_criteria import (
     closed_contact,
     film_over_roughness,
@@ -33,8 +31,6 @@ from mbs.analyses.film_criteria import (
 from mbs.analyses.film_verdicts import heat_verdict, shear_verdict, visited
 from mbs.analyses.planning import Needed
 from mbs.commands.auto_maps import read_tolerance
-from mbs.model.elements import Operation
-from mbs.scene.changes import with_loads
 from tests.cases.commands import run
 
 TEXT = (resources.files("mbs") / "systems" / "nu308_rigid.toml").read_text(encoding="utf-8")
@@ -47,10 +43,10 @@ def by_formula(monkeypatch):
     made = []
 
     def quick(job, path, workers, progress=None):
-        made.append(path)
+        made.append(job)
         return generate(job, path, 1, solver=solvers.build("formula", {}))
 
-    monkeypatch.setattr(kept_map, "generate", quick)
+    monkeypatch.setattr(auto, "generate", quick)
     monkeypatch.setattr(planned_job, "LAW_CHECK", 0)
     return made
 
@@ -73,72 +69,39 @@ def file(tmp_path, monkeypatch):
     return str(path)
 
 
-def test_a_map_is_made_once_and_reused_for_the_same_plan_alone(file, capsys, by_formula):
+def test_films_come_from_the_table_and_a_map_is_made_where_heat_or_shear_matters(file, capsys, by_formula):
     status, out, _ = run(capsys, "modes", file, "--auto")
-    (path,) = Path().glob("short_nu308_*.nc")
     assert status == 0
-    assert f"auto: {path}: made" in out
-    assert "law map of NU308" in out and "films with memory" in out
-    assert "all loads, speeds and temperatures of the analysis lie inside the map" in out
-    before = path.stat().st_mtime_ns
-    status, out, _ = run(capsys, "statics", file, "--auto")
+    assert out.startswith("auto: films from the film table\n") and "films from the film table, flooded" in out
+    assert "films with memory" in out
+    assert not by_formula and not list(Path().glob("*.nc"))
+    status, out, _ = run(capsys, "modes", file, "--auto", "--maps", "new", "--shear", "limiting")
+    (path,) = Path("new").glob("short_nu308_*.nc")
     assert status == 0
-    assert f"auto: {path}: reused" in out
-    assert path.stat().st_mtime_ns == before
-    # another clearance is another plan
-    assert run(capsys, "statics", file, "--auto", "--clearance", "20 um")[0] == 0
-    assert len(by_formula) == 2
+    assert re.match(rf"auto: {path}: [0-9]+ points solved, 0 taken over; .* \(3 times the largest load at rest\)", out)
+    assert by_formula[0].solver_options == {"shear": "limiting"}
+    # what is solved is taken over from the store
+    status, out, _ = run(capsys, "statics", file, "--auto", "--maps", "new", "--shear", "limiting")
+    assert status == 0 and f"auto: {path}: 0 points solved, " in out
 
 
-def test_what_stands_in_the_place_of_a_map_is_left_alone(file, capsys, tmp_path):
-    assert run(capsys, "statics", file, "--auto", "--maps", str(tmp_path))[0] == 0
-    (path,) = tmp_path.glob("*.nc")
-    other = open_map(path)
-    other.dataset.attrs["job_toml"] += "# another"
-    data = other.dataset
-    path.unlink()
-    data.attrs.pop("content_sha256")
-    data.to_netcdf(path, engine="netcdf4")
-    content = path.read_bytes()
-    status, _, err = run(capsys, "statics", file, "--auto")
-    assert status == 2
-    assert "was made for another job; move it away, or give another folder with --maps" in err
-    assert path.read_bytes() == content
+def test_what_stands_in_the_place_of_a_map_is_left_alone(file, capsys):
+    limiting = ("statics", file, "--auto", "--shear", "limiting")
+    assert run(capsys, *limiting)[0] == 0
+    (path,) = Path().glob("*.nc")
     path.write_text("mine")
-    assert run(capsys, "statics", file, "--auto")[0] == 2
+    assert run(capsys, *limiting)[0] == 2
     assert path.read_text() == "mine"
+    Path("mine").write_text("mine")
+    status, _, err = run(capsys, *limiting, "--maps", "mine")
+    assert status == 2 and "--maps: got 'mine', which is no folder and cannot be made; allowed: a" in err
 
 
-def loaded(factor):
-    """An analysis whose loads are larger than planned."""
-    return lambda subject: statics(dataclasses.replace(subject, scene=with_loads(subject.scene, factor)).model())
-
-
-@pytest.mark.parametrize(("factor", "margins", "left"), [(1.0, 1, False), (20.0, 2, False), (200.0, 3, True)])
-def test_loads_outside_the_map_widen_the_plan_up_to_three_times(folder, factor, margins, left):
-    found = settled(scene(), loaded(factor), AutoSettings(folder=folder, highest=0.0))
-    assert found.margins == (3.0, 9.0, 27.0)[:margins]
-    assert set(found.left) == ({"bearing_left", "bearing_right"} if left else set())
-    tops = [kept.emap.dataset["load"].values[-1] for kept in found.maps]
-    np.testing.assert_allclose(np.divide(tops[1:], tops[:-1]), 3.0, rtol=0.1)  # ends of axes have two digits
-
-
-def test_speeds_outside_the_map_do_not_widen_its_loads(folder):
-    found = settled(
-        scene(), lambda subject: modes(subject.model(), Operation(2e3)), AutoSettings(folder=folder, highest=0.0)
-    )
-    assert found.margins == (3.0,)
-    assert set(found.left) == found.too_fast == {"bearing_left", "bearing_right"}
-
-
-def test_a_command_says_what_it_left_and_what_the_laws_miss(file, capsys, monkeypatch):
-    monkeypatch.setattr(auto, "MOST_MAPS", 1)
-    monkeypatch.setattr(kept_map, "unmet", lambda dataset, backbone: ["unmet: damping"])
-    monkeypatch.setattr(auto, "outside_calls", lambda result: {"bearing_left": 7})
-    status, out, _ = run(capsys, "statics", file, "--auto")
+def test_a_command_says_what_the_laws_miss(file, capsys, monkeypatch):
+    monkeypatch.setattr(auto, "unmet", lambda dataset, backbone: ["unmet: damping", "advice"])
+    status, out, _ = run(capsys, "statics", file, "--auto", "--shear", "limiting")
     assert status == 1
-    assert "warning: auto: after 1 plans the analysis still left its map (bearing_left 7 times)" in out
-    assert ".nc: unmet: damping" in out
+    assert ".nc: unmet: damping" in out and "advice" not in out
 
 
 def test_films_without_memory_get_it_where_a_bearing_needs_it(folder, monkeypatch):
@@ -146,8 +109,6 @@ def test_films_without_memory_get_it_where_a_bearing_needs_it(folder, monkeypatc
     found = automatic(scene(), modes, AutoSettings(folder=folder))
     assert found.subject.law.films == "memory"
     assert "% at a bearing" in found.verdicts[0].words
-    assert len(found.maps) == 2
-    assert found.maps[1].reused
     slow = automatic(scene(), modes, AutoSettings(folder=folder, films="slow"))
     assert slow.subject.law.films == "slow"
 
@@ -166,20 +127,20 @@ def test_stated_physics_is_off_where_it_does_not_matter(folder):
     assert found.subject.model().supplies["bearing_left"] == supply
 
 
-def test_bearings_of_two_types_have_a_map_each_and_one_alone_is_widened(folder, monkeypatch):
+def test_bearings_of_two_types_have_films_each(folder):
     first, _, second = SHORT.rpartition('{ name = "NU308"')
     two = scene(f'{first}{{ name = "N1014"{second}')
-    outside = iter([{"bearing_right": 1}, {}])
-    monkeypatch.setattr(auto, "outside_calls", lambda result: next(outside))
-    found = automatic(two, statics, AutoSettings(folder=folder, highest=0.0))
-    assert [kept.emap.bearing.name for kept in found.maps] == ["NU308", "N1014", "NU308", "N1014"]
-    assert found.margins == (3.0, 3.0, 3.0, 9.0)
-    assert found.maps[2].reused
-    assert [kept.emap.bearing.name for kept in found.kept] == ["NU308", "N1014"]
+    found = automatic(two, statics, AutoSettings(folder=folder, highest=0.0, shear="limiting"))
+    assert [one.emap.bearing.name for one in found.made] == ["NU308", "N1014"]
     assert "maps of NU308 and N1014, FVA3, solver formula" in found.subject.model().law
     supply, *heats_and_shears = found.verdicts[1], *found.verdicts[3:]
     assert re.fullmatch("NU308: none is stated; .* would matter; N1014: none is stated; .* would matter", supply.words)
     assert [verdict.words[:7] for verdict in heats_and_shears] == ["NU308: ", "N1014: "] * 2
+    # a limiting stress matters in one of them alone: the other one's films are those of the table
+    mixed = automatic(two, statics, AutoSettings(folder=folder, highest=0.0))
+    assert [one.emap.bearing.name for one in mixed.made] == ["N1014"]
+    law = mixed.subject.model().law
+    assert "map of NU308, FVA3, films from the film table; map of N1014, FVA3, solver formula" in law
 
 
 def test_options_that_do_not_go_together_are_refused_before_a_map_is_made(file, capsys, by_formula):
@@ -202,24 +163,6 @@ def test_options_that_do_not_go_together_are_refused_before_a_map_is_made(file, 
         assert words in err
     assert run(capsys, "modes", file, "--maps", ".")[0] == 2
     assert not by_formula and not Path("none").exists()
-
-
-def test_a_folder_of_maps_is_made(file, capsys, tmp_path):
-    status, out, _ = run(capsys, "statics", file, "--auto", "--maps", "new")
-    assert status == 0
-    (path,) = (tmp_path / "new").glob("*.nc")
-    assert f"auto: new/{path.name}: made" in out
-    job, *_ = plan(read_scene(file)).jobs()
-    kept = kept_map.kept_map("short", job, tmp_path / "newer", workers=1)
-    assert kept.path.parent == tmp_path / "newer" and kept.path.is_file()
-    (tmp_path / "mine").write_text("mine")
-    with pytest.raises(InputError, match=r"--maps: got '.*/mine', which is no folder and cannot be made; allowed: a"):
-        kept_map.kept_map("short", job, tmp_path / "mine")
-
-
-def test_results_of_other_kinds_are_refused():
-    with pytest.raises(InputError, match="got a result of the type int; allowed: what statics, modes"):
-        outside_calls(1)
 
 
 @pytest.mark.parametrize("tolerance", [0.0, 9.5, float("nan")])
@@ -322,31 +265,22 @@ def test_heat_is_in_the_map_where_its_rule_holds_and_told_where_it_does_not():
         AutoSettings(physics="warm")
 
 
-def test_the_planned_map_has_the_physics_that_is_asked_for(folder, monkeypatch):
-    planned = []
-
-    def kept(name, job, *rest):
-        planned.append(job.solver_options)
-        raise AnalysisError("enough")
-
-    monkeypatch.setattr(auto, "kept_map", kept)
-    for physics, options in (("thermal", {"physics": "thermal"}), (None, {})):
-        with pytest.raises(AnalysisError, match="enough"):
-            automatic(scene(), statics, AutoSettings(folder=folder, physics=physics))
-        assert planned[-1] == options
+def test_the_planned_map_has_the_physics_that_is_asked_for(folder, by_formula):
+    for physics, shear in (("thermal", "newtonian"), (None, "newtonian"), (None, "eyring")):
+        automatic(scene(), statics, AutoSettings(folder=folder, physics=physics, shear=shear))
+    assert [job.solver_options for job in by_formula] == [{"physics": "thermal"}, {"shear": "eyring"}]
 
 
 def test_a_map_that_cannot_be_used_says_what_makes_another(monkeypatch):
     """The same plan would end the same way: the physics that --auto added is what can be left out."""
 
-    def kept(name, job, *rest):
-        return SimpleNamespace(emap=None)
-
     def unfit(subject):
         raise MapError("backbone of the map: has 2 unsolved points")
 
-    monkeypatch.setattr(auto, "kept_map", kept)
+    monkeypatch.setattr(auto, "_films", lambda *given: [])
+    monkeypatch.setattr(auto, "MapSet", lambda maps: None)
     monkeypatch.setattr(auto, "_subject", lambda *given: None)
+    monkeypatch.setattr(auto, "_with_memory", lambda *given: None)
     with pytest.raises(MapError, match=r"^backbone of the map: has 2 unsolved points\nauto: the map was made with lim"):
         automatic_of(unfit, AutoSettings(shear="limiting"))
     with pytest.raises(MapError, match=r"as asked, eyring; .*--shear newtonian makes one without"):

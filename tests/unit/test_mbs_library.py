@@ -257,11 +257,6 @@ def test_what_a_scene_lacks_is_said(model):
         plan(bare.scene)
 
 
-def test_a_plan_takes_dry_laws_only(model):
-    with pytest.raises(InputError, match=r"--law: got 'map'; allowed here: hertz, constant:NAME"):
-        plan(model.scene, PlanSettings(law="map"))
-
-
 class TestStopped:
     """What Ctrl-C and a failing law leave of a comparison."""
 

@@ -7,7 +7,6 @@ import math
 
 import numpy as np
 import pytest
-import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -30,7 +29,6 @@ from mbs.model.profiles import Course, Harmonic
 from mbs.scene.assembly import assemble
 from mbs.scene.reader import parse_scene, read_scene
 from tests.cases import commands
-from tests.cases.jobs import map_job, spaced
 
 TEXT = read_scene("nu308_rigid").text
 RPM = math.pi / 30.0
@@ -266,16 +264,12 @@ def test_everything_wrong_is_said_at_once_and_nothing_written(here, capsys):
     )
     without = without.replace('name = "FVA3"', "# none")
     (here / "dry.toml").write_text(without)
-    status, out, err = run(
-        capsys, "dry.toml", "--clearance", "1 m", "--margin", "0.5", "--law", "map", "-o", "dry.toml", "--map", "no.nc"
-    )
+    status, out, err = run(capsys, "dry.toml", "--clearance", "1 m", "--margin", "0.5", "-o", "dry.toml")
     assert (status, out) == (2, "")
     for words in (
         "--clearance: got '1 m'",
         "--margin: got '0.5'",
-        "--law: got 'map'",
         "written over dry.toml",
-        "no.nc",
     ):
         assert words in err
     assert (here / "dry.toml").read_text() == without
@@ -327,55 +321,6 @@ def test_scenes_that_need_no_map(here, capsys):
     status, out, err = run(capsys, "bare.toml")
     assert (status, out) == (2, "")
     assert "bare: got no bearing; allowed: at least one [[bearings]]" in err
-
-
-THIN = """viscosity_law = "barus"
-viscosity = "20 mPa s"
-pressure_viscosity = "15 1/GPa"
-density = "860 kg/m^3\""""
-
-
-@pytest.mark.parametrize(
-    ("light", "load", "speed", "temperature", "short"),
-    [
-        ("1 N/mm", "200 N/mm", "0.1 m/s", '["40 degC"]', ()),
-        ("1 N/mm", "100 N/mm", "0.1 m/s", '["20 degC", "60 degC"]', ("load",)),
-        ("2 N/mm", "200 N/mm", "0.1 m/s", '["40 degC"]', ("load",)),
-        ("0.1 N/mm", "200 N/mm", "0.5 m/s", '["50 degC", "60 degC"]', ("entrainment speed", "temperature")),
-    ],
-    ids=["covers", "load", "light load", "speed and temperature"],
-)
-def test_command_tells_whether_a_map_covers_the_scene(here, capsys, light, load, speed, temperature, short):
-    from ehdmaps.jobs import cli as ehdmaps_cli
-
-    (here / "map.toml").write_text(map_job(spaced(light, load, 4), f'["{speed}", "4 m/s"]', temperature, "hertz"))
-    assert ehdmaps_cli.main(["generate", "map.toml", "-o", "map.nc", "--workers", "1"]) == 0
-    capsys.readouterr()
-    status, out, _ = run(capsys, "nu308_rigid", "--map", "map.nc")
-    assert status == (1 if short else 0)
-    rows = {line[2:20].strip(): line for line in out.splitlines() if line.startswith("  ")}
-    for axis in ("load", "entrainment speed", "temperature"):
-        assert ("short" in rows[axis]) == (axis in short)
-        assert rows[axis].endswith("ok") == (axis not in short)
-    assert "oil of the map" not in out
-    (here / "thin.toml").write_text(TEXT.replace('name = "FVA3"', THIN))
-    assert (
-        "is not the oil of the map of bearing_left, bearing_right, FVA3 (84.54 mPa s at 40 degC)"
-        in (run(capsys, "thin.toml", "--map", "map.nc")[1])
-    )
-    # a map of other contacts is refused
-    status, _, err = run(capsys, "n1014_rigid", "--map", "map.nc")
-    assert status == 2
-    assert "is made for NU308" in err
-    # and so is one with holes, on which no law can stand
-    with xr.open_dataset("map.nc") as opened:
-        holed = opened.load()
-    holed["status"][0, 0, 0, 0] = 5
-    del holed.attrs["content_sha256"]  # changed on purpose
-    holed.to_netcdf("holed.nc")
-    status, _, err = run(capsys, "nu308_rigid", "--map", "holed.nc")
-    assert status == 2
-    assert "1 holes" in err
 
 
 def test_an_unbalance_is_planned_for_with_its_force_on_a_stiff_rotor():

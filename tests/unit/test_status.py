@@ -167,12 +167,6 @@ def test_a_file_system_without_locks_is_no_reason_to_stop(output, job, capsys, m
     assert "only there it can be told whether it runs" in out
 
 
-def test_the_status_of_a_shard_stays(output, job):
-    with StatusFile(output, about(job), 4, workers=1, stays=True) as written:
-        written.found(Line(), arrays(0, 0, 0, 0), now=True)
-    assert look(output).finished
-
-
 def test_a_running_one(output, job, capsys):
     with StatusFile(output, about(job), 12, workers=3):
         code, out, _ = command(capsys, "mine.nc")

@@ -14,7 +14,6 @@ from ehdmaps.jobs.generate import planned_tasks
 from ehdmaps.jobs.job import CorrectedBy, Job
 from ehdmaps.jobs.reader import read_job
 from ehdmaps.jobs.report import AXES, span
-from ehdmaps.jobs.shards import unique
 from ehdmaps.jobs.supply import supply_words
 from ehdmaps.jobs.surface import surface_words
 from ehdmaps.jobs.table_films import unserved
@@ -87,16 +86,16 @@ def _batch(source: str, solver: str | None) -> tuple[str, int]:
     """Read a batch file, and tell what its maps share."""
     batch = read_batch(source, solver, to_run=True)
     plan = plan_batch(batch)
-    solved = [planned for planned in plan.maps if planned.tasks]
-    read = len(plan.maps) - len(solved)
-    tasks = unique(task for planned in solved for task in planned.tasks)
-    points = sum(task.points for task in tasks)
+    solved = [planned for planned in plan if planned.tasks]
+    read = len(plan) - len(solved)
+    tasks = {task.key: task.points for planned in solved for task in planned.tasks}
+    points = sum(tasks.values())
     lines = [
         f"{source}: no problems",
         f"  {len(batch.members)} maps, from {batch.members[0].name} to {batch.members[-1].name}",
         *([f"  {read} maps are read from the film table"] if read else []),
         *([f"  {len(solved)} maps are solved at their own points"] if solved else []),
-        f"  points  {points} in {len(tasks)} tasks, which is what shards can be made of",
+        f"  points  {points} to solve",
     ]
     job = batch.members[0].job
     estimate = estimated_time(job, solvers.of_map(job), points)

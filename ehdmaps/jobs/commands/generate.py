@@ -21,10 +21,8 @@ from ehdmaps.jobs.law_check import unmet
 from ehdmaps.jobs.progress import progress
 from ehdmaps.jobs.reader import is_map, read_job
 from ehdmaps.jobs.report import holes
-from ehdmaps.jobs.shards import shard_path
 from ehdmaps.jobs.store import store_path
 from ehdmaps.jobs.summary import summary
-from ehdmaps.jobs.work import read_work, run_shard
 from ehdmaps.outputs import MAP, TABLE, Output, check_outputs
 from ehdmaps.physics.solution import ContactSolver
 from ehdmaps.program import tell
@@ -35,8 +33,6 @@ INTERRUPTED = 130
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Make the maps, one after the other; status 1 if one has points without a solution, or a law not good enough."""
-    if arguments.shard is not None:
-        return _shard(arguments)
     batches = [source for source in arguments.jobs if is_batch(source)]
     if batches:
         return _batch(batches[0], arguments)
@@ -48,30 +44,6 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         if found == INTERRUPTED:
             break
     return "\n\n".join(text for text in texts if text), status
-
-
-def _shard(arguments: argparse.Namespace) -> tuple[str, int]:
-    """Solve one shard of a job or a batch."""
-    beside = {
-        "several JOB": len(arguments.jobs) > 1,
-        "--keep-cases": arguments.keep_cases is not None,
-        '--fresh-films (say films = "solved" in [solver])': arguments.fresh_films,
-    }
-    problems = [
-        f"--shard: stands beside {option}; allowed: one job or batch, with --workers, --solver, --fresh and -o"
-        for option, given in beside.items()
-        if given
-    ]
-    if problems:
-        raise InputError(problems)
-    work, shard = read_work(arguments.jobs[0], arguments.output, arguments.solver), arguments.shard
-    store = store_path(shard_path(work.place, shard))
-    try:
-        result = run_shard(work, shard, arguments.workers, arguments.fresh, progress)
-    except KeyboardInterrupt:
-        tell(f"\nstopped; what is solved is kept in {store}: the same command goes on from there")
-        return "", INTERRUPTED
-    return f"{store}: shard {shard} solved: {result.taken_over} points taken over, {result.solved} solved now", 0
 
 
 def _batch(source: str, arguments: argparse.Namespace) -> tuple[str, int]:

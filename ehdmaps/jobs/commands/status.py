@@ -1,4 +1,4 @@
-"""`ehdmaps status`: how far a map, a batch or its shards are that are being made, or whose making was interrupted."""
+"""`ehdmaps status`: how far a map or a batch is that is being made, or whose making was interrupted."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ from ehdmaps.errors import InputError
 from ehdmaps.jobs.batch import SUMMARY, is_batch
 from ehdmaps.jobs.progress import duration
 from ehdmaps.jobs.reader import is_map, read_job, shipped_jobs
-from ehdmaps.jobs.shards import Shard, found_shards, listed, not_begun, shard_path, whole_of
 from ehdmaps.jobs.status import RunStatus, Seen, look, status_path
 from ehdmaps.jobs.store import store_path
 from ehdmaps.outputs import MAP, TABLE
@@ -29,7 +28,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
 def _here() -> list[Path]:
     """Maps of this folder that are being made, or were."""
     traces = [path.name for path in Path().iterdir() if _is_trace(path)]
-    names = {whole_of(name) or name.removesuffix(_STATUS).removesuffix(_STORE) for name in traces}
+    names = {name.removesuffix(_STATUS).removesuffix(_STORE) for name in traces}
     if not names:
         raise InputError(
             "no store of a map is in this folder; allowed: a folder where `ehdmaps generate` runs or ran, or the "
@@ -57,7 +56,7 @@ def _output(name: str, output: str | None) -> Path:
         if name.endswith(ending):
             return Path(name.removesuffix(ending))
     place = Path(name)
-    if found_shards(place) or store_path(place).exists() or status_path(place).exists() or is_map(name):
+    if store_path(place).exists() or status_path(place).exists() or is_map(name):
         return place
     if name in shipped_jobs() or place.is_file():
         return Path(f"{read_job(name).name}.nc")
@@ -67,48 +66,8 @@ def _output(name: str, output: str | None) -> Path:
 
 
 def _described(output: Path) -> tuple[str, int]:
-    """Tell about a map or a batch, with its shards, and the exit status."""
-    shards = found_shards(output)
+    """Tell about a map or a batch, and the exit status."""
     seen = look(output)
-    if not shards:
-        return _whole(output, seen)
-    texts, states = _shards(output, list(shards))
-    if seen is not None or store_path(output).exists():
-        text, status = _whole(output, seen)
-        return "\n".join([text, *texts]), status
-    return "\n".join(texts), 0 if all(states) else 1
-
-
-def _shards(output: Path, shards: list[Shard]) -> tuple[list[str], list[bool]]:
-    """A line a shard, with one for all of them first, and whether each is finished or at work."""
-    seen = {shard: look(shard_path(output, shard)) for shard in shards}
-    known = [found.status for found in seen.values() if found is not None]
-    done, total = sum(status.done for status in known), sum(status.total for status in known)
-    missing = not_begun(shards)
-    finished = sum(found is not None and found.finished for found in seen.values())
-    head = f"{output}: {finished} of {len(shards) + len(missing)} shards finished, {done} of {total} points"
-    lines = [f"{head} of those that have begun"]
-    states = [not missing]
-    for shard, found in seen.items():
-        if found is None:
-            lines.append(f"  {shard!s:>9s}  not known")
-            states.append(False)
-            continue
-        status = found.status
-        word = "running" if found.running else "finished" if found.finished else "interrupted"
-        if not found.known and word == "interrupted":
-            word = f"on {status.host}: only there it can be told whether it runs"
-        states.append(found.running or found.finished or not found.known)
-        part = f"{status.done} of {status.total} points"
-        rate = f", {_pace(status, found.running)}" if found.running else ""
-        lines.append(f"  {shard!s:>9s}  {word}, {part}{rate}; last sign {_ago(status)} ago")
-    if missing:
-        lines.append(f"  not begun: {listed(missing)}")
-    return lines, states
-
-
-def _whole(output: Path, seen: Seen | None) -> tuple[str, int]:
-    """Tell about a map or a batch without its shards."""
     if seen is not None:
         return "\n".join(_lines(output, seen)), 0 if seen.running or not seen.known else 1
     table = output.with_name(SUMMARY)
