@@ -1,4 +1,21 @@
-"""One column of a film: the oil's laws and groups of heat for compiled code, how much it lets flow, what it carries."""
+"""One column of a film: the oil's laws and groups of heat for compiled code, how much it lets flow, what it carries.
+
+Groups of heat of one line contact, and the oil's laws over temperature as compiled code takes them.
+
+`Lubricant.at` is called at temperatures some kelvin apart, that of the surfaces among them. At a pressure ln eta is
+taken from the isotherms of the four nearest by a cubic: with `STEP` it errs by less than 1e-4 for FVA 3 above 0 degC,
+by its fourth derivative elsewhere, and not at all at the temperature of the surfaces. Density is linear in temperature.
+
+One column of an isothermal film whose oil answers to shear by any law: how much it lets flow, and what it carries.
+
+The stress is linear across the film, tau = tau_0 + zeta s with zeta = z/h and s = h dp/dx. One number a column is
+unknown, tau_0, for which the oil shears by the difference of the walls' speeds. With f = eta rate/tau >= 1 of the law
+and A_k = Int f zeta^k dzeta the generalised Reynolds equation (H. G. Yang, S. Z. Wen, J. Tribology 112 (1990) 631-636)
+has two factors, both 1 of a Newtonian oil:
+
+    mobility   12 (A_2 - A_1^2/A_0)                 on the flow by pressure
+    carriage   1 + (1/2 - A_1/A_0) (U_2 - U_1)      on the oil that the walls carry, speeds in units of their mean
+"""
 
 from __future__ import annotations
 

@@ -12,6 +12,12 @@ with as much conduction more as exponential fitting asks for: the inlet's eddies
 that. So the heat that goes into the walls and out with the oil is the heat made, to rounding.
 
 Before the column `first` the oil that enters has the temperature of the surfaces, and what flows back is lost.
+
+The linear equations of all temperatures of a film: how these follow what changes.
+
+They are solved column by column; those of columns with backflow, which see each other, together. Many right-hand sides
+at once cost little: those of all unknowns of the film give the derivative of the temperatures by the pressures, and
+with that the exact Jacobian of the film with its temperatures.
 """
 
 from __future__ import annotations

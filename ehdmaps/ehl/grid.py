@@ -1,4 +1,22 @@
-"""Nodes of one line contact by a smooth map from a uniform index, and the elastic deflection of half-spaces on them."""
+"""Nodes of one line contact by a smooth map from a uniform index, and the elastic deflection of half-spaces on them.
+
+Nodes of one line contact: a smooth map from a uniform index, so that the scheme keeps its order on a graded grid.
+
+x(s) is defined by its inverse s(x), a sum of asinh terms: uniform within the width of a term, logarithmic outside.
+One term sits in the inlet, one at the exit, one over the Hertz zone, and, when its place is known, one at the pressure
+spike, which is far narrower than anything else in the contact.
+
+All lengths are in Hertz half-widths b. The grid is fixed to the exit of the film: x = X - X_exit <= 0, because the
+exit is an unknown and the elastic kernel depends on differences only.
+
+Elastic deflection of two half-spaces under a line pressure: the logarithmic kernel on a graded grid.
+
+The gap grows by -(1/pi) Int P(S) ln|X - S| dS (lengths in b, pressures in p_H, gap in b^2/R). In the uniform index s of
+the grid the integral is a trapezoidal sum; the singular node gets its own weight and a second-difference correction,
+which makes the error O(ds^5) where P is smooth (Sidi & Israeli, J. Sci. Comput. 3 (1988) 201-231, with the
+Euler-Maclaurin constant zeta'(-2)). Both ends of the sum need nothing: P and dP/dX vanish at the exit, and the inlet is
+far away.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""One solve: coarse grid, place of the spike, fine grid, linear response, error; the same over frequency."""
+"""One solve: coarse grid, place of the spike, fine grid, linear response, error; the same over frequency.
+
+Everything here is in the groups of the problem (Hertz-dimensionless); `solver` adds the units.
+"""
 
 from __future__ import annotations
 

@@ -2,6 +2,16 @@
 
 Sums as the fluxes of `reynolds` take them: in the uniform index of the grid, with the wedge's interpolation at the
 faces.
+
+Stiffness and damping of the film: linear response of the discrete transient equations about the steady solution.
+
+A small load dW(T) moves the far bodies by dH0: dH0/dW = -a + i Omega b + O(Omega^2), Omega = omega b/u. `a` is the
+compliance of the contact in the log kernel's datum (it contains the dry ln(2)/pi), `b` its low-frequency loss.
+
+The pressure spike of a strongly piezoviscous contact is a front far narrower than a cell. On a grid that stands still
+the front is locked to its cell, and the tangent is that of a staircase. So the grid's spike follows an isobar of the
+front: its position is one more unknown, and the pressure at the front's node is held. In the limit of fine grids the
+response does not depend on how the grid moves.
 """
 
 from __future__ import annotations

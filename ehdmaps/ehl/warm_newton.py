@@ -1,6 +1,10 @@
 """Heat in the surfaces of a contact: moving half-spaces, warmed by what flows into them.
 
 T(X) = T_0 + B Int q(S)/sqrt(X - S) dS        J. C. Jaeger, Proc. R. Soc. NSW 76, 1942, 203-224
+
+Full Newton for a film with its temperatures, which follow the film's unknowns by their own equations.
+
+Nothing here is compiled: numba compiles what a function calls once more with it, and these call all that is large.
 """
 
 from __future__ import annotations

@@ -1,4 +1,7 @@
-"""The ways to a solution: Newton on one grid, a point on two, starts from before, from Hertz, up ladders of loads."""
+"""The ways to a solution: Newton on one grid, a point on two, starts from before, from Hertz, up ladders of loads.
+
+Grids that are finer than one on which the spike is found start from the solution there.
+"""
 
 from __future__ import annotations
 

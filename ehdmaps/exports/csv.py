@@ -18,8 +18,7 @@ from ehdmaps.exports.target import Target
 from ehdmaps.maps.curves import curves, film_between, rough_layers
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.film_field import FilmField
-from ehdmaps.maps.rough_films import FILM_PARAMETER, FILM_SHARE, load_sharing
-from ehdmaps.maps.rough_layer import RoughLayer
+from ehdmaps.maps.rough_layer import FILM_PARAMETER, FILM_SHARE, RoughLayer, load_sharing
 from ehdmaps.maps.usable import check_grid
 from ehdmaps.outputs import MARK, TABLE, Output, check_outputs, write_text
 from ehdmaps.program import count, plain

@@ -1,4 +1,9 @@
-"""Files of MATLAB version 5: texts that MATLAB and Octave both read, our mark in the header, one writer."""
+"""Files of MATLAB version 5: texts that MATLAB and Octave both read, our mark in the header, one writer.
+
+The file holds one struct `map`: the axes `load`, `entrainment_speed` and `temperature` as columns, one struct a contact
+with its fields as arrays of load x speed x temperature, `law` with the contact law resampled for linear interpolation
+(see `ehdmaps.exports.resampled`), `units`, `meaning`, `provenance` and `header`.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,9 @@
-"""What a target of `ehdmaps export` is, which ones are registered, and what every export says of itself."""
+"""What a target of `ehdmaps export` is, which ones are registered, and what every export says of itself.
+
+A target is one module that holds a `Target`, and one line of the entry points `ehdmaps.exports` in `pyproject.toml`.
+Packages beside this one register theirs in the same way, so that a target may use what stands above the maps, such as
+the bearing element.
+"""
 
 from __future__ import annotations
 

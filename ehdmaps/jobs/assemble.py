@@ -19,8 +19,7 @@ from ehdmaps.jobs.job import Job, record_json
 from ehdmaps.jobs.store import Arrays
 from ehdmaps.jobs.tasks import FOUND_BY_SOME, LineTask, solver_version, with_later_fields
 from ehdmaps.maps import schema
-from ehdmaps.maps.records import contacts_json, surface_json
-from ehdmaps.maps.structure import MODEL_ERRORS, derived
+from ehdmaps.maps.records import MODEL_ERRORS, contacts_json, derived, surface_json
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.solution import ContactSolver, Status

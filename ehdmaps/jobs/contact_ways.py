@@ -16,13 +16,11 @@ from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import SolverError
 from ehdmaps.jobs.answers import Answer, Question, film_answer, known
 from ehdmaps.jobs.rough_solved import solved_sharing
-from ehdmaps.maps.contact_curve import FilmSamples
-from ehdmaps.maps.locked_film import film_of, locked_stiffness
-from ehdmaps.maps.locked_fit import fitted_factor, response_error
+from ehdmaps.maps.contact_curve import FilmSamples, Tail
+from ehdmaps.maps.locked_film import film_of, fitted_factor, locked_stiffness, response_error
 from ehdmaps.maps.oil_layer import OilLayer
 from ehdmaps.maps.rolling_film import FlowFilm
 from ehdmaps.maps.rough_layer import RoughLayer
-from ehdmaps.maps.tail import Tail
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.solution import ContactSolver, FilmSolution
 from ehdmaps.physics.spectrum import contact_spectrum

@@ -12,8 +12,7 @@ import xarray as xr
 from ehdmaps.errors import MapError
 from ehdmaps.jobs.correction import JUDGED
 from ehdmaps.maps import schema
-from ehdmaps.maps.records import record_from_json
-from ehdmaps.maps.structure import MODEL_ERRORS
+from ehdmaps.maps.records import MODEL_ERRORS, record_from_json
 from ehdmaps.program import plain
 from ehdmaps.units import LOAD, SPEED, TEMPERATURE
 

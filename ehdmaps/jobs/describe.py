@@ -26,9 +26,9 @@ from ehdmaps.jobs.surface import surface_words
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone import ERROR
 from ehdmaps.maps.emap import EHDMap
-from ehdmaps.maps.own_lines import has_own_lines
+from ehdmaps.maps.grid_field import has_own_lines
 from ehdmaps.maps.records import record_from_json
-from ehdmaps.maps.rough_films import (
+from ehdmaps.maps.rough_layer import (
     BOUNDARY,
     FILM_PARAMETER,
     FILM_SHARE,

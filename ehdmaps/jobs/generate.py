@@ -25,9 +25,8 @@ from ehdmaps.jobs.tasks import LineTask, line_tasks
 from ehdmaps.jobs.write import write_map
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone_plan import Axis
-from ehdmaps.maps.checksum import content_sha256
 from ehdmaps.maps.emap import EHDMap
-from ehdmaps.maps.validation import validate
+from ehdmaps.maps.reading import content_sha256, validate
 from ehdmaps.physics.solution import ContactSolver
 from ehdmaps.table.file import CHECKSUM, shipped_tables
 from ehdmaps.table.solver import TableSolver

@@ -18,7 +18,7 @@ from ehdmaps.figures import WARNING, typeset
 from ehdmaps.maps.curves import curves, film_between, rough_layers
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.film_field import FilmField
-from ehdmaps.maps.rough_films import BOUNDARY, FILM_PARAMETER, MIXED
+from ehdmaps.maps.rough_layer import BOUNDARY, FILM_PARAMETER, MIXED
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.solution import Status
 from ehdmaps.report.chart import (

@@ -11,16 +11,16 @@ import numpy as np
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.report import ERRORS, FOUND_BY_SOME, NONE_STATED
 from ehdmaps.jobs.solvers import solver_words
-from ehdmaps.maps.rough_films import (
+from ehdmaps.maps.rough_layer import (
     FILM_PARAMETER,
     FILM_SHARE,
     LEAST_SPEED,
     MEAN_DISTANCE,
     OVERLAP,
+    RoughLayer,
     load_sharing,
     overlapping,
 )
-from ehdmaps.maps.rough_layer import RoughLayer
 from ehdmaps.physics import hertz
 from ehdmaps.physics.closed_form import too_thin
 from ehdmaps.physics.contact import LineContact, OperatingPoint

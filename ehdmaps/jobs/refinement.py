@@ -31,7 +31,7 @@ MOST_LINE_POINTS = 40_000
 class Refinement:
     """Plans of a backbone, its steps, and its tasks, one a line and in the plans' order.
 
-    There is one plan for all contacts, or one a contact where films know heat, see `ehdmaps.maps.own_lines`.
+    There is one plan for all contacts, or one a contact where films know heat, see `ehdmaps.maps.grid_field`.
     """
 
     plans: tuple[BackbonePlan, ...]

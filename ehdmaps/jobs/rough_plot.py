@@ -27,18 +27,18 @@ from ehdmaps.jobs.plot import (
 )
 from ehdmaps.jobs.plot_curves import Sheet, draw_curves, keep_corners_free, spread
 from ehdmaps.maps.emap import EHDMap
-from ehdmaps.maps.rough_films import (
+from ehdmaps.maps.rough_layer import (
     BOUNDARY,
     FILM_PARAMETER,
     FILM_SHARE,
     LEAST_SPEED,
     MEAN_DISTANCE,
     MIXED,
+    RoughLayer,
     least_share,
     overlapping,
     rough_variables,
 )
-from ehdmaps.maps.rough_layer import RoughLayer
 from ehdmaps.outputs import write_figure
 from ehdmaps.units import LOAD, TEMPERATURE, Display
 

@@ -2,7 +2,7 @@
 
 A film that carries the share g of the pressure is that of solids with the modulus g E' under the load g w (K. L.
 Johnson, J. A. Greenwood, S. Y. Poon, Wear 19, 1972, 91). `ehdmaps.maps.rough_layer` scales it from the film between
-smooth surfaces by a formula; here every film on the way is solved. Asperities are those of `ehdmaps.maps.asperities`
+smooth surfaces by a formula; here every film on the way is solved. Asperities are those of `ehdmaps.maps.rough_layer`
 in both.
 """
 
@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from scipy.optimize import brentq
 
 from ehdmaps.errors import SolverError
-from ehdmaps.maps.asperities import asperity_pressure, mean_gap
+from ehdmaps.maps.rough_layer import asperity_pressure, mean_gap
 from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.hertz import max_pressure
 from ehdmaps.physics.lubricant import Lubricant

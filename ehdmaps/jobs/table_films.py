@@ -14,7 +14,7 @@ from ehdmaps.errors import MapError
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.law_points import COMPLIANCE_BARS, DAMPING_BARS
 from ehdmaps.jobs.sampling import SamplePoint, draw_apart, drawable
-from ehdmaps.maps.low_loads import looked_at
+from ehdmaps.maps.film_field import looked_at
 from ehdmaps.maps.table_field import TableField
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.lubricant import Lubricant

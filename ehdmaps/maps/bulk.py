@@ -12,7 +12,6 @@ import numpy as np
 
 from ehdmaps.arrays import ByteArray, FloatArray, IntArray
 from ehdmaps.compiled import njit
-from ehdmaps.maps.elementary import log
 from ehdmaps.maps.kernel import collapse, evaluate_at, within_map
 from ehdmaps.maps.lines import (
     FAST,
@@ -20,6 +19,7 @@ from ehdmaps.maps.lines import (
     collapsed_row,
     cubics,
     force_of,
+    log,
     place_within,
     quadratic_weights,
     splines,

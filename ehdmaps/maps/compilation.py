@@ -24,8 +24,7 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import MapError
 from ehdmaps.maps.contact_curve import ContactCurve, Curve
-from ehdmaps.maps.film_field import FilmField
-from ehdmaps.maps.low_loads import valley_loads
+from ehdmaps.maps.film_field import FilmField, valley_loads
 from ehdmaps.maps.oil_layer import oil_layer
 from ehdmaps.maps.rolling_film import RollingFilm
 from ehdmaps.maps.rough_layer import RoughLayer

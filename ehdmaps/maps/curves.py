@@ -12,8 +12,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import MapError
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.film_field import FilmField
-from ehdmaps.maps.rough_films import LEAST_SPEED
-from ehdmaps.maps.rough_layer import RoughLayer
+from ehdmaps.maps.rough_layer import LEAST_SPEED, RoughLayer
 from ehdmaps.physics.contact import LineContact
 
 

@@ -14,28 +14,34 @@ import xarray as xr
 from ehdmaps.errors import InputError, MapError
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone import FILMS
-from ehdmaps.maps.checksum import check_content, content_sha256
 from ehdmaps.maps.compilation import OF_TABLE, Resolution
-from ehdmaps.maps.film_field import FilmField
-from ehdmaps.maps.grid_field import GridField
+from ehdmaps.maps.film_field import (
+    RIGID,
+    FilmField,
+    FirstLoads,
+    LowLoads,
+    first_loads,
+    known_from,
+    low_loads,
+    same_load,
+)
+from ehdmaps.maps.grid_field import GridField, line_field, lines_by_contact
 from ehdmaps.maps.law import SPEED_REACH, ContactLaw, LawKind, OutsidePolicy
 from ehdmaps.maps.law_errors import LawErrors
-from ehdmaps.maps.low_loads import RIGID, FirstLoads, LowLoads, first_loads, known_from, low_loads, same_load
-from ehdmaps.maps.own_lines import line_field, lines_by_contact
-from ehdmaps.maps.reading import read_map
+from ehdmaps.maps.reading import check_content, check_tables, content_sha256, read_map, validate
 from ehdmaps.maps.records import (
     bearing_from_json,
     check_oil,
+    completed,
     contacts_of,
     lubricant_from_json,
+    restructured,
     supply_from_json,
     surface_from_json,
     surface_json,
 )
 from ehdmaps.maps.rolling_film import RollingFilm, rolling_film
-from ehdmaps.maps.structure import completed, restructured
 from ehdmaps.maps.usable import check_backbone, check_grid, check_loads
-from ehdmaps.maps.validation import check_tables, validate
 from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import BearingGeometry, with_law
 from ehdmaps.physics.contact import LineContact

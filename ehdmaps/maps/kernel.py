@@ -27,14 +27,15 @@ import math
 
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.compiled import njit
-from ehdmaps.maps.elementary import exp, log
 from ehdmaps.maps.lines import (
     FAST,
     State,
     collapsed_line,
+    exp,
     force_of,
     line_approach,
     line_state,
+    log,
     stretched,
     table_state,
 )

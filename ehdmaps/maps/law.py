@@ -20,18 +20,13 @@ from ehdmaps.maps.compilation import (
     highest_structural_load,
     structural_parameters,
 )
-from ehdmaps.maps.dry import DryField
-from ehdmaps.maps.excursions import Axis, Excursion, Range
-from ehdmaps.maps.film_field import FilmField
+from ehdmaps.maps.film_field import DryField, FilmField, LowLoads
 from ehdmaps.maps.film_response import FilmResponse
-from ehdmaps.maps.law_arguments import broadcast, check_finite, floats
-from ehdmaps.maps.law_change import LawChange, changed_table
-from ehdmaps.maps.law_errors import LawBounds, LawErrors
+from ehdmaps.maps.law_errors import LawBounds, LawChange, LawErrors, changed_table
 from ehdmaps.maps.law_films import LawFilms
 from ehdmaps.maps.locked_film import LockedFactors
-from ehdmaps.maps.low_loads import LowLoads
 from ehdmaps.maps.memory import FilmMemory, FilmState
-from ehdmaps.maps.outside_calls import OutsideCalls
+from ehdmaps.maps.outside_calls import Axis, Excursion, OutsideCalls, Range, broadcast, check_finite, floats
 from ehdmaps.maps.rolling_film import RollingFilm
 from ehdmaps.maps.rough_layer import GONE_BELOW
 from ehdmaps.maps.tables import LOAD, ApproachTable, LawTable, Point
@@ -82,7 +77,7 @@ class ContactLaw:
     surface : Surface
         Roughness of the surfaces: film and asperities share the load, see `ehdmaps.maps.rough_layer`. The law then
         has a table down to a speed without a film, and goes over into the rough dry contact at standstill. Where a film
-        is so thin that the mean planes overlap, its share and its damping are a guess, see `ehdmaps.maps.rough_films`.
+        is so thin that the mean planes overlap, its share and its damping are a guess, see `ehdmaps.maps.rough_layer`.
     errors : LawErrors, optional
         How wrong the law may be, where its map says so; see `LawAtPoint.bounds`.
 

@@ -1,4 +1,4 @@
-"""How wrong a contact law may be: bounds of its stiffness, damping and film offset from the errors that a map states.
+"""A contact law that is a little wrong on purpose: its table with another stiffness, damping and film.
 
 Three kinds of error, each relative, at a load, entrainment speed and temperature:
 
@@ -19,11 +19,12 @@ map without model errors says that the equations are solved that well, and nothi
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -31,10 +32,49 @@ import xarray as xr
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone_plan import VALLEY
-from ehdmaps.maps.low_loads import valley_loads
-from ehdmaps.maps.structure import MODEL_ERRORS
+from ehdmaps.maps.film_field import valley_loads
+from ehdmaps.maps.records import MODEL_ERRORS
+from ehdmaps.maps.tables import ApproachTable
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
+
+
+class LawChange(NamedTuple):
+    """What is changed of a law, at all loads, speeds and temperatures alike.
+
+    Attributes
+    ----------
+    stiffness, damping : float
+        Relative changes of k and c at an approach, above -1; the load at it changes by as much as k.
+    film : float
+        What films are thicker by [m]: contacts touch at an approach that is so much less.
+    """
+
+    stiffness: float = 0.0
+    damping: float = 0.0
+    film: float = 0.0
+
+    def times(self, signs: tuple[float, float, float]) -> LawChange:
+        """The change with a factor for each of its three parts."""
+        return LawChange(*(sign * part for sign, part in zip(signs, self, strict=True)))
+
+
+def changed_table(table: ApproachTable, change: LawChange) -> ApproachTable:
+    """The table of a changed law; exact, as its splines take factors and constants as they are.
+
+    Parameters
+    ----------
+    table : ApproachTable
+        Table of the law as it is.
+    change : LawChange
+        Change of the law.
+    """
+    coefficients, place = table.coefficients.copy(), table.place.copy()
+    coefficients[..., 0::2] *= math.cbrt(1.0 + change.stiffness)
+    coefficients[..., 1::2] += math.log((1.0 + change.damping) / (1.0 + change.stiffness))
+    place[..., 0] -= change.film
+    return table._replace(coefficients=coefficients, place=place)
+
 
 QUANTILES = {"median": 0.5, "95 %": 0.95, "99 %": 0.99, "largest": 1.0}
 """Words and numbers of the quantiles that the check of a law writes."""

@@ -11,12 +11,11 @@ import numpy as np
 
 from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.maps.contact_curve import ContactCurve
-from ehdmaps.maps.excursions import Excursion, Range
-from ehdmaps.maps.film_field import FilmField
+from ehdmaps.maps.film_field import FilmField, LowLoads, guessed_at, looked_at, low_loads
 from ehdmaps.maps.film_response import FilmResponse, FilmsOfContact
 from ehdmaps.maps.locked_film import FORMULA, LockedFactors, film_of, locked_compliances, relaxation_times
-from ehdmaps.maps.low_loads import LowLoads, guessed_at, looked_at, low_loads
 from ehdmaps.maps.oil_layer import oil_layer
+from ehdmaps.maps.outside_calls import Excursion, Range
 from ehdmaps.maps.rolling_film import RollingFilm
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width, natural_time
@@ -41,7 +40,7 @@ class LawFilms:
     lubricant : Lubricant
         The oil.
     field : FilmField
-        Film of each contact; of a dry map its stand-in, see `ehdmaps.maps.dry`.
+        Film of each contact; of a dry map its stand-in, see `ehdmaps.maps.film_field`.
     dry : bool
         Whether the map has no film.
     supply : OilSupply

@@ -31,11 +31,10 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.compiled import njit
-from ehdmaps.maps.binary_cells import FIRST, SHIFT, last_of, nodes_of, rows_of
 from ehdmaps.maps.kernel import evaluate_at, structural_state
 from ehdmaps.maps.lines import FAST
 from ehdmaps.maps.locked_film import Film, LockedFactors, factor_at, locked_stiffness
-from ehdmaps.maps.tables import Point
+from ehdmaps.maps.tables import FIRST, SHIFT, Point, last_of, nodes_of, rows_of
 
 LIGHTEST = 1.0
 """Load up to which the cells of a over w are even [N/m]."""

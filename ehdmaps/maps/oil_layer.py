@@ -32,9 +32,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.maps.contact_curve import FilmSamples, dry_slope
+from ehdmaps.maps.contact_curve import FilmSamples, Tail, dry_slope
 from ehdmaps.maps.rolling_film import FlowFilm, RollingFilm
-from ehdmaps.maps.tail import Tail
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.oil_supply import CORNER, RIGID_FLOW, compliance_ratio, damping_ratio, film_ratio
 

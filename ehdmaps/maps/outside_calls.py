@@ -1,17 +1,151 @@
-"""Points of a law outside its map, as they add up over its calls: counted, noted, and refused where nothing is held."""
+"""Arguments of a law, and its points outside the map: counted over its calls, noted, refused where nothing is held."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import get_args
+from dataclasses import dataclass, replace
+from typing import Literal, get_args
 
 import numpy as np
+import numpy.typing as npt
 
 from ehdmaps.arrays import FloatArray, IntArray
-from ehdmaps.errors import OutsideMapError
-from ehdmaps.maps.excursions import Axis, Excursion, Range
-from ehdmaps.maps.law_arguments import check_finite
+from ehdmaps.errors import InputError, OutsideMapError
+from ehdmaps.maps.kernel import EDGE_TOLERANCE, LOAD_TOLERANCE
 from ehdmaps.maps.tables import LOAD, NOT_FINITE, SPEED, TEMPERATURE
+
+Axis = Literal["load", "entrainment_speed", "temperature"]
+Side = Literal["above", "below"]
+
+UNITS = {"load": "N/m", "entrainment_speed": "m/s", "temperature": "K"}
+
+
+@dataclass(frozen=True)
+class Excursion:
+    """Calls beyond one end of one axis of the map.
+
+    Attributes
+    ----------
+    axis : {"load", "entrainment_speed", "temperature"}
+    side : {"above", "below"}
+        Speeds are never below: films of lower ones are part of the law. Loads are where the film there is a guess, see
+        `ehdmaps.maps.film_field`.
+    calls : int
+        How many points.
+    extreme : float
+        The one farthest outside [N/m], [m/s], [K]; loads without the part of damping.
+    limit : float
+        End of the map on this axis.
+    """
+
+    axis: Axis
+    side: Side
+    calls: int
+    extreme: float
+    limit: float
+
+    @property
+    def text(self) -> str:
+        """In words, such as 'load 1.2e+06 N/m above the map, which ends at 1e+06 N/m'."""
+        unit, ends = UNITS[self.axis], "ends" if self.side == "above" else "begins"
+        about = f"{self.extreme:.6g} {unit}"
+        return f"{self.axis} {about} {self.side} the map, which {ends} at {self.limit:.6g} {unit}"
+
+    def __add__(self, other: Excursion) -> Excursion:
+        farthest = max if self.side == "above" else min
+        return replace(self, calls=self.calls + other.calls, extreme=farthest(self.extreme, other.extreme))
+
+
+@dataclass(frozen=True)
+class Range:
+    """What is known along an axis; `low` is -inf where nothing can be below."""
+
+    axis: Axis
+    low: float
+    high: float
+
+    def excursions(self, values: FloatArray) -> list[Excursion]:
+        """What of some values lies outside."""
+        tolerance = LOAD_TOLERANCE if self.axis == "load" else EDGE_TOLERANCE
+        values = np.abs(values) if self.axis == "entrainment_speed" else values
+        above = values[values > self.high * (1.0 + tolerance)]
+        # no load at all is no question of films
+        below = values[(values < self.low * (1.0 - tolerance)) & (values > 0.0)] if self.low > 0.0 else values[:0]
+        found = []
+        if above.size:
+            found.append(Excursion(self.axis, "above", int(above.size), float(np.max(above)), self.high))
+        if below.size:
+            found.append(Excursion(self.axis, "below", int(below.size), float(np.min(below)), self.low))
+        return found
+
+
+def floats(**values: npt.ArrayLike) -> dict[str, FloatArray]:
+    """Arrays of doubles by name.
+
+    Raises
+    ------
+    InputError
+        If one of them holds what is no number.
+    """
+    arrays = {}
+    for name, value in values.items():
+        try:
+            arrays[name] = np.asarray(value, dtype=np.float64)
+        except (TypeError, ValueError):
+            raise InputError(f"contact law, {name}: got {value!r}; allowed: real numbers") from None
+    return arrays
+
+
+def broadcast(named: Mapping[str, FloatArray]) -> tuple[tuple[int, ...], list[FloatArray]]:
+    """Common shape of arrays, and flat arrays of it that compiled code takes: contiguous and writeable.
+
+    Parameters
+    ----------
+    named : mapping of str to array
+        Arrays of doubles by name, of any shapes that broadcast.
+
+    Raises
+    ------
+    InputError
+        If their shapes do not broadcast.
+    """
+    try:
+        shape = np.broadcast_shapes(*(array.shape for array in named.values()))
+    except ValueError:
+        shapes = ", ".join(f"{name} {array.shape}" for name, array in named.items())
+        raise InputError(f"contact law: got shapes that do not broadcast: {shapes}") from None
+    flat = []
+    for array in named.values():
+        ready = array.shape == shape and array.flags.c_contiguous and array.flags.writeable
+        full = array if ready else np.empty(shape)
+        if not ready:
+            full[...] = array
+        flat.append(full.reshape(-1))
+    return shape, flat
+
+
+def check_finite(named: Mapping[str, FloatArray]) -> None:
+    """Refuse values that are no finite numbers.
+
+    Parameters
+    ----------
+    named : mapping of str to array
+        Arrays of doubles by name.
+
+    Raises
+    ------
+    InputError
+        With every array that holds one.
+    """
+    problems = [
+        f"contact law, {name}: got {values[~np.isfinite(values)].flat[0]} "
+        f"({np.count_nonzero(~np.isfinite(values))} of {values.size}); allowed: finite numbers"
+        for name, values in named.items()
+        if not np.all(np.isfinite(values))
+    ]
+    if problems:
+        raise InputError(problems)
+
 
 _CAUSES: Mapping[Axis, int] = {"load": LOAD, "entrainment_speed": SPEED, "temperature": TEMPERATURE}
 

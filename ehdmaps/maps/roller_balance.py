@@ -12,7 +12,6 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.compiled import njit
-from ehdmaps.maps.elementary import log
 from ehdmaps.maps.lines import (
     FAST,
     State,
@@ -20,6 +19,7 @@ from ehdmaps.maps.lines import (
     cell_of,
     line_approach,
     line_load,
+    log,
     place_within,
     stretched,
 )

@@ -8,7 +8,7 @@ What a map holds of them is read as ln f and ln g: of its backbone at constant z
 a contact law are, or of its own grid at constant load where it has no backbone.
 
 - A backbone is read also below the lowest mapped load, down to where the contact is rigid, see
-  `ehdmaps.maps.low_loads`. Below that, or below the lowest mapped load, both go over into the film between rigid
+  `ehdmaps.maps.film_field`. Below that, or below the lowest mapped load, both go over into the film between rigid
   surfaces, f = 2.941 M^(1/2) and g = 3/M, which the piezoviscous effect leaves as the pressure does, like M^(3/2).
   Where no backbone reaches the rigid regime the way there is a guess.
 - Above the highest load they go on with their last exponent.
@@ -29,11 +29,10 @@ from scipy.interpolate import CubicSpline, PPoly
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.maps.backbone import FEWEST_NODES, LATTICE_STEP, lagrange
-from ehdmaps.maps.low_loads import RIGID, known_from, load_at
-from ehdmaps.maps.mixing import mix_lines
-from ehdmaps.maps.own_lines import lines_by_contact
+from ehdmaps.maps.film_field import RIGID, known_from, load_at
+from ehdmaps.maps.grid_field import lines_by_contact
 from ehdmaps.maps.schema import BACKBONE_DIMS, DIMS
-from ehdmaps.maps.splines import spline_weights
+from ehdmaps.maps.splines import mix_lines, spline_weights
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.films import RIGID_ROLLING_CONSTANT
 from ehdmaps.physics.lubricant import Lubricant

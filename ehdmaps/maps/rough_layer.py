@@ -1,4 +1,10 @@
-"""Load sharing of film and asperities: from the film between smooth surfaces to that between rough ones.
+"""Asperities of rough surfaces: what they carry, and the mean gap that they leave to the oil.
+
+The heights of both surfaces together are Gaussian, with the combined root mean square roughness sigma. Where the mean
+planes are x sigma apart, asperities carry the pressure of Greenwood and Tripp, and the gap that is open to the oil,
+averaged, is sigma (phi(x) + x Phi(x)): it never vanishes, while the mean planes may come to overlap, x < 0.
+
+Load sharing of film and asperities: from the film between smooth surfaces to that between rough ones.
 
 A film that carries the share g of the pressure on the Hertz shape is the film of the modulus g E' under the load g w
 (Johnson, Greenwood and Poon): Moes' groups become M sqrt(g) and L g^(3/4), and lengths count by g^(-1/2),
@@ -13,15 +19,24 @@ smooth surfaces h_f(1) is that of the map. Asperities leave the same film on ave
 solved for the share g and the distance x of the mean planes in sigma; x sigma takes the place of the film offset, and
 the loss of the film counts by g^2. Where the film is thick, g is 1 and nothing changes; without a film g is 0, and x is
 that of the rough dry contact. The mean planes may come to overlap, x < 0: there the share is out of the range of the
-theory, see `ehdmaps.maps.rough_films`, and the rule no more than a smooth way to the rough dry contact.
+theory, see `ehdmaps.maps.rough_layer`, and the rule no more than a smooth way to the rough dry contact.
 
 The scaled film lies within -5 and +12 % of films that `reynolds` solves with the modulus g E' for g >= 0.3 (rms of 60
 points with FVA 3, M 0.1 to 200, L 3 to 35, to g = 0.1: 4 %; with the textbooks' exponent g^(-0.16) instead: 32 %).
 
+What roughness makes of the points of a map: Lambda, the film's share of the load, and where that is out of range.
+
+Load sharing holds while the mean planes of both surfaces are apart. Where they overlap, the gap that is open to the
+oil on average is less than 0.4 of the roughness, and most of it lies in pockets between asperities that touch, through
+which no film flows as between smooth walls. And at a given distance asperities carry a given pressure, so that the film
+is left with the rest of a heavy load, however thin it is. At a given load the mean planes meet at one share of the
+film, see `least_share`: below it shares are a guess.
+
 References
 ----------
+J. A. Greenwood, J. H. Tripp, "The contact of two nominally flat rough surfaces", Proc. IMechE 185, 1970, 625.
 K. L. Johnson, J. A. Greenwood, S. Y. Poon, "A simple theory of asperity contact in elastohydrodynamic lubrication",
-Wear 19, 1972, 91. `ehdmaps.maps.asperities` for the asperities, `ehdmaps.physics.films` for the film.
+Wear 19, 1972, 91. `ehdmaps.maps.rough_layer` for the asperities, `ehdmaps.physics.films` for the film.
 """
 
 from __future__ import annotations
@@ -32,17 +47,101 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
+import xarray as xr
 from scipy.interpolate import CubicSpline
+from scipy.special import erfcx, gamma, ndtr, pbdv
 
-from ehdmaps.arrays import FloatArray
+from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.compiled import njit
-from ehdmaps.maps.asperities import asperity_pressure, mean_gap
 from ehdmaps.maps.contact_curve import FilmSamples
+from ehdmaps.maps.schema import DIMS
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import max_pressure
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import moes_groups
 from ehdmaps.physics.surface import Surface
+
+_SHARPNESS = 4.0
+
+
+def asperity_integral(order: float, distance: npt.ArrayLike) -> FloatArray:
+    """Integral of (s - x)^n over the Gaussian heights s > x, F_n(x).
+
+    Its derivative by x is -n F_(n-1)(x). By the parabolic cylinder function, Gamma(n + 1)/sqrt(2 pi) exp(-x^2/4)
+    D_(-n-1)(x): within 2e-9 of its value for -35 <= x <= 20.
+
+    Parameters
+    ----------
+    order : float
+        n > -1: 5/2 for the load of asperities, 2 for the area of their spots.
+    distance : float or array
+        x, distance of the mean planes in sigma, of either sign.
+
+    Examples
+    --------
+    >>> f"{float(asperity_integral(2.5, 0.0)):.4f}"
+    '0.6166'
+    """
+    x = np.asarray(distance, dtype=np.float64)
+    values, _ = pbdv(-order - 1.0, x)
+    return np.asarray(gamma(order + 1.0) / math.sqrt(2.0 * math.pi) * np.exp(-0.25 * x * x) * values)
+
+
+def asperity_pressure(
+    surface: Surface, distance: npt.ArrayLike, reduced_modulus: float
+) -> tuple[FloatArray, FloatArray]:
+    """Mean pressure that asperities carry [Pa], and its derivative by the distance in sigma.
+
+    Elastic asperities carry p_e = (16 sqrt(2) pi/15) (eta sigma beta)^2 sqrt(sigma/beta) (E'/2) F_5/2(x). The spots in
+    which they touch take the part pi^2 (eta sigma beta)^2 F_2(x) of the area; they carry no more than the hardness,
+    p_p. The pressure is (p_e^-4 + p_p^-4)^(-1/4), the smaller one with a smooth bend between.
+
+    Parameters
+    ----------
+    surface : Surface
+        A rough one.
+    distance : float or array
+        x, distance of the mean planes in sigma, of either sign; -35 to 20.
+    reduced_modulus : float
+        E' [Pa].
+    """
+    spots = surface.asperity_product**2
+    stiff = 16.0 * math.sqrt(2.0) / 15.0 * math.pi * spots * math.sqrt(surface.asperity_slope) * 0.5 * reduced_modulus
+    yielding = surface.hardness * math.pi**2 * spots
+    elastic, plastic = stiff * asperity_integral(2.5, distance), yielding * asperity_integral(2.0, distance)
+    by_elastic = -2.5 * stiff * asperity_integral(1.5, distance)
+    by_plastic = -2.0 * yielding * asperity_integral(1.0, distance)
+    ratio = elastic / plastic
+    below = (1.0 + ratio**_SHARPNESS) ** (-1.0 / _SHARPNESS)
+    pressure = elastic * below
+    log_slope = (by_elastic / elastic + ratio**_SHARPNESS * by_plastic / plastic) / (1.0 + ratio**_SHARPNESS)
+    return np.asarray(pressure), np.asarray(pressure * log_slope)
+
+
+def mean_gap(distance: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
+    """Mean of the open gap in sigma, phi(x) + x Phi(x), and its derivative Phi(x).
+
+    It is x where the surfaces are far apart, 0.399 where the mean planes meet, and above zero everywhere. Its relative
+    error is that of rounding times 1 + x^2.
+
+    Parameters
+    ----------
+    distance : float or array
+        x, distance of the mean planes in sigma, of either sign; above -37, where the gap underflows.
+
+    Examples
+    --------
+    >>> gap, _ = mean_gap([-2.0, 0.0, 3.0])
+    >>> [f"{value:.4f}" for value in gap]
+    ['0.0085', '0.3989', '3.0004']
+    """
+    x = np.asarray(distance, dtype=np.float64)
+    height = np.exp(-0.5 * x * x) / math.sqrt(2.0 * math.pi)
+    # phi(x) + x Phi(x) would cancel below zero
+    deep = height * (1.0 + x * math.sqrt(0.5 * math.pi) * erfcx(-np.minimum(x, 0.0) / math.sqrt(2.0)))
+    return np.asarray(np.where(x < 0.0, deep, height + x * ndtr(x))), np.asarray(ndtr(x))
+
 
 OIL_EXPONENT, FULL_FROM = 0.12, 3.0
 """n of the scaled film where it is elastic, and the load number M where half of it is reached."""
@@ -362,3 +461,109 @@ class RoughLayer:
         films = np.ascontiguousarray(film), np.ascontiguousarray(slope)
         _shared(asperities_of(self.surface, modulus), sigma, roots, logs, by_root, loads, oils, *films, out)
         return SharedFilm(out[0], out[1], out[2])
+
+
+FILM_PARAMETER, FILM_SHARE, MEAN_DISTANCE = "film_parameter", "film_share", "mean_distance"
+"""Names of the three variables."""
+
+OVERLAP = "the mean planes of the rough surfaces overlap: out of the range of load sharing, the film's share is a guess"
+"""What is said where a film carries a load and the distance of the mean planes is below zero."""
+
+BOUNDARY, MIXED = 1.0, 3.0
+"""Lambda below which lubrication is usually called boundary, and mixed. What asperities carry there is `film_share`."""
+
+LEAST_SPEED = 1e-9
+"""Speed that stands for a standstill where one above zero is needed [m/s]."""
+
+
+def rough_variables(
+    dataset: xr.Dataset, contacts: tuple[LineContact, ...], lubricant: Lubricant, surface: Surface
+) -> xr.Dataset:
+    """Lambda and the film's share at all points of a map.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The map, of smooth surfaces.
+    contacts : tuple of LineContact
+        Its contacts.
+    lubricant : Lubricant
+        Its oil.
+    surface : Surface
+        A rough one.
+
+    Returns
+    -------
+    xarray.Dataset
+        `film_parameter`, minimum film between smooth surfaces over the roughness, and `film_share`, the part of the
+        load that the film carries by `ehdmaps.maps.rough_layer`; `mean_distance`, the distance of the mean planes over
+        the roughness. NaN where a point has no solution.
+    """
+    ordered = dataset.transpose(*DIMS, ...)
+    loads, speeds, temperatures = (ordered[name].values.astype(np.float64) for name in DIMS[1:])
+    share, distance = np.empty((2, *(ordered.sizes[name] for name in DIMS)))
+    for i, contact in enumerate(contacts):
+        layer = RoughLayer(surface, contact, lubricant, max(float(speeds[-1]), LEAST_SPEED))
+        film = ordered["film_offset"].values[i]
+        share[i], distance[i] = load_sharing(layer, film, loads, speeds, temperatures)
+    variables = {
+        FILM_PARAMETER: (
+            ordered["minimum_film"].values / surface.roughness,
+            "Lambda, minimum film between smooth surfaces over the combined rms roughness",
+        ),
+        FILM_SHARE: (share, "part of the load that the film carries, the rest is carried by asperities"),
+        MEAN_DISTANCE: (distance, "distance of the mean planes over the combined rms roughness"),
+    }
+    return xr.Dataset(
+        {name: (DIMS, values, {"units": "1", "long_name": words}) for name, (values, words) in variables.items()},
+        {name: ordered[name] for name in DIMS},
+    )
+
+
+def load_sharing(
+    layer: RoughLayer, film: FloatArray, loads: FloatArray, speeds: FloatArray, temperatures: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Share of the film of one contact, and distance of the mean planes over the roughness, (n, n_u, n_T) each.
+
+    Parameters
+    ----------
+    layer : RoughLayer
+        The contact with its rough surfaces.
+    film : array (n, n_u, n_T)
+        Film offset between smooth surfaces [m]; NaN where it is not known, 0 at standstill.
+    loads, speeds, temperatures : array (n,), (n_u,), (n_T,)
+        [N/m], [m/s], [K].
+    """
+    known = np.isfinite(film)
+    solid = np.where(known, film, 0.0)
+    root = np.broadcast_to(np.cbrt(loads)[:, None, None], film.shape)
+    shared = layer.shared(root, solid, np.zeros(film.shape), speeds, temperatures)
+    distance = shared.offset / layer.surface.roughness
+    return np.where(known, shared.share, np.nan), np.where(known, distance, np.nan)
+
+
+def overlapping(share: FloatArray, distance: FloatArray) -> BoolArray:
+    """Where a film carries a load while the mean planes overlap: `load_sharing` out of its range.
+
+    Parameters
+    ----------
+    share, distance : array
+        What `load_sharing` gives. Without a film asperities carry everything, and nothing is shared.
+    """
+    return np.asarray((share > 0.0) & (distance < 0.0))
+
+
+def least_share(layer: RoughLayer, loads: FloatArray) -> FloatArray:
+    """Share of the film at which the mean planes meet, (n,); below zero where the load is too light for that.
+
+    Parameters
+    ----------
+    layer : RoughLayer
+        The contact with its rough surfaces.
+    loads : array (n,)
+        [N/m], > 0.
+    """
+    contact = layer.contact
+    pressures = 0.25 * np.pi * np.asarray(max_pressure(loads, contact.radius, contact.reduced_modulus))
+    carried, _ = asperity_pressure(layer.surface, 0.0, contact.reduced_modulus)
+    return np.asarray(1.0 - carried / pressures)

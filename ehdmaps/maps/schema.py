@@ -5,7 +5,7 @@ the grid and the group "backbone" alike.
 
 What a solver finds is the film: film offset, film compliance and loss compliance. They are stored, and laws are made
 from them. Approach, stiffness and damping also contain the solids, by a structural law that the reader may choose:
-they are derived, see `ehdmaps.maps.structure`. They are written too, for other programs, by the structural law of the
+they are derived, see `ehdmaps.maps.records`. They are written too, for other programs, by the structural law of the
 job; no law reads them.
 
 Versions

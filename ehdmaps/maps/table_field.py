@@ -23,8 +23,7 @@ from ehdmaps.errors import MapError
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone import ERROR, IMAGINARY, LOSS_SCALE, REAL, BackboneField, OffsetLine
 from ehdmaps.maps.backbone_plan import NAME, STEPS, plan_backbone, zeta_axis
-from ehdmaps.maps.film_field import lifted_loss
-from ehdmaps.maps.low_loads import RIGID, first_loads
+from ehdmaps.maps.film_field import RIGID, first_loads, lifted_loss
 from ehdmaps.maps.records import reference_json
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width

@@ -1,4 +1,11 @@
-"""Structural laws: the elastic part of the approach of one contact over its load, and its derivative."""
+"""Structural laws: the elastic part of the approach of one contact over its load, and its derivative.
+
+A plane log kernel has no absolute approach, so it is taken from one of four laws that name their
+reference: `iso16281` and `palmgren` for a steel roller of finite length, `half_space` for a stated depth, and
+`finite_elements` for roller, rings and their seats as they are.
+Each law is zero for loads at and below zero, where its compliance is inf (an unloaded contact has no
+stiffness).
+"""
 
 from __future__ import annotations
 

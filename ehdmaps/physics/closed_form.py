@@ -1,4 +1,22 @@
-"""The solvers without a discretisation, `hertz` and `formula`; how far their films have a meaning."""
+"""The solvers without a discretisation, `hertz` and `formula`; how far their films have a meaning.
+
+How thick and how thin a film may be before its numbers lose their meaning.
+
+Thick: the gap of two cylinders is taken as a parabola, and the flow in it as that of a thin film. At the places
+x = sqrt(2 h R), where the gap is twice the film and much of the pressure is built up, a parabola is h/(2 R) off the
+circle, relatively, to first order, and the surfaces are inclined by sqrt(2 h/R). At h/R = 0.01 that is half a per cent
+and 8 degrees: up to there nobody needs a word. At h/R = 0.3 the parabola is 18 % off, the inclination is 51 degrees,
+and the whole film would reach around three quarters of the cylinder: nothing is left of the theory.
+
+Thin: below a nanometre a film is no continuum, but some molecules. Below the roughness the surfaces touch before such a
+film is all that carries.
+
+The solvers without a discretisation: `hertz` (dry) and `formula` (a published central film formula).
+
+They state no errors (NaN): a closed form has no numerical error, and how far it is from a full solution, a model error,
+is not known here. Against `reynolds` the damping of a formula is often wrong by most of its size. Both are
+low-frequency limits: their film compliance and loss compliance do not depend on frequency.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,32 @@
-"""One line contact: radius, solids, structural law, operating point; a film between solids that cannot pull."""
+"""One line contact: radius, solids, structural law, operating point; a film between solids that cannot pull.
+
+The rule by which damping acts in a contact that cannot pull: load, stiffness and damping of a moving contact.
+
+At rest a contact carries w(delta) >= 0, and damps small motions by c(delta). As w + c rate the damping would pull the
+bodies together when they part quickly. The rule bends that straight line: with x = c rate/w
+
+    F = w (1 + x)       for x >= -1/2,
+    F = -w/(4 x)        for x <  -1/2.
+
+The lower branch is the hyperbola that meets the straight line at x = -1/2 with the value w/2 and the slope
+dF/d rate = c: F is C1. It stays positive and falls to zero as the bodies part faster, and dF/d rate = c/(4 x^2)
+is never negative, so that the damping takes up power at any rate. Without load at rest there is none in motion: w = 0
+needs c = 0 here. With ' for the derivative by the approach,
+
+    dF/d delta = w' + c' rate                       for x >= -1/2,
+    dF/d delta = -w'/(2 x) + c' rate/(4 x^2)        for x <  -1/2,
+
+which is continuous at x = -1/2 as well.
+
+The function is plain Python that branches on numbers and calls nothing. Each kernel compiles it with its own settings
+of numba, which this package does not import.
+
+A contact is a film between solids: approach, stiffness and damping from the film and the structural law.
+
+approach = delta_el(w) - h_eff,    1/k = d(delta_el)/dw + film compliance,    c = loss compliance k^2
+
+in the limit of slow motion; for other frequencies see `ehdmaps.physics.spectrum`.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,24 @@
-"""Published formulas of lubricated line contacts: film thickness, damping, rolling force; one function each."""
+"""Published formulas of lubricated line contacts: film thickness, damping, rolling force; one function each.
+
+Published film thickness formulas of lubricated line contacts, one function each.
+
+Groups: M, L, H = h/R (eta0 us/(E'R))^(-1/2) of Moes; U, W, G of Dowson and Higginson, which give h/R
+(see `ehdmaps.physics.moes`). All are isothermal, Newtonian and fully flooded.
+
+Published damping formulas of line contacts, per unit length unless said otherwise.
+
+The rigid films follow from the Reynolds equation of a parabolic gap h + x^2/(2R); their constants are
+verified by quadrature in the tests.
+
+Rolling force of a line contact: what the film resists with to pure rolling, per unit length.
+
+Both walls run at u, so that only the pressure gradient shears the film: tau = dp/dx (y - h/2). Each wall feels
+h/2 dp/dx against its motion, and the two together
+
+    F = Int h dp/dx dx,        power lost in the film: F u.
+
+The integral runs to the exit of the film; behind it the oil runs along with the walls. No shear law enters.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,30 @@
-"""Heat of a contact: its data, the film's reduction by shear in the inlet, and `physics = "inlet-heat"`."""
+"""Heat of a contact: its data, the film's reduction by shear in the inlet, and `physics = "inlet-heat"`.
+
+Reduction of the film by inlet shear heating: the thermal loading, and a published factor.
+
+Multiply an isothermal film by the factor. No solver applies it: `ehdmaps.physics.heat` has a factor that holds at
+light loads too.
+
+Heat in the inlet as a layer over isothermal films: `physics = "inlet-heat"`.
+
+The oil that turns back in the inlet shears itself warm, and what enters the contact is thinner. Laid over an isothermal
+film that is a factor phi of the film, with three rules:
+
+- film offset, central and smallest film, flow and rolling force times phi,
+- film compliance minus the derivative of that film offset by load, so that laws can be made of both,
+- loss compliance times phi^n, n = 1 + M^2/(1 + M^2): 1 below the damping valley and 2 above it.
+
+    phi = 1/(1 + 0.236 QL^0.72 M/(M + 0.25)),    QL = -(d eta0/dT) u^2/k_f
+
+with Moes' M of the isothermal contact. Factors from the literature are for loaded contacts: that of Wilson and Sheu,
+1/(1 + 0.241 QL^0.64), is this one at high M, and 5 to 12 % too low below M = 0.5. A solve with temperatures
+(`physics = "thermal"`) has none of these limits.
+
+References
+----------
+W. R. D. Wilson, S. Sheu, Effect of inlet shear heating due to sliding on elastohydrodynamic film thickness, Journal of
+Lubrication Technology 105, 1983, 187-188.
+"""
 
 from __future__ import annotations
 

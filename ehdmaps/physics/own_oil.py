@@ -1,4 +1,8 @@
-"""The laws of an own oil, from what its user states; what nobody measured is estimated by correlations."""
+"""The laws of an own oil, from what its user states; what nobody measured is estimated by correlations.
+
+An estimate holds at each temperature: it follows viscosity and density there. Its error is not small; see
+`Correlation.error`.
+"""
 
 from __future__ import annotations
 

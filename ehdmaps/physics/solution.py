@@ -6,6 +6,11 @@ two to four times the density of cells, and tips resolved to 1e-6 half-widths, i
 and an oil ISO VG 320 at 0 to 120 degC, NU308 and N1014; the oils of `tests.benchmarks.bench_spikes`). Where it is above
 `SHARP`, what was missing was a quarter of it in the median, less than half of it at 85 %, and 130 % of the pressure at
 most; elsewhere 4 % of the pressure at most.
+
+What a solver returns: the film of one contact at one operating point, and the contact made of film and solids.
+
+A solver knows the film only (`FilmSolution`, and over frequency `FilmSpectrum`). `contact_solution` adds the structural
+part, which is the same law for every solver, and gives the numbers of the map (`ContactSolution`).
 """
 
 from __future__ import annotations

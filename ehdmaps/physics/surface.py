@@ -1,4 +1,14 @@
-"""Surfaces of rollers: the profile along them, and the roughness of both surfaces together."""
+"""Surfaces of rollers: the profile along them, and the roughness of both surfaces together.
+
+What asperities carry is in `ehdmaps.maps.rough_layer`.
+
+References
+----------
+J. A. Greenwood, J. H. Tripp, "The contact of two nominally flat rough surfaces", Proc. IMechE 185, 1970, 625: the
+statistics of asperities. Usual values of eta sigma beta (0.03 to 0.05) and sigma/beta (0.0001 to 0.01) of steel: M.
+Teodorescu, S. Balakrishnan, H. Rahnejat, "Integrated tribological analysis within a multi-physics approach to system
+dynamics", Tribology and Interface Engineering Series 48, 2005, 725.
+"""
 
 from __future__ import annotations
 

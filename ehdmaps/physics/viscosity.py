@@ -1,4 +1,9 @@
-"""Viscosity over temperature and pressure: constant, ASTM D341, Vogel; Barus, Roelands, FVA 3, Tait-Doolittle."""
+"""Viscosity over temperature and pressure: constant, ASTM D341, Vogel; Barus, Roelands, FVA 3, Tait-Doolittle.
+
+Each law gives the isotherm of a temperature by `at(temperature, viscosity)`. `PRESSURE_LAWS` is the table from which
+job files and the records of maps are read. A new law is a class here with a row of that table, and where its isotherm
+has a new form, that form in `isotherm`.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Numbers as people read them."""
+"""Numbers as people read them.
+
+The numbers that the script shows stand in the document beside the chart, with `DIGITS` digits; they are not measured
+from the drawing. The legend is text of the page: it is printed, wraps, and holds names of any length.
+"""
 
 from __future__ import annotations
 

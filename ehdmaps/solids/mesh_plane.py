@@ -1,4 +1,9 @@
-"""Meshes of roller and rings across the bearing's axis by gmsh: second-order triangles, graded to the contact."""
+"""Meshes of roller and rings across the bearing's axis by gmsh: second-order triangles, graded to the contact.
+
+The contact is at (0, `surface`), its load acts along y, and the line x = 0 is a line of symmetry: half of a ring is
+meshed, and a quarter of a roller. The size of the elements grows in proportion to their distance from the contact, so
+that one mesh serves contacts of any width: `grading` is the size over the distance.
+"""
 
 from __future__ import annotations
 

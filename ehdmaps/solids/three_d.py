@@ -1,4 +1,13 @@
-"""Forces or pressures of a contact without friction and tension, by the set of its places that touch."""
+"""Forces or pressures of a contact without friction and tension, by the set of its places that touch.
+
+The surface of each body is cut into rectangles of even pressure. A half space yields under one of them after Love; what
+the finite depth of the body changes is smooth, and is added for each length of the roller. The end faces of the roller
+are free: pressures mirrored there take their shear stresses away, and a published factor on the mirrored pressures
+what is left of their normal stresses. The raceway goes on beyond the ends, or ends with the roller too. Pressures
+are found where they are positive and gaps elsewhere; bodies are linear, dry and without friction.
+
+    gap = x^2/(2 R) + P(y) - approach - tilt y + u(p) >= 0,    p >= 0,    p gap = 0
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Bricks of a roller and of a raceway: their mesh, their stiffness, and how far the surface yields under forces."""
+"""Bricks of a roller and of a raceway: their mesh, their stiffness, and how far the surface yields under forces.
+
+Both bodies have the same nodes where they may touch. x is across the contact, y along the roller, z up; the planes
+x = 0 and y = 0 are planes of symmetry, the contact lies at z = 0.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,9 @@
-"""Contact of a roller of finite length by finite elements, also by CalculiX: the reference for its length."""
+"""Contact of a roller of finite length by finite elements, also by CalculiX: the reference for its length.
+
+Both bodies are bricks; their surfaces' compliance is exact for the mesh, and the contact between opposite nodes has no
+penalty: forces push, gaps do not overlap. A quarter is meshed; loads that are not even along the roller are put
+together from an even and an odd part. Whoever reads the results needs no finite elements: they are files.
+"""
 
 from __future__ import annotations
 

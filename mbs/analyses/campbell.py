@@ -1,4 +1,8 @@
-"""The nonlinear run-up with one or more contact laws, as levels over speed, frequency and order, with their errors."""
+"""The nonlinear run-up with one or more contact laws, as levels over speed, frequency and order, with their errors.
+
+What a linear analysis takes from each slice at its own load is here one change of a whole law: the bounds of the slices
+at rest, in the mean with their stiffness (of damping: with their damping) as weight, the largest one of some speeds.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +18,7 @@ import xarray as xr
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.maps.law import ContactLaw
-from ehdmaps.maps.law_change import LawChange
+from ehdmaps.maps.law_errors import LawChange
 from mbs.analyses.case import Case, Failed, Progress, as_cases, side_by_side, silent
 from mbs.analyses.operating import held, operating, states_of
 from mbs.analyses.ramp import recorded_run, rehearsed, run_course

@@ -1,4 +1,8 @@
-"""What an analysis compares (laws, scenes, models with labels), computed side by side in processes of their own."""
+"""What an analysis compares (laws, scenes, models with labels), computed side by side in processes of their own.
+
+A process is a fork of this one: it has the models, and what is compiled, from the beginning, and gives back its result
+alone. Where there are no forks, or one process is asked for, cases run one after another in this one.
+"""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.jobs.job_text import Entry
-from ehdmaps.maps.low_loads import RIGID, load_at
+from ehdmaps.maps.film_field import RIGID, load_at
 from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.heat import INLET_HEAT, ISOTHERMAL, inlet_heat
 from ehdmaps.physics.lubricant import Lubricant

@@ -1,4 +1,9 @@
-"""The run-up of a scene: its course, by torques too, what is recorded, and whether its steps are short enough."""
+"""The run-up of a scene: its course, by torques too, what is recorded, and whether its steps are short enough.
+
+What steps resolve cannot be told from frequencies alone: contacts lift off, films fade, speeds rise. So the first part
+of a run is made twice more, from the same start, with its step and with half of it, and each sensor's root mean square
+is compared. A method of second order that changes by d is 4/3 d away from its limit.
+"""
 
 from __future__ import annotations
 

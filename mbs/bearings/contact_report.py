@@ -467,7 +467,7 @@ class BearingPoint:
         return self.load_sharing(surface, lubricant)[0]
 
     def load_sharing(self, surface: Surface, lubricant: Lubricant) -> tuple[float, bool]:
-        """`film_share`, and whether the mean planes overlap in a slice, see `ehdmaps.maps.rough_films`.
+        """`film_share`, and whether the mean planes overlap in a slice, see `ehdmaps.maps.rough_layer`.
 
         Parameters
         ----------
@@ -476,8 +476,7 @@ class BearingPoint:
         """
         if surface.smooth:
             return 1.0, False
-        from ehdmaps.maps.rough_films import LEAST_SPEED, load_sharing, overlapping
-        from ehdmaps.maps.rough_layer import RoughLayer
+        from ehdmaps.maps.rough_layer import LEAST_SPEED, RoughLayer, load_sharing, overlapping
 
         loads = self.rollers.load_per_length[self.most_loaded]
         loaded = loads > 0.0

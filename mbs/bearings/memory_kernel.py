@@ -25,11 +25,10 @@ from ehdmaps.arrays import BoolArray, FloatArray, IntArray
 from ehdmaps.compiled import njit
 from ehdmaps.copies import put
 from ehdmaps.errors import EhdmapsError
-from ehdmaps.maps.film_energy import spent_by
 from ehdmaps.maps.kernel import LOAD_TOLERANCE
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.lines import FAST
-from ehdmaps.maps.memory import FilmState
+from ehdmaps.maps.memory import FilmState, spent_by
 from ehdmaps.maps.memory_table import (
     LIGHTEST,
     LOAD_ROWS,

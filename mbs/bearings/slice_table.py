@@ -23,12 +23,11 @@ from numba.np.unsafe.ndarray import to_fixed_tuple
 
 from ehdmaps.arrays import ByteArray, FloatArray, IntArray
 from ehdmaps.compiled import COMPILES, njit
-from ehdmaps.maps.binary_cells import last_of, nodes_of, rows_of
 from ehdmaps.maps.bulk import rest_states
 from ehdmaps.maps.kernel import full_state, structural_state
 from ehdmaps.maps.lines import FAST, line_approach, line_state
 from ehdmaps.maps.roller_balance import balanced_approach
-from ehdmaps.maps.tables import Point
+from ehdmaps.maps.tables import Point, last_of, nodes_of, rows_of
 
 fixed_tuple: Any = to_fixed_tuple if COMPILES else lambda values, size: tuple(values[:size])
 """The first numbers of an array as a tuple."""

@@ -32,10 +32,9 @@ import numpy as np
 
 from ehdmaps.arrays import ByteArray, FloatArray, IntArray
 from ehdmaps.compiled import njit
-from ehdmaps.maps.binary_cells import FIRST, SHIFT
 from ehdmaps.maps.kernel import collapse, evaluate_at
 from ehdmaps.maps.lines import unilateral_force
-from ehdmaps.maps.tables import LOAD
+from ehdmaps.maps.tables import FIRST, LOAD, SHIFT
 from mbs.bearings.bearing_kernel import Plane, added, assemble, write_plane
 from mbs.bearings.laws import FlatTable, counted_load, law_table
 from mbs.bearings.slice_table import (

@@ -1,4 +1,9 @@
-"""Carries out a plan of a reduction, and keeps it: what was reduced once is not reduced again."""
+"""Carries out a plan of a reduction, and keeps it: what was reduced once is not reduced again.
+
+A reduction is known by its content: a hash of the bytes of all files, of what is planned, and of the code that carries
+it out. It is kept in the memory of the process, and as a file in the folder of `kept_folder`. That folder may be
+removed at any time. What cannot be read there is made again, and where nothing can be written nothing is kept.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,16 @@
-"""A finite-element body as its matrices: stiffness, mass, degrees of freedom, nodes; how heavy and how large it is."""
+"""A finite-element body as its matrices: stiffness, mass, degrees of freedom, nodes; how heavy and how large it is.
+
+A finite-element body as its matrices: stiffness, mass, what each degree of freedom is, where the nodes are.
+
+Where the matrices come from (a file, a program, a test) is of no interest here; degrees of freedom that were fixed to
+the ground are simply not in them.
+
+How heavy and how large a finite-element body is, from its matrices and mesh alone: a wrong unit is seen there.
+
+A body that moves without turning has the kinetic energy of its mass, whatever its elements: t' M t with t = 1 at all
+displacements of one direction. A slow turn, which moves each node by theta x r, gives the first moments likewise.
+Nodes that are fixed are not in the matrices: their share of the mass, and of the centre, is missing.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,25 @@
-"""Bodies as other programs write them: Matrix Market, Abaqus, CalculiX, tables of numbers, and places of the nodes."""
+"""Bodies as other programs write them: Matrix Market, Abaqus, CalculiX, tables of numbers, and places of the nodes.
+
+Stiffness and mass as other programs write them: tables of numbers, Matrix Market, Abaqus matrix output.
+
+All readers give a sparse matrix and labels (node, direction) of its rows. A symmetric matrix may be given as one half
+or as a whole; which one it is, the entries say: each pair once, or each twice.
+
+Where the nodes of a mesh are, by their numbers.
+
+Abaqus and CalculiX decks are read here, because node numbers matter and need not be consecutive; all other formats by
+meshio, where node k is the k-th point of the file.
+
+Matrices that CalculiX writes for `*FREQUENCY, SOLVER=MATRIXSTORAGE`.
+
+job.sti, job.mas    lines "row column value", counted from 1, of one half of K and M
+job.dof             lines "node.direction", one for each row
+
+Degrees of freedom that are fixed (*BOUNDARY), and those that follow others (*EQUATION, *TIE), are not in the matrices:
+CalculiX has worked the others' share into the rows that are. So a node that is missing may be fixed or may follow, and
+can be no interface. The rotations of a *RIGID BODY appear as displacements of an auxiliary node, and *TRANSFORM turns
+the directions of a node: decks with these are refused.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""A finite-element body as plain data: its files, how they are reduced, how it is turned, what it carries."""
+"""A finite-element body as plain data: its files, how they are reduced, how it is turned, what it carries.
+
+Nothing is computed here, and no file is opened but to see that it is there: `mbs.flexible.carry_out` does the work.
+"""
 
 from __future__ import annotations
 

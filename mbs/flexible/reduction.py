@@ -1,4 +1,19 @@
-"""Craig-Bampton reduction: a finite-element body by the displacements of its interfaces and a few modes."""
+"""Craig-Bampton reduction: a finite-element body by the displacements of its interfaces and a few modes.
+
+Interfaces of a finite-element body: a place, the nodes around it, and how the one follows the other.
+
+rigid      u_k = q + theta x r_k           the nodes follow the place as if cast together: stiffens what they hold
+averaging  sum w |u_k - q - theta x r_k|^2 -> min    the place follows the nodes in the least-squares mean: adds nothing
+
+r_k is from the place to the node. A force on an averaging place spreads over the nodes as w_k (f + ...), so that it
+strains the body as a soft pressure would; the true seat of a bearing lies between the two.
+
+u = Psi q + Phi p      Psi: shapes at rest, one interface coordinate 1 and the others 0
+                           Phi: modes with all interface coordinates held, up to the cut-off
+
+Static forces on the interfaces are exact; frequencies are good up to about half the cut-off (Craig and Bampton, AIAA
+Journal 6, 1968, 1313-1319). Rigid interfaces are built into the matrices first; averaging ones are held in the mean.
+"""
 
 from __future__ import annotations
 

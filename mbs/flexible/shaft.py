@@ -1,4 +1,12 @@
-"""Stepped shafts with discs as flexible bodies: beam elements between nodes, reduced to a few nodes and modes."""
+"""Stepped shafts with discs as flexible bodies: beam elements between nodes, reduced to a few nodes and modes.
+
+A shaft is free; springs and bearings of a system hold it. It moves with the freedoms of its frames, with the static
+shape that belongs to them, and with the modes that it has when its frames are held, up to a cut-off frequency.
+
+References
+----------
+R. R. Craig, M. C. C. Bampton, Coupling of substructures for dynamic analyses, AIAA J. 6, 1968, 1313-1319.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""What comparisons vary, one row a key: how its values are read and told, and what each changes; numerical settings."""
+"""What comparisons vary, one row a key: how its values are read and told, and what each changes; numerical settings.
+
+A key more is a row more of `VARIED`.
+"""
 
 from __future__ import annotations
 

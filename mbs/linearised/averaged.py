@@ -1,4 +1,11 @@
-"""Small motion with the stiffness and damping that bearings and gear meshes have on average over an angle."""
+"""Small motion with the stiffness and damping that bearings and gear meshes have on average over an angle.
+
+A linear system has one stiffness. Which one depends on where the rollers stand, which the start angle of a cage sets by
+assumption. Here equilibria are found at several angles within one pitch of the rollers, and stiffness, damping and what
+relaxes are averaged: that is the mean part of a system that repeats itself with the passing of rollers. What else it
+does, above all excitation at the passing frequency and its combinations with modes, is left out (a method of first
+order in the part that varies).
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,38 @@
-"""The dynamic stiffness of a system at any frequency, real or complex, and films that relax in states and modes."""
+"""The dynamic stiffness of a system at any frequency, real or complex, and films that relax in states and modes.
+
+Films that relax, as states of a linear system: few of them, and as exact as all slices.
+
+Thousands of slices relax, but what they add to a bearing is a matrix of its few ports,
+
+    F(s) = V' (1 + s Theta)^-1 V,    rows v of V and times Theta of `mbs.model.relaxation`.
+
+Projected on the space of V and of both parts of (1 + i w_j Theta)^-1 V for some frequencies w_j, F and its derivative
+are exact at s = 0 and at each i w_j (rational Krylov). The projected Theta has its eigenvalues among those of Theta, so
+that what is left are springs in series with dampers again: they take up energy at every frequency. The w_j are placed
+where F is worst on the frequency axis, until it is within `TOLERANCE` of all slices there.
+
+The dynamic stiffness of a system at any frequency, real or complex, with films that relax or without.
+
+Z(s) = M s^2 + (D + speed G) s + K + what relaxing films add,    exactly, with all slices.
+
+Without relaxing films Z is that of stiffness and damping of slow motion.
+
+Each complex mode brought to the films of its own complex frequency, with all slices.
+
+Modes of a system whose films are a few states are nearly those of all slices. What is left is the first-order change of
+an eigenvalue; where that is not small, Newton's method solves Z(lambda) phi = 0 from there. A mode that it does not
+find, or that it finds elsewhere, is lost, with the reason: it is in no result.
+
+What films with memory leave out of modes: the part of the film law in eigenvalues, to first order.
+
+Each slice has one relaxation time, see `ehdmaps.maps.film_response`. What it leaves out of the dynamic stiffness, dZ,
+moves an eigenvalue by
+
+    d lambda = -y' dZ(lambda) x,    with y' Z'(lambda) x = 1,
+
+as the errors of a map do in `mbs.linearised.bands`. Here the signs are known, so that the parts of all slices and
+bearings add up as they are.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,19 @@
-"""Linear analysis at an equilibrium: state space; frequency responses, solved or from modes; bands of levels."""
+"""Linear analysis at an equilibrium: state space; frequency responses, solved or from modes; bands of levels.
+
+Linear analysis at an equilibrium: state space, and frequency responses between inputs and sensors.
+
+M x'' + C x' + K x = b u with C and K of the equilibrium; for small motion only, at fixed cage angle. Films have the
+stiffness and damping of slow motion, or relax: then each slice answers at the frequency in question, and the state
+space has a few states more.
+
+Frequency responses from the modes of the state: as exact as solving at each frequency, and much faster for many.
+
+H(omega) = sum_k (c . r_k)(l_k . b)/(i omega - lambda_k)
+
+with right and left vectors r and l, all of them, so that nothing is cut off. Where two modes are nearly one, as beside
+critical damping, the vectors grow and digits are lost: some frequencies are solved directly to see how many. Where
+films relax, the modes have them as a few states, which leaves an error of its own; direct solutions have all slices.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,12 @@
-"""The linearised system over speed: equilibrium, modes, bearing stiffness and damping, frequency responses."""
+"""The linearised system over speed: equilibrium, modes, bearing stiffness and damping, frequency responses.
+
+At each speed the equilibrium is found from that of the last one, at a fixed angle, which is a fixed cage angle. Modes
+are solved there twice: undamped, because the film of a lightly loaded bearing damps so strongly that its complex modes
+become overdamped, and complex with all of damping and gyroscopic terms. Each mode is followed from speed to speed by
+its shape (`mbs.linearised.tracking`); where two speeds are too far apart for that, speeds between them are solved too,
+for the following only. Where damped modes cross, undamped ones are followed straight on too
+(`mbs.linearised.sweep_result`). Gear meshes count with their mean stiffness.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,18 @@
-"""What a sweep over speed finds, in arrays over speed and mode, and modes that come close and exchange their shapes."""
+"""What a sweep over speed finds, in arrays over speed and mode, and modes that come close and exchange their shapes.
+
+Two undamped modes of one system come close and turn away from each other, with a gap g as wide as they are coupled
+(veering); each then has the shape of the other. With damping the eigenvalues of the pair are those of
+
+    [[a1 + i w1, i k], [i k, a2 + i w2]],    a decay rates, k the coupling, g = 2 k:
+
+at w1 = w2 they differ by sqrt((a1 - a2)^2 - 4 k^2). Where the decay rates differ by more than g that is real: the
+complex modes cross, each keeps its shape, and what turns away is an accident of leaving damping out. Numbers follow
+the shapes there, and the frequency otherwise.
+
+References
+----------
+W. D. Heiss, J. Phys. A 37 (2004) 2455-2464 (crossing and avoided crossing on both sides of an exceptional point).
+"""
 
 from __future__ import annotations
 

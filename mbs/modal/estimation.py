@@ -1,4 +1,22 @@
-"""Frequency responses and coherence from averaged hammer hits, with the windows that hits need."""
+"""Frequency responses and coherence from averaged hammer hits, with the windows that hits need.
+
+Windows for hammer hits, and what the exponential one does to a pole.
+
+A response is the convolution of force and impulse response, y = h * f. Multiplied by exp(-a t), with a = 1/tau, all
+three stay a convolution: e y = (e h) * (e f). So if force and response get the same exponential window, their ratio
+is the frequency response at s = j omega + a, without any approximation, and a pole p appears at p - a. The common
+correction zeta - 1/(tau omega) is its first order for light damping.
+
+Frequency responses and coherence from averaged hammer hits.
+
+Sums over hits of the spectra X of a response and F of the force: H1 = sum(X F*)/sum(F F*) has no bias from noise on
+the response, H2 = sum(X X*)/sum(F X*) none from noise on the force, and coherence = H1/H2 =
+|G_XF|^2/(G_XX G_FF).
+
+References
+----------
+J. S. Bendat, A. G. Piersol, Random Data, 4th ed., Wiley 2010, sections 6 and 9.
+"""
 
 from __future__ import annotations
 

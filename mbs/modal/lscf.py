@@ -1,4 +1,29 @@
-"""Poles of measured responses: the least-squares complex frequency-domain method, and rational fraction polynomials."""
+"""Poles of measured responses: the least-squares complex frequency-domain method, and rational fraction polynomials.
+
+Poles by the least-squares complex frequency-domain method (p-LSCF with a common denominator), from sdypy-EMA.
+
+It fits a discrete-time fraction, polynomials in exp(-j omega T) with an unweighted equation error: very well
+conditioned up to high orders, with a bias where resonances stand little out of the noise. The library takes lines from
+0 Hz to the end of the band, of which a narrow band fills but an arc of the unit circle. So the band is moved down, its
+first line to 0 Hz, and the poles back up: what the conjugate poles have there is smooth, and left to the numerators.
+
+Rational fraction polynomials: H_i(s) = N_i(s)/D(s) on s = j omega, one denominator for all responses.
+
+The equation error N_i - H_i D is linear in the coefficients, but in powers of s its columns are nearly dependent, and
+it weighs every line by |D|, so that noise away from the resonances wins. Two remedies: polynomials that are orthogonal
+on the lines with the weights of the fit (Forsythe's recurrence, as an Arnoldi process with all coefficients kept), and
+the weights 1/|D| of the pass before, which turn the equation error into the error of the response (Sanathanan and
+Koerner). Coefficients are real, so that poles are real or conjugate pairs; the numerators have two powers more than
+a proper fraction, which stand for modes above the band.
+
+References
+----------
+P. Verboven, Frequency-domain system identification for modal analysis, PhD thesis, Vrije Universiteit Brussel, 2002;
+sdypy-EMA, https://github.com/sdypy/sdypy-EMA.
+M. H. Richardson, D. L. Formenti, Proc. 1st Int. Modal Analysis Conf. (1982) 167-181; C. K. Sanathanan, J. Koerner,
+IEEE Trans. Automatic Control 8 (1963) 56-58; P. D. Brubeck, Y. Nakatsukasa, L. N. Trefethen, SIAM Review 63 (2021)
+405-415 (the recurrence).
+"""
 
 from __future__ import annotations
 

@@ -1,6 +1,13 @@
 """Static equilibrium: Newton with the exact Jacobian, in steps that neither leap nor overshoot.
 
-Motion that nothing holds is found, too.
+At rest the forces have a potential which is convex, because every contact force rises with its approach and the
+approaches are linear in the coordinates. So along a Newton step the slope of the potential tells where to stop, and
+the search arrives from anywhere: from zero, from a gap (where the Jacobian is singular) and from overload.
+
+What nothing holds at an equilibrium: motions without stiffness, along which the position is arbitrary.
+
+A free motion without a load along it is legal: an unloaded roller, a ring in its clearance. A load along it means that
+there is no equilibrium, however small it is beside the other loads.
 """
 
 from __future__ import annotations

@@ -1,4 +1,10 @@
-"""The system: bodies, springs, loads and elements put together; its places and its weight."""
+"""The system: bodies, springs, loads and elements put together; its places and its weight.
+
+M q'' + (D + speed G) q' + K q = loads(t) + turning loads(speed, angle) + forces of the elements(q, q', operation)
+
+All displacements are small; spins are prescribed. A torque that drives a spin acts along the shaft's own axis, so
+that a change of speed brings no lateral term.
+"""
 
 from __future__ import annotations
 

@@ -331,7 +331,7 @@ def _share_words(point: BearingPoint, description: BearingDescription) -> str:
     words = f"; the film carries {share:.0%} of the load of the most loaded roller"
     if not overlap:
         return words
-    from ehdmaps.maps.rough_films import OVERLAP
+    from ehdmaps.maps.rough_layer import OVERLAP
 
     return f"{words}\n  {OVERLAP}"
 

@@ -1,4 +1,7 @@
-"""Bodies of a scene that bend: tables [[shafts]] and [[flexible]] are read, and become bodies."""
+"""Bodies of a scene that bend: tables [[shafts]] and [[flexible]] are read, and become bodies.
+
+The table names a reduced file, or matrices, mesh and interfaces; no file of it is read before the body is built.
+"""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ from scipy.optimize import root
 
 import ehdmaps
 from ehdmaps.jobs import cli
-from ehdmaps.maps.rough_films import OVERLAP
+from ehdmaps.maps.rough_layer import OVERLAP
 from ehdmaps.physics.bearing import BEARINGS
 from ehdmaps.physics.solution import tip_words
 from mbs import Bearing, BearingForce

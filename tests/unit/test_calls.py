@@ -13,7 +13,7 @@ import ehdmaps
 from ehdmaps import STEEL, BearingGeometry, Job, LineContact, Lubricant, OperatingPoint
 from ehdmaps.errors import InputError, MapError, SolverError
 from ehdmaps.maps import schema
-from ehdmaps.maps.structure import MODEL_ERRORS
+from ehdmaps.maps.records import MODEL_ERRORS
 from ehdmaps.physics.catalogue import estimate, estimate_from_dimensions
 from ehdmaps.physics.closed_form import FormulaSolver, HertzSolver
 from ehdmaps.physics.solution import ContactSolverDefaults, Status

@@ -15,8 +15,7 @@ import ehdmaps
 from ehdmaps.errors import InputError, MapError, OutsideMapError
 from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.maps.film_field import LOSS_FLOOR
-from ehdmaps.maps.records import bearing_from_json, contacts_from_json, contacts_json, lubricant_from_json
-from ehdmaps.maps.structure import DERIVED
+from ehdmaps.maps.records import DERIVED, bearing_from_json, contacts_from_json, contacts_json, lubricant_from_json
 from ehdmaps.physics.closed_form import FormulaSolver
 from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.hertz import half_width

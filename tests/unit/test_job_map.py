@@ -26,7 +26,7 @@ from ehdmaps.jobs.write import write_map
 from ehdmaps.maps import schema
 from ehdmaps.maps.curves import curves, law_field
 from ehdmaps.maps.emap import EHDMap, open_map
-from ehdmaps.maps.validation import validate
+from ehdmaps.maps.reading import validate
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.closed_form import FormulaSolver, HertzSolver
 from ehdmaps.physics.contact import OperatingPoint

@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 from ehdmaps.maps.emap import EHDMap
+from ehdmaps.maps.film_field import valley_loads
 from ehdmaps.maps.law import ContactLaw
-from ehdmaps.maps.law_change import LawChange
-from ehdmaps.maps.law_errors import NOT_IN, LawErrors, quantile_of
-from ehdmaps.maps.low_loads import valley_loads
+from ehdmaps.maps.law_errors import NOT_IN, LawChange, LawErrors, quantile_of
 from tests.cases.laws import CONTACTS, OIL, SMALL_FIELD, dataset_of
 
 BOTH = ("inner", "outer")

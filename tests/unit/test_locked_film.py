@@ -12,8 +12,16 @@ from ehdmaps.jobs.generate import generate_in_memory
 from ehdmaps.jobs.job import Job
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.law import ContactLaw
-from ehdmaps.maps.locked_film import FORMULA, LockedFactors, factor_at, film_of, locked_compliances, locked_stiffness
-from ehdmaps.maps.locked_fit import MOST, fitted_factor
+from ehdmaps.maps.locked_film import (
+    FORMULA,
+    MOST,
+    LockedFactors,
+    factor_at,
+    film_of,
+    fitted_factor,
+    locked_compliances,
+    locked_stiffness,
+)
 from ehdmaps.maps.memory_table import advanced, equilibrium_at, step_of
 from ehdmaps.physics.closed_form import FormulaSolver
 from ehdmaps.physics.hertz import natural_time

@@ -20,8 +20,7 @@ from ehdmaps.jobs.generate import generate
 from ehdmaps.jobs.reader import read_job
 from ehdmaps.maps import schema
 from ehdmaps.maps.emap import EHDMap, open_map
-from ehdmaps.maps.records import read_json
-from ehdmaps.maps.structure import DERIVED
+from ehdmaps.maps.records import DERIVED, read_json
 from ehdmaps.physics.closed_form import FormulaSolver
 from tests.cases.jobs import map_job, spaced
 

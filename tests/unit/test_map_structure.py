@@ -14,9 +14,9 @@ from ehdmaps.jobs.generate import generate
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.reader import parse_job
 from ehdmaps.maps import schema
-from ehdmaps.maps.checksum import content_sha256
 from ehdmaps.maps.emap import EHDMap, open_map
-from ehdmaps.maps.structure import DERIVED, SAME
+from ehdmaps.maps.reading import content_sha256
+from ehdmaps.maps.records import DERIVED, SAME
 from ehdmaps.physics.approach import STRUCTURAL_LAWS
 from ehdmaps.physics.bearing import BearingGeometry, with_law
 from ehdmaps.physics.closed_form import FormulaSolver

@@ -14,8 +14,8 @@ import ehdmaps
 from ehdmaps.errors import MapError
 from ehdmaps.jobs.cli import main
 from ehdmaps.maps import schema
-from ehdmaps.maps.checksum import check_content, content_sha256
 from ehdmaps.maps.emap import EHDMap, open_map
+from ehdmaps.maps.reading import check_content, content_sha256
 from tests.cases.laws import dataset_of
 
 DATA = Path(__file__).parents[1] / "data"

@@ -10,8 +10,7 @@ import pytest
 
 from ehdmaps.errors import InputError
 from ehdmaps.maps.emap import EHDMap
-from ehdmaps.maps.law_change import LawChange
-from ehdmaps.maps.law_errors import LawBounds
+from ehdmaps.maps.law_errors import LawBounds, LawChange
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.solids import STEEL
 from mbs.analyses.campbell import campbell, law_changes, with_changed_laws

@@ -15,7 +15,7 @@ from ehdmaps.jobs.reader import parse_job
 from ehdmaps.jobs.write import write_map
 from ehdmaps.maps import schema
 from ehdmaps.maps.emap import EHDMap, open_map
-from ehdmaps.maps.own_lines import has_own_lines, lines_by_contact
+from ehdmaps.maps.grid_field import has_own_lines, lines_by_contact
 from ehdmaps.physics.closed_form import FormulaSolver
 from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.heat import inlet_heat

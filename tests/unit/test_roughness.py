@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate import quad
 
 from ehdmaps.errors import InputError
-from ehdmaps.maps.asperities import asperity_integral, asperity_pressure, mean_gap
+from ehdmaps.maps.rough_layer import asperity_integral, asperity_pressure, mean_gap
 from ehdmaps.physics.surface import SMOOTH, Surface
 
 MODULUS = 230.77e9

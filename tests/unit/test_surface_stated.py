@@ -19,19 +19,19 @@ from ehdmaps.jobs.report import status_counts
 from ehdmaps.jobs.rough_plot import plot_roughness
 from ehdmaps.jobs.surface import surface_from_text, surface_keys, surface_words
 from ehdmaps.maps import schema
-from ehdmaps.maps.checksum import check_content, content_sha256
 from ehdmaps.maps.emap import open_map
+from ehdmaps.maps.reading import check_content, content_sha256
 from ehdmaps.maps.records import surface_json
-from ehdmaps.maps.rough_films import (
+from ehdmaps.maps.rough_layer import (
     FILM_PARAMETER,
     FILM_SHARE,
     MEAN_DISTANCE,
     OVERLAP,
+    RoughLayer,
     least_share,
     overlapping,
     rough_variables,
 )
-from ehdmaps.maps.rough_layer import RoughLayer
 from ehdmaps.physics.closed_form import THICKEST_FILM, FormulaSolver, too_thick, too_thin
 from ehdmaps.physics.solution import Status
 from ehdmaps.physics.surface import SMOOTH, Surface

@@ -12,8 +12,8 @@ from ehdmaps.jobs.describe import describe
 from ehdmaps.jobs.generate import generate_in_memory
 from ehdmaps.jobs.reader import parse_job
 from ehdmaps.maps.emap import EHDMap
+from ehdmaps.maps.film_field import RIGID, known_from, load_at
 from ehdmaps.maps.law import ContactLaw
-from ehdmaps.maps.low_loads import RIGID, known_from, load_at
 from ehdmaps.physics.solution import Status
 from tests.cases.laws import CONTACTS, OIL, dataset_of
 

@@ -13,10 +13,9 @@ from scipy.optimize import brentq
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import SolverError
 from ehdmaps.jobs.rough_solved import solved_sharing
-from ehdmaps.maps.asperities import asperity_pressure
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.law import ContactLaw
-from ehdmaps.maps.rough_layer import RoughLayer, _moes, scaled_film
+from ehdmaps.maps.rough_layer import RoughLayer, _moes, asperity_pressure, scaled_film
 from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.films import moes_central_and_slope
 from ehdmaps.physics.hertz import max_pressure

@@ -18,8 +18,8 @@ from ehdmaps.jobs.table_films import unserved
 from ehdmaps.maps import schema
 from ehdmaps.maps.compilation import OF_TABLE
 from ehdmaps.maps.emap import EHDMap, open_map
+from ehdmaps.maps.film_field import RIGID
 from ehdmaps.maps.law import ContactLaw
-from ehdmaps.maps.low_loads import RIGID
 from ehdmaps.maps.table_field import TableField, table_lines
 from ehdmaps.physics.catalogue import estimate
 from ehdmaps.physics.contact import OperatingPoint
