@@ -316,6 +316,7 @@ def test_libraries_that_are_missing(monkeypatch, tmp_path):
         read_uff(tmp_path / "a.uff")
 
 
+@pytest.mark.slow
 def test_libraries_are_loaded_late():
     code = "import mbs.modal.fit, mbs.modal.uff_reading, mbs.modal.uff_writing, mbs.transient.hammer, sys; "
     code += "print('pyuff' in sys.modules, 'sdypy' in sys.modules)"
