@@ -35,8 +35,25 @@ def pytest_collection_finish() -> None:
     gc.set_threshold(20_000, 20, 20)
 
 
-QUICK = 5.0
-"""Seconds of processor time that a test may take without the mark `slow`."""
+LONG = ("slow", "openfoam")
+"""Marks of the tests of the long tier, which run with ``--all``."""
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--all", action="store_true", help="the long tier too: tests that are marked slow or openfoam")
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave out the long tier, unless all tests are asked for, or marks, or a test by its name."""
+    if config.option.all or config.option.markexpr or any("::" in argument for argument in config.args):
+        return
+    long = [item for item in items if any(item.get_closest_marker(mark) for mark in LONG)]
+    config.hook.pytest_deselected(items=long)
+    items[:] = [item for item in items if not any(item.get_closest_marker(mark) for mark in LONG)]
+
+
+QUICK = 2.0
+"""Seconds of processor time, compiling included, that a test may take without the mark `slow`."""
 
 SPENT: dict[tuple[str, str], float] = {}
 """Seconds of tests without the mark, by phase and name."""

@@ -198,7 +198,7 @@ def _others(
         within = (size >= slowest) & (size <= fastest) & (t >= coldest) & (t <= hottest) & (roots[i] <= highest)
         finite = (abs(d) < math.inf) & (abs(r) < math.inf)
         others[i] = 0 if within & finite & (centrifugal_load[i] == 0.0) else 1
-        count += others[i]
+        count += int(others[i])
     return count
 
 

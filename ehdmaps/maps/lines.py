@@ -51,9 +51,10 @@ def exp(x: float) -> float:
 def log(x: float) -> float:
     """Natural logarithm of a positive normal number."""
     bits = np.float64(x).view(np.uint64)
-    exponent = (bits - _ROOT_HALF + _BIAS) >> _MANTISSA
+    # Sums in this order never leave the 64 bits, of which numpy warns where kernels run as Python.
+    exponent = (bits + (_BIAS - _ROOT_HALF)) >> _MANTISSA
     e = np.uint64(exponent | _WHOLE).view(np.float64) - _WHOLE_VALUE
-    m = np.uint64(bits - (exponent << _MANTISSA) + _BIAS).view(np.float64)
+    m = np.uint64(bits + _BIAS - (exponent << _MANTISSA)).view(np.float64)
     f = (m - 1.0) / (m + 1.0)
     z = f * f
     z2 = z * z

@@ -364,7 +364,7 @@ def advanced(
             left = xi
         else:
             right = xi
-        following = xi + short / rise
+        following = xi + short / rise if rise != 0.0 else math.inf
         # bisection where Newton's steps leave the bracket or do not shrink
         if not (left <= following <= right and 2.0 * abs(following - xi) <= before_last):
             following = 0.5 * (left + right)

@@ -319,7 +319,8 @@ def all_made(rows: IntArray, marks: ByteArray) -> bool:
     """Whether the cells of some rows are made, see `fill`."""
     missing = 0
     for row in rows:
-        missing += 1 - marks[1, row]
+        # without the compiler a sum of bytes would be a byte, 0 again after 256 of them
+        missing += 1 - int(marks[1, row])
     return missing == 0
 
 

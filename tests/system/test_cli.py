@@ -472,6 +472,7 @@ def test_a_picture_that_cannot_be_written(here, capsys, output, message):
     assert (here / "photo.png").read_bytes() == b"somebody's"
 
 
+@pytest.mark.slow
 def test_a_picture_that_fails_leaves_the_old_one(here, capsys, monkeypatch):
     run(capsys, "generate", "mine.toml", "--workers", "1")
     assert run(capsys, "plot", "mine.nc")[0] == 0
@@ -527,6 +528,7 @@ def test_ctrl_c_in_any_command_is_quiet(capsys, monkeypatch):
     assert run(capsys, "show", "a.nc") == (130, "", "\nstopped\n")
 
 
+@pytest.mark.slow
 def test_a_reader_that_closes_the_pipe_is_no_error(here, capsys):
     run(capsys, "generate", "mine.toml", "--workers", "1")
     show = subprocess.Popen(

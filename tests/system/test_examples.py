@@ -53,6 +53,7 @@ def test_example(path, gallery, surroundings):
     assert text.count("\n") <= LONGEST
 
 
+@pytest.mark.slow
 def test_without_a_folder_the_figure_is_written_where_one_stands(tmp_path):
     """All ask for the folder in the same words; one of them is run."""
     assert all(

@@ -208,6 +208,7 @@ def test_refused(refusing, small_map):
     assert refusing.call(np.zeros(6), 1.0, cold)[0] == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("outside", "calls"), [("error", "100000"), ("clamp", "30000")])
 def test_hostile(small_map, tmp_path, outside, calls):
     """Neither the address sanitizer nor that of undefined behaviour finds anything, whatever numbers come."""

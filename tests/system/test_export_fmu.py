@@ -164,6 +164,7 @@ def test_states(units):
     model.freeInstance()
 
 
+@pytest.mark.slow
 def test_many_instances(units):
     """A thousand instances, one after the other, leave no memory behind: each one takes 200 kB."""
     unit = units["2"]
@@ -206,6 +207,7 @@ ROTOR = Rotor(
 """A rotor whose films and rollers give it a motion of some 1 um beside that by its unbalance."""
 
 
+@pytest.mark.slow
 def test_rotor(units, small_map, tmp_path):
     """A rigid rotor that runs up on a unit of each version, in FMPy's CVODE: that of `mbs runup` within 1e-4.
 

@@ -65,6 +65,7 @@ def _octave(folder, script=SCRIPT):
     return done.stdout.splitlines()
 
 
+@pytest.mark.slow
 def test_octave_reads_and_interpolates_the_points_of_the_map(path, capsys):
     assert main(["export", str(path), "--to", "mat"]) == 0
     assert "written" in capsys.readouterr().out

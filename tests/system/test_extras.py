@@ -145,6 +145,7 @@ NEEDY = (
 """Commands that need an extra, and its package."""
 
 
+@pytest.mark.slow
 def test_what_needs_an_extra_names_it_and_all_else_that_is_missing(tmp_path, monkeypatch):
     monkeypatch.setenv("PYTHONPATH", str(ROOT))
     monkeypatch.setenv("EHDMAPS_OPENFOAM", str(tmp_path / "none"))

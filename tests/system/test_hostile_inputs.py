@@ -168,11 +168,13 @@ def test_ehdmaps(name, here, capsys):
     hold("ehdmaps", EHDMAPS[name], here, capsys)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", MBS)
 def test_mbs(name, here, capsys):
     hold("mbs", MBS[name], here, capsys)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", tables.CONTROL)
 def test_control_characters_do_not_reach_the_terminal(name, here, capsys):
     program, line, content = tables.CONTROL[name]

@@ -270,6 +270,7 @@ class Missing:
         return importlib.import_module, ("no_such_library",)
 
 
+@pytest.mark.slow
 def test_pieces_whose_processes_die_at_once_are_the_end():
     with pytest.raises(WorkerError, match=r"before they do anything .*no_such_library"):
         list(batch_generate._each(_dies_on_import, [Missing(), Missing(), Missing()], 2))

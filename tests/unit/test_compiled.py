@@ -64,6 +64,7 @@ def folders(cache):
     return sorted(path.name for path in (cache / "ehdmaps" / "compiled").iterdir())
 
 
+@pytest.mark.slow
 def test_a_caller_in_an_unchanged_file_sees_that_its_callee_changed(site, tmp_path):
     cache = tmp_path / "cache"
     assert outer(site, cache) == (["3.0", "0"], "")
@@ -75,6 +76,7 @@ def test_a_caller_in_an_unchanged_file_sees_that_its_callee_changed(site, tmp_pa
     assert not list(site.rglob("*.nb?"))
 
 
+@pytest.mark.slow
 def test_damaged_code_is_compiled_again(site, tmp_path):
     cache = tmp_path / "cache"
     outer(site, cache)
@@ -83,6 +85,7 @@ def test_damaged_code_is_compiled_again(site, tmp_path):
     assert outer(site, cache) == (["3.0", "0"], "")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("home", [{"HOME": "/dev/null/home"}, {"HOME": ""}], ids=["not a folder", "empty"])
 def test_without_a_folder_for_caches_code_is_kept_among_temporary_files(site, tmp_path, home):
     (tmp_path / "tmp").mkdir()
@@ -145,6 +148,7 @@ def write_index(folder, number):
         compiled._save(save, Path(folder))
 
 
+@pytest.mark.slow
 def test_eight_processes_at_once_write_one_after_the_other(tmp_path):
     context = multiprocessing.get_context("spawn")
     processes = [context.Process(target=write_index, args=(str(tmp_path), number)) for number in range(8)]

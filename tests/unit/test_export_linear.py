@@ -142,6 +142,7 @@ def test_page_and_file_say_the_same_of_what_ross_does_beyond_the_tables(path, tm
     assert line == f"# {BEYOND}; stay within the speeds and frequencies above"
 
 
+@pytest.mark.slow
 def test_calculix_answers_as_linear_analysis_does(path, force, tmp_path):
     """A mass on the bearing, its receptances by `mbs lsa` and by CalculiX: 1e-5 is the last digit that ccx prints."""
     ccx = needed_calculix()

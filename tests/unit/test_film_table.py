@@ -423,6 +423,7 @@ def test_lines_with_holes_are_filled() -> None:
     assert found[4, 2, 2, 0, FIELDS.index(response)] == pytest.approx(rest)
 
 
+@pytest.mark.slow
 def test_the_command_makes_a_table_that_reads(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

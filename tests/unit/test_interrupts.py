@@ -34,6 +34,7 @@ print("done", flush=True)
 """
 
 
+@pytest.mark.slow
 def test_interrupts_at_any_moment_of_compiled_solves_do_no_harm():
     # Without care most of them end the process with a segmentation fault or a SystemError.
     trials, moments = 40, random.Random(7)

@@ -245,6 +245,7 @@ def test_a_group_is_written_with_the_map(with_backbone):
     assert "response over frequency: none; films in time lock by a closed formula" in told
 
 
+@pytest.mark.slow
 def test_extrapolated_viscosity_is_said_everywhere(with_backbone, page, tmp_path, monkeypatch):
     """Of FVA 3 a reach of 0.6 GPa is assumed, which the formulas' Hertz pressure passes between 31 and 100 N/mm."""
     generated, path = with_backbone
@@ -337,6 +338,7 @@ def test_error_estimates_of_films_and_pressure_are_in_the_map():
     assert "\n  max pressure              none stated\n" in describe(older, "a.nc").split("accuracy")[1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("solver", [HertzSolver(), FormulaSolver()])
 def test_a_map_says_where_no_errors_are_stated(solver, tmp_path):
     dataset = made(job_of(), solver)
@@ -493,6 +495,7 @@ def test_compare_leaves_zeros_out_and_says_so():
     assert "damping                   no point to compare  (84 points where A is zero left out)" in text
 
 
+@pytest.mark.slow
 def test_maps_that_share_some_points_or_none_are_compared_between_them():
     """The same formula on other axes. Bar: 1e-3 of a film.
 
@@ -548,6 +551,7 @@ ONE_TEMPERATURE = SMALL.replace('"20 degC", "40 degC"', '"20 degC"')
 """Half the panels of the page."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("text", "solver"),
     [

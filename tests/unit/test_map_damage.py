@@ -339,6 +339,7 @@ def used(path):
     return emap.law("series")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", DAMAGES)
 def test_a_damaged_map_is_told_in_words(unsealed, tmp_path, capsys, name):
     damage, message = DAMAGES[name]

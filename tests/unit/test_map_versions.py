@@ -137,6 +137,7 @@ def test_an_old_and_a_new_map_are_compared(tmp_path, capsys):
     assert "48 points in common" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_show_and_plot_take_an_old_map(tmp_path, capsys):
     assert main(["show", str(OLD)]) == 0
     shown = capsys.readouterr().out

@@ -178,6 +178,7 @@ def test_a_decibel_is_twelve_per_cent():
     assert read_tolerance(None, []) == auto.TOLERANCE
 
 
+@pytest.mark.slow
 def test_run_does_what_the_scene_has_tables_for(file, capsys, tmp_path):
     status, out, _ = run(capsys, "run", file, "--auto", "-o", "out")
     assert status == 0

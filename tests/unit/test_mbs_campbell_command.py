@@ -64,6 +64,7 @@ def test_the_command_compares_laws(scene, tmp_path, capsys):
     assert capsys.readouterr().out == ""
 
 
+@pytest.mark.slow
 def test_the_command_lists_every_problem(scene):
     problems = refused(
         lambda: run_command(
@@ -89,6 +90,7 @@ def test_the_command_lists_every_problem(scene):
     refused(lambda: run_command(scene, highest="1 nHz"), "--highest: got '1 nHz'; allowed: 1 Hz to 1e+06 Hz")
 
 
+@pytest.mark.slow
 def test_orders_above_the_band_are_left_out(scene, tmp_path):
     out, path = tmp_path / "out.nc", tmp_path / "longer.toml"
     path.write_text(scene.read_text().replace('"0.08 s"', '"0.25 s"'))

@@ -145,6 +145,7 @@ def test_a_scene_couples_slices_of_slow_films():
         assemble(scene, "formula", films="memory")
 
 
+@pytest.mark.slow
 def test_one_bearing_prints_what_is_along_its_roller(capsys):
     """The command `mbs bearing --coupled`; more slices than can be coupled are refused."""
     arguments = ["bearing", "NU308", "--load", "5 kN", "--speed", "0 rpm", "--profile", "straight", "--slices", "11"]

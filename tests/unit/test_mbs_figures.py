@@ -337,6 +337,7 @@ class TestModes:
         text, _ = modes_command.run(self.given(law="hertz"))
         assert "12 more modes above 10000 Hz" in text
 
+    @pytest.mark.slow
     def test_free_motions_are_one_line_and_creeping_ones_apart(self, tmp_path):
         scene = read_scene("nu308_rigid").text
         spring = 'stiffness = { y = "1e5 N/m"'
@@ -348,6 +349,7 @@ class TestModes:
         assert "overdamped (no oscillation): time to fall to 1/e" in text
         assert " ms " in text
 
+    @pytest.mark.slow
     def test_bad_input_comes_all_at_once(self):
         with pytest.raises(InputError) as caught:
             modes_command.run(self.given(highest="0.1 Hz", clearance="5 kg"))

@@ -214,6 +214,7 @@ class TestReaders:
         with pytest.raises(InputError, match=message):
             read_mesh_nodes(path)
 
+    @pytest.mark.slow
     def test_meshes_of_other_programs(self, tmp_path, monkeypatch):
         points = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 2]])
         path = tmp_path / "a.vtk"

@@ -331,6 +331,7 @@ def test_comparisons_say_what_is_missing_before_anything_runs():
         campbell(assemble(given), look)
 
 
+@pytest.mark.slow
 def test_commands_say_temperatures_clearance_and_where_heat_goes(tmp_path, capsys):
     file, result = tmp_path / "scene.toml", tmp_path / "a.nc"
     file.write_text(
@@ -353,6 +354,7 @@ def test_commands_say_temperatures_clearance_and_where_heat_goes(tmp_path, capsy
     assert "temperatures and clearances are held at those of 1000 rpm, of [operation]" in out
 
 
+@pytest.mark.slow
 def test_rings_of_one_bearing(capsys):
     asked = (
         "bearing",

@@ -109,6 +109,7 @@ def test_every_name_is_there(name):
     assert name in dir(mbs)
 
 
+@pytest.mark.slow
 def test_names_stay_what_they_are_after_their_modules_are_loaded():
     code = (
         "import mbs.analyses.statics, mbs.analyses.plan, mbs.cli, mbs.scene.reader, mbs.commands.sweep; import mbs; "
@@ -128,6 +129,7 @@ def test_the_table_of_the_package_has_every_module():
     assert {entry.name for entry in pkgutil.iter_modules(analyses.__path__)} <= table
 
 
+@pytest.mark.slow
 def test_analyses_load_no_command_and_neither_they_nor_commands_load_figures():
     code = (
         "import importlib, pkgutil, sys, mbs; [getattr(mbs, name) for name in mbs.__all__]; print([*sys.modules]); "
@@ -152,6 +154,7 @@ class TestAsTheCommand:
     def test_lsa(self, model, written):
         xr.testing.assert_identical(lsa(model).dataset, written("lsa"))
 
+    @pytest.mark.slow
     def test_sweep_of_two_laws(self, model, written):
         other = assemble(model.scene, "formula")
         told, progress = counted()
@@ -185,6 +188,7 @@ class TestAsTheCommand:
         assert found.failed == ()
         assert all(entry.modes is not None for entry in found.runs)
 
+    @pytest.mark.slow
     @pytest.mark.parametrize("nonlinear", [False, True])
     def test_hammer(self, path, model, tmp_path, capsys, nonlinear):
         out = tmp_path / "hits.uff"

@@ -322,6 +322,7 @@ def test_libraries_that_are_missing(monkeypatch, tmp_path):
         read_uff(tmp_path / "a.uff")
 
 
+@pytest.mark.slow
 def test_libraries_are_loaded_late():
     code = "import mbs.modal.fit, mbs.modal.uff, mbs.modal.uff, mbs.transient.hammer, sys; "
     code += "print('pyuff' in sys.modules, 'sdypy' in sys.modules)"

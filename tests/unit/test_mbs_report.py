@@ -157,6 +157,7 @@ def test_all_problems_at_once(here, capsys):
     assert (here / "mine.html").read_text() == "<p>mine</p>"
 
 
+@pytest.mark.slow
 def test_without_an_equilibrium_nothing_is_written(here, capsys):
     text = read_scene("nu2210_shaft").text
     assert '"-2 kN"' in text

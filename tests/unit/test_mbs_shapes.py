@@ -54,6 +54,7 @@ def test_turning_about_x_moves_a_mark():
             np.testing.assert_allclose(moved[[begin, end]], 0.0, atol=1e-9)
 
 
+@pytest.mark.slow
 def test_pictures_and_a_file(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     words = ["modes", "nu308_rigid", "--highest", "9 kHz"]

@@ -69,6 +69,7 @@ def test_a_run_under_a_load_that_no_contact_carries():
     assert "unsound" in found.dataset.attrs
 
 
+@pytest.mark.slow
 def test_the_first_line_says_it_and_the_status_is_1(tmp_path, capsys):
     path = tmp_path / "crushed.toml"
     crushed = TEXT.replace('"100 N", "100 N"', '"1e6 N", "0 N"')

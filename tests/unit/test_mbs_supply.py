@@ -178,6 +178,7 @@ def test_one_supply_is_in_the_label_where_it_is_not_flooded(shaft):
     assert [law.label for law in laws] == ["formula map, slow films, grease", "dry Hertz"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

@@ -351,6 +351,7 @@ class TestCases:
 
 
 class TestCommand:
+    @pytest.mark.slow
     def test_table_of_two_cases(self, tmp_path):
         arguments = given(
             clearance=["0 um", "20 um"],

@@ -124,6 +124,7 @@ class TestCutoff:
 
 
 class TestChoosing:
+    @pytest.mark.slow
     def test_what_is_chosen_keeps_the_tolerance_on_the_whole_ramp(self, swinging):
         found = within(Subject(swinging, DRY), 0.5)
         assert found.met

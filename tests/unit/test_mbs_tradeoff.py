@@ -54,6 +54,7 @@ class TestLinearLook:
 
 
 class TestTradeoff:
+    @pytest.mark.slow
     def test_rows_references_and_defaults(self, monkeypatch):
         monkeypatch.setattr(analysis, "SUPPLIES", ("flooded", "oil air"))
         monkeypatch.setattr(analysis, "SLICES", (3, 9))

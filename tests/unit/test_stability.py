@@ -100,6 +100,7 @@ def after_the_good_one(read, parent: int):
     return lambda folder: "" if os.getpid() == parent else read(folder)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("read", "words"),
     [

@@ -125,6 +125,7 @@ def test_only_slow_tasks_run_beside_the_first_one(tmp_path, slow, patience):
     assert result.solved == 12
 
 
+@pytest.mark.slow
 def test_a_dead_worker_costs_its_task_only(tmp_path):
     tasks = [Stub(number) for number in range(10)]
     tasks[4:4] = [Stub(4, "dies")]
@@ -173,6 +174,7 @@ def test_processes_that_die_before_they_do_anything_are_the_end(tmp_path, capfd)
     assert capfd.readouterr() == ("", "")
 
 
+@pytest.mark.slow
 def test_processes_that_all_die_in_their_first_task_are_the_end(tmp_path):
     heard = Heard()
     with Store(tmp_path / "s") as store, pytest.raises(WorkerError, match=r"in their first task \(signal SIGKILL\)"):
@@ -180,6 +182,7 @@ def test_processes_that_all_die_in_their_first_task_are_the_end(tmp_path):
     assert heard.after <= 6  # two tasks were given up, by two processes each
 
 
+@pytest.mark.slow
 def test_deaths_after_a_first_result_cost_their_tasks_only(tmp_path):
     tasks = [Stub(0), *(Stub(number, "dies") for number in range(1, 6)), Stub(6)]
     with Store(tmp_path / "s") as store:
@@ -247,6 +250,7 @@ def test_a_bug_in_a_worker_is_not_taken_for_a_failed_point(tmp_path):
         sweep([Stub(1), Stub(3, "bug")], store, 2)
 
 
+@pytest.mark.slow
 def test_the_environment_is_left_as_it_was(tmp_path, monkeypatch):
     monkeypatch.setenv("OMP_NUM_THREADS", "7")
     monkeypatch.delenv("MKL_NUM_THREADS", raising=False)

@@ -86,6 +86,7 @@ def test_of_a_machine(folder, monkeypatch, capsys, command):
     assert "NU2210 (bearing_left): " + estimate("NU2210").estimated in printed
 
 
+@pytest.mark.slow
 def test_of_a_map(folder, monkeypatch, capsys):
     monkeypatch.chdir(folder)
     with drawn() as figures:
@@ -97,6 +98,7 @@ def test_of_a_map(folder, monkeypatch, capsys):
     assert sum(SENTENCE in words for words in texts) == 1
 
 
+@pytest.mark.slow
 def test_headings_of_reports_are_short_and_say_once_what_is_estimated(folder, monkeypatch, capsys):
     monkeypatch.chdir(folder)
     assert jobs_cli.main(["report", "NU2210.nc", "-o", "map.html"]) == 0

@@ -389,6 +389,7 @@ def pulsed(solid, elements):
     return system, transverse(system, run.states.displacement)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("finer", "tolerance"),
     [

@@ -9,6 +9,7 @@ from __future__ import annotations
 import functools
 
 import numpy as np
+import pytest
 
 from ehdmaps.arrays import ComplexArray, FloatArray
 from mbs.analyses.hammer import HammerSettings, hammer
@@ -66,6 +67,7 @@ def error(found: ComplexArray, exact: ComplexArray) -> float:
     return float(np.max(np.abs(found - exact) / np.abs(exact)))
 
 
+@pytest.mark.slow
 def test_responses_in_time_are_those_of_the_linear_analysis_up_to_10_khz() -> None:
     frequencies, coarse = measured(10e3, nonlinear=True)
     exact = analysed(frequencies)

@@ -111,6 +111,7 @@ class TestAgainstTheDeterminant:
         inside = (size > low) & (size < high) & (angle > 0.45 * math.pi) & (angle < steepest)
         assert zeros_within(rigid, low, high, steepest) == np.count_nonzero(inside) > 0
 
+    @pytest.mark.slow
     def test_all_modes_of_the_gearbox_are_there(self, emap):
         balance = gearbox(emap, 500.0, "memory")
         found = modes(balance)
