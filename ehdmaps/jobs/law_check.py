@@ -83,15 +83,10 @@ class LawCheck:
     compliance_bars: tuple[float, float] = COMPLIANCE_BARS
 
 
-def check_points(count: int, solver: ContactSolver) -> int:
-    """How many points are solved for a check that a job wants of so many points, at most."""
-    return min(count, MOST_OF_READ) if isinstance(solver, TableSolver) else count
-
-
 def plan_check(job: Job, solver: ContactSolver) -> LawCheck | None:
     """Draw the points: load and speed log-uniform, temperature uniform, contact at random; None if `law_check` is 0."""
     read = isinstance(solver, TableSolver)
-    count = check_points(job.law_check, solver)
+    count = min(job.law_check, MOST_OF_READ) if read else job.law_check
     if not count or not drawable(job):
         return None
     rng = np.random.default_rng(SEED)
@@ -186,17 +181,10 @@ def coarse_axis(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) ->
         Arrays by key of the tasks.
     """
     votes: Counter[Axis] = Counter()
-    for contact in check.contacts:
-        field = emap.film_field((contact.name,))
-        if not isinstance(field, BackboneField):
-            return None
-        for task in check.tasks:
-            arrays = results[task.key]
-            if task.contact != contact or not Status(int(arrays["status"][0])).usable:
-                continue
-            if _missed_between(field, task, fresh_solution(task, arrays), check.compliance_bars):
-                changes = field.changes(contact.name, task.loads[0], task.entrainment_speed, task.temperature)
-                votes[max(changes, key=lambda axis: changes[axis] * _WORTH.get(axis, 1.0))] += 1
+    for field, task, _, missed in _between(check, emap, results):
+        if missed and isinstance(field, BackboneField):
+            changes = field.changes(task.contact.name, task.loads[0], task.entrainment_speed, task.temperature)
+            votes[max(changes, key=lambda axis: changes[axis] * _WORTH.get(axis, 1.0))] += 1
     return votes.most_common(1)[0][0] if votes else None
 
 
@@ -213,14 +201,23 @@ def films_met(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> b
         Arrays by key of the tasks.
     """
     missed: dict[str, list[bool]] = {region: [] for region in INSIDE}
+    for *_, region, wrong in _between(check, emap, results):
+        missed[region].append(wrong)
+    shares = zip(missed.values(), SHARES.values(), strict=True)
+    return all(np.mean(found) <= 1.0 - share for found, share in shares if found)
+
+
+def _between(
+    check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]
+) -> Iterator[tuple[FilmField, LineTask, str, bool]]:
+    """Yield usable points with the films that a law is made from, their region, and whether these films miss a bar."""
     for contact in check.contacts:
         field = emap.film_field((contact.name,))
         for task, region in zip(check.tasks, check.regions, strict=True):
             arrays = results[task.key]
             if task.contact == contact and Status(int(arrays["status"][0])).usable:
-                missed[region].append(_missed_between(field, task, fresh_solution(task, arrays), check.compliance_bars))
-    shares = zip(missed.values(), SHARES.values(), strict=True)
-    return all(np.mean(found) <= 1.0 - share for found, share in shares if found)
+                missed = _missed_between(field, task, fresh_solution(task, arrays), check.compliance_bars)
+                yield field, task, region, missed
 
 
 def _missed_between(field: FilmField, task: LineTask, fresh: ContactSolution, bars: tuple[float, float]) -> bool:

@@ -15,7 +15,7 @@ import zipfile
 from collections.abc import Mapping
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Protocol, Self
+from typing import Any, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -36,41 +36,6 @@ _BUSY = (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED)
 _BROKEN = (sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_CORRUPT)
 
 
-class Results(Protocol):
-    """What is solved already, by key."""
-
-    @property
-    def damaged(self) -> int:
-        """Entries that were unreadable and count as not solved."""
-        ...
-
-    def get(self, key: str) -> Arrays | None:
-        """Return the arrays of a key, or None if it is not solved."""
-        ...
-
-    def put(self, key: str, arrays: Mapping[str, npt.NDArray[Any]], at_once: bool = False) -> None:
-        """Keep the arrays of a key.
-
-        Parameters
-        ----------
-        key : str
-            Hash of all that shapes the numbers.
-        arrays : mapping
-            Arrays by name.
-        at_once : bool
-            Whether they are worth a trip to the disk of their own.
-        """
-        ...
-
-    def commit_if_due(self) -> None:
-        """Bring what was put to where it stays, now and then."""
-        ...
-
-    def commit(self) -> None:
-        """Bring what was put to where it stays."""
-        ...
-
-
 class NoStore:
     """Keeps nothing: for results that stay in memory, with the sweep that found them."""
 
@@ -81,7 +46,7 @@ class NoStore:
         return None
 
     def put(self, key: str, arrays: Mapping[str, npt.NDArray[Any]], at_once: bool = False) -> None:
-        """Do nothing; see `Results.put`."""
+        """Do nothing; arguments as of `Store.put`."""
 
     def commit_if_due(self) -> None:
         """Do nothing."""
@@ -298,6 +263,10 @@ class Store:
             f"{self.path}: is not a readable store ({cause}); the map beside it is untouched; move the store "
             "away or start again with --fresh"
         )
+
+
+Results = Store | NoStore
+"""What is solved already, by key."""
 
 
 def _is_ours(path: Path) -> bool:

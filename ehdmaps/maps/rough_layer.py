@@ -252,23 +252,13 @@ def _moes(log_load: float, log_oil: float) -> tuple[float, float, float]:
 
 
 @njit(error_model="numpy")
-def scaled_film(log_load: float, log_oil: float, log_share: float) -> tuple[float, float, float]:
-    """ln of h_f(g)/h_f(1), and its derivatives by ln g and by ln M.
-
-    Parameters
-    ----------
-    log_load, log_oil, log_share : float
-        ln of Moes' M and L of the whole load, and of the share g of the film, <= 0.
-    """
-    whole = _moes(log_load, log_oil)
-    return _scaled(log_load, log_oil, whole[0], whole[1], log_share)
-
-
-@njit(error_model="numpy")
 def _scaled(
     log_load: float, log_oil: float, whole: float, whole_slope: float, log_share: float
 ) -> tuple[float, float, float]:
-    """`scaled_film`, where ln H of the whole load and its slope are known."""
+    """ln of h_f(g)/h_f(1), and its derivatives by ln g and by ln M, from ln H of the whole load and its slope.
+
+    `log_load`, `log_oil`: ln of Moes' M and L of the whole load; `log_share`: that of the share g of the film, <= 0.
+    """
     shared, slope, oil_slope = _moes(log_load + 0.5 * log_share, log_oil + 0.75 * log_share)
     square, half = math.exp(min(2.0 * log_load, 600.0)), FULL_FROM**2
     exponent = OIL_EXPONENT * square / (square + half)

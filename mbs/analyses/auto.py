@@ -29,12 +29,8 @@ from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.rheology import SHEARS
 from mbs.analyses import film_verdicts
 from mbs.analyses.case import LawChoice, Subject
-from mbs.analyses.film_errors import film_errors
 from mbs.analyses.film_verdicts import Verdict
-from mbs.analyses.operating import operating
 from mbs.analyses.plan import PlanResult, PlanSettings, plan
-from mbs.model.elements import Operation
-from mbs.model.equilibrium import equilibrium
 from mbs.model.relaxation import Films
 from mbs.scene.assembly import Model
 from mbs.scene.contact_laws import law_label
@@ -233,10 +229,8 @@ def settled(
     verdicts = _verdicts(scene, found, settings, supplies, highest)
     films = _films(looked_at, found, verdicts, settings, progress)
     maps = MapSet([one.emap if isinstance(one, MadeMap) else one for one in films])
+    subject = _subject(scene, maps, verdicts, supplies, settings)
     try:
-        subject = _subject(scene, maps, verdicts, supplies, settings)
-        if (more := _with_memory(subject, looked_at, found, verdicts, settings, highest)) is not None:
-            verdicts, subject = more, _subject(scene, maps, more, supplies, settings)
         result = analyse(subject)
     except MapError as error:
         raise MapError("\n".join([str(error), *_remedies(verdicts)])) from error
@@ -370,43 +364,3 @@ def _subject(
         settings.supply or film_verdicts.in_force(supplies, supply),
     )
     return Subject(dataclasses.replace(scene, surface=surface), law, settings.clearance)
-
-
-def _with_memory(
-    subject: Subject,
-    scene: Scene,
-    found: PlanResult,
-    verdicts: tuple[Verdict, ...],
-    settings: AutoSettings,
-    highest: float,
-) -> tuple[Verdict, ...] | None:
-    """The verdicts with memory, where films without it turn out more than the tolerance wrong at a bearing."""
-    memory, *others = verdicts
-    if memory.on or settings.films is not None or highest == 0.0 or subject.law.films != "slow":
-        return None
-    error = slow_film_error(dataclasses.replace(subject, scene=scene), found.speeds, highest)
-    possible = not any(entry.centrifugal and not entry.rollers_as_bodies for entry in scene.bearings)
-    if error <= settings.tolerance or not possible:
-        return None
-    words = f"{memory.words}, but {100.0 * error:.2g} % at a bearing"
-    return (Verdict(memory.physics, True, max(memory.size, error), words), *others)
-
-
-def slow_film_error(subject: Subject, speeds: tuple[float, float], highest: float) -> float:
-    """Largest estimated error of films of slow motion at the bearings, at two speeds and one frequency, as a part.
-
-    Parameters
-    ----------
-    subject : Subject
-        Scene and law.
-    speeds : (float, float)
-        Lowest and highest speed [rad/s].
-    highest : float
-        Frequency [Hz].
-    """
-    model, errors = subject.model(), [0.0]
-    for speed in speeds:
-        there, operation = operating(model, speed), Operation(speed)
-        place = equilibrium(there.system, operation).displacement
-        errors += [entry.at(highest) for entry in film_errors(there, place, operation, "slow")]
-    return max(error for error in errors if math.isfinite(error))

@@ -43,29 +43,14 @@ def planned_job(scene: Scene, needed: Needed, name: str = "plan", solver: Mappin
     InputError
         With everything that a job does not allow, or cannot say.
     """
-    text = job_text(scene, needed, solver)
+    text = _job_text(scene, needed, solver)
     job = parse_job(text, name, f"the job for {', '.join(needed.bearings)}", to_run=True)
     check_oil(_lubricant(scene), job)
     return job
 
 
-def job_text(scene: Scene, needed: Needed, solver: Mapping[str, Entry] | None = None) -> str:
-    """Text of the job that covers what the bearings of one geometry need.
-
-    Parameters
-    ----------
-    scene : Scene
-        Scene with a lubricant; geometry, oil and temperature are its own.
-    needed : Needed
-        The ranges.
-    solver : mapping, optional
-        Further keys of [solver].
-
-    Raises
-    ------
-    InputError
-        If a job cannot say the geometry.
-    """
+def _job_text(scene: Scene, needed: Needed, solver: Mapping[str, Entry] | None) -> str:
+    """Text of the job that covers what the bearings of one geometry need; geometry, oil and temperature are theirs."""
     geometry = next(entry.geometry for entry in scene.bearings if entry.name == needed.bearings[0])
     lines = [
         f"# What {_plain(scene.name)} needs of a contact map, for {_plain(', '.join(needed.bearings))}.",

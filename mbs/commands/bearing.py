@@ -51,7 +51,7 @@ from mbs.scene.contact_laws import (
 )
 from mbs.scene.fields import FORCE, MICROMETRE
 from mbs.scene.law_file import read_law
-from mbs.scene.map_set import geometry_problems, reads_table, structure_words
+from mbs.scene.map_set import geometry_problems, structure_words
 from mbs.scene.profiles import profile_from_text
 
 if TYPE_CHECKING:
@@ -269,7 +269,7 @@ def _table_map(
 
 def _law_words(law: str, emap: EHDMap | None, oil: Lubricant) -> str:
     """The law, for people."""
-    if law == "map" and emap is not None and reads_table(emap):
+    if law == "map" and emap is not None and emap.from_table:
         return f"film table, {oil.title}{structure_words(emap)}"
     if law == "map" and emap is not None:
         return f"map of {oil.title}, solver {emap.dataset.attrs.get('solver', '')}{structure_words(emap)}"

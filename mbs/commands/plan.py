@@ -126,53 +126,33 @@ def _path(output: str | None, needed: Needed, alone: bool) -> Path | None:
 def _described(planned: _Planned) -> list[str]:
     """Lines of one job: what is needed beside its axes, and what it costs."""
     needed, job = planned.needed, planned.job
-    mapped = {
-        "load": _span((job.loads[0], job.loads[-1]), LOAD),
-        "entrainment speed": _span((job.entrainment_speeds[0], job.entrainment_speeds[-1]), SPEED),
-        "temperature": TEMPERATURE.text(job.temperatures[0]),
-    }
-    counts = (len(job.loads), len(job.entrainment_speeds), len(job.temperatures))
-    lines = [*_head(needed), f"  {'':18s} {'needed':28s} {'in the job':28s} points"]
-    for (axis, text), (name, ends), count in zip(_ranges(needed), mapped.items(), counts, strict=True):
-        assert axis == name
-        lines.append(f"  {axis:18s} {text:28s} {ends:28s} {count:6d}")
-    points = _points(job)
-    if points < job.points:
-        lines.append(
-            f"  points             {job.points} read from the film table, {points} solved to check its contact laws"
-        )
-        return lines
-    lines.append(f"  points             {points}, {points - job.points} of them for the contact laws")
-    lines.append(f"  time               {estimated_time(job, solvers.of_map(job), points).words}")
-    return lines
-
-
-def _head(needed: Needed) -> list[str]:
-    """Lines on the bearings, and on where their loads come from."""
-    return [
+    points = sum(task.points for task in planned_tasks(job))
+    lines = [
         f"{needed.geometry.title}: {', '.join(needed.bearings)}",
         f"  largest load of a slice at rest {LOAD.text(needed.static_load)}; films take up to "
         f"{MICROMETRE.text(needed.film_room)} of the clearance",
+        f"  {'':18s} {'needed':28s} {'in the job':28s} points",
     ]
-
-
-def _ranges(needed: Needed) -> list[tuple[str, str]]:
-    """Axes and what is needed of them, in words."""
+    for axis, ends, mapped, display in (
+        ("load", needed.load, job.loads, LOAD),
+        ("entrainment speed", needed.entrainment_speed, job.entrainment_speeds, SPEED),
+        ("temperature", (needed.temperature,), job.temperatures, TEMPERATURE),
+    ):
+        lines.append(f"  {axis:18s} {_span(ends, display):28s} {_span(mapped, display):28s} {len(mapped):6d}")
+    if points < job.points:
+        told = f"{job.points} read from the film table, {points} solved to check its contact laws"
+        return [*lines, f"  points             {told}"]
     return [
-        ("load", _span(needed.load, LOAD)),
-        ("entrainment speed", _span(needed.entrainment_speed, SPEED)),
-        ("temperature", TEMPERATURE.text(needed.temperature)),
+        *lines,
+        f"  points             {points}, {points - job.points} of them for the contact laws",
+        f"  time               {estimated_time(job, solvers.of_map(job), points).words}",
     ]
 
 
-def _span(ends: tuple[float, float], display: Display) -> str:
+def _span(values: Sequence[float], display: Display) -> str:
     """A range in words."""
-    return f"{display.value(ends[0]):.4g} to {display.text(ends[1])}"
-
-
-def _points(job: Job) -> int:
-    """Points that a job solves in all."""
-    return sum(task.points for task in planned_tasks(job))
+    begin = f"{display.value(values[0]):.4g} to " if len(values) > 1 else ""
+    return f"{begin}{display.text(values[-1])}"
 
 
 def _next_steps(written: Sequence[Path], scene: str) -> list[str]:

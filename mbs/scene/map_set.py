@@ -137,12 +137,7 @@ class MapSet:
 def _label(emap: EHDMap) -> str:
     """By which solver a map was made, in two words."""
     attributes = emap.dataset.attrs
-    return "film table" if reads_table(emap) else _LABELS.get(str(attributes.get("solver", "")), "map")
-
-
-def reads_table(emap: EHDMap) -> bool:
-    """Whether the films of a map are read from the film table."""
-    return emap.from_table
+    return "film table" if emap.from_table else _LABELS.get(str(attributes.get("solver", "")), "map")
 
 
 def map_sets(maps: Sequence[tuple[str, EHDMap]], bearings: Sequence[BearingSpec] | None) -> list[tuple[str, MapSet]]:
@@ -285,5 +280,5 @@ def _made_for(emap: EHDMap) -> str:
 def _made_by(emap: EHDMap) -> str:
     """How a map was made."""
     attributes = emap.dataset.attrs
-    films = "films from the film table" if reads_table(emap) else f"solver {attributes.get('solver', '')}"
+    films = "films from the film table" if emap.from_table else f"solver {attributes.get('solver', '')}"
     return films + structure_words(emap)

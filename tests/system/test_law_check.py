@@ -8,9 +8,7 @@ import numpy as np
 import pytest
 
 import ehdmaps
-from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.jobs.generate import Generated, generate
-from ehdmaps.jobs.law_check import check_points
 from ehdmaps.jobs.reader import parse_job
 from ehdmaps.jobs.summary import summary
 from ehdmaps.maps.schema import BACKBONE
@@ -33,7 +31,7 @@ def test_map_has_its_backbone(made: tuple[Generated, Path]) -> None:
     assert emap.backbone is not None
     assert {"film_offset", "film_compliance", "loss_compliance", "status"} <= set(emap.backbone.data_vars)
     lines = int((emap.backbone["status"] >= 0).sum())
-    assert generated.sweep.solved == emap.dataset["status"].size + lines + check_points(40, ReynoldsSolver())
+    assert generated.sweep.solved == emap.dataset["status"].size + lines + 40
 
 
 def test_laws_are_checked_against_fresh_solves(made: tuple[Generated, Path]) -> None:

@@ -18,7 +18,7 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.surface import Surface
-from mbs import AutoSettings, automatic, modes, parse_scene, statics
+from mbs import AutoSettings, automatic, parse_scene, statics
 from mbs.analyses import auto, planned_job
 from mbs.analyses.auto import settled
 from mbs.analyses.film_criteria import (
@@ -104,15 +104,6 @@ def test_a_command_says_what_the_laws_miss(file, capsys, monkeypatch):
     assert ".nc: unmet: damping" in out and "advice" not in out
 
 
-def test_films_without_memory_get_it_where_a_bearing_needs_it(folder, monkeypatch):
-    monkeypatch.setattr("mbs.analyses.film_verdicts.memory_effect", lambda state, frequency: 0.0 * state.load)
-    found = automatic(scene(), modes, AutoSettings(folder=folder))
-    assert found.subject.law.films == "memory"
-    assert "% at a bearing" in found.verdicts[0].words
-    slow = automatic(scene(), modes, AutoSettings(folder=folder, films="slow"))
-    assert slow.subject.law.films == "slow"
-
-
 def test_stated_physics_is_off_where_it_does_not_matter(folder):
     plain = scene()
     for supply, surface, on in (
@@ -178,7 +169,6 @@ def test_a_decibel_is_twelve_per_cent():
     assert read_tolerance(None, []) == auto.TOLERANCE
 
 
-@pytest.mark.slow
 def test_run_does_what_the_scene_has_tables_for(file, capsys, tmp_path):
     status, out, _ = run(capsys, "run", file, "--auto", "-o", "out")
     assert status == 0
@@ -281,7 +271,6 @@ def test_a_map_that_cannot_be_used_says_what_makes_another(monkeypatch):
     monkeypatch.setattr(auto, "_films", lambda *given: [])
     monkeypatch.setattr(auto, "MapSet", lambda maps: None)
     monkeypatch.setattr(auto, "_subject", lambda *given: None)
-    monkeypatch.setattr(auto, "_with_memory", lambda *given: None)
     with pytest.raises(MapError, match=r"^backbone of the map: has 2 unsolved points\nauto: the map was made with lim"):
         automatic_of(unfit, AutoSettings(shear="limiting"))
     with pytest.raises(MapError, match=r"as asked, eyring; .*--shear newtonian makes one without"):

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.jobs.reader import parse_job
 from mbs.analyses.plan import plan
-from mbs.analyses.planned_job import job_text
+from mbs.analyses.planned_job import planned_job
 from mbs.analyses.planning import (
     LIGHT,
     LIGHTEST,
@@ -191,7 +191,7 @@ def test_job_reads_back_and_covers_what_is_needed():
     given = dataclasses.replace(scene((NAMED, BY_HAND % "16 mm")), name='a\n[bearing]\nname = "N1014"')
     model = assemble(given)
     for needed in needed_ranges(model.bearings, (12345.6, 23456.7), (0.0, 0.0), (10.3, 103.7)):
-        job = parse_job(job_text(given, needed), "planned", "planned.toml", to_run=True)
+        job = planned_job(given, needed)
         assert same_contacts(job.bearing) == same_contacts(needed.geometry)
         assert job.lubricant == given.lubricant
         assert job.temperatures == (given.temperature,)
@@ -199,7 +199,7 @@ def test_job_reads_back_and_covers_what_is_needed():
             assert axis[0] <= low <= axis[0] * 1.1001
             assert axis[-1] / 1.1001 <= high <= axis[-1]
     exact = dataclasses.replace(needed, entrainment_speed=(0.5, 0.5))
-    assert parse_job(job_text(given, exact), "planned", "planned.toml").entrainment_speeds == (0.5,)
+    assert planned_job(given, exact).entrainment_speeds == (0.5,)
 
 
 def test_a_job_keeps_an_estimated_bearing_and_its_label():
@@ -210,7 +210,7 @@ def test_a_job_keeps_an_estimated_bearing_and_its_label():
     needed = next(
         entry for entry in needed_ranges(bearings, (1e4, 2e4), (0.0, 0.0), (10.0, 100.0)) if entry.geometry.estimated
     )
-    job = parse_job(job_text(given, needed), "planned", "planned.toml")
+    job = planned_job(given, needed)
     assert job.bearing == dataclasses.replace(needed.geometry, diametral_clearance=0.0)
     assert job.bearing.label == 'A "1"'
 

@@ -15,7 +15,7 @@ from ehdmaps.errors import SolverError
 from ehdmaps.jobs.rough_solved import solved_sharing
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.law import ContactLaw
-from ehdmaps.maps.rough_layer import RoughLayer, _moes, asperity_pressure, scaled_film
+from ehdmaps.maps.rough_layer import RoughLayer, _moes, _scaled, asperity_pressure
 from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.films import moes_central_and_slope
 from ehdmaps.physics.hertz import max_pressure
@@ -70,7 +70,8 @@ def test_film_of_a_share_is_that_of_softer_solids_under_that_share_of_the_load(l
     for share in (0.3, 0.7):
         soft = replace(INNER.material, youngs_modulus=share * INNER.material.youngs_modulus)
         (film,) = SOLVER.solve_line(replace(INNER, material=soft), OIL, (share * load,), speed, CELSIUS_60)
-        scaled = math.exp(scaled_film(math.log(M), math.log(L), math.log(share))[0])
+        unshared = _moes(math.log(M), math.log(L))
+        scaled = math.exp(_scaled(math.log(M), math.log(L), unshared[0], unshared[1], math.log(share))[0])
         assert -0.05 < scaled * whole.film_offset / film.film_offset - 1.0 < 0.12
 
 
