@@ -17,7 +17,8 @@ from mbs.gears.gear import GearMesh
 from mbs.gears.gear_block import GEAR_MESHES
 from mbs.model.blocks import Kind
 from mbs.model.elements import Element
-from mbs.model.matrices import MATRICES, MatrixElement
+from mbs.model.matrices import MatrixElement
+from mbs.model.matrix_block import MATRICES
 
 KINDS: dict[type, Kind] = {
     BearingElement: BEARINGS,
