@@ -33,10 +33,10 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     __version__: str
     from ehdmaps.jobs.calls import compare, frequency_response, generate, generate_batch, solve, solve_points
-    from ehdmaps.jobs.compare import Comparison
     from ehdmaps.jobs.job import Job
+    from ehdmaps.jobs.make.table_law import law
     from ehdmaps.jobs.reader import read_job
-    from ehdmaps.jobs.table_law import law
+    from ehdmaps.jobs.show.compare import Comparison
     from ehdmaps.maps.emap import EHDMap, open_map
     from ehdmaps.maps.law import ContactLaw, LawAtPoint
     from ehdmaps.physics.bearing import BearingGeometry
@@ -75,10 +75,10 @@ _HOMES = {
     "frequency_response": "jobs.calls",
     "generate": "jobs.calls",
     "generate_batch": "jobs.calls",
-    "law": "jobs.table_law",
+    "law": "jobs.make.table_law",
     "solve": "jobs.calls",
     "solve_points": "jobs.calls",
-    "Comparison": "jobs.compare",
+    "Comparison": "jobs.show.compare",
     "Job": "jobs.job",
     "read_job": "jobs.reader",
     "EHDMap": "maps.emap",

@@ -1,7 +1,7 @@
 """Which state of the sources runs: the commit of the clone, and one hash of all that a number is computed with.
 
 The hash is the only thing that says whether two numbers come from the same code. Compiled code (`ehdmaps.compiled`),
-solved points (`ehdmaps.jobs.tasks`) and reduced bodies (`mbs.flexible.carry_out`) are kept under it, and maps and
+solved points (`ehdmaps.jobs.make.tasks`) and reduced bodies (`mbs.flexible.carry_out`) are kept under it, and maps and
 results state it. So nothing that an older version made is ever taken for the work of a newer one.
 """
 

@@ -14,18 +14,18 @@ import numpy as np
 import xarray as xr
 
 from ehdmaps.errors import InputError
-from ehdmaps.jobs import compare as comparing
-from ehdmaps.jobs import generate as generating
-from ehdmaps.jobs import points as many
 from ehdmaps.jobs import solvers
-from ehdmaps.jobs.batch import SUMMARY, Batch, is_batch, read_batch
-from ehdmaps.jobs.batch_generate import generate_batch as many_maps
-from ehdmaps.jobs.batch_generate import make_folder
-from ehdmaps.jobs.batch_table import table_dataset, write_table
 from ehdmaps.jobs.job import Job
+from ehdmaps.jobs.make import generate as generating
+from ehdmaps.jobs.make.batch import SUMMARY, Batch, is_batch, read_batch
+from ehdmaps.jobs.make.batch_generate import generate_batch as many_maps
+from ehdmaps.jobs.make.batch_generate import make_folder
+from ehdmaps.jobs.make.batch_table import table_dataset, write_table
+from ehdmaps.jobs.make.sweep import Progress
 from ehdmaps.jobs.reader import read_job
-from ehdmaps.jobs.spectrum import spectrum_dataset
-from ehdmaps.jobs.sweep import Progress
+from ehdmaps.jobs.show import compare as comparing
+from ehdmaps.jobs.solve import points as many
+from ehdmaps.jobs.solve.spectrum import spectrum_dataset
 from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.outputs import MAP, TABLE, Output, check_outputs
 from ehdmaps.physics.contact import LineContact, OperatingPoint

@@ -92,8 +92,8 @@ class Job:
         Surfaces that the contact laws of the map have by default; None where the job states none, which is smooth. The
         points of the map are those of smooth surfaces.
     corrected_by : CorrectedBy or None
-        Dearer solver by a few points of which the films of the map are corrected, see `ehdmaps.jobs.correction`; None
-        where they are those of `solver`.
+        Dearer solver by a few points of which the films of the map are corrected, see
+        `ehdmaps.jobs.make.correction`; None where they are those of `solver`.
     solids : SolidsKeys
         What the job says of its solids: dimensions for finite elements, and what they found.
     """

@@ -9,8 +9,7 @@ from dataclasses import replace
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.solids import solids_keys
-from ehdmaps.jobs.supply import supply_keys
-from ehdmaps.jobs.surface import surface_keys
+from ehdmaps.jobs.supply import supply_keys, surface_keys
 from ehdmaps.maps.backbone_plan import Steps
 from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
 from ehdmaps.physics.catalogue import estimate, estimate_from_dimensions, static_rating

@@ -11,13 +11,11 @@ from typing import Any
 
 from ehdmaps import inputs
 from ehdmaps.errors import InputError
-from ehdmaps.jobs import solvers, toml_text
-from ehdmaps.jobs.axes import LOAD_AXIS, TEMPERATURE_AXIS, read_axis, read_speeds
+from ehdmaps.jobs import solvers, table
 from ehdmaps.jobs.job import DEFAULT_CORRECTION_POINTS, MOST_CHECKS, MOST_POINTS, CorrectedBy, Job
-from ehdmaps.jobs.problem import read_contacts, read_lubricant
+from ehdmaps.jobs.problem import LOAD_AXIS, TEMPERATURE_AXIS, read_axis, read_contacts, read_lubricant, read_speeds
 from ehdmaps.jobs.solids import NO_SOLIDS, check_solids, read_solids
-from ehdmaps.jobs.supply import read_supply
-from ehdmaps.jobs.surface import read_surface
+from ehdmaps.jobs.supply import read_supply, read_surface
 from ehdmaps.jobs.table import Table
 from ehdmaps.maps.backbone_plan import STEP_LIMITS, STEPS, Steps
 from ehdmaps.netcdf_structure import DAMAGE, structure_problem
@@ -110,7 +108,7 @@ def parse_job(
     InputError
         With every problem found, each beginning with `where`.
     """
-    values = toml_text.parse(text, where)
+    values = table.parse(text, where)
     if "batch" in values:
         raise InputError(
             f"{where}: is a batch file, of many jobs; allowed: one job; `ehdmaps generate`, `check`, `status`, `merge` "

@@ -9,6 +9,6 @@ document.css   how it looks on a screen and on paper
 document.js    reads values off the charts; all else works without it
 =============  ====================================================================================
 
-What is said of a map is in `ehdmaps.jobs.map_report`, and of a scene in `mbs.report`. Nothing is imported here: take
-the names from their modules.
+What is said of a map is in `ehdmaps.jobs.show.map_report`, and of a scene in `mbs.report`. Nothing is imported here:
+take the names from their modules.
 """

@@ -2,7 +2,8 @@
 
 The order of things: the ranges of the scene (`mbs.analyses.plan`), the physics that they require
 (`mbs.analyses.film_verdicts`), films of each type of bearing, and the analysis. Films come from the film table; where
-heat or a limiting stress matter, a map is made by `ehdmaps.jobs.generate`, whose store beside it knows what is solved.
+heat or a limiting stress matter, a map is made by `ehdmaps.jobs.make.generate`, whose store beside it knows what is
+solved.
 """
 
 from __future__ import annotations
@@ -16,12 +17,12 @@ from pathlib import Path
 from typing import Generic, TypeVar
 
 from ehdmaps.errors import InputError, MapError
-from ehdmaps.jobs.batch_generate import make_folder
-from ehdmaps.jobs.generate import Generated, generate
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.job_text import Entry
-from ehdmaps.jobs.law_check import unmet
-from ehdmaps.jobs.sweep import Progress
+from ehdmaps.jobs.make.batch_generate import make_folder
+from ehdmaps.jobs.make.generate import Generated, generate
+from ehdmaps.jobs.make.law_check import unmet
+from ehdmaps.jobs.make.sweep import Progress
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.outputs import MAP, Output, check_outputs
 from ehdmaps.physics.heat import PHYSICS

@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from ehdmaps.errors import InputError
-from ehdmaps.jobs.axes import SPEED_AXIS
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.job_text import Entry
+from ehdmaps.jobs.problem import SPEED_AXIS
 from ehdmaps.units import RPM, SPEED
 from mbs.analyses import planning
 from mbs.analyses.operating import held

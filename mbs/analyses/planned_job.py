@@ -7,9 +7,9 @@ import math
 from collections.abc import Mapping
 
 from ehdmaps.errors import InputError
-from ehdmaps.jobs.axes import LOAD_AXIS, SPEED_AXIS, AxisRule
 from ehdmaps.jobs.job import Job, check_oil
 from ehdmaps.jobs.job_text import Entry, bearing_keys, lubricant_keys, table_lines
+from ehdmaps.jobs.problem import LOAD_AXIS, SPEED_AXIS, AxisRule
 from ehdmaps.jobs.reader import parse_job
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.units import LOAD, SPEED, TEMPERATURE, Display, quantity

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from ehdmaps.errors import InputError
-from ehdmaps.jobs.batch_generate import folder_problem, make_folder
-from ehdmaps.jobs.progress import progress
-from ehdmaps.jobs.store import store_path
+from ehdmaps.jobs.make.batch_generate import folder_problem, make_folder
+from ehdmaps.jobs.make.status import progress
+from ehdmaps.jobs.make.store import store_path
 from ehdmaps.physics.heat import PHYSICS
 from ehdmaps.physics.rheology import SHEARS
 from ehdmaps.program import tell

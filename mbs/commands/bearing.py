@@ -253,7 +253,7 @@ def _table_map(
     geometry: BearingGeometry, oil: Lubricant, material: Material, speeds: Sequence[float], temperature: float
 ) -> EHDMap:
     """Map in memory over the usual loads, and over the speeds [rad/s] and the temperature [K] that are asked for."""
-    from ehdmaps.jobs.table_law import SPEEDS, table_map  # with the solver
+    from ehdmaps.jobs.make.table_law import SPEEDS, table_map
 
     entrainment = [geometry.entrainment_speed(speed) for speed in speeds]
     turning = [u for u in entrainment if u > 0.0]
@@ -310,17 +310,16 @@ def _from_file(source: str) -> _Given:
 
 def _alone(source: str) -> _Given | None:
     """The bearing of a file without [grid] and [solver]; None for a job or a map, which have a reader of their own."""
-    from ehdmaps.jobs import toml_text
+    from ehdmaps.jobs import table
     from ehdmaps.jobs.problem import read_contacts, read_lubricant
     from ehdmaps.jobs.reader import LONGEST_FILE
-    from ehdmaps.jobs.supply import read_supply
-    from ehdmaps.jobs.surface import read_surface
+    from ehdmaps.jobs.supply import read_supply, read_surface
     from ehdmaps.jobs.table import Table
 
     allowed = "a TOML file with [bearing]"
     if first_bytes(source, 4, allowed).startswith((b"CDF", b"\x89HDF")):
         return None
-    values = toml_text.parse(read_text(source, LONGEST_FILE, allowed), source)
+    values = table.parse(read_text(source, LONGEST_FILE, allowed), source)
     if "grid" in values or "solver" in values:
         return None
     problems: list[str] = []
@@ -364,7 +363,7 @@ def _map(path: str | None, structure: str | None, problems: list[str]) -> EHDMap
     if path is None:
         problems += [] if structure is None else [NO_MAP.format(structure)]
         return None
-    from ehdmaps.jobs.opening import open_given
+    from ehdmaps.jobs.show.opening import open_given
 
     try:
         return open_given(path, structure)

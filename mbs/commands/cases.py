@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ehdmaps.errors import EhdmapsError, InputError
-from ehdmaps.jobs.opening import open_given
+from ehdmaps.jobs.show.opening import open_given
 from ehdmaps.outputs import FIGURE, Kind, Output, output_problems
 from ehdmaps.units import closest
 from mbs.analyses.case import Case, LawChoice, Subject, common_clearance

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-    from ehdmaps.jobs.progress import Bar, Lines
+    from ehdmaps.jobs.make.status import Bar, Lines
 
 RESOLUTION = 150
 
@@ -77,7 +77,7 @@ class Told:
     def __call__(self, done: int, total: int) -> None:
         """Begin with the first call; advance by what is new."""
         if self._bar is None:
-            from ehdmaps.jobs.progress import progress
+            from ehdmaps.jobs.make.status import progress
 
             self._bar = progress(total, self._unit)
             self._bar.begin()

@@ -12,8 +12,8 @@ from pathlib import Path
 from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.commands.check import estimated_time
-from ehdmaps.jobs.generate import planned_tasks
 from ehdmaps.jobs.job import Job
+from ehdmaps.jobs.make.generate import planned_tasks
 from ehdmaps.outputs import SEALED, Output, output_problems, sealed, write_text
 from ehdmaps.units import LOAD, RPM, SPEED, TEMPERATURE, Display
 from mbs.analyses import planning

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import xarray as xr
 
 from ehdmaps.figures import typeset
-from ehdmaps.jobs.map_report import job, provenance, written_by
+from ehdmaps.jobs.show.map_report import job, provenance, written_by
 from ehdmaps.program import plain
 from ehdmaps.report.page import Markup, Section, document, joined, pairs, sentences, tag
 from ehdmaps.units import RPM

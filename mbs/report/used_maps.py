@@ -6,10 +6,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from ehdmaps.figures import typeset
-from ehdmaps.jobs.map_charts import MapCurves, Operated
-from ehdmaps.jobs.map_limits import limits
-from ehdmaps.jobs.map_report import accuracy, curve_sections
-from ehdmaps.jobs.plot import what_is_mapped
+from ehdmaps.jobs.show.map_charts import MapCurves, Operated
+from ehdmaps.jobs.show.map_report import accuracy, curve_sections, limits
+from ehdmaps.jobs.show.plot import what_is_mapped
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.report.page import Section
 from mbs.report.examination import Examination

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from ehdmaps.errors import InputError
 from ehdmaps.inputs import read_text
-from ehdmaps.jobs import toml_text
+from ehdmaps.jobs import table
 from ehdmaps.jobs.table import Table
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.units import LENGTH, PRESSURE, Display, short
@@ -510,7 +510,7 @@ def read_body_file(path: Path) -> ReductionPlan:
     InputError
         With every problem found, each beginning with the path.
     """
-    values = toml_text.parse(read_text(path, LONGEST_FILE, "a body file in TOML"), str(path))
+    values = table.parse(read_text(path, LONGEST_FILE, "a body file in TOML"), str(path))
     problems: list[str] = []
     top = Table(values, "body file", problems)
     plan = read_reduction(top, path.parent)

@@ -75,14 +75,14 @@ def profile_from_text(text: str, geometry: BearingGeometry | None, problems: lis
     """
     if text in NAMES:
         return text
-    from ehdmaps.jobs import toml_text  # the reader of files; a name needs none
+    from ehdmaps.jobs import table
     from ehdmaps.jobs.table import Table
 
     value: object = text
     if text.lstrip().startswith("{"):
         try:
             # A line break would let a text go on after the value.
-            value = toml_text.parse(f"profile = {' '.join(text.splitlines())}", "--profile")["profile"]
+            value = table.parse(f"profile = {' '.join(text.splitlines())}", "--profile")["profile"]
         except InputError as error:
             problems += error.problems
             return "iso"

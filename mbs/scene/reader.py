@@ -12,11 +12,9 @@ import numpy as np
 
 from ehdmaps.errors import InputError
 from ehdmaps.inputs import read_text
-from ehdmaps.jobs import toml_text
-from ehdmaps.jobs.axes import AxisRule, read_axis
-from ehdmaps.jobs.problem import read_lubricant
-from ehdmaps.jobs.supply import read_supply
-from ehdmaps.jobs.surface import read_surface
+from ehdmaps.jobs import table
+from ehdmaps.jobs.problem import AxisRule, read_axis, read_lubricant
+from ehdmaps.jobs.supply import read_supply, read_surface
 from ehdmaps.jobs.table import Table
 from ehdmaps.physics.contact import OIL_TEMPERATURES
 from ehdmaps.units import DAMPER, RPM, SPRING, TEMPERATURE, Display, closest, short
@@ -191,7 +189,7 @@ def parse_scene(text: str, name: str, where: str, folder: Path | None = None) ->
     InputError
         With every problem found, each beginning with `where`.
     """
-    values = toml_text.parse(text, where)
+    values = table.parse(text, where)
     problems: list[str] = []
     scene = _Reader(Table(values, "scene file", problems), folder).scene(text, name)
     if problems or scene is None:

@@ -6,7 +6,7 @@ import dataclasses
 from functools import lru_cache
 
 from ehdmaps.errors import InputError
-from ehdmaps.jobs.table_law import TEMPERATURES, table_map
+from ehdmaps.jobs.make.table_law import TEMPERATURES, table_map
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant

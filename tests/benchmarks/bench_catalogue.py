@@ -13,9 +13,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ehdmaps.jobs.batch import read_batch
-from ehdmaps.jobs.generate import generate_in_memory
-from ehdmaps.jobs.law_points import SMALL_DAMPING
+from ehdmaps.jobs.make.batch import read_batch
+from ehdmaps.jobs.make.generate import generate_in_memory
+from ehdmaps.jobs.make.law_check import SMALL_DAMPING
 from ehdmaps.maps.schema import FILM_TABLE
 from ehdmaps.physics.hertz import half_width
 

@@ -21,14 +21,14 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.jobs import solvers
-from ehdmaps.jobs.correction import JUDGED, Correction, Films, Place, correction, error_of, quantiles
-from ehdmaps.jobs.correction_design import places_of
 from ehdmaps.jobs.job import Job
+from ehdmaps.jobs.make.correction import JUDGED, Correction, Films, Place, correction, error_of, quantiles
+from ehdmaps.jobs.make.correction_design import places_of
+from ehdmaps.jobs.make.sampling import VALLEY_SHARE, draw, draw_in_valley
+from ehdmaps.jobs.make.store import Arrays, NoStore, Results, Store
+from ehdmaps.jobs.make.sweep import sweep
+from ehdmaps.jobs.make.tasks import LineTask
 from ehdmaps.jobs.reader import read_job
-from ehdmaps.jobs.sampling import VALLEY_SHARE, draw, draw_in_valley
-from ehdmaps.jobs.store import Arrays, NoStore, Results, Store
-from ehdmaps.jobs.sweep import sweep
-from ehdmaps.jobs.tasks import LineTask
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.solution import ContactSolver, Status
 

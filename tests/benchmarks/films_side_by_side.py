@@ -18,10 +18,10 @@ from dataclasses import replace
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.jobs.generate import generate_in_memory
 from ehdmaps.jobs.job import Job
-from ehdmaps.jobs.law_points import SMALL_DAMPING, at_loads
-from ehdmaps.jobs.sampling import SamplePoint, draw_apart
+from ehdmaps.jobs.make.generate import generate_in_memory
+from ehdmaps.jobs.make.law_check import SMALL_DAMPING, at_loads
+from ehdmaps.jobs.make.sampling import SamplePoint, draw_apart
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.physics.bearing import BearingGeometry

@@ -21,8 +21,8 @@ from ehdmaps.ehl.line import solve_groups
 from ehdmaps.ehl.profile import Resolution
 from ehdmaps.ehl.solver import ReynoldsSolver, line_problem
 from ehdmaps.ehl.ways import LOAD
-from ehdmaps.jobs.generate import generate_in_memory
 from ehdmaps.jobs.job import Job
+from ehdmaps.jobs.make.generate import generate_in_memory
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.film_field import lifted_loss
 from ehdmaps.maps.film_response import FilmsOfContact

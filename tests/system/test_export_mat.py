@@ -15,7 +15,7 @@ from scipy.io import loadmat, savemat
 import ehdmaps
 from ehdmaps.exports.resampled import READING
 from ehdmaps.jobs.cli import main
-from ehdmaps.jobs.generate import generate
+from ehdmaps.jobs.make.generate import generate
 from ehdmaps.jobs.reader import parse_job
 from ehdmaps.maps.lines import line_approach
 from ehdmaps.physics.closed_form import FormulaSolver

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from ehdmaps.jobs.cli import main
-from ehdmaps.jobs.generate import generate
+from ehdmaps.jobs.make.generate import generate
 from ehdmaps.jobs.reader import parse_job
 from ehdmaps.maps.emap import open_map
 from ehdmaps.physics.closed_form import FormulaSolver

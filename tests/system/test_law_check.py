@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 
 import ehdmaps
-from ehdmaps.jobs.generate import Generated, generate
+from ehdmaps.jobs.make.generate import Generated, generate, summary
 from ehdmaps.jobs.reader import parse_job
-from ehdmaps.jobs.summary import summary
 from ehdmaps.maps.schema import BACKBONE
 
 pytestmark = pytest.mark.slow  # its map is checked against forty fresh solves

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from ehdmaps.jobs import length_plot
 from ehdmaps.jobs.cli import main
+from ehdmaps.jobs.show import solids_plot
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.solids.three_d_compare import compare_lengths
 from ehdmaps.solids.three_d_reference import FOLDER, shipped_reference
@@ -40,7 +40,7 @@ def test_the_figure_has_the_finite_elements_and_what_is_beside_them():
     """A figure of what is compared: six cases, two panels each."""
     reference = shipped_reference("NU308")
     cases = compare_lengths(reference, BearingGeometry.named("NU308"), (6, 24))
-    figure = length_plot.length_figure(reference, cases)
+    figure = solids_plot.length_figure(reference, cases)
     assert len(figure.axes) == 12
     found = figure.axes[0].get_lines()[0]
     assert found.get_ydata().max() == pytest.approx(1e-3 * cases[0].case.load_per_length.max())

@@ -7,8 +7,8 @@ import pytest
 import ehdmaps
 from ehdmaps.jobs import cli as ehdmaps_cli
 from ehdmaps.jobs import solvers
+from ehdmaps.jobs.make.tasks import LineTask
 from ehdmaps.jobs.reader import read_job
-from ehdmaps.jobs.tasks import LineTask
 from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.solution import FilmSolution, Status, contact_solution
 from mbs import cli

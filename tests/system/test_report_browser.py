@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from ehdmaps.jobs.cli import main
-from ehdmaps.jobs.map_report import map_report
+from ehdmaps.jobs.show.map_report import map_report
 from ehdmaps.maps.emap import EHDMap, open_map
 from mbs.cli import main as mbs
 from tests.cases.chromium import browser, chromium

@@ -6,8 +6,8 @@ import json
 
 import pytest
 
-from ehdmaps.jobs import stability_readers as of_ehdmaps
 from ehdmaps.jobs.cli import main
+from ehdmaps.jobs.instruments import stability_readers as of_ehdmaps
 from ehdmaps.stability.fuzzing import fuzz
 from ehdmaps.stability.report import checks_text
 from mbs.instruments import readers as of_mbs

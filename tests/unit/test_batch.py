@@ -9,10 +9,10 @@ import pytest
 import xarray as xr
 
 from ehdmaps.errors import InputError, WorkerError
-from ehdmaps.jobs import batch_generate, cli
-from ehdmaps.jobs.batch import MOST_MEMBERS, is_batch, parse_batch, read_batch
-from ehdmaps.jobs.batch_generate import generate_batch
-from ehdmaps.jobs.batch_plan import plan_batch
+from ehdmaps.jobs import cli
+from ehdmaps.jobs.make import batch_generate
+from ehdmaps.jobs.make.batch import MOST_MEMBERS, is_batch, parse_batch, read_batch
+from ehdmaps.jobs.make.batch_generate import generate_batch, plan_batch
 from ehdmaps.jobs.reader import parse_job
 from tests.cases.batches import SMALL_LISTS, batch_text
 from tests.cases.jobs import SMALL

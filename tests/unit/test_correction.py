@@ -11,15 +11,15 @@ import pytest
 
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import InputError, MapError
-from ehdmaps.jobs import generate as generating
 from ehdmaps.jobs.cli import main
-from ehdmaps.jobs.correction import Films, Place, _slow_change, correction, error_of
-from ehdmaps.jobs.correction_design import VALLEY, candidates, places_of, spread_out
 from ehdmaps.jobs.job import CorrectedBy, Job
+from ehdmaps.jobs.make import generate as generating
+from ehdmaps.jobs.make.correction import Films, Place, _slow_change, correction, error_of
+from ehdmaps.jobs.make.correction_design import VALLEY, candidates, places_of, spread_out
+from ehdmaps.jobs.make.regression import Regression
+from ehdmaps.jobs.make.sampling import draw, draw_in_valley
+from ehdmaps.jobs.make.tasks import LineTask
 from ehdmaps.jobs.reader import parse_job
-from ehdmaps.jobs.regression import Regression
-from ehdmaps.jobs.sampling import draw, draw_in_valley
-from ehdmaps.jobs.tasks import LineTask
 from ehdmaps.maps import schema
 from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.physics.bearing import BearingGeometry
@@ -357,7 +357,7 @@ def test_a_corrected_map_says_so_and_goes_on_where_it_was_interrupted(tmp_path, 
     for change in ({"before": 3}, {"settings": []}, {"points": [{"status": "failed"}]}):
         damaged = emap.dataset.assign_attrs(correction=json.dumps(record | change))
         with pytest.raises(MapError, match="attribute correction is not as `ehdmaps generate` writes it"):
-            from ehdmaps.jobs.describe import describe
+            from ehdmaps.jobs.show.describe import describe
 
             describe(EHDMap(damaged), "a.nc")
 
@@ -405,7 +405,7 @@ def test_points_that_fail_are_counted_and_named(tmp_path, capsys, monkeypatch):
     failed = [point for point in record["points"] if point["status"] == "stagnated"]
     assert 0 < len(failed) == record["asked"] - record["usable"] < 5
     assert all(point["entrainment_speed"] < 0.5 and point["reason"] == "slower than 0.5 m/s" for point in failed)
-    from ehdmaps.jobs.summary import summary
+    from ehdmaps.jobs.make.generate import summary
 
     text = summary(made, tmp_path / "a.nc")
     assert f"8 points, {8 - len(failed)} of them with a solution by both solvers" in text

@@ -7,11 +7,11 @@ import pytest
 
 import ehdmaps
 from ehdmaps.errors import InputError
-from ehdmaps.jobs.batch import parse_batch
-from ehdmaps.jobs.batch_generate import _each, generate_batch
+from ehdmaps.jobs.make.batch import parse_batch
+from ehdmaps.jobs.make.batch_generate import _each, generate_batch
+from ehdmaps.jobs.make.store import Store
+from ehdmaps.jobs.make.sweep import sweep
 from ehdmaps.jobs.reader import parse_job
-from ehdmaps.jobs.store import Store
-from ehdmaps.jobs.sweep import sweep
 from tests.cases.batches import SMALL_LISTS, batch_text
 from tests.cases.jobs import SMALL
 from tests.unit.test_sweep import Heard, Stub

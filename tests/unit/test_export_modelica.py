@@ -9,7 +9,7 @@ import pytest
 
 import ehdmaps
 from ehdmaps.jobs.cli import main
-from ehdmaps.jobs.generate import generate
+from ehdmaps.jobs.make.generate import generate
 from ehdmaps.jobs.reader import parse_job
 from ehdmaps.physics.closed_form import FormulaSolver
 from tests.cases.jobs import SMALL

@@ -7,8 +7,8 @@ import dataclasses
 import numpy as np
 import pytest
 
-from ehdmaps.jobs.generate import generate_in_memory
 from ehdmaps.jobs.job import Job
+from ehdmaps.jobs.make.generate import generate_in_memory
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.film_response import FilmResponse, FilmsOfContact, by_powers, law_stiffness
 from ehdmaps.maps.law import ContactLaw

@@ -15,9 +15,9 @@ import pytest
 from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import InputError, MapError
-from ehdmaps.jobs import table_make
 from ehdmaps.jobs.cli import main
-from ehdmaps.jobs.table_make import (
+from ehdmaps.jobs.make import table_make
+from ehdmaps.jobs.make.table_make import (
     PIEZOVISCOUS,
     filled,
     make_nodes,

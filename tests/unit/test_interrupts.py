@@ -17,7 +17,7 @@ import sys
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.interrupts import careful_interrupts
 from ehdmaps.jobs.reader import read_job
-from ehdmaps.jobs.tasks import line_tasks
+from ehdmaps.jobs.make.tasks import line_tasks
 
 job = read_job("nu308")
 task = line_tasks(job, ReynoldsSolver())[0]

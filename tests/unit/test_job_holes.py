@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from ehdmaps.jobs.holes import filled, isolated_holes
+from ehdmaps.jobs.make.assemble import filled, isolated_holes
 
 LOADS = np.geomspace(1.0, 81.0, 5)
 

@@ -10,12 +10,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ehdmaps.jobs import generate as story
 from ehdmaps.jobs import solvers
-from ehdmaps.jobs.generate import Generated, generate_in_memory
-from ehdmaps.jobs.law_check import HALVED, met, unmet
+from ehdmaps.jobs.make import generate as story
+from ehdmaps.jobs.make.generate import Generated, generate_in_memory
+from ehdmaps.jobs.make.law_check import HALVED, met, unmet
+from ehdmaps.jobs.make.tasks import refinement
 from ehdmaps.jobs.reader import parse_job, read_job
-from ehdmaps.jobs.refinement import refinement
 from ehdmaps.maps.backbone_plan import STEPS, Steps, plan_backbone
 from ehdmaps.physics.closed_form import FormulaSolver
 from tests.cases.jobs import LINE

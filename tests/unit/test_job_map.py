@@ -11,18 +11,15 @@ import xarray as xr
 
 from ehdmaps.errors import MapError
 from ehdmaps.jobs import solvers
-from ehdmaps.jobs.assemble import assemble, placed
-from ehdmaps.jobs.compare import compare
-from ehdmaps.jobs.compare_text import comparison_json, comparison_text
-from ehdmaps.jobs.describe import describe
-from ehdmaps.jobs.generate import generate
-from ehdmaps.jobs.law_check import STANDS_ON_LINES, STANDS_ON_POINTS, unmet
-from ehdmaps.jobs.plot import page_legend, plot_map
+from ehdmaps.jobs.make.assemble import assemble, placed
+from ehdmaps.jobs.make.generate import generate, summary, write_map
+from ehdmaps.jobs.make.law_check import STANDS_ON_LINES, STANDS_ON_POINTS, unmet
+from ehdmaps.jobs.make.report import ERRORS, holes
+from ehdmaps.jobs.make.tasks import LATER_FIELDS, LONGEST_LINE, LineTask, line_tasks, solver_version
 from ehdmaps.jobs.reader import parse_job
-from ehdmaps.jobs.report import ERRORS, holes
-from ehdmaps.jobs.summary import summary
-from ehdmaps.jobs.tasks import LATER_FIELDS, LONGEST_LINE, LineTask, line_tasks, solver_version
-from ehdmaps.jobs.write import write_map
+from ehdmaps.jobs.show.compare import compare, comparison_json, comparison_text
+from ehdmaps.jobs.show.describe import describe
+from ehdmaps.jobs.show.plot import page_legend, plot_map
 from ehdmaps.maps import schema
 from ehdmaps.maps.curves import curves, law_field
 from ehdmaps.maps.emap import EHDMap, open_map

@@ -8,8 +8,8 @@ import pytest
 import ehdmaps
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.cli import main
+from ehdmaps.jobs.make.status import about
 from ehdmaps.jobs.reader import parse_job
-from ehdmaps.jobs.status import about
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
 from mbs import cli as bearing_cli

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from ehdmaps.jobs.generate import generate_in_memory
 from ehdmaps.jobs.job import Job
+from ehdmaps.jobs.make.generate import generate_in_memory
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.locked_film import (

@@ -16,7 +16,7 @@ import pytest
 from ehdmaps.errors import EhdmapsError, InputError, MapError
 from ehdmaps.jobs import job
 from ehdmaps.jobs.cli import main
-from ehdmaps.jobs.generate import generate
+from ehdmaps.jobs.make.generate import generate
 from ehdmaps.jobs.reader import read_job
 from ehdmaps.maps import schema
 from ehdmaps.maps.emap import EHDMap, open_map

@@ -10,8 +10,8 @@ import xarray as xr
 
 from ehdmaps.errors import InputError, MapError
 from ehdmaps.jobs.cli import main
-from ehdmaps.jobs.generate import generate
 from ehdmaps.jobs.job import Job
+from ehdmaps.jobs.make.generate import generate
 from ehdmaps.jobs.reader import parse_job
 from ehdmaps.maps import schema
 from ehdmaps.maps.emap import EHDMap, open_map

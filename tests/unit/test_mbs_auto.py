@@ -12,7 +12,7 @@ import pytest
 
 from ehdmaps.errors import AnalysisError, InputError, MapError
 from ehdmaps.jobs import solvers
-from ehdmaps.jobs.generate import generate
+from ehdmaps.jobs.make.generate import generate
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply

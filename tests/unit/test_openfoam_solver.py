@@ -17,9 +17,9 @@ import pytest
 from ehdmaps.ehl.start import reynolds_start
 from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers
-from ehdmaps.jobs.film_plot import places
+from ehdmaps.jobs.make.tasks import line_tasks
 from ehdmaps.jobs.reader import parse_job, read_job
-from ehdmaps.jobs.tasks import line_tasks
+from ehdmaps.jobs.solve.film_plot import places
 from ehdmaps.openfoam import installation as installed
 from ehdmaps.openfoam.leftovers import CLAIM, PREFIX, claimed, remove_leftovers
 from ehdmaps.openfoam.pyfoam import parse

@@ -9,10 +9,9 @@ import pytest
 
 import ehdmaps
 from ehdmaps.errors import MapError
-from ehdmaps.jobs.describe import describe
-from ehdmaps.jobs.generate import generate_in_memory
+from ehdmaps.jobs.make.generate import generate_in_memory, write_map
 from ehdmaps.jobs.reader import parse_job
-from ehdmaps.jobs.write import write_map
+from ehdmaps.jobs.show.describe import describe
 from ehdmaps.maps import schema
 from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.maps.grid_field import has_own_lines, lines_by_contact

@@ -5,8 +5,8 @@ import pytest
 from numba import njit
 
 from ehdmaps.compiling import NOTE, Compiling
-from ehdmaps.jobs import progress
-from ehdmaps.jobs.progress import Bar, Lines, Pace, duration
+from ehdmaps.jobs.make import status
+from ehdmaps.jobs.make.status import Bar, Lines, Pace, duration
 
 
 class Clock:
@@ -86,7 +86,7 @@ def test_durations_are_readable(seconds, text):
 def test_progress_on_a_terminal_is_a_bar(monkeypatch, unit):
     terminal = Terminal()
     monkeypatch.setattr(sys, "stderr", terminal)
-    bar = progress.progress(100, unit)
+    bar = status.progress(100, unit)
     assert isinstance(bar, Bar)
     bar.taken_over(40)
     bar.solved(60)
@@ -111,8 +111,8 @@ def test_a_bar_knows_its_pace_from_the_third_piece_of_work_on(monkeypatch):
 
 @pytest.mark.parametrize("unit", ["point", "step", "hit"])
 def test_progress_elsewhere_is_lines(monkeypatch, capsys, unit):
-    monkeypatch.setattr(progress, "LINE_SECONDS", 0.0)
-    lines = progress.progress(12, unit)
+    monkeypatch.setattr(status, "LINE_SECONDS", 0.0)
+    lines = status.progress(12, unit)
     assert isinstance(lines, Lines)
     clock = Clock()
     lines._pace = Pace(12, clock)
@@ -140,7 +140,7 @@ class Broken(Terminal):
 def test_nobody_to_tell_is_no_reason_to_stop(monkeypatch, stream, kind):
     monkeypatch.setattr(sys, "stderr", stream)
     if kind is Bar and stream is None:
-        assert isinstance(progress.progress(2), Lines)
+        assert isinstance(status.progress(2), Lines)
         return
     told = kind(2)
     told.taken_over(0)

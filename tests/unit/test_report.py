@@ -14,8 +14,8 @@ import pytest
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.cli import main
-from ehdmaps.jobs.map_charts import MapCurves
-from ehdmaps.jobs.map_report import map_report
+from ehdmaps.jobs.show.map_charts import MapCurves
+from ehdmaps.jobs.show.map_report import map_report
 from ehdmaps.maps.curves import curves
 from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.physics.solution import Status

@@ -12,10 +12,10 @@ import ehdmaps
 from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.cli import main
-from ehdmaps.jobs.describe import describe
-from ehdmaps.jobs.generate import generate_in_memory
+from ehdmaps.jobs.make.generate import generate_in_memory
+from ehdmaps.jobs.make.tasks import FOUND_BY_SOME
 from ehdmaps.jobs.reader import parse_job, read_job
-from ehdmaps.jobs.tasks import FOUND_BY_SOME
+from ehdmaps.jobs.show.describe import describe
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.physics.closed_form import FormulaSolver
 from ehdmaps.physics.contact import LineContact

@@ -15,9 +15,9 @@ from scipy import sparse
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import InputError, MapError, StoreError
 from ehdmaps.jobs.commands.status import run as run_status
+from ehdmaps.jobs.instruments.stability_points import wild_point
+from ehdmaps.jobs.make.store import Store
 from ehdmaps.jobs.reader import parse_job, read_job
-from ehdmaps.jobs.stability_points import wild_point
-from ehdmaps.jobs.store import Store
 from ehdmaps.maps.emap import open_map
 from ehdmaps.netcdf_structure import structure_problem
 from ehdmaps.outputs import MARK, root_attributes

@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 from ehdmaps.errors import InputError
-from ehdmaps.jobs import cli, status
+from ehdmaps.jobs import cli
+from ehdmaps.jobs.make import status
+from ehdmaps.jobs.make.status import RunStatus, StatusFile, about, look, status_path
 from ehdmaps.jobs.reader import parse_job
-from ehdmaps.jobs.status import RunStatus, StatusFile, about, look, status_path
 from ehdmaps.physics.solution import Status
 from tests.cases.jobs import DRY
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from ehdmaps.errors import StoreError
-from ehdmaps.jobs.store import Store, pack, store_path, unpack
+from ehdmaps.jobs.make.store import Store, pack, store_path, unpack
 
 ARRAYS = {
     "film_offset": np.array([1.5, np.nan, -0.0]),
@@ -68,9 +68,7 @@ def test_a_second_job_is_refused(tmp_path, fresh):
     with Store(path) as store:
         store.put("k", ARRAYS)
         store.commit()
-        script = (
-            f"from pathlib import Path; from ehdmaps.jobs.store import Store; Store(Path({str(path)!r}), fresh={fresh})"
-        )
+        script = f"from ehdmaps.jobs.make.store import Path, Store; Store(Path({str(path)!r}), fresh={fresh})"
         other = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
         assert other.returncode == 1
         assert "StoreError" in other.stderr

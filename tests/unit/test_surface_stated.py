@@ -13,11 +13,11 @@ from ehdmaps import BearingGeometry, EHDMap, Job, Lubricant
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import InputError, MapError
 from ehdmaps.jobs import cli
-from ehdmaps.jobs.describe import roughness_lines
+from ehdmaps.jobs.make.report import status_counts
 from ehdmaps.jobs.reader import parse_job, read_job
-from ehdmaps.jobs.report import status_counts
-from ehdmaps.jobs.rough_plot import plot_roughness
-from ehdmaps.jobs.surface import surface_from_text, surface_keys, surface_words
+from ehdmaps.jobs.show.describe import roughness_lines
+from ehdmaps.jobs.show.rough_plot import plot_roughness
+from ehdmaps.jobs.supply import surface_from_text, surface_keys, surface_words
 from ehdmaps.maps import schema
 from ehdmaps.maps.emap import open_map
 from ehdmaps.maps.reading import check_content, content_sha256

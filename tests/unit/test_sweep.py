@@ -10,8 +10,8 @@ import pytest
 
 from ehdmaps import workers as processes
 from ehdmaps.errors import SolverError, WorkerError
-from ehdmaps.jobs.store import Store
-from ehdmaps.jobs.sweep import sweep
+from ehdmaps.jobs.make.store import Store
+from ehdmaps.jobs.make.sweep import sweep
 from ehdmaps.workers import worker_pool
 
 

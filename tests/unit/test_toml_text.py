@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from ehdmaps.errors import InputError
-from ehdmaps.jobs.toml_text import DEEPEST, parse
+from ehdmaps.jobs.table import DEEPEST, parse
 
 
 @pytest.mark.parametrize(

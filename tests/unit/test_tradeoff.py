@@ -11,12 +11,12 @@ import pytest
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers
-from ehdmaps.jobs.answers import Answer, Question, film_answer, scales
-from ehdmaps.jobs.contact_ways import AtFrequency, Flooded, LayerRule, LockedPole, OnLayer, RoughRule, Slow
-from ehdmaps.jobs.contestants import Entry, Group, contestants
+from ehdmaps.jobs.instruments.answers import Answer, Question, film_answer, scales
+from ehdmaps.jobs.instruments.contact_ways import AtFrequency, Flooded, LayerRule, LockedPole, OnLayer, RoughRule, Slow
+from ehdmaps.jobs.instruments.contestants import Entry, Group, contestants
+from ehdmaps.jobs.instruments.tradeoff import measure
+from ehdmaps.jobs.make.sampling import draw_sample
 from ehdmaps.jobs.reader import parse_job
-from ehdmaps.jobs.sampling import draw_sample
-from ehdmaps.jobs.tradeoff import measure
 from ehdmaps.maps.contact_curve import ContactCurve
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.openfoam import installation
@@ -249,7 +249,9 @@ def test_the_table_of_contestants():
 
 def test_missing_openfoam_is_said(monkeypatch):
     monkeypatch.setattr(installation, "missing", lambda: ("setpriv is not in PATH",))
-    monkeypatch.setattr("ehdmaps.jobs.tradeoff.contestants", lambda job, openfoam: _nothing_but_formulas(openfoam))
+    monkeypatch.setattr(
+        "ehdmaps.jobs.instruments.tradeoff.contestants", lambda job, openfoam: _nothing_but_formulas(openfoam)
+    )
     frame = measure(JOB, 2, 1, 3).frame
     assert "openfoam: left out; setpriv is not in PATH" in frame
     assert "openfoam: left out, as asked" in measure(JOB, 2, 1, 0).frame

@@ -14,7 +14,7 @@ import pytest
 import ehdmaps
 import ehdmaps.version
 import mbs
-from ehdmaps.jobs.assemble import package_versions
+from ehdmaps.jobs.make.assemble import package_versions
 from ehdmaps.provenance import source_state
 from ehdmaps.version import version
 

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from ehdmaps.ehl.solver import ReynoldsSolver
-from ehdmaps.jobs.describe import describe
-from ehdmaps.jobs.generate import generate_in_memory
+from ehdmaps.jobs.make.generate import generate_in_memory
 from ehdmaps.jobs.reader import parse_job
+from ehdmaps.jobs.show.describe import describe
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.film_field import RIGID, known_from, load_at
 from ehdmaps.maps.law import ContactLaw

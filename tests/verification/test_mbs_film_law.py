@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 from ehdmaps import BearingGeometry
-from ehdmaps.jobs.generate import generate_in_memory
 from ehdmaps.jobs.job import Job
+from ehdmaps.jobs.make.generate import generate_in_memory
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.physics.lubricant import Lubricant
 from mbs.analyses.film_errors import film_errors

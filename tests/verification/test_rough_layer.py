@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import SolverError
-from ehdmaps.jobs.rough_solved import solved_sharing
+from ehdmaps.jobs.instruments.contact_ways import solved_sharing
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.rough_layer import RoughLayer, _moes, _scaled, asperity_pressure

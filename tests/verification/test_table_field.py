@@ -11,10 +11,10 @@ import pytest
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import MapError
 from ehdmaps.jobs import solvers
-from ehdmaps.jobs.describe import describe
-from ehdmaps.jobs.generate import generate, generate_in_memory
 from ehdmaps.jobs.job import Job
-from ehdmaps.jobs.table_films import unserved
+from ehdmaps.jobs.make.generate import generate, generate_in_memory
+from ehdmaps.jobs.make.table_films import unserved
+from ehdmaps.jobs.show.describe import describe
 from ehdmaps.maps import schema
 from ehdmaps.maps.compilation import OF_TABLE
 from ehdmaps.maps.emap import EHDMap, open_map
@@ -189,7 +189,7 @@ def test_a_map_of_an_isoviscous_oil_makes_laws() -> None:
 
 @pytest.mark.slow
 def test_a_map_whose_films_miss_their_bars_is_solved(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("ehdmaps.jobs.generate._served", lambda *_: False)
+    monkeypatch.setattr("ehdmaps.jobs.make.generate._served", lambda *_: False)
     small = job(loads=(1e4, 1e5), entrainment_speeds=(1.0, 2.0), temperatures=(330.0, 340.0), law_check=5)
     made = generate_in_memory(small, workers=1)
     assert made.backbone is not None and schema.FILM_TABLE not in made.dataset.attrs

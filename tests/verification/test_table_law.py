@@ -13,9 +13,9 @@ import pytest
 import ehdmaps
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import InputError
-from ehdmaps.jobs.report import films_lines
+from ehdmaps.jobs.make.report import films_lines
+from ehdmaps.jobs.make.table_law import law
 from ehdmaps.jobs.solvers import build
-from ehdmaps.jobs.table_law import law
 from ehdmaps.maps.emap import open_map
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant

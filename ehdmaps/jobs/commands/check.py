@@ -8,16 +8,15 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from ehdmaps.jobs import solvers
-from ehdmaps.jobs.batch import is_batch, read_batch
-from ehdmaps.jobs.batch_plan import plan_batch
-from ehdmaps.jobs.generate import planned_tasks
 from ehdmaps.jobs.job import CorrectedBy, Job
+from ehdmaps.jobs.make.batch import is_batch, read_batch
+from ehdmaps.jobs.make.batch_generate import plan_batch
+from ehdmaps.jobs.make.generate import planned_tasks
+from ehdmaps.jobs.make.report import AXES, span
+from ehdmaps.jobs.make.table_films import unserved
+from ehdmaps.jobs.make.tasks import LineTask, line_tasks
 from ehdmaps.jobs.reader import read_job
-from ehdmaps.jobs.report import AXES, span
-from ehdmaps.jobs.supply import supply_words
-from ehdmaps.jobs.surface import surface_words
-from ehdmaps.jobs.table_films import unserved
-from ehdmaps.jobs.tasks import LineTask, line_tasks
+from ehdmaps.jobs.supply import supply_words, surface_words
 from ehdmaps.physics.closed_form import film_change
 from ehdmaps.physics.solution import ContactSolver, Status
 from ehdmaps.table.solver import TableSolver

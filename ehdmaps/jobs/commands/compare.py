@@ -5,8 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from ehdmaps.jobs.compare import compare
-from ehdmaps.jobs.compare_text import comparison_json, comparison_text
+from ehdmaps.jobs.show.compare import compare, comparison_json, comparison_text
 from ehdmaps.maps.emap import open_map
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from ehdmaps.errors import InputError
 from ehdmaps.exports.target import find, listing
-from ehdmaps.jobs.opening import open_given
+from ehdmaps.jobs.show.opening import open_given
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:

@@ -10,19 +10,17 @@ from typing import Any
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers
-from ehdmaps.jobs.batch import SUMMARY, is_batch, read_batch
-from ehdmaps.jobs.batch_generate import batch_path, generate_batch, make_folder
-from ehdmaps.jobs.batch_table import summary as batch_summary
-from ehdmaps.jobs.batch_table import write_table
-from ehdmaps.jobs.correction_report import unsolved
-from ehdmaps.jobs.generate import generate
 from ehdmaps.jobs.job import Job
-from ehdmaps.jobs.law_check import unmet
-from ehdmaps.jobs.progress import progress
+from ehdmaps.jobs.make.batch import SUMMARY, is_batch, read_batch
+from ehdmaps.jobs.make.batch_generate import batch_path, generate_batch, make_folder
+from ehdmaps.jobs.make.batch_table import summary as batch_summary
+from ehdmaps.jobs.make.batch_table import write_table
+from ehdmaps.jobs.make.generate import generate, summary
+from ehdmaps.jobs.make.law_check import unmet
+from ehdmaps.jobs.make.report import holes, unsolved
+from ehdmaps.jobs.make.status import progress
+from ehdmaps.jobs.make.store import store_path
 from ehdmaps.jobs.reader import is_map, read_job
-from ehdmaps.jobs.report import holes
-from ehdmaps.jobs.store import store_path
-from ehdmaps.jobs.summary import summary
 from ehdmaps.outputs import MAP, TABLE, Output, check_outputs
 from ehdmaps.physics.solution import ContactSolver
 from ehdmaps.program import tell

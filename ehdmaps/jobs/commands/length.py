@@ -6,9 +6,9 @@ import argparse
 from pathlib import Path
 
 from ehdmaps.errors import InputError
-from ehdmaps.jobs.length_plot import length_figure
-from ehdmaps.jobs.length_text import length_text
 from ehdmaps.jobs.reader import read_job
+from ehdmaps.jobs.show.solids_plot import length_figure
+from ehdmaps.jobs.show.solids_report import length_text
 from ehdmaps.outputs import FIGURE, Output, output_problems, write_figure
 from ehdmaps.program import tell
 from ehdmaps.solids.three_d_compare import compare_lengths

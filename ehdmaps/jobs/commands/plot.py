@@ -5,9 +5,9 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from ehdmaps.jobs.opening import open_given, surface_given
-from ehdmaps.jobs.plot import plot_map
-from ehdmaps.jobs.rough_plot import plot_roughness
+from ehdmaps.jobs.show.opening import open_given, surface_given
+from ehdmaps.jobs.show.plot import plot_map
+from ehdmaps.jobs.show.rough_plot import plot_roughness
 from ehdmaps.outputs import FIGURE, Output, check_outputs
 
 

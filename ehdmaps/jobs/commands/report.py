@@ -6,8 +6,8 @@ import argparse
 import shlex
 from pathlib import Path
 
-from ehdmaps.jobs.map_report import map_report
-from ehdmaps.jobs.opening import open_given
+from ehdmaps.jobs.show.map_report import map_report
+from ehdmaps.jobs.show.opening import open_given
 from ehdmaps.outputs import Output, check_outputs
 from ehdmaps.report.page import REPORT, write_report
 

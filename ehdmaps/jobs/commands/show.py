@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from ehdmaps.jobs.describe import describe
-from ehdmaps.jobs.opening import open_given
+from ehdmaps.jobs.show.describe import describe
+from ehdmaps.jobs.show.opening import open_given
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:

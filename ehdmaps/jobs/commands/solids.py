@@ -11,8 +11,8 @@ from typing import Any
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.reader import read_job
+from ehdmaps.jobs.show.solids_report import COMPARED_LOADS, compared_laws, compared_text, solids_text
 from ehdmaps.jobs.solids import job_sections
-from ehdmaps.jobs.solids_report import COMPARED_LOADS, compared_laws, compared_text, solids_text
 from ehdmaps.outputs import FIGURE, MARK, Kind, Output, check_outputs, has_mark, write_text
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.program import tell
@@ -39,7 +39,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         write_text(arguments.output, _json(record), SOLIDS)
         tell(f"{arguments.output}: written")
     if arguments.plot is not None:
-        from ehdmaps.jobs.solids_plot import plot_solids
+        from ehdmaps.jobs.show.solids_plot import plot_solids
 
         plot_solids(contacts, bearing, job_sections(job.solids, bearing, contacts[0].material), Path(arguments.plot))
         tell(f"{arguments.plot}: written")

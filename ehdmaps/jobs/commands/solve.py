@@ -16,16 +16,13 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers
-from ehdmaps.jobs.axes import RING_SPEED_AXIS, SPEED_AXIS
-from ehdmaps.jobs.film_output import film_outputs
 from ehdmaps.jobs.job import Job
-from ehdmaps.jobs.point_report import point_place, point_record, point_table
+from ehdmaps.jobs.problem import RING_SPEED_AXIS, SPEED_AXIS
 from ehdmaps.jobs.reader import read_job
-from ehdmaps.jobs.spectrum import spectrum_dataset
-from ehdmaps.jobs.spectrum_report import spectrum_record, spectrum_table
-from ehdmaps.jobs.supplied import supplied_record, supplied_table
-from ehdmaps.jobs.supply import supply_from_text
-from ehdmaps.jobs.traction import (
+from ehdmaps.jobs.solve.film_output import film_outputs
+from ehdmaps.jobs.solve.point_report import point_place, point_record, point_table, supplied_record, supplied_table
+from ehdmaps.jobs.solve.spectrum import spectrum_dataset, spectrum_record, spectrum_table
+from ehdmaps.jobs.solve.traction import (
     LEAST_SLIP,
     MOST_SLIP,
     MOST_SLIPS,
@@ -34,6 +31,7 @@ from ehdmaps.jobs.traction import (
     traction_record,
     traction_table,
 )
+from ehdmaps.jobs.supply import supply_from_text
 from ehdmaps.outputs import FIGURE, Output, check_outputs
 from ehdmaps.physics.contact import OIL_TEMPERATURES, LineContact, OperatingPoint
 from ehdmaps.physics.oil_supply import OilSupply
@@ -97,7 +95,7 @@ def _over_frequency(arguments: argparse.Namespace, request: _Request) -> tuple[s
     solver = _solver(arguments, job)
     dataset = spectrum_dataset(job.contacts, job.lubricant, point, request.frequencies, solver)
     if arguments.plot is not None:
-        from ehdmaps.jobs.spectrum_plot import plot_spectrum
+        from ehdmaps.jobs.solve.spectrum_plot import plot_spectrum
 
         plot_spectrum(dataset, f"{job.title}, {job.lubricant.title}", Path(arguments.plot))
         tell(f"{arguments.plot}: written")

@@ -5,9 +5,9 @@ from __future__ import annotations
 import argparse
 
 from ehdmaps.errors import InputError
+from ehdmaps.jobs.instruments.stability_contact import contact_checks
+from ehdmaps.jobs.instruments.stability_readers import READERS
 from ehdmaps.jobs.reader import read_job
-from ehdmaps.jobs.stability_contact import contact_checks
-from ehdmaps.jobs.stability_readers import READERS
 from ehdmaps.outputs import Output, output_problems
 from ehdmaps.program import tell
 from ehdmaps.stability.findings import Check

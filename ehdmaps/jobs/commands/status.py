@@ -7,11 +7,10 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from ehdmaps.errors import InputError
-from ehdmaps.jobs.batch import SUMMARY, is_batch
-from ehdmaps.jobs.progress import duration
+from ehdmaps.jobs.make.batch import SUMMARY, is_batch
+from ehdmaps.jobs.make.status import RunStatus, Seen, duration, look, status_path
+from ehdmaps.jobs.make.store import store_path
 from ehdmaps.jobs.reader import is_map, read_job, shipped_jobs
-from ehdmaps.jobs.status import RunStatus, Seen, look, status_path
-from ehdmaps.jobs.store import store_path
 from ehdmaps.outputs import MAP, TABLE
 
 _STORE = ".store"

@@ -24,7 +24,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
 
 def _make(path: Path) -> tuple[str, int]:
     """Solve all nodes and write them."""
-    from ehdmaps.jobs.table_make import make_tables
+    from ehdmaps.jobs.make.table_make import make_tables
 
     kind = dataset_kind("a film table of ehdmaps", KIND, (".nc",))
     check_outputs([Output("-o", path, kind)])

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import argparse
 
+from ehdmaps.jobs.instruments.tradeoff import measure
 from ehdmaps.jobs.reader import read_job
-from ehdmaps.jobs.tradeoff import measure
 from ehdmaps.program import tell
 from ehdmaps.trade.data import check_trade_files, trade_json, write_trade
 from ehdmaps.trade.text import trade_text

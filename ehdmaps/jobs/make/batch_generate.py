@@ -1,0 +1,444 @@
+"""What is made for a batch: maps with films from the film table, and maps that are solved one by one."""
+
+from __future__ import annotations
+
+import hashlib
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Executor, Future, as_completed
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+from typing import TypeVar
+
+import numpy as np
+import xarray as xr
+
+from ehdmaps.errors import EhdmapsError, InputError, WorkerError
+from ehdmaps.jobs import solvers
+from ehdmaps.jobs.job import Job, record_json
+from ehdmaps.jobs.make.batch import Batch, Member
+from ehdmaps.jobs.make.generate import Within, generate, planned_tasks, read_map
+from ehdmaps.jobs.make.law_check import unmet
+from ehdmaps.jobs.make.report import holes, unsolved
+from ehdmaps.jobs.make.status import StatusFile
+from ehdmaps.jobs.make.store import Store, store_path
+from ehdmaps.jobs.make.sweep import Progress, SweepResult
+from ehdmaps.jobs.make.table_films import unserved
+from ehdmaps.jobs.make.tasks import LineTask, solver_version
+from ehdmaps.maps import schema
+from ehdmaps.maps.schema import SCHEMA_VERSION
+from ehdmaps.netcdf_structure import DAMAGE
+from ehdmaps.outputs import MAP, Output, name_problem, output_problems, root_attributes
+from ehdmaps.physics.solution import ContactSolver
+from ehdmaps.table.solver import TableSolver
+from ehdmaps.workers import WorkersDied, available_cores, worker_pool
+
+
+@dataclass(frozen=True)
+class Planned:
+    """One map of a batch.
+
+    Attributes
+    ----------
+    member : Member
+        Which one.
+    job : Job
+        What is made: its laws are checked if it is one of those for which the batch wants that.
+    """
+
+    member: Member
+    job: Job
+
+    @cached_property
+    def solver(self) -> ContactSolver:
+        """What gives its films."""
+        return solvers.of_map(self.job)
+
+    @property
+    def reads(self) -> bool:
+        """Whether its films are to be read from the film table, where that serves."""
+        return isinstance(self.solver, TableSolver)
+
+    @cached_property
+    def fingerprint(self) -> str:
+        """Hash of all that shapes the map, by which a map that is there is known to be it."""
+        solver = record_json([self.solver.name, self.solver.settings(), solver_version(self.solver)])
+        parts = str(SCHEMA_VERSION), self.job.sha256, solver, str(self.job.law_check)
+        return hashlib.sha256("\0".join(parts).encode()).hexdigest()
+
+    @property
+    def tasks(self) -> tuple[LineTask, ...]:
+        """All that is known to be solved for it; nothing of a map that is read, which is made in less than a second."""
+        return planned_tasks(self.job) if unserved(self.job, self.solver) else ()
+
+
+def plan_batch(batch: Batch) -> tuple[Planned, ...]:
+    """Lay out the maps of a batch, in its order.
+
+    Parameters
+    ----------
+    batch : Batch
+        The batch.
+    """
+    maps = [Planned(member, member.job) for member in batch.members]
+    groups: dict[tuple[str, str], list[int]] = {}
+    for index, planned in enumerate(maps):
+        if planned.reads:
+            groups.setdefault((planned.member.oil, planned.member.override), []).append(index)
+    for indices in groups.values():
+        # from the smallest radius to the largest
+        ordered = sorted(indices, key=lambda index: (maps[index].job.contacts[0].radius, index))
+        count = min(batch.checked, len(ordered))
+        places = np.unique(np.linspace(0, len(ordered) - 1, count).round().astype(int)) if count else ()
+        for index in set(indices) - {ordered[place] for place in places}:
+            maps[index] = Planned(maps[index].member, replace(maps[index].job, law_check=0))
+    return tuple(maps)
+
+
+MADE, KEPT, FAILED = "made", "kept", "failed"
+"""What became of a map: kept is one that was there from an earlier run, and is the same."""
+
+READ, SOLVED = "film table", "solved"
+"""Where the films of a map come from."""
+
+BATCH, FINGERPRINT = "batch", "batch_fingerprint"
+"""Attributes of a map of a batch: its name, and the hash of all that shapes the map."""
+
+_PIECES = 16
+"""Pieces of work for each worker, into which maps are cut."""
+
+_LONGEST_PIECE = 10
+"""Maps of one piece, which is lost as a whole when its process is killed."""
+
+_DIED = "the worker process died (killed, or out of memory); the same command tries again"
+
+_Item = TypeVar("_Item")
+_Found = TypeVar("_Found")
+
+
+_FOLDER = "allowed: a folder for the maps, in one that is there and may be written; choose another"
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of one map.
+
+    Attributes
+    ----------
+    member : Member
+        Which one.
+    output : Path
+        File of the map.
+    state : str
+        `MADE`, `KEPT` or `FAILED`.
+    films : str
+        `READ` or `SOLVED`.
+    lost : int
+        Points without a solution.
+    missed : tuple of str
+        What its laws miss, in words, where they were checked.
+    figures : mapping
+        Numbers at the middle of its axes, SI, by names with their units.
+    reason : str
+        Why it failed.
+    seconds : float
+        What it took.
+    """
+
+    member: Member
+    output: Path
+    state: str
+    films: str = ""
+    lost: int = 0
+    missed: tuple[str, ...] = ()
+    figures: Mapping[str, float] = field(default_factory=dict)
+    reason: str = ""
+    seconds: float = 0.0
+
+    @property
+    def good(self) -> bool:
+        """Whether the map is there, without holes, and its laws miss nothing."""
+        return self.state != FAILED and not self.lost and not self.missed
+
+
+@dataclass
+class BatchResult:
+    """The maps of a batch, in the order of its members, and how they came about."""
+
+    batch: Batch
+    outcomes: tuple[Outcome, ...]
+    sweep: SweepResult
+    wall_seconds: float
+
+    @property
+    def status(self) -> int:
+        """Exit status of the command."""
+        return 0 if all(outcome.good for outcome in self.outcomes) else 1
+
+
+def batch_path(batch: Batch, folder: Path) -> Path:
+    """What the store and the status of a batch are named after.
+
+    Parameters
+    ----------
+    batch : Batch
+        The batch.
+    folder : Path
+        Folder of its maps.
+    """
+    return folder / f"{batch.name}.batch"
+
+
+def make_folder(folder: Path, option: str = "-o") -> None:
+    """Make the folder of the maps, where it is not there.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder; the one that it lies in is there.
+    option : str
+        That names it, for messages.
+
+    Raises
+    ------
+    InputError
+        If it cannot be made, or something else stands there.
+    """
+    if problem := folder_problem(folder, option):
+        raise InputError(problem)
+    try:
+        folder.mkdir(exist_ok=True)
+    except OSError as error:
+        raise InputError(f"{option}: got {folder}, which cannot be made ({error.strerror}); {_FOLDER}") from error
+
+
+def folder_problem(folder: Path, option: str) -> str:
+    """Tell in one sentence why a folder of maps can be neither used nor made; empty if it may.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder.
+    option : str
+        That names it.
+    """
+    if problem := name_problem(folder):
+        return f"{option}: got {str(folder)!r:.300}, {problem}"
+    if not folder.is_dir() and (folder.exists() or not folder.parent.is_dir()):
+        return f"{option}: got {str(folder)!r:.300}, which is no folder and cannot be made; {_FOLDER}"
+    return ""
+
+
+def generate_batch(
+    batch: Batch,
+    folder: Path,
+    workers: int | None = None,
+    fresh: bool = False,
+    progress: Callable[[int], Progress] | None = None,
+    executor: Executor | None = None,
+    told: Callable[[int], Progress] | None = None,
+) -> BatchResult:
+    """Make all maps of a batch; what is there and is the same is kept, and a map that fails does not stop the others.
+
+    Parameters
+    ----------
+    batch : Batch
+        The batch.
+    folder : Path
+        Folder of the maps and of the store; made if it is not there.
+    workers : int, optional
+        Number of processes; all cores if left out.
+    fresh : bool
+        Make everything anew.
+    progress : callable, optional
+        Takes a number of points, gives the `Progress` to tell.
+    executor : concurrent.futures.Executor, optional
+        What solves the points in place of processes that are started here. Maps are put together here in any case.
+    told : callable, optional
+        The same for maps that are put together.
+
+    Raises
+    ------
+    InputError, StoreError
+        If nothing can be made at all.
+    """
+    begin = time.monotonic()
+    make_folder(folder)
+    plan = plan_batch(batch)
+    processes = workers or available_cores()
+    outcomes: dict[str, Outcome] = {}
+    place = batch_path(batch, folder)
+    with Store(store_path(place), fresh) as store:
+        due = [planned for planned in plan if _is_due(planned, batch, folder, fresh, outcomes)]
+        about = f"batch {batch.name}, {len(batch.members)} maps"
+        with StatusFile(place, about, 0, processes) as status:
+            run = _Run(batch, folder, store, status, processes, progress, executor, told)
+            alone = run.read([planned for planned in due if planned.reads], outcomes)
+            alone += [planned for planned in due if not planned.reads]
+            status.more(sum(task.points for planned in alone for task in planned.tasks))
+            for planned in alone:
+                outcomes[planned.member.name] = run.alone(planned)
+    ordered = tuple(outcomes[member.name] for member in batch.members)
+    return BatchResult(batch, ordered, run.result, time.monotonic() - begin)
+
+
+def _is_due(planned: Planned, batch: Batch, folder: Path, fresh: bool, outcomes: dict[str, Outcome]) -> bool:
+    """Whether a map is to be made: not where it is there already, nor where something else stands in its place."""
+    member = planned.member
+    output = folder / f"{member.name}.nc"
+    there = root_attributes(output) if output.is_file() else {}
+    if not fresh and there.get(BATCH) == batch.name and there.get(FINGERPRINT) == planned.fingerprint:
+        kept = _kept(member, output)
+        if kept is not None:
+            outcomes[member.name] = kept
+            return False
+    problems = output_problems([Output("", output, MAP)])
+    if there and not problems and there.get(BATCH) != batch.name:
+        problems = [
+            f"{output}: is a map that this batch did not make; allowed: a new file, or a map of this batch; move it "
+            "away, or choose another folder with -o"
+        ]
+    if problems:
+        outcomes[member.name] = Outcome(member, output, FAILED, reason="; ".join(problems))
+    return not problems
+
+
+def _kept(member: Member, output: Path) -> Outcome | None:
+    """What is to be said of a map that is there; None where it does not read."""
+    import netCDF4
+
+    try:
+        with netCDF4.Dataset(output) as file:
+            lines = schema.BACKBONE in file.groups
+        with xr.open_dataset(output, engine="netcdf4") as dataset:
+            return _outcome(member, output, KEPT, dataset, lines, 0.0)
+    except (*DAMAGE, KeyError):
+        return None
+
+
+def _outcome(member: Member, output: Path, state: str, dataset: xr.Dataset, lines: bool, seconds: float) -> Outcome:
+    """What became of a map that is there."""
+    films = READ if schema.FILM_TABLE in dataset.attrs else SOLVED
+    lost = holes(dataset) + unsolved(dataset)
+    missed = tuple(unmet(dataset, lines))
+    return Outcome(member, output, state, films, int(lost), missed, _figures(dataset), "", seconds)
+
+
+def _figures(dataset: xr.Dataset) -> dict[str, float]:
+    """Numbers of the first contact in the middle of the axes."""
+    places = {name: dataset.sizes[name] // 2 for name in ("load", "entrainment_speed", "temperature")}
+    middle = dataset.isel({"contact": 0, **places})
+    units = {"load": "N/m", "entrainment_speed": "m/s", "temperature": "K"}
+    figures = {f"{name} [{unit}]": float(middle[name]) for name, unit in units.items()}
+    wanted = {"stiffness": "N/m2", "damping": "N s/m2", "central_film": "m", "minimum_film": "m"}
+    return figures | {f"{name} [{unit}]": float(middle[name]) for name, unit in wanted.items()}
+
+
+def _marks(batch: Batch, fingerprint: str) -> dict[str, str | int]:
+    """Attributes of a map of a batch."""
+    return {BATCH: batch.name, FINGERPRINT: fingerprint}
+
+
+@dataclass
+class _Run:
+    """One run over a batch: what all of its maps have in common."""
+
+    batch: Batch
+    folder: Path
+    store: Store
+    status: StatusFile
+    workers: int
+    progress: Callable[[int], Progress] | None
+    executor: Executor | None
+    told: Callable[[int], Progress] | None
+    result: SweepResult = field(default_factory=SweepResult)
+
+    def alone(self, planned: Planned) -> Outcome:
+        """Make a map whose films are solved."""
+        member, begin = planned.member, time.monotonic()
+        output = self.folder / f"{member.name}.nc"
+        within = Within(self.store, self.status, _marks(self.batch, planned.fingerprint))
+        try:
+            made = generate(
+                planned.job, output, self.workers, False, self.progress, executor=self.executor, within=within
+            )
+        except WorkerError:  # nothing of this map alone
+            raise
+        except EhdmapsError as error:
+            return Outcome(member, output, FAILED, reason=str(error))
+        self._count(made.sweep)
+        seconds = time.monotonic() - begin
+        return _outcome(member, output, MADE, made.dataset, made.backbone is not None, seconds)
+
+    def read(self, due: Sequence[Planned], outcomes: dict[str, Outcome]) -> list[Planned]:
+        """Make the maps whose films the film table has; gives back those that it does not serve."""
+        size = max(1, min(_LONGEST_PIECE, len(due) // (self.workers * _PIECES)))
+        pieces = [_Piece(self.batch, tuple(due[i : i + size]), self.folder) for i in range(0, len(due), size)]
+        counter = self.told(len(due)) if self.told and due else None
+        if counter:
+            counter.taken_over(0)
+        left = []
+        for piece, found in _each(_made, pieces, self.workers):
+            died = [Outcome(m.member, self.folder / f"{m.member.name}.nc", FAILED, reason=_DIED) for m in piece.maps]
+            for planned, outcome in zip(piece.maps, found or died, strict=True):
+                if outcome is None:
+                    left.append(planned)
+                else:
+                    outcomes[planned.member.name] = outcome
+            self.status.write()
+            if counter:
+                counter.solved(len(piece.maps))
+        return left
+
+    def _count(self, result: SweepResult) -> None:
+        """Count a sweep, without keeping its arrays: those of a thousand maps need more memory than there is."""
+        self.result.add(replace(result, arrays={}))
+
+
+@dataclass(frozen=True)
+class _Piece:
+    """Some maps with films from the film table."""
+
+    batch: Batch
+    maps: tuple[Planned, ...]
+    folder: Path
+
+
+def _made(piece: _Piece) -> list[Outcome | None]:
+    """Make some maps; None for each that the film table does not serve."""
+    outcomes: list[Outcome | None] = []
+    for planned in piece.maps:
+        member, begin = planned.member, time.monotonic()
+        output = piece.folder / f"{member.name}.nc"
+        try:
+            dataset = read_map(planned.job, output, _marks(piece.batch, planned.fingerprint))
+        except EhdmapsError as error:
+            outcomes.append(Outcome(member, output, FAILED, reason=str(error)))
+        else:
+            seconds = time.monotonic() - begin
+            outcomes.append(_outcome(member, output, MADE, dataset, False, seconds) if dataset is not None else None)
+    return outcomes
+
+
+def _each(
+    function: Callable[[_Item], _Found], items: Sequence[_Item], workers: int
+) -> Iterator[tuple[_Item, _Found | None]]:
+    """Do something with each item, in worker processes where there are several; None where its process died."""
+    if workers <= 1 or len(items) <= 1:
+        for item in items:
+            yield item, function(item)
+        return
+    running: dict[Future[_Found], _Item] = {}
+    try:
+        with worker_pool(min(workers, len(items))) as pool:
+            for item in items:
+                running[pool.submit(function, item)] = item
+            for future in as_completed(list(running)):
+                found = future.result()
+                yield running.pop(future), found
+    except WorkersDied as died:
+        if not died.begun:
+            raise died.error from None
+        for item in running.values():
+            yield item, None

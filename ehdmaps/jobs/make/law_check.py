@@ -1,0 +1,375 @@
+"""The contact laws of a map against fresh solves at random points: how good they are between nodes."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import MapError
+from ehdmaps.jobs.job import Job
+from ehdmaps.jobs.make.sampling import draw_apart, drawable
+from ehdmaps.jobs.make.store import Arrays
+from ehdmaps.jobs.make.tasks import LineTask
+from ehdmaps.maps.backbone import BackboneField
+from ehdmaps.maps.backbone_plan import Axis
+from ehdmaps.maps.emap import EHDMap
+from ehdmaps.maps.film_field import FilmField
+from ehdmaps.maps.law import ContactLaw
+from ehdmaps.maps.law_errors import quantiles_text
+from ehdmaps.maps.schema import FILM_TABLE
+from ehdmaps.physics.contact import LineContact, OperatingPoint
+from ehdmaps.physics.hertz import half_width
+from ehdmaps.physics.oil_supply import FLOODED
+from ehdmaps.physics.solution import ContactSolution, ContactSolver, FilmSolution, Status, contact_solution
+from ehdmaps.physics.surface import SMOOTH
+from ehdmaps.table.solver import TableSolver
+
+COMPLIANCE_BARS, DAMPING_BARS = (0.01, 1e-4), (0.05, 1e-3)
+"""An error is within its bar where it is below a share of the film compliance or of 1/k; of c or of k b/u."""
+
+READ_COMPLIANCE_BARS = (0.01, 1e-3)
+"""The bar of film compliance for laws whose films are read from the film table: a thousandth of a stiffness. Whoever
+needs more has the films solved."""
+
+SMALL_DAMPING = DAMPING_BARS[1] / DAMPING_BARS[0]
+"""Damping, as a share of k b/u, below which an error is related to this share: damping runs through zero in its valley,
+and a share of nothing is no measure."""
+
+
+def fresh_solution(task: LineTask, arrays: Arrays) -> ContactSolution:
+    """The first point of a line with its structure.
+
+    Parameters
+    ----------
+    task : LineTask
+        The line.
+    arrays : Arrays
+        Films of the line.
+    """
+    film = FilmSolution(
+        **{name: array[0].item() for name, array in arrays.items() if name != "status" and array.ndim == 1},
+        status=Status(int(arrays["status"][0])),
+    )
+    point = OperatingPoint(task.loads[0], task.entrainment_speed, task.temperature)
+    return contact_solution(film, task.contact, point)
+
+
+def at_loads(
+    law: ContactLaw, approach: FloatArray, load: FloatArray, speed: FloatArray, temperature: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Approach [m] at which a law of one contact has these loads, with stiffness [N/m2] and damping [N s/m2] there.
+
+    Parameters
+    ----------
+    law : ContactLaw
+        Law of one contact.
+    approach : array (n,)
+        Begin of the search [m].
+    load, speed, temperature : array (n,)
+        [N/m], [m/s] and [K].
+    """
+    dry = np.array([law.contacts[0].structural_compliance(float(w)) for w in load])
+    approach = approach.copy()
+    for _ in range(8):
+        found, stiffness, damping = law(approach, 0.0, speed, temperature)
+        approach -= (found - load) / np.maximum(stiffness, 1e-12 / dry)
+    _, stiffness, damping = law(approach, 0.0, speed, temperature)
+    return approach, stiffness, damping
+
+
+SEED = 20260
+
+INSIDE = ("", "valley")
+"""Regions of the points: over the map, and in its damping valley."""
+
+MOST_OF_READ = 100
+"""Points within a map with films from the film table: they prove that reading is right, and lay no lines."""
+
+SHARES = {"law_": 0.99, "law_valley_": 0.95}
+"""Share of the points that should be within the bars, over the whole map and in the valley."""
+
+REFUSED, HALVED = "law_refused", "law_lines_halved_along"
+"""Attributes of the map: why it makes no law, and the axes along which the steps of its lines were halved."""
+
+STANDS_ON_LINES = (
+    "these laws are made from refinement lines, whose steps are halved where the films between them miss, three times "
+    "at most; what misses then is the table of the law, or lines that would take too many points; other axes of [grid] "
+    "do not bring them closer to their bars; the quantiles of their errors stand above; `ehdmaps solve` gives a single "
+    "point without a law"
+)
+STANDS_ON_POINTS = "these laws are made from the points of the map: more temperatures, speeds or loads help"
+STANDS_ON_TABLE = (
+    "films from the film table are within these bars: what misses is the table of the law, at the bottom of the "
+    "damping valley; the quantiles of its errors stand above; `ehdmaps solve` gives a single point without a law"
+)
+"""What can be done where a bar is unmet; for the lines see `coarse_axis`."""
+
+NOTHING = {
+    "film_compliance": "none: no film to relate to",
+    "damping": "none: no damping above zero to relate to",
+    "film_offset": "none: no film to relate to",
+}
+"""What stands in place of quantiles where no point has one."""
+
+
+_WORTH: Mapping[Axis, float] = {"load": 0.25}
+"""Weight of an axis in `coarse_axis`, where it is not 1."""
+
+
+@dataclass(frozen=True)
+class LawCheck:
+    """Random points over the map and in its valley; `regions` says which is which.
+
+    `compliance_bars` are those that the laws are held to.
+    """
+
+    contacts: tuple[LineContact, ...]
+    tasks: tuple[LineTask, ...]
+    regions: tuple[str, ...]
+    compliance_bars: tuple[float, float] = COMPLIANCE_BARS
+
+
+def plan_check(job: Job, solver: ContactSolver) -> LawCheck | None:
+    """Draw the points: load and speed log-uniform, temperature uniform, contact at random; None if `law_check` is 0."""
+    read = isinstance(solver, TableSolver)
+    count = min(job.law_check, MOST_OF_READ) if read else job.law_check
+    if not count or not drawable(job):
+        return None
+    rng = np.random.default_rng(SEED)
+    over, valley = draw_apart(job, rng, count)
+    drawn = [("", point) for point in over] + [("valley", point) for point in valley]
+    # the proof of films that are read is films that are solved
+    fresh = solver.other if isinstance(solver, TableSolver) else solver
+    tasks = tuple(LineTask(contact, job.lubricant, (w,), u, T, fresh) for _, (contact, w, u, T) in drawn)
+    bars = READ_COMPLIANCE_BARS if read else COMPLIANCE_BARS
+    return LawCheck(job.contacts, tasks, tuple(region for region, _ in drawn), bars)
+
+
+def checked_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> dict[str, float | int | str]:
+    """Errors of the laws as attributes, or why there are none: a map with holes makes no law.
+
+    Parameters
+    ----------
+    check : LawCheck
+        Which points are checked.
+    emap : EHDMap
+        The map.
+    results : Mapping[str, Arrays]
+        Fresh solves of the tasks of the check, by key.
+    """
+    try:
+        return check_laws(check, emap, results)
+    except MapError as error:
+        return {"law_check_points": len(check.tasks), REFUSED: str(error)}
+
+
+def unmet(dataset: xr.Dataset, with_backbone: bool) -> list[str]:
+    """What the laws of a map miss, a line each, and what can be done; nothing where they were not checked.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The map, with what its check found.
+    with_backbone : bool
+        Whether its laws are made from a backbone, and not from its own points.
+    """
+    missed = []
+    if REFUSED in dataset.attrs:
+        missed.append(f"no contact law: {dataset.attrs[REFUSED]}")
+    for prefix, name, found, share in _shares(dataset.attrs):
+        if found < share:
+            where = "in the damping valley" if "valley" in prefix else "over the map"
+            missed.append(
+                f"unmet: {name.replace('_', ' ')} of the contact laws is within its bar at {found:.1%} of the "
+                f"points {where}; wanted {share:.0%}"
+            )
+    if any(line.startswith("unmet") for line in missed):
+        advice = STANDS_ON_LINES if with_backbone else STANDS_ON_POINTS
+        missed.append(STANDS_ON_TABLE if FILM_TABLE in dataset.attrs else advice)
+    return missed
+
+
+def met(attributes: Mapping[str, Any]) -> bool:
+    """Whether the laws of a map are within their bars at as many of the checked points as they should be.
+
+    Parameters
+    ----------
+    attributes : mapping
+        What `checked_laws` found, of a map that makes laws.
+    """
+    return not any(found < share for *_, found, share in _shares(attributes))
+
+
+def _shares(attributes: Mapping[str, Any]) -> Iterator[tuple[str, str, float, float]]:
+    """Yield prefix, name, share found and share wanted of points within each bar that was checked."""
+    for prefix, share in SHARES.items():
+        for name in ("film_compliance", "damping"):
+            found = attributes.get(f"{prefix}{name}_within_bar")
+            if found is not None:
+                yield prefix, name, float(found), share
+
+
+def coarse_axis(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> Axis | None:
+    """Along which axis the lines of a backbone are too far apart; None where that is not what laws miss their bars by.
+
+    Only points count at which the films between the lines, without the table of a law, miss the bars of compliance or
+    damping. The axis is the one along which reading fewer points changes the loss most, at most of these points; every
+    second point of a cubic line changes it sixteen times as much as its own step is worth, four lines instead of six
+    less, so that the loads get a quarter of their say.
+
+    Parameters
+    ----------
+    check : LawCheck
+        The points.
+    emap : EHDMap
+        The finished map.
+    results : mapping
+        Arrays by key of the tasks.
+    """
+    votes: Counter[Axis] = Counter()
+    for field, task, _, missed in _between(check, emap, results):
+        if missed and isinstance(field, BackboneField):
+            changes = field.changes(task.contact.name, task.loads[0], task.entrainment_speed, task.temperature)
+            votes[max(changes, key=lambda axis: changes[axis] * _WORTH.get(axis, 1.0))] += 1
+    return votes.most_common(1)[0][0] if votes else None
+
+
+def films_met(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> bool:
+    """Whether films between the points, without the table of a law, are within the bars at as many points as wanted.
+
+    Parameters
+    ----------
+    check : LawCheck
+        The points.
+    emap : EHDMap
+        The finished map.
+    results : mapping
+        Arrays by key of the tasks.
+    """
+    missed: dict[str, list[bool]] = {region: [] for region in INSIDE}
+    for *_, region, wrong in _between(check, emap, results):
+        missed[region].append(wrong)
+    shares = zip(missed.values(), SHARES.values(), strict=True)
+    return all(np.mean(found) <= 1.0 - share for found, share in shares if found)
+
+
+def _between(
+    check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]
+) -> Iterator[tuple[FilmField, LineTask, str, bool]]:
+    """Yield usable points with the films that a law is made from, their region, and whether these films miss a bar."""
+    for contact in check.contacts:
+        field = emap.film_field((contact.name,))
+        for task, region in zip(check.tasks, check.regions, strict=True):
+            arrays = results[task.key]
+            if task.contact == contact and Status(int(arrays["status"][0])).usable:
+                missed = _missed_between(field, task, fresh_solution(task, arrays), check.compliance_bars)
+                yield field, task, region, missed
+
+
+def _missed_between(field: FilmField, task: LineTask, fresh: ContactSolution, bars: tuple[float, float]) -> bool:
+    """Whether films between the lines miss a bar."""
+    (load,), u, T, contact = task.loads, task.entrainment_speed, task.temperature, task.contact
+    films = field.films(contact.name, np.array([[[load]]]), np.array([u]), np.array([T]))
+    _, compliance, loss = (float(values[0, 0, 0]) for values in films)
+    stiffness = 1.0 / (contact.structural_compliance(load) + compliance)
+    wrong, solved_c = abs(1.0 / stiffness - 1.0 / fresh.stiffness), max(fresh.damping, 0.0)
+    wrong_c = abs(loss * stiffness**2 - solved_c)
+    unit = fresh.stiffness * float(half_width(load, contact.radius, contact.reduced_modulus)) / u
+    return wrong > max(bars[0] * abs(fresh.film_compliance), bars[1] / fresh.stiffness) or (
+        wrong_c > max(DAMPING_BARS[0] * solved_c, DAMPING_BARS[1] * unit)
+    )
+
+
+def check_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> dict[str, float | int | str]:
+    """Errors of the laws as attributes of the map.
+
+    Parameters
+    ----------
+    check : LawCheck
+        The points.
+    emap : EHDMap
+        The finished map; its laws are made here.
+    results : mapping
+        Arrays by key of the tasks.
+
+    Returns
+    -------
+    dict
+        Quantiles of the relative error in film compliance and damping of each contact's law, and the shares of the
+        points that are within the bars, over the map and in its valley; quantiles of the error in stiffness and film
+        offset, too. A law has no damping below zero: where the solved one is, the law is held against zero by the
+        second bar, and the quantiles leave the point out. Where there is no film, only the second bars count.
+    """
+    rows: list[FloatArray] = []
+    regions: list[str] = []
+    for contact in check.contacts:
+        chosen = [
+            (task, results[task.key], region)
+            for task, region in zip(check.tasks, check.regions, strict=True)
+            if task.contact == contact and Status(int(results[task.key]["status"][0])).usable
+        ]
+        if chosen:
+            # Fresh solves are those of flooded films between smooth surfaces, whatever the job states.
+            law = emap.law(contact.name, "error", supply=FLOODED, surface=SMOOTH)  # type: ignore[arg-type]
+            rows.append(_errors(law, [(task, arrays) for task, arrays, _ in chosen], check.compliance_bars))
+            regions += [region for *_, region in chosen]
+    record: dict[str, float | int | str] = {
+        "law_check_seed": SEED,
+        "law_check_points": len(check.tasks),
+        "law_check_usable": len(regions),
+    }
+    if not rows:
+        return record
+    table = np.concatenate(rows)
+    for region in INSIDE:
+        mask = np.array([found == region for found in regions])
+        if not np.any(mask):
+            continue
+        where = f"_{region}" if region else ""
+        for name, column in ("film_compliance", 0), ("damping", 1), ("stiffness", 4), ("film_offset", 5):
+            known = table[mask, column][np.isfinite(table[mask, column])]
+            record[f"law{where}_{name}_error"] = quantiles_text(known) if known.size else NOTHING[name]
+            if column < 2:  # the two whose errors have bars
+                record[f"law{where}_{name}_within_bar"] = float(np.mean(table[mask, column + 2]))
+    return record
+
+
+def _errors(law: ContactLaw, points: list[tuple[LineTask, Arrays]], bars: tuple[float, float]) -> FloatArray:
+    """Errors of film compliance and damping, whether each is within its bar, errors of k and film offset, shape (n, 6).
+
+    All are relative; that of the film offset is what the approach at the load misses, as a part of the offset.
+    """
+    tasks = [task for task, _ in points]
+    fresh = [fresh_solution(task, arrays) for task, arrays in points]
+    load = np.array([task.loads[0] for task in tasks])
+    speed = np.array([task.entrainment_speed for task in tasks])
+    temperature = np.array([task.temperature for task in tasks])
+    half = np.array([float(half_width(t.loads[0], t.contact.radius, t.contact.reduced_modulus)) for t in tasks])
+    solved_approach = np.array([one.approach for one in fresh])
+    approach, stiffness, damping = at_loads(law, solved_approach, load, speed, temperature)
+    solved_k = np.array([one.stiffness for one in fresh])
+    solved_c = np.maximum([one.damping for one in fresh], 0.0)
+    compliance = np.array([one.film_compliance for one in fresh])
+    offset = np.abs([one.film_offset for one in fresh])
+    missed = np.abs(approach - solved_approach)
+    wrong = np.abs(1.0 / stiffness - 1.0 / solved_k)
+    wrong_c = np.abs(damping - solved_c)
+    # a dry contact has no film compliance to relate to, only 1/k
+    relative = np.where(compliance != 0.0, wrong / np.maximum(np.abs(compliance), 1e-300), np.nan)
+    relative_c = np.where(solved_c > 0.0, wrong_c / np.maximum(solved_c, 1e-300), np.nan)
+    return np.column_stack(
+        [
+            relative,
+            relative_c,
+            (relative <= bars[0]) | (wrong * solved_k <= bars[1]),
+            (relative_c <= DAMPING_BARS[0]) | (wrong_c * speed <= DAMPING_BARS[1] * solved_k * half),
+            wrong * solved_k,
+            np.where(offset > 0.0, missed / np.maximum(offset, 1e-300), np.nan),
+        ]
+    )

@@ -1,0 +1,376 @@
+"""Lines about a map that both the summary of a run and `show` print: statuses by cause, error estimates."""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from ehdmaps.arrays import BoolArray, FloatArray
+from ehdmaps.errors import MapError
+from ehdmaps.jobs.make.correction import JUDGED
+from ehdmaps.maps import schema
+from ehdmaps.maps.records import MODEL_ERRORS, lubricant_from_json, record_from_json
+from ehdmaps.maps.schema import FILM_TABLE, UNSERVED
+from ehdmaps.physics.closed_form import BELOW_ROUGHNESS, CONTINUUM, NO_CONTINUUM
+from ehdmaps.physics.solution import Status, tip_words
+from ehdmaps.program import plain
+from ehdmaps.units import (
+    DAMPING,
+    FILM,
+    LOAD,
+    MASS_FLOW,
+    PRESSURE,
+    ROLLING_FORCE,
+    SPEED,
+    STIFFNESS,
+    TEMPERATURE,
+    Display,
+)
+
+AXES = (("load", LOAD), ("entrainment_speed", SPEED), ("temperature", TEMPERATURE))
+"""Numeric axes and how people read them."""
+
+_LAW_PREFIX = "law_"
+ERRORS = (
+    "film_offset_error",
+    "film_compliance_error",
+    "stiffness_error",
+    "damping_error",
+    "central_film_error",
+    "minimum_film_error",
+    "max_pressure_error",
+    "rolling_force_error",
+    "mass_flow_error",
+)
+"""Error estimates in the order in which they are listed; the last five are missing in maps made before they were."""
+
+FOUND_BY_SOME = (
+    ("traction", "traction", ROLLING_FORCE),
+    ("wall_stress", "largest wall stress", PRESSURE),
+    ("film_temperature", "hottest of the film", TEMPERATURE),
+    ("surface_temperature", "hottest of the surfaces", TEMPERATURE),
+)
+"""What only films with sliding, shear laws or heat have: name, words and display."""
+
+NONE_STATED = "none stated"
+"""What stands in place of an error that the solver does not state."""
+
+_NUMBER = re.compile(r"[-+]?[0-9]+(?:\.[0-9]+)?(?:[eE][-+]?[0-9]+)?")
+
+
+def holes(dataset: xr.Dataset) -> int:
+    """Return the number of points without a solution, filled or not."""
+    usable = [int(status) for status in Status if status.usable]
+    return int(np.count_nonzero(~np.isin(dataset["status"].values, usable)))
+
+
+def status_counts(dataset: xr.Dataset, roughness: float = 0.0) -> dict[str, BoolArray]:
+    """Return which points have each status, flat, by its words; those that no point has are left out.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The map.
+    roughness : float
+        Combined rms roughness [m]; 0 where none is known.
+    """
+    status, film = dataset["status"].values.ravel(), dataset["minimum_film"].values.ravel()
+    converged = (status == int(Status.CONVERGED)) & (film > 0.0)
+    below = converged & (film < CONTINUUM)
+    rough = converged & ~below & (film < roughness)
+    word = Status.CONVERGED.word
+    found = {known.word: status == int(known) for known in Status}
+    found = {
+        word: found[word] & ~below & ~rough,
+        f"{word}, {BELOW_ROUGHNESS}": rough,
+        f"{word}, {NO_CONTINUUM}": below,
+        **{known: here for known, here in found.items() if known != word},
+    }
+    return {words: here for words, here in found.items() if here.any()}
+
+
+def status_lines(dataset: xr.Dataset, roughness: float = 0.0) -> Iterator[str]:
+    """Yield the statuses, grouped by cause, with the corner of the map where each is found.
+
+    Reasons that differ in their numbers only count as one cause; the first is shown.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The map.
+    roughness : float
+        Combined rms roughness [m]; 0 where none is known.
+    """
+    for group in status_rows(dataset, roughness):
+        yield f"  {group.words:17s} {group.count:7d}  {100.0 * group.share:6.2f} %"
+        if "," in group.words:
+            yield f"              {group.where}"
+        for cause in group.causes:
+            yield f"    {cause.count:7d} x {cause.text}"
+            yield f"              {cause.where}"
+    filled = int(np.count_nonzero(dataset["filled"].values))
+    if filled:
+        yield f"  of the points without a solution {filled} are isolated and filled from their neighbours"
+
+
+@dataclass(frozen=True)
+class Cause:
+    """Points of one status that have one reason.
+
+    Attributes
+    ----------
+    count : int
+        How many there are.
+    text : str
+        The reason of the first, and whether numbers differ in those of the others.
+    where : str
+        Ranges of the axes in which they lie.
+    """
+
+    count: int
+    text: str
+    where: str
+
+
+@dataclass(frozen=True)
+class StatusGroup:
+    """Points of one status.
+
+    Attributes
+    ----------
+    words : str
+        The status.
+    count : int
+        How many there are.
+    share : float
+        Their share of all points.
+    where : str
+        Ranges of the axes in which they lie.
+    causes : tuple of Cause
+        Their reasons, where they have some.
+    """
+
+    words: str
+    count: int
+    share: float
+    where: str
+    causes: tuple[Cause, ...]
+
+
+def status_rows(dataset: xr.Dataset, roughness: float = 0.0) -> Iterator[StatusGroup]:
+    """Yield the points by status and cause.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The map.
+    roughness : float
+        Combined rms roughness [m]; 0 where none is known.
+    """
+    reasons = np.array([plain(reason) for reason in dataset["reason"].values.ravel()], dtype=object)
+    kinds = np.array([_NUMBER.sub("#", reason) for reason in reasons], dtype=object)
+    for words, here in status_counts(dataset, roughness).items():
+        causes = []
+        for kind in sorted(set(kinds[here]) - {""}):
+            of_cause = here & (kinds == kind)
+            differ = " (numbers differ)" if len(set(reasons[of_cause])) > 1 else ""
+            text = f"{reasons[of_cause][0]}{differ}"
+            causes.append(Cause(int(np.count_nonzero(of_cause)), text, _corner(dataset, of_cause)))
+        yield StatusGroup(words, int(np.count_nonzero(here)), float(here.mean()), _corner(dataset, here), tuple(causes))
+
+
+def _corner(dataset: xr.Dataset, chosen: BoolArray) -> str:
+    """Say in which ranges of the axes the chosen points lie."""
+    index = np.nonzero(chosen.reshape(dataset["status"].shape))
+    names = [str(dataset["contact"].values[i]) for i in np.unique(index[0])]
+    ranges = [
+        span(dataset[name].values[index[position]], display) for position, (name, display) in enumerate(AXES, start=1)
+    ]
+    return f"{' and '.join(names)}, {', '.join(ranges)}"
+
+
+def span(values: FloatArray, display: Display) -> str:
+    """Return the range of an axis in words."""
+    low, high = display.value(float(np.min(values))), display.value(float(np.max(values)))
+    return f"{low:.4g} {display.unit}" if low == high else f"{low:.4g} to {high:.4g} {display.unit}"
+
+
+def extrapolated_lines(dataset: xr.Dataset) -> Iterator[str]:
+    """Yield how many points lie beyond the pressures to which the viscosity holds, and where; or nothing."""
+    beyond = dataset["viscosity_extrapolated"].values.astype(bool)
+    if beyond.any():
+        share = f"{np.count_nonzero(beyond)} points, {100.0 * beyond.mean():.2f} %"
+        yield f"  viscosity extrapolated: {share}, with pressures above {fitted_pressure(dataset)}"
+        yield f"              {_corner(dataset, beyond.ravel())}"
+
+
+def fitted_pressure(dataset: xr.Dataset) -> str:
+    """Say up to which pressure the viscosity of the map's oil holds, and whether that is known."""
+    return lubricant_from_json(dataset.attrs["lubricant"]).reach
+
+
+def films_lines(dataset: xr.Dataset) -> Iterator[str]:
+    """Say where the films of a map come from; nothing of a map that was to be solved."""
+    if FILM_TABLE in dataset.attrs:
+        points = dataset["status"].size
+        yield f"films: {points} points read from the film table, as the films of the laws are; none solved"
+    elif why := dataset.attrs.get(UNSERVED):
+        yield f"films: all solved; {why}"
+
+
+def error_lines(dataset: xr.Dataset) -> Iterator[str]:
+    """Yield median, 95 % quantile and maximum of the error estimates over the solved points."""
+    yield "  estimated relative error       median       95 %    largest"
+    for label, found in error_rows(dataset):
+        if found is None:
+            yield f"  {label:25s} {NONE_STATED:>11s}"
+        else:
+            middle, high, most = found
+            yield f"  {label:25s} {middle:11.2g} {high:10.2g} {most:10.2g}"
+    if tip := tip_line(dataset):
+        yield f"  {tip}"
+
+
+def tip_line(dataset: xr.Dataset) -> str:
+    """Say what the largest pressures of a map lack of sharp spikes; empty where they lack nothing."""
+    name = "max_pressure_error"
+    return tip_words(float(np.max(dataset[name].fillna(0.0)))) if name in dataset else ""
+
+
+def error_rows(dataset: xr.Dataset) -> Iterator[tuple[str, tuple[float, float, float] | None]]:
+    """Yield each quantity with median, 95 % quantile and maximum of its error estimates; None where none is stated."""
+    for name in ERRORS:
+        values = dataset[name].values if name in dataset else np.empty(0)
+        known = values[np.isfinite(values)]
+        label = name.removesuffix("_error").replace("_", " ")
+        if not known.size:
+            yield label, None
+            continue
+        middle, high, most = (float(value) for value in np.quantile(known, (0.5, 0.95, 1.0)))
+        yield label, (middle, high, most)
+
+
+def value_lines(dataset: xr.Dataset) -> Iterator[str]:
+    """Yield the ranges of the main variables over the points that have values."""
+    shown = (
+        ("approach", FILM),
+        ("film_offset", FILM),
+        ("stiffness", STIFFNESS),
+        ("damping", DAMPING),
+        ("central_film", FILM),
+        ("minimum_film", FILM),
+        ("max_pressure", PRESSURE),
+        ("rolling_force", ROLLING_FORCE),
+        ("mass_flow", MASS_FLOW),
+        *((name, display) for name, _, display in FOUND_BY_SOME if name in dataset),
+    )
+    yield "  variable                     smallest     median    largest  unit"
+    for name, display in shown:
+        values = dataset[name].values if name in dataset else np.empty(0)
+        known = values[np.isfinite(values)]
+        if not known.size:
+            yield f"  {name:25s}        none"
+        else:
+            low, middle, high = (display.value(float(value)) for value in np.quantile(known, (0.0, 0.5, 1.0)))
+            yield f"  {name:25s} {low:11.4g} {middle:10.4g} {high:10.4g}  {display.unit}"
+
+
+def law_lines(dataset: xr.Dataset) -> Iterator[str]:
+    """Yield what the check of the contact laws against fresh solves found; nothing where there was none."""
+    law = list(law_rows(dataset))
+    if law:
+        yield "accuracy of the contact laws, at random points against fresh solves"
+        yield from (f"  {label:36s} {text}" for label, text in law)
+
+
+def law_rows(dataset: xr.Dataset) -> Iterator[tuple[str, str]]:
+    """Yield what that check looked at, and what it found."""
+    for key, value in dataset.attrs.items():
+        if key.startswith(_LAW_PREFIX):
+            text = f"{value:.2%}" if key.endswith("_within_bar") else plain(value)
+            yield key.removeprefix(_LAW_PREFIX).replace("_", " "), text
+
+
+_LEVELS = ("median", "95 %", "largest")
+_WIDTH = 49
+_USABLE = ("converged", "asymptote")
+
+
+def correction_lines(dataset: xr.Dataset) -> Iterator[str]:
+    """Yield by what a map is corrected, by how many points, and how well; nothing for a map that is not.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The map.
+
+    Raises
+    ------
+    MapError
+        If its attribute `correction` is not as `generate` writes it.
+    """
+    if schema.CORRECTION not in dataset.attrs:
+        return
+    try:
+        lines = list(_lines(dataset, record_from_json(dataset.attrs[schema.CORRECTION], schema.CORRECTION)))
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        raise MapError(
+            f"attribute {schema.CORRECTION} is not as `ehdmaps generate` writes it; generate the map again"
+        ) from error
+    yield from lines
+
+
+def unsolved(dataset: xr.Dataset) -> int:
+    """Number of points that the correcting solver was asked for and that have no solution by both.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        A map, just made.
+    """
+    if schema.CORRECTION not in dataset.attrs:
+        return 0
+    record = record_from_json(dataset.attrs[schema.CORRECTION], schema.CORRECTION)
+    return int(record["asked"]) - int(record["usable"])
+
+
+def _lines(dataset: xr.Dataset, record: Mapping[str, Any]) -> Iterator[str]:
+    """Yield the lines of a correction."""
+    settings = ", ".join(f"{plain(key).replace('_', ' ')} {plain(value)}" for key, value in record["settings"].items())
+    yield f"correction by {plain(record['solver'])}{f' ({settings})' if settings else ''}"
+    counts = f"{int(record['asked'])} points, {int(record['usable'])} of them with a solution by both solvers"
+    yield f"  {counts}; {float(record['solve_seconds']):.3g} s of solving, all cores"
+    failed = defaultdict(list)
+    for point in record["points"]:
+        if point["status"] not in _USABLE:
+            failed[plain(point["status"])].append(point)
+    for status, points in failed.items():
+        yield f"  {status:17s} {len(points):7d}"
+        for point in points:
+            yield f"    {_place(point)}: {plain(point.get('reason', 'no reason given'))}"
+    for name in record["not_applied"]:
+        words = plain(name).replace("_", " ")
+        yield f"  {words} left as it was: points left out one by one are no better with the correction"
+    yield f"  {'difference from it, relative':{_WIDTH}s}" + "".join(f"{level:>11s}" for level in _LEVELS)
+    for kind, words in (("before", "not corrected"), ("leave_one_out", "corrected, leaving out each point")):
+        for name in JUDGED:
+            values = "".join(f"{float(record[kind][name][level]):11.2g}" for level in _LEVELS)
+            yield f"  {name.replace('_', ' ') + ', ' + words:{_WIDTH}s}{values}"
+    for name in MODEL_ERRORS:
+        known = dataset[name].values[np.isfinite(dataset[name].values)] if name in dataset else np.empty(0)
+        if known.size:
+            values = "".join(f"{value:11.2g}" for value in np.quantile(known, (0.5, 0.95, 1.0)))
+            yield f"  {name.partition('_')[0] + ', one deviation, at all points':{_WIDTH}s}{values}"
+
+
+def _place(point: Mapping[str, Any]) -> str:
+    """Say where a point lies."""
+    values = (("load", LOAD), ("entrainment_speed", SPEED), ("temperature", TEMPERATURE))
+    place = ", ".join(display.text(float(point[name])) for name, display in values)
+    return f"{plain(point['contact'])} at {place}"

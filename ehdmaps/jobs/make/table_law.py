@@ -1,0 +1,182 @@
+"""Contact laws without a file of a map: a map in memory, with films from the film table."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ehdmaps.errors import InputError, MapError
+from ehdmaps.jobs import solvers
+from ehdmaps.jobs.job import Job
+from ehdmaps.jobs.make.generate import generate_in_memory
+from ehdmaps.jobs.make.table_films import unserved
+from ehdmaps.jobs.make.tasks import of_groups
+from ehdmaps.jobs.solvers import TABLE
+from ehdmaps.maps.emap import EHDMap
+from ehdmaps.maps.law import ContactLaw, LawKind, OutsidePolicy
+from ehdmaps.physics.approach import StructuralLaw
+from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.oil_supply import OilSupply
+from ehdmaps.physics.solids import STEEL, Material
+from ehdmaps.physics.solution import ContactSolver
+from ehdmaps.physics.surface import Surface
+
+LOADS, SPEEDS, TEMPERATURES = (100.0, 1e6), (0.05, 10.0), (293.15, 393.15)
+"""Ranges of a law for which nothing else is said: those of the shipped jobs [N/m], [m/s], [K]."""
+
+_POINTS = (25, 12, 6)
+"""Loads, speeds and temperatures of a map in memory: for its error estimates, as laws read the film table."""
+
+
+def table_map(
+    of: BearingGeometry | LineContact,
+    lubricant: Lubricant,
+    loads: tuple[float, float] = LOADS,
+    entrainment_speeds: tuple[float, float] = SPEEDS,
+    temperatures: tuple[float, float] = TEMPERATURES,
+    structural_law: StructuralLaw = "iso16281",
+    material: Material = STEEL,
+    supply: OilSupply | None = None,
+    surface: Surface | None = None,
+    solver: ContactSolver | None = None,
+) -> EHDMap:
+    """Make a map in memory, in about a second, with few points: it is there for its laws.
+
+    Films come from the film table; where it does not serve, all are solved. The laws are not checked by fresh solves.
+
+    Parameters
+    ----------
+    of : BearingGeometry or LineContact
+        A bearing, or one contact.
+    lubricant : Lubricant
+        The oil.
+    loads, entrainment_speeds, temperatures : (float, float)
+        Ranges of the laws [N/m], [m/s] > 0, [K].
+    structural_law : str
+        Law of the solids of a bearing's contacts.
+    material : Material
+        Material of a bearing.
+    supply, surface : OilSupply, Surface, optional
+        Oil supply and surfaces that the laws have by default; flooded and smooth if left out.
+    solver : ContactSolver, optional
+        What gives the films; the table if left out.
+
+    Raises
+    ------
+    InputError
+        For ranges that no map could have.
+    """
+    bearing = of if isinstance(of, BearingGeometry) else None
+    job = Job.build(
+        lubricant=lubricant,
+        loads=np.geomspace(*loads, _POINTS[0]),
+        entrainment_speeds=np.geomspace(*entrainment_speeds, _points(entrainment_speeds, _POINTS[1])),
+        temperatures=np.linspace(*temperatures, _points(temperatures, _POINTS[2])),
+        bearing=bearing,
+        contact=of if isinstance(of, LineContact) else None,
+        material=material,
+        supply=supply,
+        surface=surface,
+        solver_options={"films": TABLE},
+        structural_law=structural_law,
+    )
+    # laws let films fade where they are too thick for the points of a map
+    made = generate_in_memory(job, workers=1, solver=of_groups(solver or solvers.of_map(job)))
+    return EHDMap(made.dataset, made.backbone)
+
+
+def _points(ends: tuple[float, float], most: int) -> int:
+    """Points of an axis: one where both ends are the same."""
+    return most if ends[1] > ends[0] else 1
+
+
+def job_map(job: Job, source: str) -> EHDMap:
+    """Make the map of a job in memory, with films from the film table; its laws are not checked by fresh solves.
+
+    Parameters
+    ----------
+    job : Job
+        The job.
+    source : str
+        How it was given, for messages.
+
+    Raises
+    ------
+    MapError
+        If its films have to be solved.
+    """
+    solver = solvers.of_map(job)
+    why = unserved(job, solver)
+    if why:
+        raise MapError(f"{source}: its films have to be solved ({why}); give the map that `ehdmaps generate` makes")
+    made = generate_in_memory(replace(job, law_check=0), 1, solver=solver)
+    return EHDMap(made.dataset, made.backbone)
+
+
+def law(
+    of: BearingGeometry | LineContact,
+    lubricant: Lubricant,
+    kind: LawKind | None = None,
+    loads: tuple[float, float] = LOADS,
+    entrainment_speeds: tuple[float, float] = SPEEDS,
+    temperatures: tuple[float, float] = TEMPERATURES,
+    outside: OutsidePolicy = "error",
+    supply: OilSupply | None = None,
+    surface: Surface | None = None,
+    structural_law: StructuralLaw = "iso16281",
+    material: Material = STEEL,
+    solver: ContactSolver | None = None,
+) -> ContactLaw:
+    """Make a contact law without a map, in about a second.
+
+    Films come from the film table; where it does not serve, all are solved.
+
+    Parameters
+    ----------
+    of : BearingGeometry or LineContact
+        A bearing, or one contact.
+    lubricant : Lubricant
+        The oil.
+    kind : {"series", "inner", "outer", "line"}, optional
+        Contact of a bearing, or a roller between both raceways, which is the default.
+    loads, entrainment_speeds, temperatures : (float, float)
+        Ranges of the law [N/m], [m/s] > 0, [K].
+    outside, supply, surface
+        Arguments of `EHDMap.law`.
+    structural_law : str
+        Law of the solids of a bearing's contacts.
+    material : Material
+        Material of a bearing.
+    solver : ContactSolver, optional
+        What gives the films; the table if left out.
+
+    Raises
+    ------
+    InputError
+        For a kind that there is not, and for ranges that no map could have.
+    MapError
+        If films are missing that the law needs.
+
+    Examples
+    --------
+    >>> import ehdmaps
+    >>> nu308 = ehdmaps.law(ehdmaps.BearingGeometry.named("NU308"), ehdmaps.Lubricant.named("FVA3"))  # doctest: +SKIP
+    """
+    allowed: tuple[LawKind, ...] = ("series", "inner", "outer") if isinstance(of, BearingGeometry) else ("line",)
+    chosen = kind or allowed[0]
+    if chosen not in allowed:
+        raise InputError(f"contact law, kind: got {kind!r}; allowed: {', '.join(allowed)}")
+    emap = table_map(
+        of,
+        lubricant,
+        loads,
+        entrainment_speeds,
+        temperatures,
+        structural_law=structural_law,
+        material=material,
+        solver=solver,
+    )
+    return emap.law(chosen, outside, supply=supply, surface=surface)

@@ -1,0 +1,1 @@
+"""A map for people: opened, described, drawn, compared, as a report."""

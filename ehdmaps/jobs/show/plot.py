@@ -1,0 +1,403 @@
+"""A map on one page: families of curves over load, coloured by speed, for every contact and temperature."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.figure import Figure
+from matplotlib.legend import Legend
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.ticker import FuncFormatter, NullLocator
+
+from ehdmaps.figures import keep_within, typeset
+from ehdmaps.jobs.make.report import span, status_counts
+from ehdmaps.jobs.show.plot_curves import (
+    ASYMPTOTE,
+    BELOW,
+    FILLED,
+    HATCH,
+    LOST,
+    MOST_CURVES,
+    REACH,
+    Sheet,
+    draw_curves,
+    keep_corners_free,
+    spread,
+)
+from ehdmaps.maps import schema
+from ehdmaps.maps.curves import law_field
+from ehdmaps.maps.emap import EHDMap
+from ehdmaps.maps.records import record_from_json
+from ehdmaps.outputs import write_figure
+from ehdmaps.physics.closed_form import BELOW_ROUGHNESS, CONTINUUM, NO_CONTINUUM
+from ehdmaps.physics.solution import Status
+from ehdmaps.program import plain
+from ehdmaps.units import DAMPING, FILM, LOAD, PRESSURE, SPEED, STIFFNESS, TEMPERATURE, Display
+
+A4_LANDSCAPE = (11.69, 8.27)
+RESOLUTION = 200
+MOST_TEMPERATURES = 6
+SHOWN_TEMPERATURE = 313.15
+"""The full panels are at the mapped temperature nearest to this one [K]: where oils are compared."""
+
+_PANELS: tuple[tuple[str, str, Display], ...] = (
+    ("stiffness", "stiffness k", STIFFNESS),
+    ("damping", "damping c", DAMPING),
+    ("approach", "approach", FILM),
+    ("central_film", "central film", FILM),
+    ("minimum_film", "minimum film", FILM),
+)
+_SMALL = _PANELS[:2]
+_FILMS = ("central_film", "minimum_film")
+THIN: Mapping[str, Any] = {
+    BELOW_ROUGHNESS: {"facecolor": "0.93", "edgecolor": "none", "zorder": 0},
+    NO_CONTINUUM: {"facecolor": "0.8", "edgecolor": "none", "zorder": 0},
+}
+_LOGARITHMIC = ("stiffness", "damping", "central_film", "minimum_film")
+FONT: Any = {"font.size": 7.5, "axes.linewidth": 0.6, "xtick.major.width": 0.6, "ytick.major.width": 0.6}
+
+
+def plot_map(emap: EHDMap, output: Path) -> None:
+    """Draw the page and write it.
+
+    Parameters
+    ----------
+    emap : EHDMap
+        The map.
+    output : Path
+        The picture; its ending decides the format (png, pdf, svg).
+
+    Raises
+    ------
+    InputError
+        If it cannot be written, or the ending is not known.
+    MapError
+        If its contacts, its bearing or its oil do not read.
+    """
+    import matplotlib as mpl
+
+    with mpl.rc_context(FONT):
+        write_figure(_page(Sheet(emap, law_field(emap))), output, RESOLUTION)
+
+
+def _page(sheet: Sheet) -> Figure:
+    """Draw the page: a row of panels a contact, then small ones a temperature."""
+    figure, dataset = Figure(figsize=A4_LANDSCAPE), sheet.dataset
+    temperatures = spread(dataset.sizes["temperature"], MOST_TEMPERATURES)
+    shown = int(np.argmin(np.abs(dataset["temperature"].values - SHOWN_TEMPERATURE)))
+    contacts = dataset.sizes["contact"]
+    small = len(temperatures) > 1
+    _heading(figure, sheet.emap, shown)
+
+    middle = 0.385 if small else 0.10
+    grid = figure.add_gridspec(
+        contacts,
+        len(_PANELS),
+        left=0.057,
+        right=0.92,
+        top=0.875,
+        bottom=middle + 0.055,
+        wspace=0.30,
+        hspace=0.16,
+    )
+    for row in range(contacts):
+        for column, (name, label, display) in enumerate(_PANELS):
+            axes = figure.add_subplot(grid[row, column])
+            draw_curves(axes, sheet, name, display, (row, shown))
+            if name in _FILMS:
+                _shade_thin(axes, sheet, display)
+            axes.set_ylabel(f"{label}, {typeset(display.unit)}", labelpad=1)
+            if row == 0:
+                axes.set_title(label, fontsize=8.5, fontweight="bold", pad=4)
+            if row == contacts - 1:
+                axes.set_xlabel(f"load, {LOAD.unit}", labelpad=1)
+            axes.tick_params(labelbottom=row == contacts - 1)
+            if column == 0:
+                axes.annotate(
+                    str(dataset["contact"].values[row]),
+                    (0.95, 0.06),
+                    xycoords="axes fraction",
+                    fontweight="bold",
+                    ha="right",
+                )
+    if small:
+        _small_multiples(figure, sheet, temperatures, middle)
+    speed_bar(figure, sheet, (0.936, middle + 0.055, 0.011, 0.875 - middle - 0.055))
+    _legend(figure, sheet)
+    return figure
+
+
+def speed_bar(figure: Figure, sheet: Sheet, place: tuple[float, float, float, float]) -> None:
+    """Draw the scale of the speed's colours.
+
+    Parameters
+    ----------
+    figure : Figure
+        The page.
+    sheet : Sheet
+        The map.
+    place : tuple of float
+        Left, bottom, width and height, as shares of the page.
+    """
+    scale = figure.add_axes(place)
+    bar = figure.colorbar(ScalarMappable(sheet.colours, "viridis"), cax=scale)
+    shown_speeds = [sheet.speeds[index] for index in spread(sheet.speeds.size, MOST_CURVES)]
+    bar.set_ticks([speed for speed in shown_speeds if speed > 0.0], minor=False)
+    bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.2g}"))
+    bar.ax.yaxis.set_minor_locator(NullLocator())
+    bar.ax.tick_params(length=2.0, pad=1.5)
+    bar.set_label(f"entrainment speed, {SPEED.unit}", labelpad=1)
+
+
+def _thin(sheet: Sheet) -> list[tuple[float, str]]:
+    """Films that are too thin for the theory: below which [m], and why; those that the map has."""
+    found, roughness = sheet.dataset["minimum_film"].values, sheet.emap.surface.roughness
+    limits = ((roughness, BELOW_ROUGHNESS), (CONTINUUM, NO_CONTINUUM))
+    return [(limit, words) for limit, words in limits if np.any((found > 0.0) & (found < limit))]
+
+
+def _shade_thin(axes: Axes, sheet: Sheet, display: Display) -> None:
+    """Shade the films that are too thin for the theory."""
+    bottom, top = axes.get_ylim()
+    for limit, words in _thin(sheet):
+        axes.axhspan(bottom, display.value(limit), **THIN[words])
+    axes.set_ylim(bottom, top)
+
+
+def _small_multiples(figure: Figure, sheet: Sheet, temperatures: list[int], top: float) -> None:
+    """Draw stiffness and damping of the first contact at each temperature, on common axes."""
+    dataset = sheet.dataset
+    grid = figure.add_gridspec(
+        len(_SMALL),
+        len(temperatures),
+        left=0.057,
+        right=0.92,
+        top=top - 0.05,
+        bottom=0.112,
+        wspace=0.06,
+        hspace=0.08,
+    )
+    first = str(dataset["contact"].values[0])
+    figure.text(
+        0.057,
+        top - 0.012,
+        f"{contact_words(first)}, over temperature of the raceways",
+        fontsize=8.5,
+        fontweight="bold",
+    )
+    for row, (name, label, display) in enumerate(_SMALL):
+        left: Axes | None = None
+        for column, temperature in enumerate(temperatures):
+            axes = figure.add_subplot(grid[row, column], sharey=left, sharex=left)
+            left = left or axes
+            draw_curves(axes, sheet, name, display, (0, temperature), width=0.7)
+            axes.tick_params(which="both", labelleft=column == 0, labelbottom=row == len(_SMALL) - 1)
+            if row == 0:
+                heading = typeset(TEMPERATURE.text(float(dataset["temperature"].values[temperature])))
+                axes.set_title(heading, fontsize=7.5, pad=2.5)
+            keep_corners_free(axes)
+            if column == 0:
+                axes.set_ylabel(f"{label}\n{typeset(display.unit)}", labelpad=2)
+            if row == len(_SMALL) - 1:
+                axes.set_xlabel(f"load, {LOAD.unit}", labelpad=1)
+
+
+def _heading(figure: Figure, emap: EHDMap, shown: int) -> None:
+    """Write the title and, below it, what the page shows."""
+    dataset, attributes = emap.dataset, emap.dataset.attrs
+    what, oil = what_is_mapped(emap)
+    rough = "" if emap.surface.smooth else ", smooth surfaces"
+    at = typeset(TEMPERATURE.text(float(dataset["temperature"].values[shown])))
+    write_line(figure, 0.963, f"EHD contact map: {what}, {oil}", 13, "bold")
+    write_line(
+        figure,
+        0.928,
+        f"Per unit length of contact, at {at} over load and entrainment speed.  "
+        f"Solver {plain(attributes['solver'])}, structural law {plain(attributes['structural_law'])}{rough}.  "
+        f"Mapped: {span(dataset['load'].values, LOAD)}, {span(dataset['entrainment_speed'].values, SPEED)}, "
+        f"{typeset(span(dataset['temperature'].values, TEMPERATURE))} of the raceways.",
+        8,
+    )
+    write_estimated(figure, 0.909, emap)
+
+
+def write_estimated(figure: Figure, height: float, emap: EHDMap) -> None:
+    """Write how the inner geometry of the bearing was estimated, where it was.
+
+    Parameters
+    ----------
+    figure : Figure
+        The page.
+    height : float
+        Place of the middle of the line, as a share of the page.
+    emap : EHDMap
+        The map.
+    """
+    if emap.bearing is not None and emap.bearing.estimated:
+        write_line(figure, height, f"{emap.bearing.name}: {emap.bearing.estimated}.", 7.5)
+
+
+def what_is_mapped(emap: EHDMap) -> tuple[str, str]:
+    """Return bearing or contact, and oil, in the words of a title.
+
+    Parameters
+    ----------
+    emap : EHDMap
+        The map.
+    """
+    what = emap.bearing.title if emap.bearing else f"line contact, R = {emap.contacts[0].radius * 1e3:.4g} mm"
+    estimated = "pressure-viscosity estimated" if emap.lubricant.estimated else "data not verified"
+    unverified = "" if emap.lubricant.verified else f" ({estimated})"
+    oil = emap.lubricant.title if emap.lubricant.title.endswith("oil") else f"oil {emap.lubricant.title}"
+    return what, f"{oil}{unverified}"
+
+
+def write_line(
+    figure: Figure, height: float, text: str, size: float, weight: str = "normal", colour: str = "black"
+) -> None:
+    """Write a line of the page, in smaller letters where it is long; texts of a map are no formulas.
+
+    Parameters
+    ----------
+    figure : Figure
+        The page.
+    height : float
+        Place of the middle of the line, as a share of the page.
+    text : str
+        The line.
+    size : float
+        Size of its letters [pt].
+    weight, colour : str
+        Their weight and colour.
+    """
+    line = figure.text(
+        0.057, height, text, fontsize=size, fontweight=weight, color=colour, va="center", parse_math=False
+    )
+    keep_within(figure, line)
+
+
+def page_legend(figure: Figure, entries: Sequence[Line2D | Patch], bottom: float = 0.022) -> Legend:
+    """Write a legend at the foot of a page: three columns, or two where a long text would run out of it.
+
+    Parameters
+    ----------
+    figure : Figure
+        The page.
+    entries : sequence of Line2D or Patch
+        What is explained.
+    bottom : float
+        Height of its lower edge, as a part of the page.
+    """
+    for columns in (3, 2):
+        legend = figure.legend(
+            handles=entries,
+            loc="lower left",
+            bbox_to_anchor=(0.047, bottom),
+            ncols=columns,
+            frameon=False,
+            fontsize=7.5,
+            columnspacing=2.5,
+        )
+        # letters are up to 3 % wider at the resolution of the file
+        if legend.get_window_extent().x1 <= 0.96 * figure.bbox.x1 or columns == 2:
+            break
+        legend.remove()
+    return legend
+
+
+def _legend(figure: Figure, sheet: Sheet) -> None:
+    """Explain what is drawn, and only that, and write how the map was made."""
+    page_legend(figure, _entries(sheet))
+    write_line(figure, 0.014, _facts(sheet.dataset, sheet.emap.surface.roughness), 6.5, colour="0.35")
+
+
+def _entries(sheet: Sheet) -> list[Line2D | Patch]:
+    """Entries of the legend."""
+    entries: list[Line2D | Patch] = [
+        Line2D([], [], color="black", lw=0.8, ls=(0, (4, 2)), label="dry (structural law alone)")
+    ]
+    if sheet.field is not None:
+        curve = "k, c, approach between the points (dots): films of the contact laws"
+        entries.append(Line2D([], [], color="0.3", lw=1.0, marker=".", ms=3, label=curve))
+    entries += [Patch(label=words, **THIN[words]) for _, words in _thin(sheet)]
+    entries += mark_entries(sheet)
+    if any((sheet.dataset[name].values <= 0).any() and (sheet.dataset[name].values > 0).any() for name in _LOGARITHMIC):
+        entries.append(Line2D([], [], ls="", color="0.3", label="zero or negative", **BELOW))
+    return entries
+
+
+def mark_entries(sheet: Sheet) -> list[Line2D | Patch]:
+    """Return the entries of a legend for what is marked in every panel.
+
+    Parameters
+    ----------
+    sheet : Sheet
+        The map.
+    """
+    dataset = sheet.dataset
+    status, filled = dataset["status"].values, dataset["filled"].values.astype(bool)
+    lost = ~np.isin(status, [int(known) for known in Status if known.usable])
+    entries: list[Line2D | Patch] = []
+    if sheet.extrapolated_from:
+        oil = sheet.emap.lubricant
+        above = f"at some speed above {PRESSURE.text(oil.fitted_pressure)}"
+        if oil.reach_assumed:
+            where = f"right of it {above}: how far the viscosity law reaches is assumed, not stated"
+            entries.append(Line2D([], [], label=where, **REACH))
+        else:
+            entries.append(Patch(label=f"viscosity extrapolated: {above}", **HATCH))
+    if (status == int(Status.ASYMPTOTE)).any():
+        entries.append(Line2D([], [], ls="", mec="0.3", label=f"asymptote: {_limits(dataset)}", **ASYMPTOTE))
+    if (lost & filled).any():
+        entries.append(Line2D([], [], ls="", label="no solution, filled from neighbours", **FILLED))
+    if (lost & ~filled).any():
+        entries.append(Line2D([], [], ls="", label="no solution", **LOST))
+    return entries
+
+
+def _limits(dataset: xr.Dataset) -> str:
+    """Say which limit the points stand for that are one; their first words, where there are several."""
+    reasons = dataset["reason"].values[dataset["status"].values == int(Status.ASYMPTOTE)]
+    causes = sorted({plain(reason).split(":")[0] for reason in reasons if reason})
+    return typeset("; ".join(causes[:2])) if causes else "a stated limit"
+
+
+def _facts(dataset: xr.Dataset, roughness: float) -> str:
+    """Return the line on how the map was made."""
+    attributes = dataset.attrs
+    found = status_counts(dataset, roughness)
+    counts = [f"{np.count_nonzero(here)} {words}" for words, here in found.items()]
+    filled = int(np.count_nonzero(dataset["filled"].values))
+    if filled:
+        counts.append(f"{filled} filled")
+    errors = []
+    for name in ("film_compliance_error", "damping_error"):
+        known = dataset[name].values[np.isfinite(dataset[name].values)]
+        if known.size:
+            label = name.removesuffix("_error").replace("_", " ")
+            errors.append(f"{label} {float(np.quantile(known, 0.95)):.1g}")
+    versions = record_from_json(attributes["package_versions"], "package_versions")
+    estimates = f"Estimated relative error (95 % of points): {', '.join(errors)}.  " if errors else ""
+    return (
+        f"{dataset['status'].size} points: {', '.join(counts)}.  {estimates}"
+        f"ehdmaps {versions.get('ehdmaps', '')}, {plain(attributes.get('created', ''))[:10]}, "
+        f"job {plain(attributes.get('job_name', ''))} {plain(attributes['job_sha256'])[:12]}"
+    )
+
+
+def contact_words(name: str) -> str:
+    """Return how a contact is called in a heading.
+
+    Parameters
+    ----------
+    name : str
+        Name of the contact in the map.
+    """
+    return "Line contact" if name in schema.CONTACT_NAMES[1] else f"{name.capitalize()} contact"

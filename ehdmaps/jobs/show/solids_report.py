@@ -1,0 +1,266 @@
+"""What finite elements found of a bearing, in words, and the structural laws side by side; load over the length."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.jobs.solids import solids_keys
+from ehdmaps.physics.approach import FE_LOAD, STRUCTURAL_LAWS, StructuralLaw
+from ehdmaps.physics.bearing import BearingGeometry, with_law
+from ehdmaps.physics.contact import LineContact
+from ehdmaps.solids.three_d_compare import SLICES, LengthComparison, mesh_change
+from ehdmaps.solids.three_d_reference import LengthReference
+from ehdmaps.units import FILM, LOAD, STIFFNESS
+
+COMPARED_LOADS = (1e3, 1e4, 3e4, 1e5, 3e5, 1e6)
+"""Loads at which the laws stand side by side [N/m]."""
+
+_WIDE = 32
+
+
+def solids_text(record: Mapping[str, Any], bearing: BearingGeometry) -> str:
+    """Tell what was found, and the lines that a job takes.
+
+    Parameters
+    ----------
+    record : mapping
+        See `ehdmaps.solids.plane_bearing.bearing_record`.
+    bearing : BearingGeometry
+        The bearing.
+    """
+    return "\n".join(_lines(record, bearing))
+
+
+def _lines(record: Mapping[str, Any], bearing: BearingGeometry) -> Iterator[str]:
+    """The text, line by line."""
+    contacts = record["contacts"]
+    yield f"{bearing.title}: {sections_words(record['sections'])}"
+    if bearing.estimated:
+        yield f"  {bearing.estimated}"
+    yield ""
+    yield _row("", contacts)
+    yield _row(f"approach at {LOAD.text(FE_LOAD)}", [FILM.text(c["fe_approach"], 5) for c in contacts.values()])
+    yield _row("  share of the roller", [f"{c['roller_share']:.1%}" for c in contacts.values()])
+    yield _row("  by plane stress, a bound", [FILM.text(c["plane_stress_approach"], 5) for c in contacts.values()])
+    yield _row("  yields at the next roller", [f"{c['neighbour_share']:.2%}" for c in contacts.values()])
+    yield _row("curvature of the gap", [f"{c['gap_curvature']:+.1g}" for c in contacts.values()])
+    low, high = (next(iter(contacts.values()))["loads"][place] for place in (0, -1))
+    yield _row("law against its series, delta", [f"{c['approach_error']:.2g}" for c in contacts.values()])
+    yield _row("  of the stiffness", [f"{c['compliance_error']:.2g}" for c in contacts.values()])
+    yield f"  series from {LOAD.text(low, 2)} to {LOAD.text(high, 2)}"
+    if all("convergence" in c for c in contacts.values()):
+        yield from _convergence({name: c["convergence"] for name, c in contacts.items()})
+    if all("contact_check" in c for c in contacts.values()):
+        checks = [f"{c['contact_check']['difference']:.2g}" for c in contacts.values()]
+        yield _row("CalculiX' contact, load", checks)
+    if "seats" in record:
+        yield ""
+        yield "approach on other seats (D, d: outside diameter and bore of the bearing)"
+        for label, found in record["seats"].items():
+            yield _row(f"  {label}", [FILM.text(found[name], 5) for name in contacts])
+    yield ""
+    yield from job_lines({name: c["fe_approach"] for name, c in contacts.items()})
+
+
+def job_lines(approaches: Mapping[str, float]) -> Iterator[str]:
+    """Yield the lines that a job takes.
+
+    Parameters
+    ----------
+    approaches : mapping of str to float
+        Approaches by finite elements by the names of the contacts [m].
+    """
+    yield "for the job, in place of structural_law of [solver], beside what its [solids] says already:"
+    yield "[solids]"
+    yield 'law = "fe"'
+    for key, text in solids_keys({name: float(f"{value:.7g}") for name, value in approaches.items()}).items():
+        yield f'{key} = "{text}"'
+
+
+def sections_words(sections: Mapping[str, Any]) -> str:
+    """Say which bodies were solved.
+
+    Parameters
+    ----------
+    sections : mapping
+        Record of `ehdmaps.solids.sections.Sections`.
+    """
+    mm = {key: f"{1e3 * value:.5g}" for key, value in sections.items() if key.endswith(("bore", "diameter"))}
+    roller = f"roller {mm['roller_diameter']} mm"
+    if sections["roller_bore"]:
+        roller += f" with a bore of {mm['roller_bore']} mm"
+    rings = (
+        f"rings {mm['bore']}/{mm['inner_raceway_diameter']} mm and "
+        f"{mm['outer_raceway_diameter']}/{mm['outside_diameter']} mm"
+    )
+    if sections["seat"] == "rigid":
+        return f"{roller}, {rings}, rigid seats"
+    shaft = f"shaft with a bore of {mm['shaft_bore']} mm" if sections["shaft_bore"] else "solid shaft"
+    return f"{roller}, {rings}, {shaft}, housing held at {mm['housing_diameter']} mm"
+
+
+def _convergence(found: Mapping[str, Mapping[str, Any]]) -> Iterator[str]:
+    """Lines of the three meshes."""
+    yield "approach by element size over distance from the contact"
+    first = next(iter(found.values()))
+    for place, grading in enumerate(first["gradings"]):
+        yield _row(f"  {grading:g}", [FILM.text(one["approaches"][place], 7) for one in found.values()])
+    yield _row("  limit (Richardson)", [FILM.text(one["limit"], 7) for one in found.values()])
+    yield _row("  order", [f"{one['order']:.2f}" for one in found.values()])
+
+
+def _row(label: str, values: Any) -> str:
+    """One line of the table."""
+    return f"{label:{_WIDE}s}" + "".join(f"  {value:>14s}" for value in values)
+
+
+def compared_laws(contact: LineContact, bearing: BearingGeometry, loads: Sequence[float]) -> dict[str, dict[str, Any]]:
+    """Stiffness of the solids of one contact by every structural law, and its difference from the law fe.
+
+    Parameters
+    ----------
+    contact : LineContact
+        A contact that knows its approach by finite elements.
+    bearing : BearingGeometry
+        Bearing of the contact.
+    loads : sequence of float
+        w [N/m].
+
+    Returns
+    -------
+    dict
+        Stiffness [N/m2], approach [m] and relative differences of both from fe, lists over the loads, by the names of
+        the laws.
+    """
+    values = {}
+    w = np.array(loads)
+    names: tuple[StructuralLaw, ...] = ("fe", *(name for name in STRUCTURAL_LAWS if name != "fe"))
+    for name in names:
+        line = with_law(contact, name, bearing)
+        values[name] = (1.0 / line.structural_compliance(w), line.structural_approach(w))
+    stiffness, approach = values["fe"]
+    return {
+        name: {
+            "stiffness": k.tolist(),
+            "stiffness_difference": (k / stiffness - 1.0).tolist(),
+            "approach": delta.tolist(),
+            "approach_difference": (delta / approach - 1.0).tolist(),
+        }
+        for name, (k, delta) in values.items()
+    }
+
+
+def compared_text(found: Mapping[str, Mapping[str, Mapping[str, Any]]], loads: Sequence[float], title: str) -> str:
+    """Tables of the structural laws, one a contact.
+
+    Parameters
+    ----------
+    found : mapping
+        What `compared_laws` gives, by the names of the contacts.
+    loads : sequence of float
+        w [N/m].
+    title : str
+        The bearing.
+    """
+    lines = [f"{title}: stiffness of the solids of one contact, and its difference from fe"]
+    for name, laws in found.items():
+        lines += [
+            "",
+            f"{name + ' contact':14s}" + f"{'fe':>20s}" + "".join(f"{law:>12s}" for law in laws if law != "fe"),
+        ]
+        for place, load in enumerate(loads):
+            row = f"  {LOAD.text(load, 4):>12s}{STIFFNESS.text(laws['fe']['stiffness'][place], 4):>20s}"
+            others = (one["stiffness_difference"][place] for law, one in laws.items() if law != "fe")
+            lines.append(row + "".join(f"{value:>+12.1%}" for value in others))
+    lines += ["", "  of the approach:"]
+    for name, laws in found.items():
+        for place, load in enumerate(loads):
+            row = f"  {name:7s}{LOAD.text(load, 4):>10s}{FILM.text(laws['fe']['approach'][place], 4):>15s}"
+            others = (one["approach_difference"][place] for law, one in laws.items() if law != "fe")
+            lines.append(row + "".join(f"{value:>+12.1%}" for value in others))
+    return "\n".join(lines)
+
+
+_PLACES = 11
+
+
+def length_text(reference: LengthReference, cases: list[LengthComparison]) -> list[str]:
+    """Lines about all cases of a bearing.
+
+    Parameters
+    ----------
+    reference : LengthReference
+        The finite elements.
+    cases : list of LengthComparison
+        Cases of the reference beside the other solutions.
+    """
+    check = reference.check
+    by_calculix = f"; CalculiX finds {check['load_by_calculix'] / check['load']:.2%} of a load" if check else ""
+    lines = [
+        f"{reference.bearing}: a roller with plane end faces on its inner raceway, which goes on beyond the ends; dry",
+        f"  finite elements: {max(reference.unknowns.values())} unknowns; loads change by {mesh_change(reference):.1%} "
+        f"of the mean from the mesh before{by_calculix}",
+        f"  in three dimensions: half spaces with free end faces; slices: {SLICES}, law half_space of the same bodies",
+    ]
+    for entry in cases:
+        lines += _case(entry)
+    return lines
+
+
+def _case(entry: LengthComparison) -> list[str]:
+    """One case."""
+    case = entry.case
+    half = 0.5 * float(np.ptp(case.places))
+    ends = (-1.0, 1.0) if case.moment else (0.0, 1.0)
+    places = np.linspace(*ends, _PLACES) * half * 0.975
+    tilted = f", tilting moment {case.moment:.3g} N m" if case.moment else ""
+    ways = (
+        ("finite elements", case.places, case.load_per_length, case),
+        ("in three dimensions", case.places, entry.load_per_length, entry.solution),
+        ("coupled slices", entry.coupled.places, entry.coupled.load_per_length, entry.coupled),
+        ("slices on their own", entry.alone.places, entry.alone.load_per_length, entry.alone),
+    )
+    lines = [
+        "",
+        f"profile {case.profile}, {case.load:.5g} N{tilted}",
+        f"  {'':20s} {'approach':>9s} {'tilt':>7s}   load per length, N/mm, at y, mm",
+        f"  {'':20s} {'um':>9s} {'mrad':>7s} " + "".join(f"{1e3 * place:8.2f}" for place in places),
+    ]
+    for name, at, loads, solved in ways:
+        lines.append(
+            f"  {name:20s} {1e6 * solved.approach:9.3f} {_clean(1e3 * solved.tilt):7.3f} "
+            + "".join(f"{1e-3 * load:8.1f}" for load in np.interp(places, at, loads))
+        )
+    for name, pressures in (("finite elements", case.peak_pressure), ("in three dimensions", entry.peak_pressure)):
+        lines.append(
+            f"  {name:20s} {'pressure, GPa':>17s} "
+            + "".join(f"{1e-9 * value:8.3f}" for value in np.interp(places, case.places, pressures))
+        )
+    edge = f", {entry.edge_error:.1%} within a half-width of the end" if entry.edge_error else ""
+    lines.append(
+        f"  in three dimensions against finite elements: load per length within {entry.load_error:.1%}{edge}; largest "
+        f"pressure {_signed(entry.pressure_error)}"
+    )
+    off = [f"{name} {_apart(case.places, case.load_per_length, at, loads):.1%}" for name, at, loads, _ in ways[2:]]
+    lines.append(f"  largest difference of slices over the mean, but for the one at each end: {', '.join(off)}")
+    return lines
+
+
+def _apart(places: FloatArray, loads: FloatArray, at: FloatArray, other: FloatArray) -> float:
+    """Largest difference of slices from loads at nodes, over their mean; without the slices at both ends."""
+    found = np.abs(other - np.interp(at, places, loads))[1:-1].max()
+    return float(found / (np.trapezoid(loads, places) / np.ptp(places)))
+
+
+def _clean(value: float) -> float:
+    """A number that is not printed as -0."""
+    return value if abs(value) > 1e-6 else 0.0
+
+
+def _signed(share: float) -> str:
+    """A share with its sign."""
+    return f"{share:+.1%}".replace("-0.0%", "+0.0%")
