@@ -277,6 +277,30 @@ def test_rooms_know_nothing_above_them(rooms, above) -> None:
         assert [name for name in _imported(path) if name.startswith(above)] == [], path
 
 
+JOBS = (("make",), ("show", "solve", "instruments", "commands")), (("show", "solve", "instruments"), ("commands",))
+"""Rooms of ehdmaps.jobs, and those that they may not know. A reader at the extremes is tried through its command."""
+
+
+@pytest.mark.parametrize(("rooms", "above"), JOBS, ids=" ".join)
+def test_rooms_of_jobs(rooms, above) -> None:
+    above = tuple(f"ehdmaps.jobs.{room}" for room in above)
+    paths = [path for room in rooms for path in (ROOT / "ehdmaps" / "jobs" / room).glob("*.py")]
+    assert len(paths) > 10
+    for path in paths:
+        if path.name != "stability_readers.py":
+            assert [name for name in _imported(path) if name.startswith(above)] == [], path
+
+
+CORE = ("bearings", "model", "linearised", "transient", "spectral", "scene", "analyses", "output", "report")
+
+
+@pytest.mark.parametrize("room", CORE)
+def test_the_core_knows_no_instruments(room) -> None:
+    paths = sorted((ROOT / "mbs" / room).glob("*.py"))
+    assert paths
+    assert [path for path in paths if any(name.startswith("mbs.instruments") for name in _imported(path))] == []
+
+
 @pytest.mark.parametrize("path", sorted((ROOT / "mbs" / "modal").glob("*.py")), ids=lambda p: p.stem)
 def test_modal_analysis_knows_no_machine(path: Path) -> None:
     names = {name for name in _imported(path) if name.partition(".")[0] in ("mbs", "ehdmaps")}
