@@ -42,7 +42,7 @@ import scipy.io
 from tests.cases.jobs import LINE, map_job, spaced
 
 VOLATILE_ATTRIBUTES = frozenset(
-    {"created", "history", "package_versions", "solver_version", "content_sha256", "version", "code", "program"}
+    {"created", "history", "package_versions", "solver_version", "content_sha256", "code_hash"}
 )
 """Attributes that state when and by which sources a file was made."""
 
@@ -55,6 +55,7 @@ VOLATILE_WORDS = (
     (re.compile(r"[0-9a-fA-F]{8}(-[0-9a-fA-F]{4}){3}-[0-9a-fA-F]{12}"), "GUID"),
     (re.compile(r"\b0\.1\.0(\+[\w.]+)?"), "VERSION"),
     (re.compile(r"\b[0-9a-f]{32,64}\b"), "HASH"),
+    (re.compile(r"(code_hash: |code +hash )[0-9a-f]{16}\b"), "HASH"),
     (re.compile(r"\b(src\.|g)[0-9a-f]{10}(\.dirty)?(\.[0-9a-f]{10})?\b"), "VERSION"),
     (re.compile(r"[\d.]+ us a step(, [\d.]+ s)?"), "TIME"),
     (re.compile(r"time: +[\d.]+ s now; [\d.]+ s|time +about .* a point"), "TIME"),
@@ -63,7 +64,7 @@ VOLATILE_WORDS = (
 )
 """What texts have of the kind, and what stands in its place."""
 
-PROGRESS = re.compile(r"\d+ (points?|steps)/s|compiling, once|\d+%\||^\s*$")
+PROGRESS = re.compile(r"^\d+ of \d+ (steps|points)|\d+ (points?|steps)/s|compiling, once|\d+%\||^\s*$")
 """Lines of stderr that the clock decides."""
 
 LOADS, TEMPERATURE = spaced("0.1 N/mm", "1000 N/mm", 13), '["40 degC"]'
@@ -329,7 +330,8 @@ def _describe(path: Path, name: str, files: dict[str, Any], values: dict[str, np
     elif path.suffix == ".mat":
         files[name] = {"variables": {}}
         for key, value in _leaves(scipy.io.loadmat(path, simplify_cells=True)):
-            _variable(files[name], name, key, np.asarray(value), values)
+            if key.rpartition(".")[2] not in VOLATILE_ATTRIBUTES:
+                _variable(files[name], name, key, np.asarray(value), values)
     elif path.suffix == ".fmu":
         with zipfile.ZipFile(path) as archive:
             for member in sorted(archive.namelist()):
