@@ -15,10 +15,9 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.law_change import LawChange
 from mbs.analyses.operating import operating
-from mbs.bearings.bearing_element import BearingElement, RingElement
+from mbs.bearings.bearing_element import BearingElement, RingElement, RollerElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.roller_contacts import RollerContacts
-from mbs.bearings.roller_element import RollerElement
 from mbs.linearised.steady import steady_system
 from mbs.model.elements import Element, Operation
 from mbs.model.equilibrium import equilibrium
