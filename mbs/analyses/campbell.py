@@ -23,10 +23,9 @@ from mbs.analyses.case import Case, Failed, Progress, as_cases, side_by_side, si
 from mbs.analyses.operating import held, operating, states_of
 from mbs.analyses.ramp import recorded_run, rehearsed, run_course
 from mbs.analyses.sensors import chosen_sensors, followed_orders
-from mbs.bearings.bearing_element import BearingElement, RingElement
+from mbs.bearings.bearing_element import BearingElement, RingElement, RollerElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.roller_contacts import RollerContacts
-from mbs.bearings.roller_element import RollerElement
 from mbs.linearised.averaged import steady_system
 from mbs.linearised.sweep import sweep
 from mbs.linearised.sweep_result import Sweep

@@ -13,11 +13,10 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.units import RPM, TEMPERATURE
 from mbs.analyses.losses import contacts_and_losses
 from mbs.bearings.bearing import Bearing
-from mbs.bearings.bearing_element import BearingElement
+from mbs.bearings.bearing_element import BearingElement, RollerElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.contact_report import RollingLoss, load_torque, viscous_torque
 from mbs.bearings.roller_contacts import RollerContacts
-from mbs.bearings.roller_element import RollerElement
 from mbs.bearings.thermal import (
     BearingHeat,
     BearingState,

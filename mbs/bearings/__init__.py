@@ -13,12 +13,15 @@
 `bearing_force`        the force element, with films at once or in time, its energy and the moment on its cage
 `roller_contacts`      contacts one by one: films that relax, rollers as bodies between two contacts
 `contact_report`       what the contacts feel in an equilibrium, what rolling costs, which limits are passed
-`bearing_element`      a bearing in a system, with massless rollers
-`roller_element`       a bearing in a system, with rollers as bodies
+`bearing_element`      a bearing in a system: rollers massless or bodies, films that follow at once or need time
 `speed_tables`         tables of a law over the speed of a run
-`rings`                bearings of a run as arrays: rings and rollers
+`rings`                bearings of a run as arrays: rings, rollers, and contacts with one side or two
 `bearing_block`        compiled runs with slow films or dry contacts
 `memory_kernel`        slices whose films have a memory: one step in time
 `memory_block`         compiled runs with such films
 =====================  ================================================================================================
+
+A contact of a roller has one side, where both contacts in series stand for a massless roller, or two, the inner and the
+outer one of a roller that is a body. Elements name the law of each side (`RingElement.flat_laws`), states of films are
+kept for each side, and runs have one block of slow films and one of films with memory for both.
 """

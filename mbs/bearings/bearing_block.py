@@ -1,12 +1,11 @@
 """Bearings in compiled runs with films of slow motion or dry: they read tables of their law over the speed.
 
-With massless rollers each feels four displacements of its ring. Each contact of a roller that is a body is a bearing of
-one roller at the angle zero to `mbs.bearings.bearing_kernel`: its approach is the displacement y, its tilt theta_z.
+Massless rollers are answered all at once. Each contact of a roller that is a body is a bearing of one roller at the
+angle zero to `mbs.bearings.bearing_kernel`: its approach is the displacement y, its tilt theta_z.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -20,32 +19,34 @@ from mbs.bearings import slice_table as table
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.bearing_kernel import bearing_force, level_force, ring_powers, roller_power
-from mbs.bearings.laws import FlatLaw, Law
 from mbs.bearings.rings import (
     LEVEL,
     Contact,
+    Place,
     Rings,
-    Rollers,
     add_contact,
+    alike_contacts,
     alone,
     answer_ring,
     begin_answer,
+    cage_of,
     feels,
     gather_rings,
-    gather_rollers,
     motion_of,
     outward_power,
     place_of,
     placed,
-    rollers_feel,
     shape_of,
+    strict,
 )
-from mbs.bearings.roller_element import RollerElement
 from mbs.bearings.slice_table import CELLS, KNOTS, LawNumbers, PreparedLaw, fade, law_numbers, store_numbers
 from mbs.bearings.slices import RingMotion, Shape, Work, roller_of, sizes_of
-from mbs.bearings.speed_tables import NODES, Course, CourseOfFilms, FilmBlock, SpeedTables, course_of, shared
+from mbs.bearings.speed_tables import NODES, Course, CourseOfFilms, FilmBlock, SpeedTables, course_of
 from mbs.model.blocks import FOUND, IN_PYTHON, NO_SOLUTION, Answers, Kind, Member, Moment
 from mbs.model.elements import Element
+
+_Y, _THETA_Z = 1, 5
+"""What a contact of a roller feels as a bearing of one roller."""
 
 
 class Films(NamedTuple):
@@ -78,14 +79,15 @@ class Bearings(NamedTuple):
         What does not change.
     rows : array (Z n,)
         Work space for one bearing after the other.
-    states : array (bearings, 4 Z n)
-        Slices of each bearing at rest at the last answer, as of `mbs.bearings.slices.Work`.
+    states : array (bearings, sides, 4 Z n)
+        Slices of each bearing at rest at the last answer, as of `mbs.bearings.slices.Work`: of all its rollers together
+        where they are massless, else of one contact after the other.
     films : Films
         Tables of the laws.
     course : Course
         Places of the steps on the tables.
     strict : array (bearings,), of bool
-        Whether the law refuses loads above its map.
+        Whether a law refuses loads above its map.
     """
 
     rings: Rings
@@ -170,19 +172,76 @@ def blend(films: Films, film: int, node: int, weight: float) -> None:
 
 
 @njit(error_model="numpy")
-def _force(bearings: Bearings, b: int, moment: Moment, motion: FloatArray, out: FloatArray) -> int:
-    """Force, stiffness and damping of a bearing into `out` (13, 6); status as of `bearing_force`."""
-    rings, films = bearings.rings, bearings.films
-    z, n, film = rings.rollers[b], rings.slices[b], rings.films_of[b]
-    law = PreparedLaw(law_numbers(films.current[film]), films.cells[film], films.knots[film])
-    cells = z * n
-    work = Work(bearings.rows[:cells].reshape(z, n), bearings.states[b][: 4 * cells].reshape(4, z, n))
-    ring, shape = motion_of(rings, b, moment, motion), shape_of(rings, b)
+def _law_of(bearings: Bearings, b: int, side: int) -> PreparedLaw:
+    """The law in use of a side of the contacts of a bearing."""
+    films, film = bearings.films, bearings.rings.films_of[b, side]
+    return PreparedLaw(law_numbers(films.current[film]), films.cells[film], films.knots[film])
+
+
+@njit(error_model="numpy")
+def _on_rings(bearings: Bearings, b: int, moment: Moment, motion: FloatArray, answers: Answers) -> int:
+    """What a bearing with massless rollers answers, all of them at once; status as of `bearing_force`."""
+    rings, out = bearings.rings, np.empty((13, 6))
+    z, n = rings.rollers[b], rings.slices[b]
+    work = Work(bearings.rows[: z * n].reshape(z, n), bearings.states[b, 0][: 4 * z * n].reshape(4, z, n))
+    ring, shape, law = motion_of(rings, b, moment, motion), shape_of(rings, b), _law_of(bearings, b, 0)
+    status = 0
     if rings.felt[b] == LEVEL:
-        level: int = level_force(ring, shape, rings.weights[b][:n], law, work, out)
-        return level
-    status: int = bearing_force(ring, shape, law, work, out)
+        status = level_force(ring, shape, rings.weights[b][:n], law, work, out)
+    else:
+        status = bearing_force(ring, shape, law, work, out)
+    if status >= 0:
+        answer_ring(rings.firsts[b], rings.felt[b], moment, out, answers)
     return status
+
+
+@njit(error_model="numpy")
+def _one_roller(rings: Rings, b: int) -> Shape:
+    """A contact of a roller as a bearing of one roller, which has half of the profile."""
+    n = rings.slices[b]
+    return Shape(sizes_of(rings.sizes[b]), rings.positions[b][:n], 0.5 * rings.profiles[b][:n], np.ones(1), np.zeros(1))
+
+
+@njit(error_model="numpy")
+def _contact_motion(place: Place, side: int, shape: Shape) -> RingMotion:
+    """How the ring of that bearing moves."""
+    y = place.approach[side] + shape.sizes.half_clearance
+    return RingMotion(y, 0.0, 0.0, place.tilt, place.rate[side], 0.0, 0.0, place.tilt_rate, 1.0, 0.0)
+
+
+@njit(error_model="numpy")
+def _contact_states(bearings: Bearings, b: int, side: int, j: int) -> FloatArray:
+    """States of the slices of a contact, shape (4, 1, n)."""
+    n = bearings.rings.slices[b]
+    states: FloatArray = bearings.states[b, side][4 * n * j : 4 * n * (j + 1)].reshape(4, 1, n)
+    return states
+
+
+@njit(error_model="numpy")
+def _on_rollers(bearings: Bearings, b: int, moment: Moment, motion: FloatArray, answers: Answers) -> int:
+    """What a bearing answers whose rollers are bodies, contact by contact; status as of `bearing_force`."""
+    rings, out, above = bearings.rings, np.empty((13, 6)), 0
+    n, cage, shape = rings.slices[b], cage_of(rings, b, moment), _one_roller(rings, b)
+    rows = bearings.rows[:n].reshape(1, n)
+    begin_answer(rings, b, moment, answers)
+    for j in range(rings.rollers[b]):
+        place = place_of(rings, b, j, cage, motion)
+        for side in range(2):
+            work, ring = Work(rows, _contact_states(bearings, b, side, j)), _contact_motion(place, side, shape)
+            status = bearing_force(ring, shape, _law_of(bearings, b, side), work, out)
+            if status < 0:
+                return status
+            above = max(above, status)
+            stiffness, damping = out[1:7], out[7:13]
+            contact = Contact(
+                -out[0, _Y],
+                -out[0, _THETA_Z],
+                moment.by_q * stiffness[_Y, _Y] + moment.by_v * damping[_Y, _Y],
+                moment.by_q * stiffness[_Y, _THETA_Z] + moment.by_v * damping[_Y, _THETA_Z],
+                moment.by_q * stiffness[_THETA_Z, _THETA_Z] + moment.by_v * damping[_THETA_Z, _THETA_Z],
+            )
+            add_contact(rings, b, j, side, place, contact, answers)
+    return above
 
 
 @njit(error_model="numpy")
@@ -194,7 +253,7 @@ def bearings_answer(bearings: Bearings, moment: Moment, motion: FloatArray, answ
     bearings : Bearings
         The bearings, with the tables of their laws.
     moment : Moment
-        Step, angle, weights of the slopes.
+        Step, angle, speed, weights of the slopes.
     motion : array (2, m)
         Displacements and their rates, among what all elements feel.
     answers : Answers
@@ -203,82 +262,93 @@ def bearings_answer(bearings: Bearings, moment: Moment, motion: FloatArray, answ
     course, rings = bearings.course, bearings.rings
     for film in range(bearings.films.current.shape[0]):
         blend(bearings.films, film, course.nodes[moment.step, film], course.weights[moment.step, film])
-    out = np.empty((13, 6))
-    for b in range(rings.firsts.size):
-        status = _force(bearings, b, moment, motion, out)
+    count, sides = rings.films_of.shape
+    for b in range(count):
+        status = 0
+        if sides == 1:
+            status = _on_rings(bearings, b, moment, motion, answers)
+        else:
+            status = _on_rollers(bearings, b, moment, motion, answers)
         if status < 0:
             return NO_SOLUTION
         if status > 0 and bearings.strict[b]:
             return IN_PYTHON
-        outside = course.outside[moment.step, rings.films_of[b]]
-        answers.outside[rings.places[b]] += 1 if status > 0 or outside > 0 else 0
-        answer_ring(rings.firsts[b], rings.felt[b], moment, out, answers)
+        for side in range(sides):
+            status = max(status, course.outside[moment.step, rings.films_of[b, side]])
+        answers.outside[rings.places[b]] += status
     return FOUND
 
 
 @njit(error_model="numpy")
+def _contact_powers(bearings: Bearings, b: int, moment: Moment, motion: FloatArray) -> tuple[float, float]:
+    """`ring_powers` of a bearing whose rollers are bodies."""
+    rings = bearings.rings
+    cage, shape, weights = cage_of(rings, b, moment), _one_roller(rings, b), rings.weights[b][: rings.slices[b]]
+    lost = torque = 0.0
+    first, x = rings.firsts[b], motion[0]
+    for j in range(rings.rollers[b]):
+        place = place_of(rings, b, j, cage, motion)
+        for side in range(2):
+            roller = roller_of(_contact_motion(place, side, shape), shape, 0)
+            states = _contact_states(bearings, b, side, j)
+            power, flat, tilted = roller_power(roller, shape.positions, weights, states, 0)
+            sign, c, s, r = 1.0 - 2.0 * side, place.cos, place.sin, first + 2 * side
+            across = x[r + 1] * c - x[r] * s
+            lost += power
+            torque += sign * across * flat - 0.5 * (x[first + 5] * s + x[first + 4] * c) * tilted
+    length = shape.sizes.slice_length
+    lost, torque = lost * length, torque * length
+    return lost, torque * rings.cage_rates[b] * moment.speed + outward_power(rings, b, moment, motion)
+
+
+@njit(error_model="numpy")
 def bearings_powers(bearings: Bearings, moment: Moment, motion: FloatArray, answers: Answers, out: FloatArray) -> None:
-    """What contacts dissipate, and what the cage brings in; see `mbs.model.blocks.Kind`.
+    """What contacts dissipate, and what cage and centrifugal forces bring in; see `mbs.model.blocks.Kind`.
 
     Parameters
     ----------
     bearings, moment, motion, answers
-        The same as of `bearings_answer`.
+        The same as of `bearings_answer`, of which this was the last one.
     out : array (elements, 3)
         Powers of all elements; written.
     """
     rings = bearings.rings
-    for b in range(rings.firsts.size):
-        z, n, place = rings.rollers[b], rings.slices[b], rings.places[b]
-        states = bearings.states[b][: 4 * z * n].reshape(4, z, n)
-        numbers = law_numbers(bearings.films.current[rings.films_of[b]])
+    count, sides = rings.films_of.shape
+    for b in range(count):
+        place = rings.places[b]
+        if sides == 2:
+            out[place, 0], out[place, 1] = _contact_powers(bearings, b, moment, motion)
+            continue
+        z, n = rings.rollers[b], rings.slices[b]
+        states = bearings.states[b, 0][: 4 * z * n].reshape(4, z, n)
+        numbers = law_numbers(bearings.films.current[rings.films_of[b, 0]])
         cage_rate = rings.cage_rates[b] * moment.speed
         ring, shape = motion_of(rings, b, moment, motion), shape_of(rings, b)
-        weights = rings.weights[b][:n]
-        out[place, 0], out[place, 1] = ring_powers(ring, shape, weights, numbers, states, cage_rate)
+        out[place, 0], out[place, 1] = ring_powers(ring, shape, rings.weights[b][:n], numbers, states, cage_rate)
 
 
 class BearingBlock(FilmBlock[Bearings]):
-    """The bearings of a run; those with the same law at the same speed and temperature share their tables.
+    """The bearings of a run; contacts with the same law at the same conditions share their tables.
 
     Parameters
     ----------
     members : sequence of Member
-        Bearings with a `BearingForce`.
+        Bearings with a `BearingForce`, or elements of the class `RollerElement`.
     """
 
     def __init__(self, members: Sequence[Member]) -> None:
-        elements: list[BearingElement] = [member.element for member in members]
-        films_of, firsts = shared(
-            (id(_force_of(element).law), element.temperature, *element.rates[1:]) for element in elements
-        )
-        tables = [
-            SpeedTables(element.bearing, _force_of(element).flat_law, element.temperature, element.rates[1:])
-            for element in (elements[first] for first in firsts)
-        ]
-        rings = gather_rings(members, films_of)
-        films = room_of(tables)
-        course = course_over(tables, films)
+        films_of, alike = alike_contacts(members)
+        tables = [SpeedTables(one.bearing, one.law, one.temperature, one.rates) for one in alike]
+        rings, films = gather_rings(members, films_of), room_of(tables)
         arrays = Bearings(
             rings=rings,
             rows=np.zeros(rings.most_slices, dtype=np.int64),
-            states=np.zeros((len(elements), 4 * rings.most_slices)),
+            states=np.zeros((*films_of.shape, 4 * rings.most_slices)),
             films=films,
             course=course_of(0, len(tables)),
-            strict=np.array([is_strict(_force_of(element).law) for element in elements], dtype=np.bool_),
+            strict=strict(members),
         )
-        super().__init__(course, arrays)
-
-
-def _force_of(element: BearingElement) -> BearingForce:
-    """The force of a bearing that the kind takes."""
-    assert isinstance(element.force, BearingForce)
-    return element.force
-
-
-def is_strict(law: Law) -> bool:
-    """Whether a law refuses loads above its map."""
-    return law.outside == "error"
+        super().__init__(course_over(tables, films), arrays)
 
 
 def room_of(tables: Sequence[SpeedTables]) -> Films:
@@ -328,164 +398,12 @@ BEARINGS = Kind(
 """For `mbs.transient.kinds`."""
 
 
-_Y, _THETA_Z = 1, 5
-
-
-class RollerBearings(NamedTuple):
-    """Bearings with rollers that are bodies, and contacts without states, as arrays.
-
-    Attributes
-    ----------
-    rollers : Rollers
-        What does not change.
-    rows, states : array (n,), (4 n,)
-        Work space for one contact after the other.
-    films : Films
-        Tables of the laws of single contacts.
-    course : Course
-        Places of the steps on the tables.
-    lost, torques : array (bearings,)
-        Power that the contacts of each dissipated at the last answer [W], and moment of their loads at rest on the
-        cage [N m].
-    strict : array (bearings,), of bool
-        Whether a law refuses loads above its map.
-    """
-
-    rollers: Rollers
-    rows: IntArray
-    states: FloatArray
-    films: Films
-    course: Course
-    lost: FloatArray
-    torques: FloatArray
-    strict: BoolArray
-
-
-@njit(error_model="numpy")
-def rollers_answer(bearings: RollerBearings, moment: Moment, motion: FloatArray, answers: Answers) -> int:
-    """Forces and slopes of all bearings; see `mbs.model.blocks.Kind`.
-
-    Parameters
-    ----------
-    bearings : RollerBearings
-        The bearings, with the tables of their laws.
-    moment : Moment
-        Step, angle, speed, weights of the slopes.
-    motion : array (2, m)
-        Displacements and their rates, among what all elements feel.
-    answers : Answers
-        Answers of all elements, filled.
-    """
-    rollers, course, films = bearings.rollers, bearings.course, bearings.films
-    rings = rollers.rings
-    for film in range(films.current.shape[0]):
-        blend(films, film, course.nodes[moment.step, film], course.weights[moment.step, film])
-    out, cos, sin = np.empty((13, 6)), np.ones(1), np.zeros(1)
-    for b in range(rings.firsts.size):
-        n = rings.slices[b]
-        angle = rings.start_angles[b] + rings.cage_rates[b] * moment.angle
-        cage = math.cos(angle), math.sin(angle)
-        sizes = sizes_of(rings.sizes[b])
-        shape = Shape(sizes, rings.positions[b][:n], 0.5 * rings.profiles[b][:n], cos, sin)
-        work = Work(bearings.rows[:n].reshape(1, n), bearings.states[: 4 * n].reshape(4, 1, n))
-        begin_answer(rollers, b, moment, answers)
-        lost = torque = 0.0
-        outside = 0
-        first, x = rings.firsts[b], motion[0]
-        for j in range(rings.rollers[b]):
-            place = place_of(rollers, b, j, cage, motion)
-            for side in range(2):
-                film = rollers.films_of[b, side]
-                law = PreparedLaw(law_numbers(films.current[film]), films.cells[film], films.knots[film])
-                y = place.approach[side] + sizes.half_clearance
-                ring = RingMotion(y, 0.0, 0.0, place.tilt, place.rate[side], 0.0, 0.0, place.tilt_rate, 1.0, 0.0)
-                status = bearing_force(ring, shape, law, work, out)
-                if status < 0:
-                    return NO_SOLUTION
-                if status > 0 and bearings.strict[b]:
-                    return IN_PYTHON
-                outside = max(outside, status, course.outside[moment.step, film])
-                stiffness, damping = out[1:7], out[7:13]
-                contact = Contact(
-                    -out[0, _Y],
-                    -out[0, _THETA_Z],
-                    moment.by_q * stiffness[_Y, _Y] + moment.by_v * damping[_Y, _Y],
-                    moment.by_q * stiffness[_Y, _THETA_Z] + moment.by_v * damping[_Y, _THETA_Z],
-                    moment.by_q * stiffness[_THETA_Z, _THETA_Z] + moment.by_v * damping[_THETA_Z, _THETA_Z],
-                )
-                add_contact(rollers, b, j, side, place, contact, answers)
-                power, flat, tilted = roller_power(
-                    roller_of(ring, shape, 0), shape.positions, rings.weights[b][:n], work.states, 0
-                )
-                sign, c, s, r = 1.0 - 2.0 * side, place.cos, place.sin, first + 2 * side
-                across = x[r + 1] * c - x[r] * s
-                lost += power
-                torque += sign * across * flat - 0.5 * (x[first + 5] * s + x[first + 4] * c) * tilted
-        bearings.lost[b], bearings.torques[b] = lost * sizes.slice_length, torque * sizes.slice_length
-        answers.outside[rings.places[b]] += outside
-    return FOUND
-
-
-@njit(error_model="numpy")
-def rollers_powers(
-    bearings: RollerBearings, moment: Moment, motion: FloatArray, answers: Answers, out: FloatArray
-) -> None:
-    """What contacts dissipate, and what the cage brings in; see `mbs.model.blocks.Kind`.
-
-    Parameters
-    ----------
-    bearings, moment, motion, answers
-        The same as of `rollers_answer`.
-    out : array (elements, 3)
-        Powers of all elements; written.
-    """
-    rings = bearings.rollers.rings
-    for b in range(rings.firsts.size):
-        out[rings.places[b], 0] = bearings.lost[b]
-        outward = outward_power(bearings.rollers, b, moment, motion)
-        out[rings.places[b], 1] = bearings.torques[b] * rings.cage_rates[b] * moment.speed + outward
-
-
-class RollerBlock(FilmBlock[RollerBearings]):
-    """The bearings of a run; contacts with the same law at the same speed and temperature share their tables.
-
-    Parameters
-    ----------
-    members : sequence of Member
-        Elements of the class `RollerElement`.
-    """
-
-    def __init__(self, members: Sequence[Member]) -> None:
-        elements: list[RollerElement] = [member.element for member in members]
-        pairs = [(element.plain, law) for element in elements for law in element.contacts.laws]
-        films_of, firsts = shared((id(law), plain.temperature, plain.rates[1]) for plain, law in pairs)
-        tables = []
-        for first in firsts:
-            plain, law = pairs[first]
-            tables.append(SpeedTables(plain.bearing, FlatLaw(law), plain.temperature, (plain.rates[1], 0.0)))
-        rollers = gather_rollers(members, films_of)
-        films = room_of(tables)
-        course = course_over(tables, films)
-        most = int(np.max(rollers.rings.slices, initial=0))
-        arrays = RollerBearings(
-            rollers=rollers,
-            rows=np.zeros(most, dtype=np.int64),
-            states=np.zeros(4 * most),
-            films=films,
-            course=course_of(0, len(tables)),
-            lost=np.zeros(len(elements)),
-            torques=np.zeros(len(elements)),
-            strict=np.array([any(map(is_strict, each.contacts.laws)) for each in elements], dtype=np.bool_),
-        )
-        super().__init__(course, arrays)
-
-
 ROLLERS = Kind(
-    arrays=RollerBearings,
-    answer=rollers_answer,
-    feels=rollers_feel,
-    gather=RollerBlock,
+    arrays=Bearings,
+    answer=bearings_answer,
+    feels=feels,
+    gather=BearingBlock,
     alone=alone,
-    powers=rollers_powers,
+    powers=bearings_powers,
 )
-"""For `mbs.transient.kinds`."""
+"""For `mbs.transient.kinds`: the same with rollers as bodies."""

@@ -1,6 +1,7 @@
 """A bearing in a system: the bearing force between two places, at the speed and cage angle that the system has.
 
-Films follow at once, or need time: then each slice has a state in runs (`MemoryBearing`).
+Its rollers are massless, with one law of both contacts in series, or bodies between two contacts. Films follow at once,
+or need time: then each slice of each side of a contact has a state in runs.
 """
 
 from __future__ import annotations
@@ -18,15 +19,16 @@ from ehdmaps.errors import InputError
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import NO_COUPLED_MEMORY, BearingForce, brought_by_speed, cage_moment, energy_at_rest
 from mbs.bearings.force_at_point import Arrays, RollerLoads
-from mbs.bearings.laws import DryLaw
+from mbs.bearings.laws import DryLaw, FlatLaw
 from mbs.bearings.slices import approaches_of_arrays
+from mbs.model.body import Body
 from mbs.model.elements import ElementDefaults, Excitation, Forces, Operation, Port, Powers
 from mbs.model.relaxation import Films, Relaxation
 
 if TYPE_CHECKING:
     from ehdmaps.maps.law import ContactLaw
     from ehdmaps.maps.memory import FilmMemory, FilmState
-    from mbs.bearings.roller_contacts import ContactGroup
+    from mbs.bearings.roller_contacts import ContactGroup, RollerContacts
     from mbs.model.system import System
 
 
@@ -61,6 +63,29 @@ class RingElement(ElementDefaults):
 
     `mbs.model.system.System.select` finds bearings by this class; a bearing of your own inherits from it.
     """
+
+    @property
+    def flat_laws(self) -> tuple[FlatLaw, ...]:
+        """Law of each side of its contacts: of both in series, or of the inner and the outer one; none if unknown."""
+        return ()
+
+    @property
+    def film_laws(self) -> tuple[ContactLaw, ...]:
+        """The same where all of them have films; else none."""
+        found = tuple(flat.law for flat in self.flat_laws if not isinstance(flat.law, DryLaw))
+        return found if len(found) == len(self.flat_laws) else ()
+
+    def brought_in(
+        self, force: FloatArray, displacement: FloatArray, velocity: FloatArray, operation: Operation
+    ) -> float:
+        """Power that the turning of the cage and the centrifugal forces of rollers bring in [W].
+
+        Parameters
+        ----------
+        force, displacement, velocity, operation
+            What `powers` takes; the force is that which the cage feels.
+        """
+        return 0.0
 
     def film_relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
         """How its films would relax, whether linear analyses are to see that or not; None without films.
@@ -163,6 +188,11 @@ class BearingElement(RingElement):
         order = self.bearing.geometry.rollers * abs(self.rates[0])
         return Excitation(order, HARMONICS, rank=1) if order > 0.0 else None
 
+    @property
+    def flat_laws(self) -> tuple[FlatLaw, ...]:
+        """See `RingElement.flat_laws`: that of both contacts in series."""
+        return (self.force.flat_law,) if isinstance(self.force, BearingForce) else ()
+
     @cached_property
     def rates(self) -> tuple[float, float, float]:
         """Cage speed and entrainment speed for each speed of the system, centrifugal load for its square."""
@@ -182,6 +212,14 @@ class BearingElement(RingElement):
         """Centrifugal load for each metre of a roller [N/m]; zero where it is left out."""
         return self.rates[2] * operation.speed**2
 
+    def conditions(self, operation: Operation) -> dict[str, float]:
+        """Angle of the cage, entrainment speed and temperature, by the names that forces take."""
+        return {
+            "cage_angle": self.cage_angle(operation),
+            "entrainment_speed": self.entrainment_speed(operation),
+            "temperature": self.temperature,
+        }
+
     def rollers(self, displacement: FloatArray, operation: Operation) -> RollerLoads:
         """Loads of all rollers at rest at the displacement (6,) of the inner ring against the outer one.
 
@@ -194,13 +232,8 @@ class BearingElement(RingElement):
             raise InputError(
                 f"bearing {self.name!r}, rollers: got a {type(self.force).__name__} as force; allowed: BearingForce"
             )
-        return self.force.rollers(
-            displacement,
-            cage_angle=self.cage_angle(operation),
-            entrainment_speed=self.entrainment_speed(operation),
-            temperature=self.temperature,
-            centrifugal_load=self.centrifugal_load(operation),
-        )
+        conditions, load = self.conditions(operation), self.centrifugal_load(operation)
+        return self.force.rollers(displacement, **conditions, centrifugal_load=load)
 
     def relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
         """How the films relax, where they do, see `Element.relaxation`."""
@@ -208,54 +241,44 @@ class BearingElement(RingElement):
 
     def film_relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
         """See `RingElement.film_relaxation`; with centrifugal load the times are those without it, as an estimate."""
-        if not isinstance(self.force, BearingForce) or isinstance(self.force.law, DryLaw):
+        if not self.film_laws:
             return None
         from mbs.bearings.roller_contacts import bearing_relaxation
 
-        law = self.force.law.at(self.entrainment_speed(operation), self.temperature)
+        law = self.film_laws[0].at(self.entrainment_speed(operation), self.temperature)
         return bearing_relaxation(law, self.rollers(displacement, operation), self.bearing.slice_length)
 
     def natural_times(self, displacement: FloatArray, operation: Operation) -> FloatArray:
         """See `RingElement.natural_times`."""
-        if not isinstance(self.force, BearingForce) or isinstance(self.force.law, DryLaw):
+        if not self.film_laws:
             return np.zeros(0)
         from mbs.bearings.roller_contacts import natural_times
 
-        law = self.force.law.at(self.entrainment_speed(operation), self.temperature)
+        law = self.film_laws[0].at(self.entrainment_speed(operation), self.temperature)
         return natural_times(law, self.rollers(displacement, operation).approach).reshape(-1)
 
     @property
     def error_words(self) -> str:
         """See `RingElement.error_words`."""
-        if not isinstance(self.force, BearingForce) or isinstance(self.force.law, DryLaw):
-            return ""
-        errors = self.force.law.errors
+        errors = self.film_laws[0].errors if self.film_laws else None
         return "" if errors is None else errors.words
 
     def contact_groups(self, displacement: FloatArray, operation: Operation) -> tuple[ContactGroup, ...]:
         """See `RingElement.contact_groups`: slices of both contacts in series; none where slices are coupled."""
-        if self.bearing.coupled:
-            return ()
-        if not isinstance(self.force, BearingForce) or isinstance(self.force.law, DryLaw):
+        if self.bearing.coupled or not self.film_laws:
             return ()
         from mbs.bearings.roller_contacts import ContactGroup, massless_rows
 
         u, q = self.entrainment_speed(operation), self.centrifugal_load(operation)
         rollers = self.rollers(displacement, operation)
-        law, length = self.force.law.at(u, self.temperature, q), self.bearing.slice_length
+        law, length = self.film_laws[0].at(u, self.temperature, q), self.bearing.slice_length
         relaxes = self.films == "memory"
         return (ContactGroup(law, massless_rows(rollers), rollers.approach.reshape(-1), length, relaxes),)
 
     def evaluate(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> Forces:
         """Force on the inner ring, stiffness and damping, see `Element.evaluate`."""
-        return self.force.evaluate(
-            displacement,
-            velocity,
-            cage_angle=self.cage_angle(operation),
-            entrainment_speed=self.entrainment_speed(operation),
-            temperature=self.temperature,
-            centrifugal_load=self.centrifugal_load(operation),
-        )
+        conditions, load = self.conditions(operation), self.centrifugal_load(operation)
+        return self.force.evaluate(displacement, velocity, **conditions, centrifugal_load=load)
 
     def powers(
         self, states: Any, force: FloatArray, displacement: FloatArray, velocity: FloatArray, operation: Operation
@@ -264,8 +287,13 @@ class BearingElement(RingElement):
         if not isinstance(self.force, BearingForce):
             return None
         at_rest = self.evaluate(displacement, np.zeros(6), operation).force
-        torque = cage_moment(at_rest, displacement, 1)
-        return Powers(-float((force - at_rest) @ velocity), torque * self.rates[0] * operation.speed)
+        return Powers(-float((force - at_rest) @ velocity), self.brought_in(at_rest, displacement, velocity, operation))
+
+    def brought_in(
+        self, force: FloatArray, displacement: FloatArray, velocity: FloatArray, operation: Operation
+    ) -> float:
+        """Power of the turning cage, see `RingElement.brought_in`."""
+        return cage_moment(force, displacement, 1) * self.rates[0] * operation.speed
 
     def stored(self, states: Any, displacement: FloatArray, operation: Operation) -> float | None:
         """Energy of its contacts at rest [J]: the integral of their loads over the approach; see `Element.stored`."""
@@ -302,6 +330,135 @@ class BearingElement(RingElement):
             return found
 
         return brought_by_speed(self.force.law, self.force.bearing, conditions, approaches)
+
+
+def roller_body(name: str, bearing: Bearing) -> Body:
+    """The rollers of a bearing as one body, with a radial coordinate [m] for each."""
+    count = bearing.geometry.rollers
+    zero = np.zeros((count, count))
+    return Body(
+        name=name,
+        coordinates=tuple(f"roller_{index + 1}" for index in range(count)),
+        units=("m",) * count,
+        mass=bearing.roller_mass * np.eye(count),
+        gyroscopic=zero,
+        damping=zero,
+        stiffness=zero,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class RollerElement(RingElement):
+    """A bearing whose rollers are bodies: each has a mass and a radial freedom, between two contacts.
+
+    The radial freedoms are counted in the cage, which turns; what its turning adds to the rollers' motion but the
+    centrifugal load is left out, as speeds of vibration are small against it.
+
+    Attributes
+    ----------
+    plain : BearingElement
+        The same bearing with massless rollers: places, speeds, and the loads of rollers to look at.
+    contacts : RollerContacts
+        The forces.
+    rollers : str
+        Name of the body of the rollers.
+    films : {"slow", "memory"}
+        The same as of a `BearingElement`.
+    """
+
+    plain: BearingElement
+    contacts: RollerContacts
+    rollers: str
+    films: Films = "slow"
+
+    @property
+    def name(self) -> str:
+        """For messages and results."""
+        return self.plain.name
+
+    @property
+    def flat_laws(self) -> tuple[FlatLaw, ...]:
+        """See `RingElement.flat_laws`: those of the inner and of the outer contacts."""
+        return self.contacts.flat_laws
+
+    @property
+    def ports(self) -> tuple[Port, ...]:
+        """Inner ring, outer ring, rollers."""
+        return Port(self.plain.inner), Port(self.plain.outer), Port(self.rollers, coordinates=True)
+
+    @property
+    def excitation(self) -> Excitation | None:
+        """The passing of the rollers."""
+        return self.plain.excitation
+
+    def relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
+        """How the films of both contacts relax, where they do, see `Element.relaxation`."""
+        return self.film_relaxation(displacement, operation) if self.films == "memory" else None
+
+    def film_relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
+        """See `RingElement.film_relaxation`."""
+        return self.contacts.relaxation(displacement, **self.plain.conditions(operation))
+
+    def natural_times(self, displacement: FloatArray, operation: Operation) -> FloatArray:
+        """See `RingElement.natural_times`."""
+        return self.contacts.natural_times(displacement, **self.plain.conditions(operation))
+
+    @property
+    def error_words(self) -> str:
+        """See `RingElement.error_words`."""
+        return self.plain.error_words
+
+    def contact_groups(self, displacement: FloatArray, operation: Operation) -> tuple[ContactGroup, ...]:
+        """See `RingElement.contact_groups`: slices of the inner contacts, and of the outer ones."""
+        relaxes = self.films == "memory"
+        return self.contacts.groups(displacement, relaxes=relaxes, **self.plain.conditions(operation))
+
+    def evaluate(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> Forces:
+        """Forces on rings and rollers, stiffness and damping, see `Element.evaluate`."""
+        found = self.contacts.evaluate(displacement, velocity, **self.plain.conditions(operation))
+        found.force[12:] += self.outward(operation)
+        return found
+
+    def powers(
+        self, states: Any, force: FloatArray, displacement: FloatArray, velocity: FloatArray, operation: Operation
+    ) -> Powers:
+        """What its contacts dissipate; what cage and centrifugal forces bring in, see `Element.powers`."""
+        at_rest = self.evaluate(displacement, np.zeros_like(velocity), operation).force
+        return Powers(-float((force - at_rest) @ velocity), self.brought_in(at_rest, displacement, velocity, operation))
+
+    def brought_in(
+        self, force: FloatArray, displacement: FloatArray, velocity: FloatArray, operation: Operation
+    ) -> float:
+        """Power of the turning cage and of centrifugal forces, see `RingElement.brought_in`."""
+        turning = cage_moment(force, displacement, 2) * self.plain.rates[0] * operation.speed
+        return turning + self.outward(operation) * float(np.sum(velocity[12:]))
+
+    def stored(self, states: Any, displacement: FloatArray, operation: Operation) -> float:
+        """Energy of its contacts at rest [J], without that of a centrifugal field; see `Element.stored`."""
+        plain, contacts = self.plain, self.contacts
+        conditions = plain.entrainment_speed(operation), plain.temperature, 0.0
+        approaches = contacts.approaches(displacement, plain.cage_angle(operation))
+        return sum(
+            energy_at_rest(law, conditions, plain.bearing, approach)
+            for law, approach in zip(contacts.laws, approaches, strict=True)
+        )
+
+    def brought_by_speed(self, displacements: FloatArray, operations: Sequence[Operation]) -> float:
+        """Energy that changes of the speed brought into the films of both contacts."""
+        plain, total = self.plain, 0.0
+        conditions = [(plain.entrainment_speed(op), plain.temperature, 0.0) for op in operations]
+        for side, law in enumerate(self.contacts.laws):
+
+            def approaches(sample: int, side: int = side) -> FloatArray:
+                angle = plain.cage_angle(operations[sample])
+                return self.contacts.approaches(displacements[sample], angle)[side]
+
+            total += brought_by_speed(law, plain.bearing, conditions, approaches)
+        return total
+
+    def outward(self, operation: Operation) -> float:
+        """Centrifugal force of a roller [N]; zero where it is left out."""
+        return self.plain.centrifugal_load(operation) * self.plain.bearing.geometry.roller_length
 
 
 def error_words(system: System) -> str:
@@ -345,29 +502,108 @@ def ring_following(stiffness: FloatArray) -> FloatArray:
     return following
 
 
+_NO_FILMS = "got 'memory' with a law without films; allowed: laws map and formula"
+
+_AT_REST = 1e6
+"""A step so long that films are in equilibrium at its end [s]."""
+
+
 class FilmStates(NamedTuple):
     """States of a bearing's films after a step.
 
     Attributes
     ----------
-    films : FilmState
-        Films of all slices of all rollers, shape (Z, n).
+    films : tuple of FilmState
+        Films of all slices of all rollers, shape (Z, n), for each side of the contacts.
     time : float
         End of the step [s].
-    before : FilmState or None
+    before : tuple of FilmState or None
         Films at its beginning; None where that is not known.
     """
 
-    films: FilmState
+    films: tuple[FilmState, ...]
     time: float
-    before: FilmState | None = None
+    before: tuple[FilmState, ...] | None = None
+
+
+class FilmsInTime(RingElement):
+    """A bearing whose films have a memory in time, see `ehdmaps.maps.memory_table`, with rollers of either kind.
+
+    At rest it is the element without; small oscillations see films that relax.
+    """
+
+    def advance(
+        self, states: FilmStates | None, displacement: FloatArray, velocity: FloatArray, operation: Operation
+    ) -> tuple[Forces, FilmStates]:
+        """A step in time up to the time of `operation`, as `ContactLaw.advance` for all slices.
+
+        Parameters
+        ----------
+        states : FilmStates or None
+            States after the last step; None for films in equilibrium.
+        displacement, velocity : array, shape (m,)
+            Motion of the ports at the end of the step; the rates have no effect.
+        operation : Operation
+            Speed, angle and time there.
+
+        Raises
+        ------
+        InputError, OutsideMapError
+            As the law does.
+        """
+        before = None if states is None else states.films
+        dt = 0.0 if states is None else operation.time - states.time
+        forces, films = self.advance_films(before, displacement, dt, operation)
+        return forces, FilmStates(films, operation.time, before)
+
+    def powers(
+        self,
+        states: FilmStates,
+        force: FloatArray,
+        displacement: FloatArray,
+        velocity: FloatArray,
+        operation: Operation,
+    ) -> Powers:
+        """What its films take up; what cage and centrifugal forces bring in, see `Element.powers`."""
+        memories, length = self.in_time(operation)
+        spent = 0.0
+        if states.before is not None:
+            sides = zip(memories, states.before, states.films, strict=True)
+            spent = sum(float(np.sum(memory.spent(before, films))) for memory, before, films in sides)
+        return Powers(0.0, self.brought_in(force, displacement, velocity, operation), spent * length)
+
+    def stored(self, states: FilmStates, displacement: FloatArray, operation: Operation) -> float:
+        """Energy of its contacts [J]: of the solids and of the films that follow, see `Element.stored`."""
+        memories, length = self.in_time(operation)
+        sides = zip(memories, states.films, strict=True)
+        return sum(float(np.sum(memory.stored(films))) for memory, films in sides) * length
+
+    def in_time(self, operation: Operation) -> tuple[tuple[FilmMemory, ...], float]:
+        """Laws with memory of each side of the contacts at the speed, and the length of a slice [m]."""
+        raise NotImplementedError
+
+    def advance_films(
+        self, before: tuple[FilmState, ...] | None, displacement: FloatArray, dt: float, operation: Operation
+    ) -> tuple[Forces, tuple[FilmState, ...]]:
+        """Forces and films after a step.
+
+        Parameters
+        ----------
+        before : tuple of FilmState or None
+            Films at its beginning; None for films in equilibrium at its end, which have not moved yet.
+        displacement : array, shape (m,)
+            Displacements of the ports at its end.
+        dt : float
+            Length of the step [s]; of no effect without `before`.
+        operation : Operation
+            Speed, angle and time at its end.
+        """
+        raise NotImplementedError
 
 
 @dataclass(frozen=True, eq=False)
-class MemoryBearing(BearingElement):
-    """A bearing whose films have a memory in time, see `ehdmaps.maps.memory_table`.
-
-    At rest it is the `BearingElement` with the same force; small oscillations see films that relax.
+class MemoryBearing(FilmsInTime, BearingElement):
+    """A `BearingElement` whose films have a memory in time.
 
     Raises
     ------
@@ -379,75 +615,55 @@ class MemoryBearing(BearingElement):
 
     def __post_init__(self) -> None:
         BearingElement.__post_init__(self)
-        if not isinstance(self.force, BearingForce) or isinstance(self.force.law, DryLaw):
-            raise InputError(
-                f"bearing {self.name!r}, films: got 'memory' with a law without films; allowed: laws map and formula"
-            )
+        if not self.film_laws:
+            raise InputError(f"bearing {self.name!r}, films: {_NO_FILMS}")
 
-    @property
-    def law(self) -> ContactLaw:
-        """The law of a roller between both raceways."""
-        assert isinstance(self.force, BearingForce) and not isinstance(self.force.law, DryLaw)
-        return self.force.law
-
-    def advance(
-        self, states: FilmStates | None, displacement: FloatArray, velocity: FloatArray, operation: Operation
-    ) -> tuple[Forces, FilmStates]:
-        """A step in time up to the time of `operation`, as `ContactLaw.advance` for all slices.
-
-        Parameters
-        ----------
-        states : FilmStates or None
-            States after the last step; None for films in equilibrium.
-        displacement, velocity : array, shape (6,)
-            Motion of the inner ring against the outer one at the end of the step; the rates have no effect.
-        operation : Operation
-            Speed, angle and time there.
-
-        Raises
-        ------
-        InputError, OutsideMapError
-            As the law does.
-        """
-        assert isinstance(self.force, BearingForce)
-        forces, films = self.force.advance(
-            None if states is None else states.films,
-            displacement,
-            _AT_REST if states is None else operation.time - states.time,
-            cage_angle=self.cage_angle(operation),
-            entrainment_speed=self.entrainment_speed(operation),
-            temperature=self.temperature,
-            centrifugal_load=self.centrifugal_load(operation),
-        )
-        # A run begins with films that have not moved yet.
-        if states is None:
-            return forces, FilmStates(dataclasses.replace(films, step=0.0), operation.time)
-        return forces, FilmStates(films, operation.time, states.films)
-
-    def powers(
-        self,
-        states: FilmStates,
-        force: FloatArray,
-        displacement: FloatArray,
-        velocity: FloatArray,
-        operation: Operation,
-    ) -> Powers:
-        """What its films take up, and what the turning of the cage brings in, see `Element.powers`."""
-        driven, spent = cage_moment(force, displacement, 1) * self.rates[0] * operation.speed, 0.0
-        if states.before is not None:
-            spent = float(np.sum(self._memory(operation).spent(states.before, states.films)))
-        return Powers(0.0, driven, spent * self.bearing.slice_length)
-
-    def stored(self, states: FilmStates, displacement: FloatArray, operation: Operation) -> float:
-        """Energy of its contacts [J]: of the solids and of the films that follow; see `Element.stored`."""
-        return float(np.sum(self._memory(operation).stored(states.films))) * self.bearing.slice_length
-
-    def _memory(self, operation: Operation) -> FilmMemory:
-        """The law with memory at the speed."""
+    def in_time(self, operation: Operation) -> tuple[tuple[FilmMemory, ...], float]:
+        """See `FilmsInTime.in_time`."""
         assert isinstance(self.force, BearingForce)
         conditions = self.entrainment_speed(operation), self.temperature, self.centrifugal_load(operation)
-        return self.force.in_time(*conditions).law.memory
+        return (self.force.in_time(*conditions).law.memory,), self.bearing.slice_length
+
+    def advance_films(
+        self, before: tuple[FilmState, ...] | None, displacement: FloatArray, dt: float, operation: Operation
+    ) -> tuple[Forces, tuple[FilmState, ...]]:
+        """Forces and films after a step, see `FilmsInTime.advance_films`."""
+        assert isinstance(self.force, BearingForce)
+        forces, films = self.force.advance(
+            None if before is None else before[0],
+            displacement,
+            _AT_REST if before is None else dt,
+            **self.conditions(operation),
+            centrifugal_load=self.centrifugal_load(operation),
+        )
+        return forces, (dataclasses.replace(films, step=0.0) if before is None else films,)
 
 
-_AT_REST = 1e6
-"""A step so long that films are in equilibrium at its end [s]."""
+@dataclass(frozen=True, eq=False)
+class MemoryRollers(FilmsInTime, RollerElement):
+    """A `RollerElement` whose films have a memory in time.
+
+    Raises
+    ------
+    InputError
+        With contact laws that have no films.
+    """
+
+    films: Films = "memory"
+
+    def __post_init__(self) -> None:
+        if not self.film_laws:
+            raise InputError(f"bearing {self.name!r}, films: {_NO_FILMS}")
+
+    def in_time(self, operation: Operation) -> tuple[tuple[FilmMemory, ...], float]:
+        """See `FilmsInTime.in_time`."""
+        memories = self.contacts.memories(self.plain.entrainment_speed(operation), self.plain.temperature)
+        return memories, self.plain.bearing.slice_length
+
+    def advance_films(
+        self, before: tuple[FilmState, ...] | None, displacement: FloatArray, dt: float, operation: Operation
+    ) -> tuple[Forces, tuple[FilmState, ...]]:
+        """Forces and films after a step, see `FilmsInTime.advance_films`."""
+        found, films = self.contacts.advance(before, displacement, dt, **self.plain.conditions(operation))
+        found.force[12:] += self.outward(operation)
+        return found, films

@@ -1,6 +1,7 @@
 """Bearings of a compiled run as arrays: what does not change of them, and how their rings and rollers move.
 
-Blocks with and without memory of the films share this; `mbs.bearings.bearing_block` and `mbs.bearings.memory_block`
+One class of arrays holds massless rollers, whose contacts have one side, and rollers as bodies, whose contacts have
+two. Blocks with and without memory of the films share it; `mbs.bearings.bearing_block` and `mbs.bearings.memory_block`
 add what each slice needs. Rings that cannot tilt against each other press slices of the same depth alike: each depth is
 looked at once, with the number of such slices as its weight, and neither tilts nor moments are computed
 (`mbs.bearings.bearing_kernel`). With memory it is both of a pair left and right of the middle, whatever the profile:
@@ -20,12 +21,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.arrays import BoolArray, FloatArray, IntArray
 from ehdmaps.compiled import njit
-from mbs.bearings.bearing_element import BearingElement
+from mbs.bearings.bearing import Bearing
+from mbs.bearings.bearing_element import BearingElement, RollerElement
 from mbs.bearings.force_at_point import Arrays
-from mbs.bearings.roller_element import RollerElement
+from mbs.bearings.laws import FlatLaw
 from mbs.bearings.slices import RingMotion, Shape, sizes_of
+from mbs.bearings.speed_tables import shared
 from mbs.model.blocks import Answers, Member, Moment
 
 FELT = np.array([1, 2, 4, 5])
@@ -35,6 +38,10 @@ LEVEL = 2
 """How many of them one feels whose rings do not tilt: the first ones."""
 
 _TILTS = FELT[LEVEL:]
+
+_FELT, _TILT_PLACE = 6, 4
+"""How many displacements of both rings a bearing feels whose rollers are bodies, and where the tilts are among them."""
+
 _SAME = 12
 """Digits of the deepest profile to which depths are the same."""
 
@@ -44,24 +51,33 @@ _NO_DEPTH, _ROUND_OFF = 1e-30, 1e-12
 class Rings(NamedTuple):
     """Bearings as arrays, one row a bearing; rows of slices and rollers are as long as the longest.
 
+    A contact of a roller has one side, where both contacts in series stand for a massless roller, or two, the inner and
+    the outer one of a roller that is a body. All bearings of a block have as many.
+
     Attributes
     ----------
-    firsts, places, films_of : array (bearings,), of int
-        First of what each feels, its place among all elements, its film.
+    firsts, places : array (bearings,), of int
+        First of what each feels, its place among all elements.
+    films_of : array (bearings, sides), of int
+        Film of each contact.
     rollers, slices : array (bearings,), of int
         How many each has.
     start_angles, cage_rates : array (bearings,)
         Angle of the first roller [rad], and cage angle by that of the system.
     sizes : array (bearings, 6)
-        `Sizes` in their order.
+        `Sizes` in their order; clearance and profiles are those of both contacts of a roller together.
     positions, profiles : array (bearings, n)
         Slices, see `Shape` [m].
     cos, sin : array (bearings, Z)
         Directions of the rollers, see `Shape`.
     felt : array (bearings,), of int
-        How many displacements each feels: 4, or 2 of rings that do not tilt.
+        How many displacements of rings each feels: 4, 2 of rings that do not tilt, 6 with rollers as bodies.
     weights : array (bearings, n)
         How many slices each slice stands for; 1 where rings tilt.
+    alone : array (bearings,), of int
+        Place of the first roller among what all elements feel, where rollers are bodies.
+    outward : array (bearings,)
+        Centrifugal force of a roller that is a body by the square of the speed [N s2/rad2].
     """
 
     firsts: IntArray
@@ -78,11 +94,20 @@ class Rings(NamedTuple):
     sin: FloatArray
     felt: IntArray
     weights: FloatArray
+    alone: IntArray
+    outward: FloatArray
 
     @property
     def most_slices(self) -> int:
         """Slices of all rollers together, of the bearing that has most."""
         return int(np.max(self.rollers * self.slices, initial=0))
+
+
+@njit(error_model="numpy", forceinline=True)
+def cage_of(rings: Rings, b: int, moment: Moment) -> tuple[float, float]:
+    """Cosine and sine of the angle of the first roller of a bearing, with the arguments as for `motion_of`."""
+    angle = rings.start_angles[b] + rings.cage_rates[b] * moment.angle
+    return math.cos(angle), math.sin(angle)
 
 
 @njit(error_model="numpy", forceinline=True)
@@ -101,8 +126,7 @@ def motion_of(rings: Rings, b: int, moment: Moment, motion: FloatArray) -> RingM
         Displacements and their rates, among what all elements feel.
     """
     i, x, y = rings.firsts[b], motion[0], motion[1]
-    angle = rings.start_angles[b] + rings.cage_rates[b] * moment.angle
-    c, s = math.cos(angle), math.sin(angle)
+    c, s = cage_of(rings, b, moment)
     if rings.felt[b] == LEVEL:
         return RingMotion(x[i], x[i + 1], 0.0, 0.0, y[i], y[i + 1], 0.0, 0.0, c, s)
     return RingMotion(x[i], x[i + 1], x[i + 2], x[i + 3], y[i], y[i + 1], y[i + 2], y[i + 3], c, s)
@@ -161,9 +185,21 @@ def turned_by(first: int, pairs: int, motion: FloatArray, answers: Answers) -> f
     return total
 
 
-def feels(element: BearingElement) -> FloatArray:
-    """Rows of what a bearing feels, shape (4, 6), or (2, 6) of one whose rings do not tilt."""
-    return np.asarray(np.eye(6)[FELT[: _felt(element)]])
+def feels(element: BearingElement | RollerElement) -> FloatArray:
+    """Rows of what a bearing feels of its rings: (4, 6), (2, 6) without tilts, (6, 12 + Z) with rollers as bodies."""
+    if not isinstance(element, RollerElement):
+        return np.asarray(np.eye(6)[FELT[: _felt(element)]])
+    rows = np.zeros((_FELT, element.contacts.size))
+    for row, place in enumerate((1, 2, 7, 8)):
+        rows[row, place] = 1.0
+    for row, place in ((_TILT_PLACE, 4), (_TILT_PLACE + 1, 5)):
+        rows[row, place], rows[row, place + 6] = 1.0, -1.0
+    return rows
+
+
+def alone(element: RollerElement) -> FloatArray:
+    """Rows of the radial places of its rollers, shape (Z, 12 + Z)."""
+    return np.asarray(np.eye(element.contacts.size)[12:])
 
 
 def placed(element: BearingElement, transform: FloatArray) -> BearingElement:
@@ -216,31 +252,79 @@ def folding_of(element: BearingElement) -> Folding:
     return Folding(firsts, groups.reshape(-1), counts.astype(np.float64))
 
 
-def _felt(element: BearingElement) -> int:
-    """How many displacements a bearing feels."""
+def _felt(element: BearingElement | RollerElement) -> int:
+    """How many displacements of rings a bearing feels."""
+    if isinstance(element, RollerElement):
+        return _FELT
     return FELT.size if element.tilts else LEVEL
 
 
-def gather_rings(members: Sequence[Member], films_of: Sequence[int]) -> Rings:
-    """The arrays of some bearings, and which film each has."""
-    elements: list[BearingElement] = [member.element for member in members]
-    works = [Arrays(element.bearing) for element in elements]
-    folds = [folding_of(element) for element in elements]
+class Alike(NamedTuple):
+    """Contacts with the same law at the same conditions, which share its tables.
+
+    Attributes
+    ----------
+    bearing : Bearing
+        That of the first of them.
+    law : FlatLaw
+        The law.
+    temperature : float
+        [K].
+    rates : (float, float)
+        Entrainment speed for each speed of the system, and centrifugal load for its square.
+    """
+
+    bearing: Bearing
+    law: FlatLaw
+    temperature: float
+    rates: tuple[float, float]
+
+
+def alike_contacts(members: Sequence[Member]) -> tuple[IntArray, list[Alike]]:
+    """Film of each contact of some bearings, shape (bearings, sides), and what the contacts of each film share."""
+    contacts = []
+    for element in (member.element for member in members):
+        massless = plain(element)
+        # The centrifugal load of rollers that are bodies acts on them, and not in their contacts.
+        rates = massless.rates[1], 0.0 if isinstance(element, RollerElement) else massless.rates[2]
+        contacts += [Alike(massless.bearing, law, massless.temperature, rates) for law in element.flat_laws]
+    films_of, firsts = shared((id(one.law.law), one.temperature, *one.rates) for one in contacts)
+    sides = len(contacts) // len(members) if members else 1
+    return _whole(films_of).reshape(len(members), sides), [contacts[first] for first in firsts]
+
+
+def plain(element: BearingElement | RollerElement) -> BearingElement:
+    """The bearing with massless rollers."""
+    return element.plain if isinstance(element, RollerElement) else element
+
+
+def strict(members: Sequence[Member]) -> BoolArray:
+    """Whether a law of each bearing refuses loads above its map, shape (bearings,)."""
+    return np.array([any(law.law.outside == "error" for law in m.element.flat_laws) for m in members], dtype=np.bool_)
+
+
+def gather_rings(members: Sequence[Member], films_of: IntArray) -> Rings:
+    """The arrays of some bearings, and which film each of their contacts has."""
+    plains: list[BearingElement] = [plain(member.element) for member in members]
+    works = [Arrays(element.bearing) for element in plains]
+    folds = [folding_of(element) for element in plains]
     return Rings(
         firsts=_whole(member.first for member in members),
         places=_whole(member.place for member in members),
-        films_of=_whole(films_of),
+        films_of=films_of,
         rollers=_whole(work.angles.shape[1] for work in works),
         slices=_whole(fold.firsts.size for fold in folds),
-        start_angles=np.array([element.start_angle for element in elements], dtype=np.float64),
-        cage_rates=np.array([element.rates[0] for element in elements], dtype=np.float64),
+        start_angles=np.array([element.start_angle for element in plains], dtype=np.float64),
+        cage_rates=np.array([element.rates[0] for element in plains], dtype=np.float64),
         sizes=np.array([work.sizes for work in works], dtype=np.float64).reshape(len(works), 6),
         positions=_padded([work.slices[0][fold.firsts] for work, fold in zip(works, folds, strict=True)]),
         profiles=_padded([work.slices[1][fold.firsts] for work, fold in zip(works, folds, strict=True)]),
         cos=_padded([work.angles[0] for work in works]),
         sin=_padded([work.angles[1] for work in works]),
-        felt=_whole(_felt(element) for element in elements),
+        felt=_whole(_felt(member.element) for member in members),
         weights=_padded([fold.weights for fold in folds]),
+        alone=_whole(member.alone for member in members),
+        outward=np.array([plain.rates[2] * plain.bearing.geometry.roller_length for plain in plains], dtype=np.float64),
     )
 
 
@@ -255,34 +339,6 @@ def _padded(rows: Sequence[FloatArray]) -> FloatArray:
 def _whole(numbers: Iterable[int]) -> IntArray:
     """Whole numbers as an array."""
     return np.array(list(numbers), dtype=np.int64)
-
-
-INNER, OUTER = 0, 1
-"""Contacts of a roller."""
-
-_FELT = 6
-_TILT_PLACE = 4
-
-
-class Rollers(NamedTuple):
-    """Bearings with rollers that are bodies as arrays, one row a bearing.
-
-    Attributes
-    ----------
-    rings : Rings
-        What does not change; clearance and profiles are those of both contacts of a roller together.
-    alone : array (bearings,), of int
-        Place of the first roller of each among what all elements feel.
-    outward : array (bearings,)
-        Centrifugal force of a roller by the square of the speed [N s2/rad2].
-    films_of : array (bearings, 2), of int
-        Films of the inner and of the outer contacts.
-    """
-
-    rings: Rings
-    alone: IntArray
-    outward: FloatArray
-    films_of: IntArray
 
 
 class Place(NamedTuple):
@@ -325,12 +381,12 @@ class Contact(NamedTuple):
 
 
 @njit(error_model="numpy")
-def place_of(rollers: Rollers, b: int, j: int, cage: tuple[float, float], motion: FloatArray) -> Place:
+def place_of(rings: Rings, b: int, j: int, cage: tuple[float, float], motion: FloatArray) -> Place:
     """Where a roller stands.
 
     Parameters
     ----------
-    rollers : Rollers
+    rings : Rings
         All bearings.
     b, j : int
         Which bearing, and which of its rollers.
@@ -339,8 +395,7 @@ def place_of(rollers: Rollers, b: int, j: int, cage: tuple[float, float], motion
     motion : array (2, m)
         Displacements and their rates, among what all elements feel.
     """
-    rings = rollers.rings
-    i, own = rings.firsts[b], rollers.alone[b] + j
+    i, own = rings.firsts[b], rings.alone[b] + j
     c = cage[0] * rings.cos[b, j] - cage[1] * rings.sin[b, j]
     s = cage[1] * rings.cos[b, j] + cage[0] * rings.sin[b, j]
     x, v = motion[0], motion[1]
@@ -357,12 +412,12 @@ def place_of(rollers: Rollers, b: int, j: int, cage: tuple[float, float], motion
 
 
 @njit(error_model="numpy")
-def begin_answer(rollers: Rollers, b: int, moment: Moment, answers: Answers) -> None:
+def begin_answer(rings: Rings, b: int, moment: Moment, answers: Answers) -> None:
     """Begin the answer of a bearing: centrifugal forces of its rollers, and nothing else yet.
 
     Parameters
     ----------
-    rollers : Rollers
+    rings : Rings
         All bearings.
     b : int
         Which one.
@@ -371,12 +426,11 @@ def begin_answer(rollers: Rollers, b: int, moment: Moment, answers: Answers) -> 
     answers : Answers
         Answers of all elements, filled.
     """
-    rings = rollers.rings
-    first, own, count = rings.firsts[b], rollers.alone[b], rings.rollers[b]
+    first, own, count = rings.firsts[b], rings.alone[b], rings.rollers[b]
     force, slopes = answers.force, answers.slopes
     force[first : first + _FELT] = 0.0
     slopes[first : first + _FELT, first : first + _FELT] = 0.0
-    outward = rollers.outward[b] * moment.speed * moment.speed
+    outward = rings.outward[b] * moment.speed * moment.speed
     for r in range(own, own + count):
         force[r] = outward
         slopes[r, r] = 0.0
@@ -385,12 +439,12 @@ def begin_answer(rollers: Rollers, b: int, moment: Moment, answers: Answers) -> 
 
 
 @njit(error_model="numpy")
-def add_contact(rollers: Rollers, b: int, j: int, side: int, place: Place, contact: Contact, answers: Answers) -> None:
+def add_contact(rings: Rings, b: int, j: int, side: int, place: Place, contact: Contact, answers: Answers) -> None:
     """Add what a contact of a roller does to the ring and to the roller.
 
     Parameters
     ----------
-    rollers : Rollers
+    rings : Rings
         All bearings.
     b, j, side : int
         Which bearing, which of its rollers, and which contact.
@@ -401,8 +455,8 @@ def add_contact(rollers: Rollers, b: int, j: int, side: int, place: Place, conta
     answers : Answers
         Answers of all elements.
     """
-    first, own = rollers.rings.firsts[b], rollers.alone[b] + j
-    sign = 1.0 if side == INNER else -1.0
+    first, own = rings.firsts[b], rings.alone[b] + j
+    sign = 1.0 - 2.0 * side
     ring = first + 2 * side
     at = (ring, ring + 1, first + _TILT_PLACE, first + _TILT_PLACE + 1, own)
     flat = (sign * place.cos, sign * place.sin, 0.0, 0.0, -sign)
@@ -416,45 +470,18 @@ def add_contact(rollers: Rollers, b: int, j: int, side: int, place: Place, conta
 
 
 @njit(error_model="numpy")
-def outward_power(rollers: Rollers, b: int, moment: Moment, motion: FloatArray) -> float:
-    """Power of the centrifugal forces on the rollers of a bearing [W].
+def outward_power(rings: Rings, b: int, moment: Moment, motion: FloatArray) -> float:
+    """Power of the centrifugal forces on the rollers of a bearing [W]; none on massless ones.
 
     Parameters
     ----------
-    rollers, b, moment, motion
+    rings, b, moment, motion
         What `place_of` and `begin_answer` take.
     """
-    own, total = rollers.alone[b], 0.0
-    for r in range(own, own + rollers.rings.rollers[b]):
+    if rings.films_of.shape[1] == 1:
+        return 0.0
+    own, total = rings.alone[b], 0.0
+    for r in range(own, own + rings.rollers[b]):
         total += motion[1, r]
-    power: float = total * rollers.outward[b] * moment.speed * moment.speed
+    power: float = total * rings.outward[b] * moment.speed * moment.speed
     return power
-
-
-def rollers_feel(element: RollerElement) -> FloatArray:
-    """Rows of what a bearing feels of its rings, shape (6, 12 + Z)."""
-    rows = np.zeros((_FELT, element.contacts.size))
-    for row, place in enumerate((1, 2, 7, 8)):
-        rows[row, place] = 1.0
-    for row, place in ((_TILT_PLACE, 4), (_TILT_PLACE + 1, 5)):
-        rows[row, place], rows[row, place + 6] = 1.0, -1.0
-    return rows
-
-
-def alone(element: RollerElement) -> FloatArray:
-    """Rows of the radial places of its rollers, shape (Z, 12 + Z)."""
-    size = element.contacts.size
-    return np.asarray(np.eye(size)[12:])
-
-
-def gather_rollers(members: Sequence[Member], films_of: Iterable[int]) -> Rollers:
-    """The arrays of some bearings, and which film each of their contacts has, inner and outer one after the other."""
-    plains = [member.element.plain for member in members]
-    rings = gather_rings([member._replace(element=member.element.plain) for member in members], [0] * len(members))
-    films = np.array(list(films_of), dtype=np.int64).reshape(len(members), 2)
-    return Rollers(
-        rings=rings._replace(films_of=films[:, INNER].copy()),
-        alone=np.array([member.alone for member in members], dtype=np.int64),
-        outward=np.array([plain.rates[2] * plain.bearing.geometry.roller_length for plain in plains], dtype=np.float64),
-        films_of=films,
-    )

@@ -29,7 +29,7 @@ from ehdmaps.maps.memory_table import equilibrium_at
 from ehdmaps.physics.hertz import half_width
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.force_at_point import RollerLoads
-from mbs.bearings.laws import DryLaw, Law
+from mbs.bearings.laws import DryLaw, FlatLaw, Law
 from mbs.model.elements import Forces
 from mbs.model.relaxation import Relaxation
 
@@ -216,6 +216,7 @@ class RollerContacts:
             raise InputError(problems)
         self.bearing = bearing
         self.laws = (inner, outer)
+        self.flat_laws = (FlatLaw(inner), FlatLaw(outer))
         self._points: dict[int, LawAtPoint] = {}
         self._x = bearing.slice_positions
         self._lost = bearing.profile_depths + 0.25 * bearing.geometry.diametral_clearance
@@ -285,7 +286,7 @@ class RollerContacts:
 
     def advance(
         self,
-        states: tuple[FilmState, FilmState] | None,
+        states: tuple[FilmState, ...] | None,
         displacement: npt.ArrayLike,
         dt: float,
         *,

@@ -145,7 +145,7 @@ class Kind:
     Attributes
     ----------
     arrays : type
-        Class of the named tuple that the compiled function takes; one for each kind.
+        Class of the named tuple that the compiled function takes; kinds with the same one have the same functions.
     answer : callable
         Compiled function (arrays, Moment, motion, Answers) -> one of `FOUND`, `NO_SOLUTION`, `IN_PYTHON`. `motion` is
         an array (2, m): what the elements feel, and its rate.

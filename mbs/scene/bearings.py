@@ -239,13 +239,13 @@ def build_bearing(spec: BearingSpec, surroundings: Surroundings) -> Built:
     )
     if not spec.rollers_as_bodies:
         return Built(plain, plain)
+    from mbs.bearings.bearing_element import RollerElement, roller_body
     from mbs.bearings.roller_contacts import RollerContacts
-    from mbs.bearings.roller_element import RollerElement, roller_body
 
     body = roller_body(f"{spec.name}_rollers", bearing)
     contacts = RollerContacts(bearing, *laws.single)
     if not memory:
         return Built(RollerElement(plain, contacts, body.name), plain, (body,))
-    from mbs.bearings.roller_element import MemoryRollers
+    from mbs.bearings.bearing_element import MemoryRollers
 
     return Built(MemoryRollers(plain, contacts, body.name), plain, (body,))

@@ -10,9 +10,8 @@ would not see a change of its function, and would fail where its module cannot b
 from __future__ import annotations
 
 from mbs.bearings.bearing_block import BEARINGS, ROLLERS
-from mbs.bearings.bearing_element import BearingElement, MemoryBearing
+from mbs.bearings.bearing_element import BearingElement, MemoryBearing, MemoryRollers, RollerElement
 from mbs.bearings.memory_block import MEMORY_BEARINGS, MEMORY_ROLLERS
-from mbs.bearings.roller_element import MemoryRollers, RollerElement
 from mbs.gears.gear import GearMesh
 from mbs.gears.gear_block import GEAR_MESHES
 from mbs.model.blocks import Kind

@@ -12,11 +12,10 @@ from ehdmaps.errors import InputError
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.memory_table import approach_at
 from mbs.bearings.bearing import Bearing
-from mbs.bearings.bearing_element import BearingElement
+from mbs.bearings.bearing_element import BearingElement, RollerElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.laws import hertz
 from mbs.bearings.roller_contacts import RollerContacts
-from mbs.bearings.roller_element import RollerElement
 from mbs.linearised.dynamic import TOLERANCE, film_states, together
 from mbs.model.elements import Operation
 from mbs.model.relaxation import Relaxation

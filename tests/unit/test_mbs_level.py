@@ -83,7 +83,7 @@ def test_films_come_back_for_all_slices():
     (back,) = block.states()
     # slices left and right of the middle are solved apart, to round-off; a change is a difference of two larger numbers
     for name, close in (("approach", 1e-12), ("change", 1e-8), ("load", 1e-12)):
-        one, other = getattr(back.films, name), getattr(states.films, name)
+        one, other = getattr(back.films[0], name), getattr(states.films[0], name)
         np.testing.assert_allclose(one, other, rtol=0.0, atol=close * np.max(np.abs(other)))
 
 

@@ -249,7 +249,7 @@ def test_a_force_goes_from_step_to_step_as_its_bearing_does():
             found, _ = force.advance(None, moved, step, **conditions)
             # The table's cubics, of some 1e-6 of the load; and a law of its own beside it.
             assert found.force == pytest.approx(at_rest.force, rel=1e-5, abs=1e-5)
-            films = states.films
+            (films,) = states.films
             continue
         answer, states = element.advance(states, moved, np.zeros(6), operation)
         found, films = force.advance(films, moved, step, **conditions)
