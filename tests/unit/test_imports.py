@@ -283,7 +283,7 @@ JOBS = (("make",), ("show", "solve", "instruments", "commands")), (("show", "sol
 
 @pytest.mark.parametrize(("rooms", "above"), JOBS, ids=" ".join)
 def test_rooms_of_jobs(rooms, above) -> None:
-    above = tuple(f"ehdmaps.jobs.{room}" for room in above)
+    above = tuple(f"ehdmaps.jobs.{room}." for room in above)
     paths = [path for room in rooms for path in (ROOT / "ehdmaps" / "jobs" / room).glob("*.py")]
     assert len(paths) > 10
     for path in paths:
