@@ -16,7 +16,7 @@ from ehdmaps.jobs.make.batch_generate import batch_path, generate_batch, make_fo
 from ehdmaps.jobs.make.batch_table import summary as batch_summary
 from ehdmaps.jobs.make.batch_table import write_table
 from ehdmaps.jobs.make.generate import generate, summary
-from ehdmaps.jobs.make.law_check import unmet
+from ehdmaps.jobs.make.law_check import TOLERANCES, unmet
 from ehdmaps.jobs.make.report import holes, unsolved
 from ehdmaps.jobs.make.status import progress
 from ehdmaps.jobs.make.store import store_path
@@ -24,6 +24,7 @@ from ehdmaps.jobs.reader import is_map, read_job
 from ehdmaps.outputs import MAP, TABLE, Output, check_outputs
 from ehdmaps.physics.solution import ContactSolver
 from ehdmaps.program import tell
+from ehdmaps.units import quantity_within
 
 INTERRUPTED = 130
 """Exit status after Ctrl-C, as shells have it."""
@@ -34,9 +35,10 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     batches = [source for source in arguments.jobs if is_batch(source)]
     if batches:
         return _batch(batches[0], arguments)
+    tolerance = None if arguments.tolerance is None else read_tolerance(arguments.tolerance)
     texts, status = [], 0
     for job, output in _planned(arguments):
-        text, found = _made(job, output, arguments)
+        text, found = _made(job, output, arguments, tolerance)
         texts.append(text)
         status = max(status, found)
         if found == INTERRUPTED:
@@ -49,6 +51,7 @@ def _batch(source: str, arguments: argparse.Namespace) -> tuple[str, int]:
     beside = {
         "JOB": len(arguments.jobs) > 1,
         "--keep-cases": arguments.keep_cases is not None,
+        "--tolerance": arguments.tolerance is not None,
         '--fresh-films (say films = "solved" in [solver])': arguments.fresh_films,
     }
     problems = [
@@ -104,7 +107,30 @@ def _planned(arguments: argparse.Namespace) -> list[tuple[Job, Path]]:
     return planned
 
 
-def _made(job: Job, output: Path, arguments: argparse.Namespace) -> tuple[str, int]:
+def read_tolerance(text: str) -> float:
+    """Read the tolerance of contact laws, such as "1 %".
+
+    Parameters
+    ----------
+    text : str
+        What was typed.
+
+    Raises
+    ------
+    InputError
+        If it is none that is allowed.
+
+    Examples
+    --------
+    >>> read_tolerance("1 %")
+    0.01
+    """
+    low, high = TOLERANCES
+    allowed = f'allowed: a share of k, c and film offset of the laws from "{100 * low:g} %" to "{100 * high:g} %"'
+    return quantity_within(text, "", low, high, f"--tolerance: got {text[:40]!r}; {allowed}")
+
+
+def _made(job: Job, output: Path, arguments: argparse.Namespace, tolerance: float | None) -> tuple[str, int]:
     """Make one map."""
     by = job.corrected_by
     if arguments.fresh_films:
@@ -113,7 +139,9 @@ def _made(job: Job, output: Path, arguments: argparse.Namespace) -> tuple[str, i
     solver = _built(job.solver, job.solver_options, kept) if kept else None
     corrector = _built(by.solver, by.options, kept) if by else None
     try:
-        generated = generate(job, output, arguments.workers, arguments.fresh, progress, solver, corrector)
+        generated = generate(
+            job, output, arguments.workers, arguments.fresh, progress, solver, corrector, tolerance=tolerance
+        )
     except KeyboardInterrupt:
         tell(f"\nstopped; what is solved is kept in {store_path(output)}: the same command goes on from there")
         return "", INTERRUPTED

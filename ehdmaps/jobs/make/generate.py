@@ -153,6 +153,7 @@ def generate(
     corrector: ContactSolver | None = None,
     executor: Executor | None = None,
     within: Within | None = None,
+    tolerance: float | None = None,
 ) -> Generated:
     """Make a map; what its store has already is taken over.
 
@@ -177,6 +178,9 @@ def generate(
         What solves the points in place of processes that are started here.
     within : Within, optional
         The batch that the map belongs to, whose store is open.
+    tolerance : float, optional
+        Share of stiffness, damping and film offset that the contact laws may be wrong by, in place of the usual bars of
+        their check: lines that are solved are laid more closely until they keep it.
 
     Raises
     ------
@@ -184,7 +188,7 @@ def generate(
         With what to do; everything solved is kept.
     """
     chosen_solver = _solver(job, solver)
-    planned = _plan(job, chosen_solver, _corrector(job, corrector))
+    planned = _plan(job, chosen_solver, _corrector(job, corrector), tolerance)
     processes = workers or available_cores()
     with ExitStack() as stack:
         if within is None:
@@ -333,21 +337,25 @@ def _corrector(job: Job, instead: ContactSolver | None) -> ContactSolver | None:
     return solvers.complete(instead or solvers.build(by.solver, by.options))
 
 
-def _plan(job: Job, solver: ContactSolver, corrector: ContactSolver | None) -> _Plan:
+def _plan(job: Job, solver: ContactSolver, corrector: ContactSolver | None, tolerance: float | None = None) -> _Plan:
     """Lay out what is to be solved."""
     if not (why := unserved(job, solver)):
-        return _Plan(job, solver, corrector, (), None, plan_check(job, solver), from_table=True)
-    return _solved(job, solver, corrector, why)
+        return _Plan(job, solver, corrector, (), None, plan_check(job, solver, tolerance), from_table=True)
+    return _solved(job, solver, corrector, why, tolerance)
 
 
-def _solved(job: Job, solver: ContactSolver, corrector: ContactSolver | None, why: str) -> _Plan:
+def _solved(
+    job: Job, solver: ContactSolver, corrector: ContactSolver | None, why: str, tolerance: float | None
+) -> _Plan:
     """Lay out points and lines that are solved, in place of the film table where that was to be read."""
     if isinstance(solver, TableSolver):
         solver = solvers.in_place_of_table(job, solver)
     else:
         why = ""
     lines = refinement(job, solver)
-    return _Plan(job, solver, corrector, line_tasks(job, solver), lines, plan_check(job, solver), unserved=why)
+    return _Plan(
+        job, solver, corrector, line_tasks(job, solver), lines, plan_check(job, solver, tolerance), unserved=why
+    )
 
 
 def _corrected(planned: _Plan, solve: Callable[[Sequence[LineTask]], Mapping[str, Arrays]]) -> _Plan:
@@ -376,7 +384,8 @@ def _refined(
     dataset, group = _finished(planned, result, where)
     if planned.from_table and not _served(planned, dataset, result):
         missed = "film table: the laws that it makes miss their bars beside fresh solves"
-        planned = _solved(planned.job, planned.solver, planned.corrector, missed)
+        tolerance = planned.check.tolerance if planned.check else None
+        planned = _solved(planned.job, planned.solver, planned.corrector, missed, tolerance)
         solve(planned.everything)
         dataset, group = _finished(planned, result, where)
     while len(planned.halved) < MOST_HALVINGS and (finer := _finer(planned, dataset, group, result)) is not None:

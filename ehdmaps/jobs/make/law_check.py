@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import MapError
+from ehdmaps.errors import InputError, MapError
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.make.sampling import draw_apart, drawable
 from ehdmaps.jobs.make.store import Arrays
@@ -88,14 +88,18 @@ SEED = 20260
 INSIDE = ("", "valley")
 """Regions of the points: over the map, and in its damping valley."""
 
+TOLERANCES = (1e-3, 0.1)
+"""Smallest and largest tolerance of contact laws."""
+
 MOST_OF_READ = 100
 """Points within a map with films from the film table: they prove that reading is right, and lay no lines."""
 
 SHARES = {"law_": 0.99, "law_valley_": 0.95}
 """Share of the points that should be within the bars, over the whole map and in the valley."""
 
-REFUSED, HALVED = "law_refused", "law_lines_halved_along"
-"""Attributes of the map: why it makes no law, and the axes along which the steps of its lines were halved."""
+REFUSED, HALVED, TOLERANCE = "law_refused", "law_lines_halved_along", "law_tolerance"
+"""Attributes of the map: why it makes no law, the axes along which the steps of its lines were halved, and the tolerance
+that its laws were asked to keep."""
 
 STANDS_ON_LINES = (
     "these laws are made from refinement lines, whose steps are halved where the films between them miss, three times "
@@ -126,17 +130,25 @@ _WORTH: Mapping[Axis, float] = {"load": 0.25}
 class LawCheck:
     """Random points over the map and in its valley; `regions` says which is which.
 
-    `compliance_bars` are those that the laws are held to.
+    `compliance_bars` and `damping_bars` are those that the laws are held to; by a `tolerance` they are held to it by
+    stiffness, damping and film offset, with what the fresh solves state to be wrong by themselves.
     """
 
     contacts: tuple[LineContact, ...]
     tasks: tuple[LineTask, ...]
     regions: tuple[str, ...]
     compliance_bars: tuple[float, float] = COMPLIANCE_BARS
+    damping_bars: tuple[float, float] = DAMPING_BARS
+    tolerance: float | None = None
 
 
-def plan_check(job: Job, solver: ContactSolver) -> LawCheck | None:
+def plan_check(job: Job, solver: ContactSolver, tolerance: float | None = None) -> LawCheck | None:
     """Draw the points: load and speed log-uniform, temperature uniform, contact at random; None if `law_check` is 0."""
+    if tolerance is not None and not (TOLERANCES[0] <= tolerance <= TOLERANCES[1] and job.law_check and drawable(job)):
+        raise InputError(
+            f"tolerance: got {tolerance:g} and law_check = {job.law_check}; allowed: {TOLERANCES[0]:g} to "
+            f"{TOLERANCES[1]:g} (0.01 is 1 %), with a law_check above 0 and a solver that has films"
+        )
     read = isinstance(solver, TableSolver)
     count = min(job.law_check, MOST_OF_READ) if read else job.law_check
     if not count or not drawable(job):
@@ -147,8 +159,11 @@ def plan_check(job: Job, solver: ContactSolver) -> LawCheck | None:
     # the proof of films that are read is films that are solved
     fresh = solver.other if isinstance(solver, TableSolver) else solver
     tasks = tuple(LineTask(contact, job.lubricant, (w,), u, T, fresh) for _, (contact, w, u, T) in drawn)
-    bars = READ_COMPLIANCE_BARS if read else COMPLIANCE_BARS
-    return LawCheck(job.contacts, tasks, tuple(region for region, _ in drawn), bars)
+    check = LawCheck(job.contacts, tasks, tuple(region for region, _ in drawn))
+    if tolerance is not None:
+        bars = (0.0, tolerance), (tolerance, SMALL_DAMPING * tolerance)
+        return replace(check, compliance_bars=bars[0], damping_bars=bars[1], tolerance=tolerance)
+    return replace(check, compliance_bars=READ_COMPLIANCE_BARS) if read else check
 
 
 def checked_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> dict[str, float | int | str]:
@@ -209,7 +224,7 @@ def met(attributes: Mapping[str, Any]) -> bool:
 def _shares(attributes: Mapping[str, Any]) -> Iterator[tuple[str, str, float, float]]:
     """Yield prefix, name, share found and share wanted of points within each bar that was checked."""
     for prefix, share in SHARES.items():
-        for name in ("film_compliance", "damping"):
+        for name in ("film_compliance", "damping", "film_offset"):
             found = attributes.get(f"{prefix}{name}_within_bar")
             if found is not None:
                 yield prefix, name, float(found), share
@@ -268,12 +283,13 @@ def _between(
         for task, region in zip(check.tasks, check.regions, strict=True):
             arrays = results[task.key]
             if task.contact == contact and Status(int(arrays["status"][0])).usable:
-                missed = _missed_between(field, task, fresh_solution(task, arrays), check.compliance_bars)
+                missed = _missed_between(field, task, fresh_solution(task, arrays), check)
                 yield field, task, region, missed
 
 
-def _missed_between(field: FilmField, task: LineTask, fresh: ContactSolution, bars: tuple[float, float]) -> bool:
+def _missed_between(field: FilmField, task: LineTask, fresh: ContactSolution, check: LawCheck) -> bool:
     """Whether films between the lines miss a bar."""
+    bars, damping_bars = check.compliance_bars, check.damping_bars
     (load,), u, T, contact = task.loads, task.entrainment_speed, task.temperature, task.contact
     films = field.films(contact.name, np.array([[[load]]]), np.array([u]), np.array([T]))
     _, compliance, loss = (float(values[0, 0, 0]) for values in films)
@@ -282,7 +298,7 @@ def _missed_between(field: FilmField, task: LineTask, fresh: ContactSolution, ba
     wrong_c = abs(loss * stiffness**2 - solved_c)
     unit = fresh.stiffness * float(half_width(load, contact.radius, contact.reduced_modulus)) / u
     return wrong > max(bars[0] * abs(fresh.film_compliance), bars[1] / fresh.stiffness) or (
-        wrong_c > max(DAMPING_BARS[0] * solved_c, DAMPING_BARS[1] * unit)
+        wrong_c > max(damping_bars[0] * solved_c, damping_bars[1] * unit)
     )
 
 
@@ -317,7 +333,7 @@ def check_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> 
         if chosen:
             # Fresh solves are those of flooded films between smooth surfaces, whatever the job states.
             law = emap.law(contact.name, "error", supply=FLOODED, surface=SMOOTH)  # type: ignore[arg-type]
-            rows.append(_errors(law, [(task, arrays) for task, arrays, _ in chosen], check.compliance_bars))
+            rows.append(_errors(law, [(task, arrays) for task, arrays, _ in chosen], check))
             regions += [region for *_, region in chosen]
     record: dict[str, float | int | str] = {
         "law_check_seed": SEED,
@@ -337,13 +353,19 @@ def check_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> 
             record[f"law{where}_{name}_error"] = quantiles_text(known) if known.size else NOTHING[name]
             if column < 2:  # the two whose errors have bars
                 record[f"law{where}_{name}_within_bar"] = float(np.mean(table[mask, column + 2]))
+        if check.tolerance is not None:
+            record[f"law{where}_film_offset_within_bar"] = float(np.mean(table[mask, 6]))
+    if check.tolerance is not None:
+        record[TOLERANCE] = check.tolerance
     return record
 
 
-def _errors(law: ContactLaw, points: list[tuple[LineTask, Arrays]], bars: tuple[float, float]) -> FloatArray:
-    """Errors of film compliance and damping, whether each is within its bar, errors of k and film offset, shape (n, 6).
+def _errors(law: ContactLaw, points: list[tuple[LineTask, Arrays]], check: LawCheck) -> FloatArray:
+    """Errors of film compliance and damping, whether each is within its bar, errors of k and film offset, and whether
+    that is within the tolerance; shape (n, 7).
 
-    All are relative; that of the film offset is what the approach at the load misses, as a part of the offset.
+    All are relative; that of the film offset is what the approach at the load misses, as a part of the offset. Beside a
+    tolerance the fresh solves are taken to be wrong by what they state.
     """
     tasks = [task for task, _ in points]
     fresh = [fresh_solution(task, arrays) for task, arrays in points]
@@ -363,13 +385,21 @@ def _errors(law: ContactLaw, points: list[tuple[LineTask, Arrays]], bars: tuple[
     # a dry contact has no film compliance to relate to, only 1/k
     relative = np.where(compliance != 0.0, wrong / np.maximum(np.abs(compliance), 1e-300), np.nan)
     relative_c = np.where(solved_c > 0.0, wrong_c / np.maximum(solved_c, 1e-300), np.nan)
+    relative_offset = np.where(offset > 0.0, missed / np.maximum(offset, 1e-300), np.nan)
+    (share, bar), (share_c, bar_c) = check.compliance_bars, check.damping_bars
+    own = np.zeros((3, load.size))
+    if check.tolerance is not None:
+        own = np.array([[one.stiffness_error, one.damping_error, one.film_offset_error] for one in fresh]).T
+        own = np.nan_to_num(own, nan=0.0)  # without a film there is none to be wrong
+    unit = solved_k * half / speed
     return np.column_stack(
         [
             relative,
             relative_c,
-            (relative <= bars[0]) | (wrong * solved_k <= bars[1]),
-            (relative_c <= DAMPING_BARS[0]) | (wrong_c * speed <= DAMPING_BARS[1] * solved_k * half),
+            (relative <= share) | (wrong * solved_k + own[0] <= bar),
+            (wrong_c + own[1] * solved_c <= share_c * solved_c) | (wrong_c + own[1] * solved_c <= bar_c * unit),
             wrong * solved_k,
-            np.where(offset > 0.0, missed / np.maximum(offset, 1e-300), np.nan),
+            relative_offset,
+            ~(relative_offset + own[2] > (check.tolerance or 0.0)),
         ]
     )
