@@ -95,6 +95,7 @@ def test_a_speed_beyond_a_table_is_a_warning(here, capsys):
     assert "warning: locating: lies outside its table of speeds, where it is held at its edge; give it" in out
 
 
+@pytest.mark.slow
 def test_no_critical_speed_without_spin_or_speeds(here, capsys):
     _scene(here, ('[sweep]\nfrom = "300 rpm"\nto = "15000 rpm"\npoints = 50\nassumed = ["from", "to"]\n', ""))
     status, _, err = run(capsys, "critical", "own.toml")

@@ -101,6 +101,7 @@ def test_stiffness_damping_and_responses_have_the_units_of_engineers(here, capsy
     assert re.findall(r"(?:N|N s)/(?:\()?m2?(?![A-Za-z])|(?<![A-Za-z])m2?/N", without) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", ["statics", "modes", "lsa", "sweep", "variants", "report"])
 def test_heads_say_whether_weight_is_in_the_equilibrium(here, capsys, command):
     short = (
@@ -120,6 +121,7 @@ def test_heads_say_whether_weight_is_in_the_equilibrium(here, capsys, command):
         assert words in ((here / "page.html").read_text(encoding="utf-8") if command == "report" else told)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("law", ["map", "formula"])
 def test_films_where_the_law_knows_them(here, capsys, formula_map, law):
     options = ("--map", formula_map) if law == "map" else ("--law", "formula")
@@ -169,6 +171,7 @@ def test_overload_is_no_silent_equilibrium(here, capsys):
     assert (here / "a.png").stat().st_size > 10_000
 
 
+@pytest.mark.slow
 def test_what_moves_freely_is_said(here, capsys):
     name = scene(here, FREE_RING)
     status, out, _ = run(capsys, "statics", name, "-o", "a.nc")

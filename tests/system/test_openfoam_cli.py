@@ -106,6 +106,7 @@ def left_cases(folder):
     return sorted(folder.parent.glob("ehdmaps-openfoam-*"))
 
 
+@pytest.mark.slow
 def test_a_map_and_the_same_command_again(folder, done):
     first = done("generate", "job.toml", "--workers", "1")
     assert counts(first.stdout) == (0, POINTS, 0)
@@ -136,6 +137,7 @@ def test_kill_9_of_a_running_solver_costs_nothing(folder):
     assert left_cases(folder) == []  # the second try made it good
 
 
+@pytest.mark.slow
 def test_failed_points_are_summed_up_and_tried_again_by_the_next_run(folder, done):
     openfoam_fake.set_mode(build_of(folder), "fatal")
     failed = done("generate", "job.toml", "--workers", "1", status=1)
