@@ -283,6 +283,7 @@ def test_steps_that_resolve_nothing_are_said_and_what_the_method_takes(here, cap
     assert "steps of 20 us: 10 a period at 5000 Hz; numerical damping (spectral radius 0.8) takes 47.7 % at 2500" in out
 
 
+@pytest.mark.slow
 def test_a_load_beyond_what_a_bearing_can_hold_is_status_1(here, capsys):
     (here / "a.toml").write_text(read_scene("nu308_rigid").text.replace('"100 N", "100 N"', '"1e9 N", "100 N"'))
     status, out, err = run(capsys, "statics", "a.toml")
@@ -311,6 +312,7 @@ def test_records_of_hits_are_no_netcdf(here, capsys):
     assert "-o: got hits.nc; allowed: a file that ends in .uff, .unv, .uf, .58" in err
 
 
+@pytest.mark.slow
 def test_no_equilibrium_is_status_1(here, capsys):
     text = read_scene("nu308_rigid").text.replace('against = "ring_left"\nforce', "force")
     text = text.replace('stiffness = { y = "1e5 N/m", z = "1e5 N/m" }', 'stiffness = { x = "1e5 N/m" }')

@@ -176,6 +176,7 @@ class TestFiles:
 
 
 class TestWithoutLoad:
+    @pytest.mark.slow
     def test_there_is_an_equilibrium(self, here, capsys, formula_map):
         """The films push from all sides: what they leave over is round-off, and was taken for a load."""
         status, _, err = run(capsys, "statics", "unloaded.toml", "--map", formula_map, "-o", "u.nc", "--plot", "u.png")
@@ -263,6 +264,7 @@ class TestNames:
 class TestWithoutEffect:
     """What does nothing is hardly meant, and was taken in silence."""
 
+    @pytest.mark.slow
     @pytest.mark.parametrize(
         ("old", "new", "words"),
         [

@@ -36,6 +36,7 @@ def test_critical_speeds_of_the_shipped_rotor(here, capsys):
     assert (here / "rotor.png").stat().st_size > 10_000
 
 
+@pytest.mark.slow
 def test_critical_speeds_of_several_laws_in_one_table(here, capsys):
     """Each law has in the table, and in the file, what it has alone."""
     speeds = ("--speeds", "9300 rpm", "9700 rpm", "2", "-o", "rotor.nc")

@@ -197,6 +197,7 @@ def test_a_hanging_solver_is_stopped_after_its_time(folder, done):
 POINT = ("--load", "62 N/mm", "--speed", "1.7 m/s", "--temperature", "40 degC")
 
 
+@pytest.mark.slow
 def test_one_point_with_fields_and_pictures(folder, done):
     result = done("solve", "job.toml", *POINT, "--fields", "film.vtu", "--plot", "film.png", "--json")
     assert [record["status"] for record in json.loads(result.stdout)] == ["converged", "converged"]

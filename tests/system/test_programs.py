@@ -92,6 +92,7 @@ def test_a_closed_stdout_is_told(made):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "stderr"),
     [("ehdmaps", "2>/dev/full"), ("examples.housings", "2>&-")],

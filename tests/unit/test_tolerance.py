@@ -109,6 +109,7 @@ def test_bands_of_modes_take_its_errors(made: tuple[xr.Dataset, Path]) -> None:
     assert "errors of its law (95 % of 20 checked points)" in known.words
 
 
+@pytest.mark.slow
 def test_lines_are_added_until_there_would_be_too_many(tmp_path: Path, capsys, monkeypatch) -> None:
     monkeypatch.setattr(tolerance, "USUAL", 1e-6)  # begins with lines far too coarse
     monkeypatch.setattr(tolerance, "MOST_LINE_POINTS", 30)
