@@ -56,7 +56,7 @@ def parser() -> argparse.ArgumentParser:
         "--tolerance",
         metavar="SHARE",
         help='of k, c and film offset of the contact laws, "1 %%": fresh solves confirm it at 99 %% of random points '
-        "(95 %% in the damping valley); solved lines are laid more closely until they do; default: the bars of the check",
+        "(95 %% in the damping valley); solved lines are laid more closely until then; default: the usual bars",
     )
     generate.add_argument("--keep-cases", metavar="FOLDER", nargs="?", const="ehdmaps-cases", help=_KEEP)
 

@@ -99,6 +99,7 @@ def test_a_changed_job_solves_only_what_is_new(here, capsys):
     assert "48 taken over, 24 solved now" in run(capsys, "generate", "mine.toml", "--workers", "1")[1]
 
 
+@pytest.mark.slow
 def test_a_map_alone_repeats_itself(here, capsys):
     run(capsys, "generate", "mine.toml", "-o", "a.nc", "--solver", "hertz")
     (here / "mine.toml").unlink()

@@ -109,6 +109,7 @@ def test_factors(law, table):
         assert np.max(np.abs(quick[0][1] / quick[1][1] - 1.0)[loaded]) < 2e-3
 
 
+@pytest.mark.slow
 def test_formula(small_map, tmp_path):
     """A map that knows nothing of films that oscillate has the closed formula as it stands."""
     law = open_map(small_map).law("series", "clamp")
@@ -215,6 +216,7 @@ def test_bearing(kernel, law, table, reynolds_map, monkeypatch):
             )
 
 
+@pytest.mark.slow
 def test_refused(small_map, tmp_path):
     """Outside the map, numbers that are none, and steps of no length have a status and give NaN."""
     assert main(["export", str(small_map), "--to", "c", "-o", str(tmp_path / "c")]) == 0

@@ -15,6 +15,8 @@ from mbs import Bearing, BearingForce
 from tests.cases.fmu import OUTPUTS, Unit
 from tests.cases.fmu_steps import POSE, VELOCITY, Rest, linearised, states, stepped, swung
 
+pytestmark = pytest.mark.slow  # units are built by gcc; tests/system/test_export_c.py has their kernel
+
 T = 310.0
 CLEARANCE = 10e-6
 SLICES = 5

@@ -126,6 +126,7 @@ def test_adams_is_told_once_that_the_law_is_held(path, tmp_path):
     assert_same(np.concatenate([found[[2, 0, 1]], 1e-3 * found[[5, 3, 4]]]), forced(force, bearing, 500.0))
 
 
+@pytest.mark.slow
 def test_recurdyn_feels_the_contact(path, tmp_path):
     folder = exported(path, tmp_path / "out", "recurdyn")
     sources = ["ehd.c", "recurdyn.c", str(MOCKS / "recurdyn_driver.c")]

@@ -27,6 +27,7 @@ structural_law = "half_space"
 """
 
 
+@pytest.mark.slow
 def test_it_prints_all_cases_of_a_bearing(capsys):
     assert main(["length", "n1014"]) == 0
     text = capsys.readouterr().out

@@ -134,6 +134,7 @@ def test_a_speed_alone_has_the_films_that_it_has_among_others(here, capsys, more
         assert float(films[0]) == pytest.approx(float(films[1]), rel=1e-3)
 
 
+@pytest.mark.slow
 def test_profiles_in_the_words_of_scenes(here, capsys):
     """An arc is what it is at measured points: straight lines between 4001 of them are 1e-12 m off the arc."""
     asked = ("NU308", "--load", "5 kN", "--speed", "0 rpm")
@@ -153,6 +154,7 @@ def test_profiles_in_the_words_of_scenes(here, capsys):
             np.testing.assert_allclose(other[name], one[name], rtol=1e-6, atol=1e-6 * float(np.abs(one[name]).max()))
 
 
+@pytest.mark.slow
 def test_wide_ranges_of_load_are_spaced_in_the_logarithm(here, capsys):
     run(capsys, "N1014", "--load", "1 N", "100 N", "3", "--speed", "0 rpm", "6000 rpm", "3", "-o", "w.nc")
     with xr.open_dataset("w.nc") as data:
@@ -266,6 +268,7 @@ def test_all_problems_are_listed_at_once(here, capsys):
     assert err.startswith("mbs bearing: 6 problems\n")
 
 
+@pytest.mark.slow
 def test_no_equilibrium_is_status_1(here, capsys):
     soft = OWN + '[material]\nyoungs_modulus = "1 GPa"\n'
     (here / "soft.toml").write_text(soft)
@@ -274,6 +277,7 @@ def test_no_equilibrium_is_status_1(here, capsys):
     assert "the load is beyond what the bearing can carry" in err
 
 
+@pytest.mark.slow
 def test_where_load_sharing_is_out_of_its_range_is_said(here, capsys, formula_map):
     at = ("NU308", "--load", "5 kN", "--temperature", "50 degC", "--map", formula_map, "--roughness", "2 um")
     for speed, wanted in (("100 rpm", True), ("3000 rpm", False)):

@@ -51,6 +51,7 @@ def test_modes_by_map(here, capsys, formula_maps):
         np.testing.assert_allclose(data["energy_share"].sum("part"), 1.0, rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_sweep_of_two_laws_and_clearances(here, capsys, formula_maps):
     status, out, err = run(
         capsys, "sweep", "nu308_rigid", "--map", formula_maps["NU308"], "--law", "hertz", "--clearance", "0 um",
@@ -75,6 +76,7 @@ def test_sweep_of_two_laws_and_clearances(here, capsys, formula_maps):
     assert (here / "s.png").stat().st_size > 10_000
 
 
+@pytest.mark.slow
 def test_sweep_of_films(here, capsys, formula_maps):
     """Slow films, films with memory and none stand side by side; films are told with their error."""
     status, out, err = run(
@@ -101,6 +103,7 @@ def test_sweep_of_films(here, capsys, formula_maps):
     assert (here / "s.png").stat().st_size > 10_000
 
 
+@pytest.mark.slow
 def test_films_with_memory_at_one_speed(here, capsys, formula_maps):
     films = ("--map", formula_maps["NU308"], "--films", "memory")
     status, out, err = run(capsys, "modes", "nu308_rigid", *films, "-o", "m.nc", "--plot", "m.png")
@@ -127,6 +130,7 @@ def test_films_with_memory_at_one_speed(here, capsys, formula_maps):
     assert "law dry Hertz, ISO 16281" in dry
 
 
+@pytest.mark.slow
 def test_films_side_by_side_in_a_linear_analysis(here, capsys, formula_maps):
     films = ("--films", "slow", "--films", "memory", "--films", "dry")
     status, out, err = run(capsys, "lsa", "nu308_rigid", "--map", formula_maps["NU308"], *films, "--plot", "l.png")
@@ -154,6 +158,7 @@ def test_a_hammer_test_says_which_films_it_had(here, capsys, formula_maps):
     assert "formula map, films with memory, flooded: 1 hits, simulated" in (here / "memory.uff").read_text()
 
 
+@pytest.mark.slow
 def test_linear_analysis_with_rollers_as_bodies(here, capsys, formula_maps):
     given = ("lsa", "n1014_rigid", "--map", formula_maps["N1014"])
     status, out, _ = run(capsys, *given, "--films", "slow", "-o", "l.nc", "--plot", "l.png")
@@ -206,6 +211,7 @@ def test_outside_the_map_is_counted_said_and_makes_status_1(here, capsys, formul
     assert "warning: bearing_left: lies outside the map" in out
 
 
+@pytest.mark.slow
 def test_bad_input_lists_every_problem_and_writes_nothing(here, capsys, formula_maps):
     status, out, err = run(
         capsys, "modes", "nu308_rigid", "--map", formula_maps["N1014"], "--clearance", "5 kg", "-o", "no/x.nc"
@@ -264,6 +270,7 @@ def test_what_a_scene_lacks_is_said_before_laws_are_made(here, capsys, monkeypat
         assert words in err
 
 
+@pytest.mark.slow
 def test_steps_that_resolve_nothing_are_said_and_what_the_method_takes(here, capsys):
     text = read_scene("nu308_rigid").text.replace('duration = "0.2 s"', 'duration = "10 ms"')
     (here / "fine.toml").write_text(text)
@@ -276,6 +283,7 @@ def test_steps_that_resolve_nothing_are_said_and_what_the_method_takes(here, cap
     assert "steps of 20 us: 10 a period at 5000 Hz; numerical damping (spectral radius 0.8) takes 47.7 % at 2500" in out
 
 
+@pytest.mark.slow
 def test_a_load_beyond_what_a_bearing_can_hold_is_status_1(here, capsys):
     (here / "a.toml").write_text(read_scene("nu308_rigid").text.replace('"100 N", "100 N"', '"1e9 N", "100 N"'))
     status, out, err = run(capsys, "statics", "a.toml")
@@ -304,6 +312,7 @@ def test_records_of_hits_are_no_netcdf(here, capsys):
     assert "-o: got hits.nc; allowed: a file that ends in .uff, .unv, .uf, .58" in err
 
 
+@pytest.mark.slow
 def test_no_equilibrium_is_status_1(here, capsys):
     text = read_scene("nu308_rigid").text.replace('against = "ring_left"\nforce', "force")
     text = text.replace('stiffness = { y = "1e5 N/m", z = "1e5 N/m" }', 'stiffness = { x = "1e5 N/m" }')
@@ -313,6 +322,7 @@ def test_no_equilibrium_is_status_1(here, capsys):
     assert "something moves freely under its load" in err
 
 
+@pytest.mark.slow
 def test_as_a_module(here):
     result = subprocess.run(
         [sys.executable, "-m", "mbs", "statics", "nu308_rigid"], capture_output=True, text=True, check=True
@@ -320,6 +330,7 @@ def test_as_a_module(here):
     assert "141.421 N" in result.stdout
 
 
+@pytest.mark.slow
 def test_runs_in_time_say_how_quick_their_films_are(here, capsys, formula_maps):
     text = read_scene("nu308_rigid").text
     (here / "fast.toml").write_text(text.replace('speed = "500 rpm"', 'speed = "2000 rpm"'))

@@ -106,6 +106,7 @@ def here(tmp_path, monkeypatch):
 
 
 class TestFiles:
+    @pytest.mark.slow
     @pytest.mark.parametrize(
         ("arguments", "words"),
         [
@@ -146,6 +147,7 @@ class TestFiles:
         assert "-o: got map.nc, which would be written over map.nc" in err
         assert (here / "map.nc").read_bytes() == b"hours of work"
 
+    @pytest.mark.slow
     def test_a_body_that_the_scene_reads_is_not_written_over(self, here, capsys):
         folder = Path(mbs.__file__).parent / "systems"
         shutil.copy(folder / "nu308_flexible.toml", here / "machine.toml")
@@ -166,6 +168,7 @@ class TestFiles:
         assert status == 2
         assert "cannot be read" in err
 
+    @pytest.mark.slow
     def test_a_mark_at_the_beginning_of_the_file(self, here, capsys):
         """Some editors write one."""
         (here / "marked.toml").write_text((here / "own.toml").read_text(encoding="utf-8"), encoding="utf-8-sig")
@@ -173,6 +176,7 @@ class TestFiles:
 
 
 class TestWithoutLoad:
+    @pytest.mark.slow
     def test_there_is_an_equilibrium(self, here, capsys, formula_map):
         """The films push from all sides: what they leave over is round-off, and was taken for a load."""
         status, _, err = run(capsys, "statics", "unloaded.toml", "--map", formula_map, "-o", "u.nc", "--plot", "u.png")
@@ -260,6 +264,7 @@ class TestNames:
 class TestWithoutEffect:
     """What does nothing is hardly meant, and was taken in silence."""
 
+    @pytest.mark.slow
     @pytest.mark.parametrize(
         ("old", "new", "words"),
         [

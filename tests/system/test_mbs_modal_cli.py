@@ -124,6 +124,7 @@ def test_a_wrong_window_is_a_wrong_damping(here, capsys):
     assert status == 0
 
 
+@pytest.mark.slow
 def test_nonlinear_hits(here, capsys):
     options = ("--nonlinear", "--highest", "3 kHz", "--duration", "10 ms", "--hits", "1", "-o", "a.uff")
     status, out, _ = run(capsys, "hammer", "nu308_rigid", *options)
@@ -142,6 +143,7 @@ def test_no_mode_is_status_1(here, capsys):
     assert "mbs modal-fit: 1 problem" in err and "no stable mode" in err
 
 
+@pytest.mark.slow
 def test_bad_input_lists_every_problem_and_writes_nothing(here, capsys):
     text = read_scene("nu308_rigid").text
     (here / "a.toml").write_text(text[: text.index("[[inputs]]")])

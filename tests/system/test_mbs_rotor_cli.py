@@ -36,6 +36,7 @@ def test_critical_speeds_of_the_shipped_rotor(here, capsys):
     assert (here / "rotor.png").stat().st_size > 10_000
 
 
+@pytest.mark.slow
 def test_critical_speeds_of_several_laws_in_one_table(here, capsys):
     """Each law has in the table, and in the file, what it has alone."""
     speeds = ("--speeds", "9300 rpm", "9700 rpm", "2", "-o", "rotor.nc")
@@ -95,6 +96,7 @@ def test_a_speed_beyond_a_table_is_a_warning(here, capsys):
     assert "warning: locating: lies outside its table of speeds, where it is held at its edge; give it" in out
 
 
+@pytest.mark.slow
 def test_no_critical_speed_without_spin_or_speeds(here, capsys):
     _scene(here, ('[sweep]\nfrom = "300 rpm"\nto = "15000 rpm"\npoints = 50\nassumed = ["from", "to"]\n', ""))
     status, _, err = run(capsys, "critical", "own.toml")

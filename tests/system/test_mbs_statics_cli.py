@@ -101,6 +101,7 @@ def test_stiffness_damping_and_responses_have_the_units_of_engineers(here, capsy
     assert re.findall(r"(?:N|N s)/(?:\()?m2?(?![A-Za-z])|(?<![A-Za-z])m2?/N", without) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", ["statics", "modes", "lsa", "sweep", "variants", "report"])
 def test_heads_say_whether_weight_is_in_the_equilibrium(here, capsys, command):
     short = (
@@ -120,6 +121,7 @@ def test_heads_say_whether_weight_is_in_the_equilibrium(here, capsys, command):
         assert words in ((here / "page.html").read_text(encoding="utf-8") if command == "report" else told)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("law", ["map", "formula"])
 def test_films_where_the_law_knows_them(here, capsys, formula_map, law):
     options = ("--map", formula_map) if law == "map" else ("--law", "formula")
@@ -138,6 +140,7 @@ def test_films_where_the_law_knows_them(here, capsys, formula_map, law):
         np.testing.assert_allclose(data["central_film"].values[0, 0], films[0], rtol=1e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("law", ["map", "formula"])
 def test_temperatures_without_a_viscosity_have_no_films(here, capsys, formula_map, law):
     name = scene(here, ('temperature = "40 degC"', 'temperature = "-30 degC"'))
@@ -169,6 +172,7 @@ def test_overload_is_no_silent_equilibrium(here, capsys):
     assert (here / "a.png").stat().st_size > 10_000
 
 
+@pytest.mark.slow
 def test_what_moves_freely_is_said(here, capsys):
     name = scene(here, FREE_RING)
     status, out, _ = run(capsys, "statics", name, "-o", "a.nc")
@@ -178,6 +182,7 @@ def test_what_moves_freely_is_said(here, capsys):
         assert data.attrs["warnings"] == "ring_left moves freely along x: its position is arbitrary"
 
 
+@pytest.mark.slow
 def test_a_load_on_what_is_free_is_no_equilibrium(here, capsys):
     text = read_scene("nu308_rigid").text.replace(*FREE_RING)
     push = '\n[[loads]]\nname = "push"\non = "ring_left"\nforce = ["1e-9 N", "0 N", "0 N"]\n'
@@ -209,6 +214,7 @@ def test_one_map_by_another_structural_law(here, capsys, formula_map):
             assert float(np.abs(iso[name] - half[name]).max()) > 1e-3 * largest
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", ["statics", "sweep", "bearing"])
 def test_structural_laws_that_do_not_suit_are_refused(here, capsys, formula_map, command):
     given = ("NU308", "--load", "1 kN", "--speed", "500 rpm") if command == "bearing" else ("nu308_rigid",)

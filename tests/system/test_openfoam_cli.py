@@ -106,6 +106,7 @@ def left_cases(folder):
     return sorted(folder.parent.glob("ehdmaps-openfoam-*"))
 
 
+@pytest.mark.slow
 def test_a_map_and_the_same_command_again(folder, done):
     first = done("generate", "job.toml", "--workers", "1")
     assert counts(first.stdout) == (0, POINTS, 0)
@@ -136,6 +137,7 @@ def test_kill_9_of_a_running_solver_costs_nothing(folder):
     assert left_cases(folder) == []  # the second try made it good
 
 
+@pytest.mark.slow
 def test_failed_points_are_summed_up_and_tried_again_by_the_next_run(folder, done):
     openfoam_fake.set_mode(build_of(folder), "fatal")
     failed = done("generate", "job.toml", "--workers", "1", status=1)
@@ -195,6 +197,7 @@ def test_a_hanging_solver_is_stopped_after_its_time(folder, done):
 POINT = ("--load", "62 N/mm", "--speed", "1.7 m/s", "--temperature", "40 degC")
 
 
+@pytest.mark.slow
 def test_one_point_with_fields_and_pictures(folder, done):
     result = done("solve", "job.toml", *POINT, "--fields", "film.vtu", "--plot", "film.png", "--json")
     assert [record["status"] for record in json.loads(result.stdout)] == ["converged", "converged"]

@@ -92,6 +92,7 @@ def test_a_closed_stdout_is_told(made):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "stderr"),
     [("ehdmaps", "2>/dev/full"), ("examples.housings", "2>&-")],
@@ -102,6 +103,7 @@ def test_problems_that_nobody_can_read_keep_their_exit_status(folder, name, stde
     assert shell(f"{PROGRAMS[name]} {' '.join(NOWHERE[name])} {stderr}").returncode == 2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("streams", ["2>/dev/full", ">&- 2>&- <&-"])
 def test_a_map_is_made_whole_where_nobody_listens(folder, streams):
     if "full" in streams:
@@ -168,6 +170,7 @@ def test_newline_and_tab_stay():
 # --- libraries
 
 
+@pytest.mark.slow
 def test_the_backend_of_a_notebook_is_no_matter_of_the_programs(folder, monkeypatch):
     assert cli.main(["generate", "job.toml", "--workers", "1"]) == 0
     monkeypatch.setenv("MPLBACKEND", "module://no.such.backend")
@@ -312,6 +315,7 @@ def test_a_script_that_starts_itself_again_is_told_so(folder):
 # --- Ctrl-C
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "command",
     [["ehdmaps", "tradeoff", "nu308", "--points", "1000"], ["mbs", "campbell", "gearbox", "--law", "hertz"]],
@@ -332,6 +336,7 @@ def test_ctrl_c_ends_a_program_in_peace(folder, command, seed, number, status):
     assert err.endswith("\nstopped\n") and "Traceback" not in err
 
 
+@pytest.mark.slow
 def test_a_program_in_the_background_ignores_ctrl_c(folder):
     before = signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:

@@ -18,6 +18,7 @@ MUTATIONS = 250
 """Damaged files for each reader; the long form, the commands `stability` of both programs, has 10000."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", READERS)
 def test_damaged_files_are_read_or_refused_and_do_no_harm(name) -> None:
     found = fuzz(READERS[name](), MUTATIONS, 14)

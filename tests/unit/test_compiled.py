@@ -101,6 +101,7 @@ def test_without_a_folder_for_caches_code_is_kept_among_temporary_files(site, tm
     assert outer(site, tmp_path, **where)[0] == ["3.0", "1"]
 
 
+@pytest.mark.slow
 def test_where_others_may_write_nothing_is_kept(site, tmp_path):
     """Code that is read there is run: a folder that others may write in, or a link, is none of ours."""
     folder = tmp_path / "tmp" / f"ehdmaps-compiled-{os.getuid()}"

@@ -291,6 +291,7 @@ class Noisy(Scaled):
         return {"seed": self.seed}
 
 
+@pytest.mark.slow
 def test_a_correction_that_leaving_out_does_not_bear_out_is_not_applied():
     """Nothing is to be learned from noise; by chance a mean of twelve looks like something, once in six."""
     job, cheap = job_of(), FormulaSolver()
@@ -331,6 +332,7 @@ def test_the_response_changes_as_its_slow_film_does():
 # maps
 
 
+@pytest.mark.slow
 def test_a_corrected_map_says_so_and_goes_on_where_it_was_interrupted(tmp_path, capsys):
     path, solved = tmp_path / "a.nc", []
     job, dear = job_of(), Scaled(FormulaSolver(), solved=(solved,))

@@ -295,6 +295,7 @@ def page(with_backbone, tmp_path_factory):
         return drawn(open_map(with_backbone[1]), tmp_path_factory.mktemp("page"), patch)
 
 
+@pytest.mark.slow
 def test_the_page_explains_only_what_it_shows(page, tmp_path, monkeypatch):
     text = page
     for part in ("approach, µm", "between the points (dots): films of the contact laws", "dry (structural law alone)"):
@@ -566,6 +567,7 @@ def test_every_kind_of_map_can_be_drawn(tmp_path, text, solver):
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.slow
 def test_the_page_names_what_it_shows(tmp_path, monkeypatch):
     import matplotlib as mpl
 

@@ -290,6 +290,7 @@ def test_physics_belong_to_auto(file, capsys):
     assert status == 2 and "--physics: got 'therma' (did you mean 'thermal'?); allowed: isothermal" in err
 
 
+@pytest.mark.slow
 def test_a_limiting_stress_is_in_the_map_where_it_matters():
     hot, cold = there(1.0, 373.15, (1e3, 1e4)), there(4.0, 313.15, (1e3, 3.5e4))
     assert not shear_verdict(hot).on and "not more than 5 %" in shear_verdict(hot).words

@@ -58,6 +58,7 @@ def test_highest_frequencies_are_checked(highest):
     refused(lambda: angle_signal(ramp(), highest), "orders, highest frequency")
 
 
+@pytest.mark.slow
 def test_a_result_that_is_too_large_is_refused():
     long = ramp(duration=1000.0, rate=5000.0)
     refused(lambda: short_time_spectra(long, 0.004, (0.0, 2000.0)), "allowed: 20000 windows, and 40000000 values")

@@ -199,12 +199,14 @@ def test_the_command_needs_a_run_and_a_sensor(scene, tmp_path):
     )
 
 
+@pytest.mark.slow
 def test_the_command_refuses_a_constant_speed(scene, tmp_path):
     path = tmp_path / "constant.toml"
     path.write_text(scene.read_text().replace('to = "5000 rpm"', 'to = "2000 rpm"'))
     refused(lambda: run_command(path), "allowed: a ramp from one speed to another", "mbs lsa")
 
 
+@pytest.mark.slow
 def test_the_command_looks_at_the_window_before_it_runs(scene, monkeypatch):
     command = importlib.import_module("mbs.analyses.ramp")
     monkeypatch.setattr(command, "run_system", lambda *_, **__: pytest.fail("ran"))

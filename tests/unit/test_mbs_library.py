@@ -175,6 +175,7 @@ class TestAsTheCommand:
         xr.testing.assert_identical(found.dataset, written("runup"))
         check_told(told, found.record.steps)
 
+    @pytest.mark.slow
     def test_campbell_of_two_laws(self, model, written):
         other = assemble(model.scene, "constant:hertz")
         told, progress = counted()

@@ -53,6 +53,7 @@ def test_integrator_passes_and_explicit_methods_fail_where_they_have_to():
     assert all(np.isfinite(check.seconds) for check in checks)
 
 
+@pytest.mark.slow
 def test_command_writes_json_and_refuses_unknown_parts(capsys):
     assert main(["stability", "--only", "readers", "--mutations", "1", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["checks"]

@@ -67,6 +67,7 @@ def test_slips_in_the_table_of_a_scene_are_told():
         scene('[surface]\nroughness = "1 mm"\n')
 
 
+@pytest.mark.slow
 def test_a_given_roughness_shares_the_load_and_an_assumed_one_does_not(tmp_path, capsys):
     found = {}
     for name, options in (("assumed", []), ("given", ["--roughness", "0.3 um"])):

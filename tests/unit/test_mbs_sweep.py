@@ -287,6 +287,7 @@ class TestCases:
         np.testing.assert_allclose(last.model.scene.loads[0].force[1:3], 150.0)
         np.testing.assert_allclose(cases[0].model.scene.loads[0].force[1:3], 100.0)
 
+    @pytest.mark.slow
     def test_one_case_has_the_name_of_its_law(self):
         (case,) = load_cases(given(law="hertz"))
         assert case.label == "dry Hertz"
@@ -298,6 +299,7 @@ class TestCases:
         assert case.label == "constant cfd"
         assert math.isclose(case.clearance, 0.0)
 
+    @pytest.mark.slow
     @pytest.mark.parametrize(
         ("options", "message"),
         [
@@ -411,6 +413,7 @@ class TestResults:
             assert data[entry.name].dims == entry.dims
             assert data[entry.name].attrs == {"units": entry.units, "long_name": entry.long_name}
 
+    @pytest.mark.slow
     def test_figure(self, two_sweeps, tmp_path):
         figure = sweep_figure("a title", "40 degC", two_sweeps, ["0 um", "20 um"])
         figure.savefig(tmp_path / "a.png")

@@ -143,6 +143,7 @@ def test_error_bands_are_what_is_stated(found: xr.Dataset) -> None:
     assert heights.min() == pytest.approx(0.99 * k.min(), rel=1e-12)
 
 
+@pytest.mark.slow
 def test_figure_is_written(found: xr.Dataset, tmp_path) -> None:
     plot_spectrum(found, "NU308", tmp_path / "z.png")
     assert (tmp_path / "z.png").stat().st_size > 10_000

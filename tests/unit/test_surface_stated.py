@@ -93,6 +93,7 @@ def test_the_comments_of_the_shipped_job_are_valid():
     assert parse_job(text, "job", "job.toml").surface == Surface(2e-7)
 
 
+@pytest.mark.slow
 def test_a_map_keeps_the_surface_of_its_job_and_smooth_points(tmp_path, capsys):
     maps = {}
     for name, text in (("plain", SMALL), ("rough", ROUGH)):
@@ -143,6 +144,7 @@ def test_a_surface_that_does_not_read_is_a_broken_map(text):
         _ = emap.surface
 
 
+@pytest.mark.slow
 def test_a_law_has_the_surface_of_its_map_or_the_one_that_is_asked_for():
     emap = EHDMap(dataset_of().assign_attrs({schema.SURFACE: surface_json(Surface(3e-7))}))
     assert emap.law("inner").surface == Surface(3e-7)
@@ -249,6 +251,7 @@ def test_load_sharing_says_where_it_is_out_of_its_range(tmp_path, capsys):
     assert json.loads(capsys.readouterr().out)[0]["mean_distance"] > 0.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("surface", [Surface(1e-6), Surface(1e-9)])
 def test_the_page_of_roughness_shades_what_is_out_of_range(surface, tmp_path):
     emap = EHDMap(dataset_of()).with_surface(surface)

@@ -63,6 +63,7 @@ class Heard:
         self.after += points
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("workers", [1, 2])
 def test_every_task_is_run_kept_and_told(tmp_path, workers):
     tasks = [Stub(number) for number in range(20)]
@@ -91,6 +92,7 @@ def test_a_result_that_is_not_final_is_tried_again(tmp_path):
     assert (result.taken_over, result.solved) == (3, 3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("workers", [1, 2])
 def test_a_solver_that_gives_up_is_a_result(tmp_path, workers):
     with Store(tmp_path / "s") as store:
@@ -115,6 +117,7 @@ class Meeting(Stub):
         return {"value": np.array([float(Path(self.marker).exists())]), "reason": np.array([""])}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("slow", "patience"), [(False, 1.0), (True, 60.0)])
 def test_only_slow_tasks_run_beside_the_first_one(tmp_path, slow, patience):
     """The first one compiles for all; what takes hours does not wait for it."""
@@ -137,12 +140,14 @@ def test_a_dead_worker_costs_its_task_only(tmp_path):
     assert result.solved == 33
 
 
+@pytest.mark.slow
 def test_a_lone_task_cannot_take_the_sweep_down_either(tmp_path):
     with Store(tmp_path / "s") as store:
         result = sweep([Stub(4, "dies")], store, 2)
     assert "worker process died" in str(result.arrays["dies 4"]["reason"][0])
 
 
+@pytest.mark.slow
 def test_a_worker_that_was_killed_by_chance_costs_nothing(tmp_path):
     once = Stub(5, "dies once", marker=str(tmp_path / "marker"))
     with Store(tmp_path / "s") as store:
@@ -159,6 +164,7 @@ class Missing(Stub):
         return importlib.import_module, ("no_such_library",)
 
 
+@pytest.mark.slow
 def test_processes_that_die_before_they_do_anything_are_the_end(tmp_path, capfd):
     tasks = [Missing(number) for number in range(1000)]
     with Store(tmp_path / "s") as store:

@@ -63,6 +63,7 @@ def looked_at(figures):
         assert on_each_other(titles(figure)) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "command",
     [

@@ -98,8 +98,8 @@ SHARES = {"law_": 0.99, "law_valley_": 0.95}
 """Share of the points that should be within the bars, over the whole map and in the valley."""
 
 REFUSED, HALVED, TOLERANCE = "law_refused", "law_lines_halved_along", "law_tolerance"
-"""Attributes of the map: why it makes no law, the axes along which the steps of its lines were halved, and the tolerance
-that its laws were asked to keep."""
+"""Attributes of the map: why it makes no law, the axes along which the steps of its lines were halved, and the
+tolerance that its laws were asked to keep."""
 
 STANDS_ON_LINES = (
     "these laws are made from refinement lines, whose steps are halved where the films between them miss, three times "
