@@ -368,7 +368,10 @@ class ForceAtPoint:
         work = self._work
         u, T, q = check_conditions(self.conditions)
         if self._passing and not self._coupled and _is_within(law, u, T, q):
-            self._grow(law)
+            # A table is begun, whose cells are made as slices need them.
+            work.make_room()
+            work.conditions[:] = (*self.conditions, 0.0)
+            self._growing = (*self._flat_law.arrays(law, q > 0.0), work.conditions, work.nodes, work.counts, work.marks)
             return
         part, faded = part_of_film(law, u), is_faded(law, u)
         if part == 0.0 and q == 0.0 and is_one_power(law):
@@ -383,14 +386,6 @@ class ForceAtPoint:
         self._point(law)
         self._by_slices = True
         work.numbers[:] = _BY_SLICES
-
-    def _grow(self, law: ContactLaw) -> None:
-        """Have a table begun, whose cells are made as slices need them."""
-        work = self._work
-        work.make_room()
-        work.conditions[:] = (*self.conditions, 0.0)
-        law_arrays = self._flat_law.arrays(law, self.conditions[2] > 0.0)
-        self._growing = (*law_arrays, work.conditions, work.nodes, work.counts, work.marks)
 
     def _from_growing(self, growing: tuple[Any, ...], out: FloatArray) -> int:
         """Call with a table whose cells are made as slices need them."""
@@ -439,17 +434,11 @@ class ForceAtPoint:
         return status
 
     def _from_law(self, out: FloatArray) -> int:
-        """Call the law for each slice, at conditions that no table fits; slices that are coupled with any law."""
-        law = self._flat_law.law
-        if self._coupled:
-            return self._from_coupled(law, out)
-        assert not isinstance(law, DryLaw)
-        return self._from_slices(law, out)
-
-    def _from_coupled(self, law: Law, out: FloatArray) -> int:
-        """Solve for the loads of coupled slices."""
-        w = self._work
-        assert w.coupling is not None
+        """Call the law for each slice, at conditions that no table fits; solve for the loads of coupled slices."""
+        w, law = self._work, self._flat_law.law
+        if w.coupling is None:
+            assert not isinstance(law, DryLaw)
+            return self._from_slices(law, out)
         point = self._point(law) if self._by_slices and not isinstance(law, DryLaw) else None
         status: int = coupled_arrays(point, *w.shape, w.cells, w.rows, w.states, w.coupling, w.own, w.counts, out)
         return status

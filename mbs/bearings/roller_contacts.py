@@ -351,18 +351,12 @@ class RollerContacts:
         cage_angle, entrainment_speed, temperature : float
             The same as for `BearingForce`.
         """
-        q = self._vector("displacement", displacement)
-        rows, damping, times = [], [], []
-        for side, law in enumerate(self.laws):
-            if isinstance(law, DryLaw):
-                return None
-            flat, tilted = self._rows(side, cage_angle)
-            delta = self._approach(flat, tilted, q)
-            _, _, c, _ = self._evaluate(side, delta, np.zeros_like(delta), entrainment_speed, temperature)
-            rows.append(self._slice_rows(flat, tilted))
-            damping.append(c.reshape(-1))
-            times.append(relaxation_times(law.at(entrainment_speed, temperature), delta).reshape(-1))
-        return relaxing(np.concatenate(rows), np.concatenate(damping), np.concatenate(times))
+        conditions = {"entrainment_speed": entrainment_speed, "temperature": temperature}
+        groups = self.groups(displacement, relaxes=True, cage_angle=cage_angle, **conditions)
+        if not groups:
+            return None
+        _, _, damping, times = np.concatenate([group.state() for group in groups], axis=1)
+        return relaxing(np.concatenate([group.rows for group in groups]), damping, times)
 
     def groups(
         self,
@@ -406,15 +400,9 @@ class RollerContacts:
         displacement, cage_angle, entrainment_speed, temperature
             The same as for `relaxation`.
         """
-        q = self._vector("displacement", displacement)
-        times = []
-        for side, law in enumerate(self.laws):
-            if isinstance(law, DryLaw):
-                return np.zeros(0)
-            flat, tilted = self._rows(side, cage_angle)
-            delta = self._approach(flat, tilted, q)
-            times.append(natural_times(law.at(entrainment_speed, temperature), delta).reshape(-1))
-        return np.concatenate(times)
+        conditions = {"entrainment_speed": entrainment_speed, "temperature": temperature}
+        groups = self.groups(displacement, relaxes=True, cage_angle=cage_angle, **conditions)
+        return np.concatenate([np.zeros(0), *(natural_times(group.law, group.approach) for group in groups)])
 
     def settled(
         self,
