@@ -85,8 +85,8 @@ def spline_slopes(nodes: FloatArray, values: FloatArray) -> FloatArray:
 
     Examples
     --------
-    >>> spline_slopes(np.array([0.0, 1.0, 3.0, 4.0]), np.array([0.0, 1.0, 27.0, 64.0])).round(12)
-    array([ 0.,  3., 27., 48.])
+    >>> spline_slopes(np.array([0.0, 1.0, 3.0, 4.0]), np.array([1.0, 8.0, 64.0, 125.0])).round(12)
+    array([ 3., 12., 48., 75.])
     """
     step = np.diff(nodes)
     rise = np.diff(values) / step
