@@ -2,12 +2,11 @@
 
 | module | idea |
 |---|---|
-| `target` | what a target of `ehdmaps export` is, which ones are registered; axes, signs, range, provenance in each |
+| `target` | what a target of `ehdmaps export` is, which ones are registered; axes, signs, range, provenance; folders |
 | `csv` | curves over load of a law as a table |
 | `mat` | points and law of a map as a struct for MATLAB and Octave |
 | `resampled` | the law on a grid that linear interpolation reads |
 | `modelica` | the law at one speed and temperature as pure functions in Modelica |
-| `folder` | exports that are folders: written whole or not at all |
 | `c` | the law and the bearing in C99 |
 | `shims` | user routines of Adams, RecurDyn and Simpack over the kernel in C |
 | `fmu` | a bearing as a Functional Mock-up Unit |

@@ -158,7 +158,7 @@ def _reynolds(films: str = SOLVED, **options: Any) -> ContactSolver:
 
     if films == SOLVED:
         return ReynoldsSolver(**options)
-    from ehdmaps.table.family import GRID, outside_family
+    from ehdmaps.table.coordinates import GRID, outside_family
     from ehdmaps.table.solver import TableSolver
 
     solver = ReynoldsSolver(**{**GRID, **options})
@@ -256,7 +256,7 @@ def of_map(job: Job) -> ContactSolver:
     options = job.solver_options
     if job.solver != "reynolds" or job.corrected_by or {"films", *GRID_KEYS} & options.keys():
         return build(job.solver, options)
-    from ehdmaps.table.family import outside_family
+    from ehdmaps.table.coordinates import outside_family
 
     solved = build(job.solver, options)
     return solved if outside_family(solved) else build(job.solver, {**options, "films": TABLE})

@@ -3,10 +3,8 @@
 | module | one idea |
 |---|---|
 | `installation` | where OpenFOAM and `ehlFoam` are, what is missing, and the command that builds it |
-| `isotherms` | an oil over temperature: its isotherms at equal steps |
-| `parameters` | the one file that Python writes into a case: checked numbers and known words only |
-| `case` | a working folder: copied from the template, removed when its run succeeded |
-| `leftovers` | folders of runs that were killed, told from those in work and those that are kept |
+| `parameters` | the one file that Python writes into a case: checked numbers and known words only; the oil over temperature |
+| `case` | a working folder: copied from the template, removed when its run succeeded; those of runs that were killed |
 | `pyfoam` | the only door to PyFoam: runs a program without a shell, parses small dictionaries |
 | `run` | one program in one case: time limit, crash, kill, last lines of its log |
 | `results` | what a run wrote: the dictionary `results`, the table `film.dat` |

@@ -16,8 +16,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, SolverError
 from ehdmaps.openfoam.grid_solver import GridSolution, GridSolver
 from ehdmaps.openfoam.installation import NO_PATH, Installation, installation
-from ehdmaps.openfoam.isotherms import isotherms
-from ehdmaps.openfoam.parameters import FLOWS, Flow, Heat, Mesh, Parameters, Start
+from ehdmaps.openfoam.parameters import FLOWS, Flow, Heat, Mesh, Parameters, Start, isotherms
 from ehdmaps.openfoam.results import FilmTable
 from ehdmaps.openfoam.run import RunError
 from ehdmaps.physics.closed_form import THIN_FILM_LIMIT, HertzSolver, too_thick

@@ -1,8 +1,7 @@
 """Stability at the extremes: what a search over wild input found, and how input is damaged.
 
 =========  ==============================================================================
-findings   `Check`: how many cases of one kind were right, refused with a reason, or wrong
-report     checks as a table, and as JSON
+findings   `Check`: how many cases of one kind were right, refused with a reason, or wrong; as a table, and as JSON
 mutations  how good files are damaged
 fuzzing    a reader given damaged files, in child processes that may crash
 =========  ==============================================================================

@@ -1,11 +1,18 @@
-"""What a search over wild input found, as frozen values."""
+"""What a search over wild input found, and how it is told."""
 
 from __future__ import annotations
 
+import dataclasses
+import json
 import os
+import textwrap
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
+
+from ehdmaps.outputs import MARK, Kind, has_mark, write_text
+from ehdmaps.units import closest
 
 
 @dataclass(frozen=True)
@@ -142,3 +149,133 @@ class Tally:
             reasons=dict(self._reasons.most_common()),
             seconds=processor_seconds() - self._began,
         )
+
+
+CHECKS = Kind("a table of checks of ehdmaps or mbs", (".txt", ".json"), has_mark)
+
+MOST_REASONS = 6
+"""Reasons of refusals that are printed of a check; JSON has all."""
+
+_WIDTH = 120
+
+
+def checks_text(checks: Sequence[Check]) -> str:
+    """Return the checks as a table: counts first, then how a value is judged, the worst case, and what failed.
+
+    Parameters
+    ----------
+    checks : sequence of Check
+        What was found, in the order in which it is shown.
+    """
+    width = max([len("total"), *(len(check.name) for check in checks)]) + 2
+    columns = ("tried", "right", "refused", "failed", "CPU s")
+    lines = ["".ljust(width) + "".join(f"{name:>10}" for name in columns)]
+    for check in checks:
+        counts = (check.tried, check.right, check.refused, check.failed)
+        lines.append(check.name.ljust(width) + "".join(f"{count:>10}" for count in counts) + f"{check.seconds:>10.3g}")
+    sums = [sum(getattr(check, name) for check in checks) for name in columns[:4]]
+    seconds = sum(check.seconds for check in checks)
+    lines.append("total".ljust(width) + "".join(f"{count:>10}" for count in sums) + f"{seconds:>10.3g}")
+    for check in checks:
+        lines += ["", check.name]
+        lines += _paragraph("right: ", check.rule)
+        if check.worst:
+            lines += _paragraph("worst: ", check.worst)
+        lines += _paragraph("refused: ", _reasons(check)) if check.reasons else []
+        for failure in check.failures:
+            lines += _paragraph("FAILED: ", f"{failure.what}; case: {failure.case}")
+        if check.failed > len(check.failures):
+            lines += _paragraph("FAILED: ", f"{check.failed - len(check.failures)} more")
+    return "\n".join(lines)
+
+
+def checks_json(checks: Sequence[Check]) -> str:
+    """Return the checks as JSON: under "checks" a list of objects with the attributes of `Check`.
+
+    Parameters
+    ----------
+    checks : sequence of Check
+        What was found.
+    """
+    entries = [dataclasses.asdict(check) | {"reasons": dict(check.reasons)} for check in checks]
+    return json.dumps({"mark": MARK, "checks": entries}, indent=1)
+
+
+def write_checks(path: Path, head: str, checks: Sequence[Check]) -> None:
+    """Write checks, by the rule of all files that are written.
+
+    Parameters
+    ----------
+    path : Path
+        .txt for the table, .json for JSON.
+    head : str
+        What was searched; first line of the table.
+    checks : sequence of Check
+        What was found.
+
+    Raises
+    ------
+    InputError
+        If it cannot be written.
+    """
+    text = checks_json(checks) if path.suffix == ".json" else f"{head} ({MARK})\n{checks_text(checks)}"
+    write_text(path, f"{text}\n", CHECKS)
+
+
+def unknown_part(only: str | None, names: tuple[str, ...]) -> list[str]:
+    """What is wrong about the part that `--only` names; nothing where it is left out.
+
+    Parameters
+    ----------
+    only : str or None
+        What was given.
+    names : tuple of str
+        Names of all parts.
+    """
+    if only is None or only in names:
+        return []
+    return [f"--only: got {only!r:.60}{closest(only, names)}; allowed: {', '.join(names)}"]
+
+
+def told(head: str, checks: Sequence[Check], output: str | None, as_json: bool) -> tuple[str, int]:
+    """Write checks where a file is asked for, and return what a command prints of them with its status.
+
+    Parameters
+    ----------
+    head : str
+        What was searched.
+    checks : sequence of Check
+        What was found.
+    output : str or None
+        File of `-o`.
+    as_json : bool
+        Whether JSON is printed.
+
+    Returns
+    -------
+    (str, int)
+        Text, and 1 where something failed.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be written.
+    """
+    if output is not None:
+        write_checks(Path(output), head, checks)
+    text = checks_json(checks) if as_json else f"{head}\n{checks_text(checks)}"
+    return text, 1 if any(check.failed for check in checks) else 0
+
+
+def _reasons(check: Check) -> str:
+    """Why cases were refused, the most frequent reasons first."""
+    ordered = sorted(check.reasons.items(), key=lambda entry: -entry[1])
+    shown = [f"{count} {reason}" for reason, count in ordered[:MOST_REASONS]]
+    left = sum(count for _, count in ordered[MOST_REASONS:])
+    return "; ".join(shown + ([f"{left} for {len(ordered) - MOST_REASONS} other reasons"] if left else []))
+
+
+def _paragraph(begin: str, text: str) -> list[str]:
+    """Lines of a text below its check."""
+    flat = " ".join(text.split())
+    return textwrap.wrap(flat, _WIDTH, initial_indent=f"    {begin}", subsequent_indent=" " * 8)

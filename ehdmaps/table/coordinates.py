@@ -1,4 +1,4 @@
-"""Coordinates of the table: zeta, the size of the speed, and two of the oil.
+"""Coordinates of the film table: zeta, the size of the speed, two of the oil; what is outside of the family.
 
 The equations of a smooth, flooded, Newtonian, isothermal line contact know, in Hertz' units, the wedge 3 pi^2/(8 M^2),
 and of the oil alpha p_H, the curvature p_H/p_0 of its viscosity with the exponent z, and p_H/p_r of its density,
@@ -27,10 +27,13 @@ with the bend B and q = (1 - z)/(alpha p_0). The shift is a fit: with it films b
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.physics.moes import valley_load_number
+from ehdmaps.physics.solution import ContactSolver
 from ehdmaps.physics.viscosity import ROELANDS_PRESSURE
 
 ALPHA = 17e-9
@@ -111,3 +114,35 @@ def load_number_at(zeta: FloatArray, oil_number: FloatArray, shift: FloatArray |
         The arguments of `zeta_of`.
     """
     return np.asarray(np.exp(zeta + shift) * valley_load_number(oil_number))
+
+
+TABLE_OF = "reynolds"
+"""Solver whose films the table holds."""
+
+GRID: dict[str, Any] = {"density": 10.0, "inlet_length": 700.0}
+"""Settings of that solver: finer than its own, so that what is read and what is solved beside it fit together."""
+
+_MEANING = {
+    "physics": "heat in the film",
+    "shear": "a law of shear",
+    "slide_to_roll": "traction of a sliding contact",
+}
+
+
+def outside_family(solver: ContactSolver) -> str:
+    """Why films of a solver are not those of the table; empty where they are.
+
+    Roughness, layers and starvation come on top of these films: what adds them asks for smooth, flooded films first.
+
+    Parameters
+    ----------
+    solver : ContactSolver
+        The solver, with its settings.
+    """
+    if solver.name != TABLE_OF:
+        return f"film table: holds films of the solver {TABLE_OF}, not of {solver.name}; solve them"
+    settings = solver.settings()
+    asked = [f"{meaning} ({key} = {settings[key]})" for key, meaning in _MEANING.items() if key in settings]
+    if asked:
+        return f"film table: knows nothing of {', '.join(asked)}; solve these films"
+    return ""

@@ -19,7 +19,7 @@ class TableSolver(ContactSolverDefaults):
     Attributes
     ----------
     other : ContactSolver
-        Solves on the grid of the table, see `ehdmaps.table.family.GRID`.
+        Solves on the grid of the table, see `ehdmaps.table.coordinates.GRID`.
     thickest_film : float
         Largest h/R that is no refusal; infinite for maps that are there for their laws only.
     """

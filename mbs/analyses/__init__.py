@@ -16,11 +16,9 @@ recorded       runs that are recorded, measured or simulated before: signals, le
 hammer         a simulated hammer test
 plan           which ranges a scene needs of a contact map, and the jobs that cover them
 planning       operating points of a scene and the loads and speeds seen there
-planned_job    such a job, from the bearings and the oil of the scene
 auto           an analysis that chooses its physics, and makes maps of what the film table has not
 film_verdicts  which physics of the films a scene requires
 film_criteria  such criteria at a contact, in closed form
-shear_effect   what a limiting shear stress changes there, by solving
 case           what an analysis compares, computed side by side in processes of their own
 operating      a model as it is in operation: temperatures and clearances of its bearings at a speed
 heat_balance   the temperatures at which the heat of all bearings is carried away

@@ -1,5 +1,10 @@
 """Which physics of the films a scene requires, from the ranges that it visits: verdicts with their reasons.
 
+How much a limiting shear stress changes a contact: by two solutions, as no closed form says it.
+
+Where the pressure has a steep spike, a Newtonian oil would carry more shear stress at the walls than any oil bears
+(`ehdmaps.physics.wall_stress`). A solution takes some hundredths of a second.
+
 The criteria are those of `mbs.analyses.film_criteria`, each taken at its worst over both contacts, over the speeds of
 the scene, and over the loads of the rollers that carry it, `SHARES` of the highest load at rest. Rollers that carry
 less take less than that part in stiffness. The oil supply is looked at down to the lowest load of the planned map,
@@ -15,6 +20,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.jobs import solvers
 from ehdmaps.jobs.job_text import Entry
 from ehdmaps.maps.film_field import RIGID, load_at
 from ehdmaps.physics.contact import OperatingPoint
@@ -22,6 +28,7 @@ from ehdmaps.physics.heat import INLET_HEAT, ISOTHERMAL, inlet_heat
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, THICKEST, THINNEST, OilSupply
 from ehdmaps.physics.solids import STEEL
+from ehdmaps.physics.solution import ContactSolution, ContactSolver, contact_solution
 from ehdmaps.physics.surface import FINEST, SMOOTH, Surface
 from ehdmaps.units import SPEED
 from mbs.analyses.film_criteria import (
@@ -34,9 +41,47 @@ from mbs.analyses.film_criteria import (
     supply_effect,
 )
 from mbs.analyses.planning import Needed
-from mbs.analyses.shear_effect import shear_effect
 from mbs.model.relaxation import Films
 from mbs.scene.fields import HERTZ, MICROMETRE
+
+
+def shear_effect(state: ClosedContact, lubricant: Lubricant, loads: FloatArray) -> float:
+    """By how much a limiting stress changes k or c, the largest over some loads, as a part of the Newtonian value.
+
+    Parameters
+    ----------
+    state : ClosedContact
+        Contact, speed and temperature.
+    lubricant : Lubricant
+        The oil.
+    loads : ndarray, shape (n,)
+        Loads [N/m], > 0, rising.
+
+    Returns
+    -------
+    float
+        -1 where no load has both solutions.
+    """
+    both = (solvers.build("reynolds", {"shear": shear}) for shear in ("newtonian", "limiting"))
+    pairs = zip(*(_solved(solver, state, lubricant, loads) for solver in both), strict=True)
+    sizes = [
+        max(abs(limited.stiffness / plain.stiffness - 1.0), abs(limited.damping / plain.damping - 1.0))
+        for plain, limited in pairs
+        if plain.status.usable and limited.status.usable and plain.damping != 0.0
+    ]
+    return float(np.max(sizes, initial=-1.0))
+
+
+def _solved(
+    solver: ContactSolver, state: ClosedContact, lubricant: Lubricant, loads: FloatArray
+) -> list[ContactSolution]:
+    """Solutions at all loads."""
+    films = solver.solve_line(state.contact, lubricant, tuple(loads.tolist()), state.speed, state.temperature)
+    return [
+        contact_solution(film, state.contact, OperatingPoint(load, state.speed, state.temperature))
+        for film, load in zip(films, loads.tolist(), strict=True)
+    ]
+
 
 SHARES = (0.1, 1.0)
 """Loads of rollers that carry a bearing, over the highest one at rest."""

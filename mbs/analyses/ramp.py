@@ -30,9 +30,9 @@ from mbs.settings import CampbellSettings, RunUp
 from mbs.spectral.campbell import RunUpSpectra, run_up_spectra
 from mbs.spectral.run_signal import RunSignal
 from mbs.spectral.spectra import LEAST_OVERSAMPLING
-from mbs.transient.numerical_damping import RESOLVED, energy_lost, numerical_damping_ratio
 from mbs.transient.run import Options, Recording
 from mbs.transient.run import run as run_system
+from mbs.transient.stepping import RESOLVED, energy_lost, numerical_damping_ratio
 
 SPEEDS = 8
 """Speeds at which the rolling torque is found, between rest and the highest one of the drive alone."""

@@ -46,11 +46,11 @@ from mbs.scene.contact_laws import (
     Damper,
     dry_words,
     hertz_damper,
+    read_law,
     table_path,
     table_problems,
 )
 from mbs.scene.fields import FORCE, MICROMETRE
-from mbs.scene.law_file import read_law
 from mbs.scene.map_set import geometry_problems, structure_words
 from mbs.scene.profiles import profile_from_text
 

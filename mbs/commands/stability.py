@@ -7,8 +7,7 @@ import argparse
 from ehdmaps.errors import InputError
 from ehdmaps.outputs import Output, output_problems
 from ehdmaps.program import tell
-from ehdmaps.stability.findings import Check
-from ehdmaps.stability.report import CHECKS, told, unknown_part
+from ehdmaps.stability.findings import CHECKS, Check, told, unknown_part
 from mbs.instruments.element import element_checks
 from mbs.instruments.integrator import integrator_checks
 from mbs.instruments.readers import reader_checks

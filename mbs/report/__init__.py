@@ -4,11 +4,9 @@ The modules in the order in which data pass through them:
 
 ============  ====================================================================================
 examination   scene and law -> everything that the report tells
-machine       the machine, what limits its law, and warnings, in sentences
+machine       the machine, what limits its law, and warnings, in sentences; its maps with the operating points
 bearings      loads of the rollers around each bearing, pressures, films, stiffness and damping
-used_maps     the maps of the law, with the machine's operating points marked
-modes         the table of modes
-campbell      frequencies over speed with the orders that excite them, or the levels of a run
+campbell      the table of modes; frequencies over speed with the orders that excite them, or the levels of a run
 scene_report  the whole document
 ============  ====================================================================================
 

@@ -14,11 +14,9 @@ from ehdmaps.report.page import Markup, Section, document, joined, pairs, senten
 from ehdmaps.units import RPM
 from mbs.analyses.sensors import excited_orders
 from mbs.report.bearings import bearings
-from mbs.report.campbell import campbell, lines_of, saved_campbell
+from mbs.report.campbell import campbell, lines_of, mode_table, saved_campbell
 from mbs.report.examination import Examination
-from mbs.report.machine import in_short, machine, notes, warnings
-from mbs.report.modes import mode_table
-from mbs.report.used_maps import map_sections, used_maps
+from mbs.report.machine import in_short, machine, map_sections, notes, used_maps, warnings
 
 
 def scene_report(

@@ -5,15 +5,14 @@ The modules in the order of the data:
 =============  ====================================================================================
 reader         a scene file becomes a `Scene`; nothing is computed
 fields         how the values of a file are read: places, vectors, directions
-shaft, ...     one kind of table each, how it is read and built: `flexible`, `bearings`, `gears`;
-               `profiles`, `runs` (run-up by a drive, sweep, Campbell diagram)
+flexible, ...  one kind of table each, how it is read and built: shafts and bodies of finite elements,
+               `bearings` with `profiles`, `gears`, `matrices`, loads that turn (`turning`)
 specs          what a scene says of bodies and bearings: plain frozen values
 scene          the scene itself; it may be made of specs, without a file
 kinds          the machine elements that a scene may have, one row each
 bodies         bodies are built, each content once
 map_set        maps of a scene: each bearing takes the one that was made for it
 contact_laws   the contact law in force
-axial          whether helical gears are held along their shafts
 assembly       scene and law become a `Model`, or a list of all problems
 =============  ====================================================================================
 

@@ -13,8 +13,7 @@ import pytest
 from ehdmaps.ehl.start import reynolds_start
 from ehdmaps.openfoam.fields import read_fields
 from ehdmaps.openfoam.grid_solver import GridSolution
-from ehdmaps.openfoam.isotherms import STEP, Isotherms
-from ehdmaps.openfoam.parameters import Heat, Parameters
+from ehdmaps.openfoam.parameters import STEP, Heat, Isotherms, Parameters
 from ehdmaps.openfoam.solver import OpenFoamSolver
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import OperatingPoint

@@ -18,7 +18,7 @@ import pytest
 from ehdmaps import errors
 from ehdmaps.jobs import cli
 from ehdmaps.maps.emap import open_map
-from ehdmaps.openfoam.leftovers import remove_leftovers
+from ehdmaps.openfoam.case import remove_leftovers
 from tests.cases import openfoam_fake
 from tests.cases.interruptible import start
 from tests.cases.jobs import map_job, spaced

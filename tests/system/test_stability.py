@@ -8,8 +8,8 @@ import pytest
 
 from ehdmaps.jobs.cli import main
 from ehdmaps.jobs.instruments import stability_readers as of_ehdmaps
+from ehdmaps.stability.findings import checks_text
 from ehdmaps.stability.fuzzing import fuzz
-from ehdmaps.stability.report import checks_text
 from mbs.instruments import readers as of_mbs
 
 READERS = {**of_ehdmaps.READERS, **of_mbs.READERS}

@@ -34,8 +34,7 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import load_and_speed
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.physics.solution import Status
-from ehdmaps.table.coordinates import load_number_at, valley_shift, zeta_of
-from ehdmaps.table.family import outside_family
+from ehdmaps.table.coordinates import load_number_at, outside_family, valley_shift, zeta_of
 from ehdmaps.table.fields import FIELDS, FILMS, LAW
 from ehdmaps.table.file import SHIPPED, content_sha256, film_table, read_tables, shipped_tables, write_tables
 from ehdmaps.table.films import TableFilms

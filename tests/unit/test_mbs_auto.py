@@ -19,7 +19,7 @@ from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.surface import Surface
 from mbs import AutoSettings, automatic, parse_scene, statics
-from mbs.analyses import auto, planned_job
+from mbs.analyses import auto, plan
 from mbs.analyses.auto import settled
 from mbs.analyses.film_criteria import (
     closed_contact,
@@ -47,7 +47,7 @@ def by_formula(monkeypatch):
         return generate(job, path, 1, solver=solvers.build("formula", {}))
 
     monkeypatch.setattr(auto, "generate", quick)
-    monkeypatch.setattr(planned_job, "LAW_CHECK", 0)
+    monkeypatch.setattr(plan, "LAW_CHECK", 0)
     return made
 
 

@@ -13,7 +13,7 @@ from mbs.model.elements import ElementDefaults, Forces, Load, Spring
 from mbs.model.profiles import Harmonic, SpeedProfile
 from mbs.model.system import System
 from mbs.settings import Settings
-from mbs.transient.numerical_damping import energy_lost, numerical_damping_ratio, principal_root
+from mbs.transient.stepping import energy_lost, numerical_damping_ratio, principal_root
 from tests.cases.bearings import integrate
 from tests.cases.elements import MASS, OneSided, force, stiff
 

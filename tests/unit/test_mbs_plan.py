@@ -12,8 +12,7 @@ from hypothesis import strategies as st
 
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.jobs.reader import parse_job
-from mbs.analyses.plan import plan
-from mbs.analyses.planned_job import planned_job
+from mbs.analyses.plan import plan, planned_job
 from mbs.analyses.planning import (
     LIGHT,
     LIGHTEST,

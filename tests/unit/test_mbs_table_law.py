@@ -12,7 +12,7 @@ from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.laws import TableLaw
 from mbs.scene.assembly import assemble
-from mbs.scene.law_file import read_law
+from mbs.scene.contact_laws import read_law
 from mbs.scene.reader import read_scene
 from tests.cases.commands import run
 

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from ehdmaps.errors import InputError
-from ehdmaps.openfoam.isotherms import STEP, isotherms
-from ehdmaps.openfoam.parameters import Heat, Mesh, Oscillation, Parameters, Start
+from ehdmaps.openfoam.parameters import STEP, Heat, Mesh, Oscillation, Parameters, Start, isotherms
 from ehdmaps.openfoam.pyfoam import parse
 from ehdmaps.physics.heat import HeatData
 from ehdmaps.physics.lubricant import Lubricant

@@ -21,7 +21,7 @@ from ehdmaps.jobs.make.tasks import line_tasks
 from ehdmaps.jobs.reader import parse_job, read_job
 from ehdmaps.jobs.solve.film_plot import places
 from ehdmaps.openfoam import installation as installed
-from ehdmaps.openfoam.leftovers import CLAIM, PREFIX, claimed, remove_leftovers
+from ehdmaps.openfoam.case import CLAIM, PREFIX, claimed, remove_leftovers
 from ehdmaps.openfoam.pyfoam import parse
 from ehdmaps.openfoam.run import RunError, run
 from ehdmaps.openfoam.solver import OpenFoamSolver

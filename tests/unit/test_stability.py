@@ -14,10 +14,9 @@ import pytest
 
 from ehdmaps.errors import InputError
 from ehdmaps.stability import fuzzing
-from ehdmaps.stability.findings import MOST_FAILURES, Check, Tally
+from ehdmaps.stability.findings import MOST_FAILURES, Check, Tally, checks_json, checks_text, write_checks
 from ehdmaps.stability.fuzzing import Reader, case_of, fuzz
 from ehdmaps.stability.mutations import BINARY_WAYS, LARGEST, TEXT_WAYS, damage
-from ehdmaps.stability.report import checks_json, checks_text, write_checks
 
 GOOD = {"a.txt": b'load = "1.5 N/mm"\npoints = 3\n' * 5, "a.nc": bytes(range(256)) * 4}
 

@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import get_args
 
 from ehdmaps.exports.c.kernel import BEYOND, KernelOptions, ProfileName, kernel_files
-from ehdmaps.exports.folder import check_folder, write_folder
-from ehdmaps.exports.target import Target, origin
+from ehdmaps.exports.target import Target, check_folder, origin, write_folder
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.law import LawKind, OutsidePolicy
 from ehdmaps.units import quantity

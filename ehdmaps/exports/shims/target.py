@@ -16,8 +16,7 @@ from scipy.optimize import brentq
 from ehdmaps.errors import InputError
 from ehdmaps.exports.c.kernel import BEYOND, kernel_files
 from ehdmaps.exports.c.target import add_law_arguments, options_of
-from ehdmaps.exports.folder import check_folder, write_folder
-from ehdmaps.exports.target import BEARING_AXES, Target, origin
+from ehdmaps.exports.target import BEARING_AXES, Target, check_folder, origin, write_folder
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.units import quantity
 

@@ -10,9 +10,8 @@ from ehdmaps.jobs.instruments.stability_readers import READERS
 from ehdmaps.jobs.reader import read_job
 from ehdmaps.outputs import Output, output_problems
 from ehdmaps.program import tell
-from ehdmaps.stability.findings import Check
+from ehdmaps.stability.findings import CHECKS, Check, told, unknown_part
 from ehdmaps.stability.fuzzing import fuzz
-from ehdmaps.stability.report import CHECKS, told, unknown_part
 
 _CONTACT = "contact"
 

@@ -25,8 +25,7 @@ from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.physics.isotherm import PressureViscosity
 from ehdmaps.physics.rheology import ShearLaw
 from ehdmaps.physics.viscosity import ROELANDS_PRESSURE
-from ehdmaps.table.coordinates import exponent_of, load_number_at, valley_shift
-from ehdmaps.table.family import GRID
+from ehdmaps.table.coordinates import GRID, exponent_of, load_number_at, valley_shift
 from ehdmaps.table.fields import FIELDS, FILMS, LAW, NATURAL_FREQUENCIES, RESPONSES
 from ehdmaps.table.file import TableFile, rounded
 from ehdmaps.table.films import FilmTable
