@@ -22,6 +22,7 @@ from ehdmaps.jobs.make.batch_generate import generate_batch as many_maps
 from ehdmaps.jobs.make.batch_generate import make_folder
 from ehdmaps.jobs.make.batch_table import table_dataset, write_table
 from ehdmaps.jobs.make.sweep import Progress
+from ehdmaps.jobs.make.table_films import unserved
 from ehdmaps.jobs.reader import read_job
 from ehdmaps.jobs.show import compare as comparing
 from ehdmaps.jobs.solve import points as many
@@ -48,9 +49,9 @@ def generate(
     """Make a map.
 
     With an output file it works as the command does: what its store beside the file has already is taken over, so that
-    an interrupted run goes on. Without one everything stays in memory, and the refinement lines of a contact law are
-    left out: `EHDMap(dataset).law` then interpolates between the points of the map. Give an output file and open it for
-    the refined law.
+    an interrupted run goes on. Without one everything stays in memory, and films that the film table has not are those
+    of the points alone: `EHDMap(dataset).law` then interpolates between them. Give an output file and open it for a law
+    with refinement lines.
 
     Parameters
     ----------
@@ -94,8 +95,9 @@ def generate(
     if output is None:
         if tolerance is not None:
             raise InputError("tolerance: got one without output; allowed: with an output file, whose laws are checked")
-        plain = dataclasses.replace(chosen, backbone="none")
-        return generating.generate_in_memory(plain, workers, progress, made_by, corrector, executor).dataset
+        if unserved(chosen, solvers.complete(made_by or solvers.of_map(chosen))):
+            chosen = dataclasses.replace(chosen, backbone="none")
+        return generating.generate_in_memory(chosen, workers, progress, made_by, corrector, executor).dataset
     check_outputs([Output("output", Path(output), MAP)], [] if isinstance(job, Job) else [fspath(job)])
     generated = generating.generate(
         chosen, Path(output), workers, fresh, progress, made_by, corrector, executor, tolerance=tolerance

@@ -3,7 +3,7 @@
 | module | one idea |
 |---|---|
 | `installation` | where OpenFOAM and `ehlFoam` are, what is missing, and the command that builds it |
-| `parameters` | the one file that Python writes into a case: checked numbers and known words, the oil over temperature |
+| `parameters` | the one file that Python writes into a case: checked numbers, known words, the oil over temperature |
 | `case` | a working folder: copied from the template, removed when its run succeeded; those of runs that were killed |
 | `pyfoam` | the only door to PyFoam: runs a program without a shell, parses small dictionaries |
 | `run` | one program in one case: time limit, crash, kill, last lines of its log |

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import ehdmaps
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import MapError
 from ehdmaps.jobs import solvers
@@ -138,6 +139,24 @@ def test_a_map_of_the_table_has_no_lines_and_all_laws(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
+def test_a_map_in_memory_is_read_and_one_that_is_to_be_solved_is_its_points() -> None:
+    """As a file would be: without one, a user waited for solves of all points."""
+    job = Job.build(
+        bearing=BEARING,
+        lubricant=OIL,
+        loads=(1e3, 1e4, 1e5),
+        entrainment_speeds=(1.0, 3.0),
+        temperatures=(313.15, 333.15),
+    )
+    read = ehdmaps.generate(job)
+    assert schema.FILM_TABLE in read.attrs
+    load, stiffness, damping = EHDMap(read).law("series")(4e-6, 0.0, 2.0, 320.0)
+    assert load > 0.0 and stiffness > 0.0 and damping > 0.0
+    solved = ehdmaps.generate(replace(job, solver_options={"films": "solved"}))
+    assert schema.FILM_TABLE not in solved.attrs and schema.UNSERVED not in solved.attrs
+    assert EHDMap(solved).backbone is None
+
+
 def test_memory_layers_and_rolling_forces_of_the_table_are_those_of_solved_lines() -> None:
     """Rolling force, mass flow and layers within 1 %: lines read and lines solved. Factors of locked films are fits, no
     closer than the stated errors of the responses ask: within 12 %."""
