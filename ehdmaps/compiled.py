@@ -136,7 +136,7 @@ def _alone(folder: Path) -> Iterator[None]:
 
 @functools.cache
 def _folder() -> Path | None:
-    """Where this process keeps compiled code; None for nowhere."""
+    """Folder in which this process keeps compiled code; None for nowhere."""
     if not COMPILES:
         return None
     for place in (_user_folder, _temporary_folder):

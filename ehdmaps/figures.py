@@ -1,4 +1,4 @@
-"""What all figures of this distribution share: colours, titles that fit, how units are written; imports no library."""
+"""Common parts of all figures of this distribution: colours, titles that fit, spelling of units; imports no library."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def keep_within(figure: Any, text: Any) -> None:
 
 
 def legend_columns(labels: Sequence[str], letters: int, most: int) -> int:
-    """How many columns a legend has room for.
+    """Number of columns that a legend has room for.
 
     Parameters
     ----------

@@ -115,5 +115,5 @@ def _size(path: str | Path, allowed: str, name: str) -> int:
 
 
 def _unreadable(path: str | Path, cause: str, allowed: str, name: str) -> InputError:
-    """What is said about a file that cannot be read."""
+    """Error about a file that cannot be read."""
     return InputError(f"{name or path}: cannot be read ({cause}); allowed: {allowed}")

@@ -59,7 +59,7 @@ def structure_problem(path: str | Path) -> str:
 
 
 def _heap_problem(content: mmap.mmap) -> str:
-    """What is wrong with the global heaps of an HDF5 file."""
+    """Fault in the global heaps of an HDF5 file."""
     place, heaps = content.find(_HEAP), 0
     while place >= 0:
         size = int.from_bytes(content[place + 8 : place + _HEAD], "little")
@@ -83,7 +83,7 @@ def _heap_problem(content: mmap.mmap) -> str:
 
 
 def _long_text(content: mmap.mmap, place: int, lengths: dict[int, int]) -> bool:
-    """Whether a text is said to be far longer than the object of the heap in which it stands.
+    """Tell whether a text is said to be far longer than the object of the heap in which it stands.
 
     What points to a text has its length, the address of its heap and the number of the object, of 4, 8 and 4 bytes.
     """
@@ -119,7 +119,7 @@ class _Header:
         self._here = 4
 
     def problem(self) -> str:
-        """What is wrong with it; empty where nothing is."""
+        """Description of its fault; empty where there is none."""
         try:
             self._number(self._count_bytes)  # records
             for _ in range(self._entries(_DIMENSIONS)):
@@ -169,5 +169,5 @@ class _Header:
 
 
 def _classic_problem(content: mmap.mmap) -> str:
-    """What is wrong with the header of a classic file."""
+    """Fault in the header of a classic file."""
     return _Header(content).problem()

@@ -47,7 +47,7 @@ _FIGURE_KEYS = {".png": "Software", ".pdf": "Creator", ".svg": "Creator"}
 
 @dataclass(frozen=True)
 class Kind:
-    """What a file is.
+    """Kind of a file.
 
     Attributes
     ----------
@@ -398,7 +398,7 @@ def _remove_left_parts(folder: Path) -> None:
 
 
 def _runs(process: int) -> bool:
-    """Whether a process of this number is there."""
+    """Tell whether a process of this number is there."""
     try:
         os.kill(process, 0)
     except ProcessLookupError:

@@ -1,4 +1,4 @@
-"""What all programs of this distribution share: from the arguments of the process to its exit status.
+"""Code that all programs of this distribution share: from the arguments of the process to its exit status.
 
 Everything that a program prints goes through here: results on stdout (`deliver`), problems and progress on stderr
 (`tell`). Foreign text reaches a terminal without its control characters, and what the encoding of a stream lacks is

@@ -1,4 +1,4 @@
-"""Which state of the sources runs: the commit of the clone, and one hash of all that a number is computed with.
+"""State of the sources that run: the commit of the clone, and one hash of all that a number is computed with.
 
 The hash is the only thing that says whether two numbers come from the same code. Compiled code (`ehdmaps.compiled`),
 solved points (`ehdmaps.jobs.make.tasks`) and reduced bodies (`mbs.flexible.carry_out`) are kept under it, and maps and

@@ -214,7 +214,7 @@ def _turns(unit: pint.Unit) -> float:
 
 @dataclass(frozen=True)
 class Display:
-    """How a quantity is shown to people.
+    """Form in which a quantity is shown to people.
 
     Attributes
     ----------

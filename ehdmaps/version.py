@@ -1,4 +1,4 @@
-"""Which version of this distribution runs, and of what it computes with; the one place that looks it up."""
+"""Versions of this distribution and of what it computes with; the one place that looks them up."""
 
 from __future__ import annotations
 

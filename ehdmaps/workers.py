@@ -1,4 +1,4 @@
-"""What all worker processes share: who starts and ends them, how many there are, and why they died.
+"""Code that all worker processes share: who starts and ends them, how many there are, and why they died.
 
 A process of a `worker_pool` is silent until it begins its first task: before, it runs the script of its parent again
 and imports what the task needs. What Python prints of one that does not get so far is kept for the one sentence that
@@ -188,7 +188,7 @@ class WorkerPool:
             os.dup2(self._stderr, 2)
 
     def _died(self) -> WorkersDied:
-        """Why a process died, as far as it says so: the last line that it printed, or its signal."""
+        """Report why a process died, as far as it says so: the last line that it printed, or its signal."""
         ends = []
         for child in self._children:
             child.join(1.0)
@@ -227,7 +227,7 @@ def _received(copy: Any) -> int | None:
 
 
 def _not_started(error: OSError) -> WorkerError:
-    """What is said of processes that the system does not start."""
+    """Make the error for processes that the system does not start."""
     return WorkerError(f"worker processes cannot be started ({error.strerror or error}); {_ADVICE}")
 
 

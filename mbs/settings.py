@@ -23,7 +23,7 @@ HIGHEST = 5000.0
 
 @dataclass(frozen=True)
 class Settings:
-    """How to integrate.
+    """Settings of the integration.
 
     Attributes
     ----------
@@ -70,7 +70,7 @@ class Settings:
 
     @property
     def steps_per_sample(self) -> int:
-        """How many steps lie between recorded states."""
+        """Number of steps between recorded states."""
         return round(self.sample / self.step)
 
 
@@ -171,5 +171,5 @@ class CampbellSettings:
 
 
 def _whole(ratio: float) -> bool:
-    """Whether a ratio is a whole number >= 1, to rounding."""
+    """Tell whether a ratio is a whole number >= 1, to rounding."""
     return round(ratio) >= 1 and abs(ratio - round(ratio)) <= 1e-6 * ratio

@@ -80,7 +80,8 @@ class EnergyEquations(NamedTuple):
 
 @njit
 def fitted(peclet: float) -> tuple[float, float]:
-    """How much more than conduction alone an exponentially fitted face leads, P/2 coth P/2 - 1, and its derivative.
+    """Relative excess of the conductance of an exponentially fitted face over conduction, P/2 coth P/2 - 1, and its
+    derivative.
 
     Parameters
     ----------

@@ -70,7 +70,7 @@ class Grid(NamedTuple):
 
 @dataclass(frozen=True)
 class Spike:
-    """Where the pressure spike stands, relative to the exit, and the width within which cells are finest [b]."""
+    """Position of the pressure spike relative to the exit, and the width within which cells are finest [b]."""
 
     position: float
     width: float
@@ -78,7 +78,7 @@ class Spike:
 
 @dataclass(frozen=True)
 class GridShape:
-    """Where a grid spends its cells; dimensionless weights, the same for every operating point.
+    """Distribution of the cells of a grid; dimensionless weights, the same for every operating point.
 
     Weights and widths, as the lengths above, are a choice: they decide how many cells an error takes. What a grid is
     worth is measured at every point, by the difference to a grid of half as many cells.

@@ -78,7 +78,7 @@ def solve_groups(
 
 
 def _at_valley_bottom(M: float, L: float) -> bool:
-    """Whether film compliance and loss are small differences of large parts: the bottom of the damping valley."""
+    """True where film compliance and loss are small differences of large parts: the bottom of the damping valley."""
     return L > 10.0 and abs(math.log(M / valley_load_number(L))) < 0.35
 
 

@@ -44,7 +44,7 @@ def stored_mass(
 
 
 class StoredOil(NamedTuple):
-    """How the oil that a cell stores goes with film and pressure: all that the rate of a stored mass needs of the oil.
+    """Change of the oil that a cell stores with film and pressure: all that the rate of a stored mass needs of the oil.
 
     Attributes
     ----------
@@ -144,7 +144,7 @@ class GridShift(NamedTuple):
 
 
 class Inlet(NamedTuple):
-    """What the distance of a meniscus from the exit does, with the exit where it is.
+    """Derivatives by the distance of a meniscus from the exit, with the exit where it is.
 
     Attributes
     ----------
@@ -166,7 +166,7 @@ class Response(NamedTuple):
 
 
 class Masses(NamedTuple):
-    """What the rate of the stored mass needs of a steady film.
+    """Quantities of a steady film that the rate of the stored mass needs.
 
     Attributes
     ----------
@@ -207,7 +207,7 @@ class Arrays(NamedTuple):
 
 @njit
 def storage(linear: Arrays, rate: FloatArray) -> FloatArray:
-    """What the time derivative adds to the equations for a rate of the unknowns, both of shape (size,)."""
+    """Contribution of the time derivative to the equations for a rate of the unknowns, both of shape (size,)."""
     n = linear.x.size - 1
     mass_rate = stored_mass_rate(linear.masses.stored, linear.x, linear.kernel, linear.exit_at, rate[: n + 2])
     mass_rate -= linear.masses.carried * rate[n]
@@ -266,11 +266,11 @@ class Linearisation:
 
     @property
     def singular(self) -> bool:
-        """Whether the film has no linear response: a pivot of its matrix is zero to the rounding of the numbers."""
+        """True where the film has no linear response: a pivot of its matrix is zero to the rounding of the numbers."""
         return self.arrays.found.singular
 
     def storage(self, rate: FloatArray) -> FloatArray:
-        """What the time derivative adds to the equations for a rate of the unknowns, both of shape (size,)."""
+        """Contribution of the time derivative to the equations for a rate of the unknowns, both of shape (size,)."""
         return storage(self.arrays, rate)
 
     def solve(self, right: FloatArray) -> FloatArray:

@@ -1,4 +1,4 @@
-"""What a solve is asked (density and reach of its grid, tolerance), and the converged profile that it gives."""
+"""Settings of a solve (density and reach of its grid, tolerance), and the converged profile that it gives."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ a front by one cell a step, and a narrower cell lets it move less far."""
 
 @dataclass(frozen=True)
 class Resolution:
-    """What decides accuracy and cost of a solve.
+    """Settings that decide accuracy and cost of a solve.
 
     Attributes
     ----------
@@ -62,7 +62,7 @@ class Resolution:
 
     @property
     def _narrowing(self) -> float:
-        """How much narrower the finest cells around the spike are than on a coarse grid."""
+        """Width of the finest cells around the spike relative to that on a coarse grid."""
         return min(1.0, SEARCH_DENSITY / self.density) ** 2
 
     @property
@@ -191,14 +191,14 @@ class Profile:
 
     @property
     def fourth_order_share(self) -> float:
-        """What the terms of fourth order change in the rolling force, as a share of it."""
+        """Change of the rolling force by the terms of fourth order, as a share of it."""
         film, rise = self.film, self.pressure[1:] - self.pressure[:-1]
         plain = float(0.5 * (film[1:] + film[:-1]) @ rise)
         return abs(plain - film_times_rise(film, self.pressure)) / self.rolling_force
 
 
 def front(profile: Profile) -> tuple[float, float]:
-    """Where the pressure falls fastest behind its maximum, relative to the exit [b], and how fast [p_H/b]."""
+    """Place where the pressure falls fastest behind its maximum, relative to the exit [b], and that slope [p_H/b]."""
     pressure, x, cell = profile.pressure, profile.grid.x, profile.front_cell
     fall = (pressure[cell] - pressure[cell + 1]) / (x[cell + 1] - x[cell])
     return float(profile.grid.face[cell]), float(fall)

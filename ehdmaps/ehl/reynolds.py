@@ -75,7 +75,7 @@ class LineProblem(NamedTuple):
 
 
 class Factors(NamedTuple):
-    """What an oil that is not Newtonian, or not of one temperature, changes at the faces; see `column`.
+    """Changes at the faces by an oil that is not Newtonian, or not of one temperature; see `column`.
 
     The flow by pressure through a face is `slope` times the step of pressure plus `offset`, both times the mean of
     rho/eta. `slope` is the derivative of mobility times step at the step `drop`, about which this is a tangent.

@@ -516,7 +516,7 @@ def _profile_in_si(
 
 
 def _beyond_reach(peak: float, M: float, L: float) -> str:
-    """Why a point is not even tried; empty if it is."""
+    """Reason why a point is not even tried; empty if it is."""
     if not (math.isfinite(M) and math.isfinite(L) and M > 0.0):
         return f"groups M = {M:.4g}, L = {L:.4g} are not finite: load, speed or viscosity is absurd"
     if peak > LARGEST_PRESSURE:

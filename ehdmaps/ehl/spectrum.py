@@ -172,7 +172,7 @@ def _orthogonalised(found: FloatArray, basis: FloatArray, hessenberg: FloatArray
 
 @njit
 def _residual(hessenberg: FloatArray, count: int, frequency: float) -> float:
-    """What the space leaves of the equations at a frequency, relative to the static response."""
+    """Residual that the space leaves in the equations at a frequency, relative to the static response."""
     last = abs(_reduced(hessenberg, count, frequency)[count - 1])
     return float(frequency * hessenberg[count, count - 1] * last)
 

@@ -1,4 +1,4 @@
-"""What the Reynolds solution of a point gives to another solver: a pressure to start from, and a place for its grid."""
+"""Start that the Reynolds solution of a point gives to another solver: a pressure, and a place for its grid."""
 
 from __future__ import annotations
 

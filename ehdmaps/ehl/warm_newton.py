@@ -243,7 +243,7 @@ def warm_newton(
     frozen, known = not near, near
 
     def asked() -> FloatArray:
-        """What the columns are asked to let flow: far from a solution, where the stress hardly depends on it."""
+        """Flows that the columns are asked to pass: far from a solution, where the stress hardly depends on them."""
         if problem.shear.form != LIMITING or last <= SOFT_ABOVE:
             return np.empty(0)
         fill_columns(problem, x, face_step, kernel, unknowns, rises, np.empty(0), columns)

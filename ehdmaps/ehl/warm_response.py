@@ -85,7 +85,7 @@ def _thinned(problem: LineProblem, rises: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class _Grid:
-    """What a shift of the grid's spike does: derivatives by the shift.
+    """Effect of a shift of the grid's spike: derivatives by the shift.
 
     Attributes
     ----------
@@ -129,7 +129,7 @@ class WarmLinearisation:
 
     @property
     def singular(self) -> bool:
-        """Whether the film has no linear response: a pivot of its matrix is zero to the rounding of the numbers."""
+        """True where the film has no linear response: a pivot of its matrix is zero to the rounding of the numbers."""
         return self.found.singular
 
     @property
@@ -163,7 +163,7 @@ class WarmLinearisation:
         return np.concatenate([film_part, rises.ravel() / self.warmest])
 
     def _moved_by(self, rises: FloatArray) -> FloatArray:
-        """What small changes of the temperatures change in the residual of the film, shape (n + 2,)."""
+        """Change of the film's residual by small changes of the temperatures, shape (n + 2,)."""
         here, columns = self.here, self.here.columns
         none = np.empty((0, 0))
         changed = self.factors._replace(
@@ -182,7 +182,7 @@ class WarmLinearisation:
         return other
 
     def storage(self, state: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """What the rate of a state adds to the equations: to those of the film, shape (rows,), and to the heat.
+        """Contribution of the rate of a state to the equations: to those of the film, shape (rows,), and to the heat.
 
         The latter, shape (n, k + 2, 1), is that of the other side, as `solve` takes it.
         """
@@ -282,7 +282,8 @@ def _cell_storage(
     film_rate: FloatArray,
     moving: FloatArray,
 ) -> tuple[FloatArray, FloatArray]:
-    """What storage adds to the energy of each cell, shape (n, k), and rates of the temperatures at standing places.
+    """Contribution of storage to the energy of each cell, shape (n, k), and rates of the temperatures at standing
+    places.
 
     Rates are those of faces that move with `moving`.
     """

@@ -39,7 +39,7 @@ FILMS = ("central_film", "minimum_film")
 
 @dataclass(frozen=True)
 class Chosen:
-    """What is written.
+    """Selection of what is written.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What a target of `ehdmaps export` is, which are registered, what every export says of itself; exports as folders.
+"""Targets of `ehdmaps export`, which of them are registered, what every export says of itself; exports as folders.
 
 A target is one module that holds a `Target`, and one line of the entry points `ehdmaps.exports` in `pyproject.toml`.
 Packages beside this one register theirs in the same way, so that a target may use what stands above the maps, such as
@@ -98,7 +98,7 @@ def write_folder(path: Path, files: Mapping[str, str]) -> None:
 
 
 def _ours(entry: Path) -> bool:
-    """Whether an entry of a folder is a file that an export made."""
+    """Tell whether an entry of a folder is a file that an export made."""
     return entry.is_file() and not entry.is_symlink() and has_mark(entry)
 
 

@@ -1,4 +1,4 @@
-"""What the commands do, as functions of Python: `ehdmaps.generate`, `compare`, `solve`, `solve_points`,
+"""Python functions that do the same as the commands: `ehdmaps.generate`, `compare`, `solve`, `solve_points`,
 `frequency_response`.
 """
 

@@ -1,4 +1,4 @@
-"""What a job file asks for, as a frozen value in SI."""
+"""Job that a job file asks for, as a frozen value in SI."""
 
 from __future__ import annotations
 
@@ -253,7 +253,7 @@ class Job:
 
     @property
     def title(self) -> str:
-        """What the contacts belong to, in words."""
+        """Name of what the contacts belong to, in words."""
         if self.bearing is None:
             return f"line contact R = {self.contacts[0].radius * 1e3:.4g} mm"
         return self.bearing.title
@@ -301,7 +301,7 @@ def _differing(first: Mapping[str, object], second: Mapping[str, object]) -> lis
 
 
 def _alike(a: object, b: object) -> bool:
-    """Whether two entries are the same, to the 15 digits that a job file keeps."""
+    """Tell whether two entries are the same, to the 15 digits that a job file keeps."""
     if isinstance(a, float) and isinstance(b, float):
         return math.isclose(a, b, rel_tol=1e-14)
     return a == b

@@ -231,7 +231,7 @@ def _estimate_keys(plain: BearingGeometry) -> BearingKeys:
 
 
 def _gives(plain: BearingGeometry, make: Callable[[], BearingGeometry]) -> bool:
-    """Whether an estimate is this bearing."""
+    """Tell whether an estimate gives this bearing."""
     try:
         return make() == plain
     except InputError:

@@ -28,7 +28,7 @@ MOST_VALUES = 100_000
 
 @dataclass(frozen=True)
 class AxisRule:
-    """What one axis of the grid may hold.
+    """Values that one axis of the grid may hold.
 
     Attributes
     ----------

@@ -317,7 +317,7 @@ def _check_temperatures(oil: Lubricant, temperatures: tuple[float, ...], grid: T
 
 
 def is_map(source: str) -> bool:
-    """Whether a job was given as a map file."""
+    """Tell whether a job was given as a map file."""
     try:
         return source not in shipped_jobs() and inputs.first_bytes(source, 8, "").startswith(_SIGNATURES)
     except InputError:

@@ -27,7 +27,7 @@ _ADVICE = "run `ehdmaps solids JOB` and add the lines that it prints"
 
 @dataclass(frozen=True)
 class SolidsKeys:
-    """What [solids] says.
+    """Content of [solids].
 
     Attributes
     ----------

@@ -308,7 +308,7 @@ PHYSICAL = ("physics", *(option.key for option in SHEAR_OPTIONS))
 
 
 def takes(name: str, key: str, word: str) -> bool:
-    """Whether a solver takes a word for one of its keys.
+    """Tell whether a solver takes a word for one of its keys.
 
     Parameters
     ----------
@@ -338,7 +338,7 @@ def carried(options: Mapping[str, Any], name: str) -> dict[str, Any]:
 
 
 def solver_words(options: Mapping[str, Any]) -> str:
-    """What is said of a solver's own keys behind its name: physics, law of shear, sliding; nothing of the defaults.
+    """Words on a solver's own keys behind its name: physics, law of shear, sliding; nothing of the defaults.
 
     Parameters
     ----------

@@ -100,7 +100,7 @@ class OffsetLine:
         return cls(steep, integral, bend)
 
     def bent(self, zeta: FloatArray, order: int) -> FloatArray:
-        """What is added to the integral or its derivatives of an order at places (n,), of several lines (n, lines)."""
+        """Term added to the integral or its derivatives of an order at places (n,), of several lines (n, lines)."""
         return np.asarray(sum(column * part for column, part in zip(_bends(zeta, order), self.bend, strict=True)))
 
     def value(self, zeta: FloatArray) -> FloatArray:
@@ -293,7 +293,7 @@ class BackboneField:
         return results[0], results[1], results[2]
 
     def changes(self, contact: str, load: float, speed: float, temperature: float) -> dict[Axis, float]:
-        """What the loss changes by, relatively, if it is read from fewer points along an axis.
+        """Relative changes of the loss if it is read from fewer points along an axis.
 
         From four lines instead of six along speed and temperature, from every second point along the loads.
 
@@ -344,7 +344,7 @@ class BackboneField:
     def film_differences(
         self, contact: str, loads: FloatArray, speed: float, temperature: float
     ) -> tuple[FloatArray, ComplexArray] | None:
-        """What films with memory leave out at natural frequencies; see `FilmField.film_differences`."""
+        """Part that films with memory leave out at natural frequencies; see `FilmField.film_differences`."""
         if self._responses is None:
             return None
         natural, chosen = self._responses.natural, self._contacts[contact]
@@ -385,7 +385,7 @@ class BackboneField:
 
     @cached_property
     def _fits(self) -> list[tuple[FloatArray, FloatArray, ComplexArray]]:
-        """What `_fitted` finds of each line."""
+        """Results of `_fitted` for each line."""
         return [
             self._fitted(j, k, math.exp(log_speed), float(temperature))
             for j, log_speed in enumerate(self._log_speeds)

@@ -1,4 +1,4 @@
-"""Which films have to be solved for a contact law: axes and lines of the backbone, see `backbone`."""
+"""Films that have to be solved for a contact law: axes and lines of the backbone, see `backbone`."""
 
 from __future__ import annotations
 

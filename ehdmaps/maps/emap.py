@@ -229,12 +229,12 @@ class EHDMap:
 
     @property
     def from_table(self) -> bool:
-        """Whether the films of its laws are read from the film table, as its points were."""
+        """True where the films of its laws are read from the film table, as its points were."""
         return schema.FILM_TABLE in self.dataset.attrs
 
     @property
     def known_between(self) -> bool:
-        """Whether films between its points are known, from refinement lines or from the film table."""
+        """True where films between its points are known, from refinement lines or from the film table."""
         return self.backbone is not None or self.from_table
 
     @cached_property
@@ -290,7 +290,7 @@ class EHDMap:
 
     @cached_property
     def low_loads(self) -> LowLoads | None:
-        """Where the laws take films as those of rigid contacts, and whether that is right; None without any film."""
+        """Loads where laws take films as those of rigid contacts, and whether that is right; None without any film."""
         moving = self.dataset["entrainment_speed"].values > 0.0
         if not np.any(moving) or not np.any(self.dataset["film_offset"].values > 0.0):
             return None

@@ -1,4 +1,4 @@
-"""What a contact law is made from: the film of each contact as a smooth field, and down to which load it is known.
+"""Basis of a contact law: the film of each contact as a smooth field, and down to which load it is known.
 
 A film between rigid surfaces of an oil whose viscosity the pressure does not change is w ~ 1/h and c ~ h^(-3/2), and so
 is the tail of a law. It is right where zeta = ln(M/M_valley(L)) is below `RIGID`. A backbone reaches down to there, and
@@ -75,7 +75,7 @@ class FilmField(Protocol):
 
     @property
     def dry(self) -> bool:
-        """Whether no contact has any film anywhere; `films` is then of no use."""
+        """True where no contact has any film anywhere; `films` is then of no use."""
         ...
 
     def films(
@@ -135,7 +135,7 @@ class FilmField(Protocol):
     def film_differences(
         self, contact: str, loads: FloatArray, speed: float, temperature: float
     ) -> tuple[FloatArray, ComplexArray] | None:
-        """What films with memory leave out of the complex stiffness, see `ehdmaps.maps.film_response`.
+        """Part of the complex stiffness that films with memory leave out, see `ehdmaps.maps.film_response`.
 
         Parameters
         ----------
@@ -169,7 +169,7 @@ _ROUND_OFF = 1e-9
 
 @dataclass(frozen=True)
 class LowLoads:
-    """Where the tail of a law begins, over the speeds and temperatures of its map.
+    """Loads at which the tail of a law begins, over the speeds and temperatures of its map.
 
     Attributes
     ----------
@@ -310,7 +310,7 @@ def low_loads(
     speed_range: tuple[float, float],
     temperature_range: tuple[float, float],
 ) -> LowLoads:
-    """Where the tail of a law begins.
+    """Loads at which the tail of a law begins.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What films with memory leave out: how far their complex stiffness is from that of the film solver.
+"""Part that films with memory leave out: how far their complex stiffness is from that of the film solver.
 
 A law with memory gives a roller one relaxation time. The film solver has none: oil takes the time b/u to pass half of
 the Hertz zone, so that a loaded film answers late, and the two contacts of a roller relax in times of their own. A map
@@ -82,7 +82,7 @@ class FilmsOfContact:
         return np.asarray((1.0 + self._difference(s)) / law_stiffness(self.stiffness, self.damping, self.times, s))
 
     def doubt(self, s: ComplexArray) -> FloatArray:
-        """How wrong r may be as it is read, shape (m, n)."""
+        """Possible error of r as it is read, shape (m, n)."""
         return by_powers(np.abs(np.multiply.outer(s, self.natural)), _PLACES, _DOUBT)
 
     @cached_property
@@ -114,7 +114,7 @@ class FilmsOfContact:
 
 @dataclass(frozen=True, eq=False)
 class FilmResponse:
-    """What the law of one contact or several in series leaves out, at some loads.
+    """Part that the law of one contact or several in series leaves out, at some loads.
 
     Attributes
     ----------
@@ -130,7 +130,7 @@ class FilmResponse:
     contacts: tuple[FilmsOfContact, ...]
 
     def correction(self, s: ComplexArray) -> ComplexArray:
-        """What the complex stiffness of the law is to be changed by for that of the film solver, relatively.
+        """Relative correction of the complex stiffness of the law to that of the film solver.
 
         Parameters
         ----------
@@ -146,7 +146,7 @@ class FilmResponse:
         return np.asarray(1.0 / (law_stiffness(self.stiffness, self.damping, self.times, s) * whole) - 1.0)
 
     def doubt(self, s: ComplexArray) -> FloatArray:
-        """How wrong `correction` may be, shape (m, n): that of 95 of 100 contacts."""
+        """Possible error of `correction`, shape (m, n): that of 95 of 100 contacts."""
         return np.asarray(np.max([contact.doubt(s) for contact in self.contacts], axis=0))
 
 

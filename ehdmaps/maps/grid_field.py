@@ -115,7 +115,7 @@ class GridField:
 
     @property
     def dry(self) -> bool:
-        """Whether there is no film anywhere."""
+        """True where there is no film anywhere."""
         return not np.any(self.film_offset)
 
     def first_loads(self, speeds: FloatArray, temperatures: FloatArray) -> FloatArray:
@@ -286,7 +286,7 @@ _OF_OUTER = "outer"
 
 
 def has_own_lines(group: xr.Dataset) -> bool:
-    """Whether each contact has lines of its own.
+    """Tell whether each contact has lines of its own.
 
     Parameters
     ----------
@@ -396,5 +396,5 @@ class _OwnFields:
     def film_differences(
         self, contact: str, loads: FloatArray, speed: float, temperature: float
     ) -> tuple[FloatArray, ComplexArray] | None:
-        """What films with memory leave out; see `FilmField.film_differences`."""
+        """Part that films with memory leave out; see `FilmField.film_differences`."""
         return self._fields[contact].film_differences(contact, loads, speed, temperature)

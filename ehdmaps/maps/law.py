@@ -175,7 +175,7 @@ class ContactLaw:
 
     @property
     def low_loads(self) -> LowLoads | None:
-        """Where the film goes over into that of a rigid contact, and whether that is right; None of a dry law."""
+        """Loads where the film goes over into that of a rigid contact, and whether that is right; None of a dry law."""
         return self._films.low_loads
 
     def guessed_below(self, entrainment_speed: float, temperature: float) -> float:
@@ -195,12 +195,12 @@ class ContactLaw:
 
     @property
     def outside_counts(self) -> dict[str, int]:
-        """How many points were outside the map so far, by cause."""
+        """Number of points that were outside the map so far, by cause."""
         return self._outside.by_cause
 
     @property
     def excursions(self) -> tuple[Excursion, ...]:
-        """Where points were outside the map so far: axis, side, number, the farthest one, and where the map ends.
+        """Excursions of points outside the map so far: axis, side, number, the farthest one, and where the map ends.
 
         Of calls of the law and of `LawAtPoint`, and of what compiled callers report by `note_outside`. Loads below the
         map are told where the film there is a guess, see `low_loads`; they are no error with any policy.
@@ -345,7 +345,7 @@ class ContactLaw:
         return memory.advance(memory.settled(delta) if state is None else state, delta, dt)
 
     def locked_factors(self, entrainment_speed: float, temperature: float) -> LockedFactors:
-        """What the map says of the locked film, as factors of its closed formula; ones where it says nothing.
+        """Locked film of the map, as factors of its closed formula; ones where the map says nothing.
 
         Several contacts in series have the sum of their locked compliances. Speed and temperature are held at the edges
         of the map.
@@ -358,7 +358,7 @@ class ContactLaw:
         return self._films.locked_factors(entrainment_speed, temperature)
 
     def film_response(self, loads: npt.ArrayLike, entrainment_speed: float, temperature: float) -> FilmResponse | None:
-        """What the law with memory leaves out of the complex stiffness, see `ehdmaps.maps.film_response`.
+        """Part of the complex stiffness that the law with memory leaves out, see `ehdmaps.maps.film_response`.
 
         Parameters
         ----------
@@ -489,7 +489,7 @@ class LawAtPoint:
         return FilmMemory(self.point, self.law.contacts, self.entrainment_speed, factors, self._check_loads)
 
     def bounds(self, loads: FloatArray) -> LawBounds | None:
-        """How wrong stiffness, damping and approach may be at some loads; None where the law states no errors.
+        """Error bounds of stiffness, damping and approach at some loads; None where the law states no errors.
 
         Parameters
         ----------

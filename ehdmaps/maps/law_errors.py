@@ -40,7 +40,7 @@ from ehdmaps.physics.lubricant import Lubricant
 
 
 class LawChange(NamedTuple):
-    """What is changed of a law, at all loads, speeds and temperatures alike.
+    """Changes of a law, at all loads, speeds and temperatures alike.
 
     Attributes
     ----------
@@ -145,7 +145,7 @@ class LawBounds:
 
 @dataclass(frozen=True)
 class _Checked:
-    """What the check of the laws found in a region: relative errors of film compliance, k, c and film offset."""
+    """Findings of the check of the laws in a region: relative errors of film compliance, k, c and film offset."""
 
     film_compliance: float
     damping: float
@@ -196,7 +196,7 @@ class LawErrors:
 
     @cached_property
     def _read(self) -> tuple[FloatArray, tuple[str, ...]]:
-        """What bounds are read from, and which errors the map does not state; read when it is first asked for.
+        """Data that bounds are read from, and the errors that the map does not state; read when first asked for.
 
         Laws are made without it: from the films of a map alone.
         """
@@ -242,7 +242,7 @@ class LawErrors:
 
     @property
     def words(self) -> str:
-        """What is in the bounds and what is not, for people."""
+        """Statement of what is in the bounds and what is not, for people."""
         parts = ["numerical errors of the map"]
         if self._checked is not None:
             parts.append(f"errors of its law ({TAKEN} of {self.checked_points} checked points)")

@@ -1,4 +1,4 @@
-"""What a law knows of its films besides its table: below which load they are a guess, and how they lock."""
+"""Properties of a law's films besides its table: the load below which they are a guess, and how they lock."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class LawFilms:
 
     @cached_property
     def low_loads(self) -> LowLoads | None:
-        """Where the film goes over into that of a rigid contact, and whether that is right; None of a dry law."""
+        """Loads where the film goes over into that of a rigid contact, and whether that is right; None of a dry law."""
         field = self.field
         if self.dry or not field.speed_range[0] > 0.0:
             return None
@@ -111,7 +111,7 @@ class LawFilms:
         return np.array([[self.guessed_below(u, T) for T in temperatures.tolist()] for u in speeds.tolist()])
 
     def locked_factors(self, entrainment_speed: float, temperature: float) -> LockedFactors:
-        """What the map says of the locked film, see `ContactLaw.locked_factors`.
+        """Factors of the map for the locked film, see `ContactLaw.locked_factors`.
 
         Parameters
         ----------
@@ -136,7 +136,7 @@ class LawFilms:
         return LockedFactors(math.log(lowest), (loads.size - 1) / math.log(highest / lowest), factors)
 
     def response(self, loads: FloatArray, entrainment_speed: float, temperature: float) -> FilmResponse | None:
-        """What the law with memory leaves out, see `ContactLaw.film_response`.
+        """Part that the law with memory leaves out, see `ContactLaw.film_response`.
 
         Parameters
         ----------

@@ -43,7 +43,7 @@ MOST_LOCKED = 0.6
 
 
 class Film(NamedTuple):
-    """What the closed formula of the locked film needs besides the law.
+    """Data that the closed formula of the locked film needs besides the law.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What films with memory store and take up, after `ehdmaps.maps.memory_table`.
+"""Work that films with memory store and take up, after `ehdmaps.maps.memory_table`.
 
 The work on a contact is w da + p dy + (w - p) dy. The first two terms are stored: they depend on the load w and the
 state xi alone. The last one is taken up for good. This holds at one speed and temperature.

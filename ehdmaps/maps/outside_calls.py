@@ -58,14 +58,14 @@ class Excursion:
 
 @dataclass(frozen=True)
 class Range:
-    """What is known along an axis; `low` is -inf where nothing can be below."""
+    """Range that is known along an axis; `low` is -inf where nothing can be below."""
 
     axis: Axis
     low: float
     high: float
 
     def excursions(self, values: FloatArray) -> list[Excursion]:
-        """What of some values lies outside."""
+        """Excursions of some values beyond the range."""
         tolerance = LOAD_TOLERANCE if self.axis == "load" else EDGE_TOLERANCE
         values = np.abs(values) if self.axis == "entrainment_speed" else values
         above = values[values > self.high * (1.0 + tolerance)]
@@ -151,7 +151,7 @@ _CAUSES: Mapping[Axis, int] = {"load": LOAD, "entrainment_speed": SPEED, "temper
 
 
 class OutsideCalls:
-    """What of the calls of a law was outside its map so far.
+    """Record of the calls of a law outside its map so far.
 
     Parameters
     ----------
@@ -181,12 +181,12 @@ class OutsideCalls:
 
     @property
     def by_cause(self) -> dict[str, int]:
-        """How many points were outside, by axis."""
+        """Number of points that were outside, by axis."""
         return {axis: int(self.counts[index]) for axis, index in _CAUSES.items()}
 
     @property
     def excursions(self) -> tuple[Excursion, ...]:
-        """What was outside, one for each axis and side."""
+        """Excursions outside, one for each axis and side."""
         return tuple(self._excursions[key] for key in sorted(self._excursions))
 
     def reset(self) -> None:

@@ -216,7 +216,7 @@ def _axis_problems(entry: Variable, values: npt.NDArray[Any]) -> Iterator[str]:
 
 
 def _what(entry: Variable) -> str:
-    """What a variable is called in a message."""
+    """Name of a variable in a message."""
     return f"{'coordinate' if entry.axis else 'variable'} {entry.name}"
 
 
@@ -369,7 +369,7 @@ def _declared_problems(group: Any, entries: Sequence[Variable]) -> Iterator[str]
 
 
 def _is_characters(variable: Any) -> bool:
-    """Whether a variable holds single characters, the last dim being that of the text."""
+    """Tell whether a variable holds single characters, the last dim being that of the text."""
     return variable.dtype is not str and np.dtype(variable.dtype) == np.dtype("S1") and bool(variable.dimensions)
 
 
@@ -385,7 +385,7 @@ def _dataset(group: Any, entries: Sequence[Variable], attributes: dict[str, Any]
 
 
 def _has(group: Any, entry: Variable) -> bool:
-    """Whether a file has a variable."""
+    """Tell whether a file has a variable."""
     return entry.name in group.variables
 
 

@@ -40,7 +40,7 @@ _REACH = 0.25
 
 @njit(error_model="numpy", fastmath=FAST)
 def _start(point: Point, delta: float) -> float:
-    """Where to begin without a neighbour."""
+    """Starting value without a neighbour."""
     inner, outer, q = point.inner, point.outer, point.centrifugal_load
     high = delta - point.outer_start
     load_i, slope_i = line_load(inner, high)

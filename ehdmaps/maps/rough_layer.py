@@ -533,7 +533,7 @@ def load_sharing(
 
 
 def overlapping(share: FloatArray, distance: FloatArray) -> BoolArray:
-    """Where a film carries a load while the mean planes overlap: `load_sharing` out of its range.
+    """True where a film carries a load while the mean planes overlap: `load_sharing` out of its range.
 
     Parameters
     ----------

@@ -128,16 +128,16 @@ class Variable:
 
     @property
     def axis(self) -> bool:
-        """Whether it is an axis."""
+        """True where it is an axis."""
         return self.dims == (self.name,)
 
     @property
     def derived(self) -> bool:
-        """Whether it follows from other variables by the structural law."""
+        """True where it follows from other variables by the structural law."""
         return self.derived_since is not None
 
     def required_in(self, version: int) -> bool:
-        """Whether a file of that version has to have it."""
+        """Tell whether a file of that version has to have it."""
         return self.required and not (self.derived_since is not None and version >= self.derived_since)
 
     def attributes(self) -> dict[str, Any]:

@@ -151,7 +151,7 @@ class TableField:
     def film_differences(
         self, contact: str, loads: FloatArray, speed: float, temperature: float
     ) -> tuple[FloatArray, ComplexArray] | None:
-        """What films with memory leave out at natural frequencies; see `FilmField.film_differences`."""
+        """Part that films with memory leave out at natural frequencies; see `FilmField.film_differences`."""
         return self._memory.film_differences(contact, loads, speed, temperature)
 
     def _groups(self, contact: LineContact, speeds: FloatArray, temperatures: FloatArray) -> _Groups:

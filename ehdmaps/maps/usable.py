@@ -1,4 +1,4 @@
-"""Whether a law can be made from a map: no holes, no clusters of filled points, films and stiffness positive.
+"""Conditions for a law from a map: no holes, no clusters of filled points, films and stiffness positive.
 
 Only what the law reads is looked at: the backbone where a map has one, else the grid, of the law's own contacts.
 """
@@ -172,7 +172,7 @@ def check_backbone(
 
 
 def _unsolved_remedy(status: IntArray) -> str:
-    """What to do about points that a solver left unsolved, by how each ended: the same job would end so again."""
+    """Remedy for points that a solver left unsolved, by how each ended: the same job would end so again."""
     ended = [known for known in _ENDED if np.any(status == int(known))]
     if not ended or np.any(~np.isin(status, [int(known) for known in _ENDED])):
         return _AGAIN

@@ -71,7 +71,7 @@ def remove_leftovers(parent: Path) -> None:
 
 
 def _abandoned(folder: Path) -> bool:
-    """Whether a folder is ours, with a claim that no process holds."""
+    """Tell whether a folder is ours, with a claim that no process holds."""
     try:
         if folder.is_symlink() or folder.stat().st_uid != os.getuid():
             return False

@@ -33,7 +33,7 @@ BETWEEN = 0.75
 
 @dataclass(frozen=True)
 class GridSolution:
-    """What one run gave; `note` says so where it took two tries."""
+    """Result of one run; `note` says so where it took two tries."""
 
     results: Results
     film: FilmTable
@@ -43,7 +43,7 @@ class GridSolution:
 
     @property
     def start(self) -> Start:
-        """What another grid starts from.
+        """Start for another grid.
 
         The mixture behind the film's rupture is told by a pressure below zero. With all stresses what loads the
         surfaces there is another one, of the oil that is drawn apart.

@@ -1,4 +1,4 @@
-"""Where OpenFOAM and `ehlFoam` are, which build it is, what is missing, and the command that builds it."""
+"""Location of OpenFOAM and `ehlFoam`, which build it is, what is missing, and the command that builds it."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ _RELEASE = re.compile(r"v?(\d+)")
 
 @dataclass(frozen=True)
 class Installation:
-    """What runs a case.
+    """Installation that runs a case.
 
     Attributes
     ----------
@@ -72,7 +72,7 @@ class Installation:
 
     @property
     def version(self) -> str:
-        """What tells one build, or one template, from the next."""
+        """Text that tells one build, or one template, from the next."""
         return f"{self.build}; template {self.template_hash}"
 
     def full_environment(self) -> dict[str, str]:
@@ -229,7 +229,7 @@ def _debian_version() -> str:
 
 @cache
 def processor(cpu_information: Path = Path("/proc/cpuinfo")) -> str:
-    """What tells the instructions of one processor from those of the next, as the build command records it."""
+    """Hash that tells the instructions of one processor from those of the next, as the build command records it."""
     flags = b""
     with suppress(OSError), cpu_information.open("rb") as file:
         flags = next((line for line in file if line.startswith((b"flags", b"Features"))), b"")

@@ -117,7 +117,7 @@ class Start:
 
 @dataclass(frozen=True)
 class Mesh:
-    """Where the columns of cells stand.
+    """Places of the columns of cells.
 
     Attributes
     ----------
@@ -140,7 +140,7 @@ class Mesh:
 
 @dataclass(frozen=True)
 class Heat:
-    """What the energy of a film is solved with.
+    """Data that the energy of a film is solved with.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What a run of `ehlFoam` wrote: the dictionary `results` and the tables `film.dat` and `thinFilm.dat`."""
+"""Output of a run of `ehlFoam`: the dictionary `results` and the tables `film.dat` and `thinFilm.dat`."""
 
 from __future__ import annotations
 

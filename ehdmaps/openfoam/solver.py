@@ -57,7 +57,7 @@ StartWord = Literal["reynolds", "hertz"]
 
 
 class Guess(Protocol):
-    """What a start offers: a film, and where the columns of cells should stand."""
+    """Guess that a start offers: a film, and places where the columns of cells should stand."""
 
     @property
     def x(self) -> FloatArray:
@@ -210,7 +210,7 @@ class OpenFoamSolver(ContactSolverDefaults):
 
     @property
     def version(self) -> str:
-        """What tells results of one build from those of the next."""
+        """Text that tells results of one build from those of the next."""
         return f"{PARAMETER_VERSION}; {self.installed.version}"
 
     @property
@@ -410,13 +410,13 @@ class OpenFoamSolver(ContactSolverDefaults):
         )
 
     def _heat(self, contact: LineContact, lubricant: Lubricant, temperature: float) -> Heat | None:
-        """What the energy of the film is solved with; None where it is not."""
+        """Data that the energy of the film is solved with; None where it is not."""
         if self.physics == ISOTHERMAL:
             return None
         return Heat(temperature, heat_data(lubricant, contact.material), isotherms(lubricant, temperature))
 
     def _inlet_too_short(self, contact: LineContact, point: OperatingPoint, mesh: Mesh) -> str:
-        """Why a film is too thick for all stresses, whose inlet is cut; empty where it is not."""
+        """Reason why a film is too thick for all stresses, whose inlet is cut; empty where it is not."""
         thickness = (
             mesh.film * (float(half_width(point.load, contact.radius, contact.reduced_modulus)) / contact.radius) ** 2
         )

@@ -1,4 +1,4 @@
-"""What the problem is: frozen values and cited formulas, in SI units and K, without a solver.
+"""Statement of the problem: frozen values and cited formulas, in SI units and K, without a solver.
 
 The modules in the order in which data pass through them:
 

@@ -7,7 +7,7 @@ LONGEST_LABEL = 60
 
 
 def label_problem(label: str | None) -> list[str]:
-    """What is wrong about a label, in words; nothing where it is None."""
+    """Problems of a label, in words; nothing where it is None."""
     if label is None:
         return []
     rule = f"allowed: 1 to {LONGEST_LABEL} printable characters on one line"

@@ -415,7 +415,7 @@ def rescaled(fe_approach: float, made: float, own: float) -> float:
 
 
 def _same(a: object, b: object) -> bool:
-    """Whether two numbers are the same."""
+    """Tell whether two numbers are the same."""
     return isinstance(a, (int, float)) and isinstance(b, (int, float)) and math.isclose(a, b, rel_tol=_SAME)
 
 

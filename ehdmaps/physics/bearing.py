@@ -79,7 +79,7 @@ class BearingGeometry:
 
     @property
     def title(self) -> str:
-        """What the bearing is called in titles: its label, else its name; `estimated` is for a line of its own."""
+        """Name of the bearing in titles: its label, else its name; `estimated` is for a line of its own."""
         return self.label or self.name
 
     def record(self) -> dict[str, float | str]:

@@ -47,7 +47,7 @@ _DESIGNATION = re.compile(r"(NU|NJ|NUP|N) ?(10|22|23|2|3)(\d\d)E?")
 
 
 class Catalogue(NamedTuple):
-    """What a catalogue says: lengths [m]; `series` is empty for dimensions by hand."""
+    """Entry of a catalogue: lengths [m]; `series` is empty for dimensions by hand."""
 
     series: str
     bore: float

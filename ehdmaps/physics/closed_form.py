@@ -68,7 +68,7 @@ the linear response, made of both, loses digits, and its equations are singular 
 
 
 def too_thick(film: float, radius: float, thickest: float = THICKEST_FILM) -> str:
-    """Why a film is refused; empty where it is not.
+    """Reason why a film is refused; empty where it is not.
 
     Lines that stand for their groups only, from which contact laws are made, have no thickness of their own: for them
     the limit is infinite.
@@ -91,7 +91,7 @@ def too_thick(film: float, radius: float, thickest: float = THICKEST_FILM) -> st
 
 
 def too_thin(film: float, roughness: float = 0.0) -> str:
-    """What a film is too thin for, in words that follow its status; empty where it is not.
+    """Note on what a film is too thin for, in words that follow its status; empty where it is not.
 
     Parameters
     ----------

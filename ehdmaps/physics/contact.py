@@ -249,7 +249,7 @@ class LineContact:
 
 
 class Structured(NamedTuple, Generic[Values]):
-    """What depends on the structural law, per unit length; numbers or arrays.
+    """Quantities that depend on the structural law, per unit length; numbers or arrays.
 
     Attributes
     ----------

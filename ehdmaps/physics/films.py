@@ -177,7 +177,7 @@ def asymptotes(load_number: float, oil_number: float) -> tuple[float, float, flo
 
 
 def elastic_piezoviscous(load_number: float, oil_number: float) -> bool:
-    """Whether a contact is where the power laws of loaded contacts hold: 2 <= M <= 1000, piezoviscous and elastic.
+    """Tell whether a contact is where the power laws of loaded contacts hold: 2 <= M <= 1000, piezoviscous and elastic.
 
     Of the four regimes it is that whose asymptote is the smaller of the piezoviscous two and above the isoviscous ones.
     Beyond L = 150 there are no full solutions to compare with.

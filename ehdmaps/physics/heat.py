@@ -173,7 +173,7 @@ over isothermal films, or temperatures in the film."""
 
 @dataclass(frozen=True)
 class HeatData:
-    """How oil and surfaces take and lead heat; constant over temperature and pressure.
+    """Thermal data of oil and surfaces; constant over temperature and pressure.
 
     Attributes
     ----------
@@ -270,7 +270,7 @@ UNNOTICED = 0.99
 
 @dataclass(frozen=True)
 class InletHeat:
-    """What heat in the inlet makes of one isothermal film.
+    """Effect of heat in the inlet on one isothermal film.
 
     Attributes
     ----------
@@ -296,7 +296,7 @@ class InletHeat:
 
     @property
     def note(self) -> str:
-        """What is said of a film; nothing where heat changes it by less than a per cent."""
+        """Note on a film; nothing where heat changes it by less than a per cent."""
         if self.factor > UNNOTICED:
             return ""
         return (
@@ -330,7 +330,7 @@ def inlet_heat_factor(load_number: float, loading: float) -> float:
 
 
 def inlet_heat(contact: LineContact, lubricant: Lubricant, point: OperatingPoint) -> InletHeat:
-    """What heat in the inlet makes of the isothermal film of a point.
+    """Effect of heat in the inlet on the isothermal film of a point.
 
     Parameters
     ----------
@@ -370,7 +370,7 @@ def inlet_heat(contact: LineContact, lubricant: Lubricant, point: OperatingPoint
 
 
 def _refused(M: float, L: float, zeta: float, loading: float, factor: float) -> str:
-    """Why the rule does not hold; empty where it does."""
+    """Reason why the rule does not hold; empty where it does."""
     instead = "solve with physics thermal"
     if loading > LARGEST_LOADING:
         return f"inlet heat: loading QL = {loading:.3g} above {LARGEST_LOADING:g}, where no factor is known; {instead}"

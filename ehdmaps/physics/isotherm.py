@@ -118,7 +118,7 @@ def density(law: Isotherm, p: Any) -> tuple[Any, Any]:
 
 
 class _OverPressure:
-    """What the isotherms with names have in common."""
+    """Common part of the isotherms with names."""
 
     def isotherm(self, pressure_unit: float = 1.0, compressible: bool = False) -> Isotherm:
         """Plain numbers of the law, see the classes."""
@@ -314,7 +314,7 @@ def _density_curvature(pressure_unit: float, compressible: bool) -> float:
 
 
 def _coefficient_problem(alpha: float) -> list[str]:
-    """What is wrong with a pressure-viscosity coefficient."""
+    """Problems of a pressure-viscosity coefficient."""
     if math.isfinite(alpha) and alpha >= 0:
         return []
     return [

@@ -45,7 +45,7 @@ HEAT_CAPACITY = 2000.0
 
 
 class OilData(TypedDict, total=False):
-    """What is stated of an own oil, whatever its law over pressure; explained at `Lubricant.own`."""
+    """Stated data of an own oil, whatever its law over pressure; explained at `Lubricant.own`."""
 
     density: Required[float]
     pressure_viscosity: float | str | None
@@ -200,12 +200,12 @@ class Lubricant:
 
     @property
     def title(self) -> str:
-        """What the oil is called in titles: its label, else its name."""
+        """Name of the oil in titles: its label, else its name."""
         return self.label or self.name
 
     @property
     def reach_assumed(self) -> bool:
-        """Whether `fitted_pressure` is our assumption, because nobody stated how far the viscosity law reaches."""
+        """True where `fitted_pressure` is our assumption, because nobody stated how far the viscosity law reaches."""
         return self.fitted_pressure == FITTED_PRESSURE and not self.fitted_pressure_stated
 
     @property
@@ -226,7 +226,7 @@ class Lubricant:
 
     @property
     def estimated(self) -> str:
-        """What of it is estimated and how well, in words; empty where nothing is."""
+        """Statement of what is estimated and how well, in words; empty where nothing is."""
         return CORRELATIONS[self.correlation].sentence if self.correlation else ""
 
     @classmethod

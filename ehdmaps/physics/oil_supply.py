@@ -105,7 +105,7 @@ class OilSupply:
 
     @property
     def flooded(self) -> bool:
-        """Whether the contacts take all the oil that they need."""
+        """True where the contacts take all the oil that they need."""
         return self.oil_layer == math.inf
 
     @property

@@ -53,7 +53,7 @@ class Correlation:
 
     @property
     def sentence(self) -> str:
-        """What a map says of it."""
+        """Sentence that a map says of it."""
         return f"pressure-viscosity estimated by {self.authors}; {self.error}"
 
 
@@ -191,7 +191,7 @@ _SOUND = {"viscosity": 0.1, "viscosity_40": 1e-4, "viscosity_100": 1e-5}
 
 
 class Laws(NamedTuple):
-    """What an own oil consists of; `correlation` is the name of the one that gives alpha, if one does."""
+    """Laws that an own oil consists of; `correlation` is the name of the one that gives alpha, if one does."""
 
     viscosity: ViscosityLaw
     pressure_viscosity: PressureViscosityLaw
@@ -231,7 +231,7 @@ def own_laws(
 
 
 def stated_problems(name: str, word: str | None, stated: Stated) -> list[str]:
-    """What is missing or doubly given of an own oil, beside what is wrong about its values already.
+    """Data of an own oil that are missing or doubly given, beside what is wrong about its values already.
 
     Parameters
     ----------
@@ -390,5 +390,5 @@ def _coefficient_pair(name: str, stated: Stated, problems: list[str]) -> tuple[f
 
 
 def _listed(**values: float | None) -> str:
-    """What is given, by its names."""
+    """Names of the values that are given."""
     return " and ".join(name for name, value in values.items() if value is not None) or "none"

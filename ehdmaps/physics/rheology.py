@@ -303,7 +303,7 @@ def wall_stress_share(position: FloatArray, pressure: FloatArray, film: FloatArr
 
 
 def wall_stress_note(position: FloatArray, pressure: FloatArray, film: FloatArray) -> str:
-    """What a solution says of a wall stress that no Newtonian oil has; empty where it is admissible.
+    """Note on a wall stress of a solution that no Newtonian oil has; empty where it is admissible.
 
     Parameters
     ----------

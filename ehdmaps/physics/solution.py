@@ -1,4 +1,5 @@
-"""How far the highest of sampled pressures may lie below the peak, which stands between the places; and in words.
+"""Distance by which the highest of sampled pressures may lie below the peak, which stands between the places; and in
+words.
 
 The largest pressure of a film is that of a grid point. Where a cold or loaded oil makes a sharp spike, its tip is 1e-5
 half-widths wide and less: it stands higher on every finer grid. The stated error bounds by how much. Against grids of
@@ -91,7 +92,7 @@ def peak_sampling_error(position: FloatArray, pressure: FloatArray, cusp: bool) 
 
 
 class Status(IntEnum):
-    """How a point ended; the values are the flag_values of the map file."""
+    """Outcome of solving a point; the values are the flag_values of the map file."""
 
     CONVERGED = 0
     ASYMPTOTE = 1
@@ -102,7 +103,7 @@ class Status(IntEnum):
 
     @property
     def usable(self) -> bool:
-        """Whether the numbers of such a point may be used."""
+        """Tell whether the numbers of such a point may be used."""
         return self in (Status.CONVERGED, Status.ASYMPTOTE)
 
     @property
@@ -268,7 +269,7 @@ class ContactSolution:
 
 
 class ContactSolver(Protocol):
-    """What every solver offers: films along a line of loads, so that a point may start from the one before it.
+    """Interface of every solver: films along a line of loads, so that a point may start from the one before it.
 
     `solve_line` never raises for a point that does not converge: it returns the status. It is deterministic: the same
     line gives the same numbers, whatever was solved before.
@@ -284,17 +285,17 @@ class ContactSolver(Protocol):
 
     @property
     def slow(self) -> bool:
-        """Whether a point takes seconds or more: each is then a task of its own, and is kept at once."""
+        """True where a point takes seconds or more: each is then a task of its own, and is kept at once."""
         ...
 
     @property
     def version(self) -> str | None:
-        """What tells results of one version from those of the next; None for a hash of the solver's sources."""
+        """Mark that tells results of one version from those of the next; None for a hash of the solver's sources."""
         ...
 
     @property
     def wants_backbone(self) -> bool:
-        """Whether its maps get the lines that a contact law needs besides."""
+        """Tell whether its maps get the lines that a contact law needs besides."""
         ...
 
     @property
@@ -373,7 +374,7 @@ class ContactSolver(Protocol):
 
 
 class ContactSolverDefaults:
-    """What most solvers say of themselves, to inherit from: a quick solver, known by its sources.
+    """Answers that most solvers give about themselves, to inherit from: a quick solver, known by its sources.
 
     A solver overrides what is different for it, by a property or by an attribute of its class such as ``slow = True``.
     """

@@ -248,7 +248,7 @@ class Surface:
 
     @property
     def smooth(self) -> bool:
-        """Whether there are no asperities."""
+        """True where there are no asperities."""
         return self.roughness == 0.0
 
     @property

@@ -91,7 +91,7 @@ class Axis:
 
     @property
     def title(self) -> str:
-        """What is written beside it."""
+        """Text that is written beside it."""
         return f"{self.label}, {self.unit}" if self.unit else self.label
 
     def places(self, values: FloatArray) -> FloatArray:
@@ -545,7 +545,7 @@ def _shade(chart: Chart, shade: Shade) -> Markup:
 
 
 def _legend(chart: Chart) -> Markup | None:
-    """What is drawn, each with its name, and a place for the value at the cursor."""
+    """Legend of what is drawn, each with its name, and a place for the value at the cursor."""
     entries = [
         _entry(
             tag("path", d="M1 6H25", stroke=curve.colour, stroke_width=max(curve.width, 1.6),

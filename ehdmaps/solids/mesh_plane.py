@@ -123,11 +123,11 @@ class PlaneMesh:
         return np.asarray(np.hypot(*self.positions.T))
 
     def on_circle(self, radius: float) -> BoolArray:
-        """Which nodes lie on a circle about the axis [m]."""
+        """True for nodes that lie on a circle about the axis [m]."""
         return np.asarray(np.abs(self.radii - radius) < 1e-7 * self.surface)
 
     def on_axis(self, direction: int) -> BoolArray:
-        """Which nodes lie where x (direction 0) or y (direction 1) is zero."""
+        """True for nodes that lie where x (direction 0) or y (direction 1) is zero."""
         return np.asarray(np.abs(self.positions[:, direction]) < 1e-9 * self.surface)
 
 

@@ -1,4 +1,4 @@
-"""How far a body yields at a line contact: plane linear elasticity by finite elements (scikit-fem).
+"""Yield of a body at a line contact: plane linear elasticity by finite elements (scikit-fem).
 
 The load is the pressure of Hertz over a half-width b, and what comes out is its energy: the displacement of the
 contact, weighted with the pressure, against what holds the body. That number is as exact as the square of the error
@@ -38,7 +38,7 @@ _GAUSS = 12
 
 
 class PlaneYield(NamedTuple):
-    """What a body yields to unit loads [N/m] of several widths.
+    """Displacements of a body under unit loads [N/m] of several widths.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What the finite elements mesh: roller, rings and the seats of the rings, as dimensions."""
+"""Dimensions of the parts that the finite elements mesh: roller, rings and the seats of the rings."""
 
 from __future__ import annotations
 

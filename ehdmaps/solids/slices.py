@@ -1,4 +1,4 @@
-"""What the slices of a roller know of their neighbours: a matrix of compliances between them.
+"""Coupling of the slices of a roller with their neighbours: a matrix of compliances between them.
 
 A law of a contact gives the approach of a slice as if all slices bore the same load. What is left of the elasticity of
 three dimensions is linear, and depends little on the width of the contact:

@@ -256,7 +256,7 @@ def _depth_spline() -> CubicSpline:
 
 
 def depth_term(distance: FloatArray, depth: float) -> FloatArray:
-    """What is added to 1/distance, the response of a half space to a force, for a layer of a depth [1/m].
+    """Term that is added to 1/distance, the response of a half space to a force, for a layer of a depth [1/m].
 
     Far away the sum of both is zero: a layer does not yield a few depths beside a force.
 

@@ -1,4 +1,4 @@
-"""What a search over wild input found, and how it is told."""
+"""Findings of a search over wild input, and how they are told."""
 
 from __future__ import annotations
 
@@ -223,7 +223,7 @@ def write_checks(path: Path, head: str, checks: Sequence[Check]) -> None:
 
 
 def unknown_part(only: str | None, names: tuple[str, ...]) -> list[str]:
-    """What is wrong about the part that `--only` names; nothing where it is left out.
+    """Problems with the part that `--only` names; nothing where it is left out.
 
     Parameters
     ----------
@@ -268,7 +268,7 @@ def told(head: str, checks: Sequence[Check], output: str | None, as_json: bool) 
 
 
 def _reasons(check: Check) -> str:
-    """Why cases were refused, the most frequent reasons first."""
+    """Reasons for which cases were refused, the most frequent first."""
     ordered = sorted(check.reasons.items(), key=lambda entry: -entry[1])
     shown = [f"{count} {reason}" for reason, count in ordered[:MOST_REASONS]]
     left = sum(count for _, count in ordered[MOST_REASONS:])

@@ -56,7 +56,7 @@ _VARIED = re.compile(r"'[^']*'|\"[^\"]*\"|b'.*?'|\S*/\S*|[-+]?[0-9][-+0-9.e]*")
 
 @dataclass(frozen=True)
 class Reader:
-    """What is given damaged files.
+    """Reader that is given damaged files.
 
     Attributes
     ----------
@@ -119,7 +119,7 @@ def case_of(reader: Reader, seed: int, number: int) -> Case:
 
 
 def _text(name: str) -> bool:
-    """Whether a file is text, by its name."""
+    """Tell whether a file is text, by its name."""
     return not name.endswith(_BINARY)
 
 
@@ -293,7 +293,7 @@ def _judged(reader: Reader, case: Case, folder: Path) -> dict[str, Any]:
 
 
 def _wording(error: EhdmapsError) -> str:
-    """What is wrong with the words of a refusal."""
+    """Problems with the words of a refusal."""
     problems = str(error).splitlines()
     if not any(problem.strip() for problem in problems):
         return f"{type(error).__name__} without a word"
@@ -309,14 +309,14 @@ def _wording(error: EhdmapsError) -> str:
 
 
 def _reason(text: str, folder: Path) -> str:
-    """Why something was refused, in words that are alike for alike cases."""
+    """Reason for which something was refused, in words that are alike for alike cases."""
     first = next((line for line in text.splitlines() if line.strip()), "")
     words = " ".join(_VARIED.sub("#", first.replace(f"{folder}/", "")[:400]).split())
     return words.encode("ascii", "replace").decode()[:70]
 
 
 def _changed(files: Mapping[str, bytes], folder: Path) -> str:
-    """What has become of the files of a folder; nothing where they are as they were."""
+    """Tell what has become of the files of a folder; nothing where they are as they were."""
     names = sorted(str(path.relative_to(folder)) for path in folder.rglob("*"))
     if names != sorted(files):
         return f"the folder holds {', '.join(names)} after it"

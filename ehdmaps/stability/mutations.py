@@ -1,4 +1,4 @@
-"""How good files are damaged, by a source of chance: text as text, other files as bytes.
+"""Ways to damage good files, by a source of chance: text as text, other files as bytes.
 
 Each way is a function of the content, the source of chance and another content of the same kind; `damage` takes one to
 three of them in turn.

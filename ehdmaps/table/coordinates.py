@@ -73,7 +73,7 @@ def exponent_of(alpha: float, bend: float) -> float:
 
 
 def valley_shift(oil_number: FloatArray, alpha: FloatArray, exponent: FloatArray) -> FloatArray:
-    """How far the valley lies above its formula, in ln M.
+    """Height of the valley above its formula, in ln M.
 
     Parameters
     ----------
@@ -130,7 +130,7 @@ _MEANING = {
 
 
 def outside_family(solver: ContactSolver) -> str:
-    """Why films of a solver are not those of the table; empty where they are.
+    """Reason why films of a solver are not those of the table; empty where they are.
 
     Roughness, layers and starvation come on top of these films: what adds them asks for smooth, flooded films first.
 

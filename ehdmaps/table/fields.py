@@ -102,7 +102,7 @@ FIELDS = FILMS + RESPONSES
 
 
 class Units(NamedTuple):
-    """What the numbers of films are divided by, arrays over points.
+    """Units by which the numbers of films are divided, arrays over points.
 
     Attributes
     ----------

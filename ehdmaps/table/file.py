@@ -54,7 +54,7 @@ _BITS = 16
 
 @dataclass(frozen=True, eq=False)
 class TableFile:
-    """What a file of films holds.
+    """Contents of a file of films.
 
     Attributes
     ----------

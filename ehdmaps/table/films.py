@@ -108,7 +108,7 @@ class TableFilms:
 
     @property
     def usable(self) -> BoolArray:
-        """Where there are films."""
+        """True where there are films."""
         return np.asarray(self.status <= int(Status.ASYMPTOTE))
 
     @property
@@ -135,7 +135,7 @@ class FilmTable:
 
     @property
     def _seam(self) -> tuple[float, float]:
-        """Where the piezoviscous part begins, and the isoviscous one ends: ln alpha."""
+        """Values of ln alpha where the piezoviscous part begins, and the isoviscous one ends."""
         return float(self.piezoviscous.axes.alpha[0]), float(np.log(self.isoviscous.axes.alpha[-1]))
 
     def films(
@@ -227,7 +227,7 @@ class FilmTable:
         )
 
     def _refused(self, points: _Points) -> npt.NDArray[np.int8]:
-        """Why there is no film at points, before it is read."""
+        """Find why there is no film at points, before it is read."""
         iso, piezo = self.isoviscous.axes, self.piezoviscous.axes
         M, L, alpha = points.load_number, points.oil_number, points.alpha
         begin, end = np.exp(self._seam)
@@ -249,7 +249,7 @@ class FilmTable:
     def _reader(
         self, points: _Points, good: IndexArray
     ) -> Callable[[tuple[Field, ...]], tuple[FloatArray, FloatArray]]:
-        """What reads reduced numbers of some points, and the errors of their smooth forms, both (n, fields)."""
+        """Function that reads reduced numbers of some points, and errors of their smooth forms, both (n, fields)."""
         pieces = self._pieces(points, good, points.exponent[good])
         mapped = np.flatnonzero(points.beside[good] != points.exponent[good])
         other = []
@@ -275,7 +275,7 @@ class FilmTable:
         return read
 
     def _pieces(self, points: _Points, at: IndexArray, exponent: FloatArray) -> list[_Piece]:
-        """Which parts say how much of some points, with one z or another."""
+        """Parts that count for some points, and how much, with one z or another."""
         M, L, alpha = points.load_number[at], points.oil_number[at], points.alpha[at]
         begin, end = self._seam
         t = np.clip((np.log(alpha) - begin) / (end - begin), 0.0, 1.0)
@@ -296,7 +296,7 @@ class FilmTable:
 
 
 class _Piece(NamedTuple):
-    """What one part of a table says of points: which of them, shape (n,), and with what share, shape (n, 1)."""
+    """Points for which one part of a table counts: their indices, shape (n,), and its share, shape (n, 1)."""
 
     nodes: Nodes
     at: IndexArray
@@ -357,7 +357,7 @@ def _on_axes(
 def _noted(
     numbers: Mapping[str, FloatArray], hole: npt.NDArray[np.int8], thickest: float, radius: float, good: IndexArray
 ) -> npt.NDArray[np.int8]:
-    """What is said of films that were read."""
+    """Remarks on films that were read."""
     film, stress = numbers["film_offset"][good], numbers["wall_stress"][good]  # the latter NaN where not asked for
     tests = (
         (hole[good] == _HOLE, _HOLE),
@@ -371,7 +371,7 @@ def _noted(
 
 
 def _within(x: FloatArray, nodes: FloatArray) -> BoolArray:
-    """Whether places lie within nodes, but for round-off."""
+    """True where places lie within nodes, but for round-off."""
     slack = _SLACK * (nodes[-1] - nodes[0])
     return np.asarray((x >= nodes[0] - slack) & (x <= nodes[-1] + slack))
 

@@ -56,7 +56,7 @@ class Axes:
 
 @dataclass(frozen=True, eq=False)
 class Place:
-    """Where points stand among the nodes, and with what weights these count.
+    """Place of points among the nodes, and the weights with which these count.
 
     Attributes
     ----------

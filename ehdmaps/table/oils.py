@@ -177,7 +177,7 @@ def matched_exponents(alpha: FloatArray, wanted: FloatArray) -> FloatArray:
 
 
 def mapping_factor(field: str, fitted: bool) -> float:
-    """What the difference of two mappings is multiplied by as the error of a number.
+    """Factor by which the difference of two mappings is multiplied as the error of a number.
 
     Parameters
     ----------

@@ -101,7 +101,7 @@ def _key(panel: Axes, trade: Trade, groups: list[str], judged: list[Judged]) -> 
 
 
 def _shown(choice: Choice, judged: Judged) -> bool:
-    """Whether a choice has a place on logarithmic axes."""
+    """Tell whether a choice has a place on logarithmic axes."""
     found = choice.errors.get(judged.name)
     return found is not None and found.points > 0 and found.median > 0.0 and 0.0 < choice.seconds < math.inf
 

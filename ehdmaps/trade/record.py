@@ -1,4 +1,4 @@
-"""What a measurement of speed against accuracy found, as frozen values."""
+"""Findings of a measurement of speed against accuracy, as frozen values."""
 
 from __future__ import annotations
 

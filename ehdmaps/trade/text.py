@@ -106,7 +106,7 @@ def _own(choice: Choice, name: str) -> ErrorSummary | None:
 
 
 def _states(choice: Choice) -> bool:
-    """Whether a choice states errors of itself."""
+    """Tell whether a choice states errors of itself."""
     return any(
         math.isfinite(found.stated) for found in (*choice.numerical.values(), *choice.errors.values()) if found.points
     )

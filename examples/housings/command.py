@@ -1,4 +1,4 @@
-"""What `python -m examples.housings` does with its arguments."""
+"""Command `python -m examples.housings`: its arguments, and what it makes of them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What each shipped housing is: dimensions, material, bearing seats, feet and places of sensors.
+"""Designs of the shipped housings: dimensions, material, bearing seats, feet and places of sensors.
 
 No drawing of the machines is published. All dimensions here are assumptions: those of the bearings and gears are
 given, walls, feet and heights are chosen as a designer of such a machine would choose them. None is tuned to a

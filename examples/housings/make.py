@@ -161,7 +161,7 @@ def _interface(model: FiniteElementModel, mesh: Mesh, name: str, seat: Seat) -> 
 def _attributes(
     housing: Housing, mesh: Mesh, model: FiniteElementModel, size: float, cutoff: float, frequencies: FloatArray
 ) -> dict[str, str]:
-    """What a reader of the file should know."""
+    """Facts that a reader of the file should know."""
     material = housing.material
     return {
         "title": housing.title,

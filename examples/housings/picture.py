@@ -1,4 +1,4 @@
-"""What a mesh looks like: its surface in a drawing that goes into a figure."""
+"""Surface of a mesh in a drawing that goes into a figure."""
 
 from __future__ import annotations
 

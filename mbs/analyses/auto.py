@@ -58,7 +58,7 @@ TellMap = Callable[[int], Progress]
 
 @dataclass(frozen=True, kw_only=True)
 class AutoSettings:
-    """What an analysis that chooses its physics is to look at.
+    """Settings of an analysis that chooses its physics.
 
     Attributes
     ----------
@@ -131,7 +131,7 @@ class MadeMap:
 
     @property
     def unmet(self) -> tuple[str, ...]:
-        """Which bars its contact laws miss, without the advice, as the job was planned."""
+        """Bars that its contact laws miss, without the advice, as the job was planned."""
         lines = unmet(self.generated.dataset, self.generated.backbone is not None)
         return tuple(line for line in lines if line.startswith(("unmet", "no contact law")))
 
@@ -285,7 +285,7 @@ def _films(
 
 
 def _remedies(verdicts: tuple[Verdict, ...]) -> list[str]:
-    """What gives another map where one cannot be used: without the physics that it was made with."""
+    """Advice on how to get another map where one cannot be used: without the physics that it was made with."""
     plain = {"limiting shear stress": "--shear newtonian", "inlet heating": "--physics isothermal"}
     return [
         f"auto: the map was made with {verdict.physics} ({verdict.words}); {plain[verdict.physics]} makes one without, "
@@ -303,7 +303,7 @@ def _supplies(scene: Scene, asked: OilSupply | None) -> tuple[OilSupply, ...]:
 def _verdicts(
     scene: Scene, found: PlanResult, settings: AutoSettings, supplies: tuple[OilSupply, ...], highest: float
 ) -> tuple[Verdict, ...]:
-    """Which physics is required: memory, supply and roughness, each where it matters most; heat and shear by type."""
+    """Find the physics required: memory, supply and roughness, each where it matters most; heat and shear by type."""
     assert scene.lubricant is not None  # the plan saw to it
     possible = not any(entry.centrifugal and not entry.rollers_as_bodies for entry in scene.bearings)
     memory, supply, rough, heat, shear = (list[Verdict]() for _ in range(5))

@@ -85,7 +85,7 @@ def bearing_points(
 
 
 def ring_at_rest(element: BearingElement, load: Sequence[float], operation: Operation) -> Equilibrium:
-    """Where the inner ring of a bearing comes to rest in the radial plane, without tilting.
+    """Find where the inner ring of a bearing comes to rest in the radial plane, without tilting.
 
     Parameters
     ----------

@@ -159,7 +159,7 @@ MODE_SPEEDS = 9
 
 @dataclass(frozen=True, eq=False)
 class LawRun:
-    """What one contact law led to.
+    """Results of one contact law.
 
     Attributes
     ----------
@@ -315,7 +315,7 @@ def campbell_problems(scene: Scene, settings: CampbellSettings, sensors: Sequenc
 
 @dataclass(frozen=True, eq=False)
 class _Look:
-    """What is looked at in each run."""
+    """Choice of what is looked at in each run."""
 
     settings: CampbellSettings
     sensors: tuple[Sensor, ...]

@@ -1,4 +1,4 @@
-"""What an analysis compares (laws, scenes, models with labels), computed side by side in processes of their own.
+"""Cases that an analysis compares (laws, scenes, models with labels), computed side by side in processes of their own.
 
 A process is a fork of this one: it has the models, and what is compiled, from the beginning, and gives back its result
 alone. Where there are no forks, or one process is asked for, cases run one after another in this one.
@@ -59,13 +59,13 @@ class LawChoice:
 
     @property
     def has_films(self) -> bool:
-        """Whether it knows an oil."""
+        """Tell whether it knows an oil."""
         return self.name in ("map", "formula") or (self.name is None and self.maps is not None)
 
 
 @dataclass(frozen=True, eq=False)
 class Subject:
-    """What is run: a scene with a law.
+    """Subject of a run: a scene with a law.
 
     Attributes
     ----------
@@ -159,7 +159,7 @@ _TELL_SECONDS = 0.1
 
 @dataclass(frozen=True)
 class Failed:
-    """Why a case has no result."""
+    """Reason why a case has no result."""
 
     error: EhdmapsError
 

@@ -1,4 +1,4 @@
-"""Which physics of the films matters at a contact, by closed forms alone: no map, no solution.
+"""Criteria for the physics of films that matters at a contact, by closed forms alone: no map, no solution.
 
 Each criterion is a size to be held against a tolerance: by how much stiffness k or damping c of a contact would change,
 as a part of it. How often the criteria are right is measured by `python -m tests.benchmarks.bench_auto_criteria`.
@@ -125,7 +125,7 @@ def closed_contact(
 
 
 def memory_effect(state: ClosedContact, frequency: float) -> FloatArray:
-    """How far the dynamic stiffness of slow motion is from that with memory, |dZ/Z|.
+    """Relative distance of the dynamic stiffness of slow motion from that with memory, |dZ/Z|.
 
     Parameters
     ----------

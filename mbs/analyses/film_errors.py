@@ -1,4 +1,4 @@
-"""How wrong the films of a machine are estimated to be, over frequency: those of slow motion, and those with memory."""
+"""Estimated errors of the films of a machine, over frequency: those of slow motion, and those with memory."""
 
 from __future__ import annotations
 

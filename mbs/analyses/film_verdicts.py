@@ -1,4 +1,4 @@
-"""Which physics of the films a scene requires, from the ranges that it visits: verdicts with their reasons.
+"""Physics of the films that a scene requires, from the ranges that it visits: verdicts with their reasons.
 
 How much a limiting shear stress changes a contact: by two solutions, as no closed form says it.
 
@@ -95,7 +95,7 @@ _LAYERS = 241
 
 @dataclass(frozen=True)
 class Verdict:
-    """Whether one kind of physics is switched on, and why.
+    """Verdict on whether one kind of physics is switched on, and why.
 
     Attributes
     ----------
@@ -195,7 +195,7 @@ def visited(needed: Needed, lubricant: Lubricant, tolerance: float) -> Range:
 
 
 def memory_verdict(found: Range, frequency: float, asked: Films | None, possible: bool = True) -> Verdict:
-    """Whether films need their memory.
+    """Judge whether films need their memory.
 
     Parameters
     ----------
@@ -224,7 +224,7 @@ def memory_verdict(found: Range, frequency: float, asked: Films | None, possible
 
 
 def supply_verdict(found: Range, supplies: tuple[OilSupply, ...], asked: bool = False) -> Verdict:
-    """Whether the stated oil supply matters; without one, which layer would.
+    """Judge whether the stated oil supply matters; without one, which layer would.
 
     Parameters
     ----------
@@ -247,7 +247,7 @@ def supply_verdict(found: Range, supplies: tuple[OilSupply, ...], asked: bool = 
 
 
 def roughness_verdict(found: Range, surface: Surface | None) -> Verdict:
-    """Whether the stated roughness matters; without one, which would.
+    """Judge whether the stated roughness matters; without one, which would.
 
     Parameters
     ----------
@@ -271,7 +271,7 @@ def roughness_verdict(found: Range, surface: Surface | None) -> Verdict:
 
 
 def heat_verdict(found: Range, asked: str | None = None) -> Verdict:
-    """Whether heating of the inlet matters, and whether the map has it.
+    """Judge whether heating of the inlet matters, and whether the map has it.
 
     Where it matters the map has it by its rule (`ehdmaps.physics.heat`) where that holds all over the map. Films
     with temperatures take some ten times as long, and are made where they are asked for.
@@ -301,7 +301,7 @@ def heat_verdict(found: Range, asked: str | None = None) -> Verdict:
 
 
 def shear_verdict(found: Range, asked: str | None = None) -> Verdict:
-    """Whether a limiting shear stress matters: by solutions with it and without, at few loads.
+    """Judge whether a limiting shear stress matters: by solutions with it and without, at few loads.
 
     Parameters
     ----------
@@ -332,7 +332,7 @@ def shear_verdict(found: Range, asked: str | None = None) -> Verdict:
 
 
 def _no_rule(found: Range) -> str:
-    """Why the rule of inlet heat does not hold at all points that a map of this range solves; empty where it does."""
+    """Say why the rule of inlet heat fails at some points that a map of this range solves; empty where it holds."""
     for state in found.states:
         for zeta in np.linspace(*_ZETA, _ZETAS).tolist():
             load = load_at(state.contact, found.lubricant, zeta, state.speed, state.temperature)
@@ -377,7 +377,7 @@ def _layer_that_matters(found: Range) -> float:
 
 
 def _changes(found: Range, layer: float) -> bool:
-    """Whether an oil layer changes a contact by more than the tolerance."""
+    """Tell whether an oil layer changes a contact by more than the tolerance."""
     return any(np.any(supply_effect(state, layer) > found.tolerance) for state in found.states)
 
 

@@ -25,7 +25,7 @@ HIGHEST = 5000.0
 
 @dataclass(frozen=True)
 class HammerSettings:
-    """How a scene is hit.
+    """Settings by which a scene is hit.
 
     Attributes
     ----------
@@ -211,7 +211,7 @@ def hammers(
 
 
 def hammer_problems(scene: Scene) -> list[str]:
-    """What a scene lacks for a hammer test.
+    """List what a scene lacks for a hammer test.
 
     Parameters
     ----------

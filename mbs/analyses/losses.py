@@ -1,4 +1,4 @@
-"""What the contacts of the bearings of a scene feel at an equilibrium, and what rolling costs there."""
+"""Pressures and films of the contacts of the bearings of a scene at an equilibrium, and the cost of rolling there."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ from mbs.scene.scene import Scene
 
 @dataclass(frozen=True)
 class LsaSettings:
-    """What of a linear system is computed.
+    """Choice of what is computed of a linear system.
 
     Attributes
     ----------
@@ -97,7 +97,7 @@ class LsaResult:
 
 
 def lsa_problems(scene: Scene) -> list[str]:
-    """What a scene lacks for a linear analysis.
+    """List what a scene lacks for a linear analysis.
 
     Parameters
     ----------
@@ -237,7 +237,7 @@ def _pitch_range(balance: Equilibrium, scene: Scene, frequencies: FloatArray) ->
 
 
 def lsa_dataset(labels: Sequence[str], results: Sequence[LsaResult]) -> xr.Dataset:
-    """What `mbs lsa -o` writes: of one law its result, of several all of them over the dim law.
+    """Data set that `mbs lsa -o` writes: of one law its result, of several all of them over the dim law.
 
     State spaces have as many states as the law with most of them; what a law has not is not a number.
 

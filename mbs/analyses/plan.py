@@ -1,4 +1,4 @@
-"""Which operating ranges a scene needs of a contact map, and the jobs that cover just these."""
+"""Operating ranges that a scene needs of a contact map, and the jobs that cover just these."""
 
 from __future__ import annotations
 
@@ -109,7 +109,7 @@ def _plain(text: str) -> str:
 
 @dataclass(frozen=True)
 class PlanSettings:
-    """How the ranges are found.
+    """Settings by which the ranges are found.
 
     Attributes
     ----------
@@ -125,7 +125,7 @@ class PlanSettings:
 
 @dataclass(frozen=True, eq=False)
 class PlanResult:
-    """What a scene needs of a contact map.
+    """Ranges that a scene needs of a contact map.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Which operating ranges a system needs of a contact map: only what occurs in it, with a stated margin.
+"""Operating ranges that a system needs of a contact map: only what occurs in it, with a stated margin.
 
 The speeds follow from the spins. The loads are those of dry contacts in equilibrium, over the angles of one pitch of
 the rollers, the extremes of loads that vary and a turn of unbalances and excitations as a stiff rotor bears them,
@@ -85,7 +85,7 @@ class Needed:
 
 
 def same_contacts(geometry: BearingGeometry) -> tuple[float, float, float, float]:
-    """What the contacts of a bearing depend on: raceways and rollers [m], rounded to a nanometre.
+    """Dimensions on which the contacts of a bearing depend: raceways and rollers [m], rounded to a nanometre.
 
     Bearings that agree in it share a map, whatever their clearance and number of rollers.
     """

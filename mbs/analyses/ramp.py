@@ -138,7 +138,7 @@ def silent_run(course: RunUp) -> RunSignal:
 
 
 def rehearsed(settings: CampbellSettings, course: RunUp, orders: Sequence[tuple[float, str]]) -> RunUpSpectra:
-    """What a silent run of a course gives: windows, speeds and frequencies of any signal of it.
+    """Outcome of a silent run of a course: windows, speeds and frequencies of any signal of it.
 
     Parameters
     ----------
@@ -240,7 +240,7 @@ class StepCheck:
 
     @property
     def converged(self) -> bool:
-        """Whether all are within `NOTABLE`."""
+        """True where all are within `NOTABLE`."""
         return bool(np.all(self.errors <= NOTABLE))
 
 
@@ -292,7 +292,7 @@ def _unit(quantity: str) -> str:
 
 @dataclass(frozen=True)
 class Resolution:
-    """What the steps of a run resolve.
+    """Resolution of the steps of a run.
 
     Attributes
     ----------
@@ -317,7 +317,7 @@ class Resolution:
 
     @property
     def unresolved(self) -> tuple[str, ...]:
-        """What steps are too long for, in words."""
+        """Frequencies for which steps are too long, in words."""
         named = (
             ("the lowest mode of the system is at", self.lowest_mode),
             ("it is excited with up to", self.excitation),
@@ -352,7 +352,7 @@ class Resolution:
 
 
 def resolution(model: Model, course: RunUp) -> Resolution:
-    """What the steps of a run resolve of its modes at the first speed, and of its excitation.
+    """Find what the steps of a run resolve of its modes at the first speed, and of its excitation.
 
     Parameters
     ----------
@@ -412,7 +412,7 @@ def step_lines(found: Resolution) -> list[str]:
 
 
 def _lost(found: Resolution, frequency: float) -> str:
-    """What an oscillation loses in a second, and the damping ratio that takes as much."""
+    """Tell how much an oscillation loses in a second, and the damping ratio that takes as much."""
     part = found.lost(frequency)
     words = f"{100.0 * part:.3g} %" if 1e-6 < part < 0.9995 else "less than 0.0001 %" if part < 0.5 else "all"
     return f"{words} at {HERTZ.text(frequency)} (a damping ratio of {found.ratio(frequency):.2g})"

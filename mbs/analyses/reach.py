@@ -1,4 +1,4 @@
-"""How far a law reaches: speeds below its films, where it fades to the dry contact, and what lies outside its map."""
+"""Reach of a law: speeds below its films, where it fades to the dry contact, and what lies outside its map."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from mbs.scene.assembly import Model, ring_motions
 
 @dataclass(frozen=True)
 class Fade:
-    """Where the films of a law begin; between rest and there they are blended with the dry contact.
+    """Speed at which the films of a law begin; between rest and there they are blended with the dry contact.
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ class Fade:
     source: str
 
     def below(self, speeds: npt.ArrayLike) -> BoolArray:
-        """Which speeds of the system [rad/s] lie in the fade; of the shape of `speeds`."""
+        """True for speeds of the system [rad/s] that lie in the fade; of the shape of `speeds`."""
         return np.asarray(np.abs(np.asarray(speeds, dtype=np.float64)) < self.speed)
 
 
@@ -48,7 +48,7 @@ POINTS = "the points of its law"
 
 
 def source_of(model: Model) -> str:
-    """What a law is read from, in words: "the map", "the table of the film formula", or `POINTS`.
+    """Source that a law is read from, in words: "the map", "the table of the film formula", or `POINTS`.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ SPEED_TABLE = "its table of speeds"
 
 
 def sources_of(model: Model) -> dict[str, str]:
-    """What each element reads, in words: `source_of` the laws of bearings, `SPEED_TABLE` of matrices over speed.
+    """Source that each element reads, in words: `source_of` the laws of bearings, `SPEED_TABLE` of matrices over speed.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ def sources_of(model: Model) -> dict[str, str]:
 
 
 def fade_of(model: Model) -> Fade | None:
-    """Where the films of the model begin; None for laws without films, and for bearings that do not turn."""
+    """Find where the films of the model begin; None for laws without films, and for bearings that do not turn."""
     found: list[Fade] = []
     for bearing in model.bearings:
         law = _law_of(bearing)
@@ -96,7 +96,7 @@ def share_below(model: Model, speeds: FloatArray) -> float:
 
 
 def axes_outside(model: Model, speed: float, loads: Mapping[str, float] | None = None) -> dict[str, str]:
-    """Where each bearing leaves the map, if it does: the axis with its value, or where its load ends.
+    """Find where each bearing leaves the map, if it does: the axis with its value, or where its load ends.
 
     Parameters
     ----------

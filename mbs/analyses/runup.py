@@ -64,7 +64,7 @@ class RunUpResult:
 
 
 def runup_problems(scene: Scene) -> list[str]:
-    """What a scene lacks for a run-up.
+    """List what a scene lacks for a run-up.
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ class _Made(NamedTuple):
 
 
 def _course(model: Model, settings: RunUp | None = None) -> RunUp:
-    """What is run: that of the scene if nothing else is given."""
+    """Course that is run: that of the scene if nothing else is given."""
     course = settings or model.scene.run_up
     if course is None:
         raise InputError(runup_problems(model.scene))
@@ -179,7 +179,7 @@ class RunUps(NamedTuple):
 
     @property
     def dataset(self) -> xr.Dataset:
-        """What `mbs runup -o` writes: of one law its result, of several all of them over the dim law."""
+        """Data set that `mbs runup -o` writes: of one law its result, of several all of them over the dim law."""
         if len(self.runs) == 1:
             return self.runs[0].dataset
         return _of_laws(self)

@@ -1,4 +1,4 @@
-"""What of a run is looked at: sensors of some names or the first of an acceleration, and orders that are followed."""
+"""Choice of what is looked at in a run: sensors of some names or the first of an acceleration, and orders to follow."""
 
 from __future__ import annotations
 

@@ -40,7 +40,7 @@ _SPEEDS = 9
 
 
 class Cause(Enum):
-    """Which check failed."""
+    """Check that failed."""
 
     PRESSURE = "pressure"
     ENERGY = "energy"
@@ -49,7 +49,7 @@ class Cause(Enum):
 
 @dataclass(frozen=True)
 class Unsound:
-    """Why figures mean nothing.
+    """Reason why figures mean nothing.
 
     Attributes
     ----------
@@ -64,7 +64,7 @@ class Unsound:
 
 
 def unsound_at_rest(model: Model, displacement: FloatArray, operation: Operation) -> tuple[Unsound, ...]:
-    """Why the figures of an equilibrium mean nothing; empty where they do.
+    """Find why the figures of an equilibrium mean nothing; empty where they are sound.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ def unsound_at_rest(model: Model, displacement: FloatArray, operation: Operation
 
 
 def unsound_over_speed(model: Model, found: Sweep) -> tuple[Unsound, ...]:
-    """Why the figures of a sweep mean nothing, by its first speed where that is so.
+    """Find why the figures of a sweep mean nothing, by its first speed where that is so.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ def unsound_over_speed(model: Model, found: Sweep) -> tuple[Unsound, ...]:
 
 
 def unsound_run(model: Model, record: Recording) -> tuple[Unsound, ...]:
-    """Why the figures of a run mean nothing; empty where they do.
+    """Find why the figures of a run mean nothing; empty where they are sound.
 
     Parameters
     ----------

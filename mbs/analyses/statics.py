@@ -51,7 +51,7 @@ class StaticsResult:
 
     @cached_property
     def dataset(self) -> xr.Dataset:
-        """What `mbs statics -o` writes; made when it is asked for."""
+        """Data set that `mbs statics -o` writes; made when it is asked for."""
         from mbs.output.results import statics_dataset, with_states
 
         model = self.model

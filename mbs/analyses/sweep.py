@@ -130,7 +130,7 @@ def sweep(
 
 
 def sweep_problems(scene: Scene) -> list[str]:
-    """What a scene lacks for a sweep without speeds of its own.
+    """List what a scene lacks for a sweep without speeds of its own.
 
     Parameters
     ----------
@@ -324,7 +324,7 @@ def _responded(swept: _Swept, speeds: FloatArray) -> CriticalResult:
 
 
 def dataset_of_laws(labels: Sequence[str], results: Sequence[CriticalResult]) -> xr.Dataset:
-    """What `mbs critical -o` writes: of one law its result, of several all of them over the dim law.
+    """Data set that `mbs critical -o` writes: of one law its result, of several all of them over the dim law.
 
     There are as many critical speeds as the law with most of them has; what a law has not is not a number.
 

@@ -215,7 +215,7 @@ _ROTATION_ERROR = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class RingState:
-    """Where a ring is and how it moves, all in the inertial frame.
+    """Position and motion of a ring, all in the inertial frame.
 
     Attributes
     ----------
@@ -326,7 +326,7 @@ _EYE = np.eye(3)
 
 @dataclass(frozen=True, eq=False)
 class RingForces:
-    """What a bearing does to its rings, all in the inertial frame.
+    """Forces and moments of a bearing on its rings, all in the inertial frame.
 
     Attributes
     ----------

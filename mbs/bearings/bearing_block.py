@@ -180,7 +180,7 @@ def _law_of(bearings: Bearings, b: int, side: int) -> PreparedLaw:
 
 @njit(error_model="numpy")
 def _on_rings(bearings: Bearings, b: int, moment: Moment, motion: FloatArray, answers: Answers) -> int:
-    """What a bearing with massless rollers answers, all of them at once; status as of `bearing_force`."""
+    """Write the answer of a bearing with massless rollers, all of them at once; status as of `bearing_force`."""
     rings, out = bearings.rings, np.empty((13, 6))
     z, n = rings.rollers[b], rings.slices[b]
     work = Work(bearings.rows[: z * n].reshape(z, n), bearings.states[b, 0][: 4 * z * n].reshape(4, z, n))
@@ -204,7 +204,7 @@ def _one_roller(rings: Rings, b: int) -> Shape:
 
 @njit(error_model="numpy")
 def _contact_motion(place: Place, side: int, shape: Shape) -> RingMotion:
-    """How the ring of that bearing moves."""
+    """Motion of the ring of that bearing."""
     y = place.approach[side] + shape.sizes.half_clearance
     return RingMotion(y, 0.0, 0.0, place.tilt, place.rate[side], 0.0, 0.0, place.tilt_rate, 1.0, 0.0)
 
@@ -219,7 +219,7 @@ def _contact_states(bearings: Bearings, b: int, side: int, j: int) -> FloatArray
 
 @njit(error_model="numpy")
 def _on_rollers(bearings: Bearings, b: int, moment: Moment, motion: FloatArray, answers: Answers) -> int:
-    """What a bearing answers whose rollers are bodies, contact by contact; status as of `bearing_force`."""
+    """Write the answer of a bearing whose rollers are bodies, contact by contact; status as of `bearing_force`."""
     rings, out, above = bearings.rings, np.empty((13, 6)), 0
     n, cage, shape = rings.slices[b], cage_of(rings, b, moment), _one_roller(rings, b)
     rows = bearings.rows[:n].reshape(1, n)
@@ -303,7 +303,7 @@ def _contact_powers(bearings: Bearings, b: int, moment: Moment, motion: FloatArr
 
 @njit(error_model="numpy")
 def bearings_powers(bearings: Bearings, moment: Moment, motion: FloatArray, answers: Answers, out: FloatArray) -> None:
-    """What contacts dissipate, and what cage and centrifugal forces bring in; see `mbs.model.blocks.Kind`.
+    """Write what contacts dissipate, and what cage and centrifugal forces bring in; see `mbs.model.blocks.Kind`.
 
     Parameters
     ----------
@@ -382,7 +382,7 @@ def course_over(tables: Sequence[SpeedTables], films: Films) -> CourseOfFilms:
 
 
 def _takes(element: Element) -> bool:
-    """Whether the force of a bearing is the compiled one."""
+    """Tell whether the force of a bearing is the compiled one."""
     return isinstance(element, BearingElement) and type(element.force) is BearingForce and not element.bearing.coupled
 
 

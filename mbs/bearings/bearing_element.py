@@ -42,7 +42,7 @@ HARMONICS = 3
 
 
 class RingForce(Protocol):
-    """What a `BearingForce` does; a test or a study may put something else in its place."""
+    """Interface of a `BearingForce`; a test or a study may put something else in its place."""
 
     def evaluate(
         self,
@@ -59,7 +59,7 @@ class RingForce(Protocol):
 
 
 class RingElement(ElementDefaults):
-    """What is listed as a bearing: an element whose first six displacements are those of an inner ring.
+    """Element that is listed as a bearing: its first six displacements are those of an inner ring.
 
     `mbs.model.system.System.select` finds bearings by this class; a bearing of your own inherits from it.
     """
@@ -88,7 +88,7 @@ class RingElement(ElementDefaults):
         return 0.0
 
     def film_relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
-        """How its films would relax, whether linear analyses are to see that or not; None without films.
+        """Find how its films would relax, whether linear analyses are to see that or not; None without films.
 
         Parameters
         ----------
@@ -111,7 +111,7 @@ class RingElement(ElementDefaults):
 
     @property
     def error_words(self) -> str:
-        """Which errors its law states, for people; empty for laws that state none."""
+        """Name the errors that its law states, for people; empty for laws that state none."""
         return ""
 
     def contact_groups(self, displacement: FloatArray, operation: Operation) -> tuple[ContactGroup, ...]:
@@ -236,7 +236,7 @@ class BearingElement(RingElement):
         return self.force.rollers(displacement, **conditions, centrifugal_load=load)
 
     def relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
-        """How the films relax, where they do, see `Element.relaxation`."""
+        """Relaxation of the films, where they relax, see `Element.relaxation`."""
         return self.film_relaxation(displacement, operation) if self.films == "memory" else None
 
     def film_relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
@@ -283,7 +283,7 @@ class BearingElement(RingElement):
     def powers(
         self, states: Any, force: FloatArray, displacement: FloatArray, velocity: FloatArray, operation: Operation
     ) -> Powers | None:
-        """What its contacts dissipate, and what the turning of the cage brings in, see `Element.powers`."""
+        """Power that its contacts dissipate, and power that the turning of the cage brings in, see `Element.powers`."""
         if not isinstance(self.force, BearingForce):
             return None
         at_rest = self.evaluate(displacement, np.zeros(6), operation).force
@@ -392,7 +392,7 @@ class RollerElement(RingElement):
         return self.plain.excitation
 
     def relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
-        """How the films of both contacts relax, where they do, see `Element.relaxation`."""
+        """Relaxation of the films of both contacts, where they relax, see `Element.relaxation`."""
         return self.film_relaxation(displacement, operation) if self.films == "memory" else None
 
     def film_relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
@@ -422,7 +422,7 @@ class RollerElement(RingElement):
     def powers(
         self, states: Any, force: FloatArray, displacement: FloatArray, velocity: FloatArray, operation: Operation
     ) -> Powers:
-        """What its contacts dissipate; what cage and centrifugal forces bring in, see `Element.powers`."""
+        """Power that its contacts dissipate; power that cage and centrifugal forces bring in, see `Element.powers`."""
         at_rest = self.evaluate(displacement, np.zeros_like(velocity), operation).force
         return Powers(-float((force - at_rest) @ velocity), self.brought_in(at_rest, displacement, velocity, operation))
 
@@ -462,7 +462,7 @@ class RollerElement(RingElement):
 
 
 def error_words(system: System) -> str:
-    """What is in the bands of a system, for people; empty without bearings."""
+    """Name the errors in the bands of a system, for people; empty without bearings."""
     bearings = [system.elements[index].element for index in system.select(RingElement)]
     if not bearings:
         return ""
@@ -485,7 +485,7 @@ def ring_matrices(stiffness: FloatArray, damping: FloatArray) -> tuple[FloatArra
 
 
 def ring_following(stiffness: FloatArray) -> FloatArray:
-    """How the ports of an element follow the inner ring, the outer one being held, shape (m, 6).
+    """Motion by which the ports of an element follow the inner ring, the outer one being held, shape (m, 6).
 
     Parameters
     ----------
@@ -564,7 +564,7 @@ class FilmsInTime(RingElement):
         velocity: FloatArray,
         operation: Operation,
     ) -> Powers:
-        """What its films take up; what cage and centrifugal forces bring in, see `Element.powers`."""
+        """Energy that its films take up; power that cage and centrifugal forces bring in, see `Element.powers`."""
         memories, length = self.in_time(operation)
         spent = 0.0
         if states.before is not None:

@@ -143,7 +143,7 @@ def spike_tip(contacts: BearingContacts) -> str:
 
 
 def outside_map(law: Law, load: float, entrainment_speed: float, temperature: float) -> list[str]:
-    """Which axis of a law's map a point leaves, with its value, what is done there, and what to do.
+    """Name the axis of a law's map that a point leaves, with its value, what is done there, and what to do.
 
     Parameters
     ----------
@@ -163,7 +163,7 @@ def outside_map(law: Law, load: float, entrainment_speed: float, temperature: fl
 
 
 def axes_left(law: Law, load: float, entrainment_speed: float, temperature: float) -> list[str]:
-    """Which axis of a law's map a point leaves, with its value; a film that fades to rest is inside.
+    """Name the axis of a law's map that a point leaves, with its value; a film that fades to rest is inside.
 
     Parameters
     ----------
@@ -325,7 +325,7 @@ IDLE = 0.05
 
 @dataclass(frozen=True, eq=False)
 class RollingLoss:
-    """What rolling costs in a bearing; NaN where no rolling force is known.
+    """Cost of rolling in a bearing; NaN where no rolling force is known.
 
     Attributes
     ----------
@@ -355,7 +355,7 @@ class RollingLoss:
 def rolling_loss(
     contacts: BearingContacts, roller_load: FloatArray, slice_length: float, entrainment_speed: float, ring_speed: float
 ) -> RollingLoss:
-    """What rolling costs at given contacts.
+    """Compute the cost of rolling at given contacts.
 
     Parameters
     ----------

@@ -66,11 +66,11 @@ class ContactState:
 
 
 class FilmSource(Protocol):
-    """What knows pressures, films and rolling forces of both contacts of a roller."""
+    """Source of pressures, films and rolling forces of both contacts of a roller."""
 
     @property
     def words(self) -> str:
-        """Where the films come from, for people."""
+        """Origin of the films, for people."""
         ...
 
     @property

@@ -335,12 +335,12 @@ class ForceAtPoint:
 
     @property
     def tabulated(self) -> bool:
-        """Whether `arrays` hold the law; else it is called for each slice, or slices are coupled."""
+        """True where `arrays` hold the law; else it is called for each slice, or slices are coupled."""
         return not self._apart
 
     @property
     def outside(self) -> bool:
-        """Whether speed or temperature lie outside the map, so that every call counts."""
+        """True where speed or temperature lie outside the map, so that every call counts."""
         return self._outside
 
     def rollers(
@@ -473,7 +473,7 @@ class ForceAtPoint:
 
 
 def _is_within(law: ContactLaw, entrainment_speed: float, temperature: float, centrifugal_load: float) -> bool:
-    """Whether the whole film is there, and nothing is outside the map."""
+    """Tell whether the whole film is there, and nothing is outside the map."""
     table = law.plain_table
     within = table.film_speed <= abs(entrainment_speed) <= table.counted_speed
     within = within and table.lowest_temperature <= temperature <= table.highest_temperature
@@ -481,7 +481,7 @@ def _is_within(law: ContactLaw, entrainment_speed: float, temperature: float, ce
 
 
 def is_faded(law: ContactLaw, entrainment_speed: float) -> bool:
-    """Whether a speed [m/s] lies below those with the whole film."""
+    """Tell whether a speed [m/s] lies below those with the whole film."""
     return bool(abs(entrainment_speed) < law.plain_table.film_speed)
 
 
@@ -566,7 +566,7 @@ def _set_power(
 
 
 def is_one_power(law: ContactLaw) -> bool:
-    """Whether the dry contacts of a law in series are one power law."""
+    """Tell whether the dry contacts of a law in series are one power law."""
     structure = law.plain_table.structure
     return bool(np.all(structure[:, 0] == POWER_LAW) and np.ptp(structure[:, 2]) < 1e-12)
 

@@ -85,7 +85,7 @@ class DryLaw(ABC):
         """Numbers and cells per unit length for compiled code, for a roller of a length [m]; None without cells."""
 
     def is_above(self, delta: FloatArray) -> bool:
-        """Whether an approach [m] lies above the highest load of the law."""
+        """Tell whether an approach [m] lies above the highest load of the law."""
         return False
 
 
@@ -496,7 +496,7 @@ class TableLaw(DryLaw):
         return unilateral_forces(w, dw, c, dc, rate)
 
     def is_above(self, delta: FloatArray) -> bool:
-        """Whether an approach [m] lies above the last point."""
+        """Tell whether an approach [m] lies above the last point."""
         return bool(np.max(delta, initial=-np.inf) > self.approach[-1])
 
     def energy(self, delta: FloatArray) -> FloatArray:
@@ -519,7 +519,7 @@ class TableLaw(DryLaw):
 
 
 def curve_problems(approach: FloatArray, load: FloatArray, damping: FloatArray) -> list[str]:
-    """What is wrong about the points of a law: each line says at which point, what was got and what is allowed.
+    """List problems with the points of a law: each line says at which point, what was got and what is allowed.
 
     Parameters
     ----------

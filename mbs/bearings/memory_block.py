@@ -143,7 +143,7 @@ def _settled(bearings: MemoryBearings, b: int, side: int, moment: Moment) -> tup
 
 @njit(error_model="numpy")
 def _on_rings(bearings: MemoryBearings, b: int, moment: Moment, motion: FloatArray, answers: Answers) -> int:
-    """What a bearing with massless rollers answers; 1 with a load above the map, negative without an answer."""
+    """Write the answer of a bearing with massless rollers; 1 with a load above the map, negative without an answer."""
     rings, out = bearings.rings, np.empty((13, 6))
     z, n = rings.rollers[b], rings.slices[b]
     ring, shape = motion_of(rings, b, moment, motion), shape_of(rings, b)
@@ -162,7 +162,7 @@ def _on_rings(bearings: MemoryBearings, b: int, moment: Moment, motion: FloatArr
 
 @njit(error_model="numpy")
 def _moves_within(place: Place, sizes: Sizes) -> bool:
-    """Whether approaches are finite and within reason."""
+    """Tell whether approaches are finite and within reason."""
     far, tilt = sizes.most_travel, sizes.most_tilt
     return abs(place.approach[0]) <= far and abs(place.approach[1]) <= far and abs(place.tilt) <= tilt
 
@@ -264,7 +264,7 @@ def memory_accept(bearings: MemoryBearings, moment: Moment) -> None:
 def memory_powers(
     bearings: MemoryBearings, moment: Moment, motion: FloatArray, answers: Answers, out: FloatArray
 ) -> None:
-    """What films take up, and what cage and centrifugal forces bring in; see `mbs.model.blocks.Kind`.
+    """Write what films take up, and what cage and centrifugal forces bring in; see `mbs.model.blocks.Kind`.
 
     Parameters
     ----------

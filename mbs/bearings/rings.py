@@ -134,7 +134,7 @@ def motion_of(rings: Rings, b: int, moment: Moment, motion: FloatArray) -> RingM
 
 @njit(error_model="numpy", forceinline=True)
 def shape_of(rings: Rings, b: int) -> Shape:
-    """What does not change of a bearing."""
+    """Return the data of a bearing that do not change."""
     z, n = rings.rollers[b], rings.slices[b]
     return Shape(
         sizes_of(rings.sizes[b]), rings.positions[b][:n], rings.profiles[b][:n], rings.cos[b][:z], rings.sin[b][:z]
@@ -239,7 +239,7 @@ class Folding(NamedTuple):
 
 
 def folding_of(element: BearingElement) -> Folding:
-    """Which slices of a bearing are computed: all where its rings tilt, else one of each depth, or of each pair."""
+    """Choose the slices of a bearing to compute: all where its rings tilt, else one of each depth, or of each pair."""
     depths = element.bearing.profile_depths
     each = np.arange(depths.size)
     if element.tilts:
@@ -253,7 +253,7 @@ def folding_of(element: BearingElement) -> Folding:
 
 
 def _felt(element: BearingElement | RollerElement) -> int:
-    """How many displacements of rings a bearing feels."""
+    """Number of displacements of rings that a bearing feels."""
     if isinstance(element, RollerElement):
         return _FELT
     return FELT.size if element.tilts else LEVEL
@@ -299,7 +299,7 @@ def plain(element: BearingElement | RollerElement) -> BearingElement:
 
 
 def strict(members: Sequence[Member]) -> BoolArray:
-    """Whether a law of each bearing refuses loads above its map, shape (bearings,)."""
+    """True where a law of a bearing refuses loads above its map, shape (bearings,)."""
     return np.array([any(law.law.outside == "error" for law in m.element.flat_laws) for m in members], dtype=np.bool_)
 
 
@@ -342,7 +342,7 @@ def _whole(numbers: Iterable[int]) -> IntArray:
 
 
 class Place(NamedTuple):
-    """Where a roller stands, and how it moves.
+    """Place of a roller, and its motion.
 
     Attributes
     ----------
@@ -363,7 +363,7 @@ class Place(NamedTuple):
 
 
 class Contact(NamedTuple):
-    """What a contact of a roller answers: sums over its slices.
+    """Answer of a contact of a roller: sums over its slices.
 
     Attributes
     ----------
@@ -382,7 +382,7 @@ class Contact(NamedTuple):
 
 @njit(error_model="numpy")
 def place_of(rings: Rings, b: int, j: int, cage: tuple[float, float], motion: FloatArray) -> Place:
-    """Where a roller stands.
+    """Find where a roller stands.
 
     Parameters
     ----------

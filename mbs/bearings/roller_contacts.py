@@ -178,7 +178,7 @@ class ContactGroup:
         return load, stiffness * self.length, damping * self.length, times
 
     def film_response(self) -> FilmResponse | None:
-        """What the law of its slices leaves out with memory; None where nothing is known of films that oscillate."""
+        """Part that the law of its slices leaves out with memory; None where nothing is known of oscillating films."""
         loads = self.state()[0]
         return self.law.law.film_response(loads, self.law.entrainment_speed, self.law.temperature)
 
@@ -342,7 +342,7 @@ class RollerContacts:
     def relaxation(
         self, displacement: npt.ArrayLike, *, cage_angle: float, entrainment_speed: float, temperature: float
     ) -> Relaxation | None:
-        """How the films of all contacts relax, at rest; None for laws without films.
+        """Find how the films of all contacts relax, at rest; None for laws without films.
 
         Parameters
         ----------
@@ -520,7 +520,7 @@ class RollerContacts:
         return w * length, k * length, c * length, outside
 
     def _above(self, law: DryLaw, delta: FloatArray) -> bool:
-        """Whether a slice lies above the last point of a law without film; an error where the law asks for one."""
+        """Tell whether a slice lies above the last point of a law without film; an error where the law asks for one."""
         above = law.is_above(delta)
         if above and law.outside == "error":
             raise OutsideMapError(
@@ -558,7 +558,7 @@ class RollerContacts:
 
 
 def _law_problems(bearing: Bearing, side: str, law: Law) -> list[str]:
-    """Why a law is none of this contact."""
+    """List why a law is none of this contact."""
     where, geometry = f"roller contacts, law of the {side} contact", bearing.geometry
     if isinstance(law, DryLaw):
         if law.kind != "single":

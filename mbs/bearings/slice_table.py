@@ -184,7 +184,7 @@ def whole_approach(point: Point, load: float) -> float:
 
 @njit(error_model="numpy")
 def nodes_up_to(centre: float, scale: float, approach: float) -> int:
-    """How many nodes lie at or below an approach.
+    """Count the nodes that lie at or below an approach.
 
     Parameters
     ----------
@@ -203,7 +203,7 @@ def nodes_up_to(centre: float, scale: float, approach: float) -> int:
 
 @njit(error_model="numpy")
 def place_numbers(point: Point, highest: float) -> LawNumbers:
-    """Where the cells of a point with its whole film lie, and the limits of its law.
+    """Find where the cells of a point with its whole film lie, and the limits of its law.
 
     Parameters
     ----------
@@ -237,7 +237,7 @@ def place_numbers(point: Point, highest: float) -> LawNumbers:
 
 @njit(error_model="numpy")
 def is_placed(numbers: LawNumbers) -> bool:
-    """Whether the nodes of a table reach down to lift-off."""
+    """Tell whether the nodes of a table reach down to lift-off."""
     return numbers.lift_off < math.inf
 
 
@@ -316,7 +316,7 @@ def _write_cell(nodes: FloatArray, scale: float, row: int, cells: FloatArray) ->
 
 @njit(error_model="numpy")
 def all_made(rows: IntArray, marks: ByteArray) -> bool:
-    """Whether the cells of some rows are made, see `fill`."""
+    """Tell whether the cells of some rows are made, see `fill`."""
     missing = 0
     for row in rows:
         # without the compiler a sum of bytes would be a byte, 0 again after 256 of them

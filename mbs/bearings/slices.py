@@ -71,7 +71,7 @@ class Sizes(NamedTuple):
 
 
 class Shape(NamedTuple):
-    """What does not change of a bearing.
+    """Data of a bearing that do not change.
 
     Attributes
     ----------
@@ -156,7 +156,7 @@ class Work(NamedTuple):
 
 @njit(error_model="numpy", fastmath=FAST, forceinline=True)
 def roller_of(motion: RingMotion, shape: Shape, j: int) -> Roller:
-    """Where a roller stands, and how it moves.
+    """Find the place of a roller, and its motion.
 
     Parameters
     ----------
@@ -225,14 +225,14 @@ def sizes_of(numbers: FloatArray) -> Sizes:
 
 @njit(error_model="numpy")
 def ring_motion(state: FloatArray) -> RingMotion:
-    """What rollers feel of pose (6,), velocity (6,) and cage angle in a row."""
+    """Motion that rollers feel, from pose (6,), velocity (6,) and cage angle in a row."""
     c, s = math.cos(state[12]), math.sin(state[12])
     return RingMotion(state[1], state[2], state[4], state[5], state[7], state[8], state[10], state[11], c, s)
 
 
 @njit(error_model="numpy")
 def all_finite(state: FloatArray) -> bool:
-    """Whether all numbers are finite, and their sum is."""
+    """Tell whether all numbers are finite, and their sum is."""
     total = 0.0
     for value in state:
         total += abs(value)

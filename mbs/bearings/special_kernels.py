@@ -171,7 +171,7 @@ def _relieved(
 
 @njit(error_model="numpy")
 def _left(overlap: FloatArray, own: FloatArray, coupling: FloatArray, w: FloatArray, out: FloatArray) -> float:
-    """What approaches miss, overlap - own - C w, and the largest of it."""
+    """Find what approaches miss, overlap - own - C w, and the largest of it."""
     largest = 0.0
     for i in range(own.size):
         total = overlap[i] - own[i]

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 
 class Made(NamedTuple):
-    """What there is to say of a table that was made.
+    """Description of a table that was made.
 
     Attributes
     ----------
@@ -283,12 +283,12 @@ def _limits(law: ContactLaw, rate: float) -> tuple[float, float]:
 
 
 def _leading(marked: BoolArray) -> int:
-    """How many at the beginning are marked."""
+    """Count the marked ones at the beginning."""
     return marked.size if marked.all() else int(np.argmin(marked))
 
 
 def _told(sound: bool, outside: bool, numbers: FloatArray) -> Made:
-    """What there is to say of a table; only tables of the same kind that count alike are blended."""
+    """Describe a table; only tables of the same kind that count alike are blended."""
     return Made(sound, outside, 2 * int(numbers[_KIND]) + int(outside))
 
 
@@ -297,7 +297,7 @@ ArraysOfFilms = TypeVar("ArraysOfFilms", bound=Any)
 
 
 class Course(NamedTuple):
-    """Where the tables of some steps lie.
+    """Places of the tables of some steps.
 
     Attributes
     ----------
@@ -329,7 +329,7 @@ Prepared = tuple[IntArray, BoolArray, IntArray]
 
 
 class CourseOfFilms:
-    """Where the tables of the films of a run lie, step after step.
+    """Places of the tables of the films of a run, step after step.
 
     Parameters
     ----------

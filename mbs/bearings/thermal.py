@@ -65,7 +65,7 @@ EXPANSIONS = (-1e-5, 1e-4)
 def pressed_on(
     inside: Material, outside: Material, bore: float, seat: float, outer: float, interference: float
 ) -> tuple[float, float]:
-    """What the press fit of two cylinders does: growth of the outside diameter, and shrinkage of the bore [m].
+    """Effect of the press fit of two cylinders: growth of the outside diameter, and shrinkage of the bore [m].
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def pressed_on(
 
 @dataclass(frozen=True)
 class Seat:
-    """What a ring sits on: a shaft, or a housing.
+    """Seat of a ring: a shaft, or a housing.
 
     Attributes
     ----------
@@ -136,7 +136,7 @@ class Seat:
 
 @dataclass(frozen=True)
 class Mounting:
-    """How a bearing is mounted, and how its rings expand.
+    """Mounting of a bearing, and expansion of its rings.
 
     Attributes
     ----------
@@ -338,7 +338,7 @@ class GivenTemperatures:
 
 @dataclass(frozen=True)
 class HeatPaths:
-    """Where the heat of a bearing goes, and what friction it has.
+    """Paths by which the heat of a bearing leaves, and the friction that it has.
 
     Attributes
     ----------
@@ -531,7 +531,7 @@ def steady_temperatures(
 
 
 def _too_hot(name: str, slope: FloatArray, friction: float, left: float) -> AnalysisError:
-    """What is said of a bearing without a balance: whether it runs away, or heat has too narrow a way out."""
+    """Make the error for a bearing without a balance: it runs away, or heat has too narrow a way out."""
     words = "thermal run-away" if np.linalg.eigvals(slope).real.min() <= 0.0 else "too hot"
     return AnalysisError(
         f"bearing {name!r}: {words}: no heat balance below {TEMPERATURE.text(HOTTEST)}, where its friction of "
@@ -546,7 +546,7 @@ def _solved(matrices: FloatArray, right: FloatArray) -> FloatArray:
 
 
 def _slopes(heat: Callable[[FloatArray], FloatArray], temperatures: FloatArray, here: FloatArray) -> FloatArray:
-    """How the heat of each bearing follows its own temperatures, shape (bearings, 2, 2) [W/K]."""
+    """Slopes of the heat of each bearing over its own temperatures, shape (bearings, 2, 2) [W/K]."""
     columns = []
     for side in range(2):
         probe = temperatures.copy()

@@ -50,7 +50,7 @@ def analysed(
 
 
 def _only_with_auto(arguments: argparse.Namespace, own_tolerance: bool) -> list[str]:
-    """What is wrong about options that belong to `--auto`."""
+    """List problems with options that belong to `--auto`."""
     options = ("maps", "physics", "shear") if own_tolerance else ("maps", "physics", "shear", "tolerance")
     given = [option for option in options if getattr(arguments, option, None) is not None]
     return [f"--{option}: stands without --auto; allowed: with it" for option in given]

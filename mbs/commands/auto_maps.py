@@ -172,7 +172,7 @@ def _with(arguments: argparse.Namespace, subject: Subject) -> argparse.Namespace
 
 
 def _lines(found: Automatic[Any]) -> list[str]:
-    """What was made, what is on, and what is not met."""
+    """Lines on what was made, what is on, and what is not met."""
     maps = found.subject.law.maps
     read = maps is not None and any(emap.from_table for emap in maps.maps)
     lines = [*(["auto: films from the film table"] if read else []), *map(_map_line, found.made)]

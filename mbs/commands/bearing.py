@@ -72,7 +72,7 @@ _ROUGHNESSES = (FINEST, ROUGHEST)
 
 @dataclass(frozen=True, eq=False)
 class BearingRequest:
-    """What is asked.
+    """Request to be answered.
 
     Attributes
     ----------
@@ -229,14 +229,14 @@ def _all_slices(given: _Given | None, slices: str) -> int:
 
 
 def _surface(given: _Given | None, emap: EHDMap | None) -> Surface:
-    """What file or map state of the surfaces, the file first."""
+    """Surfaces that file or map state, the file first."""
     if given is not None and given.surface is not None:
         return given.surface
     return SMOOTH if emap is None else emap.surface
 
 
 def _assumed(arguments: argparse.Namespace, given: _Given, emap: EHDMap | None, surface: Surface) -> tuple[str, ...]:
-    """What was not given, in words."""
+    """Values that were not given, in words."""
     found = []
     if arguments.temperature is None and None in (arguments.inner_ring, arguments.outer_ring):
         found.append(f"temperature {TEMPERATURE.text(CELSIUS_40)}")
@@ -457,7 +457,7 @@ def _direction(given: Sequence[str] | None, problems: list[str]) -> tuple[float,
 
 
 def _is_number(text: str) -> bool:
-    """Whether a text is a bare number."""
+    """Tell whether a text is a bare number."""
     try:
         float(text)
     except ValueError:

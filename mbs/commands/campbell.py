@@ -227,7 +227,7 @@ def _overlay(entry: LawRun) -> Overlay | None:
 
 
 def _reach(entry: LawRun) -> Reach:
-    """Where the films of a law are not valid, over the speeds of the run."""
+    """Range where the films of a law are not valid, over the speeds of the run."""
     from mbs.output.campbell_plot import Reach
 
     speeds = entry.spectra[0].campbell.speeds
@@ -236,7 +236,7 @@ def _reach(entry: LawRun) -> Reach:
 
 
 def _fading(entry: LawRun) -> BoolArray:
-    """Which windows reach below the map, where the film fades to the dry contact, shape (windows,)."""
+    """True for windows that reach below the map, where the film fades to the dry contact, shape (windows,)."""
     found, record = entry.spectra[0].campbell, entry.record
     fade = fade_of(entry.case.model)
     if fade is None:
@@ -313,7 +313,7 @@ def _differences(found: Sequence[LawRun], sensors: Sequence[Sensor]) -> list[str
 
 
 def _elsewhere(entry: LawRun, place: int = 0) -> str:
-    """What is highest above the fade, where the window of the highest sum level of a sensor lies in it."""
+    """Highest level above the fade, where the window of the highest sum level of a sensor lies in it."""
     found, fading = entry.spectra[place].campbell, _fading(entry)
     at = int(np.argmax(found.sum_level))
     if not fading[at]:

@@ -52,7 +52,7 @@ _OF_A_SPEED = ("speed_channel", "tacho", "pulses", "speed_table")
 
 @dataclass(frozen=True, eq=False)
 class Look:
-    """What the command line says of what is looked at.
+    """Options of the command line for what is looked at.
 
     Attributes
     ----------
@@ -143,7 +143,7 @@ def read_source(arguments: argparse.Namespace, problems: list[str]) -> SpeedSour
 
 
 def signal_problems(arguments: argparse.Namespace, read: list[str | Path], laws: int) -> list[str]:
-    """What is wrong about all files that are written, those of --signals among them.
+    """List problems with all files that are written, those of --signals among them.
 
     Parameters
     ----------
@@ -336,11 +336,11 @@ def _orders(arguments: argparse.Namespace, problems: list[str]) -> tuple[float, 
 
 
 def _list(arguments: argparse.Namespace, name: str) -> list[str]:
-    """What was given for an option that takes one or more."""
+    """List the values given for an option that takes one or more."""
     value = getattr(arguments, name, None)
     return [] if value is None else [value] if isinstance(value, str) else list(value)
 
 
 def _is_scene(arguments: argparse.Namespace) -> bool:
-    """Whether the command is about a scene, which is simulated."""
+    """Tell whether the command is about a scene, which is simulated."""
     return not is_time_data(arguments.scene)

@@ -1,4 +1,4 @@
-"""What a command compares: contact laws and maps, clearances, load factors, in every combination.
+"""Cases that a command compares: contact laws and maps, clearances, load factors, in every combination.
 
 Each law of --law and each map of --map counts as one law; maps for different types of bearing make one law together
 (`mbs.scene.map_set`); of laws with films, each kind of --films and each oil supply
@@ -205,14 +205,14 @@ def _ready(arguments: argparse.Namespace) -> Subject | None:
 
 
 def _output_problems(arguments: argparse.Namespace, scene: Scene | None, kind: Kind) -> list[str]:
-    """What is wrong about the files that are written."""
+    """List problems with the files that are written."""
     tables = [path for law in _given(arguments, "law") if (path := table_path(law)) is not None]
     read: list[str | Path] = [*_given(arguments, "map"), *tables, *(scene.files if scene else ())]
     return scene_output_problems(arguments.scene, read, arguments.output, arguments.plot, kind)
 
 
 def scene_problems(scene: Scene, error: InputError) -> list[str]:
-    """What is wrong about a scene, under its name; problems of an option say that themselves."""
+    """List problems with a scene, under its name; problems of an option say that themselves."""
     return [problem if problem.startswith("--") else f"{scene.name}: {problem}" for problem in error.problems]
 
 
@@ -223,7 +223,7 @@ def scene_output_problems(
     plot: str | None = None,
     kind: Kind = RESULT,
 ) -> list[str]:
-    """What is wrong about -o and --plot: said before anything is computed, so that no result is lost by it.
+    """List problems with -o and --plot: said before anything is computed, so that no result is lost by it.
 
     Parameters
     ----------
@@ -240,7 +240,7 @@ def scene_output_problems(
 
 
 def _given(arguments: argparse.Namespace, name: str) -> list[str]:
-    """What was given for an option, however often."""
+    """List the values given for an option, however often."""
     value = getattr(arguments, name, None)
     return [] if value is None else [value] if isinstance(value, str) else list(value)
 
@@ -377,7 +377,7 @@ def _with_supplies(
 
 
 def _stated_label(law: LawChoice, scene: Scene) -> str:
-    """What the label of a law says of the oil supply that scene or map state."""
+    """Part of the label of a law on the oil supply that scene or map state."""
     return ContactLaws(choose_law(law.name, law.maps), scene, law.maps).supply_label
 
 

@@ -1,4 +1,4 @@
-"""What all commands share: the heading of the output, warnings, writing files."""
+"""Code that all commands share: the heading of the output, warnings, writing files."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class Done(Generic[R]):
 
 @dataclass(frozen=True, eq=False)
 class Looked:
-    """What an analysis looks at, as far as a map and its physics depend on it.
+    """Scope of an analysis, as far as a map and its physics depend on it.
 
     Attributes
     ----------

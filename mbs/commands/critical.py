@@ -74,7 +74,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
 
 
 class _Asked(NamedTuple):
-    """What is examined, and over which speeds."""
+    """Cases that are examined, and the speeds."""
 
     cases: list[Case]
     settings: SweepSettings
@@ -112,7 +112,7 @@ def _outside(found: CriticalResult) -> list[str]:
 
 
 def _curves(label: str, found: CriticalResult) -> CriticalCurves:
-    """What is drawn of a law."""
+    """Curves that are drawn of a law."""
     from mbs.output.sweep_plot import CriticalCurves
 
     return CriticalCurves(

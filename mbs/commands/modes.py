@@ -88,7 +88,7 @@ def _asked(arguments: argparse.Namespace) -> tuple[Model, float]:
 
 
 def _shape_problems(arguments: argparse.Namespace, model: Model | None) -> list[str]:
-    """What is wrong about pictures and files of shapes."""
+    """List problems with pictures and files of shapes."""
     picture, file = getattr(arguments, "shapes", None), getattr(arguments, "shapes_file", None)
     numbers = getattr(arguments, "shape_modes", None)
     problems = []
@@ -168,7 +168,7 @@ def _table(found: Modes, shown: IntArray) -> list[str]:
 
 
 def _part(value: float) -> str:
-    """What the film law leaves out, in its column; a dash where the first order says nothing."""
+    """Part that the film law leaves out, in its column; a dash where the first order says nothing."""
     return f"{value:+10.2g}" if math.isfinite(value) else f"{'-':>10s}"
 
 
@@ -185,7 +185,7 @@ def _overdamped(found: Modes, which: IntArray) -> list[str]:
 
 
 def _overdamped_count(which: IntArray) -> list[str]:
-    """How many motions creep back."""
+    """Count the motions that creep back."""
     return [f"{which.size} overdamped motions not drawn"] if which.size else []
 
 

@@ -116,7 +116,7 @@ def _plan(found: PlanResult, arguments: argparse.Namespace) -> list[_Planned]:
 
 
 def _path(output: str | None, needed: Needed, alone: bool) -> Path | None:
-    """Where the job of a geometry goes: with several, the name of its first bearing is appended."""
+    """Path to which the job of a geometry goes: with several, the name of its first bearing is appended."""
     if output is None:
         return None
     path = Path(output)
@@ -156,7 +156,7 @@ def _span(values: Sequence[float], display: Display) -> str:
 
 
 def _next_steps(written: Sequence[Path], scene: str) -> list[str]:
-    """What was written, and how the maps are made and used."""
+    """Lines on what was written, and how the maps are made and used."""
     names = " ".join(str(path) for path in written)
     if len(written) == 1:
         return [f"{names}: written; `ehdmaps generate {names}` makes the map"]

@@ -45,7 +45,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
 
 
 def _lines(reduced: ReducedBody, found: Extent, source: Path, seconds: float) -> list[str]:
-    """What was found."""
+    """Lines on what was found."""
     squares = np.diag(reduced.stiffness)
     kept = [np.sqrt(squares[k]) / (2.0 * np.pi) for k, unit in enumerate(reduced.units) if unit == "1"]
     count = reduced.size - len(kept)

@@ -274,7 +274,7 @@ def _step_check_lines(found: StepCheck | None) -> list[str]:
 
 
 def _looks_at(scene: Scene) -> Looked:
-    """What the run looks at; frequencies up to those of a Campbell diagram."""
+    """Scope of the run; frequencies up to those of a Campbell diagram."""
     return Looked(scene, scene.campbell.highest)
 
 

@@ -95,7 +95,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
 
 
 class _Asked(NamedTuple):
-    """What is swept, and over which speeds."""
+    """Cases that are swept, and the speeds."""
 
     settings: SweepSettings
     cases: list[Case]
@@ -408,7 +408,7 @@ def _lost(result: Sweep) -> list[str]:
 
 
 def _over_pitch(result: Sweep, spread: FloatArray, values: FloatArray, words: str) -> str:
-    """How much a value varies over the angles of the cage; nothing for one angle."""
+    """Variation of a value over the angles of the cage; nothing for one angle."""
     return _band(f"; over the pitch {words}", spread, values) if result.bearings.angles > 1 else ""
 
 

@@ -31,7 +31,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
 
 
 def _asked(arguments: argparse.Namespace) -> tuple[Scene, list[LawChoice], float | None, TradeoffSettings]:
-    """What is measured; all problems at once."""
+    """Read what is measured; all problems at once."""
     problems: list[str] = []
     highest = read_option("--highest", arguments.highest, "Hz", (LOWEST_HIGHEST, HIGHEST_HIGHEST), HERTZ, problems)
     window = read_option("--window", arguments.window, "s", (SHORTEST, LONGEST), MILLISECOND, problems)

@@ -45,7 +45,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
 def _asked(
     arguments: argparse.Namespace,
 ) -> tuple[Scene, tuple[LawChoice, LawChoice], float | None, CampbellSettings, list[Variation]]:
-    """What is compared, and what is varied; all problems at once."""
+    """Read what is compared, and what is varied; all problems at once."""
     problems: list[str] = []
     highest = read_option("--highest", arguments.highest, "Hz", (LOWEST_HIGHEST, HIGHEST_HIGHEST), HERTZ, problems)
     window = read_option("--window", arguments.window, "s", (SHORTEST, LONGEST), MILLISECOND, problems)
@@ -86,7 +86,7 @@ def _variations(given: Sequence[Sequence[str]], problems: list[str]) -> list[Var
 
 
 def _base(found: VariantsResult) -> str:
-    """What the base is, in words."""
+    """Description of the base, in words."""
     course, supply = found.course, common_supply(found.models)
     return (
         f"run-up from {RPM.text(course.speed.at(0.0)[0])} to {RPM.text(course.speed.at(course.duration)[0])} in "
@@ -96,7 +96,7 @@ def _base(found: VariantsResult) -> str:
 
 
 def _heading(found: VariantsResult) -> list[str]:
-    """What is compared."""
+    """Lines on what is compared."""
     scene = found.models[0].scene
     return [
         f"{scene.title}: {_base(found)}, {weight_text(found.models[1])}",

@@ -97,7 +97,7 @@ class LinearTable:
 
     @property
     def _motion(self) -> str:
-        """What K and C are at the frequencies, in words."""
+        """Motion for which K and C hold at the frequencies, in words."""
         relax = "films with memory" if self.films == "memory" else "slow films at any frequency"
         if self.frequencies.all():
             return relax

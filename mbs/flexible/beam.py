@@ -32,7 +32,7 @@ _SIGN = np.array([1.0, -1.0, 1.0, -1.0])
 
 @dataclass(frozen=True)
 class CrossSection:
-    """What a beam has per length; sections that are pressed together add up.
+    """Properties of a beam per length; sections that are pressed together add up.
 
     Attributes
     ----------

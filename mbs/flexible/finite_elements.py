@@ -103,11 +103,11 @@ class FiniteElementModel:
         return int(self.nodes.size)
 
     def position(self, node: int) -> FloatArray:
-        """Where a node is, shape (3,) [m]; KeyError if that is not known."""
+        """Position of a node, shape (3,) [m]; KeyError if that is not known."""
         return np.asarray(self.positions[self._place[node]])
 
     def has_position(self, node: int) -> bool:
-        """Whether it is known where a node is."""
+        """Tell whether it is known where a node is."""
         return node in self._place
 
     def row(self, node: int, direction: int) -> int | None:
@@ -115,7 +115,7 @@ class FiniteElementModel:
         return self._row.get((node, direction))
 
     def _shape_problems(self) -> list[str]:
-        """What is wrong with the shapes."""
+        """List problems with the shapes."""
         size = self.nodes.size
         problems = []
         if not 1 <= size <= MOST_FREEDOMS or self.nodes.ndim != 1:
@@ -143,7 +143,7 @@ class FiniteElementModel:
         return problems
 
     def _label_problems(self) -> list[str]:
-        """What is wrong with nodes, directions and positions."""
+        """List problems with nodes, directions and positions."""
         problems = self._list(
             "directions",
             np.flatnonzero((self.directions < 0) | (self.directions > 5)),
@@ -178,7 +178,7 @@ def named(nodes: IntArray) -> str:
 
 
 def _matrix_problems(name: str, matrix: sparse.csc_array) -> list[str]:
-    """What is wrong with the entries of a matrix."""
+    """List problems with the entries of a matrix."""
     if not np.all(np.isfinite(matrix.data)):
         return [f"finite-element body, {name}: got entries that are no finite numbers; allowed: finite ones"]
     if np.any(np.abs(matrix.data) > _LARGEST_ENTRY):

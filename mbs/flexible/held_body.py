@@ -166,7 +166,7 @@ class HeldBody:
         return pivots if np.array_equal(factor.perm_r, factor.perm_c) else None
 
     def _count_below(self, square: float) -> int | None:
-        """How many modes have an omega^2 below `square`, by the signs of pivots (Sylvester); None if not known."""
+        """Count modes with an omega^2 below `square`, by the signs of pivots (Sylvester); None if not known."""
         factor = self._factorised(square)
         pivots = self._pivots(factor)
         if pivots is None:
@@ -276,7 +276,7 @@ class HeldBody:
 
 
 def _widest_gap(squares: FloatArray, kept: int) -> tuple[int, float]:
-    """Where modes are farthest apart, at the last kept one or above: how many are below, and omega^2 in between."""
+    """Widest gap between modes, at the last kept one or above: how many are below, and omega^2 in between."""
     padded = np.concatenate([[0.0], np.maximum(squares, 0.0)])
     gaps = (padded[1:] - padded[:-1]) / padded[-1]
     below = kept + int(np.argmax(gaps[kept:]))

@@ -304,7 +304,7 @@ def _symmetric(table: NumberTable, rows: IntArray, columns: IntArray, size: int)
 
 
 def _first_line(error: BaseException) -> str:
-    """What an error says, in one line."""
+    """Message of an error, in one line."""
     return (str(error).splitlines() or [type(error).__name__])[0][:200]
 
 
@@ -426,7 +426,7 @@ def _meshio_nodes(path: Path) -> NodePositions:
 
 
 def _meshio_points(path: Path) -> FloatArray:
-    """What meshio finds, in a process of its own: some of its readers never end where a file was cut off."""
+    """Points that meshio finds, in a process of its own: some of its readers never end where a file was cut off."""
     seconds = SHORTEST_READ + path.stat().st_size / BYTES_PER_SECOND
     with tempfile.TemporaryFile() as found:
         try:

@@ -240,7 +240,7 @@ PlannedPoint = PlannedInterface | Triple | int
 
 @dataclass(frozen=True)
 class ReductionPlan:
-    """Which matrices are reduced, and how.
+    """Choice of the matrices that are reduced, and how.
 
     Attributes
     ----------

@@ -151,7 +151,7 @@ class ReducedBody:
         return len(self.coordinates)
 
     def _matrix_problems(self) -> list[str]:
-        """What is wrong with matrices of the right shape."""
+        """List problems with matrices of the right shape."""
         diagonal = np.diag(self.mass)
         if np.any(diagonal <= _LIGHTEST):
             name = self.coordinates[int(np.argmin(diagonal))]

@@ -377,7 +377,7 @@ def reduce(
 
 @dataclass(frozen=True, eq=False)
 class _Partition:
-    """What is prescribed and what moves.
+    """Parts that are prescribed, and parts that move.
 
     transform (N, n): degrees of freedom by the rest and the places of rigid interfaces; held, inner: columns that are
     prescribed, and the others; averages (m, inner): mean displacements that are prescribed; groups (n,): which columns
@@ -497,7 +497,7 @@ class _Observer:
 def _frames(
     interfaces: Mapping[str, Interface], observers: Mapping[str, _Observer], motion: FloatArray, names: list[str]
 ) -> dict[str, Frame]:
-    """How interfaces and points move, from the motion of all degrees of freedom by the coordinates."""
+    """Motion of interfaces and points, from the motion of all degrees of freedom by the coordinates."""
     frames = {}
     for name, observer in observers.items():
         transform = observer.mean @ motion[observer.rows]

@@ -1,4 +1,4 @@
-"""What a shaft is made of: cylinders that bend, rigid discs, how they fit together, and where its nodes are."""
+"""Parts of a shaft: cylinders that bend, rigid discs, how they fit together, and where its nodes are."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ class Section:
 
     @property
     def cross_section(self) -> CrossSection:
-        """What it has per length."""
+        """Properties that it has per length."""
         return CrossSection.annulus(self.diameter, self.bore, self.youngs_modulus, self.poisson_ratio, self.density)
 
 

@@ -114,7 +114,7 @@ class GearMesh(ElementDefaults):
     def powers(
         self, states: Any, force: FloatArray, displacement: FloatArray, velocity: FloatArray, operation: Operation
     ) -> Powers:
-        """What its flanks dissipate, and what stiffness and error bring in, see `Element.powers`."""
+        """Power that its flanks dissipate, and power that stiffness and error bring in, see `Element.powers`."""
         motion, rate = self.rows @ displacement, self.rows @ velocity
         return Powers(*mesh_powers(*self.arrays, operation.angle, operation.speed, motion, rate))
 

@@ -64,7 +64,7 @@ def meshes_answer(meshes: Meshes, moment: Moment, motion: FloatArray, answers: A
 
 @njit(error_model="numpy")
 def meshes_powers(meshes: Meshes, moment: Moment, motion: FloatArray, answers: Answers, out: FloatArray) -> None:
-    """What flanks dissipate, and what stiffness and error bring in; see `mbs.model.blocks.Kind`.
+    """Write what flanks dissipate, and what stiffness and error bring in; see `mbs.model.blocks.Kind`.
 
     Parameters
     ----------

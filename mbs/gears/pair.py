@@ -130,7 +130,7 @@ def pair_harmonics(ratio: float, count: int, overlap: float = 0.0) -> tuple[floa
 
 @dataclass(frozen=True)
 class GearPair:
-    """What is known of a pair of spur or helical gears before it is put into a system.
+    """Data known of a pair of spur or helical gears before it is put into a system.
 
     Attributes
     ----------
@@ -290,7 +290,7 @@ class GearPair:
         return rows
 
     def _number_problems(self) -> list[str]:
-        """What is wrong about single numbers."""
+        """List problems with single numbers."""
         problems = [
             f"gear pair, teeth: got {z!r}; allowed: whole numbers, {FEWEST_TEETH} to {MOST_TEETH}"
             for z in self.teeth
@@ -322,7 +322,7 @@ class GearPair:
         return problems
 
     def _stiffness_problems(self) -> list[str]:
-        """What is wrong about the course of the stiffness: it must stay positive."""
+        """List problems with the course of the stiffness: it must stay positive."""
         try:
             amplitudes, phases = self.series[:2]
         except InputError as error:

@@ -150,7 +150,7 @@ _DERIVATIVES = (
 
 
 def _derivatives(case: Case, random: np.random.Generator) -> tuple[float, str]:
-    """Whether K and C are those of the force, which is continuous."""
+    """Check whether K and C are those of the force, which is continuous."""
     found = case.element.evaluate(case.pose, case.velocity, case.operation)
     for matrix in (found.stiffness, found.damping):
         if not (np.all(np.isfinite(found.force)) and np.all(np.isfinite(matrix))):
@@ -188,7 +188,7 @@ _REFLECTIONS = (
 
 
 def _reflections(case: Case, random: np.random.Generator) -> tuple[float, str]:
-    """Whether mirrored motion has mirrored force."""
+    """Check whether mirrored motion has mirrored force."""
     element, op = case.element, case.operation
     there = case.force(case.pose, case.velocity)
     pitch = 2.0 * math.pi / (element.bearing.geometry.rollers * abs(element.rates[0]))
@@ -213,7 +213,7 @@ _DAMPERS = "(f(v) - f(0)) . v <= 0: what the rate adds to the force never gives 
 
 
 def _dampers(case: Case, random: np.random.Generator) -> tuple[float, str]:
-    """Whether dampers take up power."""
+    """Check whether dampers take up power."""
     more = case.force(case.pose, case.velocity) - case.force(case.pose, np.zeros(6))
     power = float(more @ case.velocity)
     size = float(np.abs(case.force(case.pose, case.velocity)) @ np.abs(case.velocity))
@@ -241,7 +241,7 @@ def _path(case: Case, random: np.random.Generator) -> Callable[[float], FloatArr
 
 
 def _cycle_at_rest(case: Case, random: np.random.Generator) -> tuple[float, str]:
-    """Whether the force at rest has a potential, which is the stored energy."""
+    """Check that the force at rest has a potential, which is the stored energy."""
     path, still, element = _path(case, random), np.zeros(6), case.element
     works, largest = [], 0.0
     for steps in (256, 512):
@@ -271,7 +271,7 @@ _MEMORY = (
 
 
 def _cycle_with_memory(case: Case, random: np.random.Generator) -> tuple[float, str]:
-    """Whether films with memory never give energy."""
+    """Check that films with memory never give energy."""
     path, frequency = _path(case, random), 10.0 ** random.uniform(1.0, 3.7)
     share, words = _energy_of_films(case, path, frequency, 256)
     # What films gave would stay with finer steps, what the trapezoidal rule gave goes.

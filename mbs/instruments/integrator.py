@@ -161,7 +161,7 @@ def _limits(name: str, step: Stepping, limit: float, runs: int, random: np.rando
 
 @dataclasses.dataclass(frozen=True)
 class Scenario:
-    """What a scene is put through.
+    """Conditions that a scene is put through.
 
     Attributes
     ----------

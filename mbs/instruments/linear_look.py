@@ -1,4 +1,4 @@
-"""What a user looks at in a linear system: frequencies, damping ratios, heights of responses, loads of rollers.
+"""Results that a user looks at in a linear system: frequencies, damping ratios, heights of responses, roller loads.
 
 Two systems are compared mode by mode. Modes belong together by their shapes in the coordinates that both systems have,
 weighted with the mass (modal assurance); a mode without a partner is said to be lost, and is in no error.
@@ -123,7 +123,7 @@ class LinearReference:
         return cls(look, np.asarray(np.flatnonzero(seen), dtype=np.int64), tuple(peaks))
 
     def beside(self, other: LinearLook) -> LinearDifferences:
-        """How another system differs.
+        """Compare another system with this one.
 
         Parameters
         ----------

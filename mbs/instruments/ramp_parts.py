@@ -58,7 +58,7 @@ class RampPart:
 
 @dataclass(frozen=True, eq=False)
 class Ramp:
-    """How the ramp of a scene is looked at in parts.
+    """Settings with which the ramp of a scene is examined in parts.
 
     Attributes
     ----------
@@ -83,7 +83,7 @@ class Ramp:
 
 @dataclass(frozen=True, eq=False)
 class PartRun:
-    """What a run of a part led to.
+    """Result of a run of a part.
 
     Attributes
     ----------

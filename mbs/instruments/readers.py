@@ -217,14 +217,14 @@ def _reduced(folder: Path) -> str:
 
 
 def _body_problem(body: ReducedBody) -> str:
-    """What is wrong about a reduced body, beyond what it looks for itself."""
+    """Problem with a reduced body, beyond what it looks for itself."""
     scale = 1.0 / np.sqrt(np.diag(body.mass))
     squares = np.linalg.eigvalsh(scale[:, None] * body.stiffness * scale)
     return "" if np.all(np.isfinite(squares)) else "own frequencies that are not finite"
 
 
 def _records_problem(folder: Path) -> str:
-    """What is wrong about measured records."""
+    """Problem with measured records."""
     measured = read_uff(folder / "records.uff")
     arrays = [array for hits in measured.hits for array in (hits.force, hits.response, np.array([hits.step]))]
     if measured.responses is not None:
@@ -233,7 +233,7 @@ def _records_problem(folder: Path) -> str:
 
 
 def _with_files(files: Mapping[str, bytes], use: Callable[[Path], Any]) -> Any:
-    """What is made of files in a folder."""
+    """Return what is made of files in a folder."""
     with tempfile.TemporaryDirectory() as folder:
         for name, content in files.items():
             (Path(folder) / name).write_bytes(content)
@@ -241,7 +241,7 @@ def _with_files(files: Mapping[str, bytes], use: Callable[[Path], Any]) -> Any:
 
 
 def _as_written(name: str, write: Callable[[Path], None]) -> bytes:
-    """What stands in a file that is written."""
+    """Content of a file that is written."""
 
     def use(folder: Path) -> bytes:
         write(folder / name)

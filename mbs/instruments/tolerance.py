@@ -198,7 +198,7 @@ def within(
 
 
 class _CouldNotError(Exception):
-    """Why a tolerance is not met, with the settings that are best nevertheless."""
+    """Reason why a tolerance is not met, with the settings that are best nevertheless."""
 
     def __init__(self, reason: str, numerics: Numerics | None = None, difference: float = math.nan) -> None:
         super().__init__(reason)
@@ -388,7 +388,7 @@ def _by_level(ramp: Ramp, signal: RunSignal | None) -> list[RampPart]:
 
 
 def _near(part: RampPart, other: RampPart) -> bool:
-    """Whether two parts are one, or neighbours, whose windows are about the same resonances."""
+    """Tell whether two parts are one, or neighbours, whose windows are about the same resonances."""
     return abs(part.begin - other.begin) < 1.5 * (part.end - part.begin)
 
 
@@ -427,7 +427,7 @@ def _searched(
 
 
 def _ladders(ramp: Ramp, given: Numerics) -> dict[str, list[tuple[float | int, float | int]]]:
-    """What is tried of each setting, from coarse to fine, each with what it is compared with."""
+    """Values tried for each setting, from coarse to fine, each with the one that it is compared with."""
     steps = [ramp.coarsest]
     while steps[-1] > given.step * 0.5**HALVINGS * 1.5:
         steps.append(0.5 * steps[-1])

@@ -83,7 +83,7 @@ FINEST = {
 
 @dataclass(frozen=True)
 class TradeoffSettings:
-    """What is measured of a scene.
+    """Choice of what is measured of a scene.
 
     Attributes
     ----------
@@ -282,7 +282,7 @@ def _together(base: Subject, numerics: Numerics) -> _Tried:
 
 
 class _Measured:
-    """What was measured, none of it twice."""
+    """Measured results, none measured twice."""
 
     def __init__(self, ramp: Ramp | None, parts: tuple[RampPart, ...], tell: Progress, most: int) -> None:
         self.ramp, self.parts = ramp, parts
@@ -327,7 +327,7 @@ class _Measured:
         self._tell(self._most, self._most)
 
     def _is_new(self, kind: str) -> bool:
-        """Whether its code has not been compiled in this process."""
+        """Tell whether its code has not been compiled in this process."""
         new = kind not in self._warm
         self._warm.add(kind)
         return new
@@ -441,14 +441,14 @@ def _run_choice(one: _Tried, measure: _Measured) -> Choice:
 
 
 def _whole(subject: Subject, runs: Sequence[PartRun], measure: _Measured) -> float:
-    """What the whole run-up would take, by what its parts took [s]."""
+    """Time that the whole run-up would take, by what its parts took [s]."""
     assert subject.scene.run_up is not None
     part = sum(one.end - one.start for one in measure.parts)
     return sum(run.seconds for run in runs) * subject.scene.run_up.duration / part
 
 
 def _run_frame(base: Subject, ramp: Ramp, parts: Sequence[RampPart]) -> list[str]:
-    """What a reader must know of the run-ups."""
+    """Facts that a reader must know of the run-ups."""
     sensor = ramp.sensors[0]
     spans = " and ".join(f"{RPM.value(part.speeds[0]):.4g} to {RPM.text(part.speeds[1])}" for part in parts)
     top = changes.cutoff_of(base.scene)

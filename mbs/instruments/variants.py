@@ -1,4 +1,4 @@
-"""How far a difference between two contact laws in a run-up depends on what was assumed: one thing changed at a time.
+"""Dependence of a difference between two contact laws in a run-up on what was assumed, changed one at a time.
 
 The run-up of a scene is made with two laws, as `mbs.analyses.campbell` makes it; then again with each change of
 clearance, temperature, damping, ramp and so on. All sensors of an acceleration are taken from one run. Runs that a
@@ -61,7 +61,7 @@ class Variation:
 
 @dataclass(frozen=True)
 class Variant:
-    """What a change led to.
+    """Result of a change.
 
     Attributes
     ----------
@@ -142,7 +142,7 @@ class _Run:
 
 @dataclass(frozen=True, eq=False)
 class _Outcome:
-    """What a run led to: sum level of each sensor with the speeds of its windows, or why there is none."""
+    """Outcome of a run: sum level of each sensor with the speeds of its windows, or why there is none."""
 
     levels: tuple[tuple[FloatArray, FloatArray], ...]
     outside: dict[str, int]
@@ -262,7 +262,7 @@ def _planned(
 
 
 def _place(subject: Subject, settings: CampbellSettings, runs: list[_Run], places: dict[str, int]) -> int:
-    """Where the run of a subject stands among all runs; it is appended where it is a new one."""
+    """Index of the run of a subject among all runs; the run is appended where it is a new one."""
     asked = (
         f"{_law_content(subject)} {subject.law.films} {subject.law.supply!r} {subject.clearance!r} {subject.scene!r}"
     )

@@ -1,4 +1,4 @@
-"""What comparisons vary, one row a key: how its values are read and told, and what each changes; numerical settings.
+"""Table of what comparisons vary, one row a key: how values are read and told, what each changes; numerical settings.
 
 A key more is a row more of `VARIED`.
 """
@@ -245,7 +245,7 @@ KEYS = ("step", "slices", "cutoff")
 
 @dataclass(frozen=True)
 class Numerics:
-    """What a user chooses about accuracy of a run-up.
+    """Choices of a user about accuracy of a run-up.
 
     Attributes
     ----------

@@ -146,7 +146,7 @@ def pitch_spread(
     right: ComplexArray,
     left: ComplexArray,
 ) -> PitchSpread:
-    """How far modes move while the rollers pass; 0 at one angle.
+    """Find how far modes move while the rollers pass; 0 at one angle.
 
     d(omega^2) = phi' dK phi of undamped modes, d lambda = -y' dZ(lambda) x of complex ones, with dK and dZ of each
     angle from the mean.

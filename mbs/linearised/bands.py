@@ -1,4 +1,4 @@
-"""How much the errors that a map states move what a linear analysis finds: first derivatives, and sums of their sizes.
+"""Effect of the errors that a map states on what a linear analysis finds: first derivatives, and sums of their sizes.
 
 A contact law is the approach, the stiffness and the damping at each load. Each may be wrong by its bound
 (`ehdmaps.maps.law_errors`), at all loads of a bearing with the same sign, which makes three changes a bearing:
@@ -70,7 +70,7 @@ class ModeBands(NamedTuple):
 
 
 class SliceChange(NamedTuple):
-    """What a change does to the slices of a group, shape (r,) each.
+    """Effect of a change on the slices of a group, shape (r,) each.
 
     Attributes
     ----------
@@ -99,7 +99,7 @@ class _Slices:
 
 @dataclass(frozen=True, eq=False)
 class LawBands:
-    """What the errors of the laws of a system may change at an equilibrium.
+    """Changes that the errors of the laws of a system may make at an equilibrium.
 
     Attributes
     ----------
@@ -170,7 +170,7 @@ class LawBands:
 
     @cached_property
     def _active(self) -> dict[int, IntArray]:
-        """Which ports of each element its slices feel at all."""
+        """Ports of each element that its slices feel at all."""
         found: dict[int, IntArray] = {}
         for one in self._groups:
             felt = np.flatnonzero(np.any(one.port_rows != 0.0, axis=0))
@@ -179,7 +179,7 @@ class LawBands:
 
     @property
     def ports(self) -> FloatArray:
-        """How the ports that slices feel follow the coordinates, shape (ports, n)."""
+        """Matrix from the coordinates to the ports that slices feel, shape (ports, n)."""
         elements = self._balance.system.elements
         return np.concatenate([elements[index].transform[active] for index, active in self._active.items()])
 
@@ -257,7 +257,7 @@ class LawBands:
 
 
 def law_bands(balance: Equilibrium) -> LawBands | None:
-    """What the errors of the laws of a system may change; None where a bearing states no errors, or none has films.
+    """Find what errors of the laws of a system may change; None where a bearing states no errors, or none has films.
 
     Parameters
     ----------
@@ -326,7 +326,7 @@ def _thicker(
     slopes: Sequence[_State],
     thicker: dict[int, FloatArray],
 ) -> tuple[SliceChange, ...]:
-    """What thicker films [m] of some groups change: the equilibrium gives way, and all loads change with it."""
+    """Changes made by thicker films [m] of some groups: the equilibrium gives way, and all loads change with it."""
     force = np.zeros(balance.system.size)
     for g, films in thicker.items():
         force -= slices[g].rows.T @ (states[g][1] * films)
@@ -361,7 +361,7 @@ def _places(frequencies: FloatArray) -> FloatArray:
 
 
 def _moved(stiffness: FloatArray, force: FloatArray) -> FloatArray:
-    """How far rollers that are bodies follow a change of force on the ports, both rings held, shape (m,)."""
+    """Displacements of rollers that are bodies under a change of force on the ports, both rings held, shape (m,)."""
     found = np.zeros_like(force)
     if stiffness.shape[0] > 6:
         own = stiffness[12:, 12:]

@@ -243,7 +243,7 @@ def _refined(
 
 
 def _whirl(point: Point, which: int) -> float:
-    """How round the places of turning bodies go in a complex mode, and whether with their spin."""
+    """Roundness of the orbits of places of turning bodies in a complex mode, and whether with their spin."""
     system = point.balance.system
     shape = point.states.right[: system.size, point.kept[which]]
     area = size = along = 0.0

@@ -247,7 +247,7 @@ _STEPS = 20
 
 
 class Reason(enum.Enum):
-    """Why a mode is lost."""
+    """Reason why a mode is lost."""
 
     NOT_CONVERGED = "Newton's method does not converge"
     ELSEWHERE = "Newton's method leads to another mode"
@@ -377,7 +377,7 @@ FIRST_ORDER = 0.3
 
 
 class FilmLawPart(NamedTuple):
-    """What the film law is estimated to be wrong by, true less found, shape (modes,) each.
+    """Estimated error of the film law, true less found, shape (modes,) each.
 
     Attributes
     ----------
@@ -394,7 +394,7 @@ class FilmLawPart(NamedTuple):
 def film_law_part(
     balance: Equilibrium, eigenvalues: ComplexArray, right: ComplexArray, left: ComplexArray
 ) -> FilmLawPart | None:
-    """What films with memory leave out of modes.
+    """Part that films with memory leave out of modes.
 
     Parameters
     ----------

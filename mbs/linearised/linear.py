@@ -76,7 +76,7 @@ def with_peaks(frequencies: FloatArray, eigenvalues: ComplexArray) -> FloatArray
 
 
 def peak_places(size: FloatArray) -> IntArray:
-    """Where a response has its peaks: places that stand out of both valleys beside them, rising.
+    """Places of the peaks of a response, in rising order: they stand out of both valleys beside them.
 
     Between the frequencies of an axis a lightly damped peak is any height: take one `with_peaks`.
 
@@ -100,7 +100,7 @@ def sensor_unit(sensor: Sensor) -> str:
 
 
 def response_display(sensor: Sensor, entry: Input) -> Display:
-    """How people are shown the response of a sensor to an input, such as um/N."""
+    """Display in which people see the response of a sensor to an input, such as um/N."""
     shown = MOTIONS[sensor_unit(sensor)]
     per = response_unit(sensor, entry).removeprefix(sensor_unit(sensor))
     return Display(shown.unit + per, shown.factor)
@@ -287,7 +287,7 @@ def seen_of_loads(
     frequencies: FloatArray,
     ports: FloatArray,
 ) -> ComplexArray:
-    """What each sensor sees of a load of 1 N or 1 N m on each of some ports, shape (frequencies, sensors, ports).
+    """Response of each sensor to a load of 1 N or 1 N m on each of some ports, shape (frequencies, sensors, ports).
 
     Parameters
     ----------
@@ -347,7 +347,7 @@ def _checked(
     sensors: Sequence[Sensor],
     frequencies: FloatArray,
 ) -> tuple[ComplexArray, float]:
-    """What `checked_response` returns, or numpy's error for a singular system."""
+    """Compute what `checked_response` returns, or raise numpy's error for a singular system."""
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         found = modal_response(balance, states, inputs, sensors, frequencies)
     checked = np.unique(np.linspace(0, frequencies.size - 1, _CHECKED + 2).astype(np.int64))

@@ -81,7 +81,7 @@ class Modes:
 
     @property
     def free(self) -> BoolArray:
-        """Which are free motions, as of unloaded rollers, whose eigenvalues are round-off, shape (modes,)."""
+        """True for free motions, as of unloaded rollers, whose eigenvalues are round-off, shape (modes,)."""
         return free_motions(self.frequency, self.shares.sum(axis=0) > 0.0)
 
     @property
@@ -144,7 +144,7 @@ class StateModes:
 
     @property
     def among_films(self) -> BoolArray:
-        """Which do not oscillate and are at least as quick as the slowest film relaxes, shape (N,)."""
+        """True for modes that do not oscillate and are at least as quick as the slowest film relaxes, shape (N,)."""
         if self.films is None or not self.films.size:
             return np.zeros(self.eigenvalues.shape, dtype=np.bool_)
         still = np.abs(self.eigenvalues.imag) <= _REAL * np.abs(self.eigenvalues)
@@ -172,7 +172,7 @@ class StateModes:
 
 
 def free_motions(frequency: FloatArray, strained: BoolArray | bool = True) -> BoolArray:
-    """Which motions nothing holds: their frequency is 0 but for round-off, of any sign of their damping.
+    """Find the motions that nothing holds: their frequency is 0 but for round-off, of any sign of their damping.
 
     Parameters
     ----------

@@ -130,7 +130,7 @@ def skeleton(system: System) -> Skeleton:
 
 
 def _turned(frame: Frame, across: FloatArray) -> FloatArray:
-    """How a place beside a frame moves by its rotations, shape (3, n)."""
+    """Displacement of a place beside a frame by its rotations, shape (3, n)."""
     x, y, z = across
     return np.array([[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]]) @ frame.transform[3:]
 

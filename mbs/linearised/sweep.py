@@ -104,7 +104,7 @@ class Along:
 
     @property
     def sure(self) -> bool:
-        """Whether every mode is surely followed."""
+        """True where every mode is surely followed."""
         return min(float(step.assurance.min(initial=1.0)) for step in (self.undamped, self.damped)) >= SURE
 
 
@@ -182,7 +182,7 @@ def bridge(first: Point, last: Point, at: Callable[[float, FloatArray | None], P
 
 
 def bearing_parts(balance: Equilibrium) -> IntArray:
-    """Which of the parts of the stiffness are bearings, shape (bearings,)."""
+    """Indices of the parts of the stiffness that are bearings, shape (bearings,)."""
     bearings = {balance.system.elements[index].element.name for index in balance.system.select(RingElement)}
     return np.array([index for index, name in enumerate(balance.parts) if name in bearings], dtype=np.int64)
 
@@ -326,7 +326,7 @@ def sweep(
 
 @dataclass(frozen=True, eq=False)
 class _Recorded:
-    """What is kept of a speed; the vectors of its modes are not."""
+    """Values kept of a speed, without the vectors of its modes."""
 
     displacement: FloatArray
     forces: tuple[FloatArray, ...]

@@ -1,4 +1,4 @@
-"""What a sweep over speed finds, in arrays over speed and mode, and modes that come close and exchange their shapes.
+"""Results of a sweep over speed, in arrays over speed and mode, and modes that come close and exchange their shapes.
 
 Two undamped modes of one system come close and turn away from each other, with a gap g as wide as they are coupled
 (veering); each then has the shape of the other. With damping the eigenvalues of the pair are those of
@@ -271,7 +271,7 @@ def _candidates(found: UndampedSweep) -> list[tuple[int, int]]:
 
 
 def _same_cycle(found: UndampedSweep, first: int, second: int) -> bool:
-    """Whether the shape of one mode goes over to the other one, perhaps by way of more."""
+    """Tell whether the shape of one mode goes over to the other one, perhaps by way of more."""
     at = int(found.resembles[first])
     while at not in (first, second):
         at = int(found.resembles[at])
@@ -289,7 +289,7 @@ def _gap(found: UndampedSweep, first: int, second: int) -> float:
 
 
 def _cross(found: UndampedSweep, first: int, second: int) -> bool:
-    """Whether the decay rates of two modes, beside the place where they are closest, differ by more than the gap."""
+    """Tell whether the decay rates of two modes, beside where they are closest, differ by more than the gap."""
     near = _nearest(found, first, second)
     widths = found.damping_ratio * found.frequency
     apart = np.abs(widths[:, first] - widths[:, second])
@@ -321,7 +321,7 @@ def _swapped(found: UndampedSweep, first: int, second: int) -> UndampedSweep:
 
 
 def _is_other(found: UndampedSweep, mode: int, near: int) -> bool:
-    """Whether the shapes are exchanged already at a speed, by where the strain energy is there and beside it."""
+    """Tell whether the shapes are exchanged already at a speed, by where the strain energy is there and beside it."""
     last = found.frequency.shape[0] - 1
     before, after = (found.shares[:, index, mode] for index in (max(near - _BESIDE, 0), min(near + _BESIDE, last)))
     here = found.shares[:, near, mode]

@@ -44,7 +44,7 @@ class ModeSet:
 
 @dataclass(frozen=True, eq=False)
 class Match:
-    """Which modes of a set continue those of another.
+    """Modes of a set that continue those of another.
 
     Attributes
     ----------
@@ -62,7 +62,7 @@ class Match:
 
 
 def assurance(before: ModeSet, after: ModeSet) -> FloatArray:
-    """How much each mode of a set is one of another set, shape (modes before, modes after), from 0 to 1.
+    """Modal assurance of each mode of a set with each of another, shape (modes before, modes after), from 0 to 1.
 
     Modes of equal eigenvalue have no shapes of their own, as every mixture of them is a mode too: such a group is
     compared as a whole.
@@ -131,7 +131,7 @@ def tracks(size: int, matches: Sequence[Match]) -> IntArray:
 
 
 def numbers(order: IntArray, plain: IntArray, kinship: Sequence[FloatArray]) -> IntArray:
-    """Which undamped mode each complex one is nearest to where it begins, each at most once at a time.
+    """Undamped mode that each complex one is nearest to where it begins, each at most once at a time.
 
     Parameters
     ----------
@@ -159,7 +159,7 @@ def numbers(order: IntArray, plain: IntArray, kinship: Sequence[FloatArray]) -> 
 
 
 def _groups(values: ComplexArray) -> FloatArray:
-    """Which eigenvalues are equal, 1 or 0, shape (modes, modes)."""
+    """Marks of equal eigenvalues, 1 or 0, shape (modes, modes)."""
     size = np.abs(values)
     close = SAME * np.maximum(size, 0.1 * size.max(initial=0.0))
     near = np.abs(values[:, None] - values[None, :]) <= np.minimum(close[:, None], close[None, :])

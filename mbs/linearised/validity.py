@@ -1,4 +1,4 @@
-"""Where a linear analysis is not valid: contacts that lift off, and the estimated error of the films that it has."""
+"""Limits of validity of a linear analysis: contacts that lift off, and the estimated error of the films that it has."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class LoadedContacts(NamedTuple):
     response: FilmResponse
 
     def left_out(self, s: ComplexArray) -> tuple[ComplexArray, FloatArray]:
-        """What their films with memory leave out at frequencies s (k,) [1/s], and how wrong that may be [N/m]; (k,)."""
+        """Part that films with memory leave out at frequencies s (k,) [1/s], and its possible error [N/m]; (k,)."""
         place = np.multiply.outer(s, self.times)
         own = self.stiffness + self.springs * place / (1.0 + place)
         return np.sum(own * self.response.correction(s), axis=1), np.sum(np.abs(own) * self.response.doubt(s), axis=1)
@@ -67,7 +67,7 @@ class LoadedContacts(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class FilmError:
-    """How far the films that an analysis has may be from true ones: along the load of a bearing, over frequency.
+    """Possible error of the films that an analysis has against true ones: along the load of a bearing, over frequency.
 
     The error is |dZ/Z| of the dynamic stiffness Z. With a map that holds the response of its films, Z is that of films
     with memory and what each of their slices leaves out, see `ehdmaps.maps.film_response`; how wrong that may be as it
@@ -164,7 +164,7 @@ class DynamicLoad:
 
     @property
     def exceeds(self) -> bool:
-        """Whether contacts would lift off, so that a linear analysis is not valid."""
+        """True where contacts would lift off, so that a linear analysis is not valid."""
         return self.dynamic > self.static
 
 

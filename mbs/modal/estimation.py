@@ -157,7 +157,7 @@ _FLAT = 3
 
 @dataclass(frozen=True)
 class HitLimits:
-    """Which hits are left out.
+    """Limits beyond which hits are left out.
 
     Attributes
     ----------
@@ -352,7 +352,7 @@ def _rejected(entry: Hits, limits: HitLimits) -> list[Rejected]:
 
 
 def _verdict(force: FloatArray, response: FloatArray, entry: Hits, limits: HitLimits) -> tuple[Reason, str] | None:
-    """Why a hit is not fit for use, and what was seen; None if it is."""
+    """Reason why a hit is not fit for use, and what was seen; None if it is fit."""
     channels = (("the force", force), *zip((sensor.label for sensor in entry.sensors), response, strict=True))
     for name, record in channels:
         if not np.all(np.isfinite(record)):

@@ -191,6 +191,6 @@ def _error(s: ComplexArray, inside: Responses, weight: FloatArray, poles: Comple
 
 
 def _rms(values: ComplexArray) -> FloatArray:
-    """Of each row; 1 for a row of zeros."""
+    """RMS of each row; 1 for a row of zeros."""
     size = np.sqrt(np.mean(np.abs(values) ** 2, axis=1))
     return np.asarray(np.where(size > 0.0, size, 1.0), dtype=np.float64)

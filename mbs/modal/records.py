@@ -1,4 +1,4 @@
-"""What is measured: channels, time records of hammer hits, and the frequency responses estimated from them."""
+"""Measured data: channels, time records of hammer hits, and the frequency responses estimated from them."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _DIRECTIONS = {0: "", 1: "+x", 2: "+y", 3: "+z", 4: "+theta_x", 5: "+theta_y", 6
 
 @dataclass(frozen=True)
 class Channel:
-    """Where something is measured, and what.
+    """Place and quantity of a measurement.
 
     Attributes
     ----------
@@ -44,7 +44,7 @@ class Channel:
 
     @property
     def rotational(self) -> bool:
-        """Whether it is an angle or a moment."""
+        """True for an angle or a moment."""
         return abs(self.direction) > 3
 
     @property
@@ -56,7 +56,7 @@ class Channel:
 
     @property
     def place(self) -> tuple[str, int, int]:
-        """What makes two channels the same place."""
+        """Key that channels of the same place share."""
         return self.name, self.node, self.direction
 
 
@@ -113,7 +113,7 @@ class Hits:
 
     @property
     def duration(self) -> float:
-        """Of a record [s]."""
+        """Duration of a record [s]."""
         return self.step * int(self.force.shape[1])
 
 
@@ -170,7 +170,7 @@ class Responses:
 
     @property
     def derivatives(self) -> tuple[int, ...]:
-        """How often the sensor of each row differentiates the displacement."""
+        """Number of times that the sensor of each row differentiates the displacement."""
         return tuple(DERIVATIVE[sensor.quantity] for sensor, _ in self.pairs)
 
     @property

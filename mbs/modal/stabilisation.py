@@ -1,4 +1,4 @@
-"""Which poles are modes: those that come back from order to order, with the same frequency, damping and shape.
+"""Poles that are modes: those that come back from order to order, with the same frequency, damping and shape.
 
 A fit of high order has poles for the noise as well; they wander when the order changes. Poles are followed over the
 orders in chains; a chain that is long enough is a mode, its pole the median of the chain.
@@ -21,7 +21,7 @@ _GAP = 2
 
 @dataclass(frozen=True)
 class Criteria:
-    """What makes a pole stable.
+    """Criteria by which a pole is stable.
 
     Attributes
     ----------
@@ -197,7 +197,7 @@ def _extend(
 
 
 def _continues(chain: _Chain, pole: complex, shape: ComplexArray, criteria: Criteria) -> bool:
-    """Whether a pole continues a chain."""
+    """Tell whether a pole continues a chain."""
     last = chain.poles[-1]
     return (
         abs(abs(pole) - abs(last)) <= criteria.frequency * abs(last)

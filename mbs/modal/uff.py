@@ -50,7 +50,7 @@ Dataset = dict[str, Any]
 
 @dataclass(frozen=True, eq=False)
 class Measurement:
-    """What a universal file holds.
+    """Content of a universal file.
 
     Attributes
     ----------
@@ -115,7 +115,7 @@ def read_uff(path: Path) -> Measurement:
 
 
 class _Functions(NamedTuple):
-    """What of a file is used: title, datasets 58, factors of length and force, notes."""
+    """Parts of a file that are used: title, datasets 58, factors of length and force, notes."""
 
     title: str
     usable: list[Dataset]
@@ -231,7 +231,7 @@ def _factors(sets: Iterable[Dataset], problems: list[str], notes: list[str]) -> 
 
 
 def _sound(entry: Dataset, number: int, problems: list[str]) -> bool:
-    """Whether a function has the values that its header announces; else notes what is wrong."""
+    """Tell whether a function has the values that its header announces; else note what is wrong."""
     values, axis = np.asarray(entry.get("data", ())), np.asarray(entry.get("x", ()))
     where = f"function {number}"
     count = int(entry.get("num_pts", 0))
@@ -255,7 +255,7 @@ def _place(entry: Dataset, side: str) -> _Place:
 
 
 def _kind(entry: Dataset, part: str) -> Measured:
-    """What an ordinate, or its denominator, is."""
+    """Quantity of an ordinate, or of its denominator."""
     return KINDS.get(int(entry.get(f"{part}_spec_data_type", 0)), "unknown")
 
 
@@ -546,7 +546,7 @@ def function_of(kind: int, axis: FloatArray, values: Any) -> Dataset:
 
 
 def _even(axis: FloatArray) -> bool:
-    """Whether values are evenly spaced, to what a file keeps of them."""
+    """Tell whether values are evenly spaced, to what a file keeps of them."""
     spacing = (axis[-1] - axis[0]) / (axis.size - 1)
     return bool(np.max(np.abs(axis - axis[0] - spacing * np.arange(axis.size))) <= 1e-3 * spacing)
 

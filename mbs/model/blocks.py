@@ -1,4 +1,4 @@
-"""What a kind of elements brings to run in compiled code: a compiled function, and the arrays that it reads.
+"""Parts that a kind of elements brings to run in compiled code: a compiled function, and the arrays that it reads.
 
 A run in time puts all elements of a kind into one block. Its compiled function writes what they answer to a motion;
 the block itself, in Python, holds their arrays and prepares what changes with the speed. `mbs.transient.kinds` lists
@@ -22,7 +22,7 @@ compiled code has none, and the step is made in Python."""
 
 
 class Moment(NamedTuple):
-    """When elements are asked.
+    """Moment at which elements are asked.
 
     Attributes
     ----------
@@ -43,7 +43,7 @@ class Moment(NamedTuple):
 
 
 class Answers(NamedTuple):
-    """What elements answer, each in its own places.
+    """Answers of elements, each in its own places.
 
     Attributes
     ----------
@@ -140,7 +140,7 @@ def _always(element: Any) -> bool:
 
 @dataclass(frozen=True, eq=False)
 class Kind:
-    """How elements of one class run in compiled code.
+    """Way in which elements of one class run in compiled code.
 
     Attributes
     ----------

@@ -67,7 +67,7 @@ class TorqueCurve:
 
 @dataclass(frozen=True)
 class Drive:
-    """What turns a system, and what resists.
+    """Motor that turns a system, and load that resists.
 
     Attributes
     ----------
@@ -99,7 +99,7 @@ class Drive:
             raise InputError(problems)
 
     def rate(self, time: float, speed: float, taken: float = 0.0) -> float:
-        """How fast the speed rises [rad/s2]; what resists brings to rest, and does not turn back.
+        """Rate at which the speed rises [rad/s2]; what resists brings to rest, and does not turn back.
 
         Parameters
         ----------
@@ -172,7 +172,7 @@ class DriveAccount:
 
     @property
     def residual(self) -> float:
-        """What does not close [J]: what is taken is known a little later than it acts."""
+        """Residual of the balance [J]: what is taken is known a little later than it acts."""
         return self.motor - self.load - self.taken - self.stored
 
 
@@ -200,7 +200,7 @@ class DrivenRun:
         return self._between(time)
 
     def rate(self, time: float) -> float:
-        """How fast the speed rises at a time >= 0 [rad/s2]."""
+        """Rate at which the speed rises at a time >= 0 [rad/s2]."""
         self._reach(time)
         index = max(bisect.bisect_right(self._times, time) - 1, 0)
         if index + 1 == len(self._times):

@@ -1,4 +1,4 @@
-"""What connects bodies: linear springs, loads, and nonlinear elements such as bearings; and sensors.
+"""Connections between bodies: linear springs, loads, and nonlinear elements such as bearings; and sensors.
 
 A place is written "body:frame", or "body" for its frame "centre", or "ground". Two places that an element connects
 are at the same point of the system, so that forces and moments balance without lever arms.
@@ -21,7 +21,7 @@ GROUND = "ground"
 
 
 class Operation(NamedTuple):
-    """Where on its prescribed course a system is.
+    """Operating point of a system on its prescribed course.
 
     Attributes
     ----------
@@ -40,7 +40,7 @@ class Operation(NamedTuple):
 
 @dataclass(frozen=True)
 class Port:
-    """What a nonlinear element feels: the displacement of a place against another, or a body's own coordinates.
+    """Motion that a nonlinear element feels: the displacement of a place against another, or a body's own coordinates.
 
     Attributes
     ----------
@@ -58,7 +58,7 @@ class Port:
 
 
 class Forces(NamedTuple):
-    """What a nonlinear element answers to a motion of its ports.
+    """Answer of a nonlinear element to a motion of its ports.
 
     Attributes
     ----------
@@ -78,7 +78,7 @@ class Forces(NamedTuple):
 
 
 class Powers(NamedTuple):
-    """What becomes of the power that an element exchanges, besides what it stores.
+    """Sinks and sources of the power that an element exchanges, besides what it stores.
 
     Attributes
     ----------
@@ -96,7 +96,7 @@ class Powers(NamedTuple):
 
 
 class Excitation(NamedTuple):
-    """How often an element excites its system, for what follows orders.
+    """Orders at which an element excites its system, for what follows orders.
 
     Attributes
     ----------
@@ -128,12 +128,12 @@ class Element(Protocol):
 
     @property
     def ports(self) -> tuple[Port, ...]:
-        """What it feels; the displacements of all ports make one vector of size m."""
+        """Ports that it feels; the displacements of all ports make one vector of size m."""
         ...
 
     @property
     def excitation(self) -> Excitation | None:
-        """How often it excites the system; None for an element that does not by itself."""
+        """Orders at which it excites the system; None for an element that does not by itself."""
         ...
 
     def evaluate(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> Forces:
@@ -170,7 +170,7 @@ class Element(Protocol):
     def powers(
         self, states: Any, force: FloatArray, displacement: FloatArray, velocity: FloatArray, operation: Operation
     ) -> Powers | None:
-        """What it dissipates, and what its prescribed course brings in; None for an element that does not say.
+        """Power that it dissipates, and that its prescribed course brings in; None for an element that does not say.
 
         With U of `stored`, at a steady speed, the power of its force on its ports is driven - dissipated - dU/dt.
 
@@ -208,7 +208,7 @@ class Element(Protocol):
         ...
 
     def relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
-        """What of its stiffness needs time, for small oscillations about a rest; None for K and C at any frequency.
+        """Part of its stiffness that needs time, for small oscillations about rest; None for K and C at any frequency.
 
         Parameters
         ----------
@@ -221,16 +221,16 @@ class Element(Protocol):
 
 
 class ElementDefaults:
-    """What an element says of itself that has no states, excites nothing and does not relax, to inherit from."""
+    """Answers of an element that has no states, excites nothing and does not relax, to inherit from."""
 
     def advance(
         self, states: Any, displacement: FloatArray, velocity: FloatArray, operation: Operation
     ) -> tuple[Forces, Any]:
-        """What `evaluate` says: there are no states; see `Element.advance`."""
+        """Return what `evaluate` says: there are no states; see `Element.advance`."""
         return self.evaluate(displacement, velocity, operation), None
 
     def evaluate(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> Forces:
-        """What an element has of its own, see `Element.evaluate`."""
+        """Forces that each element has of its own, see `Element.evaluate`."""
         raise NotImplementedError
 
     @property

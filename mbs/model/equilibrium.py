@@ -84,7 +84,7 @@ class Equilibrium:
 
     @cached_property
     def relaxations(self) -> tuple[Relaxation | None, ...]:
-        """What of the stiffness of each element needs time, in its ports; None where nothing does."""
+        """Part of the stiffness of each element that needs time, in its ports; None where nothing does."""
         return tuple(
             connected.element.relaxation(connected.transform @ self.displacement, self.operation)
             for connected in self.system.elements

@@ -74,7 +74,7 @@ class MatrixElement(ElementDefaults):
         return (Port(self.on, self.against),)
 
     def beyond(self, speed: float) -> bool:
-        """Whether a speed [rad/s] lies beyond the table, where its end holds."""
+        """Tell whether a speed [rad/s] lies beyond the table, where its end holds."""
         return self.speeds.size > 1 and not self.speeds[0] <= speed <= self.speeds[-1]
 
     def at(self, speed: float) -> tuple[FloatArray, FloatArray]:
@@ -104,7 +104,7 @@ class MatrixElement(ElementDefaults):
     def powers(
         self, states: Any, force: FloatArray, displacement: FloatArray, velocity: FloatArray, operation: Operation
     ) -> Powers:
-        """What the damping takes, and what the skew part of the stiffness brings in.
+        """Power that the damping takes, and that the skew part of the stiffness brings in.
 
         Parameters
         ----------

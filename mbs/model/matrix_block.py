@@ -84,7 +84,7 @@ def matrices_answer(matrices: Matrices, moment: Moment, motion: FloatArray, answ
 
 @njit(error_model="numpy")
 def matrices_powers(matrices: Matrices, moment: Moment, motion: FloatArray, answers: Answers, out: FloatArray) -> None:
-    """What dampings take, and what skew stiffnesses bring in; see `mbs.model.blocks.Kind`.
+    """Write powers that dampings take, and that skew stiffnesses bring in; see `mbs.model.blocks.Kind`.
 
     Parameters
     ----------

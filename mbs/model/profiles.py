@@ -1,4 +1,4 @@
-"""What is prescribed over time: the factor of a load, and the speed with its angle."""
+"""Courses prescribed over time: the factor of a load, and the speed with its angle."""
 
 from __future__ import annotations
 
@@ -126,7 +126,7 @@ class Speed(Protocol):
         ...
 
     def rate(self, time: float) -> float:
-        """How fast the speed rises at a time >= 0 [rad/s2]."""
+        """Rate at which the speed rises at a time >= 0 [rad/s2]."""
         ...
 
 
@@ -195,7 +195,7 @@ class SpeedProfile:
         return speed, self._angles[index] + 0.5 * (speeds[index] + speed) * (time - times[index])
 
     def rate(self, time: float) -> float:
-        """How fast the speed rises at a time >= 0 [rad/s2]; at a corner, from there on."""
+        """Rate at which the speed rises at a time >= 0 [rad/s2]; at a corner, from there on."""
         times, speeds = self.course.times, self.course.values
         index = max(bisect.bisect_right(times, time) - 1, 0)
         if index + 1 == len(times):

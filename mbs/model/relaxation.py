@@ -44,7 +44,7 @@ class Relaxation:
     times: FloatArray
 
     def more(self, s: ComplexArray) -> ComplexArray:
-        """What is added to K + s C at complex frequencies s (k,) [1/s], shape (k, m, m)."""
+        """Term that is added to K + s C at complex frequencies s (k,) [1/s], shape (k, m, m)."""
         place = np.multiply.outer(s, self.times)
         return self._summed(np.asarray(-(place**2) / (1.0 + place), dtype=np.complex128))
 

@@ -102,7 +102,7 @@ class Places:
         return self._by_name[body].frames[frame or CENTRE]
 
     def position(self, place: str) -> FloatArray:
-        """Where a place on a body is, shape (3,) [m]."""
+        """Position of a place on a body, shape (3,) [m]."""
         return self.frame(place).position
 
     def spin(self, place: str) -> float:
@@ -242,7 +242,7 @@ class System:
         )
 
     def select(self, kind: type) -> tuple[int, ...]:
-        """Which of the elements are of a kind, such as `mbs.bearings.bearing_element.RingElement`, by place."""
+        """Indices of the elements that are of a kind, such as `mbs.bearings.bearing_element.RingElement`."""
         return tuple(i for i, connected in enumerate(self.elements) if isinstance(connected.element, kind))
 
     def evaluate(self, q: FloatArray, v: FloatArray, operation: Operation) -> tuple[Forces, ...]:
@@ -315,7 +315,7 @@ class System:
         return self._by_name[name]
 
     def own(self, body: str) -> slice:
-        """Where the coordinates of a body are."""
+        """Slice of the coordinates of a body."""
         return self._slice(self._by_name[body])
 
     def _add_weight(self, gravity: FloatArray) -> None:
@@ -330,7 +330,7 @@ class System:
         self.weightless = tuple(unknown)
 
     def _slice(self, body: Body) -> slice:
-        """Where the coordinates of a body are."""
+        """Slice of the coordinates of a body."""
         first = self._first[body.name]
         return slice(first, first + body.size)
 

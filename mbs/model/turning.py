@@ -140,7 +140,7 @@ class Turning(NamedTuple):
         return np.asarray(found if self.order * speed >= 0.0 else found.conj())
 
     def factors(self, speeds: FloatArray, angles: FloatArray, rates: FloatArray) -> ComplexArray:
-        """What the vector is multiplied by, before its real part is taken; arguments and result of one shape.
+        """Factors by which the vector is multiplied, before its real part is taken; arguments and result of one shape.
 
         Parameters
         ----------

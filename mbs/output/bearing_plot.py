@@ -229,7 +229,7 @@ def _static_limit(panel: Axes, pressures: FloatArray) -> None:
 
 
 def _title(figure: Figure, description: BearingDescription, words: str, problems: Sequence[str]) -> None:
-    """What is shown, what was assumed, and why it may not hold."""
+    """Write what is shown, what was assumed, and why it may not hold."""
     heading = "\n".join(line.strip() for line in bearing_heading(description))
     lines = typeset(heading).splitlines()
     lines += [words] if words else []

@@ -38,7 +38,7 @@ Points = Sequence[Sequence[BearingPoint]]
 
 @dataclass(frozen=True, eq=False)
 class BearingDescription:
-    """What all points of a result have in common, in words and numbers.
+    """Description that all points of a result have in common, in words and numbers.
 
     Attributes
     ----------
@@ -76,7 +76,7 @@ class BearingDescription:
 
 
 def result_kind(path: str | None) -> Kind:
-    """What a result is written as, by the ending of its name."""
+    """Kind of file that a result is written as, by the ending of its name."""
     if path is not None and Path(path).suffix.lower() == ".csv":
         return TABLE
     return dataclasses.replace(RESULT, endings=(".nc", ".csv"))
@@ -177,7 +177,7 @@ def bearing_dataset(description: BearingDescription, points: Points) -> xr.Datas
 
 
 def _attributes(description: BearingDescription, points: Points) -> dict[str, Any]:
-    """What the dataset says of itself."""
+    """Attributes that describe the dataset."""
     bearing, geometry = description.bearing, description.bearing.geometry
     everything = [point for line in points for point in line]
     return {
@@ -270,7 +270,7 @@ def bearing_text(description: BearingDescription, points: Points) -> list[str]:
 
 
 def bearing_heading(description: BearingDescription) -> list[str]:
-    """What was computed, and what of it was assumed."""
+    """Tell what was computed, and what of it was assumed."""
     bearing = description.bearing
     clearance = f"clearance {MICROMETRE.text(bearing.geometry.diametral_clearance)}"
     state = clearance if description.state is None else state_words(description.state)
@@ -322,7 +322,7 @@ def _page(point: BearingPoint, description: BearingDescription) -> list[str]:
 
 
 def _share_words(point: BearingPoint, description: BearingDescription) -> str:
-    """What the film carries of the load of the most loaded roller; nothing for smooth surfaces."""
+    """Share that the film carries of the load of the most loaded roller; nothing for smooth surfaces."""
     if description.surface.smooth:
         return ""
     share, overlap = point.load_sharing(description.surface, description.oil)
@@ -337,7 +337,7 @@ def _share_words(point: BearingPoint, description: BearingDescription) -> str:
 
 
 def regime(film_parameter: float) -> str:
-    """What is usually said of a film parameter Lambda.
+    """Lubrication regime by a film parameter Lambda, in usual words.
 
     Examples
     --------

@@ -77,7 +77,7 @@ class Overlay:
 
 @dataclass(frozen=True, eq=False)
 class Reach:
-    """How far the films of a law reach over speed.
+    """Reach of the films of a law over speed.
 
     Attributes
     ----------
@@ -205,7 +205,7 @@ def speed_range(results: Sequence[RunUpSpectra]) -> tuple[float, float]:
 
 
 def _reach(panel: Axes, reach: Reach, factor: float) -> None:
-    """Where the films are notably wrong as a line, and what lies below the map shaded; the axes stay as they are."""
+    """Draw as a line where the films are notably wrong, shade what lies below the map; the axes stay as they are."""
     limits = panel.get_xlim(), panel.get_ylim()
     panel.plot(reach.speeds * RPM, reach.limit * factor, color=_LIMIT_COLOUR, lw=0.9, ls=_LIMIT)
     if reach.below * RPM >= limits[0][0]:
@@ -218,7 +218,7 @@ def _reach(panel: Axes, reach: Reach, factor: float) -> None:
 def _handles(
     orders: Sequence[tuple[float, str]], overlays: Sequence[Overlay | None], reaches: Sequence[Reach], drawn: Campbell
 ) -> list[Artist]:
-    """What the lines are that are seen in the diagrams, whose speeds and frequencies are those of `drawn`."""
+    """Handles of the lines that are seen in the diagrams, whose speeds and frequencies are those of `drawn`."""
     found: list[Artist] = []
     if orders:
         found.append(Line2D([], [], color="0.5", lw=0.8, ls=_SPARSE, label="orders"))

@@ -171,7 +171,7 @@ _HERTZ, _MILLISECOND = Display("Hz"), Display("ms", 1e3)
 
 
 def resolution_lines(spectra: RunUpSpectra, highest: float) -> list[str]:
-    """How finely speed and frequency are resolved.
+    """Tell how finely speed and frequency are resolved.
 
     Parameters
     ----------
@@ -261,11 +261,11 @@ _QUANTITIES = (
 
 
 class VariantRow(Protocol):
-    """What is written of a change: see `mbs.instruments.variants.Variant`."""
+    """Change as it is written: see `mbs.instruments.variants.Variant`."""
 
     @property
     def key(self) -> str:
-        """What was changed."""
+        """Key of what was changed."""
         ...
 
     @property
@@ -280,7 +280,7 @@ class VariantRow(Protocol):
 
     @property
     def problem(self) -> str:
-        """Why there is none."""
+        """Reason why there is none."""
         ...
 
     @property

@@ -57,7 +57,7 @@ def temperature_text(model: Model) -> str:
 
 
 def weight_text(model: Model) -> str:
-    """Whether the weight of the bodies is in what an analysis finds, in words.
+    """Tell in words whether the weight of the bodies is in what an analysis finds.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ def common_supply(models: Iterable[Model]) -> str:
 
 
 def heading(model: Model, speed: float | None = None) -> list[str]:
-    """What was analysed, and which of its numbers are assumptions."""
+    """Tell what was analysed, and which of its numbers are assumptions."""
     at = "" if speed is None else f"{RPM.text(speed)}, "
     return [
         f"{model.scene.title}: law {model.law}",
@@ -165,7 +165,7 @@ def clean(value: float) -> float:
 
 
 def free_words(count: int) -> str:
-    """How free motions are told, which have no frequency and no damping ratio.
+    """Words for free motions, which have no frequency and no damping ratio.
 
     Parameters
     ----------

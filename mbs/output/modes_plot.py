@@ -92,12 +92,12 @@ def _label(found: Modes, mode: int, level: bool) -> str:
 
 
 def _bands(found: Modes, level: bool) -> str:
-    """What the label of the axis adds on bands."""
+    """Addition to the label of the axis on bands."""
     return f", ±: {BAND_WORDS}" if level and found.bands is not None else ""
 
 
 def _quick(limit: float) -> str:
-    """What the shade says."""
+    """Label of the shade."""
     return f"{ESTIMATED.replace(' of the films ', chr(10) + 'of the films ')}\n(from {limit:.4g} Hz on)"
 
 
@@ -196,7 +196,7 @@ def _mode(panel: Any, found: Modes, bones: Skeleton, mode: int) -> None:
 
 
 def _moves(largest: float, bones: Skeleton) -> bool:
-    """Whether a place moves at all."""
+    """Tell whether a place moves at all."""
     return largest > _NOTHING * bones.size
 
 
@@ -345,7 +345,7 @@ def _shown_rows(fit: ModalFit) -> list[int]:
 
 
 def _display(sensor: Channel, reference: Channel) -> Display:
-    """How a response is shown."""
+    """Display of a response."""
     unit = _UNITS[sensor.quantity].replace("m", "rad", 1) if sensor.rotational else _UNITS[sensor.quantity]
     shown = MOTIONS.get(unit, Display(unit or "1"))
     return Display(f"{typeset(shown.unit)}/{'(N m)' if reference.rotational else 'N'}", shown.factor)

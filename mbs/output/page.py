@@ -1,4 +1,4 @@
-"""What the figures of the analyses share: heading, panels, grid, shade."""
+"""Parts that the figures of the analyses share: heading, panels, grid, shade."""
 
 from __future__ import annotations
 

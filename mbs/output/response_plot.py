@@ -157,7 +157,7 @@ def _magnitude(panel: Axes, case: Curves, pair: tuple[int, int], unit: float, **
 
 
 def _band_note(cases: Sequence[Curves]) -> list[str]:
-    """What the shade about the curves is; nothing where no case has one."""
+    """Note on what the shade about the curves is; nothing where no case has one."""
     shaded = [f"shaded: {BAND_WORDS}"] if any(case.level_error is not None for case in cases) else []
     dotted = ["dotted: least and largest size over the angles of the cage"]
     return shaded + (dotted if any(case.pitch_range is not None for case in cases) else [])

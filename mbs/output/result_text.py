@@ -1,4 +1,4 @@
-"""What analyses find, in words: modes, the energy of a run, signals of sensors."""
+"""Results of analyses in words: modes, the energy of a run, signals of sensors."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def drive_lines(account: DriveAccount | None) -> list[str]:
 
 
 def _sources(entry: ElementEnergy) -> list[tuple[str, float]]:
-    """What came in through an element."""
+    """Energy that came in through an element."""
     if not entry.told:
         return [(f"{entry.name}, which does not say what it stores", entry.work)]
     found = [(f"turning of {entry.name}", entry.driven or 0.0)]
@@ -67,7 +67,7 @@ def _named(terms: list[tuple[str, float]]) -> str:
 
 
 def _method_lines(energy: EnergyBalance) -> list[str]:
-    """What the method took, and what is left."""
+    """Energy that the method took, and what is left."""
     through = energy.through
     if through == 0.0:
         return ["  no energy went through"]

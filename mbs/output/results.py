@@ -265,7 +265,7 @@ def gear_lines(model: Model, balance: Equilibrium) -> list[str]:
 
 
 def _is_rigid_in_x(model: Model, body: str) -> bool:
-    """Whether no coordinate of a body moves any of its frames along x."""
+    """Tell whether no coordinate of a body moves any of its frames along x."""
     return not any(np.any(frame.transform[0]) for frame in model.system.body(body).frames.values())
 
 

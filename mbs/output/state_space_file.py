@@ -37,7 +37,7 @@ _NOTES = (
 
 
 class LinearSystem(Protocol):
-    """What a state space is written of: the result of `mbs lsa`."""
+    """System of which a state space is written: the result of `mbs lsa`."""
 
     @property
     def model(self) -> Model:

@@ -78,7 +78,7 @@ def _heat(heat: BearingHeat) -> str:
 
 
 def loss_words(loss: RollingLoss) -> str:
-    """What rolling costs in a bearing."""
+    """Rolling loss of a bearing, in words."""
     if math.isnan(loss.total):
         return "rolling torque: none, no map with rolling forces"
     words = f"rolling torque {1e3 * loss.torque:.4g} N mm, power {loss.total:.4g} W"

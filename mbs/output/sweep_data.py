@@ -1,4 +1,4 @@
-"""What is found over speed as labelled datasets: a sweep, critical speeds, responses to orders."""
+"""Results over speed as labelled datasets: a sweep, critical speeds, responses to orders."""
 
 from __future__ import annotations
 
@@ -471,5 +471,5 @@ def critical_dataset(
 
 
 def _loads(responses: Sequence[OrderResponse]) -> str:
-    """Which loads belong to each order."""
+    """Loads that belong to each order."""
     return "; ".join(f"order {entry.order:g}: {', '.join(entry.names)}" for entry in responses)

@@ -222,7 +222,7 @@ def _numbers(panel: Axes, entry: Sweep, colour: str, last: bool) -> None:
 
 
 def _bearing_names(panel: Axes, names: Sequence[str]) -> None:
-    """Which dashes are which bearing."""
+    """Show which dashes are which bearing."""
     handles = [
         Line2D([], [], color="0.3", lw=1.3, ls=dashes, label=name)
         for name, dashes in zip(names, _DASHES * 16, strict=False)
@@ -346,7 +346,7 @@ _ROOM = 1.6
 
 @dataclass(frozen=True, eq=False)
 class CriticalCurves:
-    """What is drawn of a law.
+    """Curves that are drawn of a law.
 
     Attributes
     ----------

@@ -30,7 +30,7 @@ _READERS: dict[str, Callable[[Path], TimeData]] = {
 
 
 def is_time_data(name: str) -> bool:
-    """Whether a name is that of a file of time data, by its ending."""
+    """Tell whether a name is that of a file of time data, by its ending."""
     return Path(name).suffix.lower() in ENDINGS
 
 

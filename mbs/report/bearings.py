@@ -157,7 +157,7 @@ def _at(offset: float) -> str:
 
 
 def _says(rollers: RollerLoads) -> str:
-    """What the drawing says."""
+    """Tell what the drawing says."""
     carrying = loaded(rollers)
     if not carrying.size:
         return "No roller is loaded."

@@ -80,7 +80,7 @@ def mode_table(found: ModesResult, highest: float) -> Markup:
 
 
 def _part(value: float) -> str:
-    """What the film law leaves out; a dash where that is not known."""
+    """Part that the film law leaves out; a dash where that is not known."""
     return number(value, 2) if math.isfinite(value) else "-"
 
 
@@ -302,7 +302,7 @@ def _order_curves(speeds: FloatArray, orders: Sequence[tuple[float, str]]) -> li
 def _crossings(
     lines: Lines, orders: Sequence[tuple[float, str]], modes: Sequence[int]
 ) -> list[tuple[float, float, str, int]]:
-    """Where orders meet modes that are not much damped: speed [rad/s], frequency [Hz], order, mode."""
+    """Crossings of orders with modes that are not much damped: speed [rad/s], frequency [Hz], order, mode."""
     found = []
     for order, name in orders:
         for k in modes:
@@ -317,7 +317,7 @@ def _crossings(
 
 
 def _says(lines: Lines, crossings: Sequence[tuple[float, float, str, int]], speed: float | None) -> list[str]:
-    """What the diagram says."""
+    """Tell what the diagram says."""
     told = [
         "Coloured modes have at least 5 % of their strain energy in bearings; modes are those of the system "
         "linearised at the equilibrium of each speed."

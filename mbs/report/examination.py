@@ -26,7 +26,7 @@ _BELOW, _ABOVE = 0.25, 1.5
 
 @dataclass(frozen=True, eq=False)
 class Examination:
-    """What was found about a scene.
+    """Findings about a scene.
 
     Attributes
     ----------

@@ -42,7 +42,7 @@ _ROUND_OFF = 1e-9
 
 
 def axial_problems(system: System, pairs: Sequence[GearPair], operation: Operation) -> list[str]:
-    """Which bodies helical gears push along x while nothing holds them there.
+    """Name the bodies that helical gears push along x while nothing holds them there.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def axial_problems(system: System, pairs: Sequence[GearPair], operation: Operati
 
 
 def _free_along_x(system: System, body: str, operation: Operation) -> bool:
-    """Whether a body moves along x, and neither spring nor bearing resists."""
+    """Tell whether a body moves along x, and neither spring nor bearing resists."""
     from mbs.gears.gear import GearMesh
 
     own = np.array([name.partition(".")[0] == body and name.endswith(".x") for name in system.coordinates])
@@ -87,7 +87,7 @@ def _free_along_x(system: System, body: str, operation: Operation) -> bool:
 
 
 def _resists(stiffness: FloatArray, motion: FloatArray) -> bool:
-    """Whether a motion of the whole body has a stiffness, beyond the round-off of what bends in it."""
+    """Tell whether a motion of the whole body has a stiffness, beyond the round-off of what bends in it."""
     inner = float(np.sum(np.abs(motion) @ np.abs(stiffness) @ np.abs(motion)))
     return float(motion @ stiffness @ motion) > _ROUND_OFF * inner
 
@@ -148,7 +148,7 @@ class Model:
 
     @property
     def warnings(self) -> list[str]:
-        """What every analysis tells of the machine and its law: oils that contradict each other."""
+        """Warnings of every analysis about the machine and its law: oils that contradict each other."""
         return oil_warnings(self.oils, self.scene.lubricant)
 
     @property
@@ -280,7 +280,7 @@ def law_attributes(model: Model) -> Mapping[str, str]:
 
 
 def laws_attributes(labels: Sequence[str], models: Sequence[Model]) -> dict[str, str]:
-    """What a result of several laws says of them and of their oil supplies.
+    """Attributes of a result of several laws, on them and on their oil supplies.
 
     Parameters
     ----------
@@ -294,7 +294,7 @@ def laws_attributes(labels: Sequence[str], models: Sequence[Model]) -> dict[str,
 
 
 def supply_attributes(models: Sequence[tuple[str, Model]]) -> dict[str, str]:
-    """What a result says of the oil supplies of its models, each with a label where there is more than one.
+    """Attributes of a result on the oil supplies of its models, each with a label where there is more than one.
 
     Parameters
     ----------
@@ -345,14 +345,14 @@ def _elements(scene: Scene, surroundings: Surroundings, *, may_build: bool) -> t
 
 
 def _problems(kind: ElementKind, spec: Any, surroundings: Surroundings) -> list[str]:
-    """What is wrong about a machine element and its places."""
+    """Problems with a machine element and its places."""
     places = surroundings.places
     missing = [found for place in kind.places(spec) if (found := places.problem(place))]
     return [*(f"{kind.word} {spec.name!r}: {found}" for found in missing), *kind.problems(spec, surroundings)]
 
 
 def _shown(built: Mapping[str, list[Built]], key: str, expected: type[Any]) -> Iterable[Any]:
-    """What results show of the elements of a kind."""
+    """Elements of a kind as results show them."""
     return (part.shown for part in built.get(key, ()) if isinstance(part.shown, expected))
 
 
@@ -368,7 +368,7 @@ def _place_problems(places: Places, scene: Scene) -> list[str]:
 
 
 def _idle_problems(system: System, scene: Scene, turning: Sequence[TurningLoad]) -> list[str]:
-    """What does nothing in the system, which is hardly meant: an unstrained spring, a load that moves nothing."""
+    """Parts that do nothing in the system, which is hardly meant: an unstrained spring, a load that moves nothing."""
     problems = [
         f"spring {spring.name!r}: {spring.on} and {spring.against} do not move against each other; allowed: places of "
         "two bodies, or of one that moves and the ground"

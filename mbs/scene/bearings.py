@@ -180,7 +180,7 @@ def read_bearing(section: Table, name: str) -> BearingSpec | MatrixSpec | None:
 
 
 def bearing_problems(spec: BearingSpec, surroundings: Surroundings) -> list[str]:
-    """What is wrong about a bearing: the map in force is not its own, or it has one body only.
+    """Problems with a bearing: the map in force is not its own, or it has one body only.
 
     Parameters
     ----------

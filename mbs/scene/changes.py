@@ -163,7 +163,7 @@ def with_cutoff(scene: Scene, cutoff: float) -> Scene:
 
 
 def _may_rise(body: BodySpec) -> bool:
-    """Whether a body can be reduced to more modes than it has."""
+    """Tell whether a body can be reduced to more modes than it has."""
     return isinstance(body, ShaftSpec) or (isinstance(body, FlexibleSpec) and isinstance(body.source, ReductionPlan))
 
 

@@ -1,4 +1,4 @@
-"""Which contact law a scene gets: its choice, what is wrong about it, the laws of each geometry; points from a file."""
+"""Contact law that a scene gets: its choice, what is wrong about it, the laws of each geometry; points from a file."""
 
 from __future__ import annotations
 
@@ -191,7 +191,7 @@ def supply_words(supplies: Mapping[str, OilSupply]) -> str:
 
 
 def surface_label(surface: Surface) -> str:
-    """What a result says of its surfaces.
+    """Label of the surfaces of a result.
 
     Examples
     --------
@@ -281,7 +281,7 @@ def dry_words(law: str) -> str:
 
 
 def table_problems(law: str) -> list[str]:
-    """What is wrong about the file of a law table:FILE; nothing for other laws."""
+    """Problems with the file of a law table:FILE; nothing for other laws."""
     path = table_path(law)
     if path is None:
         return []
@@ -318,7 +318,7 @@ class ContactLaws:
     _made: dict[tuple[BearingGeometry, OilSupply], BearingLaws] = field(default_factory=dict, repr=False)
 
     def problems(self) -> list[str]:
-        """What is wrong about the choice of the law."""
+        """Problems with the choice of the law."""
         scene = self.scene
         names = tuple(f"{_CONSTANT}{name}" for name in scene.laws)
         allowed = ("hertz", "formula", *names, TABLE_LAW, "map")
@@ -350,11 +350,11 @@ class ContactLaws:
 
     @property
     def memory(self) -> Films:
-        """Whether films relax in linear analyses, "memory", or have stiffness and damping of slow motion, "slow"."""
+        """Films of linear analyses: they relax, "memory", or have stiffness and damping of slow motion, "slow"."""
         return self.asked or ("slow" if self._memory_problems() else DEFAULT_FILMS)
 
     def _memory_problems(self) -> list[str]:
-        """Why films cannot relax."""
+        """Reasons why films cannot relax."""
         if not self._has_films:
             got = f"--films: got 'memory' with the law {self.chosen!r:.60}"
             return [f"{got}; allowed: the laws map and formula, which have films"]
@@ -416,7 +416,7 @@ class ContactLaws:
         return self._made[key]
 
     def films(self, bearing: Bearing, supply: OilSupply) -> FilmSource:
-        """What knows the films of a bearing with an oil supply."""
+        """Source of the films of a bearing with an oil supply."""
         if (emap := self.map_of(bearing.geometry)) is not None:
             return MapFilms(emap, supply)
         contacts = bearing.geometry.contacts(bearing.material, "iso16281")
@@ -437,7 +437,7 @@ class ContactLaws:
 
     @property
     def supply_label(self) -> str:
-        """What a legend adds of the oil supply: nothing where all bearings are flooded, or the law has no films."""
+        """Addition to a legend on the oil supply: nothing where all bearings are flooded, or the law has no films."""
         found = set(self.supplies.values())
         if all(supply.flooded for supply in found):
             return ""
@@ -452,12 +452,12 @@ class ContactLaws:
 
     @property
     def _film_words(self) -> str:
-        """Which films the law has, where it has films."""
+        """Kind of films that the law has, where it has films."""
         return f", {FILM_WORDS[self.memory]}" if self._has_films else ""
 
     @property
     def _has_films(self) -> bool:
-        """Whether the law has films."""
+        """True where the law has films."""
         return self.chosen in ("map", "formula")
 
     @property

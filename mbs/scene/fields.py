@@ -1,4 +1,4 @@
-"""How the values of a scene file are read: texts, places, vectors, directions. Problems are noted, reading goes on."""
+"""Reading of the values of a scene file: texts, places, vectors, directions. Problems are noted, reading goes on."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def text(section: Table, key: str, required: bool = False) -> str | None:
 
 
 def named(section: Table, key: str) -> bool:
-    """Whether a key that the user chose is the name of a place; notes a problem."""
+    """Tell whether a key that the user chose is the name of a place; note a problem."""
     good = 1 <= len(key) <= 100 and ":" not in key and "." not in key
     if not good:
         section.note("", f"got the name {short(key)}; allowed: a short name without : and .")

@@ -83,7 +83,7 @@ def read_gears(section: Table, name: str) -> GearPair | None:
 
 
 def gear_problems(spec: GearPair, surroundings: Surroundings) -> list[str]:
-    """What is wrong about the places of a gear pair.
+    """Problems with the places of a gear pair.
 
     Parameters
     ----------

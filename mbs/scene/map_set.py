@@ -78,7 +78,7 @@ class MapSet:
         return {name: emap.lubricant for name, emap in found.items() if emap is not None}
 
     def problems(self, where: str, geometry: BearingGeometry) -> list[str]:
-        """Why a bearing, which messages call `where`, gets no map of these.
+        """Reasons why a bearing, which messages call `where`, gets no map of these.
 
         Parameters
         ----------
@@ -98,7 +98,7 @@ class MapSet:
         ]
 
     def surface_problems(self) -> list[str]:
-        """What is wrong about the surfaces of the maps, where the scene states none."""
+        """Problems with the surfaces of the maps, where the scene states none."""
         found = {emap.surface for emap in self.maps}
         if len(found) <= 1:
             return []
@@ -182,7 +182,7 @@ def map_sets(maps: Sequence[tuple[str, EHDMap]], bearings: Sequence[BearingSpec]
 
 
 def suits(emap: EHDMap, geometry: BearingGeometry) -> bool:
-    """Whether a map was made for the contacts of a bearing.
+    """Tell whether a map was made for the contacts of a bearing.
 
     Parameters
     ----------
@@ -266,19 +266,19 @@ def _nearest(emap: EHDMap, bearings: Sequence[BearingSpec]) -> str:
 
 
 def _same_type(first: EHDMap, second: EHDMap) -> bool:
-    """Whether two maps are made for the same contacts; those of bare contacts count as one type."""
+    """Tell whether two maps are made for the same contacts; those of bare contacts count as one type."""
     if first.bearing is None or second.bearing is None:
         return first.bearing is second.bearing
     return suits(first, second.bearing)
 
 
 def _made_for(emap: EHDMap) -> str:
-    """What a map was made for."""
+    """Name of what a map was made for."""
     return emap.bearing.title if emap.bearing else "a bare contact"
 
 
 def _made_by(emap: EHDMap) -> str:
-    """How a map was made."""
+    """Way in which a map was made."""
     attributes = emap.dataset.attrs
     films = "films from the film table" if emap.from_table else f"solver {attributes.get('solver', '')}"
     return films + structure_words(emap)

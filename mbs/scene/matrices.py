@@ -86,7 +86,7 @@ def read_table_bearing(section: Table, name: str) -> MatrixSpec | None:
 
 
 def matrix_problems(spec: MatrixSpec, surroundings: Surroundings) -> list[str]:
-    """What is wrong about matrices besides places that do not exist: nothing may move between them.
+    """Problems with matrices besides places that do not exist: nothing may move between them.
 
     Parameters
     ----------

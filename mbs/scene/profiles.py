@@ -130,7 +130,7 @@ def _lengths(table: Table, key: str, largest: float) -> list[float] | None:
 
 
 def _reach_problems(profile: CrownedProfile | TabulatedProfile | str, geometry: BearingGeometry) -> list[str]:
-    """What is wrong about a profile that does not reach the ends of the roller."""
+    """Problems with a profile that does not reach the ends of the roller."""
     half = 0.5 * geometry.roller_length
     if isinstance(profile, CrownedProfile) and profile.straight >= geometry.roller_length:
         return [f"straight: got {LENGTH.text(profile.straight)}; allowed: below the roller's {LENGTH.text(2.0 * half)}"]

@@ -1,4 +1,4 @@
-"""What a scene says of bodies and bearings, in SI: plain frozen values that check themselves and compute nothing.
+"""Description of bodies and bearings of a scene, in SI: plain frozen values that check themselves and compute nothing.
 
 Springs, loads, sensors and inputs (`mbs.model.elements`) and gear pairs (`mbs.gears.pair`) are such values already.
 """
@@ -182,7 +182,7 @@ BodySpec = RigidSpec | ShaftSpec | FlexibleSpec | Body
 
 
 class ElementSpec(Protocol):
-    """What a scene has as machine elements: a frozen value of a class that `mbs.scene.kinds` knows."""
+    """Machine element of a scene: a frozen value of a class that `mbs.scene.kinds` knows."""
 
     @property
     def name(self) -> str:
@@ -239,7 +239,7 @@ class BearingSpec:
 
     @property
     def changes_in_operation(self) -> bool:
-        """Whether its temperatures and its clearance in operation are others than the scene states."""
+        """True where its temperatures and its clearance in operation are others than the scene states."""
         return self.thermal is not None or self.mounting is not None
 
 

@@ -1,4 +1,4 @@
-"""What a machine element of a scene is built into, and what it becomes there."""
+"""Surroundings that a machine element of a scene is built into, and what it becomes there."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Surroundings:
-    """What an element is built into.
+    """Surroundings that an element is built into.
 
     Attributes
     ----------
@@ -34,7 +34,7 @@ class Surroundings:
 
 @dataclass(frozen=True, eq=False)
 class Built:
-    """What a machine element is in a system.
+    """Machine element as it is in a system.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What follows the angle in a scene: tables [[unbalances]] and [[excitations]], and the loads that they become."""
+"""Parts of a scene that follow the angle: tables [[unbalances]] and [[excitations]], and the loads that they become."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""What a run-up shows: levels over speed, frequency and order."""
+"""Results of a run-up: levels over speed, frequency and order."""

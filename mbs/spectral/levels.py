@@ -30,7 +30,7 @@ _PER_TIME: dict[Quantity, str] = {"displacement": "", "velocity": "/s", "acceler
 
 @dataclass(frozen=True)
 class Reference:
-    """What levels of a quantity refer to.
+    """Reference of the levels of a quantity.
 
     Attributes
     ----------
@@ -84,7 +84,7 @@ def level(mean_square: FloatArray, reference: float) -> FloatArray:
 
 @dataclass(frozen=True)
 class LevelDifference:
-    """How two courses of a level differ: other minus first.
+    """Difference of two courses of a level: other minus first.
 
     Attributes
     ----------

@@ -77,7 +77,7 @@ class RunSignal:
             object.__setattr__(self, "angle", -self.angle)
 
     def _course_problems(self) -> list[str]:
-        """What is wrong about times, speed and angle, of right shapes."""
+        """Problems with times, speed and angle, of right shapes."""
         problems = []
         steps = np.diff(self.time)
         mean = float(self.time[-1] - self.time[0]) / steps.size

@@ -232,7 +232,7 @@ def without_mean(weights: FloatArray) -> Callable[[FloatArray], FloatArray]:
 
 
 def _band_problems(run: RunSignal, band: tuple[float, float]) -> list[str]:
-    """What is wrong about the band."""
+    """Problems with the band."""
     low, high = band
     if not (math.isfinite(low) and math.isfinite(high) and 0.0 <= low < high):
         return [f"spectra, band: got {low!r} to {high!r} Hz; allowed: finite, 0 <= lowest < highest"]
@@ -248,7 +248,7 @@ def _band_problems(run: RunSignal, band: tuple[float, float]) -> list[str]:
 
 
 def _window_problems(run: RunSignal, window: float, band: tuple[float, float]) -> list[str]:
-    """What is wrong about the window."""
+    """Problems with the window."""
     high = band[1]
     longest = LONGEST_PART * run.duration
     shortest = LEAST_PERIODS / high if high > 0.0 else math.inf

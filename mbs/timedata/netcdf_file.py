@@ -134,7 +134,7 @@ def _data(path: Path, dataset: xr.Dataset) -> TimeData:
 
 
 def _look(path: Path, attributes: dict[str, Any]) -> CampbellSettings | None:
-    """What the scene of a run looks at."""
+    """Settings of what the scene of a run looks at."""
     sensor, highest, window = (attributes.get(name) for name in _LOOK)
     if highest is None:
         return None

@@ -65,7 +65,7 @@ def plain(unit: str) -> str:
 
 
 def read_unit(unit: str, name: str) -> tuple[Recorded, str, float]:
-    """What a channel is by its unit, the SI unit, and the factor to it.
+    """Quantity of a channel by its unit, the SI unit, and the factor to it.
 
     Parameters
     ----------

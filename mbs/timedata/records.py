@@ -28,7 +28,7 @@ _OFF_GRID = 0.01
 
 @dataclass(frozen=True)
 class TimeChannel:
-    """What one column of a record is.
+    """Description of one column of a record.
 
     Attributes
     ----------
@@ -129,7 +129,7 @@ class TimeRecord:
 
 @dataclass(frozen=True, eq=False)
 class TimeData:
-    """What a file of time data holds.
+    """Content of a file of time data.
 
     Attributes
     ----------
@@ -194,7 +194,7 @@ def _step(time: FloatArray) -> float:
 
 
 def _shape_problems(record: TimeRecord) -> list[str]:
-    """What is wrong about sizes and names."""
+    """Problems with sizes and names."""
     samples, names = record.time.size, record.names
     problems = []
     if record.time.ndim != 1 or not FEWEST <= samples <= MOST:
@@ -219,7 +219,7 @@ def _shape_problems(record: TimeRecord) -> list[str]:
 
 
 def _value_problems(record: TimeRecord) -> list[str]:
-    """What is wrong about numbers; each channel with its first bad sample."""
+    """Problems with numbers; each channel with its first bad sample."""
     problems = []
     columns = [(channel.name, record.values[:, place]) for place, channel in enumerate(record.channels)]
     columns += [("speed", record.speed)] if record.speed is not None else []

@@ -46,7 +46,7 @@ _HELD = 1e-12
 
 @dataclass(frozen=True)
 class SpeedSource:
-    """Where the speed of a record is taken from; at most one of the three.
+    """Source of the speed of a record; at most one of the three.
 
     Attributes
     ----------
@@ -215,7 +215,7 @@ def _by_tacho(record: TimeRecord, name: str, pulses: float) -> Turned:
 
 
 def _above(values: FloatArray, low: float, high: float) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
-    """Whether a pulse is on: from where it passes `high` to where it falls below `low`."""
+    """True where a pulse is on: from where it passes `high` to where it falls below `low`."""
     state = np.where(values > high, 1, np.where(values < low, 0, -1))
     known = np.maximum.accumulate(np.where(state >= 0, np.arange(values.size), 0))
     return np.asarray(state[known] == 1)

@@ -108,7 +108,7 @@ def _dataset(number: int, channel: TimeChannel, time: Any, values: Any) -> Datas
 
 
 def _channel(entry: Dataset, number: int) -> tuple[TimeChannel, float]:
-    """What a dataset holds, and the factor to SI beside the units of dataset 164."""
+    """Channel that a dataset holds, and the factor to SI beside the units of dataset 164."""
     names = (str(entry.get(key, "")).strip() for key in ("id1", "rsp_ent_name"))
     name = next((name for name in names if name and name.upper() != "NONE"), f"channel {number}")
     kind, rotational = int(entry.get("ordinate_spec_data_type", 0)), abs(int(entry.get("rsp_dir", 0))) > 3

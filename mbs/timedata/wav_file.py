@@ -50,7 +50,7 @@ def scale_path(path: Path) -> Path:
 
 
 def _ours(path: Path) -> bool:
-    """Whether a sound file has a table of ours beside it."""
+    """Tell whether a sound file has a table of ours beside it."""
     table = scale_path(path)
     return first_bytes(path, 4, "a WAV file") == b"RIFF" and table.is_file() and has_mark(table)
 

@@ -108,7 +108,7 @@ class CompiledRun:
 
     @property
     def outside(self) -> IntArray:
-        """How often each element was evaluated outside its map so far."""
+        """Number of evaluations of each element outside its map so far."""
         return self._stepper.outside + self._elements.outside
 
     def steps(self, times: FloatArray, h: float, rows: IntArray) -> tuple[int, float]:

@@ -56,7 +56,7 @@ class ElementEnergy:
 
     @property
     def told(self) -> bool:
-        """Whether the element says what becomes of its work."""
+        """True where the element says what becomes of its work."""
         return self.driven is not None and self.dissipated is not None and self.change is not None
 
     @property
@@ -69,7 +69,7 @@ class ElementEnergy:
 
 @dataclass(frozen=True)
 class EnergyBalance:
-    """Where the energy of a run came from and went to [J].
+    """Sources and sinks of the energy of a run [J].
 
     Attributes
     ----------
@@ -94,17 +94,17 @@ class EnergyBalance:
 
     @property
     def driven(self) -> float:
-        """What prescribed courses and speeds brought in through elements; the whole work of those that do not say."""
+        """Energy that prescribed courses and speeds brought in through elements; all work of those that do not say."""
         return sum((e.driven or 0.0) + e.by_speed if e.told else e.work for e in self.elements)
 
     @property
     def put_in(self) -> float:
-        """What came in: work of the loads, and what prescribed motion brought in."""
+        """Energy that came in: work of the loads, and what prescribed motion brought in."""
         return self.loads + self.driven
 
     @property
     def dissipated(self) -> float:
-        """What bodies, springs and elements dissipated."""
+        """Energy that bodies, springs and elements dissipated."""
         return sum(self.parts.values()) + sum((e.dissipated or 0.0) if e.told else 0.0 for e in self.elements)
 
     @property
@@ -114,7 +114,7 @@ class EnergyBalance:
 
     @property
     def residual(self) -> float:
-        """What came in less what is known to have become of it."""
+        """Energy that came in less what is known to have become of it."""
         return self.put_in - self.dissipated - self.numerical - self.stored
 
     @property

@@ -50,7 +50,7 @@ MOST_SAMPLES = 2**14
 
 @dataclass(frozen=True)
 class HammerTest:
-    """How a test is made.
+    """Settings of a hammer test.
 
     Attributes
     ----------
@@ -108,7 +108,7 @@ class HammerTest:
 
     @property
     def samples(self) -> int:
-        """Of a record."""
+        """Samples of a record."""
         wanted = math.ceil(self.duration / self.step)
         return int(next_fast_len(wanted + wanted % 2, real=True))
 
@@ -119,7 +119,7 @@ class HammerTest:
 
     @property
     def pulse(self) -> float:
-        """How long the hammer touches [s]; a whole number of computed steps."""
+        """Time for which the hammer touches [s]; a whole number of computed steps."""
         fine = self.step / OVERSAMPLING
         return max(round(1.0 / self.highest / fine), 2) * fine
 
@@ -304,7 +304,7 @@ def _filtered(fine: FloatArray, test: HammerTest) -> FloatArray:
 
 
 def _sensed(states: States, sensors: tuple[Sensor, ...], measured: FloatArray, at_rest: FloatArray) -> FloatArray:
-    """What sensors see of a run, without the equilibrium, shape (sensors, samples)."""
+    """Signals of sensors in a run, without the equilibrium, shape (sensors, samples)."""
     motion = {
         "displacement": states.displacement @ measured.T - at_rest,
         "velocity": states.velocity @ measured.T,

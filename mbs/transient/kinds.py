@@ -31,11 +31,11 @@ KINDS: dict[type, Kind] = {
 
 
 def kind_of(element: Element) -> Kind | None:
-    """How an element runs in compiled code; None if it does not. A class that inherits from a known one is another."""
+    """Kind of an element in compiled code; None if it has none. A class that inherits from a known one is another."""
     kind = KINDS.get(type(element))
     return kind if kind is not None and kind.takes(element) else None
 
 
 def is_ours(kind: Kind) -> bool:
-    """Whether a kind is part of this package."""
+    """Tell whether a kind is part of this package."""
     return kind.arrays.__module__.partition(".")[0] == __name__.partition(".")[0]

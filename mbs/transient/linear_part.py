@@ -96,5 +96,5 @@ class LinearPart:
 
 
 def _leading(marks: BoolArray) -> int:
-    """How many marks at the beginning are set."""
+    """Number of marks at the beginning that are set."""
     return marks.size if np.all(marks) else int(np.argmin(marks))

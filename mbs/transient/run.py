@@ -57,7 +57,7 @@ class States:
 
 @dataclass(frozen=True, eq=False)
 class Recording:
-    """What a run recorded.
+    """Record of a run.
 
     Attributes
     ----------
@@ -123,7 +123,7 @@ def _the_same(balance: EnergyBalance) -> EnergyBalance:
 
 @dataclass(frozen=True)
 class Options:
-    """How a run is made and what it keeps, besides the method.
+    """Options of how a run is made and what it keeps, besides the method.
 
     Attributes
     ----------
@@ -245,7 +245,7 @@ def run(
 
 
 class _Shaft:
-    """What the moving system takes from the shaft that a drive turns: told to the drive after some steps."""
+    """Torque that the moving system takes from the shaft that a drive turns: told to the drive after some steps."""
 
     def __init__(self, followed: DrivenRun, engine: _Engine, system: System) -> None:
         self._followed, self._engine, self._steady = followed, engine, system.steady_loads
@@ -274,7 +274,7 @@ def _check_driven(system: System) -> None:
 
 @dataclass(frozen=True, eq=False)
 class _Plan:
-    """What is recorded: rows of what is seen of the coordinates, and how often it is differentiated."""
+    """Plan of a recording: rows of what is seen of the coordinates, and how often it is differentiated."""
 
     samples: int
     rows: FloatArray
@@ -323,7 +323,7 @@ class _Engine(Protocol):
 
     @property
     def outside(self) -> IntArray:
-        """How often each element was evaluated outside its map so far."""
+        """Number of evaluations of each element outside its map so far."""
         ...
 
     def steps(self, times: FloatArray, h: float, rows: IntArray) -> tuple[int, float]:
@@ -409,7 +409,7 @@ class _Reference:
 
     @property
     def outside(self) -> IntArray:
-        """How often each element was evaluated outside its map so far."""
+        """Number of evaluations of each element outside its map so far."""
         return self._stepper.outside
 
     def steps(self, times: FloatArray, h: float, rows: IntArray) -> tuple[int, float]:
@@ -453,7 +453,7 @@ class _Reference:
 
 
 def _notes(system: System) -> tuple[str, ...]:
-    """Why a run cannot go in compiled code, in sentences; none if it can."""
+    """Reasons why a run cannot go in compiled code, in sentences; none if it can."""
     notes = []
     if slow := in_python(system.elements):
         notes.append(
@@ -466,7 +466,7 @@ def _notes(system: System) -> tuple[str, ...]:
 
 
 def _has_modes(system: System) -> bool:
-    """Whether the linear part has real modes: its stiffness is symmetric, to rounding."""
+    """Tell whether the linear part has real modes: its stiffness is symmetric, to rounding."""
     stiffness = system.stiffness
     return bool(np.max(np.abs(stiffness - stiffness.T)) <= SYMMETRIC * np.max(np.abs(stiffness)))
 

@@ -68,7 +68,7 @@ class Numbers(NamedTuple):
 
 
 class Course(NamedTuple):
-    """What is prescribed at the end of each step.
+    """Values prescribed at the end of each step.
 
     Attributes
     ----------
@@ -105,7 +105,7 @@ class State(NamedTuple):
 
 
 class Records(NamedTuple):
-    """What is recorded.
+    """Arrays of what is recorded.
 
     Attributes
     ----------

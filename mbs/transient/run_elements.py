@@ -17,7 +17,7 @@ from mbs.transient.kinds import KINDS, is_ours, kind_of
 
 
 def _is_common(kind: Kind) -> bool:
-    """Whether compiled code has a kind even where there are none: neither states nor coordinates of their own."""
+    """True for kinds that compiled code has even where there are none: neither states nor coordinates of their own."""
     return kind.accept is None and kind.alone is None and not kind.rare
 
 

@@ -60,12 +60,12 @@ class Method:
 
     @property
     def gamma(self) -> float:
-        """Of Newmark, for second order."""
+        """Newmark's gamma, for second order."""
         return 0.5 + self.alpha_f - self.alpha_m
 
     @property
     def beta(self) -> float:
-        """Of Newmark, for the most dissipation of the highest frequencies."""
+        """Newmark's beta, for the most dissipation of the highest frequencies."""
         return 0.25 * (self.gamma + 0.5) ** 2
 
     @property

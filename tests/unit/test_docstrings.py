@@ -136,6 +136,22 @@ def test_descriptions_have_a_noun():
     assert not wrong, "a description needs a noun ('Load of the roller', not 'Of the roller'):\n" + "\n".join(wrong)
 
 
+QUESTION = re.compile(r"(?:What|Whether|How|Where|Which|Why|When|Of)\b")
+
+
+def test_docstrings_begin_with_a_noun_or_a_verb():
+    """'Share of the load', 'Tell whether it touches': not 'What it carries', 'Whether it touches'."""
+    wrong = [
+        f"{path.relative_to(ROOT).as_posix()}: {words.splitlines()[0]}"
+        for path in FILES
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.FunctionDef | ast.ClassDef | ast.Module)
+        if QUESTION.match(words := ast.get_docstring(node) or "")
+    ]
+    assert wrong == []
+    assert QUESTION.match("Whether it is") and not QUESTION.match("Whetstone") and not QUESTION.match("Tell whether")
+
+
 @pytest.mark.parametrize(
     ("words", "wrong"),
     [

@@ -35,7 +35,7 @@ BEYOND: Mapping[OutsidePolicy, str] = {"error": "refused", "clamp": "held", "asy
 
 @dataclass(frozen=True)
 class KernelOptions:
-    """What is exported of a map.
+    """Selection of what is exported of a map.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What a map says of the locked film, as a table over speed, temperature and load for programs without the map.
+"""Locked film of a map, as a table over speed, temperature and load for programs without the map.
 
 `ContactLaw.locked_factors` reads the responses of the films in the map. An export has its factors at places that are
 even in ln u, 1/(T - `COLDEST`) and ln of the load, and goes straight between them.

@@ -25,7 +25,7 @@ _PARTS_2 = {"Output": "Outputs", "ContinuousStateDerivative": "Derivatives", "In
 
 @dataclass(frozen=True)
 class Identity:
-    """What makes a unit the one that it is.
+    """Attributes that identify a unit.
 
     Attributes
     ----------
@@ -223,5 +223,5 @@ def _structure(root: ElementTree.Element, fmi: str, entries: Sequence[_Entry]) -
 
 
 def _number(fmi: str, reference: int) -> str:
-    """How a variable is named: by its place from 1 on in FMI 2.0, by its reference in FMI 3.0."""
+    """Name of a variable: its place from 1 on in FMI 2.0, its reference in FMI 3.0."""
     return str(reference + 1 if fmi == "2" else reference)

@@ -189,7 +189,7 @@ def _zipped(entries: Mapping[str, bytes]) -> bytes:
 
 
 def _ours(path: Path) -> bool:
-    """Whether a file is a unit that an export made."""
+    """Tell whether a file is a unit that an export made."""
     try:
         with zipfile.ZipFile(path) as archive:
             return f'generationTool="{MARK}'.encode() in archive.read(_DESCRIPTION)

@@ -164,7 +164,7 @@ def _with_fresh_films(job: Job) -> Job:
 
 
 def _keeps_cases(name: str) -> bool:
-    """Whether a solver can keep its cases."""
+    """Tell whether a solver can keep its cases."""
     return solvers.SOLVERS[name].keeps_cases
 
 

@@ -49,7 +49,7 @@ _Reader = Callable[[str, str, str, float, float, Display], "float | None"]
 
 @dataclass(frozen=True)
 class _Request:
-    """What is asked for; length [m], frequencies [Hz], slips and supply are None where they are not given."""
+    """Request for a solve; length [m], frequencies [Hz], slips and supply are None where they are not given."""
 
     job: Job
     point: OperatingPoint
@@ -256,7 +256,7 @@ def _with_stated(arguments: argparse.Namespace, job: Job, problems: list[str]) -
 
 
 def _slips(arguments: argparse.Namespace) -> int:
-    """How many values --slide-to-roll has."""
+    """Number of values that --slide-to-roll has."""
     return len(arguments.slide_to_roll or ())
 
 
@@ -372,7 +372,7 @@ def _plain_number(option: str, text: str, low: float, high: float, problems: lis
 
 
 def _is_of_unit(text: str, unit: str) -> bool:
-    """Whether a quantity was given in a unit of this kind."""
+    """Tell whether a quantity was given in a unit of this kind."""
     try:
         quantity(text, unit)
     except InputError:

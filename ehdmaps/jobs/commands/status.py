@@ -37,7 +37,7 @@ def _here() -> list[Path]:
 
 
 def _is_trace(path: Path) -> bool:
-    """Whether a file is a store or a status of a map."""
+    """Tell whether a file is a store or a status of a map."""
     return path.name.endswith((_STORE, _STATUS)) and path.is_file()
 
 
@@ -104,7 +104,7 @@ def _lines(output: Path, seen: Seen) -> list[str]:
 
 
 def _ago(status: RunStatus) -> str:
-    """How long ago a status was written."""
+    """Time since a status was written."""
     return duration(max((datetime.now(UTC) - datetime.fromisoformat(status.written)).total_seconds(), 0.0))
 
 

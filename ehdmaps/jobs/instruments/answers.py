@@ -1,4 +1,4 @@
-"""What is asked of a contact at one operating point, and what one way of computing it answers.
+"""Question asked of a contact at one operating point, and the answer of one way of computing it.
 
 An answer has what a user looks at: approach, films, stiffness, damping, and the compliances of the film. Errors are
 relative to the value of a reference. Three quantities go through zero, and take the larger of two scales:
@@ -87,7 +87,7 @@ class Question:
 
 @dataclass(frozen=True)
 class Answer:
-    """What one way of computing a contact gives.
+    """Result of one way of computing a contact.
 
     Attributes
     ----------
@@ -143,7 +143,7 @@ def known(values: Mapping[str, float]) -> dict[str, float]:
 
 
 def scales(truth: Answer, question: Question, least_film: float = 0.0) -> dict[str, float]:
-    """What errors are relative to, by quantity, in the units of the values.
+    """Scales that errors are relative to, by quantity, in the units of the values.
 
     Parameters
     ----------

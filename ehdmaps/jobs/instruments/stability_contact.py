@@ -366,7 +366,7 @@ def openfoam_check(job: Job, points: int, seed: int, tell: Callable[[str], None]
 
 
 class _Verdict(NamedTuple):
-    """What is wrong about a case, its part of the bound, and why it has no value; empty texts where nothing is."""
+    """Fault of a case, its part of the bound, and the reason why it has no value; empty texts where there is none."""
 
     wrong: str
     share: float
@@ -429,7 +429,7 @@ def _solved(solver: ContactSolver, wild: WildPoint) -> tuple[FilmSolution, Conta
 
 
 def _line_problem(solver: ContactSolver, wild: WildPoint, loads: tuple[float, ...]) -> tuple[str, float, int]:
-    """What is wrong with a line of loads, how much of its bound it takes, and how many loads have a solution."""
+    """Fault of a line of loads, the share of its bound that it takes, and the number of loads with a solution."""
     contact, _, speed, temperature = wild.point
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -459,7 +459,7 @@ def _line_problem(solver: ContactSolver, wild: WildPoint, loads: tuple[float, ..
 
 
 def _border_problem(solver: ContactSolver, wild: WildPoint, low: float, high: float) -> tuple[str, float]:
-    """What jumps where the status changes between two loads, and how much of the bound that takes."""
+    """Jump where the status changes between two loads, and the share of the bound that it takes."""
 
     def at(load: float) -> tuple[WildPoint, FilmSolution, ContactSolution | None]:
         place = wild._replace(point=wild.point._replace(load=load))
@@ -480,7 +480,7 @@ def _border_problem(solver: ContactSolver, wild: WildPoint, low: float, high: fl
 
 
 def _words(error: EhdmapsError) -> str:
-    """Why something was refused, in words that are alike for alike points."""
+    """Reason for a refusal, in words that are alike for alike points."""
     return _alike(str(error).splitlines()[0])
 
 

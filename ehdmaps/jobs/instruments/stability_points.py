@@ -242,7 +242,7 @@ def groups_of(wild: WildPoint) -> Groups:
 
 
 def status_problem(film: FilmSolution) -> str:
-    """What is wrong with the status of a film."""
+    """Fault in the status of a film."""
     values = [getattr(film, name) for name in _VALUES]
     if not film.status.usable:
         if not film.reason:
@@ -252,7 +252,7 @@ def status_problem(film: FilmSolution) -> str:
 
 
 def _whole_problem(film: FilmSolution, whole: ContactSolution) -> str:
-    """What is wrong with a contact whatever its solver."""
+    """Fault of a contact whatever its solver."""
     numbers = (whole.approach, whole.stiffness, whole.damping)
     if not all(map(math.isfinite, numbers)):
         return f"approach, stiffness, damping are {numbers}"
@@ -399,7 +399,7 @@ def stated_size(error: float) -> float:
 def jump(
     wild: WildPoint, film: FilmSolution, whole: ContactSolution, other: FilmSolution, its: ContactSolution
 ) -> tuple[str, float]:
-    """What changes too much between points a hair apart, and how much of its bound the largest change takes.
+    """Quantities that change too much between points a hair apart, and the share of its bound that the largest takes.
 
     Parameters
     ----------

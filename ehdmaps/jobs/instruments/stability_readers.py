@@ -267,14 +267,14 @@ def _classic() -> bytes:
 
 
 def _as_written(name: str, write: Callable[[Path], None]) -> bytes:
-    """What stands in a file that is written."""
+    """Content of a file that is written."""
     with tempfile.TemporaryDirectory() as folder:
         write(Path(folder) / name)
         return (Path(folder) / name).read_bytes()
 
 
 def _equal(first: object, second: object) -> bool:
-    """Whether two groups are the same, or both not there."""
+    """Tell whether two groups are the same, or both not there."""
     if first is None or second is None:
         return first is second
     return bool(first.equals(second))  # type: ignore[attr-defined]

@@ -38,7 +38,7 @@ _STATED = ("stiffness", "damping", "film offset")
 
 @dataclass(frozen=True)
 class Asked:
-    """What a model answered.
+    """Answers of a model.
 
     Attributes
     ----------
@@ -302,7 +302,7 @@ def _ask(model: ContactModel, questions: Sequence[Question]) -> Asked:
 
 
 def _slow(model: ContactModel) -> bool:
-    """Whether an answer is too expensive to be given twice; programs of their own compile nothing here."""
+    """Tell whether an answer is too expensive to be given twice; programs of their own compile nothing here."""
     return bool(getattr(getattr(model, "solver", None), "slow", False))
 
 

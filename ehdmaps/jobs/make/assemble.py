@@ -87,7 +87,7 @@ def filled(values: FloatArray, holes: BoolArray, axis: int, coordinate: FloatArr
 
 
 def _both_neighbours(usable: BoolArray, axis: int) -> BoolArray:
-    """Whether both neighbours along an axis are usable; False at its ends."""
+    """True where both neighbours along an axis are usable; False at its ends."""
     moved = np.moveaxis(usable, axis, 0)
     both = np.zeros_like(moved)
     both[1:-1] = moved[:-2] & moved[2:]
@@ -214,7 +214,7 @@ def only_usable(films: Mapping[str, npt.NDArray[Any]]) -> dict[str, npt.NDArray[
 
 
 def _usable(status: npt.NDArray[Any]) -> BoolArray:
-    """Whether the numbers of a point may be used."""
+    """True where the numbers of a point may be used."""
     return np.isin(status, [int(known) for known in Status if known.usable])
 
 

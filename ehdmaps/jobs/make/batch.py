@@ -105,7 +105,7 @@ class Batch:
 
 
 def is_batch(source: str | PathLike[str]) -> bool:
-    """Whether a file is a batch file: TOML with a table [batch]; no problem of a file is told here.
+    """Tell whether a file is a batch file: TOML with a table [batch]; no problem of a file is reported here.
 
     Parameters
     ----------
@@ -191,7 +191,7 @@ def parse_batch(text: str, name: str, where: str, solver: str | None = None, to_
 
 @dataclass(frozen=True)
 class _Lists:
-    """What [batch] says: bearings and oils by their names, as tables of jobs."""
+    """Content of [batch]: bearings and oils by their names, as tables of jobs."""
 
     bearings: Mapping[str, Mapping[str, Any]]
     oils: Mapping[str, Mapping[str, Any]]

@@ -1,4 +1,4 @@
-"""What is made for a batch: maps with films from the film table, and maps that are solved one by one."""
+"""Maps made for a batch: those with films from the film table, and those that are solved one by one."""
 
 from __future__ import annotations
 
@@ -52,12 +52,12 @@ class Planned:
 
     @cached_property
     def solver(self) -> ContactSolver:
-        """What gives its films."""
+        """Solver that gives its films."""
         return solvers.of_map(self.job)
 
     @property
     def reads(self) -> bool:
-        """Whether its films are to be read from the film table, where that serves."""
+        """True where its films are to be read from the film table, if that serves."""
         return isinstance(self.solver, TableSolver)
 
     @cached_property
@@ -122,7 +122,7 @@ _FOLDER = "allowed: a folder for the maps, in one that is there and may be writt
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of one map.
+    """Outcome of making one map.
 
     Attributes
     ----------
@@ -158,7 +158,7 @@ class Outcome:
 
     @property
     def good(self) -> bool:
-        """Whether the map is there, without holes, and its laws miss nothing."""
+        """True where the map is there, without holes, and its laws miss nothing."""
         return self.state != FAILED and not self.lost and not self.missed
 
 
@@ -178,7 +178,7 @@ class BatchResult:
 
 
 def batch_path(batch: Batch, folder: Path) -> Path:
-    """What the store and the status of a batch are named after.
+    """Path that the store and the status of a batch are named after.
 
     Parameters
     ----------
@@ -284,7 +284,7 @@ def generate_batch(
 
 
 def _is_due(planned: Planned, batch: Batch, folder: Path, fresh: bool, outcomes: dict[str, Outcome]) -> bool:
-    """Whether a map is to be made: not where it is there already, nor where something else stands in its place."""
+    """Tell whether a map is to be made: not if it is there already, nor if something else stands in its place."""
     member = planned.member
     output = folder / f"{member.name}.nc"
     there = root_attributes(output) if output.is_file() else {}
@@ -305,7 +305,7 @@ def _is_due(planned: Planned, batch: Batch, folder: Path, fresh: bool, outcomes:
 
 
 def _kept(member: Member, output: Path) -> Outcome | None:
-    """What is to be said of a map that is there; None where it does not read."""
+    """Outcome to report of a map that is there; None where it cannot be read."""
     import netCDF4
 
     try:
@@ -318,7 +318,7 @@ def _kept(member: Member, output: Path) -> Outcome | None:
 
 
 def _outcome(member: Member, output: Path, state: str, dataset: xr.Dataset, lines: bool, seconds: float) -> Outcome:
-    """What became of a map that is there."""
+    """Outcome of a map that is there."""
     films = READ if schema.FILM_TABLE in dataset.attrs else SOLVED
     lost = holes(dataset) + unsolved(dataset)
     missed = tuple(unmet(dataset, lines))

@@ -139,7 +139,7 @@ def _lines(result: BatchResult, written: Path) -> Iterator[str]:
 
 
 def _words(outcome: Outcome) -> str:
-    """What is not good about a map."""
+    """Shortcomings of a map, in words."""
     if outcome.state == FAILED:
         return f"failed: {outcome.reason}"
     lost = [f"{outcome.lost} points without a solution"] if outcome.lost else []

@@ -80,7 +80,7 @@ class Place(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Correction:
-    """What is to be added to the films of the cheaper solver.
+    """Terms to be added to the films of the cheaper solver.
 
     Attributes
     ----------
@@ -205,7 +205,7 @@ class Correction:
         return sum(status.usable for status in self.statuses)
 
     def record(self) -> dict[str, Any]:
-        """What a map says of its correction, in plain values."""
+        """Record of the correction that a map keeps, in plain values."""
         return {
             "asked": len(self.points),
             "usable": self.usable,
@@ -360,7 +360,7 @@ def _ask(
 
 
 def _known(arrays: Arrays) -> BoolArray:
-    """Which points have a film that can be corrected, or correct."""
+    """True where a point has a film that can be corrected, or correct."""
     usable = np.isin(arrays["status"], [int(status) for status in Status if status.usable])
     for name in ("film_offset", "film_compliance", "loss_compliance"):
         usable &= np.isfinite(arrays[name])
@@ -368,7 +368,7 @@ def _known(arrays: Arrays) -> BoolArray:
 
 
 def _both(asked: _Asked) -> BoolArray:
-    """Which points both solvers have solved."""
+    """True where both solvers have solved a point."""
     pairs = zip(asked.cheap, asked.dear, strict=True)
     return np.array([bool(_known(cheap)[0] and _known(dear)[0]) for cheap, dear in pairs], dtype=bool)
 
@@ -432,7 +432,7 @@ def _applied(
 
 
 def _slow_change(task: LineTask, loads: FloatArray, old: Films, new: Films) -> Any:
-    """What the correction of the slow film changes of its response, complex, shape (n, k) [m2/N].
+    """Change of the slow film's response by its correction, complex, shape (n, k) [m2/N].
 
     To first order in frequency it is that of film and loss compliance. It dies out as a rigid film forgets, since how a
     locked film answers does not depend on how thick it is, in natural frequencies.
@@ -449,7 +449,7 @@ def _slow_change(task: LineTask, loads: FloatArray, old: Films, new: Films) -> A
 
 
 def _regressions(among: Candidates, asked: _Asked, both: BoolArray) -> tuple[Regression, Regression]:
-    """Of film offset and loss, of the points that both solvers have solved."""
+    """Regressions of film offset and loss, over the points that both solvers have solved."""
     kept = np.flatnonzero(both)
     chosen = [asked.chosen[i] for i in kept]
     cheap, dear = (_films([found[i] for i in kept]) for found in (asked.cheap, asked.dear))
@@ -555,7 +555,7 @@ def _errors(points: Sequence[SamplePoint], where: Place, found: Films, true: Fil
 
 
 def _ended(cheap: Arrays, dear: Arrays) -> tuple[Status, str]:
-    """How a point ended: by the dearer solver, or where that has solved it, by the cheaper one."""
+    """Status and reason of a point: of the dearer solver, or where that has solved it, of the cheaper one."""
     for arrays, whose in ((dear, ""), (cheap, "by the solver of the map: ")):
         status = Status(int(arrays["status"][0]))
         if not status.usable:
@@ -566,7 +566,7 @@ def _ended(cheap: Arrays, dear: Arrays) -> tuple[Status, str]:
 
 
 def _too_few(cheap: ContactSolver, dear: ContactSolver, among: Candidates, asked: _Asked, both: BoolArray) -> str:
-    """Why there is no correction."""
+    """Reason why there is no correction."""
     causes = Counter(
         (status.word, reason)
         for pair, solved in zip(zip(asked.cheap, asked.dear, strict=True), both, strict=True)

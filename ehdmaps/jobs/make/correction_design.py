@@ -1,4 +1,4 @@
-"""Where a dearer solver tells most about what a cheaper one gets wrong: places over a job's own range.
+"""Places where a dearer solver tells most about what a cheaper one gets wrong, over a job's own range.
 
 A place is (s, ln(1 + L), T): zeta = ln(M/M_valley(L)) and Moes' L, by which the film of a contact goes at one
 temperature, and the temperature [K]. zeta is stretched around the damping valley, zeta = 0.3 sinh(s): there films
@@ -111,7 +111,7 @@ class Candidates:
         return np.asarray(places / np.where(self.ranges > 0.0, self.ranges, 1.0))
 
     def nearest(self, to: FloatArray) -> IndexArray:
-        """Which of some places is nearest to each candidate, shape (n,).
+        """Index of the nearest of some places for each candidate, shape (n,).
 
         Parameters
         ----------

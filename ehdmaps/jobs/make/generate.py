@@ -117,7 +117,7 @@ MOST_HALVINGS = 3
 
 @dataclass(frozen=True)
 class Within:
-    """What a map is made within that is one of several: their common store and status, and what marks it as theirs."""
+    """Surroundings of a map that is one of several: their common store and status, and what marks it as theirs."""
 
     store: Results
     status: StatusFile
@@ -396,7 +396,7 @@ def _refined(
 
 
 def _served(planned: _Plan, dataset: xr.Dataset, result: SweepResult) -> bool:
-    """Whether the film table has served a map: it makes laws, and films miss no bars that these miss."""
+    """Tell whether the film table has served a map: it makes laws, and films miss no bars that these miss."""
     if REFUSED in dataset.attrs:
         return False
     check = planned.check

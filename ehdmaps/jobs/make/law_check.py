@@ -185,7 +185,7 @@ def checked_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -
 
 
 def unmet(dataset: xr.Dataset, with_backbone: bool) -> list[str]:
-    """What the laws of a map miss, a line each, and what can be done; nothing where they were not checked.
+    """Shortfalls of the laws of a map, a line each, and what can be done; nothing where they were not checked.
 
     Parameters
     ----------
@@ -211,7 +211,7 @@ def unmet(dataset: xr.Dataset, with_backbone: bool) -> list[str]:
 
 
 def met(attributes: Mapping[str, Any]) -> bool:
-    """Whether the laws of a map are within their bars at as many of the checked points as they should be.
+    """Tell whether the laws of a map are within their bars at as many of the checked points as they should be.
 
     Parameters
     ----------
@@ -256,7 +256,8 @@ def coarse_axis(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) ->
 
 
 def films_met(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> bool:
-    """Whether films between the points, without the table of a law, are within the bars at as many points as wanted.
+    """Tell whether films between the points, without the table of a law, are within the bars at as many points as
+    wanted.
 
     Parameters
     ----------
@@ -288,7 +289,7 @@ def _between(
 
 
 def _missed_between(field: FilmField, task: LineTask, fresh: ContactSolution, check: LawCheck) -> bool:
-    """Whether films between the lines miss a bar."""
+    """Tell whether films between the lines miss a bar."""
     bars, damping_bars = check.compliance_bars, check.damping_bars
     (load,), u, T, contact = task.loads, task.entrainment_speed, task.temperature, task.contact
     films = field.films(contact.name, np.array([[[load]]]), np.array([u]), np.array([T]))

@@ -48,7 +48,7 @@ _MOST_ROUNDS = 6
 
 @dataclass(frozen=True)
 class Settings:
-    """What a regression is made with.
+    """Settings of a regression.
 
     Attributes
     ----------
@@ -64,7 +64,7 @@ class Settings:
 
 @dataclass(frozen=True)
 class LeftOut:
-    """What a regression says of each of its own points once it is left out.
+    """Predictions of a regression for each of its own points once it is left out.
 
     Attributes
     ----------
@@ -154,7 +154,7 @@ class Regression:
 
     @property
     def with_slopes(self) -> bool:
-        """Whether slopes are observed."""
+        """True where slopes are observed."""
         return len(self.settings.noises) > 1
 
     @cached_property
@@ -213,7 +213,7 @@ class Regression:
 
     @cached_property
     def left_out(self) -> LeftOut:
-        """What is predicted of each point by the others."""
+        """Predictions of each point by the others."""
         errors, spreads = self._left_out
         predicted = self.observed.reshape(errors.shape[1], -1).T - errors
         slope = predicted[:, 1] if self.with_slopes else np.full(len(predicted), np.nan)

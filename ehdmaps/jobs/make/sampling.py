@@ -31,7 +31,7 @@ class SamplePoint(NamedTuple):
 
 
 def drawable(job: Job) -> bool:
-    """Whether there is something between the points of a job's axes, and a speed above zero.
+    """Tell whether there is something between the points of a job's axes, and a speed above zero.
 
     Parameters
     ----------

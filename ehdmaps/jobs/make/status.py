@@ -1,4 +1,4 @@
-"""How far a map is: on stderr for the one who waits, and in a small file beside the store for others.
+"""Progress of a map: on stderr for the one who waits, and in a small file beside the store for others.
 
 The process that makes the map holds a lock on the file, which the operating system drops with the process, however it
 ends: a file that nobody holds is one of a run that was interrupted. Every version of the file is a new one, locked
@@ -51,7 +51,7 @@ _DURATIONS = ((120.0, 1.0, "s"), (7200.0, 60.0, "min"), (172800.0, 3600.0, "h"),
 
 
 class Pace:
-    """How fast it goes, and how long it will take.
+    """Pace of the work, and the time that it will take.
 
     It counts from the end of the first piece of work on, and leaves out what this process compiles. There is no
     estimate as long as one wait makes up more than half of the time counted: other processes may compile, too, and what
@@ -200,7 +200,7 @@ class _Stderr:
             sys.stderr.flush()
 
     def isatty(self) -> bool:
-        """Whether it is a terminal."""
+        """Tell whether it is a terminal."""
         return sys.stderr.isatty()
 
     def fileno(self) -> int:
@@ -243,7 +243,7 @@ _TRIALS = 10
 
 @dataclass(frozen=True)
 class RunStatus:
-    """How far a map was when the file was written.
+    """Progress of a map when the file was written.
 
     Attributes
     ----------
@@ -399,7 +399,7 @@ class StatusFile:
 
 
 def about(job: Job) -> str:
-    """What is made, in words."""
+    """Description of what is made, in words."""
     return f"{job.title}, {job.lubricant.title}, solver {job.solver}"
 
 
@@ -446,7 +446,7 @@ def look(output: Path) -> Seen | None:
 
 
 def _is_held(descriptor: int) -> bool | None:
-    """Whether another process holds the lock of an open file; None where the file system has no locks."""
+    """Tell whether another process holds the lock of an open file; None where the file system has no locks."""
     try:
         fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
     except BlockingIOError:

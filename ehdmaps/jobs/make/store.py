@@ -1,4 +1,4 @@
-"""What is solved already: arrays by key, in one SQLite file beside the map.
+"""Results solved already: arrays by key, in one SQLite file beside the map.
 
 The file survives kill -9 at any moment (SQLite rolls half-written work back), and SQLite's own exclusive
 lock, which the operating system drops with the process, keeps a second job out. The store knows keys and

@@ -44,7 +44,7 @@ class Task(Protocol):
 
     @property
     def slow(self) -> bool:
-        """Whether its result is worth a trip to the disk of its own."""
+        """True where its result is worth a trip to the disk of its own."""
         ...
 
     def run(self) -> Arrays:
@@ -56,12 +56,12 @@ class Task(Protocol):
         ...
 
     def is_final(self, arrays: Arrays) -> bool:
-        """Whether a result is kept; one that is not is tried again by the next run."""
+        """Tell whether a result is kept; one that is not is tried again by the next run."""
         ...
 
 
 class Progress(Protocol):
-    """Where the sweep tells how far it is."""
+    """Listener that the sweep tells how far it is."""
 
     def taken_over(self, points: int) -> None:
         """So many points were in the store already."""

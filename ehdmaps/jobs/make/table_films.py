@@ -35,7 +35,7 @@ _LOOKED_AT, _SEED = 500, 4
 
 
 def unserved(job: Job, solver: ContactSolver) -> str:
-    """Why points and laws of a job are not read from the film table; empty where they are.
+    """Reason why points and laws of a job are not read from the film table; empty where they are.
 
     The table has to have films wherever a law looks, and the errors that it states have to be small enough at enough
     random points, see `STIFFNESS_BAR`.
@@ -79,7 +79,7 @@ def unserved(job: Job, solver: ContactSolver) -> str:
 
 
 def within_bars(lubricant: Lubricant, points: list[SamplePoint]) -> BoolArray:
-    """Whether the errors that the table states are small enough, see `STIFFNESS_BAR`.
+    """True where the errors that the table states are small enough, see `STIFFNESS_BAR`.
 
     Parameters
     ----------

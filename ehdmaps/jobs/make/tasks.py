@@ -116,7 +116,7 @@ class LineTask:
 
     @property
     def slow(self) -> bool:
-        """Whether every point deserves to be brought to the disk at once."""
+        """True where every point deserves to be brought to the disk at once."""
         return self.solver.slow
 
     def run(self) -> Arrays:
@@ -134,17 +134,17 @@ class LineTask:
         return _spectrum_arrays([no_spectrum(film, np.array(self.natural_frequencies))] * self.points)
 
     def is_final(self, arrays: Arrays) -> bool:
-        """Whether no point failed: a crash, a kill or an end of time may not happen again."""
+        """Tell whether no point failed: a crash, a kill or an end of time may not happen again."""
         return not (arrays["status"] == int(Status.FAILED)).any()
 
 
 def knows_heat(solver: ContactSolver) -> bool:
-    """Whether films of a solver hang on heat, which its settings say by the key physics."""
+    """Tell whether films of a solver depend on heat, which its settings say by the key physics."""
     return solver.settings().get("physics", ISOTHERMAL) != ISOTHERMAL
 
 
 def _solid_heat(material: Material, solver: ContactSolver) -> dict[str, dict[str, float]]:
-    """What heat takes of the solids, for the key of a task; nothing of an isothermal solver."""
+    """Data of the solids that heat needs, for the key of a task; none for an isothermal solver."""
     if not knows_heat(solver):
         return {}
     return {"solids": {name: getattr(material, name) for name in ("conductivity", "heat_capacity", "density")}}

@@ -168,7 +168,7 @@ _OF_THE_OFFSET = "film_offset"
 
 @dataclass(frozen=True)
 class Difference:
-    """How far one variable of two maps lies apart, over the points at which both have it.
+    """Difference of one variable between two maps, over the points at which both have it.
 
     A difference is (B - A)/|A|: positive where B is the larger one.
 
@@ -404,7 +404,7 @@ def _difference(name: str, relative: FloatArray, stated: FloatArray, left_out: i
 
 
 def _usable(dataset: xr.Dataset) -> BoolArray:
-    """Whether a point was solved; filled ones were not."""
+    """True where a point was solved; filled ones were not."""
     return np.isin(dataset["status"].values, [int(status) for status in Status if status.usable])
 
 

@@ -1,4 +1,4 @@
-"""What a map file holds, in words and in the units that engineers use."""
+"""Content of a map file, in words and in the units that engineers use."""
 
 from __future__ import annotations
 

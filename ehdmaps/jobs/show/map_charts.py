@@ -74,7 +74,7 @@ _DASHES = ("", "7 3", "2 3", "9 3 2 3")
 
 @dataclass(frozen=True)
 class Operated:
-    """Where a machine uses a map.
+    """Part of a map that a machine uses.
 
     Attributes
     ----------
@@ -344,7 +344,7 @@ def _operated(
 
 
 def _shades(of: MapCurves, contact: LineContact, temperature: float | None) -> list[Shade]:
-    """Where the viscosity is extrapolated at some speed; a line alone where its reach is assumed."""
+    """Shades where the viscosity is extrapolated at some speed; a line alone where its reach is assumed."""
     here = of.emap.dataset.sel(contact=contact.name).sel(temperature=temperature, method="nearest")
     beyond = here["viscosity_extrapolated"].transpose("load", ...).values.max(axis=1) > 0
     if not beyond.any():
@@ -360,7 +360,7 @@ def _shades(of: MapCurves, contact: LineContact, temperature: float | None) -> l
 def _says(
     of: MapCurves, name: str, loads: FloatArray, varied: FloatArray, axis: Display, found: Sequence[FloatArray]
 ) -> Iterator[str]:
-    """What the curves say, in sentences."""
+    """Yield what the curves say, in sentences."""
     label, display = _NAMES[name]
     middle = int(np.argmin(np.abs(np.log(loads / np.sqrt(loads[0] * loads[-1])))))
     first, last = float(found[0][middle]), float(found[-1][middle])
@@ -396,7 +396,7 @@ def _says(
 
 
 def _valley(values: FloatArray, loads: FloatArray, at: str) -> Iterator[str]:
-    """Where damping has its valley: a minimum inside the curve."""
+    """Yield where damping has its valley: a minimum inside the curve."""
     if values.size < 3 or not np.all(np.isfinite(values)):
         return
     before, after = np.maximum.accumulate(values), np.maximum.accumulate(values[::-1])[::-1]
@@ -408,7 +408,7 @@ def _valley(values: FloatArray, loads: FloatArray, at: str) -> Iterator[str]:
 
 
 def _lambda_words(loads: FloatArray, varied: FloatArray, axis: Display, found: Sequence[FloatArray]) -> Iterator[str]:
-    """Where Lambda is below 1 and 3 on these curves."""
+    """Yield where Lambda is below 1 and 3 on these curves."""
     for limit, words in ((BOUNDARY, "boundary lubrication"), (MIXED, "mixed lubrication")):
         below = [shown(axis, float(value)) for value, curve in zip(varied, found, strict=True) if (curve < limit).any()]
         if not below:

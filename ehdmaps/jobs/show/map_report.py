@@ -86,7 +86,7 @@ def limits(emap: EHDMap, prefix: str) -> Markup:
 
 
 def _sentences(emap: EHDMap) -> Iterator[str]:
-    """What limits the map, in sentences."""
+    """Yield what limits the map, in sentences."""
     dataset = emap.dataset
     ranges = ", ".join(span(dataset[name].values, display) for name, display in AXES)
     yield (
@@ -206,7 +206,7 @@ def _drawing(dataset: xr.Dataset, states: IntArray, title: str, name: str) -> Ma
 
 
 def _key() -> Markup:
-    """What the colours mean."""
+    """Key to the colours."""
     entries = [
         tag(
             "li",
@@ -299,7 +299,7 @@ def in_short(of: MapCurves) -> Iterator[str]:
 
 
 def _usable(emap: EHDMap) -> str:
-    """Whether a law can be made."""
+    """Say whether a law can be made."""
     try:
         emap.check_usable()
     except MapError:

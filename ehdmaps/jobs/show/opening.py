@@ -54,7 +54,7 @@ def open_given(path: str | PathLike[str], structure: str | None, roughness: str 
 
 
 def _is_job(path: str | PathLike[str]) -> bool:
-    """Whether a job is given in the place of a map."""
+    """Tell whether a job is given in the place of a map."""
     if Path(path).suffix:
         return Path(path).suffix == ".toml"
     from ehdmaps.jobs.reader import shipped_jobs

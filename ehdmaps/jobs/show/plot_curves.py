@@ -62,7 +62,7 @@ class Sheet:
 
     @cached_property
     def dataset(self) -> xr.Dataset:
-        """What the map holds, and what is derived of it."""
+        """Data of the map, and those derived from it."""
         return self.emap.dataset if self.derived is None else self.emap.dataset.assign(self.derived.data_vars)
 
     @property

@@ -1,4 +1,4 @@
-"""What roughness makes of the films of a map, on one page: Lambda and the film's share of the load."""
+"""Effect of roughness on the films of a map, on one page: Lambda and the film's share of the load."""
 
 from __future__ import annotations
 

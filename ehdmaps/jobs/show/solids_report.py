@@ -1,4 +1,4 @@
-"""What finite elements found of a bearing, in words, and the structural laws side by side; load over the length."""
+"""Findings of finite elements on a bearing, in words, and the structural laws side by side; load over the length."""
 
 from __future__ import annotations
 

@@ -28,7 +28,7 @@ _PLACES = (("inlet", COLOURS[0]), ("centre", COLOURS[7]), ("spike", WARNING))
 
 @dataclass(frozen=True)
 class FilmRow:
-    """What a row shows.
+    """Data that a row shows.
 
     Attributes
     ----------

@@ -203,7 +203,7 @@ def point_table(job: Job, records: list[dict[str, Any]], point: OperatingPoint, 
 
 
 def _overlaps(record: dict[str, Any]) -> bool:
-    """Whether the load sharing of a rough contact is out of its range."""
+    """Tell whether the load sharing of a rough contact is out of its range."""
     share, distance = record.get(FILM_SHARE), record.get(MEAN_DISTANCE)
     return share is not None and distance is not None and bool(overlapping(share, distance))
 

@@ -32,7 +32,7 @@ STRESS = Display("MPa", 1e-6)
 
 @dataclass(frozen=True)
 class TractionRequest:
-    """What is asked for.
+    """Traction that is asked for.
 
     Attributes
     ----------
