@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
     from mbs.analyses.auto import AutoSettings, automatic
     from mbs.analyses.campbell import campbell
-    from mbs.analyses.case import Case, LawChoice
+    from mbs.analyses.case import Case
     from mbs.analyses.hammer import HammerSettings, hammer
     from mbs.analyses.lsa import LsaSettings, lsa
     from mbs.analyses.modes import modes
@@ -137,7 +137,7 @@ _HOMES = {
     "HeatPaths": "bearings.thermal",
     "Inertia": "model.body",
     "Input": "model.elements",
-    "LawChoice": "analyses.case",
+    "LawChoice": "scene.choices",
     "Load": "model.elements",
     "LsaSettings": "analyses.lsa",
     "Model": "scene.assembly",

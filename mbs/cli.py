@@ -8,26 +8,10 @@ import sys
 from collections.abc import Sequence
 from typing import Any
 
+from ehdmaps.choices import PHYSICS, SHEAR, Choice, add_choices
 from ehdmaps.errors import AnalysisError
 from ehdmaps.program import Parser, count, run
-from mbs.model.relaxation import DEFAULT_FILMS
-
-VARIED_KEYS = (
-    "clearance, temperature, films, supply, housing-damping, ramp, start-angle, load-factor, step, slices, cutoff, law"
-)
-"""The keys of `mbs.instruments.varied.VARIED`, which takes longer to import than a command to be refused."""
-
-_MORE = "; more than once to compare"
-_LAW = (
-    "hertz | hertz:TIME | hertz:DAMPING | table:FILE.csv | formula | table | constant:NAME | map; default: map with "
-    "--map, else table, or hertz of a scene without oil. table: films of the scene's oil from the film table, without "
-    "a map. TIME is damping over stiffness of a dry contact ('hertz:1.25e-5 s'; usual: 0.25e-5 to 2.5e-5 s), DAMPING a "
-    "constant one ('hertz:100 N s/m' of each contact of a roller), FILE.csv has points of approach, load and damping, "
-    "NAME a table [laws.NAME]"
-)
-_STRUCTURE = (
-    "law of the solids in the contacts of a map: iso16281 | palmgren | half_space | fe; default: that of its job"
-)
+from mbs.scene.choices import OPTIONS, VARIED
 
 
 def parser() -> argparse.ArgumentParser:
@@ -62,14 +46,11 @@ def parser() -> argparse.ArgumentParser:
             _cage_angles(command)
         if name == "runup":
             _runup(command)
-        _films(command, compares=several)
     sweep = _scene_command(commands, "sweep", "modes, bearings and frequency responses over speed", compares=True)
-    _films(sweep, compares=True)
     _sweep(sweep)
     critical = _scene_command(
         commands, "critical", "critical speeds, and the response to unbalances and orders over speed", compares=True
     )
-    _films(critical, compares=True)
     _speeds(critical)
     campbell = _scene_command(
         commands,
@@ -77,25 +58,20 @@ def parser() -> argparse.ArgumentParser:
         "run-up in time as levels over speed and frequency; SCENE may be a recorded run (.nc, .csv, .uff, .wav)",
         compares=True,
     )
-    _films(campbell, compares=True)
     _campbell(campbell)
     variants = _scene_command(
         commands,
         "variants",
         "a difference between two laws in a run-up under single changes, as a table",
         compares=True,
-        clearances=False,
     )
-    _films(variants, compares=True)
     _variants(variants)
     hammer = _scene_command(commands, "hammer", "a simulated hammer test: records as a universal file", compares=True)
-    _films(hammer, compares=True)
     _parallel(hammer)
     _hammer(hammer)
     report = _scene_command(
         commands, "report", "the scene as one page to send: no network needed, prints to PDF", compares=False
     )
-    _films(report, compares=False)
     _speeds(report)
     report.add_argument(
         "--result",
@@ -158,29 +134,6 @@ def _runup(command: argparse.ArgumentParser) -> None:
     _recorded(command)
 
 
-def _films(command: argparse.ArgumentParser, compares: bool) -> None:
-    """Add the kind of the films."""
-    command.add_argument(
-        "--films",
-        metavar="KIND",
-        action="append",
-        help="memory: films follow oscillations at their own frequency; slow: stiffness and damping of slow motion at "
-        f"any frequency; dry: --law hertz{_MORE if compares else ''}; default: {DEFAULT_FILMS}. Statics are the same "
-        "for memory and slow",
-    )
-
-
-def _supply(command: argparse.ArgumentParser, of: str, compares: bool) -> None:
-    """Add the oil supply."""
-    command.add_argument(
-        "--supply",
-        metavar="OIL",
-        action="append",
-        help="oil that all bearings get: flooded | oil bath | oil air | grease, or the oil layer before "
-        f"each contact, such as '5 um'{_MORE if compares else ''}; default: {of}",
-    )
-
-
 def _parallel(command: argparse.ArgumentParser) -> None:
     """Add the number of processes."""
     command.add_argument(
@@ -190,7 +143,6 @@ def _parallel(command: argparse.ArgumentParser) -> None:
 
 def _sweep(command: argparse.ArgumentParser) -> None:
     """Add the options of a sweep."""
-    _load_and_angle(command)
     _parallel(command)
     _speeds(command)
     _cage_angles(command)
@@ -218,7 +170,6 @@ def _speeds(command: argparse.ArgumentParser) -> None:
 def _campbell(command: argparse.ArgumentParser) -> None:
     """Add the options of a Campbell diagram."""
     _parallel(command)
-    _load_and_angle(command)
     command.add_argument(
         "--sensor",
         metavar="NAME",
@@ -278,15 +229,8 @@ def _tradeoff(commands: Any) -> None:
     words = "speed against accuracy of a scene, measured: laws, supplies, maps, slices, cut-off, step, cage angles"
     command: argparse.ArgumentParser = commands.add_parser("tradeoff", help=words, description=words)
     command.add_argument("scene", metavar="SCENE")
-    command.add_argument(
-        "--map",
-        metavar="MAP.nc",
-        action="append",
-        help="made by `ehdmaps generate` for the same bearing, the reference; more than once for rows of other maps. "
-        "Without one the film formula is the reference",
-    )
-    command.add_argument("--structure", metavar="NAME", help=_STRUCTURE)
-    command.add_argument("--clearance", metavar="LENGTH", help='diametral clearance of all bearings, such as "20 um"')
+    choices = [choice for choice in OPTIONS if choice.name not in ("law", "films", "supply", "start-angle")]
+    add_choices(command, choices, "scene", several=True, more=_rows_of_maps)
     command.add_argument("--sensor", metavar="NAME", help="of the sum level; default: the first of an acceleration")
     command.add_argument("--highest", metavar="FREQUENCY", help='highest frequency, such as "5 kHz"')
     command.add_argument("--window", metavar="TIME", help='length of the windows, such as "50 ms"')
@@ -306,26 +250,10 @@ def _variants(command: argparse.ArgumentParser) -> None:
         default=[],
         metavar=("KEY", "VALUE"),
         help="a key and its values, such as clearance '0 um' '15 um', one at a time around the base; more than once "
-        f"for more keys, left out: the base alone. Keys: {VARIED_KEYS}",
+        f"for more keys, left out: the base alone. Keys: {', '.join(VARIED)}",
     )
     command.add_argument("--highest", metavar="FREQUENCY", help='highest frequency, such as "5 kHz"')
     command.add_argument("--window", metavar="TIME", help='length of the windows, such as "50 ms"')
-
-
-def _load_and_angle(command: argparse.ArgumentParser) -> None:
-    """Add the factor of all loads and the angle of all cages."""
-    command.add_argument(
-        "--start-angle",
-        metavar="ANGLE",
-        action="append",
-        help='at which all cages start, such as "7.5 deg", in place of the scene\'s; more than once to compare',
-    )
-    command.add_argument(
-        "--load-factor",
-        metavar="FACTOR",
-        action="append",
-        help="multiplies all loads of the scene; more than once to compare",
-    )
 
 
 def _bearing(commands: Any) -> None:
@@ -351,7 +279,6 @@ def _bearing(commands: Any) -> None:
         metavar="ANGLE",
         help='of the load from y, where a roller is, towards z, such as "15 deg"; or its parts along y and z (0 deg)',
     )
-    command.add_argument("--temperature", metavar="TEMPERATURE", help='of the raceways, such as "60 degC" (40 degC)')
     for side in ("inner", "outer"):
         command.add_argument(
             f"--{side}-ring",
@@ -359,20 +286,11 @@ def _bearing(commands: Any) -> None:
             help=f"of the {side} ring alone, such as '60 degC'; it changes the clearance; the law takes the mean of "
             "both",
         )
-    command.add_argument("--map", metavar="MAP.nc", help="made by `ehdmaps generate` for this bearing")
-    command.add_argument("--structure", metavar="NAME", help=_STRUCTURE)
-    command.add_argument(
-        "--law",
-        metavar="LAW",
-        help="hertz | hertz:TIME | hertz:DAMPING (TIME: damping over stiffness) | table:FILE.csv (points of approach, "
-        "load and damping) | formula | table (films from the film table, without a map) | map; default: map with "
-        "--map, else table",
-    )
-    _supply(command, "[supply] of the file, else of the job of the map, else flooded", compares=False)
+    of_machines = ("films", "load-factor", "start-angle")
+    add_choices(command, [choice for choice in OPTIONS if choice.name not in of_machines], "file", several=True)
     command.add_argument(
         "--oil", metavar="NAME", help="oil without a map: FVA3, Spirax MA 80W; default: the file's, else FVA3"
     )
-    command.add_argument("--clearance", metavar="LENGTH", help='diametral, such as "20 um"; default: the file\'s, none')
     command.add_argument(
         "--profile",
         metavar="PROFILE",
@@ -384,12 +302,6 @@ def _bearing(commands: Any) -> None:
     command.add_argument(
         "--coupled", action="store_true", help="slices know of their neighbours: the elasticity of three dimensions"
     )
-    command.add_argument(
-        "--roughness",
-        metavar="LENGTH",
-        help='combined rms roughness, such as "0.2 um": film and asperities share the load; default: [surface] of the '
-        "file, else of the job of the map, else smooth contacts, with 0.3 um for Lambda",
-    )
     command.add_argument("-o", "--output", metavar="OUT.nc", help="result as netCDF, or a row a point as .csv")
     command.add_argument("--plot", metavar="FIG.png", help="figure; also .pdf, .svg")
 
@@ -399,7 +311,8 @@ def _plan(commands: Any) -> None:
     words = "which ranges a scene needs of a contact map, and the job that covers just these"
     command: argparse.ArgumentParser = commands.add_parser("plan", help=words, description=words)
     command.add_argument("scene", metavar="SCENE")
-    command.add_argument("--clearance", metavar="LENGTH", help='diametral clearance of all bearings, such as "20 um"')
+    choices = [choice for choice in OPTIONS if choice.name in ("temperature", "clearance", "load-factor")]
+    add_choices(command, choices, "scene", several=True)
     command.add_argument(
         "--margin", metavar="FACTOR", help="highest load of the map over the largest one at rest, for what moves (3)"
     )
@@ -450,30 +363,28 @@ def _modal_fit(commands: Any) -> None:
     command.add_argument("--plot", metavar="FIG.png", help="figure; also .pdf, .svg")
 
 
-def _scene_command(
-    commands: Any, name: str, words: str, compares: bool, clearances: bool = True
-) -> argparse.ArgumentParser:
-    """Add a command on a scene; one that compares takes several laws and maps, and clearances if it says so."""
+def _once(choice: Choice[Any]) -> str:
+    """Words on a choice that is made once: none."""
+    return ""
+
+
+def _compared(choice: Choice[Any]) -> str:
+    """Words on a choice that may be made more than once."""
+    return "; more than once to compare"
+
+
+def _rows_of_maps(choice: Choice[Any]) -> str:
+    """Words on the maps of a trade."""
+    more = ", the first is the reference, more make rows; without one the film formula is the reference"
+    return more if choice.name == "map" else ""
+
+
+def _scene_command(commands: Any, name: str, words: str, compares: bool) -> argparse.ArgumentParser:
+    """Add a command on a scene; one that compares takes several values of a choice."""
     command: argparse.ArgumentParser = commands.add_parser(name, help=words, description=words)
     command.add_argument("scene", metavar="SCENE")
     # What comes twice is an error of the command, in words, where it does not compare.
-    more = _MORE if compares else ""
-    command.add_argument(
-        "--map",
-        metavar="MAP.nc",
-        action="append",
-        help=f"made by `ehdmaps generate` for the same bearing; more than once for other types of bearing{more}",
-    )
-    command.add_argument("--structure", metavar="NAME", help=_STRUCTURE)
-    command.add_argument("--law", metavar="LAW", action="append", help=f"{_LAW}{more}")
-    _supply(command, "[supply] of the scene, else of the job of the map, else flooded", compares)
-    command.add_argument(
-        "--clearance",
-        metavar="LENGTH",
-        action="append",
-        help='diametral clearance of all bearings, such as "20 um", in place of the scene\'s'
-        + (more if clearances else ""),
-    )
+    add_choices(command, OPTIONS, "scene", several=True, more=_compared if compares else _once)
     if name == "report":
         command.add_argument(
             "-o", "--output", metavar="REPORT.html", help="default: the scene's name with .html, in this folder"
@@ -501,18 +412,12 @@ def _auto(command: argparse.ArgumentParser, tolerance: bool = True) -> None:
         metavar="FOLDER",
         help="for maps that --auto makes and keeps; made if missing; default: this one",
     )
-    command.add_argument(
-        "--physics",
-        metavar="NAME",
-        help="heat in the films of the map of --auto: isothermal | inlet-heat | thermal; default: by the rule of the "
-        "inlet where that matters and holds",
-    )
-    command.add_argument(
-        "--shear",
-        metavar="LAW",
-        help="law of the shear stress in the films of the map of --auto: newtonian | eyring | carreau | limiting; "
-        "default: limiting where that matters",
-    )
+    for choice, default in (
+        (PHYSICS, "by the rule of the inlet where that matters and holds"),
+        (SHEAR, "limiting where that matters"),
+    ):
+        words = f"{choice.said}, of the map of --auto; default: {default}"
+        command.add_argument(f"--{choice.name}", metavar=choice.metavar, help=words)
     if not tolerance:
         return
     command.add_argument(
@@ -529,13 +434,7 @@ def _run(commands: Any, top: argparse.ArgumentParser) -> None:
     words = "every analysis for which the scene has a table: statics, modes, lsa, sweep, and campbell or runup"
     command: argparse.ArgumentParser = commands.add_parser("run", help=words, description=words)
     command.add_argument("scene", metavar="SCENE")
-    command.add_argument(
-        "--map",
-        metavar="MAP.nc",
-        action="append",
-        help="made by `ehdmaps generate` for the same bearing; more than once for other types of bearing; or --auto",
-    )
-    command.add_argument("--clearance", metavar="LENGTH", help='diametral clearance of all bearings, such as "20 um"')
+    add_choices(command, OPTIONS, "scene", several=True)
     command.add_argument("-o", "--output", metavar="FOLDER", help="results, figures and texts of all analyses")
     _auto(command)
     # The command asks for the others by their own words.

@@ -7,6 +7,7 @@ import importlib
 import sys
 from collections.abc import Sequence
 
+from ehdmaps.choices import MAP_CHOICES, PHYSICS, SHEAR, add_choices
 from ehdmaps.errors import InputError
 from ehdmaps.program import Parser, count, run
 
@@ -16,11 +17,7 @@ _SOLVER = (
     "job where it knows them, and default settings"
 )
 
-_STRUCTURE = "law of the solids in approach, k and c: iso16281 | palmgren | half_space | fe; default: that of the job"
-
 _TARGET = "csv"
-
-_ROUGHNESS = 'combined rms roughness, "0.2 um", or smooth; default: that of the job'
 
 
 def parser() -> argparse.ArgumentParser:
@@ -77,25 +74,20 @@ def parser() -> argparse.ArgumentParser:
 
     show = commands.add_parser("show", help="what a map holds")
     show.add_argument("map", metavar="MAP.nc")
-    show.add_argument("--structure", metavar="NAME", help=_STRUCTURE)
-    show.add_argument("--roughness", metavar="LENGTH", help=_ROUGHNESS)
+    add_choices(show, MAP_CHOICES, "job", several=False)
 
-    plot = commands.add_parser("plot", help="stiffness, damping and films on one page")
+    plot = commands.add_parser(
+        "plot",
+        help="stiffness, damping and films on one page; of rough surfaces Lambda and the share of the films instead",
+    )
     plot.add_argument("map", metavar="MAP.nc")
     plot.add_argument("-o", "--output", metavar="FIG.png", help="default: the map's name with .png; also .pdf, .svg")
-    plot.add_argument("--structure", metavar="NAME", help=_STRUCTURE)
-    plot.add_argument(
-        "--roughness",
-        metavar="LENGTH",
-        help='combined rms roughness, "0.2 um": Lambda and the film\'s share of the load instead, with the ending '
-        "_roughness.png",
-    )
+    add_choices(plot, MAP_CHOICES, "job", several=False)
 
     report = commands.add_parser("report", help="a map as one page to send: no network needed, prints to PDF")
     report.add_argument("map", metavar="MAP.nc")
     report.add_argument("-o", "--output", metavar="REPORT.html", help="default: the map's name with .html")
-    report.add_argument("--structure", metavar="NAME", help=_STRUCTURE)
-    report.add_argument("--roughness", metavar="LENGTH", help=f"with it also the film parameter Lambda; {_ROUGHNESS}")
+    add_choices(report, MAP_CHOICES, "job", several=False)
 
     solve = commands.add_parser("solve", help="one operating point, as a table")
     solve.add_argument("job", metavar="JOB")
@@ -112,12 +104,7 @@ def parser() -> argparse.ArgumentParser:
         metavar=("FROM", "TO", "POINTS"),
         help='response at many frequencies, spaced logarithmically: "10 Hz" "20 kHz" 60; with --plot as a picture',
     )
-    solve.add_argument(
-        "--physics", metavar="NAME", help="isothermal | inlet-heat | thermal: what the film knows of heat; the job's"
-    )
-    solve.add_argument(
-        "--shear", metavar="LAW", help="newtonian | eyring | carreau | limiting: law of the shear stress; the job's"
-    )
+    add_choices(solve, (PHYSICS, SHEAR), "job", several=False)
     solve.add_argument("--shear-stress", metavar="STRESS", help='of --shear, such as "6 MPa"; default: of that law')
     solve.add_argument(
         "--slide-to-roll",
@@ -185,8 +172,7 @@ def _add_export(commands: argparse._SubParsersAction[Parser]) -> None:
     export.add_argument("--list", action="store_true", help="list the targets")
     export.add_argument("--to", metavar="TARGET", default=_TARGET, help="default: csv, curves over load as a table")
     export.add_argument("-o", "--output", metavar="PATH", help="default: the map's name with the target's ending")
-    export.add_argument("--structure", metavar="NAME", help=_STRUCTURE)
-    export.add_argument("--roughness", metavar="LENGTH", help=_ROUGHNESS)
+    add_choices(export, MAP_CHOICES, "job", several=False)
 
     def add_arguments_of_target(argv: Sequence[str]) -> None:
         from ehdmaps.exports.target import find

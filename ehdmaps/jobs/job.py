@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import dataclasses
 import hashlib
-import json
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -305,24 +303,3 @@ def _alike(a: object, b: object) -> bool:
     if isinstance(a, float) and isinstance(b, float):
         return math.isclose(a, b, rel_tol=1e-14)
     return a == b
-
-
-def record_json(record: object) -> str:
-    """Write a record of plain values or a dataclass as JSON, the same text for the same values.
-
-    Infinity, which JSON does not know, becomes the word "inf".
-    """
-    if dataclasses.is_dataclass(record) and not isinstance(record, type):
-        record = dataclasses.asdict(record)
-    return json.dumps(_plain(record), sort_keys=True, allow_nan=False, ensure_ascii=False)
-
-
-def _plain(value: object) -> object:
-    """Return a value with every float finite or a word."""
-    if isinstance(value, Mapping):
-        return {str(key): _plain(entry) for key, entry in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_plain(entry) for entry in value]
-    if isinstance(value, float) and not math.isfinite(value):
-        return str(value)
-    return value

@@ -1,46 +1,14 @@
-"""Oil supply and roughness as people write them: tables [supply] and [surface], or texts of a command line."""
+"""Oil supply and roughness as files state them: the tables [supply] and [surface]."""
 
 from __future__ import annotations
 
 from ehdmaps.jobs.table import Table
 from ehdmaps.physics.oil_supply import LAYERS, THICKEST, THINNEST, OilSupply
-from ehdmaps.physics.surface import FINEST, LIMITS, ROUGHEST, SMOOTH, Surface
-from ehdmaps.units import FILM, PRESSURE, closest, quantity_within, short
+from ehdmaps.physics.surface import FINEST, LIMITS, ROUGHEST, Surface
+from ehdmaps.units import FILM, PRESSURE
 
 KEYS = ("oil_layer", "lubrication")
 """Keys of [supply]; a table has one of them."""
-
-_THICKNESSES = f"{FILM.text(THINNEST)} to {FILM.text(THICKEST)}"
-
-
-def supply_from_text(text: str) -> OilSupply:
-    """Read a supply from one text: a kind of lubrication, or the thickness of an oil layer.
-
-    Parameters
-    ----------
-    text : str
-        One of the names of `ehdmaps.physics.oil_supply.LAYERS`, or a length such as "5 um".
-
-    Raises
-    ------
-    InputError
-        With one problem, which does not say where: the caller knows that.
-
-    Examples
-    --------
-    >>> supply_from_text("oil air").label
-    'oil air (oil layer 2 um)'
-    >>> supply_from_text("5 um").oil_layer
-    5e-06
-    """
-    if text in LAYERS:
-        return OilSupply.named(text)
-    names = tuple(LAYERS)
-    wrong = (
-        f"got {short(text)}{closest(text, names)}; allowed: {', '.join(names)}, or the thickness of an oil layer of "
-        f"{_THICKNESSES}, such as '5 um'"
-    )
-    return OilSupply(quantity_within(text, "m", THINNEST, THICKEST, wrong))
 
 
 def read_supply(section: Table) -> OilSupply | None:
@@ -101,33 +69,6 @@ def supply_keys(supply: OilSupply) -> dict[str, str]:
     if supply.flooded or supply.oil_layer == LAYERS.get(supply.lubrication):
         return {"lubrication": "flooded" if supply.flooded else supply.lubrication}
     return {"oil_layer": f"{supply.oil_layer!r} m"}
-
-
-_ROUGHNESSES = f"{FILM.text(FINEST)} to {FILM.text(ROUGHEST)}"
-
-
-def surface_from_text(text: str) -> Surface:
-    """Read a surface from one text: the combined rms roughness, or "smooth".
-
-    Parameters
-    ----------
-    text : str
-        Length such as "0.2 um", or "smooth".
-
-    Raises
-    ------
-    InputError
-        With one problem, which does not say where: the caller knows that.
-
-    Examples
-    --------
-    >>> surface_from_text("0.2 um").label
-    'roughness 0.2 um'
-    """
-    if text == "smooth":
-        return SMOOTH
-    wrong = f"got {short(text)}; allowed: a combined rms roughness of {_ROUGHNESSES}, such as '0.2 um', or smooth"
-    return Surface(quantity_within(text, "m", FINEST, ROUGHEST, wrong))
 
 
 def read_surface(section: Table) -> Surface | None:

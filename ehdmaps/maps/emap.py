@@ -35,10 +35,10 @@ from ehdmaps.maps.records import (
     completed,
     contacts_of,
     lubricant_from_json,
+    record_json,
     restructured,
     supply_from_json,
     surface_from_json,
-    surface_json,
 )
 from ehdmaps.maps.rolling_film import RollingFilm, rolling_film
 from ehdmaps.maps.usable import check_backbone, check_grid, check_loads
@@ -136,12 +136,24 @@ class EHDMap:
         surface : Surface
             Roughness of the surfaces.
         """
-        if surface == self.surface:
-            return self
+        return self if surface == self.surface else self._stating(schema.SURFACE, record_json(surface), surface.smooth)
+
+    def with_supply(self, supply: OilSupply) -> EHDMap:
+        """The same films, whose laws are those of another oil supply where nothing else is asked for.
+
+        Parameters
+        ----------
+        supply : OilSupply
+            Oil before each contact.
+        """
+        return self if supply == self.supply else self._stating(schema.OIL_SUPPLY, record_json(supply), supply.flooded)
+
+    def _stating(self, attribute: str, text: str, usual: bool) -> EHDMap:
+        """The same films with another attribute of the job; without it where that is the usual one."""
         dataset = self.dataset.copy()
-        dataset.attrs.pop(schema.SURFACE, None)
-        if not surface.smooth:
-            dataset.attrs[schema.SURFACE] = surface_json(surface)
+        dataset.attrs.pop(attribute, None)
+        if not usual:
+            dataset.attrs[attribute] = text
         if schema.CHECKSUM in dataset.attrs:
             dataset.attrs[schema.CHECKSUM] = content_sha256(dataset, self.backbone)
         return EHDMap(dataset, self.backbone)

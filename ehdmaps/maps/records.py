@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, is_dataclass
 from typing import Any
 
 import numpy as np
@@ -206,9 +206,25 @@ def supply_from_json(text: str) -> OilSupply:
         raise _broken("oil_supply", error) from error
 
 
-def surface_json(surface: Surface) -> str:
-    """Attribute `surface` of a map with these surfaces."""
-    return json.dumps(asdict(surface), sort_keys=True, allow_nan=False)
+def record_json(record: object) -> str:
+    """Write a record of plain values or a dataclass as JSON, the same text for the same values.
+
+    Infinity, which JSON does not know, becomes the word "inf".
+    """
+    if is_dataclass(record) and not isinstance(record, type):
+        record = asdict(record)
+    return json.dumps(_plain(record), sort_keys=True, allow_nan=False, ensure_ascii=False)
+
+
+def _plain(value: object) -> object:
+    """Return a value with every float finite or a word."""
+    if isinstance(value, Mapping):
+        return {str(key): _plain(entry) for key, entry in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(entry) for entry in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return str(value)
+    return value
 
 
 def surface_from_json(text: str) -> Surface:

@@ -29,15 +29,14 @@ from ehdmaps.physics.heat import PHYSICS
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.rheology import SHEARS
 from mbs.analyses import film_verdicts
-from mbs.analyses.case import LawChoice, Subject
 from mbs.analyses.film_verdicts import Verdict
 from mbs.analyses.plan import PlanResult, PlanSettings, plan
 from mbs.model.relaxation import Films
 from mbs.scene.assembly import Model
+from mbs.scene.choices import LawChoice, Subject
 from mbs.scene.contact_laws import law_label
-from mbs.scene.map_set import MapSet
+from mbs.scene.map_set import MapSet, table_maps
 from mbs.scene.scene import Scene
-from mbs.scene.table_maps import table_maps
 
 R = TypeVar("R")
 

@@ -35,7 +35,7 @@ from mbs.model.equilibrium import equilibrium
 from mbs.output.campbell_table import campbell_dataset, of_sensors
 from mbs.output.files import described
 from mbs.output.results import BAND, with_states
-from mbs.scene.assembly import Model, law_attributes, supply_attributes
+from mbs.scene.assembly import Model, choice_attributes, law_attributes
 from mbs.scene.scene import Scene
 from mbs.settings import CampbellSettings, RunUp
 from mbs.spectral.campbell import RunUpSpectra, run_up_spectra
@@ -300,7 +300,7 @@ def campbell(
     dataset = with_states(dataset, [states_of(entry.case.model) for entry in runs], ("law",))
     # The dataset says of each law what it is.
     laws = "; ".join(f"{entry.case.label}: {entry.case.model.law}" for entry in runs)
-    supplies = supply_attributes([(entry.case.label, entry.case.model) for entry in runs])
+    supplies = choice_attributes([(entry.case.label, entry.case.model) for entry in runs])
     dataset = described(dataset, **{**law_attributes(runs[0].case.model), "law": laws, **supplies})
     return CampbellResult(settings, tuple(seen), course, tuple(orders), tuple(runs), tuple(failed), dataset)
 

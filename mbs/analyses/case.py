@@ -18,12 +18,9 @@ from typing import Any, Generic, TypeVar
 
 from ehdmaps.errors import AnalysisError, EhdmapsError, InputError
 from ehdmaps.interrupts import deaf_children
-from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.workers import start_worker
-from mbs.model.relaxation import Films
-from mbs.scene.assembly import Model, assemble
-from mbs.scene.map_set import MapSet
-from mbs.scene.scene import Scene
+from mbs.scene.assembly import Model
+from mbs.scene.choices import Subject
 
 Progress = Callable[[int, int], None]
 """Called with what is done and what there is to do in all: first with (0, total), last with (total, total)."""
@@ -31,60 +28,6 @@ Progress = Callable[[int, int], None]
 
 def silent(done: int, total: int) -> None:
     """Tell nobody."""
-
-
-@dataclass(frozen=True)
-class LawChoice:
-    """A contact law as it was chosen.
-
-    Attributes
-    ----------
-    label : str
-        The law in two words.
-    name : str or None
-        Name of the law, as `mbs.scene.assembly.assemble` takes it.
-    maps : MapSet or None
-        The maps of the law `map`, one for each type of bearing.
-    films : {"slow", "memory"} or None
-        Which films it is to have.
-    supply : OilSupply or None
-        Oil supply of all bearings; None for that of the scene, or of the map.
-    """
-
-    label: str
-    name: str | None
-    maps: MapSet | None = None
-    films: Films | None = None
-    supply: OilSupply | None = None
-
-    @property
-    def has_films(self) -> bool:
-        """Tell whether it knows an oil."""
-        return self.name in ("map", "formula") or (self.name is None and self.maps is not None)
-
-
-@dataclass(frozen=True, eq=False)
-class Subject:
-    """Subject of a run: a scene with a law.
-
-    Attributes
-    ----------
-    scene : Scene
-        The scene.
-    law : LawChoice
-        The law.
-    clearance : float or None
-        Diametral clearance of all bearings [m]; None for those of the scene.
-    """
-
-    scene: Scene
-    law: LawChoice
-    clearance: float | None = None
-
-    def model(self) -> Model:
-        """The model; see `mbs.scene.assembly.assemble`."""
-        law = self.law
-        return assemble(self.scene, law.name, law.maps, self.clearance, law.films, law.supply)
 
 
 @dataclass(frozen=True, eq=False)

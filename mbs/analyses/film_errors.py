@@ -14,9 +14,8 @@ from mbs.bearings.bearing_element import RingElement, ring_following
 from mbs.linearised.validity import FilmError, LoadedContacts
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
-from mbs.model.relaxation import NOTABLE, Films, Relaxation
+from mbs.model.relaxation import FILM_WORDS, NOTABLE, Films, Relaxation
 from mbs.scene.assembly import Model
-from mbs.scene.contact_laws import FILM_WORDS
 
 
 def film_errors(

@@ -21,7 +21,7 @@ from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.output.files import described
 from mbs.output.results import run_dataset, with_energy, with_states
-from mbs.scene.assembly import Model, law_attributes, supply_attributes
+from mbs.scene.assembly import Model, choice_attributes, law_attributes
 from mbs.scene.scene import Scene
 from mbs.settings import RunUp
 from mbs.timedata.netcdf_file import signal_variables
@@ -267,5 +267,5 @@ def _of_laws(found: RunUps) -> xr.Dataset:
         key: sum(int(part.attrs[key]) for part in parts) for key in ("steps", "steps_halved", "newton_iterations")
     }
     words = "; ".join(f"{label}: {run.model.law}" for label, run in zip(found.labels, found.runs, strict=True))
-    supplies = supply_attributes([(label, run.model) for label, run in zip(found.labels, found.runs, strict=True)])
+    supplies = choice_attributes([(label, run.model) for label, run in zip(found.labels, found.runs, strict=True)])
     return joined.assign_attrs({**parts[0].attrs, **counts, "law": words, **supplies})

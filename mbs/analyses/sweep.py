@@ -29,7 +29,7 @@ from mbs.model.system import System
 from mbs.output.files import described
 from mbs.output.results import with_states
 from mbs.output.sweep_data import critical_dataset, sweep_dataset
-from mbs.scene.assembly import Model, law_attributes, laws_attributes, supply_attributes
+from mbs.scene.assembly import Model, choice_attributes, law_attributes, laws_attributes
 from mbs.scene.scene import Scene
 from mbs.settings import SweepRange
 
@@ -183,7 +183,7 @@ def _dataset(cases: Sequence[Case], found: Sequence[Sweep]) -> xr.Dataset:
         values = np.stack([both[part] for both in losses])
         attributes = {"units": unit, "long_name": f"{words}; none without a map with rolling forces"}
         dataset[name] = (("case", "speed", "bearing"), values, attributes)
-    supplies = supply_attributes([(case.label, case.model) for case in cases])
+    supplies = choice_attributes([(case.label, case.model) for case in cases])
     dataset = with_states(dataset, [[states_of(there) for there in row] for row in models], ("case", "speed"))
     return described(dataset, **{**law_attributes(cases[0].model), "law": "; ".join(named), **supplies})
 

@@ -8,22 +8,17 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
 
+from ehdmaps.choices import PHYSICS, SHEAR, texts_of
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.make.batch_generate import folder_problem, make_folder
 from ehdmaps.jobs.make.status import progress
 from ehdmaps.jobs.make.store import store_path
-from ehdmaps.physics.heat import PHYSICS
-from ehdmaps.physics.rheology import SHEARS
 from ehdmaps.program import tell
-from ehdmaps.units import LOAD, SPEED, TEMPERATURE, closest
+from ehdmaps.units import LOAD, SPEED, TEMPERATURE
 from mbs.analyses.auto import MOST_TOLERANCE, TOLERANCE, Automatic, AutoSettings, MadeMap, settled
-from mbs.analyses.case import LawChoice, Subject
 from mbs.analyses.planning import MARGIN
-from mbs.commands.cases import FILMS
 from mbs.commands.common import Done, Looked
-from mbs.commands.options import read_clearance, read_supplies
-from mbs.model.relaxation import Films
-from mbs.scene.contact_laws import law_label
+from mbs.scene.choices import CHOICES, OPTIONS, Subject, named_law
 from mbs.scene.reader import read_scene
 from mbs.scene.scene import Scene
 
@@ -32,6 +27,9 @@ R = TypeVar("R")
 
 _CONTRARY = ("map", "structure")
 """Options that stand for a map that is there."""
+
+_OF_FILMS = tuple(choice for choice in OPTIONS if choice.concerned == "films")
+"""Choices that a law without films does not take."""
 
 
 def with_own_maps(
@@ -108,59 +106,63 @@ def _asked(
         if getattr(arguments, option, None)
     ]
     tolerance = read_tolerance(getattr(arguments, "tolerance", None), problems)
-    clearances = getattr(arguments, "clearance", None) or []
-    if len(clearances) > 1:
-        problems.append(f"--clearance: got {len(clearances)} of them; allowed with --auto: one, as each has a plan")
+    problems += [
+        f"--{name}: got {len(texts)} of them; allowed with --auto: one, as each has a plan"
+        for name in ("clearance", "temperature", "roughness")
+        if len(texts := texts_of(arguments, CHOICES[name])) > 1
+    ]
     folder = Path(getattr(arguments, "maps", None) or ".")
     if problem := folder_problem(folder, "--maps"):
         problems.append(problem)
     looked, scene = None, None
     try:
-        scene = read_scene(arguments.scene)
+        scene = _with_surface(read_scene(arguments.scene), arguments)
         if scene.lubricant is None:
             problems.append(f"{scene.name}: got no [lubricant], which a map is made for; add the table to the scene")
         else:
             looked = looks_at(ask(_stand_in(arguments, scene)))
     except InputError as error:
         problems += error.problems
-    films = getattr(arguments, "films", None) or []
-    problems += [f"--films: got {text!r:.60}; allowed: {', '.join(FILMS)}" for text in films if text not in FILMS]
-    read_supplies(getattr(arguments, "supply", None) or (), problems)
-    physics = getattr(arguments, "physics", None)
-    if physics is not None and physics not in PHYSICS:
-        problems.append(f"--physics: got {physics!r:.60}{closest(physics, PHYSICS)}; allowed: {', '.join(PHYSICS)}")
-    shear = getattr(arguments, "shear", None)
-    if shear is not None and shear not in SHEARS:
-        problems.append(f"--shear: got {shear!r:.60}{closest(shear, tuple(SHEARS))}; allowed: {', '.join(SHEARS)}")
+    for choice in (*_OF_FILMS, PHYSICS, SHEAR):
+        choice.values(texts_of(arguments, choice), problems)
     if problems or scene is None or looked is None:
         raise InputError(tuple(dict.fromkeys(problems)))
     make_folder(folder, "--maps")
     return scene, looked, _settings(arguments, tolerance, folder, looked.highest)
 
 
+def _with_surface(scene: Scene, arguments: argparse.Namespace) -> Scene:
+    """The scene with the roughness that was asked for: what it requires depends on it."""
+    rough = CHOICES["roughness"]
+    for surface in rough.values(texts_of(arguments, rough), [])[:1]:
+        scene = rough.change(Subject(scene, named_law("hertz", scene)), surface).scene
+    return scene
+
+
 def _stand_in(arguments: argparse.Namespace, scene: Scene) -> argparse.Namespace:
     """The arguments with a law that is made in a moment in place of the map, to see what is wrong about the others."""
     needs_films = any(entry.centrifugal and not entry.rollers_as_bodies for entry in scene.bearings)
     law = "formula" if needs_films else "hertz"
-    without = {name: None for name in ("films", "supply") if hasattr(arguments, name)}
-    there = _with(arguments, Subject(scene, LawChoice(law_label(law), law)))
+    without = {choice.key: None for choice in _OF_FILMS if hasattr(arguments, choice.key)}
+    there = _with(arguments, Subject(scene, named_law(law, scene)))
     return argparse.Namespace(**{**vars(there), **without})
 
 
 def _settings(arguments: argparse.Namespace, tolerance: float, folder: Path, highest: float) -> AutoSettings:
     """The settings; films and supply that were asked for are taken where one is."""
-    none: list[str] = []
-    films = [text for text in getattr(arguments, "films", None) or () if text in FILMS]
-    supplies = read_supplies(getattr(arguments, "supply", None) or (), none)
-    clearances = [read_clearance(text, none) for text in getattr(arguments, "clearance", None) or ()]
-    kinds: dict[str, Films] = {"memory": "memory", "slow": "slow"}
+
+    def first(name: str) -> Any:
+        choice = CHOICES[name]
+        return next(iter(choice.values(texts_of(arguments, choice), [])), None)
+
+    films = first("films")
     return AutoSettings(
         tolerance=tolerance,
         highest=highest,
         folder=folder,
-        clearance=clearances[0] if clearances else None,
-        films=kinds.get(films[0]) if films else None,
-        supply=supplies[0] if supplies else None,
+        clearance=first("clearance"),
+        films=None if films == "dry" else films,
+        supply=first("supply"),
         physics=getattr(arguments, "physics", None),
         shear=getattr(arguments, "shear", None),
     )

@@ -6,13 +6,14 @@ import argparse
 import dataclasses
 import math
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ehdmaps.choices import STRUCTURE, texts_of
 from ehdmaps.errors import EhdmapsError, InputError
 from ehdmaps.inputs import first_bytes, read_text
 from ehdmaps.outputs import FIGURE, Output, output_problems, write_figure
@@ -21,7 +22,7 @@ from ehdmaps.physics.contact import OIL_TEMPERATURES
 from ehdmaps.physics.lubricant import LUBRICANTS, Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.solids import STEEL, Material
-from ehdmaps.physics.surface import FINEST, ROUGHEST, SMOOTH, Surface
+from ehdmaps.physics.surface import SMOOTH, Surface
 from ehdmaps.units import RPM, TEMPERATURE, Display, closest, quantity, short
 from mbs.analyses.bearing_point import bearing_points
 from mbs.bearings import laws
@@ -29,7 +30,6 @@ from mbs.bearings.bearing import MOST_COUPLED, Bearing
 from mbs.bearings.films import SIDES, FilmSource, FormulaFilms, MapFilms
 from mbs.bearings.laws import Law
 from mbs.bearings.thermal import BearingState, Mounting, operating_clearance
-from mbs.commands.options import NO_MAP, read_clearance, read_supplies
 from mbs.output.bearing_table import (
     WIDE_RANGE,
     BearingDescription,
@@ -39,10 +39,10 @@ from mbs.output.bearing_table import (
     write_csv,
 )
 from mbs.output.files import write_dataset
+from mbs.scene.choices import LACKS, OPTIONS
 from mbs.scene.contact_laws import (
     HERTZ_FORMS,
     TABLE_FORM,
-    TABLE_LAW,
     Damper,
     dry_words,
     hertz_damper,
@@ -51,7 +51,7 @@ from mbs.scene.contact_laws import (
     table_problems,
 )
 from mbs.scene.fields import FORCE, MICROMETRE
-from mbs.scene.map_set import geometry_problems, structure_words
+from mbs.scene.map_set import TABLE_LAW, geometry_problems, structure_words
 from mbs.scene.profiles import profile_from_text
 
 if TYPE_CHECKING:
@@ -67,7 +67,6 @@ MOST_SLICES_IN_ALL = 5_000_000
 """Of all rollers at all points: half a gigabyte."""
 
 _LOADS, _SPEEDS = (1e-3, 1e7), (0.0, 1e5 * math.pi / 30.0)
-_ROUGHNESSES = (FINEST, ROUGHEST)
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,8 +142,10 @@ def read_request(arguments: argparse.Namespace) -> BearingRequest:
     """
     problems: list[str] = []
     given = _bearing(arguments.bearing, problems)
-    emap = _map(arguments.map, arguments.structure, problems)
-    law = _law(arguments.law, emap is not None or arguments.map is not None, problems)
+    chosen = _chosen(arguments, problems)
+    emap = _map(chosen.get("map"), problems)
+    law = _law(chosen.get("law"), "map" in chosen, problems)
+    emap = _structured(emap, law, chosen, problems)
     loads = read_values("--load", arguments.load, "N", _LOADS, FORCE, problems)
     speeds = read_values("--speed", arguments.speed, "rad/s", _SPEEDS, RPM, problems)
     if len(loads) * len(speeds) > MOST_POINTS:
@@ -154,24 +155,22 @@ def read_request(arguments: argparse.Namespace) -> BearingRequest:
             f"--slices: got {short(arguments.slices)} for all rollers at {len(loads) * len(speeds)} points; allowed: "
             f"{MOST_SLICES_IN_ALL} slices in all; take fewer slices or points"
         )
-    around = _one("--temperature", arguments.temperature, "K", OIL_TEMPERATURES, TEMPERATURE, CELSIUS_40, problems)
+    around = chosen.get("temperature", CELSIUS_40)
     inner, outer = (
         _one(f"--{side}-ring", getattr(arguments, f"{side}_ring"), "K", OIL_TEMPERATURES, TEMPERATURE, around, problems)
         for side in SIDES
     )
     temperature = 0.5 * (inner + outer)
-    if None not in (arguments.temperature, arguments.inner_ring, arguments.outer_ring):
+    if "temperature" in chosen and None not in (arguments.inner_ring, arguments.outer_ring):
         problems.append(
-            f"--temperature: got {short(arguments.temperature)} with --inner-ring and --outer-ring; allowed: two of "
+            f"--temperature: got {TEMPERATURE.text(around)} with --inner-ring and --outer-ring; allowed: two of "
             "the three; it is the temperature of a ring that has none of its own"
         )
     stated = _surface(given, emap)
-    assumed = ROUGHNESS if stated.smooth else stated.roughness
-    roughness = _one("--roughness", arguments.roughness, "m", _ROUGHNESSES, MICROMETRE, assumed, problems)
-    surface = stated if arguments.roughness is None else dataclasses.replace(stated, roughness=roughness)
+    surface = dataclasses.replace(stated, roughness=chosen["roughness"].roughness) if "roughness" in chosen else stated
+    roughness = ROUGHNESS if surface.smooth else surface.roughness
     direction = _direction(arguments.direction, problems)
-    clearance = None if arguments.clearance is None else read_clearance(arguments.clearance, problems)
-    bearing = _sliced(given, clearance, arguments, problems)
+    bearing = _sliced(given, chosen.get("clearance"), arguments, problems)
     state = None
     if bearing is not None and (arguments.inner_ring, arguments.outer_ring) != (None, None):
         warm = operating_clearance(bearing.geometry, Mounting(), inner, outer, bearing.material)
@@ -180,18 +179,22 @@ def read_request(arguments: argparse.Namespace) -> BearingRequest:
         bearing = dataclasses.replace(bearing, geometry=geometry)
     if bearing is not None and emap is not None:
         problems += geometry_problems("the bearing", bearing.geometry, emap)
-    oil = _oil(arguments, given, emap, temperature, problems)
-    supply = _supply(arguments.supply or [], given, emap, problems)
+    oil = _oil(arguments.oil, given, emap, "map" in chosen, temperature, problems)
+    stated_supply = None if given is None else given.supply
+    supply = chosen.get("supply") or stated_supply or (FLOODED if emap is None else emap.supply)
     outputs = (
         Output("-o", arguments.output, result_kind(arguments.output)),
         Output("--plot", arguments.plot, FIGURE),
     )
-    read = (arguments.bearing, arguments.map, table_path(law))
+    read = (arguments.bearing, chosen.get("map"), table_path(law))
     problems += output_problems(outputs, [path for path in read if path])
     if problems or bearing is None or given is None or oil is None:
         raise InputError(tuple(dict.fromkeys(problems)))
     if law == TABLE_LAW:
-        law, emap = "map", _table_map(bearing.geometry, oil, given.material, speeds, temperature)
+        made = _table_map(bearing.geometry, oil, given.material, speeds, temperature)
+        law, emap = "map", _structured(made, "map", chosen, problems)
+        if problems:
+            raise InputError(problems)
     contacts = bearing.geometry.contacts(given.material, "iso16281")
     films = MapFilms(emap, supply) if emap is not None else FormulaFilms(contacts, oil, supply)
     return BearingRequest(
@@ -217,7 +220,7 @@ def read_request(arguments: argparse.Namespace) -> BearingRequest:
             direction=math.degrees(math.atan2(direction[1], direction[0])),
             temperature=temperature,
             roughness=roughness,
-            assumed=_assumed(arguments, given, emap, surface),
+            assumed=_assumed(arguments, chosen, given, surface),
             state=state,
         ),
     )
@@ -235,16 +238,18 @@ def _surface(given: _Given | None, emap: EHDMap | None) -> Surface:
     return SMOOTH if emap is None else emap.surface
 
 
-def _assumed(arguments: argparse.Namespace, given: _Given, emap: EHDMap | None, surface: Surface) -> tuple[str, ...]:
+def _assumed(
+    arguments: argparse.Namespace, chosen: Mapping[str, Any], given: _Given, surface: Surface
+) -> tuple[str, ...]:
     """Values that were not given, in words."""
     found = []
-    if arguments.temperature is None and None in (arguments.inner_ring, arguments.outer_ring):
+    if "temperature" not in chosen and None in (arguments.inner_ring, arguments.outer_ring):
         found.append(f"temperature {TEMPERATURE.text(CELSIUS_40)}")
     if surface.smooth:
         found.append(f"combined rms roughness {MICROMETRE.text(ROUGHNESS)} (for Lambda only)")
-    if arguments.clearance is None and given.geometry.diametral_clearance == 0.0:
+    if "clearance" not in chosen and given.geometry.diametral_clearance == 0.0:
         found.append("no clearance")
-    if arguments.oil is None and given.oil is None and arguments.map is None:
+    if arguments.oil is None and given.oil is None and "map" not in chosen:
         found.append(f"oil {OIL}")
     return tuple(found)
 
@@ -358,20 +363,49 @@ def _sliced(
     return Bearing(geometry, profile, slices, given.material, arguments.coupled)
 
 
-def _map(path: str | None, structure: str | None, problems: list[str]) -> EHDMap | None:
-    """The map, by the structural law that is wanted."""
+def _chosen(arguments: argparse.Namespace, problems: list[str]) -> dict[str, Any]:
+    """Values that were chosen, once each, by the names of the choices."""
+    chosen: dict[str, Any] = {}
+    for choice in OPTIONS:
+        texts = texts_of(arguments, choice)
+        if len(texts) > 1:
+            problems.append(
+                f"--{choice.name}: got {len(texts)} of them; allowed: one; run the command again for another"
+            )
+        for value in choice.values(texts[:1], problems):
+            chosen[choice.name] = value
+    return chosen
+
+
+def _map(path: str | None, problems: list[str]) -> EHDMap | None:
+    """The map."""
     if path is None:
-        problems += [] if structure is None else [NO_MAP.format(structure)]
         return None
     from ehdmaps.jobs.show.opening import open_given
 
     try:
-        return open_given(path, structure)
+        return open_given(path)
     except InputError as error:
         problems += error.problems
         return None
     except EhdmapsError as error:
         problems += [f"--map: {line}" for line in str(error).splitlines()]
+        return None
+
+
+def _structured(emap: EHDMap | None, law: str, chosen: Mapping[str, Any], problems: list[str]) -> EHDMap | None:
+    """The map by the structural law that was chosen."""
+    structure = chosen.get(STRUCTURE.name)
+    if structure is None:
+        return emap
+    if emap is None:
+        if law != TABLE_LAW and "map" not in chosen:
+            problems.append(f"--{STRUCTURE.name}: got {structure} {LACKS['maps']}")
+        return None
+    try:
+        return STRUCTURE.change(emap, structure)
+    except InputError as error:
+        problems += [f"--{STRUCTURE.name}: {problem}" for problem in error.problems]
         return None
 
 
@@ -397,16 +431,16 @@ def _law(name: str | None, with_map: bool, problems: list[str]) -> str:
 
 
 def _oil(
-    arguments: argparse.Namespace,
+    name: str | None,
     given: _Given | None,
     emap: EHDMap | None,
+    with_map: bool,
     temperature: float,
     problems: list[str],
 ) -> Lubricant | None:
     """The oil: that of the map, of --oil, of the file, or FVA 3; the temperature must suit it."""
-    name = arguments.oil
     oil = given.oil if given is not None and given.oil is not None else Lubricant.named(OIL)
-    if name is not None and arguments.map is not None:
+    if name is not None and with_map:
         problems.append(f"--oil: got {short(name)} with a map, which was made for an oil; leave one of the two out")
     elif name is not None and name not in LUBRICANTS:
         problems.append(f"--oil: got {short(name)}{closest(name, LUBRICANTS)}; allowed: {', '.join(LUBRICANTS)}")
@@ -421,17 +455,6 @@ def _oil(
         problems += [f"--temperature: {problem}" for problem in error.problems]
         return None
     return oil
-
-
-def _supply(texts: Sequence[str], given: _Given | None, emap: EHDMap | None, problems: list[str]) -> OilSupply:
-    """The oil supply: that of --supply, else of the file, else of the map, else flooded."""
-    if len(texts) > 1:
-        problems.append(f"--supply: got {len(texts)} of them; allowed: one; run the command again for another")
-    found = read_supplies(texts, problems)
-    if found:
-        return found[0]
-    stated = None if given is None else given.supply
-    return stated or (FLOODED if emap is None else emap.supply)
 
 
 def _direction(given: Sequence[str] | None, problems: list[str]) -> tuple[float, float]:

@@ -23,12 +23,12 @@ from mbs.analyses.recorded import (
     recorded_run_of,
 )
 from mbs.analyses.sensors import ALL_SENSORS, chosen_sensors, followed_orders
-from mbs.commands.common import write
-from mbs.commands.options import read_option
+from mbs.commands.common import read_option, write
 from mbs.output.campbell_table import highest_line, peak_lines, resolution_lines, sensor_line
 from mbs.output.files import RESULT
 from mbs.output.time_files import is_time_data, read_time_data, signal_outputs, write_time_data
 from mbs.scene.assembly import Model
+from mbs.scene.choices import OPTIONS
 from mbs.scene.fields import HERTZ, MILLISECOND
 from mbs.scene.reader import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
 from mbs.settings import CampbellSettings
@@ -42,9 +42,9 @@ if TYPE_CHECKING:
 
 _MOST_ORDERS, _LARGEST_ORDER = 50, 1e4
 _OF_A_SCENE = (
-    "law", "map", "structure", "films", "supply", "clearance", "load_factor", "start_angle", "bands", "tolerance",
-    "modes", "auto", "maps", "physics", "measured", "channel",
-)  # fmt: skip
+    *(choice.key for choice in OPTIONS),
+    *("bands", "tolerance", "modes", "auto", "maps", "physics", "measured", "channel"),
+)
 """Options that say something of a simulation, and nothing of a run that is recorded."""
 
 _OF_A_SPEED = ("speed_channel", "tacho", "pulses", "speed_table")

@@ -1,4 +1,4 @@
-"""Code that all commands share: the heading of the output, warnings, writing files."""
+"""Code that all commands share: options with a unit, the heading of the output, warnings, writing files."""
 
 from __future__ import annotations
 
@@ -9,7 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Generic, TypeVar
 
+from ehdmaps.errors import InputError
 from ehdmaps.outputs import write_figure
+from ehdmaps.units import Display, quantity
 from mbs.analyses.soundness import Unsound
 from mbs.output.files import write_dataset
 from mbs.scene.scene import Scene
@@ -154,3 +156,36 @@ def write_plot(figure: Figure, path: str) -> list[str]:
         warnings.simplefilter("always")
         write_figure(figure, path, RESOLUTION)
     return [f"{path}: written", *dict.fromkeys(f"warning: {path}: {entry.message}" for entry in caught)]
+
+
+def read_option(
+    option: str, text: str | None, unit: str, limits: tuple[float, float], display: Display, problems: list[str]
+) -> float | None:
+    """Read a quantity of the command line within limits; None if absent or wrong, with the problem noted.
+
+    Parameters
+    ----------
+    option : str
+        Name of the option, such as "--highest".
+    text : str or None
+        What was given; None if it was left out.
+    unit : str
+        SI unit of the value.
+    limits : (float, float)
+        Smallest and largest value that is allowed, in SI.
+    display : Display
+        How messages show them.
+    problems : list of str
+        Appended to.
+    """
+    if text is None:
+        return None
+    try:
+        value = quantity(text, unit)
+    except InputError as error:
+        problems.append(f"{option}: {error.problems[0]}")
+        return None
+    if not limits[0] <= value <= limits[1]:
+        problems.append(f"{option}: got {text!r:.60}; allowed: {display.text(limits[0])} to {display.text(limits[1])}")
+        return None
+    return value

@@ -21,8 +21,8 @@ from mbs.commands.cases import load_cases
 from mbs.commands.common import Looked, Told, unsound_lines
 from mbs.linearised.modes import Modes
 from mbs.modal.uff import UFF, Measurement, write_uff
+from mbs.model.relaxation import FILM_WORDS
 from mbs.output.model_text import clean, film_lines, free_words, heading
-from mbs.scene.contact_laws import FILM_WORDS
 from mbs.scene.fields import MILLISECOND
 from mbs.transient.hammer import HammerTest
 

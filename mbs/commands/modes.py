@@ -17,8 +17,7 @@ from mbs.analyses.modes import ModesResult, modes
 from mbs.analyses.reach import fade_lines, outside_at
 from mbs.commands.auto import analysed
 from mbs.commands.cases import load_model
-from mbs.commands.common import Looked, unsound_lines, write, write_plot
-from mbs.commands.options import read_option
+from mbs.commands.common import Looked, read_option, unsound_lines, write, write_plot
 from mbs.linearised.modes import Modes
 from mbs.linearised.shapes import skeleton
 from mbs.output.files import RESULT

@@ -19,11 +19,9 @@ from ehdmaps.units import LOAD, RPM, SPEED, TEMPERATURE, Display
 from mbs.analyses import planning
 from mbs.analyses.plan import PlanResult, PlanSettings, plan
 from mbs.analyses.planning import Needed
-from mbs.commands.cases import scene_output_problems
-from mbs.commands.options import read_clearance
+from mbs.commands.cases import read_dry, scene_output_problems
 from mbs.output.model_text import heading
 from mbs.scene.fields import MICROMETRE
-from mbs.scene.reader import read_scene
 from mbs.scene.scene import Scene
 
 _NOTHING = ("nothing written; -o JOB.toml writes the job",)
@@ -72,15 +70,11 @@ def _turning(found: PlanResult) -> list[str]:
 
 
 def _read(arguments: argparse.Namespace) -> tuple[Scene, PlanSettings]:
-    """Read scene, clearance and margin; all problems at once."""
+    """Read the scene with what is chosen of it, and the margin; all problems at once."""
     problems: list[str] = []
-    scene: Scene | None = None
-    try:
-        scene = read_scene(arguments.scene)
-    except InputError as error:
-        problems += error.problems
-    clearance = read_clearance(arguments.clearance, problems) if arguments.clearance is not None else None
-    settings = PlanSettings(clearance, _margin(arguments.margin, problems))
+    margin = _margin(arguments.margin, problems)
+    scene, clearance = read_dry(arguments, problems)
+    settings = PlanSettings(clearance, margin)
     problems += scene_output_problems(arguments.scene, scene.files if scene else (), arguments.output, kind=SEALED)
     if problems or scene is None:
         raise InputError(tuple(dict.fromkeys(problems)))

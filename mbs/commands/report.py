@@ -23,10 +23,11 @@ from mbs.report.campbell import read_result
 from mbs.report.examination import Examination, examined
 from mbs.report.machine import warnings
 from mbs.report.scene_report import scene_report
+from mbs.scene.choices import OPTIONS
 from mbs.scene.map_set import MapSet
 from mbs.settings import SweepRange
 
-_OPTIONS = ("map", "structure", "law", "films", "supply", "clearance", "physics", "shear", "tolerance", "result")
+_OPTIONS = (*(choice.name for choice in OPTIONS), "physics", "shear", "tolerance", "result")
 
 
 class _Asked(NamedTuple):
@@ -102,7 +103,7 @@ def _command(arguments: argparse.Namespace) -> str:
     """The command line, with the names of the files alone."""
     words = ["mbs", "report", Path(arguments.scene).name]
     for option in _OPTIONS:
-        given = getattr(arguments, option, None)
+        given = getattr(arguments, option.replace("-", "_"), None)
         for value in [given] if isinstance(given, str) else given or ():
             words += [f"--{option}", Path(value).name if option in ("map", "result") else value]
     words += ["--auto"] if arguments.auto else []

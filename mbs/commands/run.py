@@ -6,9 +6,11 @@ import argparse
 import importlib
 from pathlib import Path
 
+from ehdmaps.choices import texts_of
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.outputs import Kind, Output, check_outputs, write_text
 from mbs.analyses.campbell import campbell_problems
+from mbs.scene.choices import OPTIONS
 from mbs.scene.reader import read_scene
 from mbs.scene.scene import Scene
 
@@ -73,9 +75,10 @@ def _folder(given: str | None) -> Path | None:
 def _words(arguments: argparse.Namespace, name: str, folder: Path | None) -> list[str]:
     """The command line of one analysis."""
     words = [name, arguments.scene]
-    for path in arguments.map or ():
-        words += ["--map", path]
-    for option in ("clearance", "maps", "tolerance"):
+    for choice in OPTIONS:
+        for text in texts_of(arguments, choice):
+            words += [f"--{choice.name}", text]
+    for option in ("maps", "physics", "shear", "tolerance"):
         if (value := getattr(arguments, option)) is not None:
             words += [f"--{option}", value]
     if arguments.auto:

@@ -24,8 +24,7 @@ from mbs.analyses.runup import RunUpResult, RunUps, runup_problems, runups
 from mbs.commands.auto import analysed
 from mbs.commands.campbell_recorded import read_source, signal_problems
 from mbs.commands.cases import load_cases
-from mbs.commands.common import Looked, Told, unsound_lines, write
-from mbs.commands.options import read_option
+from mbs.commands.common import Looked, Told, read_option, unsound_lines, write
 from mbs.output.files import described
 from mbs.output.model_text import heading, held_lines
 from mbs.output.result_text import drive_lines, energy_lines, signal_lines

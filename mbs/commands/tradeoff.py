@@ -9,11 +9,10 @@ from ehdmaps.errors import InputError
 from ehdmaps.trade.data import TRADE, trade_json, write_trade
 from ehdmaps.trade.text import trade_text
 from mbs.analyses.campbell import campbell_problems
-from mbs.analyses.case import LawChoice
 from mbs.commands.cases import read_compared
-from mbs.commands.common import Told
-from mbs.commands.options import read_option
+from mbs.commands.common import Told, read_option
 from mbs.instruments.tradeoff import TradeoffSettings, tradeoff
+from mbs.scene.choices import LawChoice
 from mbs.scene.fields import HERTZ, MILLISECOND
 from mbs.scene.reader import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
 from mbs.scene.scene import Scene

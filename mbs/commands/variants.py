@@ -9,14 +9,12 @@ from collections.abc import Sequence
 from ehdmaps.errors import InputError
 from ehdmaps.units import RPM, closest
 from ehdmaps.workers import available_cores
-from mbs.analyses.case import LawChoice
 from mbs.analyses.reach import axes_outside, outside_lines
 from mbs.commands.cases import read_compared
-from mbs.commands.common import Told, write
-from mbs.commands.options import read_option
+from mbs.commands.common import Told, read_option, write
 from mbs.instruments.variants import Variant, VariantsResult, Variation, variants
-from mbs.instruments.varied import VARIED
 from mbs.output.model_text import clearance_text, common_supply, held_lines, temperature_text, weight_text
+from mbs.scene.choices import VARIED, LawChoice
 from mbs.scene.fields import HERTZ, MILLISECOND
 from mbs.scene.reader import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
 from mbs.scene.scene import Scene

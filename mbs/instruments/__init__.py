@@ -1,7 +1,6 @@
 """Laboratory instruments of mbs: what measures the program and its choices. No analysis loads them.
 
 ===========  ==================================================================================
-varied       what comparisons vary, one row a key
 tradeoff     speed against accuracy of a scene
 linear_look  what a user looks at in a linear system
 tolerance    step, slices and cut-off that keep the level of a run-up within a tolerance

@@ -15,13 +15,13 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
-from mbs.analyses.case import Subject
 from mbs.analyses.operating import held
 from mbs.analyses.ramp import recorded_run, run_course, silent_run
 from mbs.analyses.sensors import followed_orders
 from mbs.model.elements import Sensor
 from mbs.scene import changes
 from mbs.scene.assembly import Model
+from mbs.scene.choices import Subject
 from mbs.scene.scene import Scene
 from mbs.settings import CampbellSettings, RunUp
 from mbs.spectral.campbell import campbell

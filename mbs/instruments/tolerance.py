@@ -17,6 +17,7 @@ between any two times, they do so the longer the slower the ramp is, and roundin
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import time
 from collections.abc import Sequence
@@ -28,13 +29,15 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.units import RPM
-from mbs.analyses.case import Progress, Subject, silent
+from mbs.analyses.case import Progress, silent
 from mbs.analyses.operating import held
 from mbs.analyses.ramp import recorded_run, run_course
 from mbs.analyses.sensors import looked_at
 from mbs.instruments.ramp_parts import WINDOWS, PartRun, Ramp, RampPart, compressed, ramp_of, run_part
-from mbs.instruments.varied import Numerics
+from mbs.scene.changes import cutoff_of
+from mbs.scene.choices import CHOICES, Subject
 from mbs.scene.fields import MILLISECOND
+from mbs.scene.scene import Scene
 from mbs.settings import CampbellSettings
 from mbs.spectral.campbell import campbell
 from mbs.spectral.run_signal import RunSignal
@@ -78,6 +81,80 @@ _ORDER = 4.0
 _LIMIT = _ORDER / (_ORDER - 1.0)
 _SHARES = {"step": 0.75, "slices": 0.5, "cutoff": 1.0}
 """What each may take of the tolerance that those before it leave."""
+
+KEYS = ("step", "slices", "cutoff")
+"""The fields of `Numerics`, which are names of `mbs.scene.choices.CHOICES`."""
+
+
+@dataclass(frozen=True)
+class Numerics:
+    """Choices of a user about accuracy of a run-up.
+
+    Attributes
+    ----------
+    step : float
+        Time step [s].
+    slices : int or None
+        Slices of all rollers; None without bearings.
+    cutoff : float or None
+        Frequency up to which flexible bodies have modes [Hz]; None without such bodies.
+    """
+
+    step: float
+    slices: int | None
+    cutoff: float | None
+
+    @classmethod
+    def of(cls, scene: Scene) -> Numerics:
+        """Those of a scene: its largest number of slices, and its highest cut-off.
+
+        Raises
+        ------
+        InputError
+            If the scene has no run-up.
+        """
+        if scene.run_up is None:
+            raise InputError(f"{scene.name}: [runup] missing; a run-up needs from, to, duration and step")
+        slices = max((entry.slices for entry in scene.bearings), default=None)
+        return cls(scene.run_up.settings.step, slices, cutoff_of(scene))
+
+    def applied(self, subject: Subject) -> Subject:
+        """A subject with these settings; what they leave open stays as it is.
+
+        Parameters
+        ----------
+        subject : Subject
+            Scene and law.
+
+        Raises
+        ------
+        InputError
+            If they do not fit the scene.
+        """
+        for key in KEYS:
+            value = getattr(self, key)
+            subject = subject if value is None else CHOICES[key].change(subject, value)
+        return subject
+
+    def but(self, **values: float | int | None) -> Numerics:
+        """The same settings with some of them changed."""
+        return dataclasses.replace(self, **values)  # type: ignore[arg-type]
+
+    @property
+    def text(self) -> str:
+        """The settings in words, such as "step 10 us, 21 slices, modes up to 8000 Hz"."""
+        return ", ".join(words for key in KEYS if (words := self.words(key)))
+
+    def words(self, key: str) -> str:
+        """One of the settings in words; empty where it is left open.
+
+        Parameters
+        ----------
+        key : str
+            One of `KEYS`.
+        """
+        value = getattr(self, key)
+        return "" if value is None else CHOICES[key].words(value)
 
 
 @dataclass(frozen=True)

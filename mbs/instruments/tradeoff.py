@@ -19,20 +19,21 @@ from dataclasses import dataclass
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.choices import supply_from_text
 from ehdmaps.errors import AnalysisError, EhdmapsError, InputError
-from ehdmaps.jobs.supply import supply_from_text
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.trade.record import Choice, ErrorSummary, Judged, Trade
 from ehdmaps.units import RPM
-from mbs.analyses.case import LawChoice, Progress, Subject, silent
+from mbs.analyses.case import Progress, silent
 from mbs.analyses.operating import held
 from mbs.analyses.ramp import recorded_run, run_course
 from mbs.analyses.sensors import looked_at
 from mbs.instruments.linear_look import LinearLook, LinearReference, linear_look
 from mbs.instruments.ramp_parts import PartRun, Ramp, RampPart, ramp_of, run_part
-from mbs.instruments.varied import VARIED, Numerics
+from mbs.instruments.tolerance import Numerics
 from mbs.linearised.averaged import pitch
 from mbs.scene import changes
+from mbs.scene.choices import CHOICES, LawChoice, Subject
 from mbs.scene.contact_laws import law_label
 from mbs.scene.fields import HERTZ, MILLISECOND
 from mbs.scene.map_set import MapSet
@@ -269,7 +270,7 @@ def _values(scene: Scene, key: str, highest: float) -> tuple[list[float | int], 
 
 def _with(base: Subject, key: str, value: float | int) -> Subject:
     """The subject with one number changed."""
-    return VARIED[key].change(base, value)
+    return CHOICES[key].change(base, value)
 
 
 def _together(base: Subject, numerics: Numerics) -> _Tried:

@@ -11,20 +11,21 @@ import contextlib
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import xarray as xr
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
-from mbs.analyses.case import Failed, LawChoice, Progress, Subject, side_by_side, silent
+from mbs.analyses.case import Failed, Progress, side_by_side, silent
 from mbs.analyses.operating import held
 from mbs.analyses.ramp import recorded_run, run_course, silent_run
 from mbs.analyses.sensors import followed_orders
-from mbs.instruments.varied import VARIED, Value
 from mbs.model.elements import Sensor
 from mbs.output.campbell_table import variants_dataset
 from mbs.output.files import described
-from mbs.scene.assembly import Model, supply_attributes
+from mbs.scene.assembly import Model, choice_attributes
+from mbs.scene.choices import VARIED, LawChoice, Subject
 from mbs.scene.scene import Scene
 from mbs.settings import CampbellSettings, RunUp
 from mbs.spectral.campbell import campbell
@@ -45,13 +46,17 @@ class Variation:
     Attributes
     ----------
     key : str
-        A key of `mbs.instruments.varied.VARIED`.
-    value : float, int or str
-        Value of the key, in SI.
+        A name of `mbs.scene.choices.VARIED`.
+    value : object
+        Value of the key, in SI; a text is read as `--vary` reads it.
     """
 
     key: str
-    value: Value
+    value: Any
+
+    def __post_init__(self) -> None:
+        if isinstance(self.value, str) and self.key in VARIED:
+            object.__setattr__(self, "value", VARIED[self.key].read(self.value))
 
     @property
     def text(self) -> str:
@@ -211,7 +216,7 @@ def variants(
         scene=scene.name,
         scene_toml=scene.text,
         law=f"{labels[0]}: {base[0].law}; {labels[1]}: {base[1].law}",
-        **supply_attributes(list(zip(labels, base, strict=True))),
+        **choice_attributes(list(zip(labels, base, strict=True))),
     )
     course = runs[pairs[0][0]].course
     return VariantsResult(settings, course, base, labels, sensors, rows, len(outcomes), dataset)
@@ -245,7 +250,7 @@ def _planned(
         pair = []
         for subject, first in zip(bases, (True, False), strict=True):
             try:
-                changed = VARIED[change.key].changed(subject, change.value, first) if change else subject
+                changed = VARIED[change.key].varied(subject, change.value, first) if change else subject
                 pair.append(_place(changed, settings, runs, places))
             except InputError as error:
                 problems += [

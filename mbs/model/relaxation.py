@@ -27,6 +27,9 @@ NOTABLE = 0.05
 DEFAULT_FILMS: Films = "memory"
 """Which films linear analyses have where none are asked for."""
 
+FILM_WORDS: dict[Films, str] = {"memory": "films with memory", "slow": "slow films"}
+"""How people are told that films relax, or that they have stiffness and damping of slow motion at any frequency."""
+
 
 @dataclass(frozen=True, eq=False)
 class Relaxation:

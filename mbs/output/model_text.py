@@ -13,10 +13,10 @@ import numpy as np
 from ehdmaps.units import RPM, TEMPERATURE
 from mbs.bearings.bearing_element import error_words
 from mbs.bearings.thermal import HeatPaths
-from mbs.model.relaxation import NOTABLE
+from mbs.model.relaxation import FILM_WORDS, NOTABLE
 from mbs.output.state_text import state_lines
 from mbs.scene.assembly import Model
-from mbs.scene.contact_laws import FILM_WORDS, supply_words
+from mbs.scene.contact_laws import supply_words
 from mbs.scene.fields import MICROMETRE
 
 if TYPE_CHECKING:

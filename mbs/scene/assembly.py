@@ -25,9 +25,9 @@ from mbs.model.system import Places, System
 from mbs.model.turning import TurningLoad
 from mbs.scene import kinds
 from mbs.scene.bodies import build_bodies
-from mbs.scene.contact_laws import TABLE_LAW, ContactLaws, choose_law, supply_words, surface_label
+from mbs.scene.contact_laws import ContactLaws, choose_law, supply_words, surface_label
 from mbs.scene.kinds import ElementKind
-from mbs.scene.map_set import MapSet
+from mbs.scene.map_set import TABLE_LAW, MapSet, table_maps
 from mbs.scene.oils import oil_warnings
 from mbs.scene.scene import Scene
 from mbs.scene.surroundings import Built, Surroundings
@@ -130,6 +130,8 @@ class Model:
         Surfaces of the contacts; None for laws without films.
     oils : mapping of str to Lubricant
         Oil of each bearing by its name, that of its map where there is one; empty for laws without films.
+    chosen : mapping of str to str
+        What was chosen of the scene beside its law, see `mbs.scene.choices`.
     """
 
     scene: Scene
@@ -145,6 +147,7 @@ class Model:
     supplies: Mapping[str, OilSupply] = field(default_factory=dict)
     surface: Surface | None = None
     oils: Mapping[str, Lubricant] = field(default_factory=dict)
+    chosen: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def warnings(self) -> list[str]:
@@ -213,8 +216,6 @@ def assemble(
     """
     maps = _opened(emap)
     if law == TABLE_LAW and maps is None:
-        from mbs.scene.table_maps import table_maps  # with the solver, for what the table does not know
-
         law, maps = "map", table_maps(scene)
     problems: list[str] = []
     if clearance is not None:
@@ -276,11 +277,11 @@ def law_attributes(model: Model) -> Mapping[str, str]:
     named = {"scene": model.scene.name, "scene_toml": model.scene.text, "law": model.law}
     surface = {} if model.surface is None else {"surface": surface_label(model.surface)}
     warned = {"warnings": "; ".join(model.warnings)} if model.warnings else {}
-    return {**named, **supply_attributes([(model.label, model)]), **surface, **warned}
+    return {**named, **choice_attributes([(model.label, model)]), **surface, **warned}
 
 
 def laws_attributes(labels: Sequence[str], models: Sequence[Model]) -> dict[str, str]:
-    """Attributes of a result of several laws, on them and on their oil supplies.
+    """Attributes of a result of several laws, on them and on what was chosen with them.
 
     Parameters
     ----------
@@ -290,22 +291,24 @@ def laws_attributes(labels: Sequence[str], models: Sequence[Model]) -> dict[str,
         Their models.
     """
     named = list(zip(labels, models, strict=True))
-    return {"law": "; ".join(f"{label}: {model.law}" for label, model in named), **supply_attributes(named)}
+    return {"law": "; ".join(f"{label}: {model.law}" for label, model in named), **choice_attributes(named)}
 
 
-def supply_attributes(models: Sequence[tuple[str, Model]]) -> dict[str, str]:
-    """Attributes of a result on the oil supplies of its models, each with a label where there is more than one.
+def choice_attributes(models: Sequence[tuple[str, Model]]) -> dict[str, str]:
+    """Attributes of a result on oil supplies and choices of its models, each with a label where there are more of them.
 
     Parameters
     ----------
     models : sequence of (str, Model)
-        Labels and models; those whose law has no films are left out.
+        Labels and models. Those whose law has no films have no oil supply.
     """
-    found = [(label, supply_words(model.supplies)) for label, model in models if model.supplies]
-    if not found:
-        return {}
-    words = [f"{label}: {text}" for label, text in found] if len(models) > 1 else [found[0][1]]
-    return {"oil_supply": "; ".join(words)}
+    found: dict[str, list[str]] = {"oil_supply": [], "choices": []}
+    for label, model in models:
+        chosen = ", ".join(f"{name} {text}" for name, text in model.chosen.items())
+        for name, words in (("oil_supply", supply_words(model.supplies)), ("choices", chosen)):
+            if words:
+                found[name].append(f"{label}: {words}" if len(models) > 1 else words)
+    return {name: "; ".join(words) for name, words in found.items() if words}
 
 
 def _with_clearance(scene: Scene, clearance: float, problems: list[str]) -> Scene:

@@ -8,9 +8,6 @@ from pathlib import Path
 import numpy as np
 
 from ehdmaps.errors import InputError
-from mbs.flexible.plan import ReductionPlan
-from mbs.flexible.reduced_body import mode_frequencies, up_to
-from mbs.flexible.reduced_file import read_reduced
 from mbs.model.drive import DrivenSpeed
 from mbs.model.profiles import Advanced, Constant, Course, SpeedProfile
 from mbs.scene.fields import HERTZ
@@ -164,11 +161,17 @@ def with_cutoff(scene: Scene, cutoff: float) -> Scene:
 
 def _may_rise(body: BodySpec) -> bool:
     """Tell whether a body can be reduced to more modes than it has."""
+    from mbs.flexible.plan import ReductionPlan  # with all that reduces bodies
+
     return isinstance(body, ShaftSpec) or (isinstance(body, FlexibleSpec) and isinstance(body.source, ReductionPlan))
 
 
 def _cutoff(body: BodySpec) -> float | None:
     """Frequency up to which a body has modes [Hz]; None where it has none, or all."""
+    from mbs.flexible.plan import ReductionPlan
+    from mbs.flexible.reduced_body import mode_frequencies
+    from mbs.flexible.reduced_file import read_reduced
+
     if isinstance(body, ShaftSpec):
         return body.cutoff
     if not isinstance(body, FlexibleSpec):
@@ -181,6 +184,10 @@ def _cutoff(body: BodySpec) -> float | None:
 
 def _cut(body: BodySpec, cutoff: float) -> BodySpec:
     """A body with another cut-off."""
+    from mbs.flexible.plan import ReductionPlan
+    from mbs.flexible.reduced_body import up_to
+    from mbs.flexible.reduced_file import read_reduced
+
     if isinstance(body, ShaftSpec):
         return body if body.cutoff is None else dataclasses.replace(body, cutoff=cutoff)
     if not isinstance(body, FlexibleSpec):

@@ -26,7 +26,8 @@ from mbs.bearings.bearing_element import NO_CENTRIFUGAL
 from mbs.bearings.bearing_force import NO_COUPLED_MEMORY
 from mbs.bearings.films import DryContacts, FilmSource, FormulaFilms, MapFilms
 from mbs.bearings.laws import DryLaw, Law, TableLaw, curve_problems
-from mbs.model.relaxation import DEFAULT_FILMS, Films
+from mbs.model.relaxation import DEFAULT_FILMS, FILM_WORDS, Films
+from mbs.scene.map_set import TABLE_LAW, speeds_of_laws
 
 if TYPE_CHECKING:
     from ehdmaps.maps.emap import EHDMap
@@ -114,12 +115,6 @@ def _numbers(where: str, number: int, line: str, count: int) -> list[float]:
     return values
 
 
-FILM_WORDS: dict[Films, str] = {"memory": "films with memory", "slow": "slow films"}
-"""How people are told that films relax, or that they have stiffness and damping of slow motion at any frequency."""
-
-_SPEEDS, _BEYOND = (0.05, 10.0), 1.05
-"""Entrainment speeds of laws that are made for a scene [m/s], and how far they go beyond a scene that is faster."""
-
 _HERTZ, _CONSTANT, _TABLE = "hertz:", "constant:", "table:"
 _LONGEST_TIME, _STRONGEST = 1e-2, 1e9
 """Largest damper of a dry contact: by its ratio to the stiffness [s], and as a constant [N s/m], as in [laws.NAME]."""
@@ -130,26 +125,7 @@ HERTZ_FORMS = "hertz:TIME such as 'hertz:1.25e-5 s', hertz:DAMPING such as 'hert
 TABLE_FORM = "table:FILE.csv"
 """The form of the dry law by points, for messages."""
 
-TABLE_LAW = "table"
-"""The law whose films come from the film table: that of maps which are made in memory, see `mbs.scene.table_maps`."""
-
 _LABELS = {"hertz": "dry Hertz", "formula": "film formula"}
-
-
-def speeds_of_laws(geometry: BearingGeometry, scene: Scene) -> tuple[float, float]:
-    """Range of the entrainment speed of laws that are made for a scene [m/s]; no bearing of this geometry exceeds it.
-
-    Parameters
-    ----------
-    geometry : BearingGeometry
-        The bearing.
-    scene : Scene
-        The scene.
-    """
-    spin = max((abs(body.spin) for body in scene.bodies), default=0.0)
-    # Rings turn against each other at most.
-    fastest = abs(geometry.entrainment_speed(spin * scene.fastest, -spin * scene.fastest))
-    return _SPEEDS[0], max(_SPEEDS[1], _BEYOND * fastest)
 
 
 def choose_law(name: str | None, maps: MapSet | None) -> str:

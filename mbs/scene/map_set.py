@@ -7,9 +7,11 @@ makes a law of its own, to be compared.
 
 from __future__ import annotations
 
+import dataclasses
 import itertools
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from ehdmaps.errors import InputError
@@ -19,12 +21,19 @@ from ehdmaps.units import LENGTH
 
 if TYPE_CHECKING:
     from ehdmaps.maps.emap import EHDMap
+    from mbs.scene.scene import Scene
     from mbs.scene.specs import BearingSpec
 
 _SAME = 1e-9
 _COMPARED = ("inner_raceway_diameter", "outer_raceway_diameter", "roller_diameter", "roller_length")
 
 _LABELS = {"reynolds": "Reynolds map", "openfoam": "OpenFOAM map", "formula": "formula map", "hertz": "Hertz map"}
+
+TABLE_LAW = "table"
+"""The law of films from the film table: that of maps that `table_maps` makes in memory."""
+
+_SPEEDS, _BEYOND = (0.05, 10.0), 1.05
+"""Entrainment speeds of laws that are made for a scene [m/s], and how far they go beyond a scene that is faster."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,6 +115,17 @@ class MapSet:
             f"{_made_for(emap)}: {'smooth' if emap.surface.smooth else emap.surface.label}" for emap in self.maps
         )
         return [f"--map: the jobs of the maps state different surfaces ({words}); state [surface] in the scene"]
+
+    def known_at(self, temperature: float) -> bool:
+        """Tell whether a temperature [K] is within all maps.
+
+        Parameters
+        ----------
+        temperature : float
+            Temperature of the raceways [K].
+        """
+        ends = [emap.dataset["temperature"].values[[0, -1]] for emap in self.maps]
+        return all(low <= temperature <= high for low, high in ends)
 
     def each(self, change: Callable[[EHDMap], EHDMap]) -> MapSet:
         """The set with each map changed.
@@ -282,3 +302,62 @@ def _made_by(emap: EHDMap) -> str:
     attributes = emap.dataset.attrs
     films = "films from the film table" if emap.from_table else f"solver {attributes.get('solver', '')}"
     return films + structure_words(emap)
+
+
+def speeds_of_laws(geometry: BearingGeometry, scene: Scene) -> tuple[float, float]:
+    """Range of the entrainment speed of laws that are made for a scene [m/s]; no bearing of this geometry exceeds it.
+
+    Parameters
+    ----------
+    geometry : BearingGeometry
+        The bearing.
+    scene : Scene
+        The scene.
+    """
+    spin = max((abs(body.spin) for body in scene.bodies), default=0.0)
+    # Rings turn against each other at most.
+    fastest = abs(geometry.entrainment_speed(spin * scene.fastest, -spin * scene.fastest))
+    return _SPEEDS[0], max(_SPEEDS[1], _BEYOND * fastest)
+
+
+def table_maps(scene: Scene) -> MapSet:
+    """Maps of all types of bearing of a scene, over the usual ranges and those of the scene; a second each.
+
+    Parameters
+    ----------
+    scene : Scene
+        Bearings and oil.
+
+    Raises
+    ------
+    InputError
+        If the scene has no oil or no bearing.
+    """
+    from ehdmaps.jobs.make.table_law import TEMPERATURES
+
+    if scene.lubricant is None:
+        raise InputError(
+            f"--law: got {TABLE_LAW!r}, but {scene.name} has no [lubricant]; add the table to the scene, or give a map"
+        )
+    if not scene.bearings:
+        raise InputError(f"--law: got {TABLE_LAW!r}, but {scene.name} has no bearings; leave it out")
+    temperatures = min(TEMPERATURES[0], scene.temperature), max(TEMPERATURES[1], scene.temperature)
+    maps: list[EHDMap] = []
+    for spec in scene.bearings:
+        if not any(suits(emap, spec.geometry) for emap in maps):
+            plain = dataclasses.replace(spec.geometry, diametral_clearance=0.0)
+            maps.append(_made(plain, scene.lubricant, speeds_of_laws(plain, scene), temperatures))
+    return MapSet(maps)
+
+
+@lru_cache(maxsize=16)
+def _made(
+    geometry: BearingGeometry,
+    lubricant: Lubricant,
+    speeds: tuple[float, float],
+    temperatures: tuple[float, float],
+) -> EHDMap:
+    """Map of one type of bearing, made once in a process."""
+    from ehdmaps.jobs.make.table_law import table_map  # with the solver, for what the table does not know
+
+    return table_map(geometry, lubricant, entrainment_speeds=speeds, temperatures=temperatures)

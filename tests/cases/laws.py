@@ -9,10 +9,9 @@ import numpy as np
 import xarray as xr
 from scipy.special import erf
 
-from ehdmaps.jobs.job import record_json
 from ehdmaps.maps import schema
 from ehdmaps.maps.contact_curve import ContactCurve, Curve
-from ehdmaps.maps.records import contacts_json
+from ehdmaps.maps.records import contacts_json, record_json
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.closed_form import FormulaSolver, HertzSolver
 from ehdmaps.physics.contact import LineContact, OperatingPoint

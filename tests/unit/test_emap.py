@@ -204,7 +204,7 @@ OILS = [
 
 @pytest.mark.parametrize("oil", OILS, ids=lambda oil: oil.name)
 def test_oils_come_back_from_their_records(oil):
-    from ehdmaps.jobs.job import record_json
+    from ehdmaps.maps.records import record_json
 
     assert lubricant_from_json(record_json(oil.record())) == oil
 

@@ -24,6 +24,7 @@ ALLOWED = {
     "ehdmaps.errors": set(),
     "ehdmaps.extras": {"ehdmaps.errors"},
     "ehdmaps.units": {"ehdmaps.errors"},
+    "ehdmaps.choices": {"ehdmaps.errors", "ehdmaps.units", "ehdmaps.physics", "ehdmaps.maps"},
     "ehdmaps.figures": set(),
     "ehdmaps.inputs": {"ehdmaps.errors"},
     "ehdmaps.netcdf_structure": set(),
@@ -80,6 +81,7 @@ ALLOWED = {
         "ehdmaps",
         "ehdmaps.exports",
         "ehdmaps.arrays",
+        "ehdmaps.choices",
         "ehdmaps.compiling",
         "ehdmaps.provenance",
         "ehdmaps.workers",
@@ -130,6 +132,7 @@ ALLOWED = {
     "mbs.scene.scene": {
         "ehdmaps.exports",
         "ehdmaps.arrays",
+        "ehdmaps.choices",
         "ehdmaps.provenance",
         "ehdmaps.interrupts",
         "ehdmaps.workers",

@@ -5,8 +5,8 @@ import netCDF4
 import pytest
 
 from ehdmaps.errors import InputError
-from ehdmaps.jobs.job import record_json
 from ehdmaps.jobs.reader import parse_job, read_job, shipped_jobs
+from ehdmaps.maps.records import record_json
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.viscosity import TaitDoolittle

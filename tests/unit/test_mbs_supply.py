@@ -14,13 +14,12 @@ from ehdmaps.maps import schema
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from mbs import assemble, read_scene
-from mbs.analyses.case import LawChoice, Subject
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.films import MapFilms
 from mbs.commands.cases import read_compared
-from mbs.instruments.varied import VARIED
 from mbs.output.state_text import FLOODED_NOTE, flooded_note
 from mbs.scene.assembly import law_attributes
+from mbs.scene.choices import VARIED, LawChoice, Subject
 from mbs.scene.contact_laws import ContactLaws, supply_words
 from mbs.scene.map_set import MapSet
 from mbs.scene.reader import parse_scene
@@ -121,8 +120,8 @@ def test_slips_of_a_scene_are_told():
 def test_a_supply_is_a_key_of_comparisons(emaps):
     key = VARIED["supply"]
     film, dry = LawChoice("map", "map", MapSet([emaps[0]])), LawChoice("dry", "hertz")
-    assert key.changed(Subject(scene(), film), key.read("grease"), first=False).law.supply == GREASE
-    assert key.changed(Subject(scene(), dry), key.read("grease"), first=True).law.supply is None
+    assert key.varied(Subject(scene(), film), key.read("grease"), first=False).law.supply == GREASE
+    assert key.varied(Subject(scene(), dry), key.read("grease"), first=True).law.supply is None
     with pytest.raises(InputError, match="got 'grese'"):
         key.read("grese")
 

@@ -11,7 +11,7 @@ import xarray as xr
 from ehdmaps.errors import InputError
 from ehdmaps.maps import schema
 from ehdmaps.maps.emap import EHDMap
-from ehdmaps.maps.records import surface_json
+from ehdmaps.maps.records import record_json
 from ehdmaps.physics.surface import SMOOTH, Surface
 from mbs import assemble
 from mbs.scene.assembly import law_attributes
@@ -37,7 +37,7 @@ ROUGH = '[surface]\nroughness = "0.2 um"\n'
 def emaps():
     """A map that states nothing, and the same with a job that states a roughness."""
     data = dataset_of(speeds=(0.3, 0.6, 1.2, 2.4)).assign_attrs(solver="formula")
-    return EHDMap(data), EHDMap(data.assign_attrs({schema.SURFACE: surface_json(STATED)}))
+    return EHDMap(data), EHDMap(data.assign_attrs({schema.SURFACE: record_json(STATED)}))
 
 
 def test_the_scene_goes_before_the_map_and_dry_laws_have_no_surface(emaps):

@@ -12,13 +12,12 @@ import pytest
 from ehdmaps.errors import InputError
 from mbs import parse_scene, read_scene
 from mbs.analyses.campbell import campbell
-from mbs.analyses.case import LawChoice, Subject
 from mbs.analyses.sensors import looked_at
 from mbs.instruments.ramp_parts import WINDOWS, ramp_of
-from mbs.instruments.tolerance import drift, read_tolerance, within
-from mbs.instruments.varied import Numerics
+from mbs.instruments.tolerance import Numerics, drift, read_tolerance, within
 from mbs.model.profiles import Advanced, Course, Harmonic, SpeedProfile
 from mbs.scene import changes
+from mbs.scene.choices import LawChoice, Subject
 
 DRY = LawChoice("dry", "hertz")
 

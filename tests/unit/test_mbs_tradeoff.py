@@ -12,12 +12,12 @@ from ehdmaps.maps.emap import EHDMap
 from ehdmaps.trade.data import trade_json
 from ehdmaps.trade.text import trade_text
 from mbs import assemble, parse_scene, read_scene
-from mbs.analyses.case import LawChoice
 from mbs.cli import main
 from mbs.instruments import tradeoff as analysis
 from mbs.instruments.linear_look import LinearReference, linear_look
 from mbs.instruments.tradeoff import TradeoffSettings, tradeoff
 from mbs.scene import changes
+from mbs.scene.choices import LawChoice
 from mbs.scene.map_set import MapSet
 from tests.cases.laws import dataset_of
 from tests.unit.test_mbs_tolerance import SWINGING

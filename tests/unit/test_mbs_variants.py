@@ -15,14 +15,13 @@ import xarray as xr
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.maps.emap import EHDMap
 from mbs import assemble, campbell, read_scene
-from mbs.analyses.case import Case, LawChoice, Subject
-from mbs.cli import VARIED_KEYS
+from mbs.analyses.case import Case
 from mbs.instruments import variants as analysis
 from mbs.instruments.variants import Variation, variants
-from mbs.instruments.varied import VARIED
 from mbs.output.campbell_plot import variants_figure
 from mbs.scene import changes
 from mbs.scene.bodies import build_body
+from mbs.scene.choices import VARIED, LawChoice, Subject
 from mbs.scene.map_set import MapSet
 from mbs.spectral.levels import LevelDifference, difference_text
 from tests.cases.laws import dataset_of
@@ -95,7 +94,6 @@ def run_command(scene, **values):
 
 class TestChanges:
     def test_all_keys_are_named_in_the_help_and_read_their_example(self, scene):
-        assert VARIED_KEYS.split(", ") == list(VARIED)
         for key in VARIED.values():
             assert key.text(key.read(key.example))
 
@@ -130,12 +128,12 @@ class TestChanges:
     def test_keys_concern_what_they_say(self, scene):
         dry, film = Subject(scene, DRY), Subject(scene, FORMULA)
         hot, law, slow = VARIED["temperature"], VARIED["law"], VARIED["films"]
-        assert hot.changed(dry, 350.0, first=True) is dry
-        assert hot.changed(film, 350.0, first=False).scene.temperature == 350.0
-        assert law.changed(film, "hertz:1e-5 s", first=False) is film
-        assert law.changed(dry, "hertz:1e-5 s", first=True).law.name == "hertz:1e-5 s"
-        assert slow.changed(film, "memory", first=False).law.films == "memory"
-        assert slow.changed(dry, "memory", first=True) is dry
+        assert hot.varied(dry, 350.0, first=True) is dry
+        assert hot.varied(film, 350.0, first=False).scene.temperature == 350.0
+        assert law.varied(film, "hertz:1e-5 s", first=False) is film
+        assert law.varied(dry, "hertz:1e-5 s", first=True).law.name == "hertz:1e-5 s"
+        assert slow.varied(film, "memory", first=False).law.films == "memory"
+        assert slow.varied(dry, "memory", first=True) is dry
 
     def test_the_base_is_that_of_campbell(self, scene):
         """All sensors of one run give what `campbell` gives of each, to the last digit."""
@@ -253,11 +251,11 @@ class TestRefused:
                 vary=[["clearence", "1 um"], ["clearance"], ["ramp", "3"], ["slices", "0"], ["films", "wet"]],
                 highest="3 m",
             ),
-            "--vary: got 'clearence' (did you mean 'clearance'?); allowed: clearance, temperature, films",
+            "--vary: got 'clearence' (did you mean 'clearance'?); allowed: law, structure, films, supply, roughness,",
             "--vary clearance: got no value; allowed: one or more, such as '15 um'",
             "--vary ramp: got '3' without a unit",
             "--vary slices: got '0'; allowed: a whole number from 1 to 10000",
-            "--vary films: got 'wet'; allowed: slow, memory",
+            "--vary films: got 'wet'; allowed: memory, slow, dry",
             "--highest: got the unit 'm'",
         )
         assert len(problems) == 6

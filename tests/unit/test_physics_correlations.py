@@ -9,8 +9,7 @@ from pathlib import Path
 import pytest
 
 from ehdmaps.errors import InputError
-from ehdmaps.jobs.job import record_json
-from ehdmaps.maps.records import lubricant_from_json
+from ehdmaps.maps.records import lubricant_from_json, record_json
 from ehdmaps.physics.lubricant import FITTED_PRESSURE, Lubricant
 from ehdmaps.physics.own_oil import CORRELATIONS, estimate, gold_mineral, so_klaus
 from ehdmaps.physics.viscosity import AstmViscosity

@@ -8,14 +8,15 @@ import re
 import pytest
 
 from ehdmaps import BearingGeometry, EHDMap, Job, Lubricant
+from ehdmaps.choices import supply_from_text
 from ehdmaps.errors import InputError, MapError
 from ehdmaps.jobs import cli
-from ehdmaps.jobs.job import record_json
 from ehdmaps.jobs.reader import parse_job, read_job
-from ehdmaps.jobs.supply import supply_from_text, supply_keys, supply_words
+from ehdmaps.jobs.supply import supply_keys, supply_words
 from ehdmaps.maps import schema
 from ehdmaps.maps.emap import open_map
 from ehdmaps.maps.reading import check_content, content_sha256
+from ehdmaps.maps.records import record_json
 from ehdmaps.physics.oil_supply import FLOODED, LAYERS, OilSupply
 from tests.cases.jobs import SMALL
 from tests.cases.laws import dry_dataset

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from ehdmaps import BearingGeometry, EHDMap, Job, Lubricant
+from ehdmaps.choices import surface_from_text
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import InputError, MapError
 from ehdmaps.jobs import cli
@@ -17,11 +18,11 @@ from ehdmaps.jobs.make.report import status_counts
 from ehdmaps.jobs.reader import parse_job, read_job
 from ehdmaps.jobs.show.describe import roughness_lines
 from ehdmaps.jobs.show.rough_plot import plot_roughness
-from ehdmaps.jobs.supply import surface_from_text, surface_keys, surface_words
+from ehdmaps.jobs.supply import surface_keys, surface_words
 from ehdmaps.maps import schema
 from ehdmaps.maps.emap import open_map
 from ehdmaps.maps.reading import check_content, content_sha256
-from ehdmaps.maps.records import surface_json
+from ehdmaps.maps.records import record_json
 from ehdmaps.maps.rough_layer import (
     FILM_PARAMETER,
     FILM_SHARE,
@@ -121,7 +122,7 @@ def test_a_map_keeps_the_surface_of_its_job_and_smooth_points(tmp_path, capsys):
     assert rough.with_surface(SMOOTH).surface is SMOOTH
     assert rough.with_surface(Surface(2e-7)) is rough
     with pytest.raises(MapError, match="geometry, oil, surface, oil supply or group"):
-        check_content(rough.dataset.assign_attrs({schema.SURFACE: surface_json(Surface(3e-7))}), None, "rough.nc")
+        check_content(rough.dataset.assign_attrs({schema.SURFACE: record_json(Surface(3e-7))}), None, "rough.nc")
     other = rough.dataset.assign(solve_seconds=plain.dataset["solve_seconds"])
     del other.attrs[schema.SURFACE]
     assert content_sha256(other, None) == plain.dataset.attrs[schema.CHECKSUM]
@@ -146,7 +147,7 @@ def test_a_surface_that_does_not_read_is_a_broken_map(text):
 
 @pytest.mark.slow
 def test_a_law_has_the_surface_of_its_map_or_the_one_that_is_asked_for():
-    emap = EHDMap(dataset_of().assign_attrs({schema.SURFACE: surface_json(Surface(3e-7))}))
+    emap = EHDMap(dataset_of().assign_attrs({schema.SURFACE: record_json(Surface(3e-7))}))
     assert emap.law("inner").surface == Surface(3e-7)
     assert emap.law("inner", surface=SMOOTH).surface is SMOOTH
     # asperities touch before the mean planes do

@@ -18,6 +18,6 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         raise InputError("MAP.nc: it is missing; allowed: the path of a map, or --list for the targets alone")
     path = Path(arguments.map)
     target = find(arguments.to)
-    emap = open_given(path, arguments.structure, arguments.roughness)
+    emap = open_given(path, arguments)
     output = Path(arguments.output) if arguments.output else None
     return target.write(emap, path, output, arguments), 0

@@ -7,7 +7,7 @@ import shlex
 from pathlib import Path
 
 from ehdmaps.jobs.show.map_report import map_report
-from ehdmaps.jobs.show.opening import open_given
+from ehdmaps.jobs.show.opening import choice_words, open_given
 from ehdmaps.outputs import Output, check_outputs
 from ehdmaps.report.page import REPORT, write_report
 
@@ -17,10 +17,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     path = Path(arguments.map)
     output = Path(arguments.output) if arguments.output else path.with_suffix(".html")
     check_outputs([Output("-o", output, REPORT)], [path])
-    emap = open_given(path, arguments.structure, arguments.roughness)
-    words = ["ehdmaps", "report", path.name]
-    for option in ("structure", "roughness"):
-        if (value := getattr(arguments, option)) is not None:
-            words += [f"--{option}", value]
+    emap = open_given(path, arguments)
+    words = ["ehdmaps", "report", path.name, *choice_words(arguments)]
     write_report(output, map_report(emap, path.name, shlex.join([*words, "-o", output.name])))
     return f"{output}: written", 0

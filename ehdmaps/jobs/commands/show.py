@@ -12,4 +12,4 @@ from ehdmaps.jobs.show.opening import open_given
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Describe the map."""
     path = Path(arguments.map)
-    return describe(open_given(path, arguments.structure, arguments.roughness), path.name), 0
+    return describe(open_given(path, arguments), path.name), 0

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.choices import supply_from_text
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers
@@ -31,7 +32,6 @@ from ehdmaps.jobs.solve.traction import (
     traction_record,
     traction_table,
 )
-from ehdmaps.jobs.supply import supply_from_text
 from ehdmaps.outputs import FIGURE, Output, check_outputs
 from ehdmaps.physics.contact import OIL_TEMPERATURES, LineContact, OperatingPoint
 from ehdmaps.physics.oil_supply import OilSupply

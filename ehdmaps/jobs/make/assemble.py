@@ -12,13 +12,13 @@ import numpy.typing as npt
 import xarray as xr
 
 from ehdmaps.arrays import BoolArray, FloatArray
-from ehdmaps.jobs.job import Job, record_json
+from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.make.correction import Correction, Films, Place
 from ehdmaps.jobs.make.correction_design import places_of
 from ehdmaps.jobs.make.store import Arrays
 from ehdmaps.jobs.make.tasks import FOUND_BY_SOME, LineTask, solver_version, with_later_fields
 from ehdmaps.maps import schema
-from ehdmaps.maps.records import MODEL_ERRORS, contacts_json, derived, surface_json
+from ehdmaps.maps.records import MODEL_ERRORS, contacts_json, derived, record_json
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.solution import ContactSolver, Status
@@ -279,7 +279,7 @@ def _attributes(job: Job, solver: ContactSolver) -> dict[str, Any]:
         "lubricant": record_json(job.lubricant.record()),
         "lubricant_verified": int(job.lubricant.verified),
         **({} if job.supply is None else {schema.OIL_SUPPLY: record_json(job.supply)}),
-        **({} if job.surface is None else {schema.SURFACE: surface_json(job.surface)}),
+        **({} if job.surface is None else {schema.SURFACE: record_json(job.surface)}),
         "package_versions": record_json(package_versions()),
         schema.CODE: code_hash(),
         "created": datetime.now(UTC).isoformat(timespec="seconds"),

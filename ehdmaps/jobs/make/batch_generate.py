@@ -16,7 +16,7 @@ import xarray as xr
 
 from ehdmaps.errors import EhdmapsError, InputError, WorkerError
 from ehdmaps.jobs import solvers
-from ehdmaps.jobs.job import Job, record_json
+from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.make.batch import Batch, Member
 from ehdmaps.jobs.make.generate import Within, generate, planned_tasks, read_map
 from ehdmaps.jobs.make.law_check import unmet
@@ -27,6 +27,7 @@ from ehdmaps.jobs.make.sweep import Progress, SweepResult
 from ehdmaps.jobs.make.table_films import unserved
 from ehdmaps.jobs.make.tasks import LineTask, solver_version
 from ehdmaps.maps import schema
+from ehdmaps.maps.records import record_json
 from ehdmaps.maps.schema import SCHEMA_VERSION
 from ehdmaps.netcdf_structure import DAMAGE
 from ehdmaps.outputs import MAP, Output, name_problem, output_problems, root_attributes

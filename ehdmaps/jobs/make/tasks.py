@@ -16,12 +16,12 @@ import numpy.typing as npt
 import xarray as xr
 
 from ehdmaps.ehl.solver import ReynoldsSolver
-from ehdmaps.jobs.job import Job, record_json
+from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.make.store import Arrays
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone import ERROR, FILMS, IMAGINARY, REAL
 from ehdmaps.maps.backbone_plan import BackbonePlan, Steps, plan_backbone, plan_own_lines
-from ehdmaps.maps.records import reference_json
+from ehdmaps.maps.records import record_json, reference_json
 from ehdmaps.maps.rolling_film import NAMES as ROLLING
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.heat import ISOTHERMAL

@@ -2,55 +2,64 @@
 
 from __future__ import annotations
 
+import argparse
 from os import PathLike, fspath
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ehdmaps.choices import MAP_CHOICES, texts_of
 from ehdmaps.errors import InputError
-from ehdmaps.jobs.supply import surface_from_text
-from ehdmaps.physics.approach import STRUCTURAL_LAWS
-from ehdmaps.physics.surface import Surface
-from ehdmaps.units import closest
 
 if TYPE_CHECKING:
     from ehdmaps.maps.emap import EHDMap
 
 
-def open_given(path: str | PathLike[str], structure: str | None, roughness: str | None = None) -> EHDMap:
-    """Open a map.
+def open_given(path: str | PathLike[str], arguments: argparse.Namespace | None = None) -> EHDMap:
+    """Open a map with what is chosen of it.
 
     Parameters
     ----------
     path : str or path
         The file of a map. Of a job, a file ending with .toml or the name of a shipped one, the map is made in memory,
         in about a second, where the film table serves it.
-    structure : str or None
-        What was given for --structure; None for the structural law of the map's job.
-    roughness : str or None
-        What was given for --roughness; None for the surfaces of the map's job.
+    arguments : argparse.Namespace, optional
+        Arguments of the command, with some of `ehdmaps.choices.MAP_CHOICES`; what is not there is that of the map.
 
     Raises
     ------
     MapError
         If the file cannot be read, is no map, or was changed since it was made.
     InputError
-        If there is no such structural law, or it does not suit the map; if the roughness is none; if a job is wrong, or
-        its films have to be solved.
+        If a choice is none, or does not suit the map; if a job is wrong, or its films have to be solved.
     """
-    known = {law: law for law in STRUCTURAL_LAWS}
-    if structure is not None and structure not in known:
-        raise InputError(
-            f"--structure: got {structure!r:.60}{closest(structure, STRUCTURAL_LAWS)}; allowed: "
-            f"{', '.join(STRUCTURAL_LAWS)}"
-        )
-    surface = None if roughness is None else surface_given(roughness)
+    problems: list[str] = []
+    chosen = [] if arguments is None else [
+        (choice, value) for choice in MAP_CHOICES for value in choice.values(texts_of(arguments, choice), problems)
+    ]  # fmt: skip
+    if problems:
+        raise InputError(problems)
     emap = _of_job(path) if _is_job(path) else _of_file(path)
-    if surface is not None:
-        emap = emap.with_surface(surface)
-    try:
-        return emap if structure is None else emap.with_structure(known[structure])
-    except InputError as error:
-        raise InputError([f"--structure: {problem}" for problem in error.problems]) from error
+    for choice, value in chosen:
+        try:
+            emap = choice.change(emap, value)
+        except InputError as error:
+            problems += [f"--{choice.name}: {problem}" for problem in error.problems]
+    if problems:
+        raise InputError(problems)
+    return emap
+
+
+def choice_words(arguments: argparse.Namespace) -> list[str]:
+    """Choices of a map, as words of a command line.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        Arguments of the command.
+    """
+    return [
+        word for choice in MAP_CHOICES for text in texts_of(arguments, choice) for word in (f"--{choice.name}", text)
+    ]
 
 
 def _is_job(path: str | PathLike[str]) -> bool:
@@ -75,22 +84,3 @@ def _of_job(path: str | PathLike[str]) -> EHDMap:
     from ehdmaps.jobs.reader import read_job
 
     return job_map(read_job(path), fspath(path))
-
-
-def surface_given(text: str) -> Surface:
-    """Read what was given for --roughness.
-
-    Parameters
-    ----------
-    text : str
-        Combined rms roughness such as "0.2 um", or "smooth".
-
-    Raises
-    ------
-    InputError
-        If it is none.
-    """
-    try:
-        return surface_from_text(text)
-    except InputError as error:
-        raise InputError([f"--roughness: {problem}" for problem in error.problems]) from error

@@ -11,13 +11,12 @@ import xarray as xr
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.jobs.job import record_json
 from ehdmaps.jobs.make.assemble import only_usable, package_versions, with_structure
 from ehdmaps.jobs.make.store import NoStore
 from ehdmaps.jobs.make.sweep import sweep
 from ehdmaps.jobs.make.tasks import LONGEST_LINE, LineTask, solver_version
 from ehdmaps.maps import schema
-from ehdmaps.maps.records import contacts_json
+from ehdmaps.maps.records import contacts_json, record_json
 from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.solution import ContactSolver

@@ -1,0 +1,669 @@
+"""Choices of a scene: its contact law, films, oil, surfaces, clearance, loads and numbers, one row each in `CHOICES`.
+
+A row knows the option of the command line and its help, reads a text, tells a value, and gives a scene and law with
+that value. All commands on scenes take these rows, compare several values of one, and write into their results what was
+chosen; `mbs variants --vary` takes each by its name. So a choice more is a row more, with the function that changes a
+scene (`mbs.scene.changes`) or its law (here), and a paragraph of the reference.
+
+What takes long to import is imported by the function that needs it: the command line lists the rows before it knows
+what is asked.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+from ehdmaps.choices import ROUGHNESS, STRUCTURE, SUPPLY, Choice, one_of
+from ehdmaps.errors import EhdmapsError, InputError
+from ehdmaps.units import TEMPERATURE, Display, quantity
+from mbs.model.relaxation import DEFAULT_FILMS, FILM_WORDS, Films
+from mbs.scene.fields import DEGREE, HERTZ, MICROMETRE
+
+if TYPE_CHECKING:
+    from ehdmaps.physics.oil_supply import OilSupply
+    from ehdmaps.physics.surface import Surface
+    from mbs.scene.assembly import Model
+    from mbs.scene.map_set import MapSet
+    from mbs.scene.scene import Scene
+
+FILMS = ("memory", "slow", "dry")
+"""What --films takes: films that relax, those of slow motion, and none."""
+
+WIDEST = 1e-2
+"""Largest clearance, either way [m]."""
+
+MOST_FACTOR = 1e3
+MOST_SLICES = 10_000
+
+_SECOND, _MICROSECOND = Display("s"), Display("us", 1e6)
+
+
+@dataclass(frozen=True)
+class LawChoice:
+    """A contact law as it was chosen.
+
+    Attributes
+    ----------
+    label : str
+        The law in two words.
+    name : str or None
+        Name of the law, as `mbs.scene.assembly.assemble` takes it.
+    maps : MapSet or None
+        The maps of the law `map`, one for each type of bearing.
+    films : {"slow", "memory"} or None
+        Which films it is to have.
+    supply : OilSupply or None
+        Oil supply of all bearings; None for that of the scene, or of the map.
+    """
+
+    label: str
+    name: str | None
+    maps: MapSet | None = None
+    films: Films | None = None
+    supply: OilSupply | None = None
+
+    @property
+    def has_films(self) -> bool:
+        """Tell whether it knows an oil."""
+        return self.name in ("map", "formula") or (self.name is None and self.maps is not None)
+
+
+@dataclass(frozen=True, eq=False)
+class Subject:
+    """Subject of a run: a scene with a law.
+
+    Attributes
+    ----------
+    scene : Scene
+        The scene.
+    law : LawChoice
+        The law.
+    clearance : float or None
+        Diametral clearance of all bearings [m]; None for those of the scene.
+    chosen : mapping of str to str
+        What was chosen beside the law, by the names of the choices, as results tell it.
+    """
+
+    scene: Scene
+    law: LawChoice
+    clearance: float | None = None
+    chosen: Mapping[str, str] = field(default_factory=dict)
+
+    def model(self) -> Model:
+        """The model; see `mbs.scene.assembly.assemble`."""
+        from mbs.scene.assembly import assemble
+
+        law = self.law
+        model = assemble(self.scene, law.name, law.maps, self.clearance, law.films, law.supply)
+        return dataclasses.replace(model, chosen=self.chosen)
+
+
+Concerned = Literal["all", "films", "maps", "oil", "first"]
+"""Whom a choice concerns: all; laws with films, or of maps; those for which oil has a temperature; the reference."""
+
+LACKS = {
+    "films": "without a law that has films; allowed: with --map, --law table or formula",
+    "maps": "without a map; allowed: with --map MAP.nc, made by `ehdmaps generate`, or --law table",
+}
+"""What is said where no law is concerned."""
+
+
+@dataclass(frozen=True)
+class SceneChoice(Choice[Subject]):
+    """A choice of a scene, see `ehdmaps.choices.Choice`.
+
+    Attributes
+    ----------
+    example : str
+        A value that may be varied, for people; empty where it cannot be.
+    concerned : {"all", "films", "maps", "oil", "first"}
+        Which of several laws it concerns.
+    option : bool
+        Whether the commands on scenes have it as an option; else `mbs variants --vary` alone.
+    called : callable or None
+        How a case is called by a value of several; by default the value.
+    usual : callable
+        Whether a law with this value is called like one where nothing was chosen.
+    """
+
+    example: str = ""
+    concerned: Concerned = "all"
+    option: bool = True
+    called: Callable[[Any], str] | None = None
+    usual: Callable[[Any], bool] = lambda value: True
+
+    def words(self, value: Any) -> str:
+        """Name of a case by a value."""
+        return (self.called or self.text)(value)
+
+    def concerns(self, subject: Subject) -> bool:
+        """Tell whether a subject depends on it."""
+        if self.concerned == "maps":
+            return subject.law.maps is not None
+        if self.concerned == "oil":
+            # Rings of other temperatures have another clearance.
+            return subject.law.has_films or any(entry.changes_in_operation for entry in subject.scene.bearings)
+        return self.concerned != "films" or subject.law.has_films
+
+    def chosen(self, subject: Subject, value: Any) -> Subject:
+        """A subject with a value, which its results tell.
+
+        Parameters
+        ----------
+        subject : Subject
+            Scene and law.
+        value : object
+            What `read` gives.
+
+        Raises
+        ------
+        InputError
+            Where the value does not fit the scene.
+        """
+        changed = self.change(subject, value)
+        if changed is subject:
+            return subject
+        return dataclasses.replace(changed, chosen={**subject.chosen, self.name: self.text(value)})
+
+    def varied(self, subject: Subject, value: Any, first: bool) -> Subject:
+        """A subject with a value of this choice; the same where the choice does not concern it.
+
+        Parameters
+        ----------
+        subject : Subject
+            Scene and law.
+        value : object
+            What `read` gives.
+        first : bool
+            Whether it is the reference.
+
+        Raises
+        ------
+        InputError
+            Where the value does not fit the scene.
+        """
+        concerned = first if self.concerned == "first" else self.concerns(subject)
+        return self.change(subject, value) if concerned else subject
+
+
+def _between(unit: str, low: float, high: float, display: Display) -> Callable[[str], float]:
+    """A reader of a quantity."""
+
+    def read(text: str) -> float:
+        value = quantity(text, unit)
+        if not low <= value <= high:
+            raise InputError(f"got {text!r:.60}; allowed: {display.text(low)} to {display.text(high)}")
+        return value
+
+    return read
+
+
+def _either_way(unit: str, most: float, words: str) -> Callable[[str], float]:
+    """A reader of a quantity of either sign."""
+
+    def read(text: str) -> float:
+        value = quantity(text, unit)
+        if not abs(value) <= most:
+            raise InputError(f"got {text!r:.60}; allowed: {words}")
+        return value
+
+    return read
+
+
+def _factor(text: str) -> float:
+    """Read a factor."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not 0.0 < value <= MOST_FACTOR:
+        raise InputError(f"got {text!r:.40}; allowed: above 0 up to {MOST_FACTOR:g}, such as 1.5")
+    return value
+
+
+def _times(value: float) -> str:
+    """Tell a factor."""
+    return f"{value:g} x"
+
+
+def _slices(text: str) -> int:
+    """Read a number of slices."""
+    if not (text.isdecimal() and len(text) < 10 and 1 <= int(text) <= MOST_SLICES):
+        raise InputError(f"got {text!r:.40}; allowed: a whole number from 1 to {MOST_SLICES}")
+    return int(text)
+
+
+def _temperature(text: str) -> float:
+    """Read a temperature of the raceways [K]."""
+    from ehdmaps.physics.contact import OIL_TEMPERATURES
+
+    return _between("K", *OIL_TEMPERATURES, TEMPERATURE)(text)
+
+
+def _law_text(name: str) -> str:
+    """Tell a law by its name."""
+    from mbs.scene.contact_laws import law_label
+
+    return law_label(name)
+
+
+def named_law(name: str, scene: Scene) -> LawChoice:
+    """A law by its name; that of the film table brings its maps.
+
+    Parameters
+    ----------
+    name : str
+        hertz, formula, table and so on, see `mbs.scene.contact_laws`.
+    scene : Scene
+        Scene with its bearings and its oil.
+
+    Raises
+    ------
+    InputError
+        If the film table does not serve the scene. What else is wrong about a law is said by `assemble`.
+    """
+    from mbs.scene.contact_laws import law_label
+    from mbs.scene.map_set import TABLE_LAW, table_maps
+
+    if name != TABLE_LAW:
+        return LawChoice(law_label(name), name)
+    return map_law(table_maps(scene))
+
+
+def map_law(maps: MapSet, words: str = "") -> LawChoice:
+    """The law of some maps.
+
+    Parameters
+    ----------
+    maps : MapSet
+        The maps.
+    words : str
+        What tells it from other laws of maps.
+    """
+    return LawChoice(f"{maps.label} {words}".rstrip(), "map", maps)
+
+
+def opened_maps(paths: Sequence[str], scene: Scene, problems: list[str]) -> list[LawChoice]:
+    """The laws of maps that are given together: one for each set, see `mbs.scene.map_set`.
+
+    Parameters
+    ----------
+    paths : sequence of str
+        Files of maps, or jobs.
+    scene : Scene
+        Scene with the bearings.
+    problems : list of str
+        What is wrong is appended.
+    """
+    from ehdmaps.jobs.show.opening import open_given
+    from mbs.scene.map_set import map_sets
+
+    maps = []
+    for path in paths:
+        try:
+            maps.append((Path(path).stem, open_given(path)))
+        except InputError as error:
+            problems += error.problems
+        except EhdmapsError as error:
+            problems += [f"--map: {line}" for line in str(error).splitlines()]
+    try:
+        sets = map_sets(maps, scene.bearings)
+    except InputError as error:
+        problems += error.problems
+        return []
+    labels = [one.label for _, one in sets]
+    return [map_law(one, words if labels.count(one.label) > 1 else "") for words, one in sets]
+
+
+def _with_law(subject: Subject, name: str) -> Subject:
+    """A subject with another law."""
+    return dataclasses.replace(subject, law=named_law(name, subject.scene))
+
+
+def _with_map(subject: Subject, path: str) -> Subject:
+    """A subject with the law of a map."""
+    problems: list[str] = []
+    laws = opened_maps([path], subject.scene, problems)
+    if problems:
+        raise InputError(problems)
+    return dataclasses.replace(subject, law=laws[0])
+
+
+def _with_structure(subject: Subject, name: str) -> Subject:
+    """A subject whose maps have another structural law."""
+    law = subject.law
+    if law.maps is None:
+        return subject
+    maps = law.maps.each(lambda emap: STRUCTURE.change(emap, name))
+    return dataclasses.replace(subject, law=dataclasses.replace(law, maps=maps))
+
+
+def _with_films(subject: Subject, kind: str) -> Subject:
+    """A subject with other films, or dry; a law without films stays as it is."""
+    law = subject.law
+    if not law.has_films:
+        return subject
+    if kind == "dry":
+        return dataclasses.replace(subject, law=named_law("hertz", subject.scene))
+    return dataclasses.replace(subject, law=dataclasses.replace(law, films="memory" if kind == "memory" else "slow"))
+
+
+def _films_words(kind: str) -> str:
+    """Tell films; those that are dry have the label of their law."""
+    return "" if kind == "dry" else FILM_WORDS["memory" if kind == "memory" else "slow"]
+
+
+def _with_supply(subject: Subject, supply: OilSupply) -> Subject:
+    """A subject with another oil supply of all bearings; a law without films stays as it is."""
+    law = subject.law
+    return dataclasses.replace(subject, law=dataclasses.replace(law, supply=supply)) if law.has_films else subject
+
+
+def _with_roughness(subject: Subject, surface: Surface) -> Subject:
+    """A subject with other surfaces of all contacts: the roughness is another, hardness and asperities stay."""
+    maps = subject.law.maps
+    stated = subject.scene.surface or (maps.maps[0].surface if maps is not None else surface)
+    kept = dataclasses.replace(stated, roughness=surface.roughness)
+    return dataclasses.replace(subject, scene=dataclasses.replace(subject.scene, surface=kept))
+
+
+def _with_temperature(subject: Subject, kelvin: float) -> Subject:
+    """A subject with raceways of another temperature; films of the film table are read there, too."""
+    from mbs.scene.map_set import table_maps
+
+    changed = _of_scene("with_temperature")(subject, kelvin)
+    maps = subject.law.maps
+    if maps is None or not all(emap.from_table for emap in maps.maps) or maps.known_at(kelvin):
+        return changed
+    structure = maps.maps[0].structural_law
+    wider = table_maps(changed.scene).each(lambda emap: emap.with_structure(structure))
+    return dataclasses.replace(changed, law=dataclasses.replace(changed.law, maps=wider))
+
+
+def _of_scene(name: str) -> Callable[[Subject, Any], Subject]:
+    """A change of the scene by the function of `mbs.scene.changes` of this name."""
+
+    def change(subject: Subject, value: Any) -> Subject:
+        from mbs.scene import changes
+
+        return dataclasses.replace(subject, scene=getattr(changes, name)(subject.scene, value))
+
+    return change
+
+
+_ROWS = (
+    SceneChoice(
+        "law",
+        "LAW",
+        "hertz | hertz:TIME | hertz:DAMPING | table:FILE.csv | formula | table | constant:NAME | map. table: films of "
+        "the scene's oil from the film table, without a map. TIME is damping over stiffness of a dry contact "
+        "('hertz:1.25e-5 s'; usual: 0.25e-5 to 2.5e-5 s), DAMPING a constant one ('hertz:100 N s/m' of each contact of "
+        "a roller), FILE.csv has points of approach, load and damping, NAME a table [laws.NAME]",
+        "map with --map, else table, or hertz of a {file} without oil",
+        str,
+        _with_law,
+        _law_text,
+        example="hertz:1.25e-5 s",
+        concerned="first",
+    ),
+    SceneChoice(
+        "map",
+        "MAP.nc",
+        "made by `ehdmaps generate` for the same bearing; more than once for other types of bearing",
+        "",
+        str,
+        _with_map,
+    ),
+    SceneChoice(
+        STRUCTURE.name,
+        STRUCTURE.metavar,
+        STRUCTURE.said,
+        "that of the map's job",
+        STRUCTURE.read,
+        _with_structure,
+        example="half_space",
+        concerned="maps",
+        called=lambda name: f"structural law {name}",
+    ),
+    SceneChoice(
+        "films",
+        "KIND",
+        "memory: films follow oscillations at their own frequency; slow: stiffness and damping of slow motion at any "
+        "frequency; dry: --law hertz. Statics are the same for memory and slow",
+        DEFAULT_FILMS,
+        one_of(lambda: FILMS),
+        _with_films,
+        example="slow",
+        concerned="films",
+        called=_films_words,
+        usual=lambda kind: kind == DEFAULT_FILMS,
+    ),
+    SceneChoice(
+        SUPPLY.name,
+        SUPPLY.metavar,
+        SUPPLY.said,
+        "[supply] of the {file}, else of the job of the map, else flooded",
+        SUPPLY.read,
+        _with_supply,
+        SUPPLY.text,
+        example="oil air",
+        concerned="films",
+        usual=lambda supply: bool(supply.flooded),
+    ),
+    SceneChoice(
+        ROUGHNESS.name,
+        ROUGHNESS.metavar,
+        ROUGHNESS.said,
+        "[surface] of the {file}, else of the job of the map, else smooth",
+        ROUGHNESS.read,
+        _with_roughness,
+        ROUGHNESS.text,
+        example="0.2 um",
+        concerned="films",
+    ),
+    SceneChoice(
+        "temperature",
+        "TEMPERATURE",
+        'of the raceways, such as "60 degC"',
+        "",
+        _temperature,
+        _with_temperature,
+        TEMPERATURE.text,
+        example="100 degC",
+        concerned="oil",
+    ),
+    SceneChoice(
+        "clearance",
+        "LENGTH",
+        'diametral clearance of all bearings, such as "20 um"',
+        "",
+        _either_way("m", WIDEST, f"within {MICROMETRE.text(WIDEST)} either way"),
+        lambda subject, value: dataclasses.replace(subject, clearance=value),
+        MICROMETRE.text,
+        example="15 um",
+    ),
+    SceneChoice(
+        "load-factor",
+        "FACTOR",
+        "multiplies all loads of the scene",
+        "",
+        _factor,
+        _of_scene("with_loads"),
+        _times,
+        example="1.5",
+        called=lambda factor: f"{_times(factor)} load",
+    ),
+    SceneChoice(
+        "start-angle",
+        "ANGLE",
+        'at which all cages start, such as "7.5 deg"',
+        "",
+        _either_way("rad", 2.0 * math.pi, "a turn either way, such as '7.5 deg'"),
+        _of_scene("with_start_angle"),
+        DEGREE.text,
+        example="7.5 deg",
+        called=lambda angle: f"cage at {DEGREE.text(angle)}",
+    ),
+    SceneChoice(
+        "housing-damping",
+        "FACTOR",
+        "multiplies the damping ratios of bodies of finite elements",
+        "",
+        _factor,
+        _of_scene("with_housing_damping"),
+        _times,
+        example="0.5",
+        option=False,
+    ),
+    SceneChoice(
+        "ramp",
+        "TIME",
+        "length of the run-up",
+        "",
+        _between("s", 1e-9, 1e6, _SECOND),
+        _of_scene("with_duration"),
+        _SECOND.text,
+        example="10 s",
+        option=False,
+    ),
+    SceneChoice(
+        "step",
+        "TIME",
+        "time step of the run-up",
+        "",
+        _between("s", 1e-9, 1.0, _MICROSECOND),
+        _of_scene("with_step"),
+        _MICROSECOND.text,
+        example="5 us",
+        option=False,
+        called=lambda step: f"step {_MICROSECOND.text(step)}",
+    ),
+    SceneChoice(
+        "slices",
+        "COUNT",
+        "slices of all rollers",
+        "",
+        _slices,
+        _of_scene("with_slices"),
+        example="41",
+        option=False,
+        called=lambda slices: f"{slices} slices",
+    ),
+    SceneChoice(
+        "cutoff",
+        "FREQUENCY",
+        "up to which flexible bodies have modes",
+        "",
+        _between("Hz", 1.0, 1e6, HERTZ),
+        _of_scene("with_cutoff"),
+        HERTZ.text,
+        example="6 kHz",
+        option=False,
+        called=lambda cutoff: f"modes up to {HERTZ.text(cutoff)}",
+    ),
+)
+
+CHOICES: Mapping[str, SceneChoice] = {choice.name: choice for choice in _ROWS}
+"""What is chosen of a scene, by name; in this order cases are called."""
+
+OPTIONS = tuple(choice for choice in _ROWS if choice.option)
+"""Those that all commands on scenes take."""
+
+LAWS = ("law", "map")
+"""Those that make a law together: each name of a law and each set of maps is one."""
+
+VARIED = {choice.name: choice for choice in _ROWS if choice.example}
+"""Those that `mbs variants --vary` takes."""
+
+
+@dataclass(frozen=True, eq=False)
+class Combination:
+    """A subject that was chosen, among others.
+
+    Attributes
+    ----------
+    subject : Subject
+        Scene and law; the label of the law tells it from the other laws.
+    words : tuple of str
+        What tells it from others of the same law.
+    values : mapping of str to object
+        What was chosen of the scene, by the names of the choices.
+    """
+
+    subject: Subject
+    words: tuple[str, ...] = ()
+    values: Mapping[str, Any] = field(default_factory=dict)
+
+
+def combinations(
+    subjects: Sequence[Subject], values: Mapping[str, Sequence[Any]], problems: list[str]
+) -> list[Combination]:
+    """Combine subjects with all values that were chosen; a law that a choice does not concern stands once.
+
+    Parameters
+    ----------
+    subjects : sequence of Subject
+        Scene with each of the laws.
+    values : mapping of str to sequence
+        Values of the other choices, by their names.
+    problems : list of str
+        What is wrong is appended.
+    """
+    found = [Combination(subject) for subject in subjects]
+    for choice in OPTIONS:
+        several = values.get(choice.name, ()) if choice.name not in LAWS else ()
+        if choice.name == SUPPLY.name and not several:
+            found = [dataclasses.replace(one, subject=_with_stated_supply(one.subject)) for one in found]
+        if not several:
+            continue
+        if choice.concerned in LACKS and not any(choice.concerns(one.subject) for one in found):
+            got = ", ".join(map(choice.text, several))
+            problems.append(f"--{choice.name}: got {got} {LACKS[choice.concerned]}")
+            continue
+        found = _told_apart(entry for one in found for entry in _each(one, choice, several, problems))
+    return found
+
+
+def _each(one: Combination, choice: SceneChoice, several: Sequence[Any], problems: list[str]) -> list[Combination]:
+    """A combination with each value of a choice."""
+    if len(several) > 1 and not choice.concerns(one.subject):
+        return [one]
+    found = []
+    for value in several:
+        try:
+            subject = choice.chosen(one.subject, value)
+        except InputError as error:
+            problems += [f"--{choice.name}: {problem}" for problem in error.problems]
+            continue
+        words = choice.words(value)
+        if subject.law is one.subject.law:
+            told = (words,) if len(several) > 1 else ()
+            found.append(Combination(subject, (*one.words, *told), {**one.values, choice.name: value}))
+            continue
+        if words and subject.law.has_films and (len(several) > 1 or not choice.usual(value)):
+            law = dataclasses.replace(subject.law, label=f"{subject.law.label}, {words}")
+            subject = dataclasses.replace(subject, law=law)
+        found.append(Combination(subject, one.words, one.values))
+    return found
+
+
+def _told_apart(found: Iterable[Combination]) -> list[Combination]:
+    """Each combination once: one dry law stands for all maps without films."""
+    kept: dict[tuple[LawChoice, tuple[str, ...]], Combination] = {}
+    for one in found:
+        kept.setdefault((one.subject.law, one.words), one)
+    return list(kept.values())
+
+
+def _with_stated_supply(subject: Subject) -> Subject:
+    """A subject whose law is called by the oil supply that scene or map state."""
+    from mbs.scene.contact_laws import ContactLaws, choose_law
+
+    law = subject.law
+    words = ContactLaws(choose_law(law.name, law.maps), subject.scene, law.maps).supply_label
+    return dataclasses.replace(subject, law=dataclasses.replace(law, label=law.label + words)) if words else subject
