@@ -1,4 +1,4 @@
-"""What a solver returns: the film of one contact at one operating point, and the contact made of film and solids.
+"""Result of a solver: the film of one contact at one operating point, and the contact made of film and solids.
 
 A solver knows the film only (`FilmSolution`, and over frequency `FilmSpectrum`). `contact_solution` adds the structural
 part, which is the same law for every solver, and gives the numbers of the map (`ContactSolution`).
