@@ -15,8 +15,7 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.exports.target import Target
-from ehdmaps.maps.curves import curves, film_between, rough_layers
-from ehdmaps.maps.emap import EHDMap
+from ehdmaps.maps.emap import EHDMap, curves, film_between, rough_layers
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.rough_layer import FILM_PARAMETER, FILM_SHARE, RoughLayer, load_sharing
 from ehdmaps.maps.usable import check_grid

@@ -18,8 +18,8 @@ from typing import Any
 from ehdmaps.errors import InputError
 from ehdmaps.exports.target import Target, origin
 from ehdmaps.maps.emap import EHDMap
+from ehdmaps.maps.kernels.lines import line_approach
 from ehdmaps.maps.law import LawAtPoint, LawKind
-from ehdmaps.maps.lines import line_approach
 from ehdmaps.outputs import Kind, Output, check_outputs, has_mark, write_text
 from ehdmaps.program import plain
 from ehdmaps.units import SPEED, TEMPERATURE, Display, quantity

@@ -22,9 +22,9 @@ import numpy as np
 from scipy.interpolate import RegularGridInterpolator
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.maps.kernel import EDGE_TOLERANCE, LOAD_TOLERANCE
+from ehdmaps.maps.kernels.kernel import EDGE_TOLERANCE, LOAD_TOLERANCE
+from ehdmaps.maps.kernels.tables import COLDEST
 from ehdmaps.maps.law import ContactLaw
-from ehdmaps.maps.tables import COLDEST
 
 Quantity = Literal["load", "stiffness", "damping"]
 QUANTITIES: tuple[Quantity, ...] = ("load", "stiffness", "damping")

@@ -11,7 +11,7 @@ from typing import Any, TypeVar, cast
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.solids import NO_SOLIDS, SolidsKeys, fe_approaches
 from ehdmaps.jobs.table import Table
-from ehdmaps.physics._labels import label_problem
+from ehdmaps.labels import label_problem
 from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
 from ehdmaps.physics.catalogue import designations, estimate, estimate_from_dimensions

@@ -32,8 +32,8 @@ from ehdmaps.errors import MapError
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone_plan import NEIGHBOURS, VALLEY, Axis
 from ehdmaps.maps.film_field import first_loads, known_from, lifted_loss
-from ehdmaps.maps.locked_film import MOST, film_of, fitted_factor, law_differences, response_error
-from ehdmaps.maps.splines import mix_lines
+from ehdmaps.maps.kernels.locked_film import MOST, film_of, fitted_factor, law_differences, response_error
+from ehdmaps.maps.kernels.splines import mix_lines
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.lubricant import Lubricant, LubricantState

@@ -25,11 +25,11 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import MapError
 from ehdmaps.maps.contact_curve import ContactCurve, Curve
 from ehdmaps.maps.film_field import FilmField, valley_loads
+from ehdmaps.maps.kernels.splines import hermite, spline_coefficients, spline_slopes
+from ehdmaps.maps.kernels.tables import COLDEST, HALF_SPACE, POWER_LAW, ApproachTable
 from ehdmaps.maps.oil_layer import oil_layer
 from ehdmaps.maps.rolling_film import RollingFilm
 from ehdmaps.maps.rough_layer import RoughLayer
-from ehdmaps.maps.splines import hermite, spline_coefficients, spline_slopes
-from ehdmaps.maps.tables import COLDEST, HALF_SPACE, POWER_LAW, ApproachTable
 from ehdmaps.physics.approach import highest_fe_load
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant

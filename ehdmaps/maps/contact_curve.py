@@ -1,6 +1,10 @@
-"""The film at the lowest loads: rigid and isoviscous, w ~ 1/h, faded to nothing at a thick film.
+"""Approach and damping of one contact over load: the mapped range, the tail below it, the continuation above.
 
-With the film offset h1 and the film compliance s1 at the lowest known load w1, see `ehdmaps.maps.film_field`,
+The curves are over g = w^(1/3), the cube root of the load. At the end of the tail, where the load goes to zero as
+the cube of the approach, everything is smooth in g, through zero and on to negative g, where there is no load.
+
+The tail is the film at the lowest loads: rigid and isoviscous, w ~ 1/h, faded to nothing at a thick film. With the film
+offset h1 and the film compliance s1 at the lowest known load w1, see `ehdmaps.maps.film_field`,
 
     w = Q(h) A/(h - hs),    A = w1^2 s1,    hs = h1 - w1 s1,
 
@@ -11,11 +15,6 @@ which joins what is known with equal value and slope. Q is the quintic that fall
 
 n1 = d ln c/d ln w at w1: equal value and slope at w1 (v = 1), and c ~ h^-1.5 of a rigid film where v is small.
 c/w does not contain Q, so that it stays finite where both vanish.
-
-Approach and damping of one contact over load: mapped range, low-load tail, continuation above.
-
-The curves are over g = w^(1/3), the cube root of the load. At the end of the tail, where the load goes to zero as
-the cube of the approach, everything is smooth in g, through zero and on to negative g, where there is no load.
 """
 
 from __future__ import annotations

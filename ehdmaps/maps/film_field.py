@@ -114,7 +114,7 @@ class FilmField(Protocol):
         ...
 
     def locked_factors(self, contact: str, loads: FloatArray, speed: float, temperature: float) -> FloatArray | None:
-        """Factors of the closed formula of the locked film, see `ehdmaps.maps.locked_film`.
+        """Factors of the closed formula of the locked film, see `ehdmaps.maps.kernels.locked_film`.
 
         Parameters
         ----------
@@ -135,7 +135,7 @@ class FilmField(Protocol):
     def film_differences(
         self, contact: str, loads: FloatArray, speed: float, temperature: float
     ) -> tuple[FloatArray, ComplexArray] | None:
-        """Part of the complex stiffness that films with memory leave out, see `ehdmaps.maps.film_response`.
+        """Part of the complex stiffness that films with memory leave out, see `ehdmaps.maps.kernels.film_response`.
 
         Parameters
         ----------

@@ -1,17 +1,14 @@
 """The film of a map between its own grid points, and between refinement lines that contacts share or have alone.
 
-The film of a map between its own grid points.
-
 The film of one contact and oil depends on load and speed through Moes' groups M and L; along speed at constant M it
 changes slowly, at constant load it does not (a narrow valley of the damping stays at constant M). So the line of
 loads of each speed and temperature is first taken to an axis of ln M that all lines share, then the lines are
 interpolated in ln u and T at constant M, then each wanted load is found on the common axis.
 
-Films between refinement lines, whether the contacts of a map share them or each has its own.
-
-Isothermal films of one oil go by Moes' M and L at a temperature, so that one reference contact stands for all. Heat has
-a group of its own, QL = -(d eta0/dT) u^2/k_f, in which contacts of equal M and L differ: the outer contact then has
-lines of its own, on the axes of those of the inner one (`ehdmaps.maps.schema.OWN`).
+Where a map has refinement lines, these are read, see `backbone`. Isothermal films of one oil go by Moes' M and L at a
+temperature, so that one reference contact stands for all. Heat has a group of its own, QL = -(d eta0/dT) u^2/k_f, in
+which contacts of equal M and L differ: the outer contact then has lines of its own, on the axes of those of the inner
+one (`ehdmaps.maps.schema.OWN`).
 """
 
 from __future__ import annotations
@@ -31,8 +28,8 @@ from ehdmaps.arrays import ComplexArray, FloatArray, IndexArray
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone import BackboneField
 from ehdmaps.maps.film_field import FilmField, lifted_loss, same_load
+from ehdmaps.maps.kernels.splines import hermite, spline_weights
 from ehdmaps.maps.records import contacts_from_json
-from ehdmaps.maps.splines import hermite, spline_weights
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.lubricant import Lubricant

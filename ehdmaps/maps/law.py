@@ -13,7 +13,6 @@ import numpy.typing as npt
 
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import InputError, MapError, OutsideMapError
-from ehdmaps.maps import bulk, kernel
 from ehdmaps.maps.compilation import (
     Resolution,
     compile_table,
@@ -21,15 +20,16 @@ from ehdmaps.maps.compilation import (
     structural_parameters,
 )
 from ehdmaps.maps.film_field import DryField, FilmField, LowLoads
-from ehdmaps.maps.film_response import FilmResponse
+from ehdmaps.maps.kernels import bulk, kernel
+from ehdmaps.maps.kernels.film_response import FilmResponse
+from ehdmaps.maps.kernels.locked_film import LockedFactors
+from ehdmaps.maps.kernels.memory import FilmMemory, FilmState
+from ehdmaps.maps.kernels.tables import LOAD, ApproachTable, LawTable, Point
 from ehdmaps.maps.law_errors import LawBounds, LawChange, LawErrors, changed_table
 from ehdmaps.maps.law_films import LawFilms
-from ehdmaps.maps.locked_film import LockedFactors
-from ehdmaps.maps.memory import FilmMemory, FilmState
 from ehdmaps.maps.outside_calls import Axis, Excursion, OutsideCalls, Range, broadcast, check_finite, floats
 from ehdmaps.maps.rolling_film import RollingFilm
 from ehdmaps.maps.rough_layer import GONE_BELOW
-from ehdmaps.maps.tables import LOAD, ApproachTable, LawTable, Point
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
@@ -50,8 +50,8 @@ class ContactLaw:
 
     Calls are for arrays of any shape that broadcast, and cost about 0.1 us a point; `at` gives the law of one
     speed and temperature, five times faster. Other compiled code uses `table`, `workspace`, `counts` and the
-    functions of `ehdmaps.maps.kernel` without any Python. The first call after an installation compiles for about
-    15 s; the result is kept on disk.
+    functions of `ehdmaps.maps.kernels.kernel` without any Python. The first call after an installation compiles for
+    about 15 s; the result is kept on disk.
 
     Parameters
     ----------
@@ -135,7 +135,7 @@ class ContactLaw:
 
     @cached_property
     def table(self) -> LawTable:
-        """Arrays for `ehdmaps.maps.kernel`, ready for a centrifugal load where the law takes one."""
+        """Arrays for `ehdmaps.maps.kernels.kernel`, ready for a centrifugal load where the law takes one."""
         if self.kind != "series":
             return self._plain
         inner, outer = (self._approach_table((contact,)) for contact in self.contacts)
@@ -313,7 +313,7 @@ class ContactLaw:
     def advance(
         self, state: FilmState | None, delta: npt.ArrayLike, dt: float, entrainment_speed: float, temperature: float
     ) -> tuple[Any, Any, FilmState]:
-        """A step in time with films that need time to follow; see `ehdmaps.maps.memory`.
+        """A step in time with films that need time to follow; see `ehdmaps.maps.kernels.memory`.
 
         Parameters
         ----------
@@ -358,7 +358,7 @@ class ContactLaw:
         return self._films.locked_factors(entrainment_speed, temperature)
 
     def film_response(self, loads: npt.ArrayLike, entrainment_speed: float, temperature: float) -> FilmResponse | None:
-        """Part of the complex stiffness that the law with memory leaves out, see `ehdmaps.maps.film_response`.
+        """Part of the complex stiffness that the law with memory leaves out, see `ehdmaps.maps.kernels.film_response`.
 
         Parameters
         ----------

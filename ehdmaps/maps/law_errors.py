@@ -33,8 +33,8 @@ from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone_plan import VALLEY
 from ehdmaps.maps.film_field import valley_loads
+from ehdmaps.maps.kernels.tables import ApproachTable
 from ehdmaps.maps.records import MODEL_ERRORS
-from ehdmaps.maps.tables import ApproachTable
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 

@@ -12,8 +12,8 @@ import numpy as np
 from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.maps.contact_curve import ContactCurve
 from ehdmaps.maps.film_field import FilmField, LowLoads, guessed_at, looked_at, low_loads
-from ehdmaps.maps.film_response import FilmResponse, FilmsOfContact
-from ehdmaps.maps.locked_film import FORMULA, LockedFactors, film_of, locked_compliances, relaxation_times
+from ehdmaps.maps.kernels.film_response import FilmResponse, FilmsOfContact
+from ehdmaps.maps.kernels.locked_film import FORMULA, LockedFactors, film_of, locked_compliances, relaxation_times
 from ehdmaps.maps.oil_layer import oil_layer
 from ehdmaps.maps.outside_calls import Excursion, Range
 from ehdmaps.maps.rolling_film import RollingFilm

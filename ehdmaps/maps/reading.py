@@ -2,19 +2,15 @@
 
 Attributes, axes and variables are held to the table of `schema`, and what is derived to the films that it comes from.
 
-The shape that a file declares is checked before anything is loaded, so that a damaged or foreign file costs neither
-memory nor time; values are checked when they are there.
+Only what the table of a version names is read. The shape that a file declares is checked before anything is loaded, so
+that a damaged or foreign file costs neither memory nor time; values are checked when they are there. Read with netCDF4
+itself: xarray would load every axis of a file and decode every variable, foreign ones too, before anybody could look at
+their sizes.
 
-Checksum of what a map holds, so that values changed after the map was made are noticed.
-
-Over names, dims, shapes and values of all variables of the table of the map's version, of the grid and of the backbone,
-and over the attributes that laws are made from. Not over the way they are stored: compression, chunks and the form of
-texts may change. Nor over what the clock says: maps that are equal in all physics have one sum.
-
-Only what the table of a version names is read, and nothing before its declared shape is known.
-
-Read with netCDF4 itself: xarray would load every axis of a file and decode every variable, foreign ones too, before
-anybody could look at their sizes.
+A checksum of what a map holds tells values that were changed after the map was made. It is over names, dims, shapes and
+values of all variables of the table of the map's version, of the grid and of the backbone, and over the attributes that
+laws are made from. Not over the way they are stored: compression, chunks and the form of texts may change. Nor over
+what the clock says: maps that are equal in all physics have one sum.
 """
 
 from __future__ import annotations

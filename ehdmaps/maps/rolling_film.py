@@ -31,8 +31,8 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.maps.backbone import FEWEST_NODES, LATTICE_STEP, lagrange
 from ehdmaps.maps.film_field import RIGID, known_from, load_at
 from ehdmaps.maps.grid_field import lines_by_contact
+from ehdmaps.maps.kernels.splines import mix_lines, spline_weights
 from ehdmaps.maps.schema import BACKBONE_DIMS, DIMS
-from ehdmaps.maps.splines import mix_lines, spline_weights
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.films import RIGID_ROLLING_CONSTANT
 from ehdmaps.physics.lubricant import Lubricant

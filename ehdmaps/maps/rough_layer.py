@@ -1,13 +1,12 @@
-"""Asperities of rough surfaces: what they carry, and the mean gap that they leave to the oil.
+"""Asperities of rough surfaces, and the load that they share with the film.
 
 The heights of both surfaces together are Gaussian, with the combined root mean square roughness sigma. Where the mean
 planes are x sigma apart, asperities carry the pressure of Greenwood and Tripp, and the gap that is open to the oil,
 averaged, is sigma (phi(x) + x Phi(x)): it never vanishes, while the mean planes may come to overlap, x < 0.
 
-Load sharing of film and asperities: from the film between smooth surfaces to that between rough ones.
-
-A film that carries the share g of the pressure on the Hertz shape is the film of the modulus g E' under the load g w
-(Johnson, Greenwood and Poon): Moes' groups become M sqrt(g) and L g^(3/4), and lengths count by g^(-1/2),
+The load is shared so that both leave the same gap on average. A film that carries the share g of the pressure on the
+Hertz shape is the film of the modulus g E' under the load g w (Johnson, Greenwood and Poon): Moes' groups become M
+sqrt(g) and L g^(3/4), and lengths count by g^(-1/2),
 
     h_f(g) = h_f(1) g^(-1/2) H(M sqrt(g), L g^(3/4))/H(M, L) g^(-n),    n = 0.12 M^2/(M^2 + 9),
 
@@ -19,12 +18,10 @@ smooth surfaces h_f(1) is that of the map. Asperities leave the same film on ave
 solved for the share g and the distance x of the mean planes in sigma; x sigma takes the place of the film offset, and
 the loss of the film counts by g^2. Where the film is thick, g is 1 and nothing changes; without a film g is 0, and x is
 that of the rough dry contact. The mean planes may come to overlap, x < 0: there the share is out of the range of the
-theory, see `ehdmaps.maps.rough_layer`, and the rule no more than a smooth way to the rough dry contact.
+theory, see below, and the rule no more than a smooth way to the rough dry contact.
 
 The scaled film lies within -5 and +12 % of films that `reynolds` solves with the modulus g E' for g >= 0.3 (rms of 60
 points with FVA 3, M 0.1 to 200, L 3 to 35, to g = 0.1: 4 %; with the textbooks' exponent g^(-0.16) instead: 32 %).
-
-What roughness makes of the points of a map: Lambda, the film's share of the load, and where that is out of range.
 
 Load sharing holds while the mean planes of both surfaces are apart. Where they overlap, the gap that is open to the
 oil on average is less than 0.4 of the roughness, and most of it lies in pockets between asperities that touch, through
@@ -36,7 +33,7 @@ References
 ----------
 J. A. Greenwood, J. H. Tripp, "The contact of two nominally flat rough surfaces", Proc. IMechE 185, 1970, 625.
 K. L. Johnson, J. A. Greenwood, S. Y. Poon, "A simple theory of asperity contact in elastohydrodynamic lubrication",
-Wear 19, 1972, 91. `ehdmaps.maps.rough_layer` for the asperities, `ehdmaps.physics.films` for the film.
+Wear 19, 1972, 91. Moes' film formula: `ehdmaps.physics.films`.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ import numpy as np
 
 from ehdmaps.arrays import Values, as_given
 from ehdmaps.errors import InputError
-from ehdmaps.physics._labels import label_problem
+from ehdmaps.labels import label_problem
 from ehdmaps.physics.isotherm import FreeVolume, Isotherm, IsothermLaw, PressureViscosity, density
 from ehdmaps.physics.own_oil import CORRELATIONS, Stated, estimated_coefficient, own_laws
 from ehdmaps.physics.viscosity import (

@@ -1,7 +1,5 @@
 """Oil that a contact gets: flooded, or a layer on the surfaces before it; a starved contact in closed form.
 
-Oil that a contact gets: flooded, or a layer of a given thickness on the surfaces before it.
-
 A flooded contact takes as much oil as its film needs. On a layer, no more can pass than the layer brings: the film of a
 light load, which would be thicker, is capped by it, and a roller that finds a gap wider than the layer runs dry. There
 is no side flow, so a layer stands for what is left of the oil before the contact in the steady state.
@@ -10,8 +8,7 @@ The layers of the named kinds of lubrication are estimates, from the side flow o
 the torque of a catalogue bearing in oil; within a kind they scatter by a factor of two or more. Who knows the layer
 gives its thickness.
 
-Starved line contact between rigid surfaces, in closed form: what a given flow of oil leaves of film and forces.
-
+The closed form is the starved line contact between rigid surfaces: what a given flow of oil leaves of film and forces.
 A layer of oil brings the flow u m to the contact, both walls at u, and the film begins at the meniscus, with no
 pressure. With the gap h = h0 + x^2/(2R), p' = 12 eta u (h - m)/h^3 and the free exit of Reynolds (p = 0 at h = m), the
 load is

@@ -1,10 +1,9 @@
 """Oil under shear: its laws, the stress at the walls in pure rolling, traction over the slide-to-roll ratio.
 
-How an oil answers to shear: stress over rate of shear, the only place of the formulas.
-
-`ShearLaw` is the law as plain numbers; `thinning` evaluates it by the stress, `yielding` by the rate of shear. They
-call nothing but `math`, so that the same lines work as they stand and compiled for a solver by numba; `ehlFoam` has the
-same formulas under the same names. `eta` is the viscosity at low shear, at the pressure and temperature of the place.
+The laws are those of stress over rate of shear; this is the only place of their formulas. `ShearLaw` is the law as
+plain numbers; `thinning` evaluates it by the stress, `yielding` by the rate of shear. They call nothing but `math`, so
+that the same lines work as they stand and compiled for a solver by numba; `ehlFoam` has the same formulas under the
+same names. `eta` is the viscosity at low shear, at the pressure and temperature of the place.
 
 =========  ============================================================  =======================================
 newtonian  eta rate = tau
@@ -17,16 +16,14 @@ The circular law has a bound that no stress reaches. Above `NEAR` of it the law 
 there: stress hardly rises any more, but its slope by the rate is never zero, and trial stresses beyond the bound are
 defined. A stress beyond the bound by more than a few per cent means that the film has no solution with that law.
 
-Shear stress at the walls of a film in pure rolling, against the pressure: where an oil cannot be Newtonian.
+In pure rolling the gradient of the pressure is held by the walls: tau = (h/2) dp/dx at each of them. An oil bears a
+shear stress of some hundredths of its pressure, and gives way beyond (E. Hoglund, B. Jacobson, J. Tribology 108 (1986)
+571-578).
 
-The gradient of the pressure is held by the walls: tau = (h/2) dp/dx at each of them. An oil bears a shear stress of
-some hundredths of its pressure, and gives way beyond (E. Hoglund, B. Jacobson, J. Tribology 108 (1986) 571-578).
-
-Traction of a line contact over the slide-to-roll ratio, on a film that is solved already.
-
-Where the surfaces differ in speed by du = S u, the film is sheared besides. Its mean stress across the film, tau,
-follows from the viscosity at the pressure p and from a law of shear stress; the traction coefficient is Int tau dx/w,
-of the mean of both walls. Each wall feels half of the rolling force besides, see `ehdmaps.physics.films`.
+Traction is found on a film that is solved already. Where the surfaces differ in speed by du = S u, the film is sheared
+besides. Its mean stress across the film, tau, follows from the viscosity at the pressure p and from a law of shear
+stress; the traction coefficient is Int tau dx/w, of the mean of both walls. Each wall feels half of the rolling force
+besides, see `ehdmaps.physics.films`.
 
 The film is that of pure rolling, Newtonian and isothermal: slip of 0.1 changes its central film by less than 2 % where
 it does not heat it. Heat is what a traction above S = 0.1 lacks most: at 0.9 GPa and S = 1 the real one is about half.
@@ -37,8 +34,6 @@ References
 H. Eyring, Journal of Chemical Physics 4, 1936, 283-291. S. Bair, High-Pressure Rheology for Quantitative
 Elastohydrodynamics, Elsevier, 2007. R.-T. Lee, B. J. Hamrock, A circular non-Newtonian fluid model: part I - used in
 elastohydrodynamic lubrication, Journal of Tribology 112, 1990, 486-496.
-H. Eyring, Journal of Chemical Physics 4, 1936, 283-291. R.-T. Lee, B. J. Hamrock, Journal of Tribology 112, 1990,
-486-496.
 """
 
 from __future__ import annotations

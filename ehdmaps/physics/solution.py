@@ -1,17 +1,14 @@
-"""Distance by which the highest of sampled pressures may lie below the peak, which stands between the places; and in
-words.
-
-The largest pressure of a film is that of a grid point. Where a cold or loaded oil makes a sharp spike, its tip is 1e-5
-half-widths wide and less: it stands higher on every finer grid. The stated error bounds by how much. Against grids of
-two to four times the density of cells, and tips resolved to 1e-6 half-widths, it did so at 252 of 254 spikes (FVA 3
-and an oil ISO VG 320 at 0 to 120 degC, NU308 and N1014; the oils of `tests.benchmarks.bench_spikes`). Where it is above
-`SHARP`, what was missing was a quarter of it in the median, less than half of it at 85 %, and 130 % of the pressure at
-most; elsewhere 4 % of the pressure at most.
-
-What a solver returns: the film of one contact at one operating point, and the contact made of film and solids.
+"""Result of a solver: the film of one contact at one operating point, and the contact made of film and solids.
 
 A solver knows the film only (`FilmSolution`, and over frequency `FilmSpectrum`). `contact_solution` adds the structural
 part, which is the same law for every solver, and gives the numbers of the map (`ContactSolution`).
+
+The largest pressure of a film is that of a grid point. Where a cold or loaded oil makes a sharp spike, its tip is 1e-5
+half-widths wide and less: it stands higher on every finer grid. `peak_sampling_error` bounds by how much. Against grids
+of two to four times the density of cells, and tips resolved to 1e-6 half-widths, it did so at 252 of 254 spikes (FVA 3
+and an oil ISO VG 320 at 0 to 120 degC, NU308 and N1014; the oils of `tests.benchmarks.bench_spikes`). Where it is above
+`SHARP`, what was missing was a quarter of it in the median, less than half of it at 85 %, and 130 % of the pressure at
+most; elsewhere 4 % of the pressure at most.
 """
 
 from __future__ import annotations

@@ -40,7 +40,7 @@ _SPEED_EXPONENT = 0.7
 """Exponent of the film of a loaded line contact in the speed, as of Dowson and Higginson."""
 
 _LONGEST = 1.4
-"""Longest relaxation time in natural times, as in `ehdmaps.maps.locked_film`: a film that hardly gives way."""
+"""Longest relaxation time in natural times, as in `ehdmaps.maps.kernels.locked_film`: a film that hardly gives way."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,7 +136,8 @@ def memory_effect(state: ClosedContact, frequency: float) -> FloatArray:
 
     Notes
     -----
-    The relaxation time is theta = c/(k_s - k) with the stiffness k_s of the solids, as of `ehdmaps.maps.memory_table`.
+    The relaxation time is theta = c/(k_s - k) with the stiffness k_s of the solids, as of
+    `ehdmaps.maps.kernels.memory_table`.
     """
     omega, k, c = 2.0 * math.pi * frequency, state.stiffness, state.damping
     with np.errstate(divide="ignore"):

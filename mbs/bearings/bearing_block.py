@@ -14,7 +14,7 @@ import numpy as np
 from ehdmaps.arrays import BoolArray, FloatArray, IntArray
 from ehdmaps.compiled import njit
 from ehdmaps.copies import put
-from ehdmaps.maps.lines import FAST
+from ehdmaps.maps.kernels.lines import FAST
 from mbs.bearings import slice_table as table
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce

@@ -26,8 +26,8 @@ from mbs.model.elements import ElementDefaults, Excitation, Forces, Operation, P
 from mbs.model.relaxation import Films, Relaxation
 
 if TYPE_CHECKING:
+    from ehdmaps.maps.kernels.memory import FilmMemory, FilmState
     from ehdmaps.maps.law import ContactLaw
-    from ehdmaps.maps.memory import FilmMemory, FilmState
     from mbs.bearings.roller_contacts import ContactGroup, RollerContacts
     from mbs.model.system import System
 
@@ -527,7 +527,9 @@ class FilmStates(NamedTuple):
 
 
 class FilmsInTime(RingElement):
-    """A bearing whose films have a memory in time, see `ehdmaps.maps.memory_table`, with rollers of either kind.
+    """A bearing whose films have a memory in time, with rollers of either kind.
+
+    The law is that of `ehdmaps.maps.kernels.memory_table`.
 
     At rest it is the element without; small oscillations see films that relax.
     """

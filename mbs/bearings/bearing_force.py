@@ -26,7 +26,7 @@ import numpy.typing as npt
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.maps.kernel import LOAD_TOLERANCE
+from ehdmaps.maps.kernels.kernel import LOAD_TOLERANCE
 from mbs.bearings.bearing import Bearing, RingForces, RingState, ring_forces
 from mbs.bearings.bearing_kernel import assemble_arrays
 from mbs.bearings.force_at_point import (
@@ -44,8 +44,8 @@ from mbs.bearings.slices import NOT_FINITE, approaches_of_arrays
 from mbs.model.elements import Forces
 
 if TYPE_CHECKING:
+    from ehdmaps.maps.kernels.memory import FilmState
     from ehdmaps.maps.law import ContactLaw, LawAtPoint
-    from ehdmaps.maps.memory import FilmState
 
 
 LoadsOf = Callable[[FloatArray], FloatArray]

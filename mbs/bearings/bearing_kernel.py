@@ -18,9 +18,9 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.compiled import njit
-from ehdmaps.maps.kernel import evaluate_at
-from ehdmaps.maps.lines import FAST, unilateral_force
-from ehdmaps.maps.tables import LOAD, Point
+from ehdmaps.maps.kernels.kernel import evaluate_at
+from ehdmaps.maps.kernels.lines import FAST, unilateral_force
+from ehdmaps.maps.kernels.tables import LOAD, Point
 from mbs.bearings.slice_table import LawNumbers, PreparedLaw, law_numbers, unbounded
 from mbs.bearings.slices import (
     NOT_FINITE,

@@ -14,8 +14,8 @@ import numpy as np
 
 from ehdmaps.arrays import BoolArray, FloatArray, IntArray
 from ehdmaps.compiled import in_python, njit
-from ehdmaps.maps.memory import FilmState
-from ehdmaps.maps.memory_table import step_of
+from ehdmaps.maps.kernels.memory import FilmState
+from ehdmaps.maps.kernels.memory_table import step_of
 from mbs.bearings.bearing_element import FilmStates
 from mbs.bearings.bearing_kernel import assemble_level_slices, assemble_slices
 from mbs.bearings.laws import DryLaw

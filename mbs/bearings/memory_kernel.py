@@ -1,7 +1,7 @@
 """Slices whose films have a memory, in compiled code: one time step of all slices of a bearing.
 
-The law is that of `ehdmaps.maps.memory_table`. Each slice carries parabolas of p, y and G around a state and of a
-around a load; they stand for the cubics of its cells, from which they differ in third order, and are read anew where
+The law is that of `ehdmaps.maps.kernels.memory_table`. Each slice carries parabolas of p, y and G around a state and of
+a around a load; they stand for the cubics of its cells, from which they differ in third order, and are read anew where
 the slice leaves their reach, and every few steps, as the law follows the speed (`mbs.bearings.speed_tables`). So
 Newton's method for the states is arithmetic alone, in vector instructions over all slices. A slice that leaves them
 within a step is solved from the table itself, with a bracket. Tables of the law over the speed are as those of
@@ -25,11 +25,10 @@ from ehdmaps.arrays import BoolArray, FloatArray, IntArray
 from ehdmaps.compiled import njit
 from ehdmaps.copies import put
 from ehdmaps.errors import EhdmapsError
-from ehdmaps.maps.kernel import LOAD_TOLERANCE
-from ehdmaps.maps.law import ContactLaw
-from ehdmaps.maps.lines import FAST
-from ehdmaps.maps.memory import FilmState, spent_by
-from ehdmaps.maps.memory_table import (
+from ehdmaps.maps.kernels.kernel import LOAD_TOLERANCE
+from ehdmaps.maps.kernels.lines import FAST
+from ehdmaps.maps.kernels.memory import FilmState, spent_by
+from ehdmaps.maps.kernels.memory_table import (
     LIGHTEST,
     LOAD_ROWS,
     ROWS,
@@ -42,6 +41,7 @@ from ehdmaps.maps.memory_table import (
     rate_of,
     state_cell,
 )
+from ehdmaps.maps.law import ContactLaw
 from mbs.bearings.speed_tables import Course, Made, SpeedWindow
 from mbs.model.blocks import Moment
 
@@ -63,7 +63,7 @@ class MemoryFilms(NamedTuple):
     Attributes
     ----------
     cells, load_cells, numbers : array (films, NODES, 2 ROWS, 12), (films, NODES, LOAD_ROWS, 4), (films, NODES, 4)
-        Tables, as of `ehdmaps.maps.memory_table`.
+        Tables, as of `ehdmaps.maps.kernels.memory_table`.
     mixed_cells, mixed_load_cells, mixed : array (films, 2 ROWS, 12), (films, LOAD_ROWS, 4), (films, 4)
         The table in use.
     in_use : array (films, 2)
@@ -224,7 +224,7 @@ _LEAST = 1e-30
 
 @njit(error_model="numpy")
 def resume(approach: FloatArray, change: FloatArray, load: FloatArray, memory: FloatArray) -> None:
-    """Go on from states, as of `ehdmaps.maps.memory.FilmState`.
+    """Go on from states, as of `ehdmaps.maps.kernels.memory.FilmState`.
 
     Parameters
     ----------

@@ -2,7 +2,7 @@
 
 In linear analyses each slice answers at its own frequency: its film moves like a damper as long as it can follow, and
 is locked at high frequency: stiffness and damping k and c of the map become k + s c/(1 + s theta), with the relaxation
-time theta of `ehdmaps.maps.memory_table`. That is the law which films with memory follow in time, for small
+time theta of `ehdmaps.maps.kernels.memory_table`. That is the law which films with memory follow in time, for small
 oscillations about an equilibrium.
 
 Rollers that are bodies have a radial freedom each, between an inner and an outer contact. All is linear in a frame that
@@ -25,7 +25,7 @@ import numpy.typing as npt
 from ehdmaps.arrays import FloatArray
 from ehdmaps.compiled import njit
 from ehdmaps.errors import InputError, OutsideMapError, SolverError
-from ehdmaps.maps.memory_table import equilibrium_at
+from ehdmaps.maps.kernels.memory_table import equilibrium_at
 from ehdmaps.physics.hertz import half_width
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.force_at_point import RollerLoads
@@ -34,10 +34,10 @@ from mbs.model.elements import Forces
 from mbs.model.relaxation import Relaxation
 
 if TYPE_CHECKING:
-    from ehdmaps.maps.film_response import FilmResponse
+    from ehdmaps.maps.kernels.film_response import FilmResponse
+    from ehdmaps.maps.kernels.memory import FilmMemory, FilmState
+    from ehdmaps.maps.kernels.memory_table import MemoryTable
     from ehdmaps.maps.law import ContactLaw, LawAtPoint
-    from ehdmaps.maps.memory import FilmMemory, FilmState
-    from ehdmaps.maps.memory_table import MemoryTable
 
 
 @njit(error_model="numpy")

@@ -23,11 +23,11 @@ from numba.np.unsafe.ndarray import to_fixed_tuple
 
 from ehdmaps.arrays import ByteArray, FloatArray, IntArray
 from ehdmaps.compiled import COMPILES, njit
-from ehdmaps.maps.bulk import rest_states
-from ehdmaps.maps.kernel import full_state, structural_state
-from ehdmaps.maps.lines import FAST, line_approach, line_state
-from ehdmaps.maps.roller_balance import balanced_approach
-from ehdmaps.maps.tables import Point, last_of, nodes_of, rows_of
+from ehdmaps.maps.kernels.bulk import rest_states
+from ehdmaps.maps.kernels.kernel import full_state, structural_state
+from ehdmaps.maps.kernels.lines import FAST, line_approach, line_state
+from ehdmaps.maps.kernels.roller_balance import balanced_approach
+from ehdmaps.maps.kernels.tables import Point, last_of, nodes_of, rows_of
 
 fixed_tuple: Any = to_fixed_tuple if COMPILES else lambda values, size: tuple(values[:size])
 """The first numbers of an array as a tuple."""
@@ -415,7 +415,7 @@ def write_film(point: Point, nodes: FloatArray, out: FloatArray, highest: float,
     """Nodes of a film of which only a part is there: what holds for every part of it.
 
     At equal load the approach is that part of the one with the whole film, and the rest of that without any, see
-    `ehdmaps.maps.kernel`. So the nodes of a whole film serve all parts, as knots that move.
+    `ehdmaps.maps.kernels.kernel`. So the nodes of a whole film serve all parts, as knots that move.
 
     Parameters
     ----------

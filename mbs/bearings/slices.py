@@ -13,8 +13,8 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.compiled import njit
-from ehdmaps.maps.lines import FAST, log
-from ehdmaps.maps.tables import FIRST, SHIFT
+from ehdmaps.maps.kernels.lines import FAST, log
+from ehdmaps.maps.kernels.tables import FIRST, SHIFT
 from mbs.bearings.slice_table import CELLS, LAST, POWER, ROWS, LawNumbers, PreparedLaw, fixed_tuple, read_cells
 
 _LOG2_E = 1.4426950408889634

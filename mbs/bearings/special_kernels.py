@@ -32,9 +32,9 @@ import numpy as np
 
 from ehdmaps.arrays import ByteArray, FloatArray, IntArray
 from ehdmaps.compiled import njit
-from ehdmaps.maps.kernel import collapse, evaluate_at
-from ehdmaps.maps.lines import unilateral_force
-from ehdmaps.maps.tables import FIRST, LOAD, SHIFT
+from ehdmaps.maps.kernels.kernel import collapse, evaluate_at
+from ehdmaps.maps.kernels.lines import unilateral_force
+from ehdmaps.maps.kernels.tables import FIRST, LOAD, SHIFT
 from mbs.bearings.bearing_kernel import Plane, added, assemble, write_plane
 from mbs.bearings.laws import FlatTable, counted_load, law_table
 from mbs.bearings.slice_table import (

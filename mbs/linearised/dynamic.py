@@ -25,8 +25,8 @@ find, or that it finds elsewhere, is lost, with the reason: it is in no result.
 
 What films with memory leave out of modes: the part of the film law in eigenvalues, to first order.
 
-Each slice has one relaxation time, see `ehdmaps.maps.film_response`. What it leaves out of the dynamic stiffness, dZ,
-moves an eigenvalue by
+Each slice has one relaxation time, see `ehdmaps.maps.kernels.film_response`. What it leaves out of the dynamic
+stiffness, dZ, moves an eigenvalue by
 
     d lambda = -y' dZ(lambda) x,    with y' Z'(lambda) x = 1,
 
@@ -46,7 +46,7 @@ import numpy as np
 from scipy.linalg import block_diag, eigh, svd
 
 from ehdmaps.arrays import BoolArray, ComplexArray, FloatArray
-from ehdmaps.maps.film_response import law_stiffness
+from ehdmaps.maps.kernels.film_response import law_stiffness
 from mbs.bearings.bearing_element import RingElement
 from mbs.model.equilibrium import Equilibrium
 from mbs.model.relaxation import Relaxation

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ehdmaps.arrays import ComplexArray, FloatArray
-from ehdmaps.maps.film_response import FilmResponse, by_powers
+from ehdmaps.maps.kernels.film_response import FilmResponse, by_powers
 from mbs.bearings.bearing_element import RingElement
 from mbs.linearised.dynamic import element_dynamic_stiffness
 from mbs.model.elements import Input
@@ -70,8 +70,8 @@ class FilmError:
     """Possible error of the films that an analysis has against true ones: along the load of a bearing, over frequency.
 
     The error is |dZ/Z| of the dynamic stiffness Z. With a map that holds the response of its films, Z is that of films
-    with memory and what each of their slices leaves out, see `ehdmaps.maps.film_response`; how wrong that may be as it
-    is read is added by its size. Without one, Z is that of films with memory, whose own error is the mean of
+    with memory and what each of their slices leaves out, see `ehdmaps.maps.kernels.film_response`; how wrong that may
+    be as it is read is added by its size. Without one, Z is that of films with memory, whose own error is the mean of
     `memory_error` of the slices, each with the weight of c over its natural time, which is some measure of its
     stiffness and all that is known of it here.
 

@@ -29,7 +29,7 @@ from numba.extending import overload
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.compiled import in_python, njit
 from ehdmaps.copies import put
-from ehdmaps.maps.lines import FAST
+from ehdmaps.maps.kernels.lines import FAST
 from mbs.model.blocks import FOUND, NO_SOLUTION, Answers, Kind, Moment
 from mbs.transient.integration_kernel import eliminate
 from mbs.transient.kinds import KINDS

@@ -18,8 +18,8 @@ import numpy as np
 import xarray as xr
 from scipy.interpolate import RegularGridInterpolator
 
-from ehdmaps.maps import kernel
 from ehdmaps.maps.grid_field import GridField
+from ehdmaps.maps.kernels import kernel
 from ehdmaps.maps.law import ContactLaw
 from tests.cases.laws import CONTACTS, OIL, ValleyField, exact_law
 

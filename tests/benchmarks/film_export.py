@@ -20,8 +20,8 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.exports.c.locked_table import locked_table
 from ehdmaps.jobs.cli import main as export
 from ehdmaps.maps.emap import open_map
+from ehdmaps.maps.kernels.memory import FilmMemory
 from ehdmaps.maps.law import ContactLaw
-from ehdmaps.maps.memory import FilmMemory
 from tests.cases.c_kernel import Kernel, compiled
 
 PLACES, STEPS = 60, (1e-6, 1e-5, 1e-4)

@@ -79,14 +79,14 @@ FAULTS = (
     ),
     Fault(
         "compliance of the solids, factor",
-        "ehdmaps/maps/kernel.py",
+        "ehdmaps/maps/kernels/kernel.py",
         "compliance += b * part / w",
         "compliance += part / w",
     ),
-    Fault("damping of a faded film, factor", "ehdmaps/maps/kernel.py", "part * dc / slope", "dc / slope"),
+    Fault("damping of a faded film, factor", "ehdmaps/maps/kernels/kernel.py", "part * dc / slope", "dc / slope"),
     Fault(
         "film memory, tangent",
-        "ehdmaps/maps/memory_table.py",
+        "ehdmaps/maps/kernels/memory_table.py",
         "tangent = slope / rise if",
         "tangent = 2.0 * slope / rise if",
     ),

@@ -25,9 +25,9 @@ from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.make.generate import generate_in_memory
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.film_field import lifted_loss
-from ehdmaps.maps.film_response import FilmsOfContact
+from ehdmaps.maps.kernels.film_response import FilmsOfContact
+from ehdmaps.maps.kernels.locked_film import film_of, fitted_factor, law_differences, locked_stiffness, response_error
 from ehdmaps.maps.law import LawAtPoint
-from ehdmaps.maps.locked_film import film_of, fitted_factor, law_differences, locked_stiffness, response_error
 from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.hertz import half_width, natural_time
 from ehdmaps.physics.lubricant import Lubricant

@@ -12,10 +12,10 @@ from scipy.integrate import solve_ivp
 from ehdmaps.exports.c.locked_table import locked_table
 from ehdmaps.jobs.cli import main
 from ehdmaps.maps.emap import open_map
+from ehdmaps.maps.kernels.locked_film import FORMULA
+from ehdmaps.maps.kernels.memory import FilmMemory
+from ehdmaps.maps.kernels.tables import COLDEST
 from ehdmaps.maps.law import ContactLaw
-from ehdmaps.maps.locked_film import FORMULA
-from ehdmaps.maps.memory import FilmMemory
-from ehdmaps.maps.tables import COLDEST
 from mbs import Bearing, BearingForce
 from tests.cases.c_kernel import Kernel, compiled
 from tests.cases.jobs import LINE

@@ -17,7 +17,7 @@ from ehdmaps.exports.resampled import READING
 from ehdmaps.jobs.cli import main
 from ehdmaps.jobs.make.generate import generate
 from ehdmaps.jobs.reader import parse_job
-from ehdmaps.maps.lines import line_approach
+from ehdmaps.maps.kernels.lines import line_approach
 from ehdmaps.physics.closed_form import FormulaSolver
 from tests.cases.jobs import DRY, LINE, SMALL, map_job
 from tests.conftest import made_map

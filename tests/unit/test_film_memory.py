@@ -11,9 +11,9 @@ from numba import njit
 from scipy.optimize import brentq
 
 from ehdmaps.errors import InputError, OutsideMapError
+from ehdmaps.maps.kernels.memory import FilmState
+from ehdmaps.maps.kernels.memory_table import advanced, approach_at, equilibrium_at, fading_of, rate_of, step_of
 from ehdmaps.maps.law import ContactLaw
-from ehdmaps.maps.memory import FilmState
-from ehdmaps.maps.memory_table import advanced, approach_at, equilibrium_at, fading_of, rate_of, step_of
 from tests.cases.laws import CONTACTS, OIL, SMALL_FIELD, ValleyField
 
 WARM = 330.0

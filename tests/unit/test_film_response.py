@@ -10,7 +10,7 @@ import pytest
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.make.generate import generate_in_memory
 from ehdmaps.maps.emap import EHDMap
-from ehdmaps.maps.film_response import FilmResponse, FilmsOfContact, by_powers, law_stiffness
+from ehdmaps.maps.kernels.film_response import FilmResponse, FilmsOfContact, by_powers, law_stiffness
 from ehdmaps.maps.law import ContactLaw
 from tests.cases.laws import CONTACTS, NU308, OIL, SMALL_FIELD
 from tests.unit.test_locked_film import Remembering

@@ -26,6 +26,7 @@ ALLOWED = {
     "ehdmaps.units": {"ehdmaps.errors"},
     "ehdmaps.choices": {"ehdmaps.errors", "ehdmaps.units", "ehdmaps.physics", "ehdmaps.maps"},
     "ehdmaps.figures": set(),
+    "ehdmaps.labels": set(),
     "ehdmaps.inputs": {"ehdmaps.errors"},
     "ehdmaps.netcdf_structure": set(),
     "ehdmaps.outputs": {"ehdmaps.errors", "ehdmaps.netcdf_structure"},
@@ -36,7 +37,7 @@ ALLOWED = {
     "ehdmaps.program": {"ehdmaps.errors", "ehdmaps.interrupts", "ehdmaps.version"},
     "ehdmaps.compiling": set(),
     "ehdmaps.workers": {"ehdmaps.compiling", "ehdmaps.errors", "ehdmaps.interrupts", "ehdmaps.program"},
-    "ehdmaps.physics": {"ehdmaps.arrays", "ehdmaps.errors"},
+    "ehdmaps.physics": {"ehdmaps.arrays", "ehdmaps.errors", "ehdmaps.labels"},
     "ehdmaps.ehl": {"ehdmaps.arrays", "ehdmaps.compiled", "ehdmaps.copies", "ehdmaps.errors", "ehdmaps.physics"},
     "ehdmaps.maps": {
         "ehdmaps.arrays",
@@ -90,6 +91,7 @@ ALLOWED = {
         "ehdmaps.figures",
         "ehdmaps.inputs",
         "ehdmaps.interrupts",
+        "ehdmaps.labels",
         "ehdmaps.netcdf_structure",
         "ehdmaps.outputs",
         "ehdmaps.program",
@@ -292,6 +294,24 @@ def test_rooms_of_jobs(rooms, above) -> None:
     for path in paths:
         if path.name != "stability_readers.py":
             assert [name for name in _imported(path) if name.startswith(above)] == [], path
+
+
+def test_kernels_know_no_map() -> None:
+    paths = sorted((ROOT / "ehdmaps" / "maps" / "kernels").glob("*.py"))
+    assert len(paths) > 5
+    for path in paths:
+        own = {name for name in _imported(path) if name.startswith("ehdmaps.maps")}
+        assert [name for name in own if not name.startswith("ehdmaps.maps.kernels")] == [], path
+
+
+@pytest.mark.parametrize("room", ["maps", "maps/kernels", "physics"])
+def test_rooms_are_small_and_list_their_modules(room) -> None:
+    folder = ROOT / "ehdmaps" / room
+    names = [path.stem for path in folder.glob("*.py") if path.stem != "__init__"]
+    names += [path.parent.name for path in folder.glob("*/__init__.py")]
+    listed = re.findall(r"(?m)^(\w+)  +\S", ast.get_docstring(ast.parse((folder / "__init__.py").read_text())) or "")
+    assert sorted(listed) == sorted(names)
+    assert len(list(folder.glob("*.py"))) <= 20
 
 
 CORE = ("bearings", "model", "linearised", "transient", "spectral", "scene", "analyses", "output", "report")

@@ -12,7 +12,7 @@ import pytest
 
 import ehdmaps
 from ehdmaps.compiled import in_python
-from ehdmaps.maps.lines import log
+from ehdmaps.maps.kernels.lines import log
 from mbs import cli
 from mbs.bearings.slice_table import all_made
 
@@ -26,7 +26,7 @@ COMMANDS = {
     "statics": ("statics", "nu308_rigid", "--law", "hertz:1.25e-5 s", "--clearance", "20 um", "-o", "statics.nc"),
 }
 POINT = (2e-6, 1e-4, 1.2, 310.0)
-KERNELS = ("ehdmaps/maps/kernel.py", "mbs/bearings/bearing_kernel.py")
+KERNELS = ("ehdmaps/maps/kernels/kernel.py", "mbs/bearings/bearing_kernel.py")
 
 PROGRAM = """
 import json, sys

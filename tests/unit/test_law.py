@@ -12,9 +12,9 @@ from numba import njit
 from scipy.optimize import brentq
 
 from ehdmaps.errors import InputError, OutsideMapError
-from ehdmaps.maps import bulk, kernel
+from ehdmaps.maps.kernels import bulk, kernel
+from ehdmaps.maps.kernels.tables import LOAD, NOT_FINITE, SPEED, TEMPERATURE
 from ehdmaps.maps.law import LOAD_REACH, ContactLaw
-from ehdmaps.maps.tables import LOAD, NOT_FINITE, SPEED, TEMPERATURE
 from tests.cases.laws import CONTACTS, LINE, OIL, SMALL_FIELD, ValleyField, exact_law
 
 FULL_FIELD = ValleyField()

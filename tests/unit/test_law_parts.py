@@ -11,12 +11,12 @@ from numba import njit
 from scipy.interpolate import CubicSpline
 
 from ehdmaps.errors import MapError
-from ehdmaps.maps import lines
 from ehdmaps.maps.compilation import compile_table, highest_structural_load
 from ehdmaps.maps.contact_curve import ContactCurve, Tail
 from ehdmaps.maps.film_field import LOSS_FLOOR, DryField, lifted_loss
 from ehdmaps.maps.grid_field import GridField
-from ehdmaps.maps.splines import hermite, spline_coefficients, spline_slopes, spline_weights
+from ehdmaps.maps.kernels import lines
+from ehdmaps.maps.kernels.splines import hermite, spline_coefficients, spline_slopes, spline_weights
 from tests.cases.laws import CONTACTS, LINE, OIL, SMALL_FIELD, ValleyField
 
 

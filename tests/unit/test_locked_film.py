@@ -11,8 +11,7 @@ import pytest
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.make.generate import generate_in_memory
 from ehdmaps.maps.emap import EHDMap
-from ehdmaps.maps.law import ContactLaw
-from ehdmaps.maps.locked_film import (
+from ehdmaps.maps.kernels.locked_film import (
     FORMULA,
     MOST,
     LockedFactors,
@@ -22,7 +21,8 @@ from ehdmaps.maps.locked_film import (
     locked_compliances,
     locked_stiffness,
 )
-from ehdmaps.maps.memory_table import advanced, equilibrium_at, step_of
+from ehdmaps.maps.kernels.memory_table import advanced, equilibrium_at, step_of
+from ehdmaps.maps.law import ContactLaw
 from ehdmaps.physics.closed_form import FormulaSolver
 from ehdmaps.physics.hertz import natural_time
 from ehdmaps.physics.solution import FilmSpectrum

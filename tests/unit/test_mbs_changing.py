@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from ehdmaps.errors import InputError, OutsideMapError
-from ehdmaps.maps.roller_balance import balanced_approach, balanced_state, balanced_states
+from ehdmaps.maps.kernels.roller_balance import balanced_approach, balanced_state, balanced_states
 from mbs.bearings import slice_table as table
 from mbs.bearings.bearing_force import BearingForce
 from tests.cases.bearings import bearing, map_law

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from ehdmaps.errors import InputError
+from ehdmaps.maps.kernels.memory_table import approach_at
 from ehdmaps.maps.law import ContactLaw
-from ehdmaps.maps.memory_table import approach_at
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement, RollerElement
 from mbs.bearings.bearing_force import BearingForce

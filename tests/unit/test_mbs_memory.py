@@ -11,8 +11,8 @@ import pytest
 from numba import njit
 
 from ehdmaps.errors import InputError, OutsideMapError
+from ehdmaps.maps.kernels.memory_table import advanced, equilibrium_at, step_of
 from ehdmaps.maps.law import ContactLaw
-from ehdmaps.maps.memory_table import advanced, equilibrium_at, step_of
 from ehdmaps.physics.oil_supply import OilSupply
 from mbs import assemble, read_scene
 from mbs.bearings.bearing import Bearing

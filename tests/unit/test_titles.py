@@ -10,7 +10,7 @@ import pytest
 
 from ehdmaps.figures import legend_columns
 from ehdmaps.jobs import cli as jobs_cli
-from ehdmaps.physics._labels import LONGEST_LABEL
+from ehdmaps.labels import LONGEST_LABEL
 from ehdmaps.physics.catalogue import estimate
 from mbs import cli
 from tests.cases.jobs import map_job

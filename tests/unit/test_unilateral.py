@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ehdmaps.maps import lines
+from ehdmaps.maps.kernels import lines
 from ehdmaps.physics.contact import unilateral_force
 from mbs.bearings.laws import unilateral_forces
 from mbs.gears import gear_kernel

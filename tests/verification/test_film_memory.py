@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from ehdmaps.ehl.solver import ReynoldsSolver
+from ehdmaps.maps.kernels.memory_table import equilibrium_at
 from ehdmaps.maps.law import LawAtPoint
-from ehdmaps.maps.memory_table import equilibrium_at
 from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.solution import natural_to_hertz
 from ehdmaps.physics.spectrum import contact_spectrum

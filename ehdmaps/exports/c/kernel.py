@@ -12,10 +12,10 @@ from typing import Literal
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.exports.c.locked_table import locked_table
-from ehdmaps.maps import locked_film
 from ehdmaps.maps.emap import EHDMap
+from ehdmaps.maps.kernels import locked_film
+from ehdmaps.maps.kernels.tables import HALF_SPACE, ApproachTable, LawTable
 from ehdmaps.maps.law import ContactLaw, LawKind, OutsidePolicy
-from ehdmaps.maps.tables import HALF_SPACE, ApproachTable, LawTable
 from ehdmaps.physics.bearing import BearingGeometry
 
 ProfileName = Literal["iso", "straight"]

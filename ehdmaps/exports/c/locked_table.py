@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.maps.kernels.locked_film import FORMULA, LockedFactors
+from ehdmaps.maps.kernels.tables import COLDEST
 from ehdmaps.maps.law import ContactLaw
-from ehdmaps.maps.locked_film import FORMULA, LockedFactors
-from ehdmaps.maps.tables import COLDEST
 
 SPEED_STEP, LOAD_STEP = 0.25, 0.1
 """Largest steps of ln u and of ln of the load. With them a quick change of load of the shipped map's law is right

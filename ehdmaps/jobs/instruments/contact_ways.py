@@ -25,7 +25,7 @@ from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import SolverError
 from ehdmaps.jobs.instruments.answers import Answer, Question, film_answer, known
 from ehdmaps.maps.contact_curve import FilmSamples, Tail
-from ehdmaps.maps.locked_film import film_of, fitted_factor, locked_stiffness, response_error
+from ehdmaps.maps.kernels.locked_film import film_of, fitted_factor, locked_stiffness, response_error
 from ehdmaps.maps.oil_layer import OilLayer
 from ehdmaps.maps.rolling_film import FlowFilm
 from ehdmaps.maps.rough_layer import RoughLayer, asperity_pressure, mean_gap

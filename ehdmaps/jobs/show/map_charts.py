@@ -15,8 +15,7 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import MapError
 from ehdmaps.figures import WARNING, typeset
-from ehdmaps.maps.curves import curves, film_between, rough_layers
-from ehdmaps.maps.emap import EHDMap
+from ehdmaps.maps.emap import EHDMap, curves, film_between, rough_layers
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.rough_layer import BOUNDARY, FILM_PARAMETER, MIXED
 from ehdmaps.physics.contact import LineContact

@@ -32,8 +32,7 @@ from ehdmaps.jobs.show.plot_curves import (
     spread,
 )
 from ehdmaps.maps import schema
-from ehdmaps.maps.curves import law_field
-from ehdmaps.maps.emap import EHDMap
+from ehdmaps.maps.emap import EHDMap, law_field
 from ehdmaps.maps.records import record_from_json
 from ehdmaps.outputs import write_figure
 from ehdmaps.physics.closed_form import BELOW_ROUGHNESS, CONTINUUM, NO_CONTINUUM

@@ -14,8 +14,7 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullLocat
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.figures import WARNING
-from ehdmaps.maps.curves import curves
-from ehdmaps.maps.emap import EHDMap
+from ehdmaps.maps.emap import EHDMap, curves
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.physics.solution import Status
 from ehdmaps.units import LOAD, Display

@@ -12,8 +12,8 @@ import numpy as np
 
 from ehdmaps.arrays import ByteArray, FloatArray, IntArray
 from ehdmaps.compiled import njit
-from ehdmaps.maps.kernel import collapse, evaluate_at, within_map
-from ehdmaps.maps.lines import (
+from ehdmaps.maps.kernels.kernel import collapse, evaluate_at, within_map
+from ehdmaps.maps.kernels.lines import (
     FAST,
     cell_of,
     collapsed_row,
@@ -26,8 +26,8 @@ from ehdmaps.maps.lines import (
     state_of,
     stretched,
 )
-from ehdmaps.maps.roller_balance import balanced_states
-from ehdmaps.maps.tables import COLDEST, NOT_FINITE, ApproachTable, LawTable, Line, Point
+from ehdmaps.maps.kernels.roller_balance import balanced_states
+from ehdmaps.maps.kernels.tables import COLDEST, NOT_FINITE, ApproachTable, LawTable, Line, Point
 
 _BLOCK = 256
 

@@ -1,12 +1,11 @@
-"""Cells of a table that are the binary digits of a number a >= 1: 32 to each doubling, found without a logarithm.
-
-Cells are fine where a is near 1, and as wide as they are far from it. The digits of a above `SHIFT` are the number of
-its cell, those below its place there.
-
-The arrays of a compiled law, as named tuples that numba takes as they are.
+"""The arrays of a compiled law, as named tuples that numba takes as they are.
 
 `ApproachTable` and `LawTable` hold a law over approach, entrainment speed and temperature; `Line` and `Point` hold
 what is left of them at one speed, temperature and centrifugal load.
+
+Tables whose cells are fine near 1, and as wide as they are far from it, have 32 cells to each doubling of a number
+a >= 1, found without a logarithm: the binary digits of a above `SHIFT` are the number of its cell, those below its
+place there.
 """
 
 from __future__ import annotations

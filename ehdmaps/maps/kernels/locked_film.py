@@ -2,15 +2,12 @@
 
 At high frequency the oil cannot leave the inlet, and stiffens the contact a little above its dry structure: it takes
 `locked_compliance` off the compliance of the solids. The closed formula for it is fitted to the linear response of the
-isothermal Newtonian line contact, see `LOCKED` and `LONGEST`. A map with film compliances at natural frequencies has a
-factor for it besides, see `ehdmaps.maps.locked_film`.
+isothermal Newtonian line contact, see `LOCKED` and `LONGEST`.
 
-From film compliances at natural frequencies to the one number that the law in time takes from them.
-
-The law has stiffness and damping of slow motion and the stiffness k_s of the locked film. Of these only k_s is open.
-Its closed formula gets a factor, by which the complex stiffness of the law comes closest to that of the film solver, in
-the mean square of the relative differences at the frequencies that the map holds. Whatever the factor, the law is
-passive.
+A map with film compliances at natural frequencies has a factor for it besides, `fitted_factor`. The law in time has
+stiffness and damping of slow motion and the stiffness k_s of the locked film, of which only k_s is open. So the factor
+is the one by which the complex stiffness of the law comes closest to that of the film solver, in the mean square of the
+relative differences at the frequencies that the map holds. Whatever the factor, the law is passive.
 
 Where the response hardly depends on k_s, for rigid films and at the bottom of the damping valley, the factor stays at
 one: a factor of e is held as likely as a difference of `DOUBT`, or of the response's own error where that is larger.

@@ -1,11 +1,10 @@
-"""exp and log that the compiler can put into vector instructions; no branch, no call.
-
-They are the textbook reductions with Taylor series long enough for double precision: exp to 4e-16 relative for
-|x| < 700, log to 3e-16 absolute or relative for positive normal numbers.
-
-Splines of a table and of a line, and the states of a contact that they give, in compiled code.
+"""Splines of a table and of a line, and the states of a contact that they give, in compiled code.
 
 The state of a contact at rest is (w, dw/ddelta, c/w, dc/ddelta) throughout.
+
+exp and log are own ones that the compiler can put into vector instructions, without a branch or a call: the textbook
+reductions with Taylor series long enough for double precision, exp to 4e-16 relative for |x| < 700, log to 3e-16
+absolute or relative for positive normal numbers.
 """
 
 from __future__ import annotations
@@ -16,7 +15,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.compiled import njit
-from ehdmaps.maps.tables import COLDEST, ApproachTable, Line
+from ehdmaps.maps.kernels.tables import COLDEST, ApproachTable, Line
 from ehdmaps.physics.contact import Force
 from ehdmaps.physics.contact import unilateral_force as rule
 

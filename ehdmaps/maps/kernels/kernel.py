@@ -12,7 +12,7 @@ A bearing calls `collapse` once a time step and `evaluate_at` once a slice::
     for j in range(slices):
         w, dw_ddelta, dw_drate = evaluate_at(point, delta[j], rate[j], counts)
 
-or `ehdmaps.maps.bulk.evaluate_many_at` for all slices together, which is faster still.
+or `ehdmaps.maps.kernels.bulk.evaluate_many_at` for all slices together, which is faster still.
 
 `counts` (int64, 4) is counted up at `LOAD`, `SPEED` or `TEMPERATURE` for arguments outside the map, whatever the
 policy of the law, and at `NOT_FINITE`; speed and temperature are then held at the edge, and above the held load
@@ -27,7 +27,7 @@ import math
 
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.compiled import njit
-from ehdmaps.maps.lines import (
+from ehdmaps.maps.kernels.lines import (
     FAST,
     State,
     collapsed_line,
@@ -39,8 +39,8 @@ from ehdmaps.maps.lines import (
     stretched,
     table_state,
 )
-from ehdmaps.maps.roller_balance import LEAST_LOAD, balanced_state
-from ehdmaps.maps.tables import HALF_SPACE, LOAD, NOT_FINITE, SPEED, TEMPERATURE, LawTable, Point
+from ehdmaps.maps.kernels.roller_balance import LEAST_LOAD, balanced_state
+from ehdmaps.maps.kernels.tables import HALF_SPACE, LOAD, NOT_FINITE, SPEED, TEMPERATURE, LawTable, Point
 from ehdmaps.physics.contact import Force
 
 LOAD_TOLERANCE = 1e-3

@@ -1,9 +1,4 @@
-"""Work that films with memory store and take up, after `ehdmaps.maps.memory_table`.
-
-The work on a contact is w da + p dy + (w - p) dy. The first two terms are stored: they depend on the load w and the
-state xi alone. The last one is taken up for good. This holds at one speed and temperature.
-
-Films with memory for other programs: a contact law that goes from step to step, with a state for each slice.
+"""Films with memory for other programs: a contact law that goes from step to step, with a state for each slice.
 
 ::
 
@@ -12,7 +7,10 @@ Films with memory for other programs: a contact law that goes from step to step,
     for delta in course:
         w, dw_ddelta, state = at.memory.advance(state, delta, dt)
 
-The equations are in `ehdmaps.maps.memory_table`. `ContactLaw.advance` takes speed and temperature at each call.
+The equations are in `ehdmaps.maps.kernels.memory_table`. `ContactLaw.advance` takes speed and temperature at each call.
+
+The work on a contact is w da + p dy + (w - p) dy. The first two terms are stored: they depend on the load w and the
+state xi alone. The last one is taken up for good. This holds at one speed and temperature.
 """
 
 from __future__ import annotations
@@ -28,9 +26,9 @@ import numpy.typing as npt
 from ehdmaps.arrays import FloatArray
 from ehdmaps.compiled import njit
 from ehdmaps.errors import InputError
-from ehdmaps.maps import memory_table
-from ehdmaps.maps.locked_film import LockedFactors, film_of
-from ehdmaps.maps.memory_table import (
+from ehdmaps.maps.kernels import memory_table
+from ehdmaps.maps.kernels.locked_film import LockedFactors, film_of
+from ehdmaps.maps.kernels.memory_table import (
     LIGHTEST,
     LOAD_ROWS,
     NODES,
@@ -42,8 +40,8 @@ from ehdmaps.maps.memory_table import (
     fill_memory,
     step_of,
 )
-from ehdmaps.maps.memory_table import LOAD_NODES as _LOAD_NODES
-from ehdmaps.maps.tables import Point
+from ehdmaps.maps.kernels.memory_table import LOAD_NODES as _LOAD_NODES
+from ehdmaps.maps.kernels.tables import Point
 from ehdmaps.physics.contact import LineContact
 
 _PLACES = np.array([0.5 - 0.5 * np.sqrt(0.6), 0.5, 0.5 + 0.5 * np.sqrt(0.6)])
@@ -171,7 +169,7 @@ class FilmState:
     approach : array
         Approach at which each film would be in equilibrium [m].
     change : array
-        What the last step changed in its squeezing G [N s/m2], see `ehdmaps.maps.memory_table`.
+        What the last step changed in its squeezing G [N s/m2], see `ehdmaps.maps.kernels.memory_table`.
     load : array
         Load at the end of the last step [N/m].
     step : float
@@ -229,7 +227,7 @@ class FilmMemory:
 
     @property
     def table(self) -> MemoryTable:
-        """Arrays for compiled code, see `ehdmaps.maps.memory_table`."""
+        """Arrays for compiled code, see `ehdmaps.maps.kernels.memory_table`."""
         return self._table
 
     def settled(self, delta: npt.ArrayLike) -> FilmState:

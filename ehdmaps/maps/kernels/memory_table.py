@@ -19,7 +19,7 @@ The table has p, y and G over xi in cells which are the binary digits of 1 + |z|
 in cells which are those of 1 + w/`LIGHTEST`: no logarithm is needed to find one. All are cubics through values and
 slopes that rise.
 
-The stiffness k_s of the locked film and its bound: `ehdmaps.maps.locked_film`.
+The stiffness k_s of the locked film and its bound: `ehdmaps.maps.kernels.locked_film`.
 """
 
 from __future__ import annotations
@@ -31,10 +31,10 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.compiled import njit
-from ehdmaps.maps.kernel import evaluate_at, structural_state
-from ehdmaps.maps.lines import FAST
-from ehdmaps.maps.locked_film import Film, LockedFactors, factor_at, locked_stiffness
-from ehdmaps.maps.tables import FIRST, SHIFT, Point, last_of, nodes_of, rows_of
+from ehdmaps.maps.kernels.kernel import evaluate_at, structural_state
+from ehdmaps.maps.kernels.lines import FAST
+from ehdmaps.maps.kernels.locked_film import Film, LockedFactors, factor_at, locked_stiffness
+from ehdmaps.maps.kernels.tables import FIRST, SHIFT, Point, last_of, nodes_of, rows_of
 
 LIGHTEST = 1.0
 """Load up to which the cells of a over w are even [N/m]."""

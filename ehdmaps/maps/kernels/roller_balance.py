@@ -12,7 +12,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.compiled import njit
-from ehdmaps.maps.lines import (
+from ehdmaps.maps.kernels.lines import (
     FAST,
     State,
     bent_state,
@@ -23,7 +23,7 @@ from ehdmaps.maps.lines import (
     place_within,
     stretched,
 )
-from ehdmaps.maps.tables import Line, Point
+from ehdmaps.maps.kernels.tables import Line, Point
 
 LEAST_LOAD = 1e-200
 """Load below which a contact counts as unloaded [N/m]."""

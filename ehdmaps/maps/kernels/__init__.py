@@ -1,0 +1,21 @@
+"""A contact law as arrays, and what computes with them: compiled code that knows no map file and no film field.
+
+`ehdmaps.maps` makes these arrays from a map and calls this code, and so do bearings in compiled runs and the exports;
+nothing here imports a module of `ehdmaps.maps` outside this room. The modules in the order in which data pass through
+them:
+
+==============  ======================================================================================
+splines         cubic splines on uniform axes: the coefficients of a table, weights, mixed lines
+tables          the arrays of a compiled law
+lines           splines and states in compiled code, with exp and log for it
+roller_balance  a roller between its two contacts
+kernel          the law at run time, one point at a time, for compiled code
+bulk            the law at run time, many points
+locked_film     the stiffness of a contact whose film cannot give way
+memory_table    a contact whose film has a memory, as arrays at one speed and temperature
+memory          the same for other programs, step by step, with its energy
+film_response   what films with memory leave out of the response of the film solver
+==============  ======================================================================================
+
+Nothing is imported here: take the names from their modules.
+"""
