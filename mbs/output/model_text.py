@@ -95,10 +95,13 @@ def common_supply(models: Iterable[Model]) -> str:
 def heading(model: Model, speed: float | None = None) -> list[str]:
     """Tell what was analysed, and which of its numbers are assumptions."""
     at = "" if speed is None else f"{RPM.text(speed)}, "
+    state = f"{at}{temperature_text(model)}, clearance {clearance_text(model) or 'none'}, {weight_text(model)}"
+    # Most of what was chosen is in these words and in those of the law.
+    chosen = [f", {name} {text}" for name, text in model.chosen.items() if text not in state and text not in model.law]
+    assumed = f"{len(model.scene.assumed)} keys of the scene, marked there" if model.scene.assumed else "nothing"
     return [
         f"{model.scene.title}: law {model.law}",
-        f"  {at}{temperature_text(model)}, clearance {clearance_text(model) or 'none'}, {weight_text(model)}; assumed: "
-        + (f"{len(model.scene.assumed)} keys of the scene, marked there" if model.scene.assumed else "nothing"),
+        f"  {state}{''.join(chosen)}; assumed: {assumed}",
         *_estimated(model),
         *(
             f"  the weight of {name} is left out: its finite elements are held themselves, so that it bears on no "

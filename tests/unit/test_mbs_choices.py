@@ -21,6 +21,7 @@ from ehdmaps.physics.surface import Surface
 from mbs import assemble, statics
 from mbs.cli import main
 from mbs.commands.cases import load_cases, read_compared, read_dry
+from mbs.output.model_text import heading
 from mbs.scene import choices
 from mbs.scene.choices import CHOICES, OPTIONS, VARIED, LawChoice, SceneChoice, Subject, combinations, named_law
 from mbs.scene.map_set import MapSet
@@ -79,7 +80,7 @@ def weight(monkeypatch):
 
 class TestARowIsEnough:
     def test_of_a_command(self, weight, tmp_path):
-        """The option, what it changes, and what the result tells of it; bit for bit what a scene gives that states it."""
+        """The option, what it changes, what the result tells; bit for bit what a scene gives that states it."""
         out = tmp_path / "heavy.nc"
         with redirect_stdout(io.StringIO()):
             assert main(["statics", "nu308_rigid", "--law", "hertz", "--weight", "2", "-o", str(out)]) == 0
@@ -189,6 +190,12 @@ class TestChoices:
             "choices": "0 um: clearance 0 um, load-factor 2 x; 20 um: clearance 20 um, load-factor 2 x"
         }
         np.testing.assert_array_equal(cases[0].model.scene.loads[0].force, cases[1].model.scene.loads[0].force)
+
+    def test_the_heading_tells_what_it_would_not_say_otherwise(self):
+        (case,) = load_cases(given(law=["hertz"], clearance=["20 um"], load_factor=["2"], start_angle=["7 deg"]))
+        line = heading(case.model)[1]
+        assert line.count("20 um") == 1
+        assert ", load-factor 2 x, start-angle 7 deg; assumed:" in line
 
     def test_a_plan_takes_loads_and_temperature(self):
         problems: list[str] = []
