@@ -1,0 +1,1 @@
+"""Commands of the laboratory instruments: each is loaded where it is asked for."""
