@@ -17,13 +17,14 @@ and of a whole scene::
 What is where, in the order of the data:
 
 ==================  ====================================================================================
-scene file          `scene`: reader -> specs -> scene -> assembly; `kinds`: the machine elements; `settings`
+scene file          `scene`: reader -> specs -> scene -> assembly; `kinds`: the machine elements; `choices`; `settings`
 the system          `model`: bodies, elements, what is prescribed; the system and its equilibrium
 what bodies are     `flexible` (beams, finite elements, reduction)
 what connects them  `bearings` (the bearing force), `gears`
 linear              `linearised` (modes, responses, over speed); `modal` (identified from hammer hits)
 in time             `transient` (method, compiled runs); `spectral` (levels over speed and order); `timedata` (files)
-analyses            `analyses`: statics, modes, lsa, sweep, runup, campbell, variants, hammer, plan; `automatic`
+analyses            `analyses`: statics, modes, lsa, sweep, runup, campbell, hammer; `planning`: what a scene requires
+laboratory          `instruments`: tradeoff, variants, tolerance, stability
 for people          `output` (datasets, figures), `report` (a page to send), `commands`, `cli`; `systems`: scenes
 ==================  ====================================================================================
 
@@ -40,13 +41,11 @@ from ehdmaps.errors import AnalysisError
 if TYPE_CHECKING:
     __version__: str
 
-    from mbs.analyses.auto import AutoSettings, automatic
     from mbs.analyses.campbell import campbell
     from mbs.analyses.case import Case
     from mbs.analyses.hammer import HammerSettings, hammer
     from mbs.analyses.lsa import LsaSettings, lsa
     from mbs.analyses.modes import modes
-    from mbs.analyses.plan import PlanSettings, plan
     from mbs.analyses.runup import runup
     from mbs.analyses.statics import statics
     from mbs.analyses.sweep import SweepSettings, critical, sweep
@@ -60,6 +59,8 @@ if TYPE_CHECKING:
     from mbs.model.body import Inertia
     from mbs.model.elements import Input, Load, Operation, Sensor, Spring
     from mbs.model.profiles import SpeedProfile
+    from mbs.planning.auto import AutoSettings, automatic
+    from mbs.planning.plan import PlanSettings, plan
     from mbs.scene.assembly import Model, assemble
     from mbs.scene.reader import parse_scene, read_scene, shipped_systems
     from mbs.scene.scene import Scene
@@ -123,7 +124,7 @@ __all__ = [
 
 _HOMES = {
     "Attached": "flexible.plan",
-    "AutoSettings": "analyses.auto",
+    "AutoSettings": "planning.auto",
     "Bearing": "bearings.bearing",
     "BearingForce": "bearings.bearing_force",
     "BearingSpec": "scene.specs",
@@ -143,7 +144,7 @@ _HOMES = {
     "Model": "scene.assembly",
     "Mounting": "bearings.thermal",
     "Operation": "model.elements",
-    "PlanSettings": "analyses.plan",
+    "PlanSettings": "planning.plan",
     "ReductionPlan": "flexible.plan",
     "RigidSpec": "scene.specs",
     "RunUp": "settings",
@@ -159,14 +160,14 @@ _HOMES = {
     "SweepSettings": "analyses.sweep",
     "Variation": "instruments.variants",
     "assemble": "scene.assembly",
-    "automatic": "analyses.auto",
+    "automatic": "planning.auto",
     "campbell": "analyses.campbell",
     "critical": "analyses.sweep",
     "hammer": "analyses.hammer",
     "lsa": "analyses.lsa",
     "modes": "analyses.modes",
     "parse_scene": "scene.reader",
-    "plan": "analyses.plan",
+    "plan": "planning.plan",
     "read_scene": "scene.reader",
     "runup": "analyses.runup",
     "shipped_systems": "scene.reader",

@@ -13,6 +13,9 @@ from ehdmaps.errors import AnalysisError
 from ehdmaps.program import Parser, count, run
 from mbs.scene.choices import OPTIONS, VARIED
 
+_INSTRUMENTS = ("stability", "tradeoff", "variants")
+"""Commands that measure the program and its choices."""
+
 
 def parser() -> argparse.ArgumentParser:
     """Return the parser of all commands."""
@@ -459,9 +462,9 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _command(arguments: argparse.Namespace) -> tuple[str, int]:
     """Load the command that is asked for, and do it."""
-    result: tuple[str, int] = importlib.import_module(f"mbs.commands.{arguments.command.replace('-', '_')}").run(
-        arguments
-    )
+    name = arguments.command.replace("-", "_")
+    room = "mbs.instruments.commands" if name in _INSTRUMENTS else "mbs.commands"
+    result: tuple[str, int] = importlib.import_module(f"{room}.{name}").run(arguments)
     return result
 
 

@@ -14,11 +14,6 @@ campbell       run-ups with one or more laws as levels over speed, frequency and
 sensors        sensors and orders that are looked at
 recorded       runs that are recorded, measured or simulated before: signals, levels, amplitudes
 hammer         a simulated hammer test
-plan           which ranges a scene needs of a contact map, and the jobs that cover them
-planning       operating points of a scene and the loads and speeds seen there
-auto           an analysis that chooses its physics, and makes maps of what the film table has not
-film_verdicts  which physics of the films a scene requires
-film_criteria  such criteria at a contact, in closed form
 case           what an analysis compares, computed side by side in processes of their own
 operating      a model as it is in operation: temperatures and clearances of its bearings at a speed
 heat_balance   the temperatures at which the heat of all bearings is carried away
@@ -28,6 +23,7 @@ reach          where the films of a law begin, and calls outside its map, with t
 soundness      results whose own checks failed so grossly that their figures mean nothing
 =============  ====================================================================================
 
-What measures the program and its choices is in `mbs.instruments`. Nothing is imported here: take
+What a scene requires of its maps and physics is in `mbs.planning`, what measures the program and its
+choices in `mbs.instruments`. Nothing is imported here: take
 the functions from `mbs`, or from their modules.
 """

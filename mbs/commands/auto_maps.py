@@ -15,9 +15,9 @@ from ehdmaps.jobs.make.status import progress
 from ehdmaps.jobs.make.store import store_path
 from ehdmaps.program import tell
 from ehdmaps.units import LOAD, SPEED, TEMPERATURE
-from mbs.analyses.auto import MOST_TOLERANCE, TOLERANCE, Automatic, AutoSettings, MadeMap, settled
-from mbs.analyses.planning import MARGIN
 from mbs.commands.common import Done, Looked
+from mbs.planning.auto import MOST_TOLERANCE, TOLERANCE, Automatic, AutoSettings, MadeMap, settled
+from mbs.planning.ranges import MARGIN
 from mbs.scene.choices import CHOICES, OPTIONS, Subject, named_law
 from mbs.scene.reader import read_scene
 from mbs.scene.scene import Scene

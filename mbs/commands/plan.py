@@ -16,11 +16,11 @@ from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.make.generate import planned_tasks
 from ehdmaps.outputs import SEALED, Output, output_problems, sealed, write_text
 from ehdmaps.units import LOAD, RPM, SPEED, TEMPERATURE, Display
-from mbs.analyses import planning
-from mbs.analyses.plan import PlanResult, PlanSettings, plan
-from mbs.analyses.planning import Needed
 from mbs.commands.cases import read_dry, scene_output_problems
 from mbs.output.model_text import heading
+from mbs.planning import ranges
+from mbs.planning.plan import PlanResult, PlanSettings, plan
+from mbs.planning.ranges import Needed
 from mbs.scene.fields import MICROMETRE
 from mbs.scene.scene import Scene
 
@@ -45,7 +45,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     lines = [
         *heading(found.model),
         f"  turns at {RPM.text(slowest)} to {RPM.text(fastest)}; loads of slices at rest, "
-        f"dry, over {planning.ANGLES} cage angles of a pitch, times {settings.margin:g} for what moves",
+        f"dry, over {ranges.ANGLES} cage angles of a pitch, times {settings.margin:g} for what moves",
         *_turning(found),
     ]
     planned = _plan(found, arguments)
@@ -64,7 +64,7 @@ def _turning(found: PlanResult) -> list[str]:
     if not names:
         return []
     return [
-        f"  {names}: with their size at {RPM.text(found.speeds[1])}, standing still at {planning.PHASES} angles, as a "
+        f"  {names}: with their size at {RPM.text(found.speeds[1])}, standing still at {ranges.PHASES} angles, as a "
         "stiff rotor bears them; near and above a critical speed loads are larger: see mbs critical, and --margin"
     ]
 
@@ -84,13 +84,13 @@ def _read(arguments: argparse.Namespace) -> tuple[Scene, PlanSettings]:
 def _margin(text: str | None, problems: list[str]) -> float:
     """Read --margin."""
     if text is None:
-        return planning.MARGIN
+        return ranges.MARGIN
     try:
         value = float(text)
     except ValueError:
         value = math.nan
-    if not 1.0 <= value <= planning.MOST_MARGIN:
-        problems.append(f"--margin: got {text!r:.40}; allowed: a number from 1 to {planning.MOST_MARGIN:g}")
+    if not 1.0 <= value <= ranges.MOST_MARGIN:
+        problems.append(f"--margin: got {text!r:.40}; allowed: a number from 1 to {ranges.MOST_MARGIN:g}")
     return value
 
 

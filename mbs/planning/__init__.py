@@ -1,4 +1,4 @@
-"""What a scene requires: the ranges that it visits, which physics matters there, and maps that hold just these.
+"""Requirements of a scene: the ranges that it visits, which physics matters there, and maps that hold just these.
 
 ========  ==========================================================================================
 ranges    operating points of a scene and the loads and speeds seen there

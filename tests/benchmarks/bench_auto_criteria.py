@@ -2,13 +2,13 @@
 
     python -m tests.benchmarks.bench_auto_criteria nu308.nc [--contacts 400] [--bearings 60] [--seed 1]
 
-For each criterion of `mbs.analyses.film_criteria` two tables, at tolerances of 5 % and of 1 dB (12 %):
+For each criterion of `mbs.planning.criteria` two tables, at tolerances of 5 % and of 1 dB (12 %):
 
 - contacts: a roller at a random load, speed and temperature (log-uniform, log-uniform, uniform; within the map),
   frequency (100 Hz to 10 kHz), oil layer and roughness. Full: k + i omega c of the law of the map with and without
   memory, k and c with and without the layer, with and without roughness; the verdict is that of the worse contact;
 - bearings: one bearing at a random load (0.2 to 10 kN), clearance, speed and temperature. Full: K and C along the load,
-  in equilibrium with each law; the verdict is that of `mbs.analyses.film_verdicts`, which looks at a range of loads.
+  in equilibrium with each law; the verdict is that of `mbs.planning.verdicts`, which looks at a range of loads.
 
 hit: switched on, and it matters. rejected: off, and it does not. false alarm: on, and it does not matter. miss: off,
 and it matters; "worst miss" is by how much it did. Layers are 0.5 to 20 um, roughness is 0.05 to 0.8 um.
@@ -37,16 +37,6 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.surface import Surface
 from mbs.analyses.bearing_point import bearing_point
-from mbs.analyses.film_criteria import (
-    TOUCHING,
-    closed_contact,
-    film_over_roughness,
-    heat_effect,
-    memory_effect,
-    supply_effect,
-)
-from mbs.analyses.film_verdicts import memory_verdict, roughness_verdict, supply_verdict, visited
-from mbs.analyses.planning import LIGHT, LIGHTEST, MARGIN, Needed
 from mbs.bearings import laws
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
@@ -54,6 +44,16 @@ from mbs.bearings.contact_report import BearingPoint
 from mbs.bearings.films import DryContacts
 from mbs.bearings.roller_contacts import bearing_relaxation, natural_times, relaxation_times
 from mbs.linearised.validity import FilmError
+from mbs.planning.criteria import (
+    TOUCHING,
+    closed_contact,
+    film_over_roughness,
+    heat_effect,
+    memory_effect,
+    supply_effect,
+)
+from mbs.planning.ranges import LIGHT, LIGHTEST, MARGIN, Needed
+from mbs.planning.verdicts import memory_verdict, roughness_verdict, supply_verdict, visited
 
 TOLERANCES = (0.05, 10.0 ** (1.0 / 20.0) - 1.0)
 LAYERS = (0.5e-6, 1e-6, 2e-6, 5e-6, 10e-6, 20e-6)

@@ -19,18 +19,12 @@ from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.surface import Surface
 from mbs import AutoSettings, automatic, parse_scene, statics
-from mbs.analyses import auto, plan
-from mbs.analyses.auto import settled
-from mbs.analyses.film_criteria import (
-    closed_contact,
-    film_over_roughness,
-    heat_effect,
-    memory_effect,
-    supply_effect,
-)
-from mbs.analyses.film_verdicts import heat_verdict, shear_verdict, visited
-from mbs.analyses.planning import Needed
 from mbs.commands.auto_maps import read_tolerance
+from mbs.planning import auto, plan
+from mbs.planning.auto import settled
+from mbs.planning.criteria import closed_contact, film_over_roughness, heat_effect, memory_effect, supply_effect
+from mbs.planning.ranges import Needed
+from mbs.planning.verdicts import heat_verdict, shear_verdict, visited
 from tests.cases.commands import run
 
 TEXT = (resources.files("mbs") / "systems" / "nu308_rigid.toml").read_text(encoding="utf-8")

@@ -112,7 +112,7 @@ def test_every_name_is_there(name):
 @pytest.mark.slow
 def test_names_stay_what_they_are_after_their_modules_are_loaded():
     code = (
-        "import mbs.analyses.statics, mbs.analyses.plan, mbs.cli, mbs.scene.reader, mbs.commands.sweep; import mbs; "
+        "import mbs.analyses.statics, mbs.planning.plan, mbs.cli, mbs.scene.reader, mbs.commands.sweep; import mbs; "
         "print(all(callable(getattr(mbs, name)) for name in mbs.__all__))"
     )
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

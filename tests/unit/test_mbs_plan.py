@@ -12,8 +12,10 @@ from hypothesis import strategies as st
 
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.jobs.reader import parse_job
-from mbs.analyses.plan import plan, planned_job
-from mbs.analyses.planning import (
+from mbs.model.elements import Load
+from mbs.model.profiles import Course, Harmonic
+from mbs.planning.plan import plan, planned_job
+from mbs.planning.ranges import (
     LIGHT,
     LIGHTEST,
     film_room,
@@ -23,8 +25,6 @@ from mbs.analyses.planning import (
     same_contacts,
     speed_range,
 )
-from mbs.model.elements import Load
-from mbs.model.profiles import Course, Harmonic
 from mbs.scene.assembly import assemble
 from mbs.scene.reader import parse_scene, read_scene
 from tests.cases import commands

@@ -17,7 +17,6 @@ from ehdmaps.errors import InputError
 from ehdmaps.jobs.reader import parse_job
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
-from mbs.analyses.plan import plan
 from mbs.bearings.laws import hertz
 from mbs.commands.cases import load_cases
 from mbs.flexible.plan import Attached
@@ -28,6 +27,7 @@ from mbs.model.elements import ElementDefaults, Forces, Load, Port, Spring
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import Course, Harmonic
 from mbs.model.system import System
+from mbs.planning.plan import plan
 from mbs.scene import kinds
 from mbs.scene.assembly import assemble
 from mbs.scene.bodies import build_bodies

@@ -1,7 +1,7 @@
 """An analysis that chooses its physics: what a scene requires, films of the film table, maps of what that has not.
 
-The order of things: the ranges of the scene (`mbs.analyses.plan`), the physics that they require
-(`mbs.analyses.film_verdicts`), films of each type of bearing, and the analysis. Films come from the film table; where
+The order of things: the ranges of the scene (`mbs.planning.plan`), the physics that they require
+(`mbs.planning.verdicts`), films of each type of bearing, and the analysis. Films come from the film table; where
 heat or a limiting stress matter, a map is made by `ehdmaps.jobs.make.generate`, whose store beside it knows what is
 solved.
 """
@@ -28,10 +28,19 @@ from ehdmaps.outputs import MAP, Output, check_outputs
 from ehdmaps.physics.heat import PHYSICS
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.rheology import SHEARS
-from mbs.analyses import film_verdicts
-from mbs.analyses.film_verdicts import Verdict
-from mbs.analyses.plan import PlanResult, PlanSettings, plan
 from mbs.model.relaxation import Films
+from mbs.planning.plan import PlanResult, PlanSettings, plan
+from mbs.planning.verdicts import (
+    Verdict,
+    heat_verdict,
+    in_force,
+    memory_verdict,
+    roughness_verdict,
+    shear_verdict,
+    supply_verdict,
+    surface_in_force,
+    visited,
+)
 from mbs.scene.assembly import Model
 from mbs.scene.choices import LawChoice, Subject
 from mbs.scene.contact_laws import law_label
@@ -307,16 +316,16 @@ def _verdicts(
     possible = not any(entry.centrifugal and not entry.rollers_as_bodies for entry in scene.bearings)
     memory, supply, rough, heat, shear = (list[Verdict]() for _ in range(5))
     for entry in found.needed:
-        there = film_verdicts.visited(entry, scene.lubricant, settings.tolerance)
+        there = visited(entry, scene.lubricant, settings.tolerance)
         theirs = tuple(
             given for spec, given in zip(scene.bearings, supplies, strict=True) if spec.name in entry.bearings
         )
         verdicts = (
-            film_verdicts.memory_verdict(there, highest, settings.films, possible),
-            film_verdicts.supply_verdict(there, theirs, settings.supply is not None),
-            film_verdicts.roughness_verdict(there, scene.surface),
-            film_verdicts.heat_verdict(there, settings.physics),
-            film_verdicts.shear_verdict(there, settings.shear),
+            memory_verdict(there, highest, settings.films, possible),
+            supply_verdict(there, theirs, settings.supply is not None),
+            roughness_verdict(there, scene.surface),
+            heat_verdict(there, settings.physics),
+            shear_verdict(there, settings.shear),
         )
         for group, verdict in zip((memory, supply, rough, heat, shear), verdicts, strict=True):
             named = f"{entry.geometry.name}: {verdict.words}" if len(found.needed) > 1 else verdict.words
@@ -355,12 +364,12 @@ def _subject(
 ) -> Subject:
     """Scene and law with what is switched on."""
     memory, supply, rough = verdicts[:3]
-    surface = film_verdicts.surface_in_force(scene.surface, rough)
+    surface = surface_in_force(scene.surface, rough)
     law = LawChoice(
         law_label("map", maps),
         "map",
         maps,
         "memory" if memory.on else "slow",
-        settings.supply or film_verdicts.in_force(supplies, supply),
+        settings.supply or in_force(supplies, supply),
     )
     return Subject(dataclasses.replace(scene, surface=surface), law, settings.clearance)

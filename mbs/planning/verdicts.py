@@ -5,7 +5,7 @@ How much a limiting shear stress changes a contact: by two solutions, as no clos
 Where the pressure has a steep spike, a Newtonian oil would carry more shear stress at the walls than any oil bears
 (`ehdmaps.physics.wall_stress`). A solution takes some hundredths of a second.
 
-The criteria are those of `mbs.analyses.film_criteria`, each taken at its worst over both contacts, over the speeds of
+The criteria are those of `mbs.planning.criteria`, each taken at its worst over both contacts, over the speeds of
 the scene, and over the loads of the rollers that carry it, `SHARES` of the highest load at rest. Rollers that carry
 less take less than that part in stiffness. The oil supply is looked at down to the lowest load of the planned map,
 that of idle rollers, whose films are the thick ones.
@@ -31,7 +31,8 @@ from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.solution import ContactSolution, ContactSolver, contact_solution
 from ehdmaps.physics.surface import FINEST, SMOOTH, Surface
 from ehdmaps.units import SPEED
-from mbs.analyses.film_criteria import (
+from mbs.model.relaxation import Films
+from mbs.planning.criteria import (
     TOUCHING,
     ClosedContact,
     closed_contact,
@@ -40,8 +41,7 @@ from mbs.analyses.film_criteria import (
     memory_effect,
     supply_effect,
 )
-from mbs.analyses.planning import Needed
-from mbs.model.relaxation import Films
+from mbs.planning.ranges import Needed
 from mbs.scene.fields import HERTZ, MICROMETRE
 
 

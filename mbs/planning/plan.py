@@ -15,9 +15,9 @@ from ehdmaps.jobs.problem import LOAD_AXIS, SPEED_AXIS, AxisRule
 from ehdmaps.jobs.reader import parse_job
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.units import LOAD, RPM, SPEED, TEMPERATURE, Display, quantity
-from mbs.analyses import planning
 from mbs.analyses.operating import held
-from mbs.analyses.planning import Needed
+from mbs.planning import ranges
+from mbs.planning.ranges import Needed
 from mbs.scene.assembly import Model, assemble
 from mbs.scene.scene import Scene
 
@@ -95,7 +95,7 @@ def _temperature(value: float) -> str:
 
 def _axis(ends: tuple[float, float], display: Display, rule: AxisRule, per_decade: int) -> str:
     """An axis of a job that covers a range."""
-    low, high = planning.outward(*(display.value(max(end, rule.low)) for end in ends))
+    low, high = ranges.outward(*(display.value(max(end, rule.low)) for end in ends))
     if low == high:
         return f'["{low:g} {display.unit}"]'
     points = max(FEWEST, math.ceil(per_decade * math.log10(high / low)) + 1)
@@ -120,7 +120,7 @@ class PlanSettings:
     """
 
     clearance: float | None = None
-    margin: float = planning.MARGIN
+    margin: float = ranges.MARGIN
 
 
 @dataclass(frozen=True, eq=False)
@@ -246,7 +246,7 @@ def _needed(scene: Scene, model: Model, settings: PlanSettings) -> tuple[tuple[f
     oil = scene.lubricant
     assert oil is not None  # `_dry_model` saw to it
     steady = (scene.speed, *(scene.sweep.speeds.tolist() if scene.sweep else ()))
-    speeds = planning.speed_range(steady, scene.run_up.speed.course.values if scene.run_up else ())
+    speeds = ranges.speed_range(steady, scene.run_up.speed.course.values if scene.run_up else ())
     fastest = [entry.rates[1] * speeds[1] for entry in model.bearings]
     if max(fastest) > SPEED_AXIS.high:
         raise InputError(
@@ -254,18 +254,18 @@ def _needed(scene: Scene, model: Model, settings: PlanSettings) -> tuple[tuple[f
             f"{SPEED.text(max(fastest))}; allowed: up to {SPEED.text(SPEED_AXIS.high)}, the limit of a map; check units"
         )
     mounted = held(model)
-    dry = planning.largest_loads(mounted.system, mounted.bearings, speeds[1])
+    dry = ranges.largest_loads(mounted.system, mounted.bearings, speeds[1])
     # Loads that turn would thin the films, whose room is largest where the rotor has no unbalance. An unloaded bearing
     # has films, too: those of a light load.
-    at_rest = planning.largest_loads(mounted.system, mounted.bearings, speeds[1], turning=False)
+    at_rest = ranges.largest_loads(mounted.system, mounted.bearings, speeds[1], turning=False)
     rooms = tuple(
-        planning.film_room(entry.bearing.geometry, oil, max(load, planning.LIGHT), speed, scene.temperature)
+        ranges.film_room(entry.bearing.geometry, oil, max(load, ranges.LIGHT), speed, scene.temperature)
         if speed > 0.0
         else 0.0
         for entry, load, speed in zip(model.bearings, at_rest, fastest, strict=True)
     )
     filled = held(assemble(_dry_scene(model.scene, rooms), "hertz"))
-    preloaded = planning.largest_loads(filled.system, filled.bearings, speeds[1])
+    preloaded = ranges.largest_loads(filled.system, filled.bearings, speeds[1])
     centrifugal = [
         entry.bearing.centrifugal_load(entry.inner_spin, entry.outer_spin) * speeds[1] ** 2
         if given.centrifugal
@@ -273,4 +273,4 @@ def _needed(scene: Scene, model: Model, settings: PlanSettings) -> tuple[tuple[f
         for entry, given in zip(model.bearings, scene.bearings, strict=True)
     ]
     static = [max(pair) + more for *pair, more in zip(dry, preloaded, centrifugal, strict=True)]
-    return speeds, planning.needed_ranges(model.bearings, static, rooms, speeds, settings.margin)
+    return speeds, ranges.needed_ranges(model.bearings, static, rooms, speeds, settings.margin)
