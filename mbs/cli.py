@@ -238,6 +238,7 @@ def _tradeoff(commands: Any) -> None:
     command.add_argument("--highest", metavar="FREQUENCY", help='highest frequency, such as "5 kHz"')
     command.add_argument("--window", metavar="TIME", help='length of the windows, such as "50 ms"')
     command.add_argument("--linear-only", action="store_true", help="no run-ups, which take minutes")
+    command.add_argument("--all", action="store_true", help="all tables, and the worst place of each choice")
     command.add_argument("--json", action="store_true", help="print JSON instead of tables")
     command.add_argument("-o", "--output", metavar="OUT.nc", help="result as netCDF")
     command.add_argument("--plot", metavar="FIG.png", help="figure; also .pdf, .svg")

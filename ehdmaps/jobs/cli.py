@@ -227,10 +227,9 @@ def _add_tradeoff(commands: argparse._SubParsersAction[Parser]) -> None:
         help="how many of the points openfoam solves, some ten to hundred seconds each; 0: none; default: 3",
     )
     tradeoff.add_argument("-o", "--output", metavar="OUT.nc", help="the numbers as netCDF; default: none")
+    tradeoff.add_argument("--all", action="store_true", help="all tables, and the worst place of each choice")
     tradeoff.add_argument("--json", action="store_true", help="the numbers as one object")
-    tradeoff.add_argument(
-        "--plot", metavar="FIG.png", help="error over cost, with the front of the best; also .pdf, .svg"
-    )
+    tradeoff.add_argument("--plot", metavar="FIG.png", help="the error budget, and error over cost; also .pdf, .svg")
 
 
 def _add_stability(commands: argparse._SubParsersAction[Parser]) -> None:

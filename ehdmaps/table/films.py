@@ -29,7 +29,7 @@ from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.hertz import LARGEST_PRESSURE
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.rheology import NEWTONIAN_LIMIT, NEWTONIAN_STRESS
-from ehdmaps.physics.solution import Status
+from ehdmaps.physics.solution import FilmSolution, Status
 from ehdmaps.table.coordinates import LEAST_ALPHA, bend_of, valley_shift, zeta_of
 from ehdmaps.table.fields import FILMS, LAW, NATURAL_FREQUENCIES, RESPONSES, Field, Units, units
 from ehdmaps.table.interpolation import Place, place_of
@@ -115,6 +115,21 @@ class TableFilms:
     def reason(self) -> npt.NDArray[np.str_]:
         """Cause of the status in words; empty for a plain film."""
         return np.array(_CAUSES)[self.cause]
+
+    def solution(self, index: int) -> FilmSolution:
+        """The film of one point.
+
+        Parameters
+        ----------
+        index : int
+            Number of the point, of points in a row.
+        """
+        numbers: dict[str, Any] = {field.name: float(getattr(self, field.name)[index]) for field in FILMS}
+        errors: dict[str, Any] = {
+            f"{name}_error": float(self.errors[name][index]) for name in numbers if name != "wall_stress"
+        }
+        reason = str(_CAUSES[self.cause[index]])
+        return FilmSolution(Status(int(self.status[index])), reason, **numbers, **errors)
 
 
 @dataclass(frozen=True, eq=False)

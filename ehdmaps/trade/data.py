@@ -153,7 +153,7 @@ def check_trade_files(output: str | None, plot: str | None, read: Iterable[str |
     check_outputs([Output("-o", output, TRADE), Output("--plot", plot, FIGURE)], read)
 
 
-def write_trade(trade: Trade, output: str | None, plot: str | None) -> list[str]:
+def write_trade(trade: Trade, output: str | None, plot: str | None, everything: bool = False) -> list[str]:
     """Write what -o and --plot ask for; a line for each file.
 
     Parameters
@@ -162,6 +162,8 @@ def write_trade(trade: Trade, output: str | None, plot: str | None) -> list[str]
         The measurement.
     output, plot : str or None
         Paths of the netCDF file and of the picture.
+    everything : bool
+        Whether the picture has all choices in place of the error budget.
 
     Raises
     ------
@@ -176,6 +178,6 @@ def write_trade(trade: Trade, output: str | None, plot: str | None) -> list[str]
     if plot is not None:
         from ehdmaps.trade.figure import RESOLUTION, trade_figure
 
-        write_figure(trade_figure(trade), plot, RESOLUTION)
+        write_figure(trade_figure(trade, everything), plot, RESOLUTION)
         lines.append(f"{plot}: written")
     return lines

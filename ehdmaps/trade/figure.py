@@ -1,14 +1,17 @@
-"""A measurement of speed against accuracy as one picture: cost and error of every choice, and the front of the best."""
+"""A measurement of speed against accuracy as one picture: the error budget; cost and error of every choice."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patches import Patch
 
 from ehdmaps.figures import COLOURS, typeset, write_heading
+from ehdmaps.trade.answer import Bar, budget, number, size
 from ehdmaps.trade.record import Choice, Judged, Trade, front
 
 RESOLUTION = 150
@@ -20,7 +23,70 @@ _KEY, _KEY_LINE = 3.4, 0.155
 _WORDS = {"1": "relative error", "dB": "error [dB]"}
 
 
-def trade_figure(trade: Trade) -> Figure:
+def trade_figure(trade: Trade, everything: bool = False) -> Figure:
+    """Draw the error budget: bars of what is wrong where a source is left out; of measurements without one all choices.
+
+    Parameters
+    ----------
+    trade : Trade
+        The measurement.
+    everything : bool
+        Whether cost and error of every choice are drawn in its place.
+    """
+    bars = budget(trade)
+    if everything or not bars:
+        return choices_figure(trade)
+    figure = Figure(figsize=(8.0, 0.42 * len(bars) + 1.6), layout="constrained")
+    write_heading(figure, typeset("\n".join([trade.title, *trade.frame[:1]])), 8)
+    budget_panel(figure.add_subplot(), trade, bars)
+    return figure
+
+
+def budget_panel(panel: Axes, trade: Trade, bars: Sequence[Bar]) -> None:
+    """Draw an error budget: a bar from the median to 95 % of the points for each source and quantity, on one log axis.
+
+    Parameters
+    ----------
+    panel : Axes
+        Where it is drawn.
+    trade : Trade
+        The measurement.
+    bars : sequence of Bar
+        Lines of the budget, the largest first.
+    """
+    units = {judged.name: judged.unit for judged in trade.judged}
+    wide = 0.8 / len(trade.shown)
+    smallest = math.inf
+    for row, bar in enumerate(bars):
+        for place, name in enumerate(trade.shown):
+            found = bar.errors.get(name)
+            if found is None or not found.high > 0.0:
+                continue
+            low, high = (size(trade, name, value) for value in (max(found.median, 1e-3 * found.high), found.high))
+            y = row + (place - 0.5 * (len(trade.shown) - 1)) * wide
+            panel.barh(y, high - low, wide * 0.85, left=low, color=COLOURS[place])
+            smallest = min(smallest, low)
+    handles = [
+        Patch(color=COLOURS[place], label=f"{name} [{'dB' if units[name] == 'dB' else '%'}]")
+        for place, name in enumerate(trade.shown)
+    ]
+    panel.legend(handles=handles, fontsize=7, loc="lower right")
+    panel.set_xscale("log")
+    panel.set_xlim(left=max(0.5 * smallest, 1e-5))
+    panel.set_yticks(range(len(bars)), [typeset(_budget_name(bar)) for bar in bars], fontsize=7.5)
+    panel.invert_yaxis()
+    panel.set_xlabel("wrong by, where it is left out or not known: median to 95 % of the points", fontsize=7.5)
+    panel.tick_params(axis="x", labelsize=7)
+    panel.grid(axis="x", lw=0.3, which="major")
+    panel.set_axisbelow(True)
+
+
+def _budget_name(bar: Bar) -> str:
+    """Source with what it costs."""
+    return f"{bar.name}\n(costs x {number(bar.cost)})" if math.isfinite(bar.cost) else bar.name
+
+
+def choices_figure(trade: Trade) -> Figure:
     """Draw cost and median error of each choice, a panel a quantity; a bar goes up to the 95 % quantile.
 
     Parameters

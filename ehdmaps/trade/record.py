@@ -138,6 +138,44 @@ class Choice:
 
 
 @dataclass(frozen=True)
+class Scope:
+    """Something to be answered: one choice of each of its sets of groups.
+
+    Attributes
+    ----------
+    words : str
+        What is answered.
+    groups : tuple of tuple of str
+        Sets of groups: of the choices in the groups of one set, one is taken.
+    judged : tuple of str
+        Names of the quantities that have to keep a tolerance.
+    """
+
+    words: str
+    groups: tuple[tuple[str, ...], ...]
+    judged: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Source:
+    """A source of error, for the error budget.
+
+    Attributes
+    ----------
+    name : str
+        What is left out, or is not known.
+    off : str
+        Label of the choice that leaves it out.
+    on : str
+        Label of the choice that has it; empty where nothing has.
+    """
+
+    name: str
+    off: str
+    on: str = ""
+
+
+@dataclass(frozen=True)
 class Trade:
     """A measurement of speed against accuracy.
 
@@ -157,6 +195,12 @@ class Trade:
         The rows.
     frame : tuple of str
         What a reader must know besides: seed, sample, sensor, clearance, and what could not be compared.
+    scopes : tuple of Scope
+        What is answered first.
+    sources : tuple of Source
+        Lines of the error budget.
+    shown : tuple of str
+        Quantities of the error budget, by name.
     """
 
     level: str
@@ -166,6 +210,9 @@ class Trade:
     judged: tuple[Judged, ...]
     choices: tuple[Choice, ...]
     frame: tuple[str, ...] = ()
+    scopes: tuple[Scope, ...] = ()
+    sources: tuple[Source, ...] = ()
+    shown: tuple[str, ...] = ()
 
 
 def front(cost: Sequence[float], error: Sequence[float]) -> tuple[int, ...]:

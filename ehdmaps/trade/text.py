@@ -6,29 +6,34 @@ import math
 from collections.abc import Callable, Iterator
 from itertools import groupby
 
+from ehdmaps.trade.answer import FACTORS, UNITS, answer_lines, budget_lines, number
 from ehdmaps.trade.record import Choice, ErrorSummary, Judged, Trade
 
 _COLUMNS, _CELL, _GAP = 4, 18, 2
 """Quantities beside each other, least width of one, and the gap before its name."""
 
 _NOTHING = "-"
-_FACTOR = {"1": 100.0, "dB": 1.0}
-_UNIT = {"1": "%", "dB": "dB"}
 
 
-def trade_text(trade: Trade) -> str:
-    """Return a measurement as the tables that are printed.
+def trade_text(trade: Trade, everything: bool = True) -> str:
+    """Return a measurement as it is printed: what to use, the error budget, and all tables.
 
     Parameters
     ----------
     trade : Trade
         The measurement.
+    everything : bool
+        Whether the tables follow, the errors apart, the worst places and what has no answer.
     """
-    return "\n".join(_lines(trade))
+    lines = [trade.title, *(trade.frame[:1] if trade.scopes else ()), *answer_lines(trade)]
+    if table := list(budget_lines(trade)):
+        lines += ["", *table]
+    if everything:
+        return "\n".join([*lines, *([""] if trade.scopes else []), *_lines(trade)])
+    return "\n".join([*lines, "", "all tables, their frame and the worst places: --all; all numbers: -o or --json"])
 
 
 def _lines(trade: Trade) -> Iterator[str]:
-    yield trade.title
     yield f"reference: {trade.reference}"
     yield from trade.frame
     yield ""
@@ -60,7 +65,7 @@ def _table(
     width = max(len(choice.label) for choice in trade.choices) + 4
     for first in range(0, len(trade.judged), _COLUMNS):
         columns = trade.judged[first : first + _COLUMNS]
-        names = [f"{judged.name}, {_UNIT[judged.unit]}" for judged in columns]
+        names = [f"{judged.name}, {UNITS[judged.unit]}" for judged in columns]
         widths = [max(_CELL, len(name) + _GAP) for name in names]
         heads = "".join(f"{name:>{wide}s}" for name, wide in zip(names, widths, strict=True))
         yield f"{'':{width}s}{trade.cost:>12s}{'solved':>12s}{heads}"
@@ -97,7 +102,7 @@ def _stated(choice: Choice, judged: Judged) -> str:
     found = _own(choice, judged.name)
     if found is None or not math.isfinite(found.stated):
         return _NOTHING
-    return f"{number(found.stated * _FACTOR[judged.unit])} / {found.covered:.0%}"
+    return f"{number(found.stated * FACTORS[judged.unit])} / {found.covered:.0%}"
 
 
 def _own(choice: Choice, name: str) -> ErrorSummary | None:
@@ -114,28 +119,10 @@ def _states(choice: Choice) -> bool:
 
 def _pair(first: float, second: float, judged: Judged) -> str:
     """Two errors in the unit of the column."""
-    factor = _FACTOR[judged.unit]
+    factor = FACTORS[judged.unit]
     if not (math.isfinite(first) or math.isfinite(second)):
         return _NOTHING
     return f"{number(first * factor)} / {number(second * factor)}"
-
-
-def number(value: float) -> str:
-    """Return a number to two digits, without an exponent where that is short.
-
-    Parameters
-    ----------
-    value : float
-        The number; "-" if it is not finite.
-
-    Examples
-    --------
-    >>> number(0.01234), number(1.2e-7), number(99.7), number(12345.0), number(float("nan"))
-    ('0.012', '1.2e-07', '100', '12345', '-')
-    """
-    if not math.isfinite(value):
-        return _NOTHING
-    return f"{value:.0f}" if 99.5 <= abs(value) < 1e6 else f"{value:.2g}"
 
 
 def _worst(choice: Choice, judged: tuple[Judged, ...]) -> Iterator[str]:
@@ -144,7 +131,7 @@ def _worst(choice: Choice, judged: tuple[Judged, ...]) -> Iterator[str]:
     for quantity in judged:
         found = choice.errors.get(quantity.name)
         if found is not None and found.points and found.largest > 0.0:
-            words = f"{quantity.name} {number(found.largest * _FACTOR[quantity.unit])} {_UNIT[quantity.unit]}"
+            words = f"{quantity.name} {number(found.largest * FACTORS[quantity.unit])} {UNITS[quantity.unit]}"
             places.setdefault(found.worst, []).append(words)
     for place, errors in places.items():
         yield f"  {choice.label}: {', '.join(errors)}" + (f" at {place}" if place else "")

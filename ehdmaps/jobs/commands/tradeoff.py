@@ -16,6 +16,6 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     check_trade_files(arguments.output, arguments.plot, [arguments.job])
     job = read_job(arguments.job)
     trade = measure(job, arguments.points, arguments.seed, arguments.openfoam, tell=tell)
-    for line in write_trade(trade, arguments.output, arguments.plot):
+    for line in write_trade(trade, arguments.output, arguments.plot, arguments.all):
         tell(line)
-    return trade_json(trade) if arguments.json else trade_text(trade), 0
+    return trade_json(trade) if arguments.json else trade_text(trade, arguments.all), 0

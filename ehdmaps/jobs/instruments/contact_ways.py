@@ -14,8 +14,9 @@ measured.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -26,9 +27,12 @@ from ehdmaps.errors import SolverError
 from ehdmaps.jobs.instruments.answers import Answer, Question, film_answer, known
 from ehdmaps.maps.contact_curve import FilmSamples, Tail
 from ehdmaps.maps.kernels.locked_film import film_of, fitted_factor, locked_stiffness, response_error
+from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.oil_layer import OilLayer
 from ehdmaps.maps.rolling_film import FlowFilm
 from ehdmaps.maps.rough_layer import RoughLayer, asperity_pressure, mean_gap
+from ehdmaps.physics.approach import StructuralLaw
+from ehdmaps.physics.bearing import BearingGeometry, with_law
 from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.hertz import max_pressure
 from ehdmaps.physics.lubricant import Lubricant
@@ -36,6 +40,7 @@ from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.solution import ContactSolver, FilmSolution
 from ehdmaps.physics.spectrum import contact_spectrum
 from ehdmaps.physics.surface import Surface
+from ehdmaps.table.file import film_table
 
 LEAST_SHARE = 1e-3
 """Share of the film below which no balance is sought."""
@@ -49,6 +54,7 @@ STEP = 0.01
 _FARTHEST, _DEEPEST = 14.0, -35.0
 _NEAR = 0.3
 _CLOSE = 1e-9
+_MOST_STEPS = 50
 
 
 @dataclass(frozen=True)
@@ -436,3 +442,131 @@ def _sampled(samples: FilmSamples, film: FilmSolution, question: Question) -> An
         minimum_film=math.nan,
     )
     return replace(film_answer(changed, question), stated={})
+
+
+@dataclass(frozen=True)
+class Warmer:
+    """Answers at another temperature than that of the question, as where rings are warmer than one thinks.
+
+    Attributes
+    ----------
+    model : ContactModel
+        What answers.
+    kelvins : float
+        How much warmer [K].
+    """
+
+    model: ContactModel
+    kelvins: float
+
+    def __call__(self, question: Question) -> Answer:
+        """Answer at the other temperature."""
+        point = replace(question.point, temperature=question.point.temperature + self.kelvins)
+        return self.model(replace(question, point=point))
+
+
+@dataclass(frozen=True)
+class MorePiezoviscous:
+    """Answers for an oil with another pressure-viscosity coefficient, as its data may be wrong.
+
+    Attributes
+    ----------
+    model : ContactModel
+        What answers.
+    factor : float
+        Coefficient over that of the oil.
+    """
+
+    model: ContactModel
+    factor: float
+
+    def __call__(self, question: Question) -> Answer:
+        """Answer for the other oil."""
+        oil = question.lubricant
+        alpha = self.factor * oil.at(question.point.temperature).pressure_viscosity.pressure_viscosity
+        coefficients: dict[str, Any] = {"pressure_viscosity_40": alpha, "pressure_viscosity_100": alpha}
+        other = replace(oil, pressure_viscosity=replace(oil.pressure_viscosity, **coefficients), correlation=None)
+        return self.model(replace(question, lubricant=other))
+
+
+@dataclass(frozen=True)
+class OtherSolids:
+    """Answers with another structural law of the solids.
+
+    Attributes
+    ----------
+    model : ContactModel
+        What answers.
+    structural_law : str
+        The law.
+    bearing : BearingGeometry or None
+        Bearing of the contacts.
+    """
+
+    model: ContactModel
+    structural_law: StructuralLaw
+    bearing: BearingGeometry | None
+
+    def __call__(self, question: Question) -> Answer:
+        """Answer by the other law."""
+        return self.model(replace(question, contact=with_law(question.contact, self.structural_law, self.bearing)))
+
+
+@dataclass(frozen=True)
+class FromTable:
+    """Films from the film table, all points of a contact in one call."""
+
+    def __call__(self, question: Question) -> Answer:
+        """Answer of one point."""
+        return self.many([question])[0]
+
+    def many(self, questions: Sequence[Question]) -> tuple[Answer, ...]:
+        """Answers to several questions.
+
+        Parameters
+        ----------
+        questions : sequence of Question
+            Contacts at operating points, of one oil.
+        """
+        answers: dict[int, Answer] = {}
+        for contact in dict.fromkeys(question.contact for question in questions):
+            places = [index for index, question in enumerate(questions) if question.contact == contact]
+            here = [questions[index] for index in places]
+            w, u, T = (
+                np.array([getattr(question.point, name) for question in here])
+                for name in ("load", "entrainment_speed", "temperature")
+            )
+            oil = here[0].lubricant
+            read = film_table(oil).films(contact, oil, w, u, T, thickest_film=math.inf)
+            for row, index in enumerate(places):
+                answers[index] = film_answer(read.solution(row), questions[index])
+        return tuple(answers[index] for index in range(len(questions)))
+
+
+@dataclass(frozen=True, eq=False)
+class FromLaw:
+    """A contact law, asked for the approach at which it carries the load.
+
+    Attributes
+    ----------
+    laws : mapping of str to ContactLaw
+        Laws by the names of the contacts.
+    """
+
+    laws: Mapping[str, ContactLaw]
+
+    def __call__(self, question: Question) -> Answer:
+        """Answer of one point."""
+        contact, point = question.contact, question.point
+        law = self.laws[contact.name].at(point.entrainment_speed, point.temperature)
+        delta = float(contact.structural_approach(point.load))
+        for _ in range(_MOST_STEPS):
+            w, k, c = (float(number) for number in law(delta, 0.0))
+            if not k > 0.0:
+                return Answer(lost="the law has no stiffness on the way to the load")
+            step = (point.load - w) / k
+            delta += step
+            if abs(step) < _CLOSE * abs(delta):
+                break
+        values = {"approach": delta, "stiffness": k, "damping": c}
+        return Answer({**values, "film offset": float(contact.structural_approach(point.load)) - delta})

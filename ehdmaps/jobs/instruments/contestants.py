@@ -7,29 +7,41 @@ the model.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Any, get_args
 
 from ehdmaps.ehl.limits import SETTING_LIMITS
 from ehdmaps.ehl.solver import ReynoldsSolver
+from ehdmaps.errors import InputError, MapError
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.instruments.contact_ways import (
     AtFrequency,
     ContactModel,
     Flooded,
+    FromLaw,
+    FromTable,
     LayerRule,
     LockedPole,
+    MorePiezoviscous,
     OnLayer,
+    OtherSolids,
     RoughRule,
     RoughSolved,
     Slow,
+    Warmer,
 )
 from ehdmaps.jobs.job import Job
+from ehdmaps.jobs.make.table_law import job_map
+from ehdmaps.maps.law import LawKind
+from ehdmaps.physics.approach import StructuralLaw
+from ehdmaps.physics.bearing import with_law
 from ehdmaps.physics.closed_form import FilmFormula, FormulaSolver
 from ehdmaps.physics.heat import INLET_HEAT, THERMAL
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.solution import ContactSolver
 from ehdmaps.physics.surface import Surface
+from ehdmaps.trade.record import Source
 
 REFINEMENT = 4.0
 """Grid density of the reference over that of the job; its inlet is twice as long."""
@@ -47,6 +59,12 @@ OIL_LAYER, ROUGHNESS = OilSupply.named("oil air"), Surface(2e-7)
 """Oil supply and surface that are measured where the job states none of its own."""
 
 NEWTONIAN = "newtonian"
+
+NUMBERS, TABLE, MEMORY = "grid of the solver", "film table", "film memory"
+"""Sources of error, for the error budget."""
+
+DATA, RINGS = 1.1, 5.0
+"""Coefficient of pressure-viscosity over that of the oil, and how much warmer rings are [K], in the error budget."""
 
 _RESOLUTIONS = (0.5, 0.7, 1.0, 1.4, 2.0)
 """Grid densities that are measured, over that of the job."""
@@ -97,6 +115,8 @@ class Entry:
         Whether it is what is used where nothing is said.
     few : bool
         Whether a point takes seconds: it is asked at a few points only.
+    lacks, has : str
+        Source of error, for the error budget, that it leaves out, and one that it has; empty where it stands for none.
     """
 
     group: Group
@@ -106,6 +126,20 @@ class Entry:
     closed: bool = False
     default: bool = False
     few: bool = False
+    lacks: str = ""
+    has: str = ""
+
+
+def sources(entries: Sequence[Entry]) -> tuple[Source, ...]:
+    """Sources of error that stand in some entries, each with who has it.
+
+    Parameters
+    ----------
+    entries : sequence of Entry
+        The entries.
+    """
+    having = {entry.has: entry.label for entry in entries if entry.has}
+    return tuple(Source(entry.lacks, entry.label, having.get(entry.lacks, "")) for entry in entries if entry.lacks)
 
 
 def contestants(job: Job, openfoam: bool) -> tuple[Entry, ...]:
@@ -133,6 +167,7 @@ def contestants(job: Job, openfoam: bool) -> tuple[Entry, ...]:
         f"reynolds for the film of each share, {density}",
         surface.roughness,
     )
+    read = _table_entries(job, solved)
     moving = Group("at a frequency", AtFrequency(fine), f"reynolds at it, density {fine.density:g}")
     return (
         Entry(closed, "hertz", Flooded(solvers.build("hertz", {})), closed=True),
@@ -140,8 +175,17 @@ def contestants(job: Job, openfoam: bool) -> tuple[Entry, ...]:
             Entry(closed, f"formula, {word}", Flooded(FormulaSolver(word)), closed=True, default=word == "moes")
             for word in get_args(FilmFormula)
         ),
+        *read,
         *(
-            Entry(grids, f"reynolds, density {grid.density:g}", Flooded(grid), solved, default=grid == ReynoldsSolver())
+            Entry(
+                grids,
+                f"reynolds, density {grid.density:g}",
+                Flooded(grid),
+                solved,
+                default=grid == ReynoldsSolver() and not read,
+                lacks=NUMBERS if grid == usual else "",
+                has=NUMBERS if grid == rule else TABLE if grid == usual else "",
+            )
             for grid in dict.fromkeys(_finer(own, factor) for factor in _RESOLUTIONS)
         ),
         *(
@@ -151,16 +195,75 @@ def contestants(job: Job, openfoam: bool) -> tuple[Entry, ...]:
         *(_openfoam_entries(job, solved) if openfoam else ()),
         *_shear_entries(own, stated),
         *(_heat_entries(own) if job.lubricant.thermal_conductivity is not None else ()),
-        Entry(supplied, "layer: flooded film", Flooded(usual), solved, default=True),
-        Entry(supplied, "layer: rule of contact laws", LayerRule(usual, layer), LayerRule(rule, layer)),
+        *_data_entries(job, usual),
+        Entry(supplied, "layer: flooded film", Flooded(usual), solved, default=True, lacks=layer.label),
+        Entry(
+            supplied, "layer: rule of contact laws", LayerRule(usual, layer), LayerRule(rule, layer), has=layer.label
+        ),
         Entry(supplied, f"layer: reynolds, {density}", OnLayer(usual, layer), supplied.truth),
-        Entry(rough, "rough: smooth film", Flooded(usual), solved, default=True),
-        Entry(rough, "rough: rule of contact laws", RoughRule(usual, surface), RoughRule(rule, surface)),
-        Entry(moving, "frequency: slow motion", Slow(usual), Slow(rule)),
+        Entry(rough, "rough: smooth film", Flooded(usual), solved, default=True, lacks=surface.label),
+        Entry(
+            rough, "rough: rule of contact laws", RoughRule(usual, surface), RoughRule(rule, surface), has=surface.label
+        ),
+        Entry(moving, "frequency: slow motion", Slow(usual), Slow(rule), lacks=MEMORY),
         Entry(moving, "frequency: one pole, formula", LockedPole(usual, False), LockedPole(rule, False)),
-        Entry(moving, "frequency: one pole, fitted", LockedPole(usual, True), LockedPole(rule, True), default=True),
-        Entry(moving, f"frequency: reynolds, {density}", AtFrequency(usual), moving.truth),
+        Entry(
+            moving,
+            "frequency: one pole, fitted",
+            LockedPole(usual, True),
+            LockedPole(rule, True),
+            default=True,
+            lacks="more than one pole of memory",
+            has=MEMORY,
+        ),
+        Entry(
+            moving,
+            f"frequency: reynolds, {density}",
+            AtFrequency(usual),
+            moving.truth,
+            has="more than one pole of memory",
+        ),
         *(_openfoam_responses(job, moving) if openfoam else ()),
+    )
+
+
+def _table_entries(job: Job, solved: ContactModel) -> tuple[Entry, ...]:
+    """Entries of what is read from the film table: films, and contact laws; none where it does not serve the job."""
+    flooded = replace(job, supply=None, surface=None, law_check=0)
+    try:
+        emap = job_map(flooded, job.name)
+    except MapError:
+        return ()
+    names = {contact.name for contact in job.contacts}
+    laws = FromLaw({kind: emap.law(kind, outside="asymptote") for kind in get_args(LawKind) if kind in names})
+    group, law = Group(TABLE, solved), "contact law, from the film table"
+    return (
+        Entry(group, TABLE, FromTable(), solved, default=True, lacks=TABLE, has="law over load, speed, temperature"),
+        Entry(group, law, laws, solved, lacks="law over load, speed, temperature"),
+    )
+
+
+def _data_entries(job: Job, usual: ReynoldsSolver) -> tuple[Entry, ...]:
+    """Entries of what is stated, beside what may be: the oil's coefficient, the law of the solids, the temperature."""
+    stated = Flooded(usual)
+    other: StructuralLaw = "iso16281" if job.contacts[0].structural_law == "half_space" else "half_space"
+    told: list[tuple[str, ContactModel]] = [(f"rings {RINGS:g} K warmer than told", Warmer(stated, RINGS))]
+    if job.lubricant.pressure_viscosity.coefficient != "none":
+        more = f"pressure-viscosity data {DATA - 1.0:.0%} off"
+        told.append((more, MorePiezoviscous(stated, DATA)))
+    try:
+        with_law(job.contacts[0], other, job.bearing)
+        told.append(
+            (
+                f"structural law {other} in place of {job.contacts[0].structural_law}",
+                OtherSolids(stated, other, job.bearing),
+            )
+        )
+    except InputError:
+        pass  # a contact without the lengths that this law needs
+    return tuple(
+        Entry(Group(name, model, f"{name}, density {usual.density:g}"), f"as told, not {name}", stated, lacks=name)
+        for name, model in told
     )
 
 
@@ -174,8 +277,21 @@ def _shear_entries(own: dict[str, Any], stated: dict[str, Any]) -> tuple[Entry, 
     name = f"shear, {law['shear']}"
     group = Group(name, Flooded(fine), f"reynolds, {law['shear']}, density {fine.density:g}")
     return (
-        Entry(group, "shear: newtonian", Flooded(newtonian), Flooded(_finer(own, RULE_REFINEMENT)), default=True),
-        Entry(group, f"shear: {law['shear']}, density {usual.density:g}", Flooded(usual), group.truth),
+        Entry(
+            group,
+            "shear: newtonian",
+            Flooded(newtonian),
+            Flooded(_finer(own, RULE_REFINEMENT)),
+            default=True,
+            lacks=f"{law['shear']} shear stress",
+        ),
+        Entry(
+            group,
+            f"shear: {law['shear']}, density {usual.density:g}",
+            Flooded(usual),
+            group.truth,
+            has=f"{law['shear']} shear stress",
+        ),
     )
 
 
@@ -188,10 +304,15 @@ def _heat_entries(own: dict[str, Any]) -> tuple[Entry, ...]:
     rule = {**own, "physics": INLET_HEAT}
     return (
         Entry(
-            group, "heat: isothermal", Flooded(_finer(own, 1.0)), Flooded(_finer(own, RULE_REFINEMENT)), default=True
+            group,
+            "heat: isothermal",
+            Flooded(_finer(own, 1.0)),
+            Flooded(_finer(own, RULE_REFINEMENT)),
+            default=True,
+            lacks="heat in the film",
         ),
         Entry(group, "heat: rule of the inlet", Flooded(_finer(rule, 1.0)), Flooded(_finer(rule, RULE_REFINEMENT))),
-        Entry(group, f"heat: solved, density {usual.density:g}", Flooded(usual), group.truth),
+        Entry(group, f"heat: solved, density {usual.density:g}", Flooded(usual), group.truth, has="heat in the film"),
     )
 
 

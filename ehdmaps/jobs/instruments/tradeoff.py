@@ -20,20 +20,31 @@ from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.instruments.answers import COMPLIANCE_SHARE, DAMPING_SHARE, QUANTITIES, Answer, Question, scales
 from ehdmaps.jobs.instruments.contact_ways import ContactModel
-from ehdmaps.jobs.instruments.contestants import OPENFOAM_REFINEMENT, RULE_REFINEMENT, Entry, Group, contestants
+from ehdmaps.jobs.instruments.contestants import (
+    OPENFOAM_REFINEMENT,
+    RULE_REFINEMENT,
+    TABLE,
+    Entry,
+    Group,
+    contestants,
+    sources,
+)
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.make.sampling import VALLEY_SHARE, SamplePoint, draw_sample, log_uniform
 from ehdmaps.physics.closed_form import FormulaSolver
 from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.solution import natural_to_hertz
 from ehdmaps.physics.spectrum import HIGHEST_FREQUENCY, LOWEST_FREQUENCY
-from ehdmaps.trade.record import Choice, ErrorSummary, Judged, Trade
+from ehdmaps.trade.record import Choice, ErrorSummary, Judged, Scope, Trade
 from ehdmaps.units import LOAD, SPEED, TEMPERATURE
 
 NATURAL_FREQUENCIES = (0.1, 10.0)
 """Range of omega sqrt(b^2 + 2 h R)/u from which the frequency of a point is drawn."""
 
-_STATED = ("stiffness", "damping", "film offset")
+_STATED = _SHOWN = ("stiffness", "damping", "film offset")
+
+_SOLVING = ("closed forms", TABLE, "reynolds", "openfoam")
+"""Groups whose choices answer one question: the flooded, smooth film in slow motion."""
 
 
 @dataclass(frozen=True)
@@ -262,6 +273,9 @@ def measure(
             *truth_words(references, questions),
             *dict.fromkeys(lost),  # several choices may have one finest solution
         ),
+        scopes=(Scope("a contact in slow motion", (_SOLVING,), _SHOWN),),
+        sources=sources(chosen),
+        shown=_SHOWN,
     )
 
 
@@ -296,7 +310,8 @@ def _ask(model: ContactModel, questions: Sequence[Question]) -> Asked:
     if questions and not _slow(model):
         model(questions[0])
     began = cpu_seconds()
-    answers = tuple(model(question) for question in questions)
+    many = getattr(model, "many", None)  # a table is read at all points at once
+    answers = tuple(model(question) for question in questions) if many is None else many(questions)
     spent = cpu_seconds() - began
     return Asked(answers, spent / len(questions) if questions else math.nan)
 

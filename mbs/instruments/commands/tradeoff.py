@@ -22,11 +22,11 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Measure, print and write."""
     scene, laws, clearance, settings = _asked(arguments)
     found = tradeoff(scene, laws, clearance, settings, Told("measurement"))
-    written = write_trade(found, arguments.output, arguments.plot)
+    written = write_trade(found, arguments.output, arguments.plot, arguments.all)
     if arguments.json:
         # What is written stands in no line: the output is JSON and nothing else.
         return trade_json(found), 0
-    return "\n".join([trade_text(found), *written]), 0
+    return "\n".join([trade_text(found, arguments.all), *written]), 0
 
 
 def _asked(arguments: argparse.Namespace) -> tuple[Scene, list[LawChoice], float | None, TradeoffSettings]:
