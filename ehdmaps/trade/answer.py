@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from itertools import groupby
 
 from ehdmaps.trade.record import Choice, ErrorSummary, Scope, Trade
 
@@ -63,7 +64,7 @@ def size(trade: Trade, name: str, error: float) -> float:
     name : str
         The quantity.
     error : float
-        Its error.
+        Error of the quantity.
     """
     (unit,) = (judged.unit for judged in trade.judged if judged.name == name)
     return error * FACTORS[unit]
@@ -79,7 +80,7 @@ def cheapest(trade: Trade, scope: Scope, tolerance: float) -> tuple[Choice, ...]
     scope : Scope
         What is answered.
     tolerance : float
-        In per cent or dB.
+        Tolerance [% or dB].
     """
     chosen = []
     for groups in scope.groups:
@@ -151,18 +152,17 @@ def answer_lines(trade: Trade) -> Iterator[str]:
         usual = default(trade, scope)
         base = sum(choice.seconds for choice in usual)
         yield f"{scope.words}: what to use where 95 % of the points may be wrong by no more than"
-        for tolerance in TOLERANCES:
-            chosen = cheapest(trade, scope, tolerance)
-            units = " or ".join(dict.fromkeys(UNITS[j.unit] for j in trade.judged if j.name in scope.judged))
-            head = f"  {tolerance:g} {units}"
+        units = " or ".join(dict.fromkeys(UNITS[one.unit] for one in trade.judged if one.name in scope.judged))
+        for chosen, alike in groupby(TOLERANCES, key=lambda tolerance: cheapest(trade, scope, tolerance)):
+            head = f"{', '.join(f'{tolerance:g}' for tolerance in alike)} {units}"
             if chosen:
                 ratio = sum(choice.seconds for choice in chosen) / base if base else math.nan
-                yield f"{head:10s} {_names(chosen)}: {_cost(trade, chosen)}{_of_default(ratio)}"
+                yield f"  {head:12s} {_names(chosen)}: {_cost(trade, chosen)}{_of_default(ratio)}"
             else:
-                yield f"{head:10s} nothing that was measured keeps it"
+                yield f"  {head:12s} nothing that was measured keeps it"
         if usual:
             errors = ", ".join(_words(trade, scope, usual))
-            yield f"  default   {_names(usual)}: {_cost(trade, usual)}; wrong by {errors}"
+            yield f"  {'default':12s} {_names(usual)}: {_cost(trade, usual)}; wrong by {errors}"
 
 
 def budget_lines(trade: Trade) -> Iterator[str]:

@@ -13,6 +13,7 @@ import numpy as np
 import xarray as xr
 
 from ehdmaps.outputs import FIGURE, MADE_AS, Output, check_outputs, dataset_kind, write_figure, written_aside
+from ehdmaps.trade.answer import answer_lines, budget, budget_lines
 from ehdmaps.trade.record import ErrorSummary, Trade
 
 _PARTS = (
@@ -96,12 +97,14 @@ def trade_dataset(trade: Trade) -> xr.Dataset:
             "level": trade.level,
             "reference": trade.reference,
             "frame": "\n".join(trade.frame),
+            "answer": "\n".join(answer_lines(trade)),
+            "budget": "\n".join(budget_lines(trade)),
         },
     )
 
 
 def trade_json(trade: Trade) -> str:
-    """Return a measurement as JSON: the fields of `Trade` by their names; null for what is not known.
+    """Return a measurement as JSON: fields of `Trade`, the answer, the error budget; null for what is not known.
 
     Parameters
     ----------
@@ -109,7 +112,18 @@ def trade_json(trade: Trade) -> str:
         The measurement.
     """
     record = {entry.name: getattr(trade, entry.name) for entry in fields(trade)}
-    record["judged"] = [asdict(judged) for judged in trade.judged]
+    for name in ("judged", "scopes", "sources"):
+        record[name] = [asdict(entry) for entry in getattr(trade, name)]
+    record["answer"] = [*answer_lines(trade)]
+    record["budget"] = [
+        {
+            "source": bar.name,
+            "cost": _finite(bar.cost),
+            "against": bar.against,
+            "errors": {name: _summary(found) for name, found in bar.errors.items()},
+        }
+        for bar in budget(trade)
+    ]
     record["choices"] = [
         {
             **{entry.name: getattr(choice, entry.name) for entry in fields(choice)},

@@ -48,7 +48,7 @@ def budget_panel(panel: Axes, trade: Trade, bars: Sequence[Bar]) -> None:
     Parameters
     ----------
     panel : Axes
-        Where it is drawn.
+        Axes to draw on.
     trade : Trade
         The measurement.
     bars : sequence of Bar

@@ -22,9 +22,10 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.choices import supply_from_text
 from ehdmaps.errors import AnalysisError, EhdmapsError, InputError
 from ehdmaps.maps.emap import EHDMap
-from ehdmaps.trade.record import Choice, ErrorSummary, Judged, Trade
+from ehdmaps.physics.surface import Surface
+from ehdmaps.trade.record import Choice, ErrorSummary, Judged, Scope, Source, Trade
 from ehdmaps.units import RPM
-from mbs.analyses.case import Progress, silent
+from mbs.analyses.case import Progress, common_clearance, silent
 from mbs.analyses.operating import held
 from mbs.analyses.ramp import recorded_run, run_course
 from mbs.analyses.sensors import looked_at
@@ -33,10 +34,11 @@ from mbs.instruments.ramp_parts import PartRun, Ramp, RampPart, ramp_of, run_par
 from mbs.instruments.tolerance import Numerics
 from mbs.linearised.averaged import pitch
 from mbs.scene import changes
-from mbs.scene.choices import CHOICES, LawChoice, Subject
+from mbs.scene.assembly import Model
+from mbs.scene.choices import CHOICES, LawChoice, Subject, named_law
 from mbs.scene.contact_laws import law_label
-from mbs.scene.fields import HERTZ, MILLISECOND
-from mbs.scene.map_set import MapSet
+from mbs.scene.fields import HERTZ, MICROMETRE, MILLISECOND
+from mbs.scene.map_set import TABLE_LAW, MapSet
 from mbs.scene.scene import Scene
 from mbs.settings import CampbellSettings
 from mbs.spectral.levels import Reference
@@ -66,6 +68,13 @@ COARSER, FINER = (4.0, 2.0), (0.5, 0.25)
 
 ANGLES = (1, 2, 4, 8)
 """Cage angles within one pitch that are tried; the last ones are the reference."""
+
+WARMER, LOOSER, ROUGH = 5.0, 10e-6, Surface(2e-7)
+"""By how much what a scene states is changed: temperature [K], clearance [m]; and a surface."""
+
+UNKNOWN = "what a scene states"
+NUMBERS = ("slices", "cut-off", "step", "cage angles")
+"""Groups of choices."""
 
 PLACES = (0.25, 0.75)
 """Which parts of a ramp are run, as parts of its length."""
@@ -140,12 +149,12 @@ def tradeoff(
     """
     settings = settings or TradeoffSettings(scene.campbell)
     maps = [law for law in laws if law.maps is not None]
-    films = maps[0] if maps else LawChoice(law_label("formula"), "formula")
+    films = maps[0] if maps else named_law(TABLE_LAW if scene.lubricant is not None else "formula", scene)
     base = Subject(scene, dataclasses.replace(films, films="memory"), clearance)
     runs = settings.runs and scene.run_up is not None
     numerics = Numerics.of(scene) if scene.run_up is not None else None
     model = base.model()
-    models = [*_laws(base, bool(maps)), *_supplies(base), *_maps(base, maps)]
+    models = [*_laws(base), *_supplies(base), *_unknown(base, model), *_maps(base, maps)]
     linear = [*models, *_numbers(base, ("slices", "cutoff"), settings)]
     ramp = ramp_of(model, settings.campbell, looked_at(scene, settings.campbell)) if runs else None
     tried = [*models, *_numbers(base, ("step", "slices", "cutoff"), settings)] if ramp else []
@@ -174,12 +183,67 @@ def tradeoff(
             dataclasses.replace(choice, reference=FINEST.get(choice.group.partition(": ")[2], "")) for choice in choices
         ),
         frame=tuple(lines),
+        scopes=_scopes(choices),
+        sources=_sources(base, choices),
+        shown=(FREQUENCY, DAMPING, HEIGHT if ramp is None else LEVEL),
     )
 
 
-def _laws(base: Subject, has_map: bool) -> Iterable[_Tried]:
+def _scopes(choices: Sequence[Choice]) -> tuple[Scope, ...]:
+    """Questions that are answered: one setting of each number, of a linear analysis and of a run-up."""
+    known = {choice.group for choice in choices}
+    scopes = []
+    for kind, words, judged in (
+        ("linear", "a linear analysis", (FREQUENCY, DAMPING, HEIGHT)),
+        ("run-up", "a run-up", (LEVEL,)),
+    ):
+        groups = tuple((name,) for part in NUMBERS if (name := f"{kind}: {part}") in known)
+        if groups:
+            scopes.append(Scope(words, groups, judged))
+    return tuple(scopes)
+
+
+def _sources(base: Subject, choices: Sequence[Choice]) -> tuple[Source, ...]:
+    """Sources of error: what a law leaves out, what a scene states and may be wrong, and the numbers as they are."""
+    memory = f"{base.law.label}, memory"
+    found = [
+        Source("films, their stiffness and damping", law_label("hertz"), memory),
+        Source("film memory", f"{base.law.label}, slow films", memory),
+        *(Source(f"oil supply: {text}", text) for text in SUPPLIES[1:]),
+        *(Source(choice.label, choice.label) for choice in choices if choice.group == f"linear: {UNKNOWN}"),
+    ]
+    for part in NUMBERS:
+        labels = [choice for choice in choices if choice.group.endswith(f": {part}")]
+        usual = next((index for index, choice in enumerate(labels) if choice.default), None)
+        if usual is not None:
+            finer = labels[usual + 1].label if usual + 1 < len(labels) else ""
+            found.append(Source(f"{part}: {labels[usual].label}", labels[usual].label, finer))
+    return tuple(found)
+
+
+def _unknown(base: Subject, model: Model) -> Iterable[_Tried]:
+    """Choices of what a scene states or leaves open, each a little off."""
+    clearance = common_clearance(model)
+    stated: list[tuple[str, float | str | Surface, str]] = [
+        ("temperature", base.scene.temperature + WARMER, f"rings {WARMER:g} K warmer than told")
+    ]
+    if math.isfinite(clearance):
+        stated.append(("clearance", clearance + LOOSER, f"clearance {MICROMETRE.text(LOOSER)} more than told"))
+    if base.law.maps is not None:
+        structure = base.law.maps.maps[0].structural_law
+        other = "iso16281" if structure == "half_space" else "half_space"
+        stated.append(("structure", other, f"structural law {other} in place of {structure}"))
+    if model.surface is not None and model.surface.smooth:
+        stated.append(("roughness", ROUGH, ROUGH.label))
+    for key, value, label in stated:
+        with contextlib.suppress(InputError):
+            yield _Tried(UNKNOWN, label, CHOICES[key].change(base, value), base)
+
+
+def _laws(base: Subject) -> Iterable[_Tried]:
     """Laws from dry to the most complete one."""
     memory = base.law
+    has_map = memory.name != "formula"
     laws = [
         (LawChoice(law_label("hertz"), "hertz"), not has_map),
         (LawChoice(f"{law_label('hertz')}, usual damper", DAMPER), False),

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from ehdmaps.maps.emap import EHDMap
+from ehdmaps.trade.answer import answer_lines, budget
 from ehdmaps.trade.data import trade_json
 from ehdmaps.trade.text import trade_text
 from mbs import assemble, parse_scene, read_scene
@@ -72,7 +73,11 @@ class TestTradeoff:
         found = tradeoff(scene, [law], settings=TradeoffSettings(scene.campbell))
         rows = {(choice.group, choice.label): choice for choice in found.choices}
         assert {group for group, _ in rows} == {
-            *(f"{kind}: {words}" for kind in ("linear", "run-up") for words in ("law", "oil supply", "map", "slices")),
+            *(
+                f"{kind}: {words}"
+                for kind in ("linear", "run-up")
+                for words in ("law", "oil supply", "what a scene states", "map", "slices")
+            ),
             "linear: cage angles",
             "run-up: step",
             "run-up: all settings of the scene",
@@ -83,12 +88,19 @@ class TestTradeoff:
         assert rows["linear: law", "dry Hertz"].errors["frequency"].largest > 0.0
         assert rows["linear: slices", "5 slices"].default
         assert rows["linear: slices", "3 slices"].errors["roller load"].largest > 0.0
-        # None twice: three laws, a supply more, a map with fewer loads, fewer and more slices, all steps with the
-        # finest one, and the finest of all, each of two parts.
+        # None twice: three laws, a supply more, four things that a scene states, a map with fewer loads, fewer and more
+        # slices, all steps with the finest one, and the finest of all, each of two parts.
         steps = sum(group == "run-up: step" for group, _ in rows)
-        assert len(made) == 2 * (3 + 1 + 1 + 2 + steps + 1)
+        assert len(made) == 2 * (3 + 1 + 4 + 1 + 2 + steps + 1)
         assert "reference: map with memory of its films" in trade_text(found)
         assert json.loads(trade_json(found))
+        bars = {bar.name: bar for bar in budget(found)}
+        assert {"film memory", "slices: 5 slices", "rings 5 K warmer than told", "cage angles: 1 angle"} <= set(bars)
+        # of a run and of a linear analysis in one line
+        assert set(bars["film memory"].errors) == {"frequency", "damping ratio", "sum level"}
+        assert bars["slices: 5 slices"].errors["frequency"] == rows["linear: slices", "5 slices"].errors["frequency"]
+        answers = "\n".join(answer_lines(found))
+        assert "a linear analysis: what to use" in answers and "a run-up: what to use" in answers
 
     def test_the_command_refuses_before_it_measures(self, capsys):
         assert main(["tradeoff", "nu308_rigid", "--sensor", "S9", "--highest", "nonsense"]) == 2

@@ -12,9 +12,10 @@ import xarray as xr
 from matplotlib.collections import LineCollection
 
 from ehdmaps.errors import InputError
+from ehdmaps.trade.answer import answer_lines, budget, budget_lines, cheapest, time_text
 from ehdmaps.trade.data import check_trade_files, trade_dataset, trade_json, write_trade
 from ehdmaps.trade.figure import trade_figure
-from ehdmaps.trade.record import Choice, ErrorSummary, Judged, Trade, front
+from ehdmaps.trade.record import Choice, ErrorSummary, Judged, Scope, Source, Trade, front
 from ehdmaps.trade.text import trade_text
 
 PLACES = ("inner, 1 N/mm", "outer, 30 N/mm", "inner, 7 N/mm")
@@ -137,3 +138,76 @@ def test_files_follow_the_rule_of_outputs(trade: Trade, tmp_path) -> None:
     with pytest.raises(InputError, match="is not a trade of ehdmaps"):
         write_trade(trade, str(foreign), None)
     assert foreign.read_text() == "mine"
+
+
+@pytest.fixture(scope="module")
+def answered(trade: Trade) -> Trade:
+    """The same with questions and sources."""
+    scopes = (
+        Scope("three points", (("resolution",),), ("film",)),
+        Scope("all", (("resolution",), ("law",)), ("film",)),
+    )
+    sources = (Source("grid", "coarse", "fine"), Source("little", "fine"), Source("lost", "nothing of that name"))
+    return replace(trade, scopes=scopes, sources=sources, shown=("film", "level"))
+
+
+def test_the_cheapest_choice_that_keeps_a_tolerance(answered: Trade) -> None:
+    """95 % quantiles of three sizes by hand: those of coarse 1.85 %, fine 0.19 %, dear 1 %, exact 0."""
+    one, all_of = answered.scopes
+    names = [[choice.label for choice in cheapest(answered, one, tolerance)] for tolerance in (0.1, 0.2, 1.0, 5.0)]
+    assert names == [["exact"], ["fine"], ["fine"], ["coarse"]]
+    # of the laws none has an error of 1 %, and one none at all
+    assert cheapest(answered, all_of, 1.0) == ()
+    assert [choice.label for choice in cheapest(answered, all_of, 5.0)] == ["coarse", "apart"]
+    lines = list(answer_lines(answered))
+    assert lines[0] == "three points: what to use where 95 % of the points may be wrong by no more than"
+    assert [line.split() for line in lines[1:5]] == [
+        *(["0.1", "%", "exact:", "1", "s", "a", "point,", "100", "of", "the", "default's"],),
+        *(["1", "%", "fine:", "10", "ms", "a", "point"],),
+        *(["5", "%", "coarse:", "1", "ms", "a", "point,", "0.1", "of", "the", "default's"],),
+        *(["default", "fine:", "10", "ms", "a", "point;", "wrong", "by", "0.19", "%", "of", "film"],),
+    ]
+    assert "nothing that was measured keeps it" in lines[6]
+
+
+def test_a_choice_that_lost_a_point_keeps_no_tolerance(answered: Trade) -> None:
+    lossy = [replace(choice, solved=2) if choice.label == "fine" else choice for choice in answered.choices]
+    assert [one.label for one in cheapest(replace(answered, choices=tuple(lossy)), answered.scopes[0], 1.0)] == ["dear"]
+
+
+def test_the_budget_has_the_largest_source_first_and_what_it_costs(answered: Trade) -> None:
+    bars = budget(answered)
+    assert [bar.name for bar in bars] == ["grid", "little"]
+    assert bars[0].cost == pytest.approx(10.0, rel=1e-12)
+    assert math.isnan(bars[1].cost)
+    table = list(budget_lines(answered))
+    # median and 95 % quantile of 2, 0.5 and 0.4 %, of ten times that in dB
+    name, film, _, most, level, _, loudest, *cost = table[2].split()
+    assert (name, cost) == ("grid", ["x", "10"])
+    # printed to two digits
+    assert [float(text) for text in (film, most, level, loudest)] == pytest.approx([0.5, 1.85, 0.05, 0.185], rel=0.03)
+    assert table[3].split()[-1] == "-"
+
+
+def test_short_text_has_the_answer_and_says_where_the_rest_is(answered: Trade) -> None:
+    short, whole = trade_text(answered, everything=False), trade_text(answered)
+    assert len(short.splitlines()) < 20 < len(whole.splitlines())
+    assert short.splitlines()[:2] == ["three points", "seed 1"]
+    assert "--all" in short.splitlines()[-1]
+    assert "largest error of each, and where" in whole and "largest error of each, and where" not in short
+
+
+def test_the_picture_of_a_budget_has_a_bar_a_source_and_quantity(answered: Trade) -> None:
+    (panel,) = trade_figure(answered).axes
+    assert panel.get_xscale() == "log"
+    assert [label.get_text() for label in panel.get_yticklabels()] == ["grid\n(costs x 10)", "little"]
+    ends = sorted(bar.get_x() + bar.get_width() for bar in panel.patches)
+    highs = sorted(found.high * unit for bar in budget(answered)
+                   for found, unit in ((bar.errors["film"], 100.0), (bar.errors["level"], 1.0)))  # fmt: skip
+    assert ends == pytest.approx(highs, rel=1e-9)
+    assert len(trade_figure(answered, everything=True).axes) == 3
+
+
+@pytest.mark.parametrize(("seconds", "text"), [(1.3e-6, "1.3 us"), (0.0022, "2.2 ms"), (72.0, "72 s"), (0.5, "500 ms")])
+def test_times_are_short(seconds, text) -> None:
+    assert time_text(seconds) == text
