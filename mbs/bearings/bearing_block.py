@@ -284,7 +284,7 @@ def _contact_powers(bearings: Bearings, b: int, moment: Moment, motion: FloatArr
     """`ring_powers` of a bearing whose rollers are bodies."""
     rings = bearings.rings
     cage, shape, weights = cage_of(rings, b, moment), _one_roller(rings, b), rings.weights[b][: rings.slices[b]]
-    lost = torque = 0.0
+    dissipated = torque = 0.0
     first, x = rings.firsts[b], motion[0]
     for j in range(rings.rollers[b]):
         place = place_of(rings, b, j, cage, motion)
@@ -294,11 +294,11 @@ def _contact_powers(bearings: Bearings, b: int, moment: Moment, motion: FloatArr
             power, flat, tilted = roller_power(roller, shape.positions, weights, states, 0)
             sign, c, s, r = 1.0 - 2.0 * side, place.cos, place.sin, first + 2 * side
             across = x[r + 1] * c - x[r] * s
-            lost += power
+            dissipated += power
             torque += sign * across * flat - 0.5 * (x[first + 5] * s + x[first + 4] * c) * tilted
     length = shape.sizes.slice_length
-    lost, torque = lost * length, torque * length
-    return lost, torque * rings.cage_rates[b] * moment.speed + outward_power(rings, b, moment, motion)
+    dissipated, torque = dissipated * length, torque * length
+    return dissipated, torque * rings.cage_rates[b] * moment.speed + outward_power(rings, b, moment, motion)
 
 
 @njit(error_model="numpy")

@@ -72,8 +72,8 @@ class RingElement(ElementDefaults):
     @property
     def film_laws(self) -> tuple[ContactLaw, ...]:
         """The same where all of them have films; else none."""
-        found = tuple(flat.law for flat in self.flat_laws if not isinstance(flat.law, DryLaw))
-        return found if len(found) == len(self.flat_laws) else ()
+        laws = tuple(flat.law for flat in self.flat_laws if not isinstance(flat.law, DryLaw))
+        return laws if len(laws) == len(self.flat_laws) else ()
 
     def brought_in(
         self, force: FloatArray, displacement: FloatArray, velocity: FloatArray, operation: Operation
@@ -324,10 +324,10 @@ class BearingElement(RingElement):
         shape = np.array(work.sizes), work.slices, work.angles
 
         def approaches(sample: int) -> FloatArray:
-            found = np.empty(work.rows.shape)
+            approach = np.empty(work.rows.shape)
             state[:6], state[12] = displacements[sample], self.cage_angle(operations[sample])
-            approaches_of_arrays(state, *shape, found)
-            return found
+            approaches_of_arrays(state, *shape, approach)
+            return approach
 
         return brought_by_speed(self.force.law, self.force.bearing, conditions, approaches)
 
@@ -415,9 +415,9 @@ class RollerElement(RingElement):
 
     def evaluate(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> Forces:
         """Forces on rings and rollers, stiffness and damping, see `Element.evaluate`."""
-        found = self.contacts.evaluate(displacement, velocity, **self.plain.conditions(operation))
-        found.force[12:] += self.outward(operation)
-        return found
+        forces = self.contacts.evaluate(displacement, velocity, **self.plain.conditions(operation))
+        forces.force[12:] += self.outward(operation)
+        return forces
 
     def powers(
         self, states: Any, force: FloatArray, displacement: FloatArray, velocity: FloatArray, operation: Operation
@@ -666,6 +666,6 @@ class MemoryRollers(FilmsInTime, RollerElement):
         self, before: tuple[FilmState, ...] | None, displacement: FloatArray, dt: float, operation: Operation
     ) -> tuple[Forces, tuple[FilmState, ...]]:
         """Forces and films after a step, see `FilmsInTime.advance_films`."""
-        found, films = self.contacts.advance(before, displacement, dt, **self.plain.conditions(operation))
-        found.force[12:] += self.outward(operation)
-        return found, films
+        forces, films = self.contacts.advance(before, displacement, dt, **self.plain.conditions(operation))
+        forces.force[12:] += self.outward(operation)
+        return forces, films

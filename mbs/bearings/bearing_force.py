@@ -173,10 +173,10 @@ def brought_by_speed(
             continue
         width = end - begin
         inside = begin + (np.arange(min(_SAMPLES, width)) + 0.5) * (width / min(_SAMPLES, width))
-        found = np.stack([approaches(int(index)) for index in inside])
-        deepest = float(np.max(found))
-        first, last = (potential(law, conditions[at], bearing, deepest)(found) for at in (begin, end))
-        total += float(np.sum(last - first)) / found.shape[0]
+        delta = np.stack([approaches(int(index)) for index in inside])
+        deepest = float(np.max(delta))
+        first, last = (potential(law, conditions[at], bearing, deepest)(delta) for at in (begin, end))
+        total += float(np.sum(last - first)) / delta.shape[0]
     return total
 
 

@@ -188,10 +188,10 @@ def assemble(motion: RingMotion, shape: Shape, numbers: LawNumbers, states: Floa
         if roller.deepest <= numbers.lift_off:
             continue
         rates = roller.rate, roller.tilt_rate
-        found = _moderate_sums(shape.positions, w, dw, c, dc, rates, j)
-        if found[8] > 0.0:
-            found = _lifting_sums(shape.positions, w, dw, c, dc, rates, j)
-        load, moment, k0, k1, k2, c0, c1, c2, _ = found
+        sums = _moderate_sums(shape.positions, w, dw, c, dc, rates, j)
+        if sums[8] > 0.0:
+            sums = _lifting_sums(shape.positions, w, dw, c, dc, rates, j)
+        load, moment, k0, k1, k2, c0, c1, c2, _ = sums
         y -= roller.cos * load
         z -= roller.sin * load
         a += roller.sin * moment
@@ -227,7 +227,7 @@ def roller_power(
         Which roller.
     """
     w, c = states[0, j], states[2, j]
-    lost = flat = tilted = 0.0
+    dissipated = flat = tilted = 0.0
     for i in range(positions.size):
         x = positions[i]
         rate = roller.rate + x * roller.tilt_rate
@@ -235,10 +235,10 @@ def roller_power(
         parting = part < -0.5 * w[i]
         # the rule of `ehdmaps.physics.contact`, less the load at rest
         more = -0.25 * w[i] * w[i] / (part if parting else 1.0) - w[i] if parting else part
-        lost += weights[i] * more * rate
+        dissipated += weights[i] * more * rate
         flat += weights[i] * w[i]
         tilted += weights[i] * w[i] * x
-    return lost, flat, tilted
+    return dissipated, flat, tilted
 
 
 @njit(error_model="numpy", fastmath=FAST)
@@ -262,17 +262,17 @@ def ring_powers(
     cage_rate : float
         [rad/s].
     """
-    lost = torque = 0.0
+    dissipated = torque = 0.0
     for j in range(shape.cos.size):
         roller = roller_of(motion, shape, j)
         if roller.deepest <= numbers.lift_off:
             continue
         power, flat, tilted = roller_power(roller, shape.positions, weights, states, j)
         c, s = roller.cos, roller.sin
-        lost += power
+        dissipated += power
         torque += flat * (motion.z * c - motion.y * s) - tilted * (motion.theta_z * s + motion.theta_y * c)
     length = shape.sizes.slice_length
-    return lost * length, torque * cage_rate * length
+    return dissipated * length, torque * cage_rate * length
 
 
 @njit(error_model="numpy")
@@ -359,8 +359,8 @@ def bearing_force_of_point(
         for i in range(shape.positions.size):
             delta = roller.gap + shape.positions[i] * roller.tilt - shape.profile[i]
             rate = roller.rate + shape.positions[i] * roller.tilt_rate
-            found = evaluate_at(point, delta, rate, counts)
-            states[0, j, i], states[1, j, i], states[2, j, i], states[3, j, i] = found[0], found[1], found[2], 0.0
+            state = evaluate_at(point, delta, rate, counts)
+            states[0, j, i], states[1, j, i], states[2, j, i], states[3, j, i] = state[0], state[1], state[2], 0.0
     # The rates are in the loads.
     still = RingMotion(
         y=motion.y, z=motion.z, theta_y=motion.theta_y, theta_z=motion.theta_z, y_rate=0.0, z_rate=0.0,

@@ -113,12 +113,12 @@ def bearing_contacts(
 
 def overload(contacts: BearingContacts) -> str:
     """A sentence where a pressure is beyond the static limit; empty otherwise."""
-    found = contacts.hertz_pressure
-    worst = int(np.argmax(found))
-    if found[worst] <= STATIC_LIMIT:
+    pressure = contacts.hertz_pressure
+    worst = int(np.argmax(pressure))
+    if pressure[worst] <= STATIC_LIMIT:
         return ""
     return (
-        f"Hertz pressure of {PRESSURE.text(found[worst])} ({SIDES[worst]} raceway) is above "
+        f"Hertz pressure of {PRESSURE.text(pressure[worst])} ({SIDES[worst]} raceway) is above "
         f"{PRESSURE.text(STATIC_LIMIT)}, the static limit of ISO 76: permanent deformation; elastic contacts and films "
         "no longer hold"
     )

@@ -265,11 +265,11 @@ class MapFilms:
         temperature = float(np.clip(temperature, kelvins[0], kelvins[-1]))
         plain = self._formula.state(side, load, entrainment_speed, temperature)
         loaded = load > 0.0
-        found = self.emap.rolling_film
+        rolling_film = self.emap.rolling_film
         rolling = plain.rolling_force
-        if found is not None:
+        if rolling_film is not None:
             at = SIDES[side], np.maximum(load, 0.0), entrainment_speed, temperature
-            rolling = found.rolling_force(*at, self.in_force)
+            rolling = rolling_film.rolling_force(*at, self.in_force)
         if entrainment_speed == 0.0 or not np.any(loaded):
             return replace(plain, rolling_force=rolling)
         ratios = np.full((*load.shape, len(_VARIABLES) + 1), np.nan)
@@ -278,9 +278,9 @@ class MapFilms:
         central, minimum = (ratios[..., part] * plain.central_film for part in (1, 2))
         error = np.where(loaded, ratios[..., -1], 0.0)
         state = ContactState(plain.hertz_pressure, pressure, central, minimum, rolling, error)
-        if found is None:
+        if rolling_film is None:
             return on_supply(state, RIGID_FLOW * central, self.in_force)
-        flow = found.flow(SIDES[side], np.maximum(load, 0.0), entrainment_speed, temperature)
+        flow = rolling_film.flow(SIDES[side], np.maximum(load, 0.0), entrainment_speed, temperature)
         return on_supply(state, flow, self.in_force)
 
     def _ratios(self, side: int, load: FloatArray, speed: float, temperature: float) -> FloatArray:
@@ -288,14 +288,14 @@ class MapFilms:
         lines = self._lines[side]
         speeds, kelvins = lines.nodes
         place = np.log(load) - self._shift(side, speed, temperature)
-        found = np.zeros((load.size, lines.ratios.shape[-1]))
+        ratios = np.zeros((load.size, lines.ratios.shape[-1]))
         for j, by_speed in _corners(np.log(speeds), float(np.log(speed))):
             for k, by_temperature in _corners(kelvins, temperature):
                 at = place + self._shift(side, float(speeds[j]), float(kelvins[k]))
-                for part in range(found.shape[1]):
+                for part in range(ratios.shape[1]):
                     line = np.interp(at, lines.log_load, lines.ratios[:, j, k, part])
-                    found[:, part] += by_speed * by_temperature * line
-        return found
+                    ratios[:, part] += by_speed * by_temperature * line
+        return ratios
 
     def _shift(self, side: int, speed: float, temperature: float) -> float:
         """ln of the load at which Moes' M is 1."""
@@ -311,7 +311,7 @@ class MapFilms:
         loads, speeds, kelvins = (
             data[name].values.astype(np.float64) for name in ("load", "entrainment_speed", "temperature")
         )
-        found = []
+        lines = []
         for side, name in enumerate(SIDES):
             of_side = data.sel(contact=name)
             columns = [of_side[variable].values for variable in _VARIABLES]
@@ -323,8 +323,8 @@ class MapFilms:
                     plain = self._formula.state(side, loads, float(speed), float(kelvin))
                     values[:, j, k, 0] /= plain.hertz_pressure
                     values[:, j, k, 1:3] /= plain.central_film[:, None]
-            found.append(_Lines(np.log(loads), (speeds, kelvins), values))
-        return tuple(found)
+            lines.append(_Lines(np.log(loads), (speeds, kelvins), values))
+        return tuple(lines)
 
 
 @dataclass(frozen=True, eq=False)

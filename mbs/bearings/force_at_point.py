@@ -119,13 +119,13 @@ class RollerLoads:
                 [np.log(loads[loaded]), np.full(loaded.sum(), math.log(size)), np.full(loaded.sum(), temperature)],
                 axis=1,
             )
-            found = RegularGridInterpolator(
+            log_film = RegularGridInterpolator(
                 tuple(axis for axis, keep in zip(axes, kept, strict=True) if keep), values.squeeze(), bounds_error=False
             )(places[:, kept])
             for axis, keep, place in zip(axes, kept, places.T, strict=True):
                 if not keep:
-                    found = np.where(np.abs(place - axis[0]) < 1e-9 * max(1.0, abs(axis[0])), found, np.nan)
-            out[loaded, i] = np.exp(found)
+                    log_film = np.where(np.abs(place - axis[0]) < 1e-9 * max(1.0, abs(axis[0])), log_film, np.nan)
+            out[loaded, i] = np.exp(log_film)
         return out
 
 
@@ -155,9 +155,9 @@ def roller_loads(
         Approaches that the law takes, of slices that are coupled [m]; their loads are those at rest.
     """
     count = bearing.geometry.rollers
-    x, lost = slices
+    x, profile = slices
     gap, tilt, gap_rate, tilt_rate = (part[:, None] for part in rollers)
-    approach = gap + x * tilt - lost
+    approach = gap + x * tilt - profile
     rate = gap_rate + x * tilt_rate
     if own is None:
         load, _, _ = unilateral_forces(states[0], states[1], states[2], states[3], rate)

@@ -476,12 +476,12 @@ class TableLaw(DryLaw):
         a = 1.0 + np.clip(z, 0.0, _A[_LAST_NODE] - 1.0)
         row = np.clip(np.searchsorted(_A, a, side="right") - 1, 0, _LAST_NODE - 1)
         t, cell = a - _A[row], cells[row]
-        found = []
+        states = []
         for k in (0, 4):
             value = cell[..., k] + t * (cell[..., k + 1] + t * (cell[..., k + 2] + t * cell[..., k + 3]))
             slope = cell[..., k + 1] + t * (2.0 * cell[..., k + 2] + 3.0 * t * cell[..., k + 3])
-            found += [np.where(loaded, value, 0.0), np.where(loaded, slope * numbers.inverse_scale, 0.0)]
-        w, dw, c, dc = found
+            states += [np.where(loaded, value, 0.0), np.where(loaded, slope * numbers.inverse_scale, 0.0)]
+        w, dw, c, dc = states
         held = above > 0.0
         dw = np.where(held, numbers.held_stiffness, dw)
         return w + numbers.held_stiffness * above, dw, c, np.where(held, 0.0, dc)

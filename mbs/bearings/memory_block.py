@@ -317,12 +317,12 @@ class MemoryBlock(FilmBlock[MemoryBearings]):
     def states(self) -> list[FilmStates]:
         """Films of each bearing after the last step that was made."""
         rings, last, time = self._arrays.rings, float(self._arrays.clock[LAST]), float(self._arrays.clock[ACCEPTED])
-        found = []
+        states = []
         for b, fold in enumerate(self._folds):
             shape = int(rings.rollers[b]), int(rings.slices[b])
             films = [_slices(films_of_rows(rows, shape, last), fold.groups) for rows in self._rows(b)]
-            found.append(FilmStates(tuple(films), time))
-        return found
+            states.append(FilmStates(tuple(films), time))
+        return states
 
     def resume(self, states: Sequence[FilmStates]) -> None:
         """Go on from the films that each bearing has in Python.

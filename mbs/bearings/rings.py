@@ -400,11 +400,11 @@ def place_of(rings: Rings, b: int, j: int, cage: tuple[float, float], motion: Fl
     s = cage[1] * rings.cos[b, j] + cage[0] * rings.sin[b, j]
     x, v = motion[0], motion[1]
     # Half the clearance of the bearing, which is that of both contacts.
-    lost = 0.5 * rings.sizes[b, 0]
+    half_clearance = 0.5 * rings.sizes[b, 0]
     return Place(
         c,
         s,
-        (x[i] * c + x[i + 1] * s - x[own] - lost, x[own] - x[i + 2] * c - x[i + 3] * s - lost),
+        (x[i] * c + x[i + 1] * s - x[own] - half_clearance, x[own] - x[i + 2] * c - x[i + 3] * s - half_clearance),
         (v[i] * c + v[i + 1] * s - v[own], v[own] - v[i + 2] * c - v[i + 3] * s),
         0.5 * (x[i + 5] * c - x[i + 4] * s),
         0.5 * (v[i + 5] * c - v[i + 4] * s),

@@ -219,7 +219,7 @@ class RollerContacts:
         self.flat_laws = (FlatLaw(inner), FlatLaw(outer))
         self._points: dict[int, LawAtPoint] = {}
         self._x = bearing.slice_positions
-        self._lost = bearing.profile_depths + 0.25 * bearing.geometry.diametral_clearance
+        self._depths = bearing.profile_depths + 0.25 * bearing.geometry.diametral_clearance
 
     @property
     def size(self) -> int:
@@ -323,7 +323,7 @@ class RollerContacts:
         """
         q = self._vector("displacement", displacement)
         f, K, C = np.zeros(self.size), np.zeros((self.size, self.size)), np.zeros((self.size, self.size))
-        length, found = self.bearing.slice_length, []
+        length, films = self.bearing.slice_length, []
         for side, law in enumerate(self.laws):
             if isinstance(law, DryLaw):
                 raise InputError(
@@ -334,10 +334,10 @@ class RollerContacts:
             memory = self._point(side, law, entrainment_speed, temperature).memory
             begin = memory.settled(delta) if states is None else states[side]
             load, tangent, end = memory.advance(begin, delta, _AT_REST if states is None else dt)
-            found.append(begin if states is None else end)
+            films.append(begin if states is None else end)
             f -= length * (flat.T @ load.sum(axis=1) + tilted.T @ (load @ self._x))
             K += self._matrix(flat, tilted, tangent * length)
-        return Forces(f, K, C), (found[0], found[1])
+        return Forces(f, K, C), (films[0], films[1])
 
     def relaxation(
         self, displacement: npt.ArrayLike, *, cage_angle: float, entrainment_speed: float, temperature: float
@@ -379,16 +379,16 @@ class RollerContacts:
             The same as for `BearingForce`.
         """
         q = self._vector("displacement", displacement)
-        found = []
+        groups = []
         for side, law in enumerate(self.laws):
             if isinstance(law, DryLaw):
                 return ()
             flat, tilted = self._rows(side, cage_angle)
             point = self._point(side, law, entrainment_speed, temperature)
             delta = self._approach(flat, tilted, q).reshape(-1)
-            rows = self._slice_rows(flat, tilted)
-            found.append(ContactGroup(point, rows, delta, self.bearing.slice_length, relaxes))
-        return tuple(found)
+            rows = (flat[:, None, :] + self._x[:, None] * tilted[:, None, :]).reshape(-1, self.size)
+            groups.append(ContactGroup(point, rows, delta, self.bearing.slice_length, relaxes))
+        return tuple(groups)
 
     def natural_times(
         self, displacement: npt.ArrayLike, *, cage_angle: float, entrainment_speed: float, temperature: float
@@ -472,11 +472,11 @@ class RollerContacts:
 
     def memories(self, entrainment_speed: float, temperature: float) -> tuple[FilmMemory, FilmMemory]:
         """Laws with memory of both contacts at a speed [m/s] and temperature [K]; for laws with films only."""
-        found = []
+        memories = []
         for side, law in enumerate(self.laws):
             assert not isinstance(law, DryLaw)
-            found.append(self._point(side, law, entrainment_speed, temperature).memory)
-        return found[0], found[1]
+            memories.append(self._point(side, law, entrainment_speed, temperature).memory)
+        return memories[0], memories[1]
 
     def _rows(self, side: int, cage_angle: float) -> tuple[FloatArray, FloatArray]:
         """Approach (Z, m) of the contacts by the displacements, and how it grows along the roller."""
@@ -491,13 +491,9 @@ class RollerContacts:
         tilted[:, 10], tilted[:, 11] = 0.5 * s, -0.5 * c
         return flat, tilted
 
-    def _slice_rows(self, flat: FloatArray, tilted: FloatArray) -> FloatArray:
-        """Approach of each slice by the displacements, shape (Z n, m)."""
-        return np.asarray((flat[:, None, :] + self._x[:, None] * tilted[:, None, :]).reshape(-1, self.size))
-
     def _approach(self, flat: FloatArray, tilted: FloatArray, q: FloatArray) -> FloatArray:
         """Approach of the slices of one side, shape (Z, n)."""
-        approach: FloatArray = (flat @ q)[:, None] + self._x * (tilted @ q)[:, None] - self._lost
+        approach: FloatArray = (flat @ q)[:, None] + self._x * (tilted @ q)[:, None] - self._depths
         return approach
 
     def _matrix(self, flat: FloatArray, tilted: FloatArray, values: FloatArray) -> FloatArray:

@@ -126,10 +126,10 @@ def law_numbers(numbers: FloatArray) -> LawNumbers:
 
 
 @njit(error_model="numpy")
-def store_numbers(found: LawNumbers, numbers: FloatArray) -> None:
+def store_numbers(law: LawNumbers, numbers: FloatArray) -> None:
     """Write the numbers of a law into an array (NUMBERS,)."""
-    for i in range(len(found)):
-        numbers[i] = found[i]
+    for i in range(len(law)):
+        numbers[i] = law[i]
 
 
 @njit(error_model="numpy")
@@ -263,19 +263,19 @@ def node_states(point: Point, numbers: LawNumbers, wanted: IntArray, nodes: Floa
     end = min(nodes_up_to(centre, scale, numbers.held_approach) + 1, NODES)
     low, high = np.searchsorted(wanted, first), np.searchsorted(wanted, end)
     straight = 1 if high < wanted.size else 0
-    delta, found = np.empty(high - low + straight), np.empty((4, high - low + straight))
+    delta, states = np.empty(high - low + straight), np.empty((4, high - low + straight))
     for i in range(delta.size):
         delta[i] = centre + PLACES[wanted[low + i] if low + i < high else end - 1] * scale
-    rest_states(point, delta, found)
+    rest_states(point, delta, states)
     for i in range(low):
         nodes[:, wanted[i]] = 0.0
     for k in range(4):
         for i in range(low, high):
-            nodes[k, wanted[i]] = found[k, i - low]
+            nodes[k, wanted[i]] = states[k, i - low]
     for i in range(high, wanted.size):
         ahead = centre + PLACES[wanted[i]] * scale - delta[-1]
-        nodes[0, wanted[i]] = found[0, -1] + found[1, -1] * ahead
-        nodes[1, wanted[i]], nodes[2, wanted[i]], nodes[3, wanted[i]] = found[1, -1], found[2, -1], 0.0
+        nodes[0, wanted[i]] = states[0, -1] + states[1, -1] * ahead
+        nodes[1, wanted[i]], nodes[2, wanted[i]], nodes[3, wanted[i]] = states[1, -1], states[2, -1], 0.0
 
 
 @njit(error_model="numpy", fastmath=FAST, forceinline=True)
@@ -396,12 +396,12 @@ def tabulate(
     bool
         False if the table does not reach down to lift-off.
     """
-    found = place_numbers(point, highest)
-    store_numbers(found, numbers)
-    if not is_placed(found):
+    law = place_numbers(point, highest)
+    store_numbers(law, numbers)
+    if not is_placed(law):
         return False
     marks[:] = _UNKNOWN
-    fill(point, found, np.arange(2 * ROWS), nodes, marks, cells)
+    fill(point, law, np.arange(2 * ROWS), nodes, marks, cells)
     return True
 
 
@@ -449,12 +449,12 @@ def write_film(point: Point, nodes: FloatArray, out: FloatArray, highest: float,
     dry, _ = structural_state(structure, q, point.held_load)
     out[last, WHOLE], out[last, DRY] = whole.held_approach, dry
     out[last, LOADS], out[last, DAMPINGS] = point.held_load, whole.held_damping
-    found = LawNumbers(
+    law = LawNumbers(
         kind=KNOTS, coefficient=0.0, exponent=0.0, damping=0.0, damping_time=0.0, centre=0.0, inverse_scale=0.0,
         highest=highest, safe_approach=float(safe), lift_off=float(first - 2), slope=1.0, held_approach=0.0,
         held_load=point.held_load, held_stiffness=point.held_stiffness, held_damping=0.0,
     )  # fmt: skip
-    store_numbers(found, numbers)
+    store_numbers(law, numbers)
     return True
 
 
@@ -507,11 +507,11 @@ def fade(
     for k in range(8):
         for i in range(last - 1, last + 1):
             cells[i, k] = 0.0
-    found = law_numbers(given)
+    whole = law_numbers(given)
     faded = LawNumbers(
         kind=KNOTS, coefficient=0.0, exponent=0.0, damping=0.0, damping_time=0.0, centre=0.0, inverse_scale=0.0,
-        highest=found.highest, safe_approach=knots[int(found.safe_approach)], lift_off=knots[int(found.lift_off)],
-        slope=1.0, held_approach=rest * film[last, DRY] + part * film[last, WHOLE], held_load=found.held_load,
-        held_stiffness=found.held_stiffness, held_damping=part * film[last, DAMPINGS],
+        highest=whole.highest, safe_approach=knots[int(whole.safe_approach)], lift_off=knots[int(whole.lift_off)],
+        slope=1.0, held_approach=rest * film[last, DRY] + part * film[last, WHOLE], held_load=whole.held_load,
+        held_stiffness=whole.held_stiffness, held_damping=part * film[last, DAMPINGS],
     )  # fmt: skip
     store_numbers(faded, numbers)

@@ -196,12 +196,12 @@ def slice_approaches(motion: RingMotion, shape: Shape, out: FloatArray) -> None:
     out : array (Z n,)
         Approaches, written [m].
     """
-    x, lost = shape.positions, shape.profile
+    x, profile = shape.positions, shape.profile
     for j in range(shape.cos.size):
         roller = roller_of(motion, shape, j)
         row = out[j * x.size : (j + 1) * x.size]
         for i in range(x.size):
-            row[i] = roller.gap + x[i] * roller.tilt - lost[i]
+            row[i] = roller.gap + x[i] * roller.tilt - profile[i]
 
 
 @njit(error_model="numpy")
@@ -250,11 +250,12 @@ def rollers_of_arrays(state: FloatArray, sizes: FloatArray, slices: FloatArray, 
     """
     shape = Shape(sizes_of(sizes), slices[0], slices[1], angles[0], angles[1])
     motion = ring_motion(state)
-    found = np.empty((4, shape.cos.size))
+    rollers = np.empty((4, shape.cos.size))
     for j in range(shape.cos.size):
         roller = roller_of(motion, shape, j)
-        found[0, j], found[1, j], found[2, j], found[3, j] = roller.gap, roller.tilt, roller.rate, roller.tilt_rate
-    return found
+        rollers[0, j], rollers[1, j] = roller.gap, roller.tilt
+        rollers[2, j], rollers[3, j] = roller.rate, roller.tilt_rate
+    return rollers
 
 
 @njit(error_model="numpy")
@@ -299,14 +300,14 @@ def find_cells(motion: RingMotion, shape: Shape, numbers: LawNumbers, rows: IntA
     places : array (Z, n)
         Places in the cells, written.
     """
-    x, lost = shape.positions, shape.profile
+    x, profile = shape.positions, shape.profile
     inverse = numbers.inverse_scale
     for j in range(rows.shape[0]):
         roller = roller_of(motion, shape, j)
         start, tilt = (roller.gap - numbers.centre) * inverse, roller.tilt * inverse
         row, place = rows[j], places[j]
         for i in range(x.size):
-            z = start + x[i] * tilt - lost[i] * inverse
+            z = start + x[i] * tilt - profile[i] * inverse
             a = 1.0 + abs(z)
             a = a if a < LAST else LAST
             cell = np.uint64(np.float64(a).view(np.uint64) >> SHIFT)
@@ -330,7 +331,7 @@ def power_states(motion: RingMotion, shape: Shape, numbers: LawNumbers, states: 
     states : array (4, Z, n)
         States of the slices, written.
     """
-    x, lost = shape.positions, shape.profile
+    x, profile = shape.positions, shape.profile
     a, b, damping, time = numbers.coefficient, numbers.exponent, numbers.damping, numbers.damping_time
     bend = time * (b - 1.0) / b
     for j in range(shape.cos.size):
@@ -341,7 +342,7 @@ def power_states(motion: RingMotion, shape: Shape, numbers: LawNumbers, states: 
                 w[i] = dw[i] = c[i] = dc[i] = 0.0
             continue
         for i in range(x.size):
-            delta = roller.gap + x[i] * roller.tilt - lost[i]
+            delta = roller.gap + x[i] * roller.tilt - profile[i]
             safe = delta if delta > _NO_APPROACH else _NO_APPROACH
             slope = a * b * power(safe, b - 1.0)
             dw[i] = slope if delta > 0.0 else 0.0
@@ -366,18 +367,18 @@ def find_knots(motion: RingMotion, shape: Shape, knots: FloatArray, rows: IntArr
     rows, places : array (Z, n)
         Written: cells, and places there [m].
     """
-    x, lost = shape.positions, shape.profile
+    x, profile = shape.positions, shape.profile
     last = knots.size - 2
     for j in range(rows.shape[0]):
         roller = roller_of(motion, shape, j)
         row, place = rows[j], places[j]
-        found = 0
+        cell = 0
         for i in range(x.size):
-            delta = roller.gap + x[i] * roller.tilt - lost[i]
+            delta = roller.gap + x[i] * roller.tilt - profile[i]
             if delta <= knots[0]:
                 row[i], place[i] = 0, 0.0
                 continue
-            if not knots[found] <= delta < knots[found + 1]:  # not that of the slice before
+            if not knots[cell] <= delta < knots[cell + 1]:  # not that of the slice before
                 low, high = 0, last + 1
                 while high - low > 1:
                     middle = (low + high) // 2
@@ -385,21 +386,21 @@ def find_knots(motion: RingMotion, shape: Shape, knots: FloatArray, rows: IntArr
                         low = middle
                     else:
                         high = middle
-                found = low
-            row[i], place[i] = found, delta - knots[found]
+                cell = low
+            row[i], place[i] = cell, delta - knots[cell]
 
 
 @njit(error_model="numpy", fastmath=FAST)
 def _hold(motion: RingMotion, shape: Shape, numbers: LawNumbers, states: FloatArray) -> None:
     """States on the tangent, for slices above the held load."""
-    x, lost = shape.positions, shape.profile
+    x, profile = shape.positions, shape.profile
     for j in range(shape.cos.size):
         roller = roller_of(motion, shape, j)
         if roller.deepest <= numbers.safe_approach:
             continue
         w, dw, c, dc = states[0, j], states[1, j], states[2, j], states[3, j]
         for i in range(x.size):
-            above = roller.gap + x[i] * roller.tilt - lost[i] - numbers.held_approach
+            above = roller.gap + x[i] * roller.tilt - profile[i] - numbers.held_approach
             if above > 0.0:
                 w[i] = numbers.held_load + numbers.held_stiffness * above
                 dw[i], c[i], dc[i] = numbers.held_stiffness / numbers.slope, numbers.held_damping, 0.0

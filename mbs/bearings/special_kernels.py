@@ -302,11 +302,11 @@ def coupled_arrays(
                 own[j, i] = overlap[i]
                 here[0, i] = here[1, i] = here[2, i] = here[3, i] = 0.0
             continue
-        found = _settle(point, law, cells, coupling, overlap, own[j], rows[j], here, root, factor, counts)
-        if found < 0:
-            return found
-        _relieved(coupling, root, factor, found == 1, ones, flat)
-        _relieved(coupling, root, factor, found == 1, x, tilted)
+        code = _settle(point, law, cells, coupling, overlap, own[j], rows[j], here, root, factor, counts)
+        if code < 0:
+            return code
+        _relieved(coupling, root, factor, code == 1, ones, flat)
+        _relieved(coupling, root, factor, code == 1, x, tilted)
         load = moment = k0 = k1 = k2 = c0 = c1 = c2 = 0.0
         for i in range(size):
             rest, slope, highest = here[0, i], here[1, i], here[0, i]

@@ -364,14 +364,14 @@ class CourseOfFilms:
             Steps of those that `begin` was told.
         """
         part = slice(first, last)
-        found = [
+        films = [
             (*self._prepare(film, self._speeds[part], nodes[part], weights[part]), weights[part])
             for film, (nodes, weights) in enumerate(self._places)
         ]
-        count = min((slots.size for slots, _, _, _ in found), default=last - first)
-        course, whole = course_of(count, len(found)), np.ones(count, dtype=np.bool_)
+        count = min((slots.size for slots, _, _, _ in films), default=last - first)
+        course, whole = course_of(count, len(films)), np.ones(count, dtype=np.bool_)
         course.kept[:] = self._kept[first : first + count]
-        for film, (slots, sound, outside, weights) in enumerate(found):
+        for film, (slots, sound, outside, weights) in enumerate(films):
             course.nodes[:, film], course.weights[:, film] = slots[:count], weights[:count]
             course.outside[:, film] = outside[:count]
             whole &= sound[:count]

@@ -221,8 +221,8 @@ def operating_clearance(
     --------
     An inner ring that is 5 K warmer than the outer one takes alpha d_m 5 K of an NU308's clearance:
 
-    >>> found = operating_clearance(BearingGeometry.named("NU308"), Mounting(), 328.15, 323.15)
-    >>> round(1e6 * found.by_temperature, 3)
+    >>> clearance = operating_clearance(BearingGeometry.named("NU308"), Mounting(), 328.15, 323.15)
+    >>> round(1e6 * clearance.by_temperature, 3)
     -3.861
     """
     problems = mounting.problems(geometry)
@@ -504,7 +504,7 @@ def steady_temperatures(
     until it is too hot.
     """
     conductances, sources = (np.array(part) for part in zip(*(entry.network for entry in paths), strict=True))
-    temperatures: FloatArray = _solved(conductances, sources)
+    temperatures: FloatArray = np.linalg.solve(conductances, sources[..., None])[..., 0]
     slopes, before = np.zeros_like(conductances), math.inf
     for _ in range(_ROUNDS):
         given = heat(temperatures)
@@ -538,11 +538,6 @@ def _too_hot(name: str, slope: FloatArray, friction: float, left: float) -> Anal
         f"{friction:.4g} W is {left:.4g} W more than its heat paths carry away; give it more conduction or oil, or "
         "more clearance or looser fits if it loses its clearance as it warms"
     )
-
-
-def _solved(matrices: FloatArray, right: FloatArray) -> FloatArray:
-    """Solutions (bearings, 2) of systems of two equations each."""
-    return np.asarray(np.linalg.solve(matrices, right[..., None])[..., 0])
 
 
 def _slopes(heat: Callable[[FloatArray], FloatArray], temperatures: FloatArray, here: FloatArray) -> FloatArray:

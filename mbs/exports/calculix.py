@@ -108,13 +108,13 @@ def _decimal(value: float) -> str:
 def _place(text: str, problems: list[str]) -> tuple[float, ...]:
     """Read three coordinates [m]."""
     try:
-        found = tuple(float(part) for part in text.split(","))
+        place = tuple(float(part) for part in text.split(","))
     except ValueError:
-        found = ()
-    if len(found) != 3 or not np.all(np.isfinite(found)):
+        place = ()
+    if len(place) != 3 or not np.all(np.isfinite(place)):
         problems.append(f"--at: got {text!r:.60}; allowed: three numbers with commas between them, in metres")
         return (0.0, 0.0, 0.0)
-    return found
+    return place
 
 
 TARGET = target(

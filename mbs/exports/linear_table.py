@@ -214,7 +214,7 @@ def _read(path: Path, arguments: argparse.Namespace) -> tuple[BearingRequest, tu
         )
         if not given
     ]
-    asked = argparse.Namespace(
+    bearing_arguments = argparse.Namespace(
         **{
             **_UNASKED,
             **{name: getattr(arguments, name) for name in _TAKEN},
@@ -225,7 +225,7 @@ def _read(path: Path, arguments: argparse.Namespace) -> tuple[BearingRequest, tu
         }
     )
     try:
-        request = read_request(asked)
+        request = read_request(bearing_arguments)
     except InputError as error:
         problems += error.problems
     if problems:

@@ -40,7 +40,8 @@ def _text(table: LinearTable, header: tuple[str, ...], arguments: argparse.Names
     if problems:
         raise InputError(problems)
     angle = _principal(table.stiffness[0, 0])
-    turned = _rotation(angle)
+    cosine, sine = math.cos(angle), math.sin(angle)
+    turned = np.kron(np.eye(2), np.array([[1.0, 0.0, 0.0], [0.0, cosine, sine], [0.0, -sine, cosine]]))
     k, c = (turned @ matrices[0] @ turned.T for matrices in (table.stiffness, table.damping))
     notes = (
         f"coordinate system {first}: turned by {math.degrees(angle):.6g} deg from y towards z, where Kyz is zero",
@@ -67,13 +68,6 @@ def _principal(matrix: FloatArray) -> float:
     """Angle from y towards z at which the radial terms of a matrix (6, 6) beside the diagonal are zero [rad]."""
     across = 0.5 * float(matrix[1, 2] + matrix[2, 1])
     return 0.5 * math.atan2(2.0 * across, float(matrix[1, 1] - matrix[2, 2]))
-
-
-def _rotation(angle: float) -> FloatArray:
-    """Six displacements in axes turned about x."""
-    cosine, sine = math.cos(angle), math.sin(angle)
-    turn = np.array([[1.0, 0.0, 0.0], [0.0, cosine, sine], [0.0, -sine, cosine]])
-    return np.kron(np.eye(2), turn)
 
 
 def _beside(matrices: FloatArray) -> float:

@@ -52,10 +52,11 @@ def _text(table: LinearTable, header: tuple[str, ...], arguments: argparse.Names
     lines = [f"# {line}" for line in (*header, *_NOTES)]
     lines += ["", f"[BearingElement_{name}]", f"n = {int(node)}", f'tag = "{name}"', "scale_factor = 1"]
     lines += [f"{key} = {_array(values)}" for key, values in axes.items()]
+    shape = [axis.size for axis in axes.values()]
     for letter, matrices in (("k", table.stiffness), ("c", table.damping)):
         for term in _TERMS:
             values = matrices[:, :, AXES[term[0]], AXES[term[1]]]
-            lines.append(f"{letter}{term} = {_array(_squeezed(values, axes))}")
+            lines.append(f"{letter}{term} = {_array(values.reshape(shape))}")
     return "\n".join(lines) + "\n"
 
 
@@ -71,17 +72,12 @@ _NOTES = (
 
 def _axes(table: LinearTable, version: str) -> dict[str, FloatArray]:
     """Axes of the tables by their names in ROSS [rad/s]; none of a single value."""
-    found = {}
+    axes = {}
     if table.speeds.size > 1:
-        found["frequency" if version == "2" else "speed"] = table.speeds
+        axes["frequency" if version == "2" else "speed"] = table.speeds
     if table.frequencies.size > 1:
-        found["frequency"] = 2.0 * math.pi * table.frequencies
-    return found
-
-
-def _squeezed(values: FloatArray, axes: dict[str, FloatArray]) -> FloatArray:
-    """Table over the axes that there are; one number where there is none."""
-    return values.reshape([axis.size for axis in axes.values()])
+        axes["frequency"] = 2.0 * math.pi * table.frequencies
+    return axes
 
 
 def _array(values: FloatArray) -> str:

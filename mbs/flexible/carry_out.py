@@ -97,16 +97,16 @@ def reduce_model(
     """
     problems: list[str] = []
 
-    def found(name: str, planned: PlannedInterface) -> Interface | None:
+    def interface(name: str, planned: PlannedInterface) -> Interface | None:
         try:
             return _interface(planned, model, name)
         except InputError as error:
             problems.extend(error.problems)
             return None
 
-    interfaces = {name: found(name, planned) for name, planned in plan.interfaces.items()}
+    interfaces = {name: interface(name, planned) for name, planned in plan.interfaces.items()}
     points: dict[str, Point | None] = {
-        name: found(name, planned) if isinstance(planned, PlannedInterface) else planned
+        name: interface(name, planned) if isinstance(planned, PlannedInterface) else planned
         for name, planned in plan.points.items()
     }
     if problems:
@@ -211,12 +211,12 @@ def plan_key(plan: ReductionPlan) -> str:
     InputError
         If a file cannot be read.
     """
-    found = hashlib.sha256(code_hash().encode())
+    digest = hashlib.sha256(code_hash().encode())
     for name in ("stiffness", "mass", "dofs", "mesh"):
         path = getattr(plan, name)
-        found.update(f"\0{name}:{file_digest(path) if path is not None else ''}".encode())
+        digest.update(f"\0{name}:{file_digest(path) if path is not None else ''}".encode())
     # The ending of a mesh says its format, and its name stands in the result.
-    said = (
+    settings = (
         plan.form,
         plan.units,
         plan.cutoff,
@@ -224,8 +224,8 @@ def plan_key(plan: ReductionPlan) -> str:
         list(plan.interfaces.items()),
         list(plan.points.items()),
     )
-    found.update(repr(said).encode())
-    return found.hexdigest()
+    digest.update(repr(settings).encode())
+    return digest.hexdigest()
 
 
 def file_digest(path: Path) -> str:

@@ -133,7 +133,9 @@ class HeldBody:
             shapes += soft
             rest = self._solve(force - self.stiffness @ shapes, prescribed - self.averages @ shapes)
             shapes += rest
-            change = self._largest_ratio(rest, shapes)
+            # Size of the correction against the whole, in the mass norm, the worst column.
+            part, whole = (np.sqrt(np.maximum(np.einsum("ik,ik->k", x, self.mass @ x), 0.0)) for x in (rest, shapes))
+            change = float(np.max(part / np.where(whole > 0.0, whole, 1.0), initial=0.0))
             if change <= _ENOUGH or (change <= _GOOD and change > 0.5 * before):
                 return shapes
             before = change
@@ -141,11 +143,6 @@ class HeldBody:
             f"reduction: the static shapes still change by {change:.2g} after {_ITERATIONS} corrections; the matrices "
             "are too badly conditioned: look for elements that are much smaller or stiffer than the others"
         )
-
-    def _largest_ratio(self, part: FloatArray, whole: FloatArray) -> float:
-        """Size of a part against the whole, in the mass norm, the worst column."""
-        sizes = [np.sqrt(np.maximum(np.einsum("ik,ik->k", x, self.mass @ x), 0.0)) for x in (part, whole)]
-        return float(np.max(sizes[0] / np.where(sizes[1] > 0.0, sizes[1], 1.0), initial=0.0))
 
     def _factorised(self, square: float) -> Any:
         """Factors of K - square M, in the order of elimination, pivots on the diagonal."""
@@ -208,7 +205,8 @@ class HeldBody:
         short = self.averages @ free
         if prescribed is not None:
             short = short - prescribed
-        return free - self._spread @ _scaled_solve(scale, factor, short)
+        multipliers: FloatArray = scale[:, None] * linalg.cho_solve((factor, True), scale[:, None] * short)
+        return free - self._spread @ multipliers
 
     def _modes(self) -> tuple[FloatArray, FloatArray]:
         """omega^2 and shapes up to the cut-off."""
@@ -317,8 +315,3 @@ def elimination_order(matrix: sparse.csc_array, groups: IntArray) -> IntArray:
         return np.arange(size)
     _, place = pymetis.nested_dissection(pymetis.CSRAdjacency(graph.indptr, graph.indices))
     return np.argsort(np.asarray(place)[group], kind="stable")
-
-
-def _scaled_solve(scale: FloatArray, factor: FloatArray, right: FloatArray) -> FloatArray:
-    """Solve with a scaled Cholesky factor."""
-    return np.asarray(scale[:, None] * linalg.cho_solve((factor, True), scale[:, None] * right))

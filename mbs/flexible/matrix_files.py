@@ -198,11 +198,11 @@ def read_abaqus_matrix(path: Path, dofs: Path | None = None) -> Labelled:
         if bad.size:
             raise table.problem(int(bad[0]), "allowed: directions 1 to 3 for displacements, 4 to 6 for rotations")
     keys = 6 * whole[:, [0, 2]] + whole[:, [1, 3]] - 1
-    found, places = np.unique(keys, return_inverse=True)
+    labels, places = np.unique(keys, return_inverse=True)
     places = places.reshape(keys.shape)
-    _check_count(path, found.size)
-    matrix = _symmetric(table, places[:, 0], places[:, 1], found.size)
-    return Labelled(matrix, found // 6, found % 6)
+    _check_count(path, labels.size)
+    matrix = _symmetric(table, places[:, 0], places[:, 1], labels.size)
+    return Labelled(matrix, labels // 6, labels % 6)
 
 
 def without_fixed(stiffness: Labelled, mass: Labelled) -> tuple[Labelled, Labelled]:
@@ -334,11 +334,11 @@ _NO_PACKAGE = 3
 # meshio prints what went wrong, and leaves the program.
 _READ = f"""
 import os, sys
-found = os.fdopen(os.dup(1), "wb")
+output = os.fdopen(os.dup(1), "wb")
 os.dup2(2, 1)
 try:
     import meshio, numpy
-    numpy.save(found, numpy.asarray(meshio.read(sys.argv[1]).points, dtype=float))
+    numpy.save(output, numpy.asarray(meshio.read(sys.argv[1]).points, dtype=float))
 except ImportError as error:
     sys.stderr.write(str(error))
     sys.exit({_NO_PACKAGE})
@@ -371,7 +371,7 @@ def read_mesh_nodes(path: Path) -> NodePositions:
 
 def _deck_nodes(path: Path) -> NodePositions:
     """Nodes of a deck."""
-    found: dict[int, tuple[float, float, float]] = {}
+    places: dict[int, tuple[float, float, float]] = {}
     inside = False
     with path.open(encoding="utf-8", errors="replace") as file:
         for number, line in enumerate(file, start=1):
@@ -393,10 +393,10 @@ def _deck_nodes(path: Path) -> NodePositions:
                         "the file was cut off, or add a line break where it was not"
                     )
                 node, position = _node(path, number, text)
-                found[node] = position
-    if not found:
+                places[node] = position
+    if not places:
         raise InputError(f"{path}: has no *NODE block; allowed: the deck that has the nodes of the mesh")
-    return NodePositions(np.array(list(found), dtype=np.int64), np.array(list(found.values()), dtype=np.float64))
+    return NodePositions(np.array(list(places), dtype=np.int64), np.array(list(places.values()), dtype=np.float64))
 
 
 def _node(path: Path, number: int, text: str) -> tuple[int, tuple[float, float, float]]:
@@ -428,26 +428,26 @@ def _meshio_nodes(path: Path) -> NodePositions:
 def _meshio_points(path: Path) -> FloatArray:
     """Points that meshio finds, in a process of its own: some of its readers never end where a file was cut off."""
     seconds = SHORTEST_READ + path.stat().st_size / BYTES_PER_SECOND
-    with tempfile.TemporaryFile() as found:
+    with tempfile.TemporaryFile() as output:
         try:
-            done = subprocess.run(
+            process = subprocess.run(
                 # -P: nothing is imported from the folder in which we are.
                 [sys.executable, "-P", "-c", _READ, str(path.absolute())],
                 stdin=subprocess.DEVNULL,
-                stdout=found,
+                stdout=output,
                 stderr=subprocess.PIPE,
                 timeout=seconds,
                 check=False,
             )
-            words = " ".join(done.stderr.decode("utf-8", "replace").split())
-            if done.returncode == _NO_PACKAGE:
+            words = " ".join(process.stderr.decode("utf-8", "replace").split())
+            if process.returncode == _NO_PACKAGE:
                 with needs("flexible", "meshio", f"{path}: reading this format"):
                     raise ImportError(f"{words:.120}")
         except subprocess.TimeoutExpired:
             words = f"it did not end within {seconds:.3g} s"
-        found.seek(0)
+        output.seek(0)
         try:
-            return np.asarray(np.load(found, allow_pickle=False), dtype=np.float64)
+            return np.asarray(np.load(output, allow_pickle=False), dtype=np.float64)
         except (OSError, ValueError, EOFError) as error:
             raise InputError(
                 f"{path}: cannot be read as a mesh ({words:.120}); allowed: a format that meshio reads; was it cut off?"
@@ -497,10 +497,10 @@ def read_dofs(path: Path) -> tuple[IntArray, IntArray]:
     # As numbers first, for length, line and finiteness; "12.10" would be direction 1 as a number, so as text then.
     table = read_numbers(path, 1, "#")
     with path.open(encoding="utf-8", errors="replace") as file:
-        found = [_ROW.fullmatch(text) for line in file if (text := line.partition("#")[0].strip())]
-    if None in found:
-        raise table.problem(found.index(None), 'allowed: "node.direction", such as 12.1')
-    whole = np.array([[int(part) for part in match.groups()] for match in found if match], dtype=object)
+        rows = [_ROW.fullmatch(text) for line in file if (text := line.partition("#")[0].strip())]
+    if None in rows:
+        raise table.problem(rows.index(None), 'allowed: "node.direction", such as 12.1')
+    whole = np.array([[int(part) for part in match.groups()] for match in rows if match], dtype=object)
     huge = np.flatnonzero((whole > 10**12).any(axis=1))
     if huge.size:
         raise table.problem(int(huge[0]), "allowed: a node from 1 and a direction from 1 to 6")

@@ -361,7 +361,7 @@ def reduce(
         mass=_reduced_mass(mass, basis, count),
         stiffness=_reduced_stiffness(model.stiffness, motion, count, body.squares),
         coordinates=(*names, *(f"mode {k + 1}" for k in range(body.squares.size))),
-        units=(*(_unit(name) for name in names), *("1" for _ in range(body.squares.size))),
+        units=(*("rad" if ".theta" in name else "m" for name in names), *("1" for _ in range(body.squares.size))),
         frames=_frames(interfaces, observers, motion, names),
         attributes={
             "method": "Craig-Bampton",
@@ -555,8 +555,8 @@ def _checked(
 def _observer(model: FiniteElementModel, name: str, point: Point) -> _Observer:
     """Find the degrees of freedom of a point."""
     if isinstance(point, Interface):
-        found = spider(model, name, point)
-        return _Observer(point.position, found.rows, found.mean)
+        legs = spider(model, name, point)
+        return _Observer(point.position, legs.rows, legs.mean)
     if isinstance(point, (int, np.integer)):
         node = int(point)
     else:
@@ -577,8 +577,3 @@ def _observer(model: FiniteElementModel, name: str, point: Point) -> _Observer:
     mean = np.zeros((6, len(rows)))
     mean[list(rows), np.arange(len(rows))] = 1.0
     return _Observer(model.position(node), np.array(list(rows.values()), dtype=np.int64), mean)
-
-
-def _unit(name: str) -> str:
-    """Unit of an interface coordinate."""
-    return "rad" if ".theta" in name else "m"

@@ -290,9 +290,9 @@ def flexible_shaft(
 def _line(model: ShaftModel, here: FloatArray, basis: FloatArray) -> tuple[Frame, ...]:
     """All nodes of a shaft, with how they move by its coordinates."""
     rows = [FREEDOMS.index(freedom) for freedom in model.freedoms]
-    found = []
+    frames = []
     for node, place in enumerate(model.nodes.tolist()):
         transform = np.zeros((6, basis.shape[1]))
         transform[rows] = basis[model.rows([node], model.freedoms)]
-        found.append(Frame(here + np.array([place, 0.0, 0.0]), transform))
-    return tuple(found)
+        frames.append(Frame(here + np.array([place, 0.0, 0.0]), transform))
+    return tuple(frames)

@@ -84,11 +84,11 @@ def meshes_powers(meshes: Meshes, moment: Moment, motion: FloatArray, answers: A
 
 def _gather(members: Sequence[Member]) -> SteadyBlock:
     """Arrays of some meshes; series as long as the longest."""
-    made = [member.element.arrays for member in members]
-    series = np.zeros((len(made), 4, max((part.shape[1] for _, part in made), default=0)))
-    for row, (_, part) in zip(series, made, strict=True):
+    arrays = [member.element.arrays for member in members]
+    series = np.zeros((len(arrays), 4, max((part.shape[1] for _, part in arrays), default=0)))
+    for row, (_, part) in zip(series, arrays, strict=True):
         row[:, : part.shape[1]] = part
-    constants = np.array([part for part, _ in made]).reshape(len(made), 5)
+    constants = np.array([part for part, _ in arrays]).reshape(len(arrays), 5)
     firsts, places = (np.array([getattr(m, key) for m in members], dtype=np.int64) for key in ("first", "place"))
     return SteadyBlock(Meshes(firsts, places, constants, series))
 

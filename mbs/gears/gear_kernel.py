@@ -114,9 +114,9 @@ def mesh_force(
     damping, backlash = constants[DAMPING], constants[BACKLASH]
     for flank in range(2):
         side = 1.0 if flank == 0 else -1.0
-        lost = error if flank == 0 else backlash - error
-        found = flank_force(motion[flank] - lost, rate[flank] - side * error_rate, stiffness, damping)
-        out[flank, FORCE], out[flank, SLOPE], out[flank, BY_RATE] = found
+        gap = error if flank == 0 else backlash - error
+        force, slope, by_rate = flank_force(motion[flank] - gap, rate[flank] - side * error_rate, stiffness, damping)
+        out[flank, FORCE], out[flank, SLOPE], out[flank, BY_RATE] = force, slope, by_rate
 
 
 @njit(error_model="numpy")

@@ -65,12 +65,12 @@ class AveragedEquilibrium(Equilibrium):
     def relaxations(self) -> tuple[Relaxation | None, ...]:
         """Mean of what needs time: springs and dampers of all angles, each by its part of the whole."""
         part = 1.0 / math.sqrt(len(self.over))
-        found: list[Relaxation | None] = []
+        means: list[Relaxation | None] = []
         for each in zip(*(entry.relaxations for entry in self.over), strict=True):
             there = [relaxation for relaxation in each if relaxation is not None]
             rows, times = ([getattr(entry, name) for entry in there] for name in ("rows", "times"))
-            found.append(Relaxation(part * np.concatenate(rows), np.concatenate(times)) if there else None)
-        return tuple(found)
+            means.append(Relaxation(part * np.concatenate(rows), np.concatenate(times)) if there else None)
+        return tuple(means)
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,11 +109,11 @@ def over_pitch(balance: Equilibrium, count: int) -> tuple[Equilibrium, ...]:
     """
     system, operation = balance.system, balance.operation
     turn = max((pitch(system.elements[index].element) for index in system.select(RingElement)), default=0.0)
-    found = [balance]
+    equilibria = [balance]
     for part in range(1, count):
         at = operation._replace(angle=operation.angle + turn * part / count)
-        found.append(equilibrium(system, at, found[-1].displacement))
-    return tuple(found)
+        equilibria.append(equilibrium(system, at, equilibria[-1].displacement))
+    return tuple(equilibria)
 
 
 def averaged(over: Sequence[Equilibrium]) -> Equilibrium:

@@ -124,7 +124,7 @@ class LawBands:
             Velocities of the left ones, with left . right = 1 for the whole state.
         """
         turned = np.linalg.solve(self._balance.system.mass, left.T)
-        found = np.zeros((len(self.changes), eigenvalues.size), dtype=np.complex128)
+        shifts = np.zeros((len(self.changes), eigenvalues.size), dtype=np.complex128)
         for g, slices in enumerate(self._groups):
             product = (slices.rows @ turned) * (slices.rows @ right)
             # Of dZ = dk + s dc/(1 + s theta) - s^2 c d theta/(1 + s theta)^2 what all changes have alike.
@@ -134,10 +134,10 @@ class LawBands:
             own = [next((part for part in change if part.group == g), None) for change in self.changes]
             there = [index for index, part in enumerate(own) if part is not None]
             parts = [part for part in own if part is not None]
-            found[there] -= np.array([part.stiffness for part in parts]) @ product
-            found[there] -= np.array([part.damping for part in parts]) @ by_damping
-            found[there] += np.array([part.times for part in parts]) @ by_times
-        return found
+            shifts[there] -= np.array([part.stiffness for part in parts]) @ product
+            shifts[there] -= np.array([part.damping for part in parts]) @ by_damping
+            shifts[there] += np.array([part.times for part in parts]) @ by_times
+        return shifts
 
     def of_modes(self, eigenvalues: ComplexArray, right: ComplexArray, left: ComplexArray) -> ModeBands:
         """Bands of modes; arguments as of `eigenvalue_changes`."""
@@ -171,11 +171,11 @@ class LawBands:
     @cached_property
     def _active(self) -> dict[int, IntArray]:
         """Ports of each element that its slices feel at all."""
-        found: dict[int, IntArray] = {}
+        active: dict[int, IntArray] = {}
         for one in self._groups:
-            felt = np.flatnonzero(np.any(one.port_rows != 0.0, axis=0))
-            found[one.element] = np.union1d(found.get(one.element, felt), felt)
-        return found
+            ports = np.flatnonzero(np.any(one.port_rows != 0.0, axis=0))
+            active[one.element] = np.union1d(active.get(one.element, ports), ports)
+        return active
 
     @property
     def ports(self) -> FloatArray:
@@ -233,12 +233,12 @@ class LawBands:
 
         Those of `mbs.linearised.sweep.along_load`; NaN for a bearing without force.
         """
-        balance, found = self._balance, []
+        balance, bands = self._balance, []
         for index in balance.system.select(RingElement):
             radial = balance.forces[index][1:3]
             load = float(np.linalg.norm(radial))
             if load == 0.0:
-                found.append([np.nan, np.nan])
+                bands.append([np.nan, np.nan])
                 continue
             stiffness, damping = balance.element_stiffness[index], balance.element_damping[index]
             following = ring_following(stiffness)
@@ -252,8 +252,8 @@ class LawBands:
                     dk += rows.T @ (part.stiffness * (rows @ motion))
                     dc += rows.T @ (part.damping * (rows @ motion))
                 sums += np.abs([motion @ dk, motion @ dc + 2.0 * (motion @ damping) @ _moved(stiffness, dk)])
-            found.append(sums.tolist())
-        return np.array(found).reshape(-1, 2).T
+            bands.append(sums.tolist())
+        return np.array(bands).reshape(-1, 2).T
 
 
 def law_bands(balance: Equilibrium) -> LawBands | None:
@@ -333,11 +333,11 @@ def _thicker(
     stiffness, mass = 0.5 * (balance.stiffness + balance.stiffness.T), balance.system.mass
     size = max(float(np.trace(stiffness) / np.trace(mass)), 1.0)
     given = np.linalg.solve(stiffness + _SOFT * size * mass, force)
-    found = []
+    changes = []
     for g, (_, by_stiffness, by_damping, by_times) in enumerate(slopes):
         shift = slices[g].rows @ given + thicker.get(g, 0.0)
-        found.append(SliceChange(g, by_stiffness * shift, by_damping * shift, by_times * shift))
-    return tuple(found)
+        changes.append(SliceChange(g, by_stiffness * shift, by_damping * shift, by_times * shift))
+    return tuple(changes)
 
 
 def _dynamic(slices: _Slices, change: SliceChange, s: ComplexArray) -> ComplexArray:
@@ -362,9 +362,9 @@ def _places(frequencies: FloatArray) -> FloatArray:
 
 def _moved(stiffness: FloatArray, force: FloatArray) -> FloatArray:
     """Displacements of rollers that are bodies under a change of force on the ports, both rings held, shape (m,)."""
-    found = np.zeros_like(force)
+    moved = np.zeros_like(force)
     if stiffness.shape[0] > 6:
         own = stiffness[12:, 12:]
         loaded = np.nonzero(np.diag(own) > 0.0)[0]
-        found[12 + loaded] = -np.linalg.solve(own[np.ix_(loaded, loaded)], force[12 + loaded])
-    return found
+        moved[12 + loaded] = -np.linalg.solve(own[np.ix_(loaded, loaded)], force[12 + loaded])
+    return moved

@@ -118,7 +118,7 @@ def critical_speeds(
     AnalysisError
         If there is no equilibrium at a speed.
     """
-    found = []
+    critical = []
     for order in sorted(orders):
         apart = damped.eigenvalues.imag - order * speeds[:, None]
         here: list[CriticalSpeed] = []
@@ -130,8 +130,8 @@ def critical_speeds(
                 values = damped.eigenvalues[index : index + 2, mode].tolist()
                 number = int(damped.number[mode])
                 here.append(_refined(system_at, (speeds[index], speeds[index + 1]), values, order, number))
-        found += sorted(here, key=lambda entry: entry.speed)
-    return tuple(found)
+        critical += sorted(here, key=lambda entry: entry.speed)
+    return tuple(critical)
 
 
 def order_responses(system_at: Callable[[float], System], speeds: FloatArray) -> tuple[OrderResponse, ...]:
@@ -274,8 +274,8 @@ def turning_places(system: System) -> list[tuple[str, float]]:
 
 def _forces(balance: Equilibrium, rate: ComplexArray, moved: ComplexArray) -> ComplexArray:
     """Amplitudes of the forces of all elements along y and z in their first ports, shape (elements, 2)."""
-    found = np.zeros((len(balance.system.elements), 2), dtype=np.complex128)
+    forces = np.zeros((len(balance.system.elements), 2), dtype=np.complex128)
     for index, connected in enumerate(balance.system.elements):
         stiffness = element_dynamic_stiffness(balance, index, rate)[0]
-        found[index] = -(stiffness @ (connected.transform @ moved))[1:3]
-    return found
+        forces[index] = -(stiffness @ (connected.transform @ moved))[1:3]
+    return forces

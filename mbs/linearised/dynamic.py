@@ -105,8 +105,8 @@ def film_states(relaxation: Relaxation, highest: float = math.inf) -> FilmStates
     space = begin
     for poles in range(_MOST_POLES + 1):
         few = space.T @ (times[:, None] * space)
-        found, turned = np.linalg.eigh(0.5 * (few + few.T))
-        error = np.abs(_transfer((begin.T @ space @ turned).T, found, omega) - exact).max(axis=(1, 2))
+        few_times, turned = np.linalg.eigh(0.5 * (few + few.T))
+        error = np.abs(_transfer((begin.T @ space @ turned).T, few_times, omega) - exact).max(axis=(1, 2))
         if error.max() <= TOLERANCE or space.shape[1] >= times.size or poles == _MOST_POLES:
             break
         place = omega[int(np.argmax(error))] * times
@@ -114,7 +114,7 @@ def film_states(relaxation: Relaxation, highest: float = math.inf) -> FilmStates
         space = _extended(space, np.hstack([seen, place[:, None] * seen]))
     lift = space @ turned
     slowest = float(times[np.any(rows != 0.0, axis=1)].max())
-    return FilmStates(Relaxation(lift.T @ begin @ ports, found), lift, slowest)
+    return FilmStates(Relaxation(lift.T @ begin @ ports, few_times), lift, slowest)
 
 
 def together(parts: Iterable[FilmStates]) -> FilmStates | None:
@@ -167,9 +167,9 @@ def element_dynamic_stiffness(balance: Equilibrium, index: int, s: ComplexArray)
     array, shape (k, m, m)
         -d force/d displacement of an oscillation e^(s t) [N/m and the like].
     """
-    found = balance.element_stiffness[index] + s[:, None, None] * balance.element_damping[index]
+    stiffness = balance.element_stiffness[index] + s[:, None, None] * balance.element_damping[index]
     relaxation = balance.relaxations[index]
-    return np.asarray(found if relaxation is None else found + relaxation.more(s), dtype=np.complex128)
+    return np.asarray(stiffness if relaxation is None else stiffness + relaxation.more(s), dtype=np.complex128)
 
 
 def dynamic_stiffness(balance: Equilibrium, s: ComplexArray) -> ComplexArray:
@@ -183,10 +183,10 @@ def dynamic_stiffness(balance: Equilibrium, s: ComplexArray) -> ComplexArray:
         Complex frequencies [1/s], such as i omega.
     """
     place = s[:, None, None]
-    found = place * balance.system.mass
-    found += balance.damping
-    found *= place
-    found += balance.stiffness
+    stiffness = place * balance.system.mass
+    stiffness += balance.damping
+    stiffness *= place
+    stiffness += balance.stiffness
     relaxing = relaxing_elements(balance)
     if relaxing:
         # All ports together, real and imaginary part apart: real matrices are multiplied twice as fast.
@@ -197,17 +197,17 @@ def dynamic_stiffness(balance: Equilibrium, s: ComplexArray) -> ComplexArray:
         for part in parts:
             more[:, first : first + part.shape[1], first : first + part.shape[1]] = part
             first += part.shape[1]
-        found.real += transform.T @ np.ascontiguousarray(more.real) @ transform
-        found.imag += transform.T @ np.ascontiguousarray(more.imag) @ transform
-    return np.asarray(found, dtype=np.complex128)
+        stiffness.real += transform.T @ np.ascontiguousarray(more.real) @ transform
+        stiffness.imag += transform.T @ np.ascontiguousarray(more.imag) @ transform
+    return np.asarray(stiffness, dtype=np.complex128)
 
 
 def dynamic_slope(balance: Equilibrium, s: ComplexArray) -> ComplexArray:
     """Derivative of `dynamic_stiffness` by s, shape (k, n, n); arguments as there."""
-    found = balance.damping + 2.0 * s[:, None, None] * balance.system.mass
+    slope = balance.damping + 2.0 * s[:, None, None] * balance.system.mass
     for transform, relaxation in relaxing_elements(balance):
-        found = found + transform.T @ relaxation.slope(s) @ transform
-    return np.asarray(found, dtype=np.complex128)
+        slope = slope + transform.T @ relaxation.slope(s) @ transform
+    return np.asarray(slope, dtype=np.complex128)
 
 
 def system_film_states(balance: Equilibrium) -> FilmStates | None:
@@ -215,7 +215,7 @@ def system_film_states(balance: Equilibrium) -> FilmStates | None:
 
     They hold up to ten times the highest undamped frequency of slow motion.
     """
-    found = []
+    states = []
     relaxing = relaxing_elements(balance)
     if relaxing:
         stiffness = 0.5 * (balance.stiffness + balance.stiffness.T)
@@ -223,8 +223,8 @@ def system_film_states(balance: Equilibrium) -> FilmStates | None:
         highest = _BEYOND * float(np.sqrt(max(squares[-1], 0.0)))
     for transform, relaxation in relaxing:
         few = film_states(relaxation, highest)
-        found.append(FilmStates(few.relaxation.seen_by(transform), few.lift, few.slowest))
-    return together(found)
+        states.append(FilmStates(few.relaxation.seen_by(transform), few.lift, few.slowest))
+    return together(states)
 
 
 def relaxing_elements(balance: Equilibrium) -> list[tuple[FloatArray, Relaxation]]:
@@ -310,23 +310,23 @@ def at_own_frequency(
     if films is None:
         return OwnFrequency(values, np.ones(values.shape, dtype=np.bool_), ())
     change = _first_order(balance, films, eigenvalues, right, left)
-    lost: dict[int, Reason] = {}
+    reasons: dict[int, Reason] = {}
     searched = np.flatnonzero(~(np.abs(change) <= SMALL * np.abs(values)))
     start = values.copy()
     values += change
     for k in searched.tolist():
-        found = newton(balance, complex(start[k]), right[:, k])
-        if found is None:
-            lost[k] = Reason.NOT_CONVERGED
-        elif abs(found - start[k]) > FARTHEST * abs(start[k]):
-            lost[k] = Reason.ELSEWHERE
+        eigenvalue = newton(balance, complex(start[k]), right[:, k])
+        if eigenvalue is None:
+            reasons[k] = Reason.NOT_CONVERGED
+        elif abs(eigenvalue - start[k]) > FARTHEST * abs(start[k]):
+            reasons[k] = Reason.ELSEWHERE
         else:
-            values[k] = found
-            others = np.delete(values, [k, *lost])
-            if np.any(np.abs(others - found) <= _CONVERGED * abs(found)):
-                lost[k] = Reason.TWICE
-    values[list(lost)] = complex(np.nan, np.nan)
-    missing = tuple(LostMode(complex(start[k]), reason) for k, reason in sorted(lost.items()))
+            values[k] = eigenvalue
+            others = np.delete(values, [k, *reasons])
+            if np.any(np.abs(others - eigenvalue) <= _CONVERGED * abs(eigenvalue)):
+                reasons[k] = Reason.TWICE
+    values[list(reasons)] = complex(np.nan, np.nan)
+    missing = tuple(LostMode(complex(start[k]), reason) for k, reason in sorted(reasons.items()))
     return OwnFrequency(values, np.isfinite(values), missing)
 
 
@@ -423,14 +423,14 @@ def film_law_part(
                 return None
             load, stiffness, damping, times = group.state()
             rows = group.rows @ connected.transform
-            felt = np.where(load[:, None] > 0.0, (rows @ turned[:, swings]) * (rows @ right[:, swings]), 0.0)
+            weights = np.where(load[:, None] > 0.0, (rows @ turned[:, swings]) * (rows @ right[:, swings]), 0.0)
             left_out = law_stiffness(stiffness, damping, times, s) * response.correction(s)
-            change -= np.sum(left_out * felt.T, axis=1)
+            change -= np.sum(left_out * weights.T, axis=1)
             known = True
     if not known:
         return None
     moved = np.where(np.abs(change) <= FIRST_ORDER * s.imag, s + change, np.nan)
-    found = np.full((2, eigenvalues.size), np.nan)
-    found[0, swings] = (np.abs(moved) - np.abs(s)) / (2.0 * np.pi)
-    found[1, swings] = s.real / np.abs(s) - moved.real / np.abs(moved)
-    return FilmLawPart(*found)
+    errors = np.full((2, eigenvalues.size), np.nan)
+    errors[0, swings] = (np.abs(moved) - np.abs(s)) / (2.0 * np.pi)
+    errors[1, swings] = s.real / np.abs(s) - moved.real / np.abs(moved)
+    return FilmLawPart(*errors)

@@ -191,12 +191,12 @@ def responses(balance: Equilibrium, inputs: Sequence[Input], frequencies: FloatA
     """
     s = np.asarray(2j * np.pi * np.asarray(frequencies), dtype=np.complex128)
     load = input_matrix(balance, inputs)
-    found = np.empty((s.size, balance.system.size, len(inputs)), dtype=np.complex128)
+    motion = np.empty((s.size, balance.system.size, len(inputs)), dtype=np.complex128)
     for first in range(0, s.size, _AT_ONCE):
         part = slice(first, first + _AT_ONCE)
         dynamic = dynamic_stiffness(balance, s[part])
-        found[part] = np.linalg.solve(dynamic, np.broadcast_to(load, (dynamic.shape[0], *load.shape)))
-    return found
+        motion[part] = np.linalg.solve(dynamic, np.broadcast_to(load, (dynamic.shape[0], *load.shape)))
+    return motion
 
 
 def frequency_response(
@@ -274,9 +274,9 @@ def modal_response(
     omega = 2.0 * np.pi * np.asarray(frequencies, dtype=np.float64)
     resonance = 1.0 / (1j * omega[:, None] - states.eigenvalues)
     residues = (seen.T[:, :, None] * driven[:, None, :]).reshape(states.eigenvalues.size, -1)
-    found = (resonance @ residues).reshape(omega.size, len(sensors), len(inputs))
+    displacement = (resonance @ residues).reshape(omega.size, len(sensors), len(inputs))
     orders = np.array([_ORDER[sensor.quantity] for sensor in sensors], dtype=np.int64)
-    result: ComplexArray = found * ((1j * omega[:, None]) ** orders)[:, :, None]
+    result: ComplexArray = displacement * ((1j * omega[:, None]) ** orders)[:, :, None]
     return result
 
 
@@ -302,8 +302,8 @@ def seen_of_loads(
     rate = 2j * np.pi * np.asarray(frequencies, dtype=np.float64)
     resonance = 1.0 / (rate[:, None] - states.eigenvalues)
     orders = np.array([_ORDER[sensor.quantity] for sensor in sensors], dtype=np.int64)
-    found = np.stack([(resonance * row) @ by_load for row in seen], axis=1)
-    return np.asarray(found * (rate[:, None] ** orders)[:, :, None])
+    displacement = np.stack([(resonance * row) @ by_load for row in seen], axis=1)
+    return np.asarray(displacement * (rate[:, None] ** orders)[:, :, None])
 
 
 def checked_response(
@@ -349,7 +349,7 @@ def _checked(
 ) -> tuple[ComplexArray, float]:
     """Compute what `checked_response` returns, or raise numpy's error for a singular system."""
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        found = modal_response(balance, states, inputs, sensors, frequencies)
+        modal = modal_response(balance, states, inputs, sensors, frequencies)
     checked = np.unique(np.linspace(0, frequencies.size - 1, _CHECKED + 2).astype(np.int64))
     at = frequencies[checked]
     direct = frequency_response(balance, inputs, sensors, at)
@@ -358,9 +358,9 @@ def _checked(
     whole = np.linalg.norm(responses(balance, inputs, at), axis=1)[:, None, :]
     rows = np.linalg.norm(sensor_matrix(balance, sensors), axis=1)[None, :, None]
     size = np.abs(direct) + 1e-6 * rows * whole * omega**orders
-    error = float(np.max(np.abs(found[checked] - direct) / np.maximum(size, 1e-300)))
-    if np.all(np.isfinite(found)) and error <= (TOLERANCE if states.films is None else FILM_TOLERANCE):
-        return found, error
+    error = float(np.max(np.abs(modal[checked] - direct) / np.maximum(size, 1e-300)))
+    if np.all(np.isfinite(modal)) and error <= (TOLERANCE if states.films is None else FILM_TOLERANCE):
+        return modal, error
     return frequency_response(balance, inputs, sensors, frequencies), 0.0
 
 

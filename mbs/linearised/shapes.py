@@ -95,7 +95,8 @@ def skeleton(system: System) -> Skeleton:
         first = len(points)
         for node in nodes:
             add(index, node.position, node.transform[:3])
-        own = _along(len(nodes)) if body.line else _tree(np.array([node.position for node in nodes]))
+        chain = [(place, place + 1) for place in range(len(nodes) - 1)]
+        own = chain if body.line else _tree(np.array([node.position for node in nodes]))
         lines += [(first + begin, first + end) for begin, end in own]
         kinds += [AXIS if body.line or body.spin else EDGE] * len(own)
         # Turning about x moves nothing on the axis: a mark beside it does.
@@ -137,21 +138,16 @@ def _turned(frame: Frame, across: FloatArray) -> FloatArray:
 
 def _apart(body: Body, size: float) -> tuple[Frame, ...]:
     """Frames of a body at different places."""
-    found: list[Frame] = []
+    frames: list[Frame] = []
     for frame in body.frames.values():
-        if all(np.max(np.abs(frame.position - other.position)) > _APART * size for other in found):
-            found.append(frame)
-    return tuple(found)
-
-
-def _along(count: int) -> list[tuple[int, int]]:
-    """Lines from each place to the next."""
-    return [(place, place + 1) for place in range(count - 1)]
+        if all(np.max(np.abs(frame.position - other.position)) > _APART * size for other in frames):
+            frames.append(frame)
+    return tuple(frames)
 
 
 def _tree(points: FloatArray) -> list[tuple[int, int]]:
     """The shortest lines that join all places."""
     if len(points) < 2:
         return []
-    found = minimum_spanning_tree(cdist(points, points)).tocoo()
-    return [(int(begin), int(end)) for begin, end in zip(found.row, found.col, strict=True)]
+    tree = minimum_spanning_tree(cdist(points, points)).tocoo()
+    return [(int(begin), int(end)) for begin, end in zip(tree.row, tree.col, strict=True)]

@@ -126,6 +126,9 @@ def solve_modes(balance: Equilibrium) -> Point:
     n = system.size
     shapes = states.right[:n, kept]
     turned = np.linalg.solve(system.mass, system.gyroscopic @ states.right[n : 2 * n, kept])
+    # Squares of the parts that undamped modes have in complex ones, in rows that sum to 1.
+    kinship = np.abs((undamped.shapes.T @ system.mass @ shapes).T) ** 2
+    kinship = kinship / np.maximum(kinship.sum(axis=1, keepdims=True), 1e-300)
     plain = np.asarray(2j * np.pi * undamped.frequency, dtype=np.complex128)
     return Point(
         balance,
@@ -136,7 +139,7 @@ def solve_modes(balance: Equilibrium) -> Point:
         energy_shares(balance, shapes, np.abs(values)),
         # d lambda/d Omega = left . dA/dOmega . right, exact with damping too.
         -np.sum(states.left[kept, n : 2 * n].T * turned, axis=0).imag,
-        _kinship(undamped.shapes.T @ system.mass @ shapes),
+        kinship,
         kept,
         own.lost,
     )
@@ -192,20 +195,14 @@ def along_load(balance: Equilibrium) -> FloatArray:
 
     Rollers that are bodies follow in equilibrium. NaN for stiffness and damping of a bearing without force.
     """
-    found = []
+    rows = []
     for index in balance.system.select(RingElement):
         radial = balance.forces[index][1:3]
         load = float(np.linalg.norm(radial))
         direction = np.array([0.0, *(radial / load if load > 0.0 else radial * np.nan), 0.0, 0.0, 0.0])
         stiffness, damping = ring_matrices(balance.element_stiffness[index], balance.element_damping[index])
-        found.append([load, direction @ stiffness @ direction, direction @ damping @ direction])
-    return np.array(found).reshape(-1, 3).T
-
-
-def _kinship(parts: ComplexArray) -> FloatArray:
-    """Squares of the parts (n, complex modes) that undamped modes have in complex ones, in rows that sum to 1."""
-    squares = np.abs(parts.T) ** 2
-    return np.asarray(squares / np.maximum(squares.sum(axis=1, keepdims=True), 1e-300), dtype=np.float64)
+        rows.append([load, direction @ stiffness @ direction, direction @ damping @ direction])
+    return np.array(rows).reshape(-1, 3).T
 
 
 def first_order_shift(first: Point, last: Point) -> tuple[FloatArray, FloatArray]:
@@ -285,8 +282,8 @@ def sweep(
         there = fixed if isinstance(system, System) else steady_system(system(speed))
         assert there is not None
         try:
-            found = equilibrium(there, Operation(speed, angle), start)
-            return solve_modes(averaged(over_pitch(found, cage_angles)))
+            balance = equilibrium(there, Operation(speed, angle), start)
+            return solve_modes(averaged(over_pitch(balance, cage_angles)))
         except AnalysisError as error:
             raise AnalysisError(f"at {speed:.6g} rad/s: {error}") from error
 
@@ -395,11 +392,11 @@ def _peaks(axis: FloatArray, size: FloatArray) -> list[FloatArray]:
 
 def _padded(peaks: Sequence[Sequence[FloatArray]], values: ComplexArray) -> FloatArray:
     """Peaks of each speed and response of `values`, shape (2, speeds, peaks, sensors, inputs); NaN beyond the last."""
-    most = max((found.shape[1] for row in peaks for found in row), default=0)
+    most = max((pairs.shape[1] for row in peaks for pairs in row), default=0)
     filled = np.full((2, len(peaks), most, math.prod(values.shape[2:])), np.nan)
     for index, row in enumerate(peaks):
-        for column, found in enumerate(row):
-            filled[:, index, : found.shape[1], column] = found
+        for column, pairs in enumerate(row):
+            filled[:, index, : pairs.shape[1], column] = pairs
     return filled.reshape(*filled.shape[:3], *values.shape[2:])
 
 
@@ -487,11 +484,11 @@ def _bearings(points: Sequence[_Recorded], first: Point) -> BearingSweep:
     """Stack the bearings."""
     parts = list(first.balance.parts)
     names = tuple(parts[index] for index in bearing_parts(first.balance))
-    found = np.array([point.bearings for point in points])
-    load, stiffness, damping = np.moveaxis(found.mean(axis=1), 1, 0)
-    half = 0.5 * np.ptp(found, axis=1)
-    spread = np.divide(half, found.mean(axis=1), out=np.zeros_like(half), where=half != 0.0)
+    values = np.array([point.bearings for point in points])
+    load, stiffness, damping = np.moveaxis(values.mean(axis=1), 1, 0)
+    half = 0.5 * np.ptp(values, axis=1)
+    spread = np.divide(half, values.mean(axis=1), out=np.zeros_like(half), where=half != 0.0)
     errors = np.moveaxis(np.array([point.bearing_errors for point in points]), 1, 0)
     return BearingSweep(
-        names, load, stiffness, damping, spread[:, 1], spread[:, 2], found.shape[1], errors[0], errors[1]
+        names, load, stiffness, damping, spread[:, 1], spread[:, 2], values.shape[1], errors[0], errors[1]
     )

@@ -194,12 +194,12 @@ class ResponseSweep:
         sensor, entry : int
             Which sensor and input.
         """
-        found: FloatArray = np.abs(self.values[:, :, sensor, entry])
+        largest: FloatArray = np.abs(self.values[:, :, sensor, entry])
         at, size = self.peak_frequency[:, :, sensor, entry], self.peak_size[:, :, sensor, entry]
         for speed, peak in np.argwhere(np.isfinite(at)).tolist():
             nearest = int(np.argmin(np.abs(self.frequencies - at[speed, peak])))
-            found[speed, nearest] = max(found[speed, nearest], size[speed, peak])
-        return found
+            largest[speed, nearest] = max(largest[speed, nearest], size[speed, peak])
+        return largest
 
 
 @dataclass(frozen=True, eq=False)
@@ -256,82 +256,78 @@ def straightened(found: UndampedSweep) -> UndampedSweep:
     """
     # Each exchange gives at least one mode of a cycle its own shape back.
     for _ in range(found.resembles.size):
-        crossing = [pair for pair in _candidates(found) if _cross(found, *pair)]
+        # Pairs whose exchange gives one of them its own shape back at the last speed.
+        away = np.flatnonzero(found.resembles != np.arange(found.resembles.size)).tolist()
+        pairs = [pair for pair in itertools.combinations(away, 2) if _same_cycle(found, *pair)]
+        crossing = [pair for pair in pairs if _cross(found, *pair)]
         if not crossing:
             break
         found = _swapped(found, *min(crossing, key=lambda pair: _gap(found, *pair)))
     return found
 
 
-def _candidates(found: UndampedSweep) -> list[tuple[int, int]]:
-    """Pairs of modes whose exchange gives one of them its own shape back at the last speed."""
-    like = found.resembles
-    away = np.flatnonzero(like != np.arange(like.size)).tolist()
-    return [(k, j) for k, j in itertools.combinations(away, 2) if _same_cycle(found, k, j)]
-
-
-def _same_cycle(found: UndampedSweep, first: int, second: int) -> bool:
+def _same_cycle(sweep: UndampedSweep, first: int, second: int) -> bool:
     """Tell whether the shape of one mode goes over to the other one, perhaps by way of more."""
-    at = int(found.resembles[first])
+    at = int(sweep.resembles[first])
     while at not in (first, second):
-        at = int(found.resembles[at])
+        at = int(sweep.resembles[at])
     return at == second
 
 
-def _nearest(found: UndampedSweep, first: int, second: int) -> int:
+def _nearest(sweep: UndampedSweep, first: int, second: int) -> int:
     """Index of the speed at which two modes are closest."""
-    return int(np.argmin(np.abs(found.frequency[:, first] - found.frequency[:, second])))
+    return int(np.argmin(np.abs(sweep.frequency[:, first] - sweep.frequency[:, second])))
 
 
-def _gap(found: UndampedSweep, first: int, second: int) -> float:
+def _gap(sweep: UndampedSweep, first: int, second: int) -> float:
     """Least distance of two modes [Hz]."""
-    return float(np.min(np.abs(found.frequency[:, first] - found.frequency[:, second])))
+    return float(np.min(np.abs(sweep.frequency[:, first] - sweep.frequency[:, second])))
 
 
-def _cross(found: UndampedSweep, first: int, second: int) -> bool:
+def _cross(sweep: UndampedSweep, first: int, second: int) -> bool:
     """Tell whether the decay rates of two modes, beside where they are closest, differ by more than the gap."""
-    near = _nearest(found, first, second)
-    widths = found.damping_ratio * found.frequency
+    near = _nearest(sweep, first, second)
+    widths = sweep.damping_ratio * sweep.frequency
     apart = np.abs(widths[:, first] - widths[:, second])
     before, after = apart[max(near - _BESIDE, 0) : near + 1], apart[near : near + _BESIDE + 1]
-    return _gap(found, first, second) < min(float(before.max()), float(after.max()))
+    return _gap(sweep, first, second) < min(float(before.max()), float(after.max()))
 
 
-def _swapped(found: UndampedSweep, first: int, second: int) -> UndampedSweep:
+def _swapped(sweep: UndampedSweep, first: int, second: int) -> UndampedSweep:
     """The modes with two of them exchanged from where they are closest on."""
-    near = _nearest(found, first, second)
-    at = near if _is_other(found, first, near) else near + 1
-    order = np.tile(np.arange(found.frequency.shape[1]), (found.frequency.shape[0], 1))
+    near = _nearest(sweep, first, second)
+    at = near if _is_other(sweep, first, near) else near + 1
+    order = np.tile(np.arange(sweep.frequency.shape[1]), (sweep.frequency.shape[0], 1))
     order[at:, [first, second]] = [second, first]
-    shift = np.log1p(found.summed_shift)
-    shift[at:, [first, second]] = _continued(found, shift, first, second, at)
-    resembles = found.resembles.copy()
-    resembles[found.resembles == first], resembles[found.resembles == second] = second, first
+    shift = np.log1p(sweep.summed_shift)
+    shift[at:, [first, second]] = _continued(sweep, shift, first, second, at)
+    resembles = sweep.resembles.copy()
+    resembles[sweep.resembles == first], resembles[sweep.resembles == second] = second, first
     return dataclasses.replace(
-        found,
-        frequency=np.take_along_axis(found.frequency, order, axis=1),
-        damping_ratio=np.take_along_axis(found.damping_ratio, order, axis=1),
-        shares=np.take_along_axis(found.shares, order[None], axis=2),
-        bearing_share=np.take_along_axis(found.bearing_share, order, axis=1),
-        frequency_error=np.take_along_axis(found.frequency_error, order, axis=1),
-        assurance=np.take_along_axis(found.assurance, order, axis=1),
+        sweep,
+        frequency=np.take_along_axis(sweep.frequency, order, axis=1),
+        damping_ratio=np.take_along_axis(sweep.damping_ratio, order, axis=1),
+        shares=np.take_along_axis(sweep.shares, order[None], axis=2),
+        bearing_share=np.take_along_axis(sweep.bearing_share, order, axis=1),
+        frequency_error=np.take_along_axis(sweep.frequency_error, order, axis=1),
+        assurance=np.take_along_axis(sweep.assurance, order, axis=1),
         summed_shift=np.expm1(shift),
         resembles=resembles,
     )
 
 
-def _is_other(found: UndampedSweep, mode: int, near: int) -> bool:
+def _is_other(sweep: UndampedSweep, mode: int, near: int) -> bool:
     """Tell whether the shapes are exchanged already at a speed, by where the strain energy is there and beside it."""
-    last = found.frequency.shape[0] - 1
-    before, after = (found.shares[:, index, mode] for index in (max(near - _BESIDE, 0), min(near + _BESIDE, last)))
-    here = found.shares[:, near, mode]
+    last = sweep.frequency.shape[0] - 1
+    before, after = (sweep.shares[:, index, mode] for index in (max(near - _BESIDE, 0), min(near + _BESIDE, last)))
+    here = sweep.shares[:, near, mode]
     return bool(np.abs(here - after).sum() < np.abs(here - before).sum())
 
 
-def _continued(found: UndampedSweep, shift: FloatArray, first: int, second: int, at: int) -> FloatArray:
+def _continued(sweep: UndampedSweep, shift: FloatArray, first: int, second: int, at: int) -> FloatArray:
     """Logarithms of the shift from a speed on, each along the other branch, and the step over the gap before it."""
     before = max(at - 1, 0)
     columns = np.array([second, first])
     along = shift[at:, columns] - shift[before, columns]
-    step = np.log(found.frequency[before, columns] / found.frequency[before, columns[::-1]])
+    step = np.log(sweep.frequency[before, columns] / sweep.frequency[before, columns[::-1]])
     return np.asarray(shift[before, columns[::-1]] + step + along)

@@ -70,8 +70,8 @@ def assurance(before: ModeSet, after: ModeSet) -> FloatArray:
     product = (before.left @ after.right) * (after.left @ before.right).T
     first, last = _groups(before.eigenvalues), _groups(after.eigenvalues)
     most = np.minimum(first.sum(axis=1)[:, None], last.sum(axis=1)[None, :])
-    found = np.abs(first @ product @ last) / np.maximum(most, 1.0)
-    return np.asarray(np.minimum(found, 1.0), dtype=np.float64)
+    mac = np.abs(first @ product @ last) / np.maximum(most, 1.0)
+    return np.asarray(np.minimum(mac, 1.0), dtype=np.float64)
 
 
 def match(before: ModeSet, after: ModeSet, least: float = 0.0) -> Match:
@@ -84,14 +84,14 @@ def match(before: ModeSet, after: ModeSet, least: float = 0.0) -> Match:
     least : float
         A continuation with less assurance is refused: the mode ends, and the other one begins.
     """
-    found = assurance(before, after)
-    rows, columns = np.arange(found.shape[0]), np.arange(found.shape[1])
+    mac = assurance(before, after)
+    rows, columns = np.arange(mac.shape[0]), np.arange(mac.shape[1])
     # Among equals the order is kept.
-    drift = np.abs(rows[:, None] - columns[None, :]) / max(found.size, 1)
-    i, j = linear_sum_assignment(found - _KEEP_ORDER * drift, maximize=True)
+    drift = np.abs(rows[:, None] - columns[None, :]) / max(mac.size, 1)
+    i, j = linear_sum_assignment(mac - _KEEP_ORDER * drift, maximize=True)
     chosen, sure = np.full(rows.size, -1), np.zeros(rows.size)
-    sure[i] = found[i, j]
-    kept = found[i, j] >= least
+    sure[i] = mac[i, j]
+    kept = mac[i, j] >= least
     chosen[i[kept]] = j[kept]
     return Match(chosen, sure, columns.size)
 
@@ -117,7 +117,7 @@ def tracks(size: int, matches: Sequence[Match]) -> IntArray:
         Matches from each point to the next.
     """
     now = np.arange(size)
-    found = [now]
+    rows = [now]
     count = size
     for step in matches:
         following = np.full(count, -1)
@@ -126,8 +126,8 @@ def tracks(size: int, matches: Sequence[Match]) -> IntArray:
         free = np.setdiff1d(np.arange(step.size), step.chosen[step.chosen >= 0])
         now = np.concatenate([following, free])
         count = now.size
-        found.append(now)
-    return np.stack([np.concatenate([row, np.full(count - row.size, -1)]) for row in found])
+        rows.append(now)
+    return np.stack([np.concatenate([row, np.full(count - row.size, -1)]) for row in rows])
 
 
 def numbers(order: IntArray, plain: IntArray, kinship: Sequence[FloatArray]) -> IntArray:
@@ -147,15 +147,15 @@ def numbers(order: IntArray, plain: IntArray, kinship: Sequence[FloatArray]) -> 
     array, shape (complex tracks,)
         Undamped track, from 0 on.
     """
-    found = np.full(order.shape[1], -1)
+    nearest = np.full(order.shape[1], -1)
     for row, columns, near in zip(order, plain, kinship, strict=True):
         here = row >= 0
-        new = np.flatnonzero(here & (found < 0))
-        free = np.setdiff1d(np.arange(columns.size), found[here])
+        new = np.flatnonzero(here & (nearest < 0))
+        free = np.setdiff1d(np.arange(columns.size), nearest[here])
         if new.size:
             i, j = linear_sum_assignment(near[np.ix_(row[new], columns[free])], maximize=True)
-            found[new[i]] = free[j]
-    return found
+            nearest[new[i]] = free[j]
+    return nearest
 
 
 def _groups(values: ComplexArray) -> FloatArray:

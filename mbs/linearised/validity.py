@@ -123,9 +123,9 @@ class FilmError:
         s = np.asarray(1j * omega)
         place = np.multiply.outer(s, self.times)
         more = -(place**2 / (1.0 + place)) @ self.springs
-        found = [contacts.left_out(s) for contacts in self.contacts]
-        left_out = np.sum([part for part, _ in found], axis=0)
-        doubt = np.sum([part for _, part in found], axis=0)
+        parts = [contacts.left_out(s) for contacts in self.contacts]
+        left_out = np.sum([part for part, _ in parts], axis=0)
+        doubt = np.sum([part for _, part in parts], axis=0)
         true = self.stiffness + s * self.damping + more + left_out
         wrong = left_out if self.films == "memory" else more + left_out
         return np.asarray((np.abs(wrong) + doubt) / np.abs(true), dtype=np.float64)
@@ -184,7 +184,7 @@ def dynamic_loads(
     motion : array, shape (frequencies, n, inputs)
         Amplitudes of the coordinates at 1 N or 1 N m of each input, see `mbs.linearised.linear.responses`.
     """
-    found: list[DynamicLoad] = []
+    loads: list[DynamicLoad] = []
     if not inputs or not frequencies.size:
         return ()
     s = np.asarray(2j * np.pi * frequencies, dtype=np.complex128)
@@ -198,9 +198,9 @@ def dynamic_loads(
         static = float(np.linalg.norm(balance.forces[index][1:3]))
         for i, entry in enumerate(inputs):
             worst = int(np.argmax(size[:, i]))
-            found.append(
+            loads.append(
                 DynamicLoad(
                     connected.element.name, entry.name, float(size[worst, i]), static, float(frequencies[worst])
                 )
             )
-    return tuple(found)
+    return tuple(loads)

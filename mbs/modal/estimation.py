@@ -286,8 +286,8 @@ def estimate(
         used.append(len(kept))
         rejected += bad
     frequency = np.asarray(np.fft.rfftfreq(samples, step), dtype=np.float64)
-    found = Responses(frequency, np.concatenate(responses), np.concatenate(coherences), tuple(pairs), min(used), decay)
-    return Estimate(found, tuple(used), tuple(rejected))
+    means = Responses(frequency, np.concatenate(responses), np.concatenate(coherences), tuple(pairs), min(used), decay)
+    return Estimate(means, tuple(used), tuple(rejected))
 
 
 def transfer(force: FloatArray, response: FloatArray, estimator: Estimator = "h1") -> tuple[ComplexArray, FloatArray]:
@@ -343,12 +343,12 @@ def relative_deviation(coherence: FloatArray, hits: int) -> FloatArray:
 
 def _rejected(entry: Hits, limits: HitLimits) -> list[Rejected]:
     """Hits that are not fit for use."""
-    found = []
+    rejected = []
     for hit, (force, response) in enumerate(zip(entry.force, entry.response, strict=True), start=1):
         verdict = _verdict(force, response, entry, limits)
         if verdict:
-            found.append(Rejected(hit, entry.reference, *verdict))
-    return found
+            rejected.append(Rejected(hit, entry.reference, *verdict))
+    return rejected
 
 
 def _verdict(force: FloatArray, response: FloatArray, entry: Hits, limits: HitLimits) -> tuple[Reason, str] | None:

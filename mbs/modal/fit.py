@@ -92,9 +92,12 @@ def identify(
     criteria = dataclasses.replace(criteria, orders=min(criteria.orders, len(orders)))
     s, weight = laplace(inside.frequency, inside.decay), weights(inside)
     even = np.repeat(1.0 / _rms(inside.response)[:, None], inside.frequency.size, axis=1)
-    found = _poles(method, inside, weight, orders)
+    if method == "rfp":
+        of_orders = rational_poles(inside.frequency, inside.response, weight, orders)
+    else:
+        of_orders = lscf_poles(inside.frequency, inside.response, orders)
     stable = stabilise(
-        found,
+        of_orders,
         orders,
         (float(inside.frequency[0]), float(inside.frequency[-1])),
         lambda poles: (
@@ -148,13 +151,6 @@ def alike(responses: Responses) -> float:
     exponent = 2.0 * responses.decay / spacing
     # Mean of the squared window, inverted.
     return exponent / -math.expm1(-exponent) if exponent > 0.0 else 1.0
-
-
-def _poles(method: Method, inside: Responses, weight: FloatArray, orders: range) -> list[ComplexArray]:
-    """Poles of each order."""
-    if method == "rfp":
-        return rational_poles(inside.frequency, inside.response, weight, orders)
-    return lscf_poles(inside.frequency, inside.response, orders)
 
 
 def _significant(

@@ -99,7 +99,7 @@ def lscf_poles(frequency: FloatArray, response: ComplexArray, orders: Sequence[i
             f"p-LSCF: no poles up to order {orders[-1]} ({error}); widen the band or lower the order"
         ) from error
     moved = 2j * np.pi * (frequency[0] - lines[1])
-    poles = [np.asarray(found, dtype=np.complex128) for found in model.all_poles]
+    poles = [np.asarray(values, dtype=np.complex128) for values in model.all_poles]
     return [_upper(poles[order - 1], moved) for order in orders]
 
 
@@ -222,7 +222,7 @@ def rational_poles(
     scale = 2.0 * np.pi * float(frequency[-1])
     s = np.asarray(2j * np.pi * frequency / scale, dtype=np.complex128)
     size = np.ones(frequency.size)
-    found = []
+    of_orders = []
     for order in orders:
         poles = np.zeros(0, dtype=np.complex128)
         for _ in range(passes):
@@ -231,8 +231,8 @@ def rational_poles(
                 poles, size = np.zeros(0, dtype=np.complex128), np.ones(frequency.size)
                 break
             poles, size = fitted
-        found.append(poles * scale)
-    return found
+        of_orders.append(poles * scale)
+    return of_orders
 
 
 def _denominator(

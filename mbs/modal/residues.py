@@ -73,10 +73,10 @@ def fit_residues(
         Those with positive imaginary part.
     """
     shapes = _shapes(s, poles)
-    found = []
+    by_row = []
     for columns, rows, values in _grouped(s, shapes, response, weight, derivatives):
-        found += list(zip(rows, _solve(columns, values).T, strict=True))
-    solution = np.stack([parameters for _, parameters in sorted(found, key=lambda pair: pair[0])], axis=1)
+        by_row += list(zip(rows, _solve(columns, values).T, strict=True))
+    solution = np.stack([parameters for _, parameters in sorted(by_row, key=lambda pair: pair[0])], axis=1)
     modes = poles.size
     scaled = solution[TERMS:]
     reference = _reference(s)
@@ -165,12 +165,12 @@ def refine(
             pieces.append(block.reshape(-1, 2 * modes))
         return np.concatenate(pieces)
 
-    found = least_squares(error, np.zeros(2 * modes), jac=slope, method="trf", x_scale=1.0, max_nfev=50)
-    refined = at(np.asarray(found.x, dtype=np.float64))
-    degrees = max(found.fun.size - 2 * modes - response.shape[0] * 2 * (modes + 1), 1)
-    jacobian = np.asarray(found.jac, dtype=np.float64)
+    fit = least_squares(error, np.zeros(2 * modes), jac=slope, method="trf", x_scale=1.0, max_nfev=50)
+    refined = at(np.asarray(fit.x, dtype=np.float64))
+    degrees = max(fit.fun.size - 2 * modes - response.shape[0] * 2 * (modes + 1), 1)
+    jacobian = np.asarray(fit.jac, dtype=np.float64)
     inverse = np.linalg.pinv(jacobian.T @ jacobian)
-    sized = jacobian * (math.sqrt(found.fun.size / degrees) * _local(found.fun, s))[:, None]
+    sized = jacobian * (math.sqrt(fit.fun.size / degrees) * _local(fit.fun, s))[:, None]
     covariance = inverse @ _information(sized, s) @ inverse
     deviation = np.sqrt(np.maximum(np.diag(covariance), 0.0)).reshape(2, modes).T * unit[:, None]
     strayed = np.abs(refined - poles) / np.maximum(unit, np.abs(refined.real - s[0].real))

@@ -73,7 +73,9 @@ class ModalFit:
     @property
     def frequency_uncertainty(self) -> FloatArray:
         """Standard uncertainty of the frequency [Hz]."""
-        return np.asarray(self._along(self.poles / np.abs(self.poles)) / (2.0 * np.pi))
+        along = self.poles / np.abs(self.poles)
+        deviation = np.hypot(along.real * self.uncertainty[:, 0], along.imag * self.uncertainty[:, 1])
+        return np.asarray(deviation / (2.0 * np.pi))
 
     @property
     def damping_uncertainty(self) -> FloatArray:
@@ -89,10 +91,6 @@ class ModalFit:
         s = laplace(frequency, self.responses.decay)
         return synthesise(s, self.responses.derivatives, self.poles, self.parts)
 
-    def _along(self, direction: ComplexArray) -> FloatArray:
-        """Uncertainty of the poles along directions in the plane."""
-        return np.asarray(np.hypot(direction.real * self.uncertainty[:, 0], direction.imag * self.uncertainty[:, 1]))
-
 
 def fit_dataset(fit: ModalFit) -> xr.Dataset:
     """The fit with its measured responses.
@@ -104,7 +102,7 @@ def fit_dataset(fit: ModalFit) -> xr.Dataset:
     """
     units = "SI unit of the sensor per N or N m"
     measured = fit.responses
-    made = fit.synthesise(measured.frequency)
+    curves = fit.synthesise(measured.frequency)
     rows, mode = ("row", "frequency_line"), ("mode",)
     variables = {
         "frequency": (mode, fit.frequency, {"units": "Hz", "long_name": "|pole|/(2 pi)"}),
@@ -141,8 +139,8 @@ def fit_dataset(fit: ModalFit) -> xr.Dataset:
         ),
         "response_real": (rows, measured.response.real, {"units": units, "long_name": "measured, real part"}),
         "response_imaginary": (rows, measured.response.imag, {"units": units, "long_name": "measured, imaginary part"}),
-        "fit_real": (rows, made.real, {"units": units, "long_name": "fit, real part"}),
-        "fit_imaginary": (rows, made.imag, {"units": units, "long_name": "fit, imaginary part"}),
+        "fit_real": (rows, curves.real, {"units": units, "long_name": "fit, real part"}),
+        "fit_imaginary": (rows, curves.imag, {"units": units, "long_name": "fit, imaginary part"}),
         "coherence": (rows, measured.coherence, {"units": "1", "long_name": "coherence; NaN where not known"}),
         "quantity": (
             ("row",),

@@ -141,8 +141,8 @@ def stabilise(
     criteria = criteria or Criteria()
     chains: list[_Chain] = []
     candidates: list[Candidate] = []
-    for position, (order, found) in enumerate(zip(orders, poles, strict=True)):
-        here = _physical(found, band, criteria)
+    for position, (order, of_order) in enumerate(zip(orders, poles, strict=True)):
+        here = _physical(of_order, band, criteria)
         residues = shapes(here) if here.size else np.zeros((0, 1), dtype=np.complex128)
         stable = _extend(chains, position, here, residues, criteria)
         candidates += [Candidate(order, complex(p), bool(s)) for p, s in zip(here, stable, strict=True)]

@@ -105,13 +105,13 @@ def read_uff(path: Path) -> Measurement:
     InputError
         With everything that is wrong about it.
     """
-    found = _functions(path, (TIME, RESPONSE, COHERENCE))
+    functions = _functions(path, (TIME, RESPONSE, COHERENCE))
     try:
-        hits = _hits([entry for entry in found.usable if entry["func_type"] == TIME], found.factors)
-        responses = _responses(found.usable, found.factors)
+        hits = _hits([entry for entry in functions.usable if entry["func_type"] == TIME], functions.factors)
+        responses = _responses(functions.usable, functions.factors)
     except InputError as error:
         raise InputError([f"{path}: {problem}" for problem in error.problems]) from error
-    return Measurement(found.title, hits, responses, tuple(found.notes))
+    return Measurement(functions.title, hits, responses, tuple(functions.notes))
 
 
 class _Functions(NamedTuple):
@@ -136,13 +136,13 @@ def time_records(path: Path) -> tuple[str, list[Dataset], list[float]]:
     InputError
         With everything that is wrong about it.
     """
-    found = _functions(path, (TIME,))
-    places = [int(entry.get("rsp_dir", 0)) for entry in found.usable]
+    functions = _functions(path, (TIME,))
+    places = [int(entry.get("rsp_dir", 0)) for entry in functions.usable]
     divisors = [
-        _to_si(entry, "ordinate", direction, found.factors)
-        for entry, direction in zip(found.usable, places, strict=True)
+        _to_si(entry, "ordinate", direction, functions.factors)
+        for entry, direction in zip(functions.usable, places, strict=True)
     ]
-    return found.title, found.usable, divisors
+    return functions.title, functions.usable, divisors
 
 
 def _functions(path: Path, kinds: Sequence[int]) -> _Functions:
@@ -186,8 +186,8 @@ def _sets(path: Path) -> list[Dataset]:
             warnings.simplefilter("ignore")
             library = pyuff.UFF(str(path))
             kinds = [int(kind) for kind in library.get_set_types()]
-            wanted = [index for index, kind in enumerate(kinds) if kind in (58, 151, 164)]
-            read = [_one(library, index, kinds[index], path) for index in wanted]
+            indices = [index for index, kind in enumerate(kinds) if kind in (58, 151, 164)]
+            read = [_one(library, index, kinds[index], path) for index in indices]
     except InputError:
         raise
     except Exception as error:  # the library raises nothing more special
@@ -205,23 +205,23 @@ def _sets(path: Path) -> list[Dataset]:
 def _one(file: Any, index: int, kind: int, path: Path) -> Dataset:
     """One dataset."""
     try:
-        found = file.read_sets(index)
+        dataset = file.read_sets(index)
     except Exception as error:  # the library raises nothing more special
         raise InputError(
             f"{path}: dataset {index + 1}, of type {kind}, cannot be read ({error}); it is damaged or of another format"
         ) from error
-    return dict(found)
+    return dict(dataset)
 
 
 def _factors(sets: Iterable[Dataset], problems: list[str], notes: list[str]) -> tuple[float, float]:
     """Factors of length and force from SI to the units of the file."""
-    found = {(float(entry["length"]), float(entry["force"])) for entry in sets if entry.get("type") == 164}
-    if not found:
+    units = {(float(entry["length"]), float(entry["force"])) for entry in sets if entry.get("type") == 164}
+    if not units:
         notes.append("no dataset 164: values are taken for SI")
         return 1.0, 1.0
-    if len(found) > 1:
-        problems.append(f"got {len(found)} datasets 164 with different units; allowed: one system of units in a file")
-    factors = next(iter(found))
+    if len(units) > 1:
+        problems.append(f"got {len(units)} datasets 164 with different units; allowed: one system of units in a file")
+    factors = next(iter(units))
     if not all(np.isfinite(factor) and 1e-12 <= factor <= 1e12 for factor in factors):
         problems.append(
             f"dataset 164: got the factors {factors[0]:.6g} for length and {factors[1]:.6g} for force; allowed: 1e-12 "
@@ -297,20 +297,20 @@ def _hits(entries: Sequence[Dataset], factors: tuple[float, float]) -> tuple[Hit
     if len(forces) == 1 and len(answers) == 1:
         # With one place hit there is no doubt, whatever the reference fields say.
         answers = {next(iter(forces)): next(iter(answers.values()))}
-    lost = [place for place in answers if place not in forces]
-    if lost:
-        shown = ", ".join(Channel(*place, "force").label for place in lost)
+    missing = [place for place in answers if place not in forces]
+    if missing:
+        shown = ", ".join(Channel(*place, "force").label for place in missing)
         raise InputError(f"got responses to hits at {shown} without records of that force; allowed: both for each hit")
-    found = []
+    hits = []
     problems: list[str] = []
     for place, by_sensor in answers.items():
         try:
-            found.append(_hits_at(place, forces[place], by_sensor, factors))
+            hits.append(_hits_at(place, forces[place], by_sensor, factors))
         except InputError as error:
             problems += error.problems
     if problems:
         raise InputError(problems)
-    return tuple(found)
+    return tuple(hits)
 
 
 def _hits_at(
@@ -361,15 +361,15 @@ def _numbered(records: list[Dataset]) -> dict[int, Dataset]:
 
 def _responses(entries: Sequence[Dataset], factors: tuple[float, float]) -> Responses | None:
     """Frequency responses with their coherences."""
-    found = [entry for entry in entries if entry["func_type"] == RESPONSE]
-    if not found:
+    functions = [entry for entry in entries if entry["func_type"] == RESPONSE]
+    if not functions:
         return None
     known = {
         (_place(entry, "rsp"), _place(entry, "ref")): entry for entry in entries if entry["func_type"] == COHERENCE
     }
-    axis = np.asarray(found[0]["x"], dtype=np.float64)
+    axis = np.asarray(functions[0]["x"], dtype=np.float64)
     values, coherence, pairs = [], [], []
-    for entry in found:
+    for entry in functions:
         if np.shape(entry["x"]) != axis.shape or not np.allclose(entry["x"], axis, rtol=1e-5, atol=1e-9):
             raise InputError("got frequency responses at different frequencies; allowed: one list of frequencies")
         sensor = Channel(*_place(entry, "rsp"), _kind(entry, "ordinate"))
@@ -381,7 +381,7 @@ def _responses(entries: Sequence[Dataset], factors: tuple[float, float]) -> Resp
         there = beside is not None and np.shape(beside["data"]) == axis.shape
         coherence.append(np.clip(np.real(beside["data"]), 0.0, 1.0) if there and beside else np.full(axis.size, np.nan))
         pairs.append((sensor, reference))
-    decays = {_decay(entry) for entry in found}
+    decays = {_decay(entry) for entry in functions}
     if len(decays) > 1:
         raise InputError("got frequency responses with different exponential windows; allowed: one for all")
     return Responses(axis, np.stack(values), np.stack(coherence), tuple(pairs), decay=decays.pop())
@@ -389,9 +389,9 @@ def _responses(entries: Sequence[Dataset], factors: tuple[float, float]) -> Resp
 
 def _decay(entry: Dataset) -> float:
     """Decay of the window of a response [1/s], where this package wrote it; 0 elsewhere."""
-    noted = _WINDOW.fullmatch(str(entry.get("id4", "")).strip())
+    note = _WINDOW.fullmatch(str(entry.get("id4", "")).strip())
     try:
-        return float(noted[1]) if noted else 0.0
+        return float(note[1]) if note else 0.0
     except ValueError:
         return 0.0
 
@@ -534,21 +534,18 @@ def function_of(kind: int, axis: FloatArray, values: Any) -> Dataset:
     values : array, shape (k,)
         Values at these.
     """
+    spacing = (axis[-1] - axis[0]) / (axis.size - 1)
+    # Evenly spaced, to what a file keeps of the values.
+    even = np.max(np.abs(axis - axis[0] - spacing * np.arange(axis.size))) <= 1e-3 * spacing
     return {
         "type": 58,
         "binary": 0,
         "func_type": kind,
-        "abscissa_spacing": int(_even(axis)),
+        "abscissa_spacing": int(even),
         "x": axis,
         "data": np.array(values),
         "orddenom_spec_data_type": 0,
     }
-
-
-def _even(axis: FloatArray) -> bool:
-    """Tell whether values are evenly spaced, to what a file keeps of them."""
-    spacing = (axis[-1] - axis[0]) / (axis.size - 1)
-    return bool(np.max(np.abs(axis - axis[0] - spacing * np.arange(axis.size))) <= 1e-3 * spacing)
 
 
 def _units(part: str, channel: Channel) -> Dataset:

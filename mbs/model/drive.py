@@ -111,8 +111,8 @@ class Drive:
             Torque that the moving system takes [N m].
         """
         motor = self.motor(speed) if time < self.motor_until else 0.0
-        found = (motor - self.load(speed) - taken) / self.inertia
-        return max(found, 0.0) if speed <= 0.0 else found
+        rate = (motor - self.load(speed) - taken) / self.inertia
+        return max(rate, 0.0) if speed <= 0.0 else rate
 
 
 @dataclass(frozen=True)

@@ -212,26 +212,26 @@ def _result(
     stiffness = system.stiffness.copy()
     damping = system.damping + operation.speed * system.gyroscopic
     parts = dict(system.linear_parts)
-    found = system.evaluate(q, np.zeros(system.size), operation)
-    for connected, forces in zip(system.elements, found, strict=True):
+    answers = system.evaluate(q, np.zeros(system.size), operation)
+    for connected, forces in zip(system.elements, answers, strict=True):
         part = connected.transform.T @ forces.stiffness @ connected.transform
         parts[connected.element.name] = part
         stiffness += part
         damping += connected.transform.T @ forces.damping @ connected.transform
     # Without loads there may be no force at all: then by what moves the stiffest coordinate by a negligible length.
     least = max(NEGLIGIBLE * float(np.max(np.abs(np.diag(stiffness)))), 1e-300)
-    largest = max(float(np.max(np.abs(loads))), *(float(np.max(np.abs(forces.force))) for forces in found), least)
+    largest = max(float(np.max(np.abs(loads))), *(float(np.max(np.abs(forces.force))) for forces in answers), least)
     return Equilibrium(
         system=system,
         operation=operation,
         displacement=q,
-        forces=tuple(forces.force for forces in found),
+        forces=tuple(forces.force for forces in answers),
         stiffness=stiffness,
         damping=damping,
         parts=parts,
-        element_stiffness=tuple(forces.stiffness for forces in found),
-        element_damping=tuple(forces.damping for forces in found),
-        outside={entry.element.name: forces.outside for entry, forces in zip(system.elements, found, strict=True)},
+        element_stiffness=tuple(forces.stiffness for forces in answers),
+        element_damping=tuple(forces.damping for forces in answers),
+        outside={entry.element.name: forces.outside for entry, forces in zip(system.elements, answers, strict=True)},
         residual=float(np.max(np.abs(force))) / largest,
         steps=steps,
     )
@@ -300,16 +300,16 @@ def free_motions(balance: Equilibrium) -> tuple[FreeMotion, ...]:
             shape[held] = column
             shapes.append(shape)
     names = balance.system.coordinates
-    found = tuple(FreeMotion(tuple(names[i] for i in np.flatnonzero(shape)), shape) for shape in shapes)
-    _check_loads(balance, found)
-    return found
+    motions = tuple(FreeMotion(tuple(names[i] for i in np.flatnonzero(shape)), shape) for shape in shapes)
+    _check_loads(balance, motions)
+    return motions
 
 
-def free_lines(found: tuple[FreeMotion, ...]) -> list[str]:
+def free_lines(motions: tuple[FreeMotion, ...]) -> list[str]:
     """A sentence for each free motion; unloaded rollers of a bearing are counted."""
     rollers: dict[str, int] = {}
     lines = []
-    for motion in found:
+    for motion in motions:
         if len(motion.coordinates) == 1 and _ROLLER in motion.coordinates[0]:
             body = motion.coordinates[0].partition(_ROLLER)[0]
             rollers[body] = rollers.get(body, 0) + 1
@@ -352,7 +352,7 @@ def _null_space(stiffness: FloatArray) -> FloatArray:
     return np.asarray(shapes)
 
 
-def _check_loads(balance: Equilibrium, found: tuple[FreeMotion, ...]) -> None:
+def _check_loads(balance: Equilibrium, motions: tuple[FreeMotion, ...]) -> None:
     """Refuse a remaining force along a free motion."""
     system = balance.system
     loads = system.loads(balance.operation.time)
@@ -362,7 +362,7 @@ def _check_loads(balance: Equilibrium, found: tuple[FreeMotion, ...]) -> None:
     largest = max(float(np.max(np.abs(loads))), *(float(np.max(np.abs(f))) for f in balance.forces), 0.0)
     wrong = [
         f"{motion.words}, and a load of {abs(force):.4g} {'N m' if 'tilts' in motion.words else 'N'} acts that way"
-        for motion in found
+        for motion in motions
         if abs(force := float(motion.shape @ remaining)) > _ROUND_OFF * largest
         and abs(float(motion.shape @ loads)) > _ROUND_OFF * float(np.abs(motion.shape) @ np.abs(loads))
     ]

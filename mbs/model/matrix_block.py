@@ -97,12 +97,12 @@ def matrices_powers(matrices: Matrices, moment: Moment, motion: FloatArray, answ
     for e in range(matrices.firsts.size):
         first, place = matrices.firsts[e], matrices.places[e]
         _at(matrices, e, moment.speed, both)
-        lost = driven = 0.0
+        dissipated = driven = 0.0
         for i in range(6):
             for j in range(6):
-                lost += motion[1, first + i] * both[1, i, j] * motion[1, first + j]
+                dissipated += motion[1, first + i] * both[1, i, j] * motion[1, first + j]
                 driven -= motion[1, first + i] * 0.5 * (both[0, i, j] - both[0, j, i]) * motion[0, first + j]
-        out[place, 0], out[place, 1] = lost, driven
+        out[place, 0], out[place, 1] = dissipated, driven
 
 
 def _gather(members: Sequence[Member]) -> SteadyBlock:

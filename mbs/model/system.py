@@ -50,15 +50,15 @@ def load_by_gravity(body: Body) -> FloatArray | None:
     frames = list(body.frames.values())
     if not frames:
         return np.zeros((body.size, 3))
-    seen = np.concatenate([frame.transform for frame in frames])
-    wanted = np.zeros((seen.shape[0], 3))
+    transforms = np.concatenate([frame.transform for frame in frames])
+    translations = np.zeros((transforms.shape[0], 3))
     for place in range(len(frames)):
-        wanted[6 * place : 6 * place + 3] = np.eye(3)
+        translations[6 * place : 6 * place + 3] = np.eye(3)
     plain = np.array([unit != "1" for unit in body.units])
     translation = np.zeros((body.size, 3))
-    free = np.any(seen[:, plain] != 0.0, axis=1)
-    translation[plain] = np.linalg.lstsq(seen[np.ix_(free, plain)], wanted[free], rcond=None)[0]
-    missed = np.max(np.abs(seen[free] @ translation - wanted[free]), initial=0.0)
+    free = np.any(transforms[:, plain] != 0.0, axis=1)
+    translation[plain] = np.linalg.lstsq(transforms[np.ix_(free, plain)], translations[free], rcond=None)[0]
+    missed = np.max(np.abs(transforms[free] @ translation - translations[free]), initial=0.0)
     energy = np.einsum("id,ij,jd->d", translation, body.stiffness, translation)
     stiff = np.einsum("id,i,id->d", translation, np.abs(np.diag(body.stiffness)), translation)
     if missed > _SMALL or np.any(energy > _SMALL * stiff):

@@ -136,8 +136,8 @@ class Turning(NamedTuple):
             Speed of the system [rad/s].
         """
         constant, by_square, _ = self.coefficients
-        found = self.vector * (constant + by_square * speed**2)
-        return np.asarray(found if self.order * speed >= 0.0 else found.conj())
+        load = self.vector * (constant + by_square * speed**2)
+        return np.asarray(load if self.order * speed >= 0.0 else load.conj())
 
     def factors(self, speeds: FloatArray, angles: FloatArray, rates: FloatArray) -> ComplexArray:
         """Factors by which the vector is multiplied, before its real part is taken; arguments and result of one shape.
@@ -174,10 +174,10 @@ def put_together(loads: Sequence[tuple[TurningLoad, ComplexArray]]) -> tuple[Tur
     loads : sequence of (TurningLoad, array (n,))
         Each with its vector by the coordinates of the system.
     """
-    found: dict[tuple[float, tuple[complex, complex, complex]], list[tuple[str, ComplexArray]]] = {}
+    groups: dict[tuple[float, tuple[complex, complex, complex]], list[tuple[str, ComplexArray]]] = {}
     for load, vector in loads:
-        found.setdefault((load.order, load.coefficients), []).append((load.name, vector))
+        groups.setdefault((load.order, load.coefficients), []).append((load.name, vector))
     return tuple(
         Turning(np.sum([vector for _, vector in parts], axis=0), *key, tuple(name for name, _ in parts))
-        for key, parts in found.items()
+        for key, parts in groups.items()
     )

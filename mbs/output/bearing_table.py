@@ -233,13 +233,9 @@ def write_csv(dataset: xr.Dataset, path: str) -> None:
             numbers += [float(here[name].sel(contact=side)) for name, _, _ in _SIDE for side in SIDES]
             # Quoted: the cause has commas.
             cause = str(here["outside"].values).replace('"', "'")
-            lines.append(",".join([*(_number(number) for number in numbers), f'"{cause}"' if cause else ""]))
+            fields = ["" if math.isnan(number) else f"{number:.9g}" for number in numbers]
+            lines.append(",".join([*fields, f'"{cause}"' if cause else ""]))
     write_text(path, "\n".join(lines) + "\n", TABLE)
-
-
-def _number(value: float) -> str:
-    """A number; empty where there is none."""
-    return "" if math.isnan(value) else f"{value:.9g}"
 
 
 _PLACES = 11
@@ -274,17 +270,13 @@ def bearing_heading(description: BearingDescription) -> list[str]:
     bearing = description.bearing
     clearance = f"clearance {MICROMETRE.text(bearing.geometry.diametral_clearance)}"
     state = clearance if description.state is None else state_words(description.state)
+    slices = f"{bearing.slices} {'coupled ' if bearing.coupled else ''}slices"
     return [
         f"{bearing.geometry.title}: law {description.law}; {description.films}",
-        f"  {TEMPERATURE.text(description.temperature)}, {state}, profile {bearing.profile}, {_slices(bearing)}, "
+        f"  {TEMPERATURE.text(description.temperature)}, {state}, profile {bearing.profile}, {slices}, "
         f"load at {description.direction:.4g} deg from y (a roller) towards z, {surface_label(description.surface)}",
         f"  assumed: {', '.join(description.assumed) or 'nothing'}",
     ]
-
-
-def _slices(bearing: Bearing) -> str:
-    """Number of slices, and whether they are coupled."""
-    return f"{bearing.slices} {'coupled ' if bearing.coupled else ''}slices"
 
 
 def _page(point: BearingPoint, description: BearingDescription) -> list[str]:

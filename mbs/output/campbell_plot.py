@@ -219,18 +219,18 @@ def _handles(
     orders: Sequence[tuple[float, str]], overlays: Sequence[Overlay | None], reaches: Sequence[Reach], drawn: Campbell
 ) -> list[Artist]:
     """Handles of the lines that are seen in the diagrams, whose speeds and frequencies are those of `drawn`."""
-    found: list[Artist] = []
+    handles: list[Artist] = []
     if orders:
-        found.append(Line2D([], [], color="0.5", lw=0.8, ls=_SPARSE, label="orders"))
+        handles.append(Line2D([], [], color="0.5", lw=0.8, ls=_SPARSE, label="orders"))
     if any(overlay is not None for overlay in overlays):
-        found.append(Line2D([], [], color="0.5", lw=0.8, ls="--", label="linear modes (|eigenvalue|/2π)"))
+        handles.append(Line2D([], [], color="0.5", lw=0.8, ls="--", label="linear modes (|eigenvalue|/2π)"))
     if any((reach.limit < drawn.frequencies.max()).any() for reach in reaches):
         words = f"above the line: {ESTIMATED}"
-        found.append(Line2D([], [], color=_LIMIT_COLOUR, lw=0.9, ls=_LIMIT, label=words))
+        handles.append(Line2D([], [], color=_LIMIT_COLOUR, lw=0.9, ls=_LIMIT, label=words))
     slow = max((reach.below for reach in reaches), default=0.0)
     if slow >= drawn.speeds.min():
-        found.append(shade_handle(f"up to {slow * RPM:.4g} rpm: below the map, film fades to dry"))
-    return found
+        handles.append(shade_handle(f"up to {slow * RPM:.4g} rpm: below the map, film fades to dry"))
+    return handles
 
 
 def colour_scale(results: Sequence[RunUpSpectra]) -> Normalize:
@@ -271,12 +271,10 @@ def diagram(panel: Axes, result: RunUpSpectra, colours: Normalize) -> None:
     colours : Normalize
         Scale of the colours.
     """
-    found = result.campbell
-    frequencies = found.frequencies * frequency_unit(result)[0]
-    panel.pcolormesh(
-        found.speeds * RPM, frequencies, found.level.T, norm=colours, cmap=_MAP, shading="nearest", rasterized=True
-    )
-    panel.set_xlim(found.speeds.min() * RPM, found.speeds.max() * RPM)
+    campbell = result.campbell
+    speeds, frequencies = campbell.speeds * RPM, campbell.frequencies * frequency_unit(result)[0]
+    panel.pcolormesh(speeds, frequencies, campbell.level.T, norm=colours, cmap=_MAP, shading="nearest", rasterized=True)
+    panel.set_xlim(speeds.min(), speeds.max())
     panel.set_ylim(frequencies[0], frequencies[-1])
 
 
@@ -377,8 +375,8 @@ def sensors_figure(
         bar.ax.tick_params(labelsize=6)
         sums = axes[row, -1]
         for law, result, colour, dashes in zip(laws, here, COLOURS, _DASHES * 2, strict=False):
-            found = result.campbell
-            sums.plot(found.speeds * RPM, found.sum_level, dashes, color=colour, lw=0.9, label=law)
+            campbell = result.campbell
+            sums.plot(campbell.speeds * RPM, campbell.sum_level, dashes, color=colour, lw=0.9, label=law)
         sums.set_ylabel(f"sum level,\n{reference_text(reference)}", fontsize=7)
         grid(sums)
     axes[0, -1].set_title("sum level", fontsize=8)

@@ -180,11 +180,11 @@ def resolution_lines(spectra: RunUpSpectra, highest: float) -> list[str]:
     highest : float
         Highest frequency that was asked for [Hz].
     """
-    found = spectra.campbell
+    campbell = spectra.campbell
     return [
-        f"band {_HERTZ.text(found.frequencies[0])} to {_HERTZ.text(highest)}; windows of "
-        f"{_MILLISECOND.text(found.window)}: lines are {found.line_width:.3g} Hz wide, the highest order sweeps by "
-        f"{found.smear:.3g} Hz in one; order spectra over {spectra.spectra.window:.3g} turns"
+        f"band {_HERTZ.text(campbell.frequencies[0])} to {_HERTZ.text(highest)}; windows of "
+        f"{_MILLISECOND.text(campbell.window)}: lines are {campbell.line_width:.3g} Hz wide, the highest order sweeps "
+        f"by {campbell.smear:.3g} Hz in one; order spectra over {spectra.spectra.window:.3g} turns"
         + (f", single orders over {spectra.tracks.window:.3g} turns" if spectra.tracks else "")
     ]
 
@@ -197,9 +197,9 @@ def highest_line(spectra: RunUpSpectra) -> str:
     spectra : RunUpSpectra
         Spectra of one run.
     """
-    found = spectra.campbell
-    at = int(np.argmax(found.sum_level))
-    return f"highest sum level {found.sum_level[at]:.1f} dB at {RPM.text(float(found.speeds[at]))}"
+    campbell = spectra.campbell
+    at = int(np.argmax(campbell.sum_level))
+    return f"highest sum level {campbell.sum_level[at]:.1f} dB at {RPM.text(float(campbell.speeds[at]))}"
 
 
 def peak_line(peak: OrderPeak) -> str:

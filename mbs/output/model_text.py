@@ -88,8 +88,8 @@ def span(values: Sequence[float], unit: str) -> str:
 
 def common_supply(models: Iterable[Model]) -> str:
     """The oil supply of all models whose law has films, for titles; empty where they differ, and without films."""
-    found = {supply_words(model.supplies) for model in models if model.supplies}
-    return f"films {found.pop()}" if len(found) == 1 else ""
+    supplies = {supply_words(model.supplies) for model in models if model.supplies}
+    return f"films {supplies.pop()}" if len(supplies) == 1 else ""
 
 
 def heading(model: Model, speed: float | None = None) -> list[str]:
@@ -115,11 +115,11 @@ def heading(model: Model, speed: float | None = None) -> list[str]:
 
 def _estimated(model: Model) -> list[str]:
     """A line for each kind of bearing whose inner geometry is an estimate."""
-    found: dict[tuple[str, str], list[str]] = {}
+    kinds: dict[tuple[str, str], list[str]] = {}
     for entry in model.scene.bearings:
         if entry.geometry.estimated:
-            found.setdefault((entry.geometry.name, entry.geometry.estimated), []).append(entry.name)
-    return [f"  {name} ({', '.join(bearings)}): {words}" for (name, words), bearings in found.items()]
+            kinds.setdefault((entry.geometry.name, entry.geometry.estimated), []).append(entry.name)
+    return [f"  {name} ({', '.join(bearings)}): {words}" for (name, words), bearings in kinds.items()]
 
 
 def band_lines(model: Model) -> list[str]:

@@ -67,38 +67,30 @@ def modes_figure(model: Model, found: Modes, shown: IntArray, limit: float = mat
     panel.set_ylim(0.0, _TOP)
     panel.set_yticks(np.arange(0, 101, 20))
     quick = places[found.frequency[shown] > limit]
+    shades = []
     if quick.size:
         # A strip above the bars, which keep their colours.
         shade(panel, quick[0] - 0.5, quick[-1] + 0.5, bottom=100.0 / _TOP)
-    panel.set_xlabel(
-        "mode: frequency |eigenvalue|/(2π), damping ratio ζ" + _bands(found, level) + (f"\n{words}" if words else "")
-    )
+        estimated = ESTIMATED.replace(" of the films ", "\nof the films ")
+        shades = [shade_handle(f"{estimated}\n(from {limit:.4g} Hz on)")]
+    bands = f", ±: {BAND_WORDS}" if level and found.bands is not None else ""
+    panel.set_xlabel(f"mode: frequency |eigenvalue|/(2π), damping ratio ζ{bands}" + (f"\n{words}" if words else ""))
     panel.set_ylabel("part of the strain energy, %")
-    handles = panel.get_legend_handles_labels()[0] + ([shade_handle(_quick(limit))] if quick.size else [])
+    handles = panel.get_legend_handles_labels()[0] + shades
     panel.legend(handles=handles, fontsize=7, loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
     return figure
 
 
-def _label(found: Modes, mode: int, level: bool) -> str:
+def _label(modes: Modes, mode: int, level: bool) -> str:
     """Number, frequency and damping ratio of a mode."""
-    ratio = float(found.damping_ratio[mode])
-    parts = [f"{mode + 1}:", f"{found.frequency[mode]:.5g} Hz", f"ζ {ratio if abs(ratio) > _ROUND_OFF else 0.0:.2g}"]
-    if level and found.bands is not None:
+    ratio = float(modes.damping_ratio[mode])
+    parts = [f"{mode + 1}:", f"{modes.frequency[mode]:.5g} Hz", f"ζ {ratio if abs(ratio) > _ROUND_OFF else 0.0:.2g}"]
+    if level and modes.bands is not None:
         parts[1:] = [
-            *(parts[1], f"± {found.bands.frequency[mode]:.1g} Hz"),
-            *(parts[2], f"± {found.bands.damping_ratio[mode]:.1g}"),
+            *(parts[1], f"± {modes.bands.frequency[mode]:.1g} Hz"),
+            *(parts[2], f"± {modes.bands.damping_ratio[mode]:.1g}"),
         ]
     return "\n".join(parts) if level else " ".join(parts)
-
-
-def _bands(found: Modes, level: bool) -> str:
-    """Addition to the label of the axis on bands."""
-    return f", ±: {BAND_WORDS}" if level and found.bands is not None else ""
-
-
-def _quick(limit: float) -> str:
-    """Label of the shade."""
-    return f"{ESTIMATED.replace(' of the films ', chr(10) + 'of the films ')}\n(from {limit:.4g} Hz on)"
 
 
 MOST_SHAPES = 6
@@ -175,9 +167,9 @@ def shapes_figure(model: Model, found: Modes, bones: Skeleton, shown: Sequence[i
     return figure
 
 
-def _mode(panel: Any, found: Modes, bones: Skeleton, mode: int) -> None:
+def _mode(panel: Any, modes: Modes, bones: Skeleton, mode: int) -> None:
     """One mode."""
-    moved = bones.displacement(found.shapes[:, mode]).real
+    moved = bones.displacement(modes.shapes[:, mode]).real
     largest = float(np.max(np.abs(moved), initial=0.0))
     scale = _LARGEST * bones.size / largest if _moves(largest, bones) else 0.0
     places = bones.points + scale * moved
@@ -200,11 +192,11 @@ def _moves(largest: float, bones: Skeleton) -> bool:
     return largest > _NOTHING * bones.size
 
 
-def _title(found: Modes, bones: Skeleton, mode: int) -> str:
+def _title(modes: Modes, bones: Skeleton, mode: int) -> str:
     """Number, frequency and damping ratio of a mode."""
-    largest = float(np.max(np.abs(bones.displacement(found.shapes[:, mode])), initial=0.0))
-    ratio = float(found.damping_ratio[mode])
-    text = f"{mode + 1}: {found.frequency[mode]:.5g} Hz, ζ {ratio if abs(ratio) > _LEAST_RATIO else 0.0:.2g}"
+    largest = float(np.max(np.abs(bones.displacement(modes.shapes[:, mode])), initial=0.0))
+    ratio = float(modes.damping_ratio[mode])
+    text = f"{mode + 1}: {modes.frequency[mode]:.5g} Hz, ζ {ratio if abs(ratio) > _LEAST_RATIO else 0.0:.2g}"
     return text if _moves(largest, bones) else f"{text}; no place moves"
 
 
@@ -256,7 +248,8 @@ def fit_figure(title: str, fits: Sequence[ModalFit]) -> Figure:
     first = fits[0]
     figure = Figure(figsize=_SIZE, layout="constrained")
     write_heading(figure, f"{title}\n{_summary(first)}", 10)
-    shown = _shown_rows(first)
+    energy = np.sum(np.abs(first.responses.response) ** 2, axis=1)
+    shown = sorted(np.argsort(-energy, kind="stable")[:_MOST_ROWS].tolist())
     known = np.any(np.isfinite(first.responses.coherence[shown]))
     units = list(dict.fromkeys(_display(*first.responses.pairs[row]).unit for row in shown))
     heights = [*[3.0 / len(units) ** 0.5] * len(units), 1.4, *([1.0] if known else []), 2.2]
@@ -264,7 +257,10 @@ def fit_figure(title: str, fits: Sequence[ModalFit]) -> Figure:
     magnitudes = dict(zip(units, axes, strict=False))
     _responses(magnitudes, axes[len(units)], first, shown)
     if known:
-        _coherence(axes[len(units) + 1], first, shown)
+        panel = axes[len(units) + 1]
+        for row, colour in zip(shown, COLOURS, strict=False):
+            panel.plot(first.responses.frequency, first.responses.coherence[row], color=colour, lw=0.7)
+        panel.set(ylabel=f"coherence,\n{first.responses.hits} hits", ylim=(0.0, 1.05))
     _diagram(axes[-1], fits)
     for panel in axes:
         for frequency in first.frequency:
@@ -281,27 +277,22 @@ def _responses(magnitudes: dict[str, Axes], phase: Axes, fit: ModalFit, shown: S
     """Measured responses as pale lines, the fit over them."""
     frequency = fit.responses.frequency
     fine = np.unique(np.concatenate([np.linspace(frequency[0], frequency[-1], 4000), *_near(fit)]))
-    made = fit.synthesise(fine)
+    curves = fit.synthesise(fine)
     for row, colour in zip(shown, COLOURS, strict=False):
         measured = fit.responses.response[row]
         display = _display(*fit.responses.pairs[row])
         magnitude = magnitudes[display.unit]
         label = f"{fit.responses.labels[row]}, {100.0 * fit.error[row]:.2g} % left"
         magnitude.semilogy(frequency, display.factor * np.abs(measured), color=colour, lw=2.2, alpha=0.35)
-        magnitude.semilogy(fine, display.factor * np.abs(made[row]), color=colour, lw=0.9, label=label)
+        magnitude.semilogy(fine, display.factor * np.abs(curves[row]), color=colour, lw=0.9, label=label)
         phase.plot(frequency, np.degrees(np.angle(measured)), ".", color=colour, ms=1.2, alpha=0.35)
-        phase.plot(fine, _broken(np.degrees(np.angle(made[row]))), color=colour, lw=0.9)
+        angle = np.degrees(np.angle(curves[row]))
+        angle[1:][np.abs(np.diff(angle)) > 180.0] = np.nan  # no line where it jumps from -180 to 180 degrees
+        phase.plot(fine, angle, color=colour, lw=0.9)
     for unit, magnitude in magnitudes.items():
         magnitude.set_ylabel(f"response, {unit}")
         magnitude.legend(fontsize=8, frameon=False, title="pale: measured, thin: fit", title_fontsize=8)
     phase.set(ylabel="phase, degrees", yticks=[-180, -90, 0, 90, 180])
-
-
-def _coherence(panel: Axes, fit: ModalFit, shown: Sequence[int]) -> None:
-    """Coherence of each response."""
-    for row, colour in zip(shown, COLOURS, strict=False):
-        panel.plot(fit.responses.frequency, fit.responses.coherence[row], color=colour, lw=0.7)
-    panel.set(ylabel=f"coherence,\n{fit.responses.hits} hits", ylim=(0.0, 1.05))
 
 
 def _diagram(panel: Axes, fits: Sequence[ModalFit]) -> None:
@@ -324,24 +315,11 @@ def _diagram(panel: Axes, fits: Sequence[ModalFit]) -> None:
 def _near(fit: ModalFit) -> list[np.ndarray[tuple[int], np.dtype[np.float64]]]:
     """Frequencies around each mode, close enough to draw its peak."""
     low, high = fit.responses.frequency[0], fit.responses.frequency[-1]
-    found = []
+    frequencies = []
     for pole in fit.poles:
         centre, width = abs(pole) / (2.0 * np.pi), max(abs(pole.real), 1e-6 * abs(pole)) / (2.0 * np.pi)
-        found.append(np.clip(centre + width * np.linspace(-8.0, 8.0, 161), low, high))
-    return found
-
-
-def _broken(phase: np.ndarray[tuple[int], np.dtype[np.float64]]) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-    """Phase with gaps where it jumps from -180 to 180 degrees."""
-    broken = phase.copy()
-    broken[1:][np.abs(np.diff(phase)) > 180.0] = np.nan
-    return broken
-
-
-def _shown_rows(fit: ModalFit) -> list[int]:
-    """Rows that are drawn."""
-    energy = np.sum(np.abs(fit.responses.response) ** 2, axis=1)
-    return sorted(np.argsort(-energy, kind="stable")[:_MOST_ROWS].tolist())
+        frequencies.append(np.clip(centre + width * np.linspace(-8.0, 8.0, 161), low, high))
+    return frequencies
 
 
 def _display(sensor: Channel, reference: Channel) -> Display:

@@ -57,8 +57,8 @@ def _sources(entry: ElementEnergy) -> list[tuple[str, float]]:
     """Energy that came in through an element."""
     if not entry.told:
         return [(f"{entry.name}, which does not say what it stores", entry.work)]
-    found = [(f"turning of {entry.name}", entry.driven or 0.0)]
-    return [*found, (f"speed on {entry.name}, estimated", entry.by_speed)] if entry.by_speed else found
+    turning = [(f"turning of {entry.name}", entry.driven or 0.0)]
+    return [*turning, (f"speed on {entry.name}, estimated", entry.by_speed)] if entry.by_speed else turning
 
 
 def _named(terms: list[tuple[str, float]]) -> str:
@@ -132,7 +132,8 @@ def signal_lines(records: Sequence[TimeRecord]) -> list[str]:
         Runs of the same channels, with their speed where it is known.
     """
     named = len(records) > 1
-    widths = [max(map(len, [*texts, "sensor"])) for texts in ([c.name for c in records[0].sensors], _labels(records))]
+    columns = [channel.name for channel in records[0].sensors], [record.label for record in records]
+    widths = [max(map(len, [*texts, "sensor"])) for texts in columns]
     if not records[0].sensors:
         return []
     run = f"  {'run':<{widths[1]}}" if named else ""
@@ -152,8 +153,3 @@ def signal_lines(records: Sequence[TimeRecord]) -> list[str]:
                 f"{values[at]:10.4g}, {where:<18} {shown.unit}"
             )
     return lines
-
-
-def _labels(records: Sequence[TimeRecord]) -> list[str]:
-    """Labels of the runs."""
-    return [record.label for record in records]

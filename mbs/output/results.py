@@ -76,7 +76,7 @@ def with_spectra(dataset: xr.Dataset, spectra: Sequence[Sequence[Sequence[Amplit
     """
     if not spectra:
         return dataset
-    values = np.array([[[found.amplitude for found in run] for run in about] for about in spectra])
+    values = np.array([[[spectrum.amplitude for spectrum in run] for run in about] for about in spectra])
     values = np.moveaxis(values, 1, 0)
     dims: tuple[str, ...] = ("law", "spectrum_speed", "sensor", "spectrum_frequency")
     if values.shape[0] == 1:
@@ -88,13 +88,13 @@ def with_spectra(dataset: xr.Dataset, spectra: Sequence[Sequence[Sequence[Amplit
         spectrum_amplitude=(dims, values, {"units": "by signal_unit", "long_name": f"{words}, {window}"}),
         spectrum_time=(
             "spectrum_speed",
-            np.array([found.time for found in first]),
+            np.array([spectrum.time for spectrum in first]),
             {"units": "s", "long_name": "middle of the window"},
         ),
     ).assign_coords(
         spectrum_speed=(
             "spectrum_speed",
-            np.array([found.speed for found in first]),
+            np.array([spectrum.speed for spectrum in first]),
             {"units": "rad/s", "long_name": "speed in the middle of the window"},
         ),
         spectrum_frequency=("spectrum_frequency", first[0].frequencies, {"units": "Hz", "long_name": "frequency"}),
@@ -194,7 +194,7 @@ def gear_forces(model: Model, balance: Equilibrium) -> dict[str, tuple[float, fl
     dict of str to (float, float, float)
         Tangential on the pitch circle, positive against the turn +x; radial away from the other gear; axial along x.
     """
-    found = {}
+    forces = {}
     for index in model.system.select(GearMesh):
         mesh = model.system.elements[index].element
         assert isinstance(mesh, GearMesh)
@@ -203,8 +203,8 @@ def gear_forces(model: Model, balance: Equilibrium) -> dict[str, tuple[float, fl
         towards = mesh.rows[0, :3] + mesh.rows[1, :3]
         towards = towards / np.linalg.norm(towards)
         along = np.cross([1.0, 0.0, 0.0], towards)
-        found[mesh.name] = float(-force @ along), float(-force @ towards), float(force[0])
-    return found
+        forces[mesh.name] = float(-force @ along), float(-force @ towards), float(force[0])
+    return forces
 
 
 def with_gears(dataset: xr.Dataset, model: Model, balance: Equilibrium) -> xr.Dataset:
@@ -219,13 +219,13 @@ def with_gears(dataset: xr.Dataset, model: Model, balance: Equilibrium) -> xr.Da
     balance : Equilibrium
         Equilibrium of the model.
     """
-    found = gear_forces(model, balance)
-    if not found:
+    by_mesh = gear_forces(model, balance)
+    if not by_mesh:
         return dataset
     attributes = {"units": "N", "long_name": "force on the first gear: tangential (against +x), radial (apart), axial"}
     forces = xr.DataArray(
-        np.array(list(found.values())),
-        {"gear_mesh": list(found), "part": list(_PARTS)},
+        np.array(list(by_mesh.values())),
+        {"gear_mesh": list(by_mesh), "part": list(_PARTS)},
         ("gear_mesh", "part"),
         attrs=attributes,
     )
@@ -482,7 +482,7 @@ def run_dataset(system: System, run: Recording) -> xr.Dataset:
 
 def _by_kind(system: System, values: FloatArray, dims: tuple[str, ...], order: str) -> dict[str, Any]:
     """Variables of a quantity of all coordinates, apart by unit; the last axis is that of the coordinates."""
-    found = {}
+    variables = {}
     units = np.array(system.units)
     for dim, unit, words in _KINDS:
         here = units == unit
@@ -492,7 +492,7 @@ def _by_kind(system: System, values: FloatArray, dims: tuple[str, ...], order: s
             name = order if dim == "translation" else f"{dim}_{order}"
             if dim == "rotation" and order == "displacement":
                 name = "rotation"
-            found[name] = (
+            variables[name] = (
                 (*dims, f"{dim}_coordinate"),
                 values[..., here],
                 {
@@ -500,7 +500,7 @@ def _by_kind(system: System, values: FloatArray, dims: tuple[str, ...], order: s
                     "long_name": f"{order.replace('_', ' ')}, {words}" if shape or per else words,
                 },
             )
-    return found
+    return variables
 
 
 def _coordinates(system: System) -> dict[str, Any]:

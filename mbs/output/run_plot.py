@@ -61,9 +61,9 @@ def signal_panels(
         axes[row, 0].set_ylabel(f"{channel.name}\n{channel.recorded}, {unit}", fontsize=7.5)
         for column, about in enumerate(spectra, start=1):
             panel = axes[row, column]
-            for found, colour in zip(about, COLOURS, strict=False):
-                amplitude = found[row].amplitude
-                panel.semilogy(found[row].frequencies, factor * amplitude, color=colour, lw=0.7)
+            for of_run, colour in zip(about, COLOURS, strict=False):
+                amplitude = of_run[row].amplitude
+                panel.semilogy(of_run[row].frequencies, factor * amplitude, color=colour, lw=0.7)
             _decades(panel)
             if row == 0:
                 panel.set_title(f"amplitude at {RPM.text(about[0][row].speed)}", fontsize=8)

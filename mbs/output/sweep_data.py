@@ -63,188 +63,188 @@ VARIABLES = (
         "Hz",
         "frequency of mass and stiffness, without damping and gyroscopic terms",
         UNDAMPED,
-        lambda found: found.undamped.frequency,
+        lambda sweep: sweep.undamped.frequency,
     ),
-    Variable("frequency_error", "Hz", f"{BAND} the frequency", UNDAMPED, lambda found: found.undamped.frequency_error),
+    Variable("frequency_error", "Hz", f"{BAND} the frequency", UNDAMPED, lambda sweep: sweep.undamped.frequency_error),
     Variable(
         "frequency_spread",
         "Hz",
         "half of what the frequency varies over the cage angles, to first order",
         UNDAMPED,
-        lambda found: found.undamped.frequency_spread,
+        lambda sweep: sweep.undamped.frequency_spread,
     ),
-    Variable("damping_ratio", "1", "modal damping ratio", UNDAMPED, lambda found: found.undamped.damping_ratio),
+    Variable("damping_ratio", "1", "modal damping ratio", UNDAMPED, lambda sweep: sweep.undamped.damping_ratio),
     Variable(
         "energy_share",
         "1",
         "part of the strain energy of the mode",
         ("case", "part", "speed", "mode"),
-        lambda found: found.undamped.shares,
+        lambda sweep: sweep.undamped.shares,
     ),
     Variable(
         "bearing_share",
         "1",
         "part of the strain energy in all bearings",
         UNDAMPED,
-        lambda found: found.undamped.bearing_share,
+        lambda sweep: sweep.undamped.bearing_share,
     ),
     Variable(
         "assurance",
         "1",
         "modal assurance on the way from the speed before",
         UNDAMPED,
-        lambda found: found.undamped.assurance,
+        lambda sweep: sweep.undamped.assurance,
     ),
     Variable(
         "summed_shift",
         "1",
         "change of the frequency from the first speed by energy, summed over the steps",
         UNDAMPED,
-        lambda found: found.undamped.summed_shift,
+        lambda sweep: sweep.undamped.summed_shift,
     ),
     Variable(
         "direct_shift",
         "1",
         "change of the frequency from first to last speed by energy, in one step",
         ("case", "mode"),
-        lambda found: found.undamped.direct_shift,
+        lambda sweep: sweep.undamped.direct_shift,
     ),
     Variable(
         "complex_frequency",
         "Hz",
         "|eigenvalue|/(2 pi) of oscillating complex modes",
         DAMPED,
-        lambda found: found.damped.frequency,
+        lambda sweep: sweep.damped.frequency,
     ),
     Variable(
         "complex_damping_ratio",
         "1",
         "damping ratio of complex modes",
         DAMPED,
-        lambda found: found.damped.damping_ratio,
+        lambda sweep: sweep.damped.damping_ratio,
     ),
     Variable(
         "complex_frequency_error",
         "Hz",
         f"{BAND} the frequency of the complex mode",
         DAMPED,
-        lambda found: found.damped.frequency_error,
+        lambda sweep: sweep.damped.frequency_error,
     ),
     Variable(
         "complex_damping_ratio_error",
         "1",
         f"{BAND} the damping ratio of the complex mode",
         DAMPED,
-        lambda found: found.damped.damping_ratio_error,
+        lambda sweep: sweep.damped.damping_ratio_error,
     ),
     Variable(
         "complex_frequency_spread",
         "Hz",
         "half of what the frequency of the complex mode varies over the cage angles, to first order",
         DAMPED,
-        lambda found: found.damped.frequency_spread,
+        lambda sweep: sweep.damped.frequency_spread,
     ),
     Variable(
         "complex_damping_ratio_spread",
         "1",
         "half of what the damping ratio of the complex mode varies over the cage angles, to first order",
         DAMPED,
-        lambda found: found.damped.damping_ratio_spread,
+        lambda sweep: sweep.damped.damping_ratio_spread,
     ),
-    Variable("eigenvalue_real", "1/s", "decay", DAMPED, lambda found: found.damped.eigenvalues.real),
+    Variable("eigenvalue_real", "1/s", "decay", DAMPED, lambda sweep: sweep.damped.eigenvalues.real),
     Variable(
         "eigenvalue_imaginary",
         "rad/s",
         "damped frequency",
         DAMPED,
-        lambda found: found.damped.eigenvalues.imag,
+        lambda sweep: sweep.damped.eigenvalues.imag,
     ),
     Variable(
         "complex_energy_share",
         "1",
         "part of the strain energy of the complex mode",
         ("case", "part", "speed", "complex_mode"),
-        lambda found: found.damped.shares,
+        lambda sweep: sweep.damped.shares,
     ),
     Variable(
         "complex_bearing_share",
         "1",
         "part of the strain energy of the complex mode in all bearings",
         DAMPED,
-        lambda found: found.damped.bearing_share,
+        lambda sweep: sweep.damped.bearing_share,
     ),
     Variable(
         "whirl",
         "1",
         "d omega/d Omega by gyroscopic terms: positive forward, negative backward",
         DAMPED,
-        lambda found: found.damped.whirl,
+        lambda sweep: sweep.damped.whirl,
     ),
     Variable(
         "complex_assurance",
         "1",
         "assurance of the complex mode on the way from the speed before",
         DAMPED,
-        lambda found: found.damped.assurance,
+        lambda sweep: sweep.damped.assurance,
     ),
     Variable(
         "complex_number",
         "1",
         "number of the undamped mode that the complex one is nearest to where it begins",
         ("case", "complex_mode"),
-        lambda found: found.damped.number + 1.0,
+        lambda sweep: sweep.damped.number + 1.0,
     ),
     Variable(
         "resembles",
         "1",
         "number of the mode whose shape at the last speed is most like that of this one at the first",
         ("case", "mode"),
-        lambda found: found.undamped.resembles + 1.0,
+        lambda sweep: sweep.undamped.resembles + 1.0,
     ),
-    Variable("bearing_load", "N", "radial force", BEARING, lambda found: found.bearings.load),
+    Variable("bearing_load", "N", "radial force", BEARING, lambda sweep: sweep.bearings.load),
     Variable(
         "bearing_stiffness",
         "N/m",
         "stiffness of the bearing along its force",
         BEARING,
-        lambda found: found.bearings.stiffness,
+        lambda sweep: sweep.bearings.stiffness,
     ),
     Variable(
         "bearing_damping",
         "N s/m",
         "damping of the bearing along its force",
         BEARING,
-        lambda found: found.bearings.damping,
+        lambda sweep: sweep.bearings.damping,
     ),
     Variable(
         "bearing_stiffness_error",
         "N/m",
         f"{BAND} the stiffness",
         BEARING,
-        lambda found: found.bearings.stiffness_error,
+        lambda sweep: sweep.bearings.stiffness_error,
     ),
     Variable(
         "bearing_damping_error",
         "N s/m",
         f"{BAND} the damping",
         BEARING,
-        lambda found: found.bearings.damping_error,
+        lambda sweep: sweep.bearings.damping_error,
     ),
     Variable(
         "bearing_stiffness_spread",
         "1",
         "half of what the stiffness varies over the cage angles, as a part of the mean",
         BEARING,
-        lambda found: found.bearings.stiffness_spread,
+        lambda sweep: sweep.bearings.stiffness_spread,
     ),
     Variable(
         "bearing_damping_spread",
         "1",
         "half of what the damping varies over the cage angles, as a part of the mean",
         BEARING,
-        lambda found: found.bearings.damping_spread,
+        lambda sweep: sweep.bearings.damping_spread,
     ),
-    Variable("between", "1", "speeds put in between to follow the modes", ("case",), lambda found: found.between),
+    Variable("between", "1", "speeds put in between to follow the modes", ("case",), lambda sweep: sweep.between),
 )
 """Of every sweep."""
 
@@ -254,29 +254,29 @@ RESPONSES = (
         RESPONSE_UNITS,
         "real part of the response",
         RESPONSE,
-        lambda found: found.responses.values.real,
+        lambda sweep: sweep.responses.values.real,
     ),
     Variable(
         "response_imaginary",
         RESPONSE_UNITS,
         "imaginary part of the response",
         RESPONSE,
-        lambda found: found.responses.values.imag,
+        lambda sweep: sweep.responses.values.imag,
     ),
     Variable(
         "peak_frequency",
         "Hz",
         "frequency of each peak of the response, with more frequencies around lightly damped modes",
         PEAK,
-        lambda found: found.responses.peak_frequency,
+        lambda sweep: sweep.responses.peak_frequency,
     ),
-    Variable("peak_size", RESPONSE_UNITS, "size of each peak", PEAK, lambda found: found.responses.peak_size),
+    Variable("peak_size", RESPONSE_UNITS, "size of each peak", PEAK, lambda sweep: sweep.responses.peak_size),
     Variable(
         "response_error",
         "1",
         "largest relative error seen beside direct solutions",
         ("case", "speed"),
-        lambda found: found.responses.error,
+        lambda sweep: sweep.responses.error,
     ),
 )
 """Of a sweep with inputs, sensors and frequencies."""
@@ -361,12 +361,12 @@ def sensed(system: System, sensors: Sequence[Sensor], speeds: FloatArray, respon
     response : OrderResponse
         The response.
     """
-    found = np.zeros((speeds.size, len(sensors)), dtype=np.complex128)
+    amplitudes = np.zeros((speeds.size, len(sensors)), dtype=np.complex128)
     for index, sensor in enumerate(sensors):
         row = sensor.direction @ system.relative(sensor.on, sensor.against)
         rate = (1j * response.order * speeds) ** _DIFFERENTIATED[sensor.quantity]
-        found[:, index] = rate * (response.motion @ row)
-    return found
+        amplitudes[:, index] = rate * (response.motion @ row)
+    return amplitudes
 
 
 def orbits(system: System, response: OrderResponse) -> tuple[tuple[str, ...], FloatArray]:
@@ -447,9 +447,9 @@ def critical_dataset(
         "sensor": [sensor.name for sensor in sensors],
     }
     if responses:
-        seen = np.array([sensed(system, sensors, speeds, entry) for entry in responses])
+        amplitudes = np.array([sensed(system, sensors, speeds, entry) for entry in responses])
         dims = ("order", "speed", "sensor")
-        for name, part in (("real", seen.real), ("imag", seen.imag)):
+        for name, part in (("real", amplitudes.real), ("imag", amplitudes.imag)):
             words = f"{name} part of the amplitude: the signal is Re[amplitude exp(i order angle)]"
             variables[f"response_{name}"] = (dims, part, {"units": _RESPONSE_UNITS, "long_name": words})
         ellipses = [orbits(system, entry) for entry in responses]

@@ -98,8 +98,8 @@ def sweep_figure(
     _axes(middle[2], f"bearing c along its load, {DAMPER.unit}")
     for panel in middle[1:]:
         panel.set_ylim(0.0, 1.05 * panel.get_ylim()[1])
-    _limit(top[0], sweeps, lambda found: found.frequency)
-    _limit(middle[0], sweeps, lambda found: 100.0 * found.damping_ratio)
+    _limit(top[0], sweeps, lambda modes: modes.frequency)
+    _limit(middle[0], sweeps, lambda modes: 100.0 * modes.damping_ratio)
     if maps:
         top[0].set_ylim(top=min(top[0].get_ylim()[1], 1.4 * _highest(maps[0])))
     _room(top[1])
@@ -208,15 +208,15 @@ def _numbers(panel: Axes, entry: Sweep, colour: str, last: bool) -> None:
     """Write the numbers of the modes beside the first speed, or the last one, where there is room for them."""
     low, high = np.log(panel.get_ylim())
     rpm = float(entry.speeds[-1 if last else 0]) * RPM.factor
-    found = entry.undamped.frequency[-1 if last else 0]
+    heights = entry.undamped.frequency[-1 if last else 0]
     taken: list[float] = []
     for k in np.flatnonzero(entry.undamped.bearing_share.max(axis=0) >= _least(entry)):
-        place = (math.log(max(float(found[k]), _NOTHING)) - low) / (high - low)
+        place = (math.log(max(float(heights[k]), _NOTHING)) - low) / (high - low)
         if not 0.0 < place < 1.0 or any(abs(place - other) < _LEAST_ROOM for other in taken):
             continue
         taken.append(place)
         panel.annotate(
-            str(k + 1), (rpm, found[k]), (3 if last else -3, 0), textcoords="offset points", fontsize=6, color=colour,
+            str(k + 1), (rpm, heights[k]), (3 if last else -3, 0), textcoords="offset points", fontsize=6, color=colour,
             ha="left" if last else "right", va="center",
         )  # fmt: skip
 
@@ -242,22 +242,22 @@ def _maps(part: SubFigure, maps: Sequence[Sweep], labels: Sequence[str], limits:
     rows = math.ceil(len(maps) / _MAPS_IN_A_ROW)
     grid = part.subplots(rows, math.ceil(len(maps) / rows), sharex=True, sharey=True, squeeze=False)
     axes = grid.ravel()
-    found = maps[0].responses
-    display = response_display(found.sensors[0], found.inputs[0])
+    responses = maps[0].responses
+    display = response_display(responses.sensors[0], responses.inputs[0])
     levels = [_level(display.factor * entry.responses.largest(0, 0)) for entry in maps]
     # Not the tips of resonances, which would take the scale for themselves.
     beside = _level(display.factor * np.stack([entry.responses.values[:, :, 0, 0] for entry in maps]))
     lowest, highest = (5.0 * np.round(np.percentile(beside, part) / 5.0) for part in (1.0, 99.7))
     lowest, highest = max(lowest, highest - _LEVELS_SHOWN), max(highest, lowest + 5.0)
     # The axis goes as the frequencies were asked for: the middle of a logarithmic one lies low.
-    middle = found.frequencies[found.frequencies.size // 2]
-    mean = 0.5 * (found.frequencies[0] + found.frequencies[-1])
-    scale = "log" if found.frequencies[0] > 0.0 and middle < 0.8 * mean else "linear"
+    middle = responses.frequencies[responses.frequencies.size // 2]
+    mean = 0.5 * (responses.frequencies[0] + responses.frequencies[-1])
+    scale = "log" if responses.frequencies[0] > 0.0 and middle < 0.8 * mean else "linear"
     image = None
     for panel, entry, level, label, limit in zip(axes, maps, levels, labels, limits, strict=False):
         image = panel.pcolormesh(
             entry.speeds * RPM.factor,
-            found.frequencies,
+            responses.frequencies,
             level.T,
             vmin=lowest,
             vmax=highest,
@@ -268,8 +268,8 @@ def _maps(part: SubFigure, maps: Sequence[Sweep], labels: Sequence[str], limits:
         panel.set_xlim(entry.speeds[0] * RPM.factor, entry.speeds[-1] * RPM.factor)
         panel.set_yscale(scale)
         panel.plot(entry.speeds * RPM.factor, limit, color="w", lw=1.2, ls=_LIMIT)
-        if found.frequencies[0] < found.frequencies[-1]:
-            panel.set_ylim(found.frequencies[0], found.frequencies[-1])
+        if responses.frequencies[0] < responses.frequencies[-1]:
+            panel.set_ylim(responses.frequencies[0], responses.frequencies[-1])
         panel.set_title(textwrap.fill(typeset(label), _TITLES // grid.shape[1]), fontsize=8.5)
         panel.tick_params(labelsize=8)
     for panel in axes[len(maps) :]:
@@ -282,7 +282,9 @@ def _maps(part: SubFigure, maps: Sequence[Sweep], labels: Sequence[str], limits:
         lowest_panel.tick_params(labelbottom=True)
     if image is not None:
         bar = part.colorbar(image, ax=list(axes[: len(maps)]), pad=0.01, extend="both")
-        bar.set_label(f"{found.sensors[0].name} by {found.inputs[0].name}, dB re 1 {typeset(display.unit)}", fontsize=8)
+        bar.set_label(
+            f"{responses.sensors[0].name} by {responses.inputs[0].name}, dB re 1 {typeset(display.unit)}", fontsize=8
+        )
         bar.ax.tick_params(labelsize=8)
 
 
@@ -310,12 +312,12 @@ def _limit(panel: Axes, sweeps: Sequence[Sweep], read: Callable[[UndampedSweep],
         & (entry.undamped.frequency.min(axis=0) <= _highest(entry))
         for entry in sweeps
     ]
-    found = np.concatenate(
+    values = np.concatenate(
         [read(entry.undamped)[:, shown].ravel() for entry, shown in zip(sweeps, inside, strict=True)]
     )
-    found = found[found > _NOTHING]
-    if found.size:
-        panel.set_ylim(found.min() / 1.4, found.max() * 1.4)
+    values = values[values > _NOTHING]
+    if values.size:
+        panel.set_ylim(values.min() / 1.4, values.max() * 1.4)
 
 
 def _least(entry: Sweep) -> float:

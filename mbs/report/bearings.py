@@ -179,9 +179,9 @@ def _roller_table(rollers: RollerLoads, inner: ContactState, outer: ContactState
     carrying = loaded(rollers)
     for k in carrying[np.argsort(rollers.angle[carrying])]:
         pressures = [number(1e-9 * float(side.hertz_pressure[k].max())) for side in (inner, outer)]
-        found = [_film(side.minimum_film[k]) for side in (inner, outer)] if films else []
+        smallest = [_film(side.minimum_film[k]) for side in (inner, outer)] if films else []
         angle = f"{_clean(math.degrees(float(rollers.angle[k]))):.4g}"
-        rows.append((angle, number(float(rollers.load[k]), 4), *pressures, *found))
+        rows.append((angle, number(float(rollers.load[k]), 4), *pressures, *smallest))
     heads = ("angle, °", "load, N", "Hertz pressure inner, GPa", "outer, GPa")
     more = (typeset("smallest film inner, um"), typeset("outer, um")) if films else ()
     return table((*heads, *more), rows, "Loaded rollers, from y towards z", ())

@@ -182,15 +182,15 @@ def read_result(path: str) -> xr.Dataset:
         if problem or (problem := structure_problem(path)):
             raise OSError(problem)
         with xr.open_dataset(path, engine="netcdf4") as dataset:
-            found = dataset.load()
+            result = dataset.load()
     except DAMAGE as error:
         cause = " ".join(str(error).split()) or type(error).__name__
         raise InputError(f"--result: {path}: cannot be read ({cause:.200}); {allowed}") from error
     dims = {"complex_frequency": ("case", "speed", "complex_mode"), "level": ("law", "speed", "frequency")}
-    fits = any(name in found and found[name].dims == order for name, order in dims.items())
+    fits = any(name in result and result[name].dims == order for name, order in dims.items())
     if not (RESULT.ours(Path(path)) and fits):
         raise InputError(f"--result: {path} holds no modes and no levels over speed; {allowed}")
-    return found
+    return result
 
 
 def saved_campbell(dataset: xr.Dataset, orders: Sequence[tuple[float, str]], highest: float, source: str) -> Markup:
@@ -268,9 +268,9 @@ def campbell(
     points = []
     crossings = _crossings(lines, drawn, named)
     if crossings:
-        found = np.array([(at, frequency) for at, frequency, *_ in crossings])
+        places = np.array([(at, frequency) for at, frequency, *_ in crossings])
         points.append(
-            Points("order meets mode", RPM.factor * found[:, 0], found[:, 1], "ring", "#9b0d22"),
+            Points("order meets mode", RPM.factor * places[:, 0], places[:, 1], "ring", "#9b0d22"),
         )
     if speed is not None and lines.speeds[0] <= speed <= lines.speeds[-1]:
         curves.append(Curve("", np.full(rpm.size, np.nan), GREY, read=False))
@@ -303,7 +303,7 @@ def _crossings(
     lines: Lines, orders: Sequence[tuple[float, str]], modes: Sequence[int]
 ) -> list[tuple[float, float, str, int]]:
     """Crossings of orders with modes that are not much damped: speed [rad/s], frequency [Hz], order, mode."""
-    found = []
+    crossings = []
     for order, name in orders:
         for k in modes:
             gap = lines.frequency[:, k] - order * lines.speeds / (2.0 * np.pi)
@@ -312,21 +312,21 @@ def _crossings(
                     continue
                 part = float(gap[i] / (gap[i] - gap[i + 1]))
                 speed = float(lines.speeds[i] + part * (lines.speeds[i + 1] - lines.speeds[i]))
-                found.append((speed, order * speed / (2.0 * np.pi), name, int(lines.number[k]) + 1))
-    return sorted(found)
+                crossings.append((speed, order * speed / (2.0 * np.pi), name, int(lines.number[k]) + 1))
+    return sorted(crossings)
 
 
 def _says(lines: Lines, crossings: Sequence[tuple[float, float, str, int]], speed: float | None) -> list[str]:
     """Tell what the diagram says."""
-    told = [
+    words = [
         "Coloured modes have at least 5 % of their strain energy in bearings; modes are those of the system "
         "linearised at the equilibrium of each speed."
     ]
     if not crossings:
-        return [*told, "No order that excites meets one of them here."]
+        return [*words, "No order that excites meets one of them here."]
     near = min(crossings, key=lambda one: abs(one[0] - speed)) if speed is not None else crossings[0]
     return [
-        *told,
+        *words,
         f"Orders meet them {len(crossings)} times; nearest to the operating speed is order {near[2]} with mode "
         f"{near[3]} at {number(RPM.value(near[0]))} rpm and {shown(HERTZ, near[1])}."
         if speed is not None

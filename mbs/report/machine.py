@@ -154,12 +154,12 @@ def machine(found: Examination) -> Markup:
     )
 
 
-def _oil(found: Examination) -> list[tuple[str, str]]:
+def _oil(examination: Examination) -> list[tuple[str, str]]:
     """The oil of the bearings, or that of the scene where the law has none."""
-    used = by_oil(found.model.oils)
+    used = by_oil(examination.model.oils)
     if not used:
-        stated = found.model.scene.lubricant
-        return [("oil", stated.title)] if stated else []
+        lubricant = examination.model.scene.lubricant
+        return [("oil", lubricant.title)] if lubricant else []
     words = [oil.title + (f" ({', '.join(names)})" if len(used) > 1 else "") for oil, names in used.items()]
     return [("oil", typeset("; ".join(words)))]
 

@@ -43,14 +43,14 @@ def scene_report(
     """
     scene = found.model.scene
     used = list(used_maps(found))
-    told = warnings(found)
+    warning_lines = warnings(found)
     sections = [
         Section(
             "summary",
             "In short",
             [
                 sentences(map(typeset, in_short(found))),
-                *(tag("p", typeset(f"Warning: {line}"), class_="warning") for line in told),
+                *(tag("p", typeset(f"Warning: {line}"), class_="warning") for line in warning_lines),
             ],
         ),
         Section("machine", "Machine, law and oil", [machine(found)]),
@@ -65,55 +65,55 @@ def scene_report(
     sections += [
         Section("modes", f"Modes at {RPM.text(scene.speed)}", [_modes(found)]),
         Section("campbell-diagram", "Campbell diagram", [_campbell(found, saved)]),
-        Section("limits", "What limits these numbers", [_limits(told, [*notes(found), *remarks])]),
+        Section("limits", "What limits these numbers", [_limits(warning_lines, [*notes(found), *remarks])]),
         Section("provenance", "Provenance", [_provenance(found, command, maps)]),
     ]
     lead = f"{RPM.text(scene.speed)}; law {found.model.law}."
     return document(scene.title, typeset(lead), sections)
 
 
-def _highest(found: Examination) -> float:
+def _highest(examination: Examination) -> float:
     """Highest frequency that matters [Hz]."""
-    scene = found.model.scene
+    scene = examination.model.scene
     return float(max(scene.frequencies, default=scene.campbell.highest))
 
 
-def _modes(found: Examination) -> Markup:
+def _modes(examination: Examination) -> Markup:
     """The modes, or why there are none."""
-    if isinstance(found.modes, str):
-        return tag("p", f"There are no modes: {found.modes}", class_="warning")
-    return mode_table(found.modes, _highest(found))
+    if isinstance(examination.modes, str):
+        return tag("p", f"There are no modes: {examination.modes}", class_="warning")
+    return mode_table(examination.modes, _highest(examination))
 
 
-def _campbell(found: Examination, saved: tuple[str, xr.Dataset] | None) -> Markup:
+def _campbell(examination: Examination, saved: tuple[str, xr.Dataset] | None) -> Markup:
     """The diagram, or why there is none."""
-    model = found.model
+    model = examination.model
     given = model.scene.campbell.orders
     # modes of a linear system, not of a run: no order is too slow for it
     excited = {1.0: "1", **dict(excited_orders(model, math.inf))}
     orders = [(order, f"{order:g}") for order in given] if given else sorted(excited.items())
     if saved is not None:
         name, dataset = saved
-        return saved_campbell(dataset, orders, _highest(found), name)
-    if isinstance(found.sweep, str):
-        return tag("p", f"There is no Campbell diagram: {found.sweep}", class_="warning")
-    return campbell(lines_of(found.sweep.sweeps[0]), orders, _highest(found), model.scene.speed)
+        return saved_campbell(dataset, orders, _highest(examination), name)
+    if isinstance(examination.sweep, str):
+        return tag("p", f"There is no Campbell diagram: {examination.sweep}", class_="warning")
+    return campbell(lines_of(examination.sweep.sweeps[0]), orders, _highest(examination), model.scene.speed)
 
 
-def _limits(told: Sequence[str], noted: Sequence[str]) -> Markup:
+def _limits(warning_lines: Sequence[str], note_lines: Sequence[str]) -> Markup:
     """Warnings and notes."""
-    if not told and not noted:
+    if not warning_lines and not note_lines:
         return tag("p", "Nothing is to be warned of.")
     return joined(
-        *(tag("p", typeset(line), class_="warning") for line in told),
-        sentences(map(typeset, noted)) if noted else None,
+        *(tag("p", typeset(line), class_="warning") for line in warning_lines),
+        sentences(map(typeset, note_lines)) if note_lines else None,
     )
 
 
-def _provenance(found: Examination, command: str, maps: Sequence[str]) -> Markup:
+def _provenance(examination: Examination, command: str, maps: Sequence[str]) -> Markup:
     """Scene, maps, program and command."""
-    scene = found.model.scene
-    used = list(used_maps(found))
+    scene = examination.model.scene
+    used = list(used_maps(examination))
     names = maps if len(maps) == len(used) else [plain(one.emap.dataset.attrs.get("job_name", "")) for one in used]
     return joined(
         pairs([("scene", scene.file.name if scene.file else scene.name)]),

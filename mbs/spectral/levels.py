@@ -113,8 +113,8 @@ class LevelDifference:
 
         Examples
         --------
-        >>> found = LevelDifference.of(np.array([80.0, 90.0, 100.0]), np.array([80.0, 85.0, 90.0]))
-        >>> round(found.median, 1), round(found.energy, 1), found.highest
+        >>> difference = LevelDifference.of(np.array([80.0, 90.0, 100.0]), np.array([80.0, 85.0, 90.0]))
+        >>> round(difference.median, 1), round(difference.energy, 1), difference.highest
         (-5.0, -8.9, -10.0)
         """
         low, median, high = (float(value) for value in np.quantile(other - first, SPREAD))
@@ -163,8 +163,8 @@ def difference_text(first: FloatArray, other: FloatArray) -> str:
     >>> difference_text(np.array([80.0, 90.0, 100.0]), np.array([80.0, 85.0, 90.0]))
     'median -5.0 dB, 5 to 95 % of the windows -9.5 to -0.5 dB; highest of each, at any speed, -10.0 dB'
     """
-    found = LevelDifference.of(first, other)
+    difference = LevelDifference.of(first, other)
     return (
-        f"median {found.median:.1f} dB, 5 to 95 % of the windows {found.low:.1f} to {found.high:.1f} dB; highest of "
-        f"each, at any speed, {found.highest:.1f} dB"
+        f"median {difference.median:.1f} dB, 5 to 95 % of the windows {difference.low:.1f} to {difference.high:.1f} "
+        f"dB; highest of each, at any speed, {difference.highest:.1f} dB"
     )

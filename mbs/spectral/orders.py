@@ -336,18 +336,18 @@ def order_peaks(
         Least height above the higher one of the valleys beside it [dB].
     """
     levels = tracks.level(reference)
-    found = []
+    peaks = []
     for column, order in enumerate(tracks.orders):
         there = np.flatnonzero(np.isfinite(levels[:, column]))
         places, properties = scipy.signal.find_peaks(levels[there, column], prominence=prominence)
         for place, height in zip(there[places], properties["prominences"], strict=True):
             speed = float(tracks.speeds[place])
-            found.append(
+            peaks.append(
                 OrderPeak(
                     float(order), speed, float(order) * speed / _TURN, float(levels[place, column]), float(height)
                 )
             )
-    return tuple(sorted(found, key=lambda peak: -peak.level)[:count])
+    return tuple(sorted(peaks, key=lambda peak: -peak.level)[:count])
 
 
 def _band_limited(run: RunSignal, highest: float) -> tuple[FloatArray, FloatArray]:

@@ -110,19 +110,19 @@ def read_table(path: Path) -> tuple[list[TimeChannel], FloatArray, FloatArray]:
     problems: list[str] = []
     channels, factors = [], []
     for column, text in enumerate(names, start=1):
-        found = _HEAD.fullmatch(text)
-        if found is None:
+        title = _HEAD.fullmatch(text)
+        if title is None:
             problems.append(
                 f"{path}, column {column}: got {short(text.strip())} without a unit; allowed: a name and a unit, as in "
                 f"{_EXAMPLE}"
             )
             continue
         try:
-            recorded, unit, factor = read_unit(found["unit"], found["name"])
+            recorded, unit, factor = read_unit(title["unit"], title["name"])
         except InputError as error:
-            problems += [f"{path}, column {column} ({found['name']:.40}): {line}" for line in error.problems]
+            problems += [f"{path}, column {column} ({title['name']:.40}): {line}" for line in error.problems]
             continue
-        channels.append(TimeChannel(found["name"] or f"column {column}", recorded, unit))
+        channels.append(TimeChannel(title["name"] or f"column {column}", recorded, unit))
         factors.append(factor)
     if problems:
         raise InputError(problems)

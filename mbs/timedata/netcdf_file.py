@@ -103,8 +103,8 @@ def read_netcdf(path: Path) -> TimeData:
                 )
             if any(sizes[name] > most for name, most in limits.items()):
                 raise InputError(f"{path}: got {sizes}; allowed: at most {limits}")
-            wanted = [*_NEEDED, *(name for name in ("law", "followed_order", "excited") if name in dataset.variables)]
-            return _data(path, dataset[wanted].load())
+            names = [*_NEEDED, *(name for name in ("law", "followed_order", "excited") if name in dataset.variables)]
+            return _data(path, dataset[names].load())
     except InputError:
         raise
     except DAMAGE as error:

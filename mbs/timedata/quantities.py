@@ -84,12 +84,12 @@ def read_unit(unit: str, name: str) -> tuple[Recorded, str, float]:
     >>> read_unit("g", "S1")
     ('acceleration', 'm/s2', 9.80665)
     """
-    found = _UNITS.get(plain(unit))
-    if found is None:
+    entry = _UNITS.get(plain(unit))
+    if entry is None:
         raise InputError(f"got the unit {unit!r:.40}{closest(plain(unit), tuple(_UNITS))}; allowed: {SHOWN}")
-    if found[1] == "rad/s" and name.strip().lower() in _SPEED_NAMES:
-        return ("speed", "rad/s", found[2])
-    return found
+    if entry[1] == "rad/s" and name.strip().lower() in _SPEED_NAMES:
+        return ("speed", "rad/s", entry[2])
+    return entry
 
 
 def motion(recorded: Recorded) -> Quantity | None:

@@ -169,11 +169,11 @@ def chosen(record: TimeRecord, name: str, option: str) -> TimeChannel:
     InputError
         If there is none, or more than one.
     """
-    found = [channel for channel in record.channels if channel.name == name]
-    found = found or [channel for channel in record.channels if channel.name.lower() == name.lower()]
-    if len(found) == 1:
-        return found[0]
-    words = f"stands for {len(found)} channels" if found else f"is not there{closest(name, record.names)}"
+    channels = [channel for channel in record.channels if channel.name == name]
+    channels = channels or [channel for channel in record.channels if channel.name.lower() == name.lower()]
+    if len(channels) == 1:
+        return channels[0]
+    words = f"stands for {len(channels)} channels" if channels else f"is not there{closest(name, record.names)}"
     raise InputError(f"{option}: {name!r:.60} {words}; allowed: {', '.join(record.names)}")
 
 

@@ -135,14 +135,14 @@ def with_speed(record: TimeRecord, source: SpeedSource) -> Turned:
 def _by_channel(record: TimeRecord, name: str | None) -> Turned:
     """Speed of a channel."""
     if name is None:
-        found = [channel for channel in record.channels if channel.recorded == "speed"]
-        if len(found) != 1:
+        channels = [channel for channel in record.channels if channel.recorded == "speed"]
+        if len(channels) != 1:
             raise InputError(
-                f"{record.label}: got {len(found)} channels of a speed among {', '.join(record.names)}; allowed: one "
-                f"in {', '.join(SPEED_UNITS)}; name it (--speed-channel), or give pulses (--tacho) or a table "
+                f"{record.label}: got {len(channels)} channels of a speed among {', '.join(record.names)}; allowed: "
+                f"one in {', '.join(SPEED_UNITS)}; name it (--speed-channel), or give pulses (--tacho) or a table "
                 "(--speed-table)"
             )
-        channel = found[0]
+        channel = channels[0]
     else:
         channel = chosen(record, name, "--speed-channel")
         if channel.unit != "rad/s":
@@ -267,13 +267,13 @@ def _longest(speed: FloatArray) -> tuple[int, int]:
     """First and last sample of the ramp that changes the speed most."""
     change = np.diff(speed)
     held = _HELD * float(np.max(np.abs(speed)))
-    best, found = -1.0, (0, 0)
+    best, ramp = -1.0, (0, 0)
     for direction in (1.0, -1.0):
         edges = np.flatnonzero(np.diff(np.concatenate([[0], (direction * change > held).astype(np.int64), [0]])))
         for begin, end in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
             if (covered := abs(float(speed[end] - speed[begin]))) > best:
-                best, found = covered, (begin, end)
-    return found
+                best, ramp = covered, (begin, end)
+    return ramp
 
 
 def _smooth(record: TimeRecord) -> FloatArray:

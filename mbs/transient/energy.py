@@ -122,8 +122,7 @@ class EnergyBalance:
         """Energy that went through: half the sum of the sizes of all terms of the balance."""
         terms = [self.loads, self.numerical, self.kinetic, self.elastic, *self.parts.values()]
         for e in self.elements:
-            told = (e.driven, e.by_speed, e.dissipated, e.change)
-            terms += [value or 0.0 for value in told] if e.told else [e.work]
+            terms += [value or 0.0 for value in (e.driven, e.by_speed, e.dissipated, e.change)] if e.told else [e.work]
         return 0.5 * sum(abs(value) for value in terms)
 
     @property
@@ -215,7 +214,7 @@ class Account:
         self._system, self._ports, self.last = system, ports, first
         self._parts = list(system.damping_parts.values())
         self._loads = self._numerical = 0.0
-        self._lost = np.zeros(len(self._parts))
+        self._dissipated = np.zeros(len(self._parts))
         self._works, self._exchanged = np.zeros(len(ports)), np.zeros((len(ports), 2))
 
     def add(self, h: float, end: Instant) -> None:
@@ -228,7 +227,7 @@ class Account:
         elastic = system.stiffness @ (0.5 * (last.q + end.q))
         self._loads += float(load @ moved)
         self._numerical -= float(v @ missing + short @ (load - elastic) + port_short @ force)
-        self._lost += [h * float(v @ part @ v) for part in self._parts]
+        self._dissipated += [h * float(v @ part @ v) for part in self._parts]
         self._works += [float(force[rows] @ ported[rows]) for rows in self._ports]
         self._exchanged += 0.5 * h * (last.powers + end.powers)[:, :2]
         self._exchanged[:, 0] += end.powers[:, 2]
@@ -237,7 +236,7 @@ class Account:
     @property
     def sums(self) -> Sums:
         """Sums so far."""
-        return Sums(self._loads, self._numerical, self._lost, self._works, self._exchanged)
+        return Sums(self._loads, self._numerical, self._dissipated, self._works, self._exchanged)
 
 
 def stored_energy(system: System, q: FloatArray, v: FloatArray, states: Sequence[Any], operation: Operation) -> Stored:
@@ -280,16 +279,16 @@ def balance(system: System, sums: Sums, begin: Stored, end: Stored, by_speed: Se
     """
     elements = []
     for i, connected in enumerate(system.elements):
-        (lost, driven), first, last = sums.exchanged[i].tolist(), begin.elements[i], end.elements[i]
-        told = np.isfinite(lost) and first is not None and last is not None
+        (dissipated, driven), first, last = sums.exchanged[i].tolist(), begin.elements[i], end.elements[i]
+        known = np.isfinite(dissipated) and first is not None and last is not None
         elements.append(
             ElementEnergy(
                 name=connected.element.name,
                 work=float(sums.works[i]),
-                driven=driven if told else None,
-                dissipated=lost if told else None,
-                change=last - first if first is not None and last is not None and told else None,
-                by_speed=by_speed[i] if told else 0.0,
+                driven=driven if known else None,
+                dissipated=dissipated if known else None,
+                change=last - first if first is not None and last is not None and known else None,
+                by_speed=by_speed[i] if known else 0.0,
             )
         )
     return EnergyBalance(

@@ -227,13 +227,15 @@ def nonlinear_hits(
 
     def respond(column: int, height: float) -> FloatArray:
         struck = system.with_load(height * forces[:, column], HalfSine(begin, test.pulse))
-        found = run(struck, speed, (count - 1) * fine, settings, displacement=balance.displacement, options=WITH_STATES)
-        for name, calls in found.outside.items():
+        recording = run(
+            struck, speed, (count - 1) * fine, settings, displacement=balance.displacement, options=WITH_STATES
+        )
+        for name, calls in recording.outside.items():
             outside[name] += calls
         if progress:
             progress()
-        seen = _sensed(found.states, sensors, measured, at_rest)
-        return _filtered(np.concatenate([height * sine[None], seen]), test)
+        signals = _sensed(recording.states, sensors, measured, at_rest)
+        return _filtered(np.concatenate([height * sine[None], signals]), test)
 
     return _hits(inputs, sensors, test, respond), outside
 
@@ -322,7 +324,7 @@ def _hits(
     """Records of all hits at all inputs, with noise."""
     random = np.random.default_rng(test.seed)
     references, channels = _channels(inputs, sensors)
-    found = []
+    hits = []
     for column, entry in enumerate(inputs):
         records = []
         for _ in range(test.hits):
@@ -331,8 +333,8 @@ def _hits(
             peak = np.max(np.abs(clean), axis=1, keepdims=True)
             records.append(clean + test.noise * peak * random.standard_normal(clean.shape))
         stacked = np.stack(records)
-        found.append(Hits(test.step, stacked[:, 0], stacked[:, 1:], references[column], channels))
-    return tuple(found)
+        hits.append(Hits(test.step, stacked[:, 0], stacked[:, 1:], references[column], channels))
+    return tuple(hits)
 
 
 def _channels(

@@ -163,5 +163,5 @@ def correction(
                         matrix[a, b] += part * transform[k, b]
     for a in range(n):
         change[a] = force[a]
-    found: bool = eliminate(matrix, change)
-    return found
+    solvable: bool = eliminate(matrix, change)
+    return solvable

@@ -212,13 +212,13 @@ def run(
     parts = [slice(begin, end) for begin, end in pairwise(ends)]
     count = len(sensors)
     operations = [Operation(w, angle, at) for (w, angle), at in zip(courses.tolist(), times.tolist(), strict=True)]
-    seen = tuple(outputs[:: plan.stride, count + part.start : count + part.stop] for part in parts)
+    port_motions = tuple(outputs[:: plan.stride, count + part.start : count + part.stop] for part in parts)
 
     def account() -> EnergyBalance:
         """The balance; what changes of the speed brought takes a second or two, whatever the length of the run."""
         elements = [entry.element for entry in system.elements]
         by_speed = [
-            element.brought_by_speed(motion, operations) for element, motion in zip(elements, seen, strict=True)
+            element.brought_by_speed(motion, operations) for element, motion in zip(elements, port_motions, strict=True)
         ]
         return balance(system, engine.sums, begin, end, by_speed)
 
@@ -231,7 +231,7 @@ def run(
         signal_speed=seen_at[:, 0],
         signal_angle=seen_at[:, 1],
         forces=tuple(forces[:, part] for part in parts),
-        motions=seen,
+        motions=port_motions,
         steps=steps,
         halved=halved,
         iterations=engine.iterations,
@@ -363,7 +363,7 @@ def _drive(
     sample = settings.steps_per_sample * finest
     row = sample // plan.stride
     ticks, end = 0, plan.samples * sample
-    level = steps = halved = told = 0
+    level = steps = halved = samples = 0
     while ticks < end:
         stride = finest >> level
         count = min(chunk, (end - ticks) // finest) if level == 0 else 1
@@ -385,9 +385,9 @@ def _drive(
         # The error goes with the third power of the step.
         elif level and ticks % (2 * stride) == 0 and 8.0 * error < settings.tolerance:
             level -= 1
-        while progress and told < ticks // sample:
-            told += 1
-            progress(told)
+        while progress and samples < ticks // sample:
+            samples += 1
+            progress(samples)
     return steps, halved
 
 
@@ -460,15 +460,12 @@ def _notes(system: System) -> tuple[str, ...]:
             f"{', '.join(slow)}: no compiled block, so every step runs in Python, which is many times slower; a kind "
             "of element gets one by mbs.transient.kinds"
         )
-    if not _has_modes(system):
+    # Real modes need a stiffness that is symmetric, to rounding.
+    stiffness = system.stiffness
+    symmetric = np.max(np.abs(stiffness - stiffness.T)) <= SYMMETRIC * np.max(np.abs(stiffness))
+    if not symmetric:
         notes.append("the stiffness is not symmetric, so every step runs in Python, which is many times slower")
     return tuple(notes)
-
-
-def _has_modes(system: System) -> bool:
-    """Tell whether the linear part has real modes: its stiffness is symmetric, to rounding."""
-    stiffness = system.stiffness
-    return bool(np.max(np.abs(stiffness - stiffness.T)) <= SYMMETRIC * np.max(np.abs(stiffness)))
 
 
 def _start(name: str, given: FloatArray | None, system: System) -> FloatArray:

@@ -91,8 +91,8 @@ class RunElements:
             members[kind].append(Member(entry.element, place, first, own))
             own, first = own + alone[place].shape[0], first + felt[place].shape[0]
         owners = [place for rows in (alone, felt) for place, part in enumerate(rows) for _ in range(part.shape[0])]
-        ours = all(is_ours(kind) for kind, found in members.items() if found)
-        used = [kind for kind, found in members.items() if found or (ours and is_ours(kind) and _is_common(kind))]
+        ours = all(is_ours(kind) for kind, of_kind in members.items() if of_kind)
+        used = [kind for kind, of_kind in members.items() if of_kind or (ours and is_ours(kind) and _is_common(kind))]
         parts = [scipy.linalg.block_diag(*rows) if rows else np.zeros((0, 0)) for rows in (alone, felt)]
         blocks = tuple(kind.gather(members[kind]) for kind in used)
         return cls(
@@ -123,12 +123,12 @@ class RunElements:
         first, last : int
             Steps of those that `begin` was told.
         """
-        found = [block.prepare(first, last) for block in self.blocks]
-        count = min((marks.size for _, marks in found), default=last - first)
+        parts = [block.prepare(first, last) for block in self.blocks]
+        count = min((marks.size for _, marks in parts), default=last - first)
         sound = np.ones(count, dtype=np.bool_)
-        for _, marks in found:
+        for _, marks in parts:
             sound &= marks[:count]
-        return tuple(arrays for arrays, _ in found), sound
+        return tuple(arrays for arrays, _ in parts), sound
 
     def states(self, given: Sequence[Any]) -> list[Any]:
         """States of all elements as Python has them: those given, but for elements whose states are in compiled code.
@@ -138,11 +138,11 @@ class RunElements:
         given : sequence
             One for each element.
         """
-        found = list(given)
+        all_states = list(given)
         for block, places in self.stateful:
             for place, states in zip(places, block.states(), strict=True):
-                found[place] = states
-        return found
+                all_states[place] = states
+        return all_states
 
     def resume(self, states: Sequence[Any]) -> None:
         """Go on from states of all elements that Python has.

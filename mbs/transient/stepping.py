@@ -181,9 +181,9 @@ class Stepper:
         x, rate = self._motion.copy()
         force, powers = self._port_force.copy(), np.full((len(self._elements), 3), math.nan)
         for row, state, (element, rows) in zip(powers, self.states, self._elements, strict=True):
-            found = element.powers(state, force[rows], x[rows], rate[rows], operation)
-            if found is not None:
-                row[:] = found
+            of_element = element.powers(state, force[rows], x[rows], rate[rows], operation)
+            if of_element is not None:
+                row[:] = of_element
         load = self._load(time)
         return Instant(self.q, self.v, self.acceleration, load, x, rate, force, powers)
 
@@ -225,8 +225,8 @@ class Stepper:
             self._linear_steps = (by_q, by_v)
         ports = (self._transform, self._port_stiffness, self._port_damping)
         change = np.empty_like(self._unbalanced)
-        found: bool = correction(self._linear, *ports, by_q, by_v, self._unbalanced, change)
-        return change if found else None
+        solvable: bool = correction(self._linear, *ports, by_q, by_v, self._unbalanced, change)
+        return change if solvable else None
 
     @property
     def forces(self) -> FloatArray:
