@@ -135,7 +135,11 @@ def coefficients(axes: Axes, values: FloatArray) -> FloatArray:
     ndarray, shape (n_zeta, n_size, n_alpha n_bend, fields)
     """
     n, m, k, p, fields = values.shape
-    first, second = (_inverse(nodes, knots) for nodes, knots in zip((axes.zeta, axes.size), axes.knots, strict=True))
+    # matrices from values at nodes to the coefficients of their splines
+    first, second = (
+        np.linalg.inv(BSpline.design_matrix(nodes, knots, DEGREE).toarray())
+        for nodes, knots in zip((axes.zeta, axes.size), axes.knots, strict=True)
+    )
     along = (first @ values.reshape(n, -1)).reshape(n, m, k * p * fields)
     return np.ascontiguousarray((second @ along).reshape(n, m, k * p, fields))
 
@@ -233,11 +237,6 @@ def heavier_films(field: Field, value: FloatArray, slope: FloatArray, above: Flo
 def _knots(nodes: FloatArray) -> FloatArray:
     """Knots of the cubic spline through nodes, that has no knot at the last node but one at either end."""
     return np.concatenate([(nodes[0],) * (DEGREE + 1), nodes[2:-2], (nodes[-1],) * (DEGREE + 1)])
-
-
-def _inverse(nodes: FloatArray, knots: FloatArray) -> FloatArray:
-    """Matrix from values at nodes to the coefficients of their spline."""
-    return np.asarray(np.linalg.inv(BSpline.design_matrix(nodes, knots, DEGREE).toarray()))
 
 
 def _weights(knots: FloatArray, x: FloatArray) -> tuple[IndexArray, FloatArray, FloatArray]:
