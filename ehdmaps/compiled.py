@@ -90,15 +90,15 @@ def njit(function: Callable[..., Any] | None = None, /, *, cache: bool = True, *
         return numba.njit(**options)(function)
     before, _config.CACHE_DIR = _config.CACHE_DIR, str(folder)
     try:
-        found = numba.njit(cache=True, **options)(function)
+        dispatcher = numba.njit(cache=True, **options)(function)
     finally:
         _config.CACHE_DIR = before
-    kept = found._cache
+    kept = dispatcher._cache
     if not Path(kept.cache_path).is_relative_to(folder):  # it can no longer be written, and numba chose another one
         return numba.njit(**options)(function)
     kept.load_overload = functools.partial(_load, kept.load_overload, kept.flush)
     kept.save_overload = functools.partial(_save, kept.save_overload, folder)
-    return found
+    return dispatcher
 
 
 def in_python(function: Any) -> Any:
@@ -169,9 +169,9 @@ def _temporary_folder() -> Path:
     folder = Path(tempfile.gettempdir()) / f"ehdmaps-compiled-{os.getuid() if hasattr(os, 'getuid') else 'user'}"
     with contextlib.suppress(FileExistsError):
         folder.mkdir(mode=0o700)
-    found = folder.lstat()
-    foreign = hasattr(os, "getuid") and (found.st_uid != os.getuid() or found.st_mode & 0o077)
-    if not stat.S_ISDIR(found.st_mode) or foreign:
+    status = folder.lstat()
+    foreign = hasattr(os, "getuid") and (status.st_uid != os.getuid() or status.st_mode & 0o077)
+    if not stat.S_ISDIR(status.st_mode) or foreign:
         raise PermissionError(f"{folder}: belongs to somebody else, or others may write there")
     return folder
 

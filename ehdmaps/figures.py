@@ -33,7 +33,7 @@ def typeset(text: str) -> str:
     >>> typeset("15 deg, 40 degC, 20 um; N/um, m/s2, album")
     '15°, 40 °C, 20 µm; N/µm, m/s², album'
     """
-    return _UNIT.sub(lambda found: _LETTERS[found.group().strip()], text)
+    return _UNIT.sub(lambda match: _LETTERS[match.group().strip()], text)
 
 
 def write_heading(figure: Any, text: str, size: float, weight: str = "normal") -> None:

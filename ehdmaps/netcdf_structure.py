@@ -54,7 +54,7 @@ def structure_problem(path: str | Path) -> str:
                 return _heap_problem(content)
         if start[:3] == b"CDF":
             with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
-                return _classic_problem(content)
+                return _Header(content).problem()
     return ""
 
 
@@ -88,13 +88,13 @@ def _long_text(content: mmap.mmap, place: int, lengths: dict[int, int]) -> bool:
     What points to a text has its length, the address of its heap and the number of the object, of 4, 8 and 4 bytes.
     """
     address = place.to_bytes(8, "little")
-    found = content.find(address)
-    while found >= 0:
-        said = int.from_bytes(content[max(found - 4, 0) : found], "little")
-        index = int.from_bytes(content[found + 8 : found + 12], "little")
-        if index and index in lengths and said > _LONG and said > lengths[index]:
+    at = content.find(address)
+    while at >= 0:
+        length = int.from_bytes(content[max(at - 4, 0) : at], "little")
+        index = int.from_bytes(content[at + 8 : at + 12], "little")
+        if index and index in lengths and length > _LONG and length > lengths[index]:
             return True
-        found = content.find(address, found + 8)
+        at = content.find(address, at + 8)
     return False
 
 
@@ -146,9 +146,9 @@ class _Header:
 
     def _entries(self, tag: int) -> int:
         """Number of entries of a list; each has 8 bytes at least."""
-        found = self._number(4)
+        read_tag = self._number(4)
         count = self._number(self._count_bytes)
-        if (count and found != tag) or 8 * count > len(self._content) - self._here:
+        if (count and read_tag != tag) or 8 * count > len(self._content) - self._here:
             raise _BeyondError
         return count
 
@@ -166,8 +166,3 @@ class _Header:
         self._here += count * length
         if self._here > len(self._content):
             raise _BeyondError
-
-
-def _classic_problem(content: mmap.mmap) -> str:
-    """Fault in the header of a classic file."""
-    return _Header(content).problem()

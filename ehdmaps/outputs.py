@@ -389,11 +389,11 @@ def _remove_left_parts(folder: Path) -> None:
     """Remove files of ours that are being written no more: their writers were killed."""
     with contextlib.suppress(OSError), os.scandir(folder) as entries:
         for entry in entries:
-            named = _PART.fullmatch(entry.name)
-            if named and entry.is_file(follow_symlinks=False):
+            match = _PART.fullmatch(entry.name)
+            if match and entry.is_file(follow_symlinks=False):
                 status = entry.stat(follow_symlinks=False)
                 untouched = time.time() - status.st_mtime > _LEFT_SECONDS
-                if untouched and status.st_uid == os.geteuid() and not _runs(int(named[1])):
+                if untouched and status.st_uid == os.geteuid() and not _runs(int(match[1])):
                     os.unlink(entry.path)
 
 

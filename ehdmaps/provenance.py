@@ -51,8 +51,8 @@ def source_state(root: Path) -> str:
     commit = _commit(root)
     if commit and not commit.endswith(".dirty"):
         return commit
-    found = sources_hash(root)[:DIGITS]
-    return ".".join(filter(None, (commit or (found and "src"), found)))
+    digits = sources_hash(root)[:DIGITS]
+    return ".".join(filter(None, (commit or (digits and "src"), digits)))
 
 
 def sources_hash(root: Path = ROOT) -> str:
@@ -68,17 +68,17 @@ def sources_hash(root: Path = ROOT) -> str:
     str
         64 hexadecimal digits; empty where no file is found, or one cannot be read.
     """
-    found = hashlib.sha256()
+    digest = hashlib.sha256()
     names = sorted(
         path.relative_to(root).as_posix() for package in PACKAGES for path in root.glob(f"{package}/**/*.py")
     )
     try:
         for name in names:
             content = (root / name).read_bytes()
-            found.update(f"{name}\0{len(content)}\0".encode() + content)
+            digest.update(f"{name}\0{len(content)}\0".encode() + content)
     except OSError:
         return ""
-    return found.hexdigest() if names else ""
+    return digest.hexdigest() if names else ""
 
 
 @functools.cache
@@ -109,7 +109,7 @@ def _commit(root: Path) -> str:
     environment = {name: value for name, value in os.environ.items() if not name.startswith("GIT_")}
     command = ["git", "-C", str(root), "describe", "--always", "--dirty", "--exclude=*", f"--abbrev={DIGITS}"]
     try:
-        found = subprocess.run(
+        answer = subprocess.run(
             command,
             env=environment | {"GIT_OPTIONAL_LOCKS": "0"},
             stdin=subprocess.DEVNULL,
@@ -120,5 +120,5 @@ def _commit(root: Path) -> str:
         )
     except (OSError, subprocess.SubprocessError, UnicodeDecodeError):
         return ""
-    commit, _, mark = found.stdout.strip().partition("-")
+    commit, _, mark = answer.stdout.strip().partition("-")
     return f"g{commit}" + (f".{mark}" if mark else "")

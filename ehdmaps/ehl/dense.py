@@ -144,14 +144,14 @@ def _multipliers(row: FloatArray, first: int) -> tuple[float, float, float, floa
 
 
 @njit(error_model="numpy")
-def solved(found: Factorised, right: FloatArray) -> FloatArray:
+def solved(lu: Factorised, right: FloatArray) -> FloatArray:
     """Solve matrix z = right, both of shape (size,); infinite where the matrix is singular."""
-    factors, size = found.factors, right.size
-    if found.singular:
+    factors, size = lu.factors, right.size
+    if lu.singular:
         return np.full(size, np.inf)
     z = np.zeros(factors.shape[0])
     for i in range(size):
-        z[i] = found.scale[found.order[i]] * right[found.order[i]]
+        z[i] = lu.scale[lu.order[i]] * right[lu.order[i]]
     for first in range(0, z.size, _BLOCK):
         _take(factors, first, 0, first, z)
         for i in range(first + 1, first + _BLOCK):

@@ -116,13 +116,13 @@ def energy(
     first : int
         Last column that is not heated.
     """
-    found = _energy(problem, columns, face_step, walls, rises, first)
-    if np.all(np.isfinite(found.residual)):
+    equations = _energy(problem, columns, face_step, walls, rises, first)
+    if np.all(np.isfinite(equations.residual)):
         try:
-            found.inverse[first + 1 :] = np.linalg.inv(found.itself[first + 1 :])
+            equations.inverse[first + 1 :] = np.linalg.inv(equations.itself[first + 1 :])
         except np.linalg.LinAlgError:
-            found.residual[first + 1 :] = math.nan
-    return found
+            equations.residual[first + 1 :] = math.nan
+    return equations
 
 
 @njit(forceinline=True)
@@ -290,45 +290,47 @@ def marched(equations: EnergyEquations, right: FloatArray, first: int) -> FloatA
         Last column that is not heated.
     """
     n, many = right.shape[0], right.shape[2]
-    found, start, end = np.zeros((n, POINTS, many)), first + 1, first + 1
+    temperatures, start, end = np.zeros((n, POINTS, many)), first + 1, first + 1
     if equations.last_back > first:
         # columns with backflow and the two that these see, at once
         end = min(equations.last_back + 3, n)
         matrix, side = _together(equations, right, start, end)
-        found[start:end] = np.linalg.solve(matrix, side).reshape((end - start, POINTS, many))
-    _one_by_one(equations, right, first, end, found)
-    return found
+        temperatures[start:end] = np.linalg.solve(matrix, side).reshape((end - start, POINTS, many))
+    _one_by_one(equations, right, first, end, temperatures)
+    return temperatures
 
 
 @njit
-def _one_by_one(equations: EnergyEquations, right: FloatArray, first: int, start: int, found: FloatArray) -> None:
+def _one_by_one(
+    equations: EnergyEquations, right: FloatArray, first: int, start: int, temperatures: FloatArray
+) -> None:
     """Fill the temperatures of the columns from `start` on; those before are known."""
-    n, k, many = found.shape
+    n, k, many = temperatures.shape
     fluxes = np.zeros((2, n, many))
     for f in range(first + 1, start):
-        _wall_fluxes(equations, right, first, f, found, fluxes)
+        _wall_fluxes(equations, right, first, f, temperatures, fluxes)
     for f in range(start, n):
         side = right[f, :k].copy()
         if f - 1 > first:
-            side -= equations.before[f] @ found[f - 1]
+            side -= equations.before[f] @ temperatures[f - 1]
             for wall in range(2):
                 row = 0 if wall == 0 else k - 1
                 side[row] += equations.walls[wall, f, first + 1 : f] @ fluxes[wall, first + 1 : f]
         if f - 2 > first:
-            side -= equations.before_that[f] @ found[f - 2]
-        found[f] = equations.inverse[f] @ side
-        _wall_fluxes(equations, right, first, f, found, fluxes)
+            side -= equations.before_that[f] @ temperatures[f - 2]
+        temperatures[f] = equations.inverse[f] @ side
+        _wall_fluxes(equations, right, first, f, temperatures, fluxes)
 
 
 @njit
 def _wall_fluxes(
-    equations: EnergyEquations, right: FloatArray, first: int, f: int, found: FloatArray, fluxes: FloatArray
+    equations: EnergyEquations, right: FloatArray, first: int, f: int, temperatures: FloatArray, fluxes: FloatArray
 ) -> None:
     """Fill the fluxes of a column into both walls, from its temperatures and those before it."""
     for wall in range(2):
         fluxes[wall, f] = right[f, POINTS + wall]
         for g in range(min(3, f - first)):
-            fluxes[wall, f] += equations.flux_warm[f, g, wall] @ found[f - g]
+            fluxes[wall, f] += equations.flux_warm[f, g, wall] @ temperatures[f - g]
 
 
 @njit
@@ -418,10 +420,10 @@ def followed(
     apart = np.diff(node_pressure(unknowns)) / face_step - columns.place[:, 2]
     films = _films(x, kernel, float(unknowns[x.size - 1]))
     if equations is None:
-        found = np.zeros((face_step.size, POINTS, unknowns.size + 1))
+        following = np.zeros((face_step.size, POINTS, unknowns.size + 1))
     else:
-        found = marched(equations, _by_unknowns(equations, face_step, films, apart, first), first)
-    return found, *_factor_rows(columns, face_step, films, apart, found)
+        following = marched(equations, _by_unknowns(equations, face_step, films, apart, first), first)
+    return following, *_factor_rows(columns, face_step, films, apart, following)
 
 
 @njit
@@ -468,7 +470,7 @@ def _by_unknowns(
 
 @njit
 def _factor_rows(
-    columns: Columns, face_step: FloatArray, films: FloatArray, apart: FloatArray, found: FloatArray
+    columns: Columns, face_step: FloatArray, films: FloatArray, apart: FloatArray, following: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Derivatives of mobilities and carriages by all unknowns, and what else changes them."""
     n, size = films.shape
@@ -477,7 +479,7 @@ def _factor_rows(
         for which in range(2):
             rows, slope = (mobility, columns.mobility[f]) if which == 0 else (carriage, columns.carriage[f])
             warm = columns.mobility_warm[f] if which == 0 else columns.carriage_warm[f]
-            line = warm @ found[f]
+            line = warm @ following[f]
             for q in range(size):
                 rows[f, q] = line[q] + slope[2] * films[f, q]
             rows[f, size] = line[size] + slope[3] * apart[f]

@@ -136,13 +136,13 @@ def assembled(
     scale = fine.mass_flow / coarse.mass_flow if starved else 1.0
     central_error, minimum_error = _film_errors(fine, coarse, scale, by_offset)
 
-    def error(value: float, rough_value: float, share: float, lost: float, least: float = 0.0) -> float:
+    def error(value: float, rough_value: float, share: float, inlet_share: float, least: float = 0.0) -> float:
         """Relative, > 0 where refinement lowers the value; what the inlet's end loses is added in magnitude.
 
         `least` is a difference of grids that this value shares at least.
         """
         grid = (rough_value - value) * share / value
-        return math.copysign(max(abs(grid), abs(least * share / value)) + lost * inlet, grid)
+        return math.copysign(max(abs(grid), abs(least * share / value)) + inlet_share * inlet, grid)
 
     # parts of one complex number: where a spike between two nodes hides the error of the loss, the compliance shows it
     hidden = rough.compliance - response.compliance if fine.spike is not None or starved else 0.0

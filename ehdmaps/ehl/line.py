@@ -155,14 +155,14 @@ def group_spectrum(M: float, L: float, solution: GroupSolution, frequencies: Flo
         ]
     )
     where, index = np.unique(beside, return_inverse=True)
-    found = film_compliances(linear, where)
-    difference = film_compliances(rough, where) - found
+    compliances = film_compliances(linear, where)
+    difference = film_compliances(rough, where) - compliances
     index = index.reshape(beside.shape)
     nearby = read_beside(difference, where, index, frequencies)
     share = response_share(M, L, fine.spike is not None)
     share = max(share, SPIKED) if fine.spike is not None else share
     share_at = share + (1.0 - share) * np.minimum(1.0, (frequencies * cell) ** 2)
-    return GroupSpectrum(found[index[:, 0]], share_at[:, None] * nearby)
+    return GroupSpectrum(compliances[index[:, 0]], share_at[:, None] * nearby)
 
 
 def _widest_cell(profile: Profile) -> float:

@@ -188,7 +188,7 @@ class Arrays(NamedTuple):
 
     Attributes
     ----------
-    found : Factorised
+    lu : Factorised
         The matrix, factorised.
     x, kernel : ndarray, shapes (n + 1,) and (n + 1, n + 1)
         Nodes and deflection.
@@ -198,7 +198,7 @@ class Arrays(NamedTuple):
         What the rate of the stored mass needs.
     """
 
-    found: Factorised
+    lu: Factorised
     x: FloatArray
     kernel: FloatArray
     exit_at: float
@@ -223,7 +223,7 @@ def storage(linear: Arrays, rate: FloatArray) -> FloatArray:
 @njit
 def unit_load(linear: Arrays) -> FloatArray:
     """Right-hand side of a unit load."""
-    unit = np.zeros(linear.found.scale.size)
+    unit = np.zeros(linear.lu.scale.size)
     unit[linear.x.size] = 1.0
     return unit
 
@@ -267,7 +267,7 @@ class Linearisation:
     @property
     def singular(self) -> bool:
         """True where the film has no linear response: a pivot of its matrix is zero to the rounding of the numbers."""
-        return self.arrays.found.singular
+        return self.arrays.lu.singular
 
     def storage(self, rate: FloatArray) -> FloatArray:
         """Contribution of the time derivative to the equations for a rate of the unknowns, both of shape (size,)."""
@@ -275,7 +275,7 @@ class Linearisation:
 
     def solve(self, right: FloatArray) -> FloatArray:
         """Solve matrix z = right, both of shape (size,)."""
-        return solved(self.arrays.found, right)
+        return solved(self.arrays.lu, right)
 
     def slow_response(self) -> Response:
         """Film compliance and loss in the limit of slow motion."""
@@ -332,10 +332,8 @@ def linearised(
     """
     follows = Neighbour(grid, 0.0, 0) if neighbour is None else neighbour
     lengthened = GridShift(grid, 0.0) if longer is None else longer
-    matrix, found, masses, static, slow, *inlet = _linearised(
-        problem, grid, kernel, unknowns, load, follows, lengthened
-    )
-    arrays = Arrays(found, grid.x, kernel, float(unknowns[-2]), masses)
+    matrix, lu, masses, static, slow, *inlet = _linearised(problem, grid, kernel, unknowns, load, follows, lengthened)
+    arrays = Arrays(lu, grid.x, kernel, float(unknowns[-2]), masses)
     response = Response(compliance=-static - DRY_COMPLIANCE, loss=slow)
     return Linearisation(matrix, arrays, response, None if longer is None else Inlet(*inlet))
 
@@ -377,9 +375,9 @@ def _linearised(
         carried = carried - longer_mass
     masses = Masses(stored, carried, by_spike)
     linear = Arrays(factorised(matrix), grid.x, kernel, unknowns[n], masses)
-    static = solved(linear.found, unit_load(linear))
-    slow = solved(linear.found, storage(linear, static))
-    return matrix, linear.found, masses, static[n + 1], -slow[n + 1], longer_residual, longer_mass
+    static = solved(linear.lu, unit_load(linear))
+    slow = solved(linear.lu, storage(linear, static))
+    return matrix, linear.lu, masses, static[n + 1], -slow[n + 1], longer_residual, longer_mass
 
 
 @njit

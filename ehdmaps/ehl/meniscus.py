@@ -124,8 +124,8 @@ def _coarse(M: float, L: float, resolution: Resolution, ratio: float, flooded: P
         if near is None:
             return None, total
     assert near is not None
-    found, steps = _corrected(near, ratio * flooded.mass_flow, resolution.tolerance)
-    return found, total + steps
+    profile, steps = _corrected(near, ratio * flooded.mass_flow, resolution.tolerance)
+    return profile, total + steps
 
 
 class _Search:

@@ -222,11 +222,11 @@ def _parabola(x: FloatArray, y: FloatArray, i: int) -> tuple[float, float, float
 
 def warm_start(profile: Profile | None, grid: Grid) -> FloatArray:
     """Temperatures of a solution nearby at the faces of another grid, shape (n, k); none where it has none."""
-    found = np.zeros((grid.face.size, POINTS))
+    rises = np.zeros((grid.face.size, POINTS))
     if profile is not None and profile.warmth is not None:
         for k in range(POINTS):
-            found[:, k] = np.interp(grid.face, profile.grid.face, profile.warmth.rises[:, k])
-    return found
+            rises[:, k] = np.interp(grid.face, profile.grid.face, profile.warmth.rises[:, k])
+    return rises
 
 
 def moved(profile: Profile, grid: Grid, by_index: bool) -> FloatArray:

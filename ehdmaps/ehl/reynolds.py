@@ -275,8 +275,8 @@ def shear_factors(
         per_drop = 12.0 / problem.wedge * film_here / face_step[f]
         sliding = problem.slide * math.exp(min(log_middle, MOST_LOG_VISCOSITY)) / film_here
         drop = pressure[f + 1] - pressure[f]
-        found = sheared_column(problem.shear, middle, per_drop * drop, sliding, problem.slide)
-        growth = 1.0 + drop * found.mobility_by_rise * per_drop / found.mobility
+        column = sheared_column(problem.shear, middle, per_drop * drop, sliding, problem.slide)
+        growth = 1.0 + drop * column.mobility_by_rise * per_drop / column.mobility
         if soft and problem.shear.form == LIMITING and growth > YIELDING:
             carried = 0.0
             weights = upwind(f)
@@ -284,22 +284,22 @@ def shear_factors(
                 if weights[k] != 0.0:
                     carried += weights[k] * mass[f - 2 + k]
             conductance = film_here**3 / (problem.wedge * face_step[f])
-            asked = (found.carriage * carried - unknowns[n - 1]) / (conductance * means[f])
-            drop = _drop_asked(problem, middle, per_drop, sliding, asked, drop)
-            found = sheared_column(problem.shear, middle, per_drop * drop, sliding, problem.slide)
-        drops[f], carriage[f], stress[f] = drop, found.carriage, found.mean_stress
-        tangent[f] = found.mobility + drop * found.mobility_by_rise * per_drop
-        offset[f] = -drop * drop * found.mobility_by_rise * per_drop
-        by_pressure = 0.5 * (found.mobility_by_pressure + found.mobility_by_slide * sliding * eta_slope)
+            flow = (column.carriage * carried - unknowns[n - 1]) / (conductance * means[f])
+            drop = _drop_asked(problem, middle, per_drop, sliding, flow, drop)
+            column = sheared_column(problem.shear, middle, per_drop * drop, sliding, problem.slide)
+        drops[f], carriage[f], stress[f] = drop, column.carriage, column.mean_stress
+        tangent[f] = column.mobility + drop * column.mobility_by_rise * per_drop
+        offset[f] = -drop * drop * column.mobility_by_rise * per_drop
+        by_pressure = 0.5 * (column.mobility_by_pressure + column.mobility_by_slide * sliding * eta_slope)
         mobility_slopes[f, 0] = mobility_slopes[f, 1] = by_pressure
         mobility_slopes[f, 2] = (
-            found.mobility_by_rise * per_drop * drop - found.mobility_by_slide * sliding
+            column.mobility_by_rise * per_drop * drop - column.mobility_by_slide * sliding
         ) / film_here
-        by_pressure = 0.5 * (found.carriage_by_pressure + found.carriage_by_slide * sliding * eta_slope)
-        carriage_slopes[f, 0] = by_pressure - found.carriage_by_rise * per_drop
-        carriage_slopes[f, 1] = by_pressure + found.carriage_by_rise * per_drop
+        by_pressure = 0.5 * (column.carriage_by_pressure + column.carriage_by_slide * sliding * eta_slope)
+        carriage_slopes[f, 0] = by_pressure - column.carriage_by_rise * per_drop
+        carriage_slopes[f, 1] = by_pressure + column.carriage_by_rise * per_drop
         carriage_slopes[f, 2] = (
-            found.carriage_by_rise * per_drop * drop - found.carriage_by_slide * sliding
+            column.carriage_by_rise * per_drop * drop - column.carriage_by_slide * sliding
         ) / film_here
     none = np.empty((0, 0))
     return Factors(tangent, offset, drops, carriage, mobility_slopes, carriage_slopes, none, none), stress
@@ -307,10 +307,10 @@ def shear_factors(
 
 @njit
 def _drop_asked(
-    problem: LineProblem, pressure: float, per_drop: float, sliding: float, asked: float, start: float
+    problem: LineProblem, pressure: float, per_drop: float, sliding: float, flow: float, start: float
 ) -> float:
-    """Step of pressure whose product with its mobility is `asked`: Newton on logarithms, kept in its bracket."""
-    wanted = abs(asked)
+    """Step of pressure whose product with its mobility is `flow`: Newton on logarithms, kept in its bracket."""
+    wanted = abs(flow)
     if wanted == 0.0:
         return 0.0
     low, high = 0.0, wanted
@@ -318,9 +318,9 @@ def _drop_asked(
     if trial == 0.0:
         trial = wanted
     for _ in range(MOST_DROPS):
-        found = sheared_column(problem.shear, pressure, per_drop * trial, sliding, problem.slide)
-        total = found.mobility * trial
-        steep = found.mobility + trial * found.mobility_by_rise * per_drop
+        column = sheared_column(problem.shear, pressure, per_drop * trial, sliding, problem.slide)
+        total = column.mobility * trial
+        steep = column.mobility + trial * column.mobility_by_rise * per_drop
         if total > wanted:
             high = trial
         else:
@@ -333,7 +333,7 @@ def _drop_asked(
         trial += move
         if abs(move) <= (1e-5 if quadratic else 1e-9) * trial:
             break
-    return math.copysign(trial, asked)
+    return math.copysign(trial, flow)
 
 
 @njit

@@ -323,9 +323,9 @@ class ReynoldsSolver(ContactSolverDefaults):
         load, speed = point.load, point.entrainment_speed
         _, M, L = self._problem(contact, lubricant, point)
         half = float(half_width(load, contact.radius, contact.reduced_modulus))
-        found = group_spectrum(M, L, groups, 2.0 * math.pi * frequencies * half / speed)
+        response = group_spectrum(M, L, groups, 2.0 * math.pi * frequencies * half / speed)
         unit = 4.0 / contact.reduced_modulus  # b/(p_H R)
-        return FilmSpectrum(film, frequencies, unit * found.compliance, unit * found.errors)
+        return FilmSpectrum(film, frequencies, unit * response.compliance, unit * response.errors)
 
     def film_profile(
         self, contact: LineContact, lubricant: Lubricant, point: OperatingPoint
@@ -390,8 +390,8 @@ class ReynoldsSolver(ContactSolverDefaults):
         groups = starved.solution
         if groups.outcome != CONVERGED:
             reason = f"{supply.label}, {ratio:.3g} of the flooded flow: no place found for the meniscus"
-            lost = FilmSolution(Status.STAGNATED, reason, iterations=groups.steps, solve_seconds=seconds)
-            return SuppliedFilm(lost, ratio)
+            unsolved = FilmSolution(Status.STAGNATED, reason, iterations=groups.steps, solve_seconds=seconds)
+            return SuppliedFilm(unsolved, ratio)
         film = _in_si(groups, contact, state, half, peak, point.entrainment_speed, seconds)
         return SuppliedFilm(
             film,

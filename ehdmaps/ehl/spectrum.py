@@ -134,7 +134,7 @@ def arnoldi(step: Callable[[FloatArray], FloatArray], static: FloatArray, height
 @njit
 def _space(linear: Arrays, fastest: float) -> tuple[float, FloatArray, FloatArray]:
     """Length of the static response, T in the space of its vectors, and H0 of these."""
-    static = solved(linear.found, unit_load(linear))
+    static = solved(linear.lu, unit_load(linear))
     norm = float(np.linalg.norm(static))
     size, height = static.size, linear.x.size
     basis = np.empty((size + 1, size))
@@ -154,20 +154,20 @@ def _space(linear: Arrays, fastest: float) -> tuple[float, FloatArray, FloatArra
 @njit
 def _extend(linear: Arrays, basis: FloatArray, hessenberg: FloatArray, count: int) -> None:
     """Add T times the last vector to the basis, orthogonal to all before it; twice, for round-off."""
-    _orthogonalised(solved(linear.found, storage(linear, basis[count])), basis, hessenberg, count)
+    _orthogonalised(solved(linear.lu, storage(linear, basis[count])), basis, hessenberg, count)
 
 
 @njit
-def _orthogonalised(found: FloatArray, basis: FloatArray, hessenberg: FloatArray, count: int) -> None:
+def _orthogonalised(vector: FloatArray, basis: FloatArray, hessenberg: FloatArray, count: int) -> None:
     """Add a vector to the basis, orthogonal to all before it."""
     for _ in range(2):
-        along = basis[: count + 1] @ found
+        along = basis[: count + 1] @ vector
         for i in range(count + 1):
             hessenberg[i, count] += along[i]
-        found -= along @ basis[: count + 1]
-    length = float(np.linalg.norm(found))
+        vector -= along @ basis[: count + 1]
+    length = float(np.linalg.norm(vector))
     hessenberg[count + 1, count] = length
-    basis[count + 1] = found / max(length, _TINY)
+    basis[count + 1] = vector / max(length, _TINY)
 
 
 @njit
@@ -182,14 +182,14 @@ def _projected(
     hessenberg: FloatArray, count: int, heights: FloatArray, frequencies: FloatArray | ComplexArray
 ) -> ComplexArray:
     """H0 of the reduced equations at each frequency, for a start of length one."""
-    found = np.empty(frequencies.size, dtype=np.complex128)
+    responses = np.empty(frequencies.size, dtype=np.complex128)
     for i in range(frequencies.size):
         solution = _reduced(hessenberg, count, frequencies[i])
         total = 0.0 + 0.0j
         for k in range(count):
             total += solution[k] * heights[k]
-        found[i] = total
-    return found
+        responses[i] = total
+    return responses
 
 
 @njit

@@ -126,9 +126,9 @@ def empty_columns(n: int) -> Columns:
 
 @njit
 def gradient_asked(
-    problem: LineProblem, pressure: float, film: float, rises: FloatArray, asked: float, start: float
+    problem: LineProblem, pressure: float, film: float, rises: FloatArray, flow: float, start: float
 ) -> float:
-    """dP/dX of a column whose product with its mobility is `asked`: Newton on logarithms, kept in its bracket.
+    """dP/dX of a column whose product with its mobility is `flow`: Newton on logarithms, kept in its bracket.
 
     Parameters
     ----------
@@ -138,12 +138,12 @@ def gradient_asked(
         P and H.
     rises : ndarray, shape (k,)
         Temperatures [K above T_0].
-    asked : float
+    flow : float
         Mobility times dP/dX.
     start : float
         dP/dX to start from.
     """
-    if asked == 0.0:
+    if flow == 0.0:
         return 0.0
     law, k, p = problem.shear, POINTS, max(pressure, 0.0)
     log_eta, by_rise, by_pressure = np.empty(k), np.empty(k), np.empty(k)
@@ -155,7 +155,7 @@ def gradient_asked(
     below = weights @ INTEGRAL
     per_gradient, shear = 12.0 / problem.wedge * film, problem.slide / film
     secant, bend = fluid.copy(), np.empty(k)
-    sign, wanted = math.copysign(1.0, asked), abs(asked)
+    sign, wanted = math.copysign(1.0, flow), abs(flow)
     low = high = trial = tau_0 = 0.0
     for count in range(MOST_STEPS):
         by_stress, by_raised = 0.0, 0.0
@@ -409,17 +409,17 @@ def fill_column(
     for j in range(k):
         columns.flow[i, j] += PARABOLA[j] * missing
     for v in range(4):
-        lost = 1.0 if v == 3 else 0.0
+        missing_slope = 1.0 if v == 3 else 0.0
         for j in range(k):
-            lost -= WEIGHTS[j] * columns.flow_slopes[i, v, j]
+            missing_slope -= WEIGHTS[j] * columns.flow_slopes[i, v, j]
         for j in range(k):
-            columns.flow_slopes[i, v, j] += PARABOLA[j] * lost
+            columns.flow_slopes[i, v, j] += PARABOLA[j] * missing_slope
     for q in range(k):
-        lost = 0.0
+        missing_slope = 0.0
         for j in range(k):
-            lost -= WEIGHTS[j] * columns.flow_warm[i, j, q]
+            missing_slope -= WEIGHTS[j] * columns.flow_warm[i, j, q]
         for j in range(k):
-            columns.flow_warm[i, j, q] += PARABOLA[j] * lost
+            columns.flow_warm[i, j, q] += PARABOLA[j] * missing_slope
 
 
 HEATED_FROM = 100.0
@@ -447,7 +447,7 @@ def fill_columns(
     kernel: FloatArray,
     unknowns: FloatArray,
     rises: FloatArray,
-    asked: FloatArray,
+    flows: FloatArray,
     columns: Columns,
 ) -> None:
     """Fill all columns of a film.
@@ -460,7 +460,7 @@ def fill_columns(
         The arguments of `reynolds.residual`.
     rises : ndarray, shape (n, k)
         Temperatures [K above T_0].
-    asked : ndarray, shape (n,)
+    flows : ndarray, shape (n,)
         Flow that the gradient of a column follows, see `asked_flows`, NaN where it is that of the pressures; of no
         length where it is so everywhere.
     columns : Columns
@@ -473,9 +473,9 @@ def fill_columns(
         middle = 0.5 * (pressure[f] + pressure[f + 1])
         gradient = (pressure[f + 1] - pressure[f]) / face_step[f]
         columns.gradient_warm[f] = 0.0
-        follows = asked.size > 0 and not math.isnan(asked[f])
+        follows = flows.size > 0 and not math.isnan(flows[f])
         if follows:
-            gradient = gradient_asked(problem, middle, faces[f], rises[f], asked[f], gradient)
+            gradient = gradient_asked(problem, middle, faces[f], rises[f], flows[f], gradient)
         fill_column(problem, f, middle, faces[f], gradient, unknowns[n - 1], rises[f], columns)
         if follows:
             steepness = columns.mobility[f, 0] + gradient * columns.mobility[f, 3]
@@ -528,7 +528,7 @@ def asked_flows(
     pressure, gap = node_pressure(unknowns), film(x, kernel, unknowns)
     log_eta, slope, rho, rho_slope = oil(problem, pressure)
     means = cell_means(problem, log_eta - np.log(rho), slope - rho_slope / rho, pressure)[0]
-    asked = np.full(n, np.nan)
+    flows = np.full(n, np.nan)
     for f in range(n):
         film_here, gradient = columns.place[f, 1], columns.place[f, 2]
         mobility, by_gradient = columns.mobility[f, 0], columns.mobility[f, 3]
@@ -541,5 +541,5 @@ def asked_flows(
                 if weights[k] != 0.0:
                     carried += weights[k] * rho[f - 2 + k] * gap[f - 2 + k]
             flow = columns.carriage[f, 0] * carried - unknowns[n - 1]
-            asked[f] = flow * problem.wedge / (film_here**3 * means[f])
-    return asked
+            flows[f] = flow * problem.wedge / (film_here**3 * means[f])
+    return flows

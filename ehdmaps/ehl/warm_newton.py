@@ -147,7 +147,7 @@ def warm_temperatures(
     first: int,
     rises: FloatArray,
     columns: Columns,
-    asked: FloatArray,
+    flows: FloatArray,
     tolerance: float,
     most_steps: int,
 ) -> tuple[EnergyEquations, float]:
@@ -165,7 +165,7 @@ def warm_temperatures(
         Temperatures [K above T_0].
     columns : Columns
         Columns of the film, on return those at its temperatures.
-    asked : ndarray, shape (n,)
+    flows : ndarray, shape (n,)
         Flow that the gradient of a column follows, see `asked_flows`, NaN where it is that of the pressures; of no
         length where it is so everywhere.
     tolerance : float
@@ -178,12 +178,12 @@ def warm_temperatures(
     last = math.inf
     count = 0
     while True:
-        fill_columns(problem, x, face_step, kernel, unknowns, rises, asked, columns)
+        fill_columns(problem, x, face_step, kernel, unknowns, rises, flows, columns)
         equations = energy(problem, columns, face_step, walls, rises, first)
         if not np.all(np.isfinite(equations.residual)):
             return equations, math.inf
         if last <= tolerance or count >= most_steps:
-            if asked.size > 0:
+            if flows.size > 0:
                 hold_gradients(problem, unknowns[n - 1], rises, columns)
                 equations = energy(problem, columns, face_step, walls, rises, first)
             return equations, last
@@ -242,7 +242,7 @@ def warm_newton(
     before, warm_before, taken, warming = unknowns, rises, np.zeros(size), np.zeros((n, POINTS))
     frozen, known = not near, near
 
-    def asked() -> FloatArray:
+    def flows() -> FloatArray:
         """Flows that the columns are asked to pass: far from a solution, where the stress hardly depends on them."""
         if problem.shear.form != LIMITING or last <= SOFT_ABOVE:
             return np.empty(0)
@@ -252,7 +252,7 @@ def warm_newton(
     def settled(tolerance: float, steps: int = MOST_STEPS) -> tuple[EnergyEquations, float]:
         """Temperatures of these unknowns."""
         return warm_temperatures(
-            problem, x, face_step, kernel, unknowns, walls, first, rises, columns, asked(), tolerance, steps
+            problem, x, face_step, kernel, unknowns, walls, first, rises, columns, flows(), tolerance, steps
         )
 
     for count in range(most_steps):
@@ -260,7 +260,7 @@ def warm_newton(
         equations: EnergyEquations | None = None
         if frozen:
             # from another grid pressures are too rough to heat anything: first with the temperatures as they are
-            fill_columns(problem, x, face_step, kernel, unknowns, rises, asked(), columns)
+            fill_columns(problem, x, face_step, kernel, unknowns, rises, flows(), columns)
         elif known and (last < JOINT or (near and count == 0)) and np.max(np.abs(warming)) < NEAR:
             # film and temperatures in one step
             equations, left = settled(close, 0)

@@ -123,14 +123,14 @@ class WarmLinearisation:
     factors: Factors
     following: FloatArray
     by_grid: _Grid | None
-    found: Factorised
+    lu: Factorised
     warmest: float
     balance: float
 
     @property
     def singular(self) -> bool:
         """True where the film has no linear response: a pivot of its matrix is zero to the rounding of the numbers."""
-        return self.found.singular
+        return self.lu.singular
 
     @property
     def height(self) -> int:
@@ -140,7 +140,7 @@ class WarmLinearisation:
     @property
     def rows(self) -> int:
         """Number of unknowns but for the temperatures."""
-        return self.found.scale.size
+        return self.lu.scale.size
 
     def solve(self, right: FloatArray, heat: FloatArray) -> FloatArray:
         """State of the equations without storage.
@@ -156,7 +156,7 @@ class WarmLinearisation:
         extra = marched(here.equations, heat, self.first)[:, :, 0]
         right = right.copy()
         right[:size] -= self._moved_by(extra)
-        film_part = np.asarray(solved(self.found, right))
+        film_part = np.asarray(solved(self.lu, right))
         rises = extra + (self.following.reshape(-1, size) @ film_part[:size]).reshape(extra.shape)
         if self.by_grid is not None:
             rises = rises + self.by_grid.rises * film_part[size]
@@ -371,10 +371,10 @@ def warm_linearised(
             rises=(moved.rises - here.rises) / neighbour.shift,
             films=(np.asarray(face_films(moved.gap)) - np.asarray(face_films(here.gap))) / neighbour.shift,
         )
-    found = factorised(matrix)
+    lu = factorised(matrix)
     warmest = max(float(np.max(here.rises)), LEAST_RISE)
     balance = _balance(problem, here, first)
-    return WarmLinearisation(problem, unknowns, first, here, factors, following, by_grid, found, warmest, balance)
+    return WarmLinearisation(problem, unknowns, first, here, factors, following, by_grid, lu, warmest, balance)
 
 
 def _balance(problem: LineProblem, here: _State, first: int) -> float:

@@ -110,13 +110,13 @@ def _weakened(
     weakening = WEAKENING
     while outcome == CONVERGED and strength > 1.0:
         weaker = max(1.0, strength * weakening)
-        trial, steps, found = _isothermal(_stronger(problem, weaker), grid, kernel, unknowns, tolerance)
+        trial, steps, trial_outcome = _isothermal(_stronger(problem, weaker), grid, kernel, unknowns, tolerance)
         total += steps
-        if found == CONVERGED:
+        if trial_outcome == CONVERGED:
             unknowns, strength, weakening = trial, weaker, weakening**1.5
         else:
             weakening = math.sqrt(weakening)
-            outcome = found if weakening > LEAST_WEAKENING else CONVERGED
+            outcome = trial_outcome if weakening > LEAST_WEAKENING else CONVERGED
     return unknowns, total, outcome
 
 
@@ -310,19 +310,19 @@ def coarse_solution(
         Newton steps of all grids, and how the last of them ended.
     """
     density = min(resolution.density, SEARCH_DENSITY)
-    found, total, outcome = _first(problem, M, L, replace(resolution, density=density), previous)
+    profile, total, outcome = _first(problem, M, L, replace(resolution, density=density), previous)
     finer = resolution
-    while found is not None and density < resolution.density:
+    while profile is not None and density < resolution.density:
         growth = min(REFINEMENT, resolution.density / density)
         density *= growth
         for widening in (1.0, growth * growth):
             finer = replace(finer, density=density, spike_width=widening * finer.spike_width)
-            trial, steps, outcome = on_coarse_grid(problem, expected_film(M, L), finer, found)
+            trial, steps, outcome = on_coarse_grid(problem, expected_film(M, L), finer, profile)
             total += steps
             if trial is not None:
                 break
-        found = trial
-    return found, total, outcome
+        profile = trial
+    return profile, total, outcome
 
 
 def _first(
@@ -334,17 +334,17 @@ def _first(
     guess = expected_film(M, L)
     total, outcome = 0, CONVERGED
     warm = previous if M >= COLD_START_BELOW else None
-    found: Profile | None = None
+    profile: Profile | None = None
     if warm is not None:
-        found, steps, outcome = on_coarse_grid(problem, guess, resolution, warm)
+        profile, steps, outcome = on_coarse_grid(problem, guess, resolution, warm)
         total += steps
-    if found is None and (M < 20.0 or problem.shear.form != NEWTONIAN):
-        found, steps, outcome = on_coarse_grid(problem, guess, resolution, None)
+    if profile is None and (M < 20.0 or problem.shear.form != NEWTONIAN):
+        profile, steps, outcome = on_coarse_grid(problem, guess, resolution, None)
         total += steps
-    if found is None:
-        found, steps, outcome = _climb(problem, M, L, resolution)
+    if profile is None:
+        profile, steps, outcome = _climb(problem, M, L, resolution)
         total += steps
-    return found, total, outcome
+    return profile, total, outcome
 
 
 def _heated(
@@ -353,28 +353,28 @@ def _heated(
     """Coarse solution of a film with temperatures: from the previous point, or from the isothermal film, heated up."""
     guess, total, outcome = expected_film(M, L), 0, STAGNATED
     if previous is not None and M >= COLD_START_BELOW:
-        found, steps, outcome = on_coarse_grid(problem, guess, resolution, previous)
+        profile, steps, outcome = on_coarse_grid(problem, guess, resolution, previous)
         total += steps
-        if found is not None:
-            return found, total, outcome
+        if profile is not None:
+            return profile, total, outcome
     cold, steps, outcome = _first(problem._replace(heat=NO_HEAT), M, L, resolution, None)
     total += steps
     if cold is None:
         return None, total, outcome
-    found, steps, outcome = on_coarse_grid(problem, guess, resolution, cold)
+    profile, steps, outcome = on_coarse_grid(problem, guess, resolution, cold)
     total += steps
-    if found is not None:
-        return found, total, outcome
-    reached, part, found = 0.0, FIRST_HEAT, cold
+    if profile is not None:
+        return profile, total, outcome
+    reached, part, profile = 0.0, FIRST_HEAT, cold
     while reached < 1.0 and part > LEAST_HEAT:
         share = min(1.0, reached + part)
-        trial, steps, outcome = on_coarse_grid(_less_heated(problem, share), guess, resolution, found)
+        trial, steps, outcome = on_coarse_grid(_less_heated(problem, share), guess, resolution, profile)
         total += steps
         if trial is None:
             part *= 0.5
         else:
-            found, reached, part = trial, share, 1.5 * part
-    return found if reached == 1.0 else None, total, outcome
+            profile, reached, part = trial, share, 1.5 * part
+    return profile if reached == 1.0 else None, total, outcome
 
 
 def _less_heated(problem: LineProblem, share: float) -> LineProblem:

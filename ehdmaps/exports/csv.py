@@ -96,8 +96,8 @@ def _lines(emap: EHDMap, chosen: Chosen, name: str) -> Iterator[str]:
     yield ",".join([*COLUMNS, *(f"{film} [m]" for film in films), *(f"{name} [1]" for name in of_roughness)])
     for temperature in chosen.temperatures:
         for speed in chosen.speeds:
-            found = curves(field, contacts, loads, speed, temperature, layers)
-            columns = [loads, found.approach, found.film_offset, found.stiffness, found.damping]
+            curve = curves(field, contacts, loads, speed, temperature, layers)
+            columns = [loads, curve.approach, curve.film_offset, curve.stiffness, curve.damping]
             between = [film_between(emap, film, contacts[0].name, loads, speed, temperature) for film in films]
             columns += between
             if of_roughness:

@@ -108,17 +108,20 @@ def contents(emap: EHDMap, name: str) -> dict[str, Any]:
         str(field) for field, array in dataset.data_vars.items() if array.dims == DIMS and array.dtype.kind in "fiu"
     ]
     described = [*DIMS[1:], *fields]
-    found: dict[str, Any] = {axis: dataset[axis].values.astype(float)[:, None] for axis in DIMS[1:]}
+    content: dict[str, Any] = {axis: dataset[axis].values.astype(float)[:, None] for axis in DIMS[1:]}
     for contact in emap.contacts:
         points = dataset.sel(contact=contact.name)
-        found[contact.name] = {field: points[field].values.astype(float) for field in fields}
-    found["units"] = {field: plain(dataset[field].attrs["units"]) for field in described}
-    found["meaning"] = {field: _meaning(dataset[field].attrs) for field in described}
+        content[contact.name] = {field: points[field].values.astype(float) for field in fields}
+    content["units"] = {field: plain(dataset[field].attrs["units"]) for field in described}
+    content["meaning"] = {field: _meaning(dataset[field].attrs) for field in described}
     attributes = {str(key): value for key, value in dataset.attrs.items() if _FIELD.fullmatch(str(key))}
-    found["provenance"] = {key: _value(value) for key, value in attributes.items()}
+    content["provenance"] = {
+        key: ascii_text(value) if isinstance(value, str) else np.asarray(value, dtype=float)
+        for key, value in attributes.items()
+    }
     lines = [*origin(emap, name), *_NOTES]
-    found["header"] = np.array([ascii_text(line) for line in lines], dtype=object)[:, None]
-    return found
+    content["header"] = np.array([ascii_text(line) for line in lines], dtype=object)[:, None]
+    return content
 
 
 def _meaning(attributes: dict[str, Any]) -> str:
@@ -128,11 +131,6 @@ def _meaning(attributes: dict[str, Any]) -> str:
         return words
     codes = zip(np.ravel(attributes["flag_values"]), str(attributes["flag_meanings"]).split(), strict=True)
     return f"{words}: {', '.join(f'{code} {plain(meaning)}' for code, meaning in codes)}"
-
-
-def _value(value: Any) -> Any:
-    """Return an attribute as a text, or as the number that it is."""
-    return ascii_text(value) if isinstance(value, str) else np.asarray(value, dtype=float)
 
 
 def _add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -154,11 +152,11 @@ def _write(emap: EHDMap, path: Path, output: Path | None, arguments: argparse.Na
     if count and not FEWEST <= count <= MOST:
         raise InputError(f"--resample: got {count}; allowed: 0, or {FEWEST} to {MOST}")
     check_outputs([Output("-o", output, KIND)], [path])
-    found, words = contents(emap, path.name), ""
+    content, words = contents(emap, path.name), ""
     if count:
         law, words = _law(emap, count)
-        found |= law
-    write_matlab(output, {"map": found}, "export it as csv")
+        content |= law
+    write_matlab(output, {"map": content}, "export it as csv")
     return f"{output}: written{words}"
 
 
@@ -170,17 +168,17 @@ def _law(emap: EHDMap, count: int) -> tuple[dict[str, Any], str]:
             raise MapError("a map of standstill alone")
     except MapError as error:
         return {}, f"\nwarning: without a resampled law: {error}"
-    found = resampled(law, count)
-    apart = differences(found, law)
-    return {"law": struct(found, apart)}, _said(found, [float(apart[name][-1]) for name in QUANTITIES])
+    table = resampled(law, count)
+    apart = differences(table, law)
+    return {"law": struct(table, apart)}, _law_words(table, [float(apart[name][-1]) for name in QUANTITIES])
 
 
-def _said(found: Resampled, largest: list[float]) -> str:
+def _law_words(table: Resampled, largest: list[float]) -> str:
     """Return how large the resampled law is, and how exact."""
-    size = " x ".join(map(str, found.shape))
+    size = " x ".join(map(str, table.shape))
     parts = ", ".join(f"{100.0 * part:.2g} % of the {name}" for part, name in zip(largest, QUANTITIES, strict=True))
     return (
-        f"\nlaw: {found.kind}, {size} over approach, speed, temperature; by linear interpolation at 2000 places within "
+        f"\nlaw: {table.kind}, {size} over approach, speed, temperature; by linear interpolation at 2000 places within "
         f"{parts}"
     )
 

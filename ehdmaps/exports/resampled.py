@@ -133,14 +133,14 @@ def resampled(law: ContactLaw, count: int) -> Resampled:
     return Resampled(law.kind, axes, fine, np.moveaxis(alignment, -1, 0), bottom, _logarithms(law, bottom, *axes))
 
 
-def differences(found: Resampled, law: ContactLaw) -> dict[Quantity, FloatArray]:
+def differences(table: Resampled, law: ContactLaw) -> dict[Quantity, FloatArray]:
     """Measure how far linear interpolation is from the law, at random places that are the same each time.
 
     They are spread evenly over the logarithms of load and speed and over temperature, within the map.
 
     Parameters
     ----------
-    found : Resampled
+    table : Resampled
         The grid.
     law : ContactLaw
         The law that it was made from.
@@ -151,17 +151,17 @@ def differences(found: Resampled, law: ContactLaw) -> dict[Quantity, FloatArray]
         Relative differences of load, stiffness and damping: median, 95 % quantile, largest.
     """
     random = np.random.default_rng(1)
-    along_speed, (cold, hot), (low, high) = found.axes[1], law.temperature_range, np.log(law.load_range)
+    along_speed, (cold, hot), (low, high) = table.axes[1], law.temperature_range, np.log(law.load_range)
     speeds = np.exp(random.uniform(along_speed[0], along_speed[-1], _CHECKED))
     kelvins, loads = random.uniform(cold, hot, _CHECKED), random.uniform(low, high, _CHECKED)
     approaches, wanted = np.empty(_CHECKED), np.empty((3, _CHECKED))
     for place, (u, T, load) in enumerate(zip(speeds.tolist(), kelvins.tolist(), loads.tolist(), strict=True)):
-        along = _approaches(law, found.bottom, u, T, np.linspace(-1.0, 1.0, _ALONG))
+        along = _approaches(law, table.bottom, u, T, np.linspace(-1.0, 1.0, _ALONG))
         at = law.at(u, T)
         values = np.log(np.maximum(at(along, 0.0)[0], _LEAST))
         approaches[place] = np.interp(load, values, along)
         wanted[:, place] = at(approaches[place], 0.0)
-    read = found.at(approaches, speeds, kelvins)
+    read = table.at(approaches, speeds, kelvins)
     # A damping that is zero everywhere is read as 1e-300: no difference.
     largest = np.max(wanted, axis=1, keepdims=True)
     apart = np.abs(read - wanted) / np.maximum(wanted, np.where(largest > 0.0, 1e-12 * largest, 1.0))
@@ -171,31 +171,31 @@ def differences(found: Resampled, law: ContactLaw) -> dict[Quantity, FloatArray]
     }
 
 
-def struct(found: Resampled, apart: dict[Quantity, FloatArray]) -> dict[str, Any]:
+def struct(table: Resampled, apart: dict[Quantity, FloatArray]) -> dict[str, Any]:
     """Return the struct `map.law` of a MATLAB file as nested dictionaries.
 
     Parameters
     ----------
-    found : Resampled
+    table : Resampled
         The grid.
     apart : dict of str to array
         Differences from the law, see `differences`.
     """
-    offset, scale, top = found.alignment
+    offset, scale, top = table.alignment
     fields = {
-        "axis_place": found.axes[0][:, None],
-        "axis_speed": found.axes[1][:, None],
-        "axis_temperature": found.axes[2][:, None],
-        "fine_axis_speed": found.fine_axes[0][:, None],
-        "fine_axis_temperature": found.fine_axes[1][:, None],
+        "axis_place": table.axes[0][:, None],
+        "axis_speed": table.axes[1][:, None],
+        "axis_temperature": table.axes[2][:, None],
+        "fine_axis_speed": table.fine_axes[0][:, None],
+        "fine_axis_temperature": table.fine_axes[1][:, None],
         "offset": offset,
         "scale": scale,
         "top": top,
-        "bottom": found.bottom,
-        **{f"log_{name}": table for name, table in zip(QUANTITIES, found.logarithms, strict=True)},
+        "bottom": table.bottom,
+        **{f"log_{name}": values for name, values in zip(QUANTITIES, table.logarithms, strict=True)},
     }
     return {
-        "contact": found.kind,
+        "contact": table.kind,
         **fields,
         "error": {name: values[:, None] for name, values in apart.items()},
         "meaning": _MEANING,
@@ -235,8 +235,8 @@ def _cold(temperature: FloatArray) -> FloatArray:
 
 def _kelvins(cold: FloatArray) -> list[float]:
     """Return temperatures [K] of the axis."""
-    found: list[float] = (COLDEST - 1.0 / cold).tolist()
-    return found
+    kelvins: list[float] = (COLDEST - 1.0 / cold).tolist()
+    return kelvins
 
 
 def _axes(law: ContactLaw, speeds: int, temperatures: int) -> tuple[FloatArray, FloatArray]:
@@ -291,6 +291,6 @@ def _placed(law: ContactLaw, bottom: float, count: int) -> FloatArray:
     density = np.maximum(density, np.convolve(density, near / near.size, mode="same"))
     density += _EVENLY * max(float(density.mean()), _LEAST)
     reached = np.append(0.0, np.cumsum(0.5 * (density[1:] + density[:-1])))
-    found = np.interp(np.linspace(0.0, reached[-1], count), reached, places)
-    found[np.argmin(np.abs(found))] = 0.0
-    return found
+    nodes = np.interp(np.linspace(0.0, reached[-1], count), reached, places)
+    nodes[np.argmin(np.abs(nodes))] = 0.0
+    return nodes

@@ -219,13 +219,11 @@ def origin(emap: EHDMap, name: str, beyond: str = "refused") -> tuple[str, ...]:
     return (
         f"{MARK} {version()}",
         *(f"{key}: {plain(value)}" for key, value in stated if value),
-        *(f"{label}: {_span(emap, axis, display)}; {beyond} beyond" for axis, label, display in _ranges()),
+        *(
+            f"range of {axis.replace('_', ' ')}: {_span(emap, axis, display)}; {beyond} beyond"
+            for axis, display in _AXES
+        ),
     )
-
-
-def _ranges() -> tuple[tuple[str, str, Display], ...]:
-    """Return axes of the map with the words for them."""
-    return tuple((axis, f"range of {axis.replace('_', ' ')}", display) for axis, display in _AXES)
 
 
 def _span(emap: EHDMap, axis: str, display: Display) -> str:

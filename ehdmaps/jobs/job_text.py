@@ -212,18 +212,18 @@ def _estimate_keys(plain: BearingGeometry) -> BearingKeys:
     # The static rating is what gave the roller length; a rating is not stated to more than nine digits.
     rating = float(f"{static_rating(plain):.9g}")
     sizes = _NAMED_SIZES.fullmatch(plain.name)
-    found: BearingKeys = {"basic_static_rating": _quantity(rating, "N")}
+    keys: BearingKeys = {"basic_static_rating": _quantity(rating, "N")}
     if sizes:
         bore, outside, width = (quantity(f"{size} mm", "m") for size in sizes.groups())
-        found["estimate"] = {
+        keys["estimate"] = {
             key: f"{size} mm" for key, size in zip(("bore", "outside_diameter", "width"), sizes.groups(), strict=True)
         }
         if _gives(plain, lambda: estimate_from_dimensions(bore, outside, width, rating)):
-            return found
+            return keys
     elif _gives(plain, lambda: estimate(plain.name)):
         return {"estimate": plain.name}
     elif _gives(plain, lambda: estimate(plain.name, rating)):
-        return {**found, "estimate": plain.name}
+        return {**keys, "estimate": plain.name}
     raise InputError(
         f"bearing: got {plain.name!r}, estimated from more than its designation, or dimensions, and its static rating; "
         "allowed: a bearing of known geometry, or one estimated from these; write a job file with estimate for this one"
@@ -279,10 +279,10 @@ def _lubricant(oil: Lubricant) -> Iterator[tuple[str, Entry]]:
             value = float(record[parameter.key])
             yield parameter.key, _quantity(value, parameter.unit) if parameter.unit else value
     for key, unit in _OIL_UNITS.items():
-        said = (oil.correlation and key.startswith("pressure_viscosity")) or (
+        derived = (oil.correlation and key.startswith("pressure_viscosity")) or (
             key == "fitted_pressure" and oil.reach_assumed
         )
-        if key in record and not said:
+        if key in record and not derived:
             yield from _oil_quantity(key, float(record[key]), unit)
     for key, unit in _OIL_HEAT_UNITS.items():
         if key in record:

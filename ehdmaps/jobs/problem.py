@@ -83,12 +83,12 @@ def read_speeds(grid: Table, bearing: BearingGeometry | None, known: bool = True
     if bearing is None:
         grid.note(ring, f"got no bearing to turn; allowed: with a [bearing]; give {own} in m/s for a bare contact")
         return None
-    found = tuple(bearing.entrainment_speed(speed) for speed in speeds or ())
-    if found and found[-1] > SPEED_AXIS.high:
+    entrainment = tuple(bearing.entrainment_speed(speed) for speed in speeds or ())
+    if entrainment and entrainment[-1] > SPEED_AXIS.high:
         limit = RPM.text(bearing.inner_speed(SPEED_AXIS.high))
         grid.note(ring, f"got {RPM.text((speeds or (0.0,))[-1])}; allowed: up to {limit} for this bearing")
         return None
-    return found or None
+    return entrainment or None
 
 
 def read_axis(grid: Table, rule: AxisRule) -> tuple[float, ...] | None:
@@ -153,18 +153,18 @@ def _listed(entries: list[object], grid: Table, rule: AxisRule) -> tuple[float, 
         grid.quantity_of(entry, f"{rule.key}[{index}]", rule.unit, rule.low, rule.high, rule.display)
         for index, entry in enumerate(entries)
     ]
-    found = [value for value in values if value is not None]
-    if len(grid.problems) > before or len(found) < len(values):
+    known = [value for value in values if value is not None]
+    if len(grid.problems) > before or len(known) < len(values):
         return None
-    for index in range(1, len(found)):
-        if found[index] <= found[index - 1]:
-            word = "twice" if found[index] == found[index - 1] else "after " + rule.display.text(found[index - 1])
+    for index in range(1, len(known)):
+        if known[index] <= known[index - 1]:
+            word = "twice" if known[index] == known[index - 1] else "after " + rule.display.text(known[index - 1])
             grid.note(
                 rule.key,
-                f"got {rule.display.text(found[index])} {word}; allowed: rising values, each once; sort the list",
+                f"got {rule.display.text(known[index])} {word}; allowed: rising values, each once; sort the list",
             )
             return None
-    return tuple(found)
+    return tuple(known)
 
 
 Built = TypeVar("Built")

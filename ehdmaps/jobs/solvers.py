@@ -346,9 +346,9 @@ def solver_words(options: Mapping[str, Any]) -> str:
         Keys of the solver.
     """
     words = [str(options[key]) for key in ("physics", "shear") if key in options]
-    told = [word for word in words if word not in (ISOTHERMAL, "newtonian")]
+    own = [word for word in words if word not in (ISOTHERMAL, "newtonian")]
     slip = options.get("slide_to_roll", 0.0)
-    return "".join(f", {word}" for word in (*told, *([f"slide to roll {slip:g}"] if slip else [])))
+    return "".join(f", {word}" for word in (*own, *([f"slide to roll {slip:g}"] if slip else [])))
 
 
 def stated(name: str, texts: Mapping[str, str], problems: list[str]) -> dict[str, Any]:
@@ -377,9 +377,9 @@ def stated(name: str, texts: Mapping[str, str], problems: list[str]) -> dict[str
             instead = f"with --solver {' or '.join(having)}" if having else "no solver takes it yet"
             problems.append(f"{where}: the solver {name!r} knows none; allowed: {instead}")
             continue
-        found: list[str] = []
-        value = option.read(Table({key: _typed(text)}, where, found))
-        problems += [problem.replace(f"{where} {key}:", f"{where}:", 1) for problem in found]
+        own_problems: list[str] = []
+        value = option.read(Table({key: _typed(text)}, where, own_problems))
+        problems += [problem.replace(f"{where} {key}:", f"{where}:", 1) for problem in own_problems]
         if value is not None:
             values[key] = value
     return values

@@ -134,9 +134,9 @@ class Table:
         section = self.table(key, where)
         if section is None:
             return None
-        found = read(section)
+        value = read(section)
         (close or Table.close)(section)
-        return found
+        return value
 
     def quantity(
         self, key: str, unit: str, low: float, high: float, display: Display, *, required: bool = False

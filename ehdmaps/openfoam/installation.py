@@ -67,8 +67,8 @@ class Installation:
     @property
     def openfoam_version(self) -> str:
         """Version of OpenFOAM for which `ehlFoam` was built, as its record says."""
-        found = _VERSION.search(self.build)
-        return found[1] if found else "unknown"
+        match = _VERSION.search(self.build)
+        return match[1] if match else "unknown"
 
     @property
     def version(self) -> str:
@@ -238,8 +238,8 @@ def processor(cpu_information: Path = Path("/proc/cpuinfo")) -> str:
 
 def _release(version: str) -> str:
     """Number of a release: 1912 of v1912 and of 1912.200626-1."""
-    found = _RELEASE.match(version)
-    return found[1] if found else version
+    match = _RELEASE.match(version)
+    return match[1] if match else version
 
 
 def _hash(template: Path) -> str:

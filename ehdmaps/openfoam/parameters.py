@@ -255,7 +255,8 @@ class Parameters:
         yield _entry("load", self.load)
         yield _entry("lowerSpeed", self.lower_speed)
         yield _entry("upperSpeed", self.upper_speed)
-        yield from _block("viscosity", _viscosity(self.oil))
+        isotherm = [_entry(key, value) for key, value in _numbers(self.oil).items()]
+        yield from _block("viscosity", [f"type {self.oil.pressure_viscosity.case_name};", *isotherm])
         yield from _block("density", [f"type {_density(self.oil)};", _entry("density", self.oil.density)])
         yield from _block("shear", _shear(self.shear))
         yield from _block("cavitation", [_entry("pressureRange", self.cavitation_range)])
@@ -291,12 +292,6 @@ class Parameters:
         yield _count("maxIterations", self.max_iterations)
         yield _entry("tolerance", self.tolerance)
         yield _switch("writeFields", self.write_fields)
-
-
-def _viscosity(oil: LubricantState) -> list[str]:
-    """The isotherm under the name of its law, with its numbers."""
-    entries = [_entry(key, value) for key, value in _numbers(oil).items()]
-    return [f"type {oil.pressure_viscosity.case_name};", *entries]
 
 
 def _heat(heat: Heat) -> list[str]:

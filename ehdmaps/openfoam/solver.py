@@ -268,13 +268,13 @@ class OpenFoamSolver(ContactSolverDefaults):
             return no_spectrum(film, frequencies)
         if coarse is None or fine is None:
             return slow_spectrum(film, frequencies)
-        found, rough = (grid.results.complex_compliance[1:] for grid in (fine, coarse))
+        compliance, rough = (grid.results.complex_compliance[1:] for grid in (fine, coarse))
         index = index.reshape(frequencies.size, -1)
-        errors = read_beside((rough - found) / 3.0, where, index, frequencies)
+        errors = read_beside((rough - compliance) / 3.0, where, index, frequencies)
         # at very high frequencies the Krylov space ends before its residual is small
         at_rest = abs(film.film_compliance) + 4.0 * DRY_COMPLIANCE / contact.reduced_modulus
         left = at_rest * np.array(fine.results.response_residual)[1:][index[:, :1]]
-        return FilmSpectrum(film, frequencies, found[index[:, 0]], np.hstack([errors, left, 1j * left]))
+        return FilmSpectrum(film, frequencies, compliance[index[:, 0]], np.hstack([errors, left, 1j * left]))
 
     def solve_fields(
         self,
@@ -462,7 +462,7 @@ def _film(
 
     To that of the largest pressure comes what a spike may rise above the columns beside it.
     """
-    found, rough = fine.results, coarse.results
+    results, rough = fine.results, coarse.results
     rolling, flow = _rolling_force_and_flow(contact, state, speed, fine.film)
     rough_rolling, rough_flow = _rolling_force_and_flow(contact, state, speed, coarse.film)
 
@@ -470,45 +470,45 @@ def _film(
         """Relative, > 0 where refinement lowers the value."""
         return (of_coarse - value) / (3.0 * value) if value else math.nan
 
-    refused = too_thick(found.film_offset, contact.radius)
+    refused = too_thick(results.film_offset, contact.radius)
     if refused:
         return FilmSolution(Status.OUTSIDE_VALIDITY, refused, solve_seconds=seconds)
     status, notes = Status.CONVERGED, [coarse.note, fine.note]
-    if found.film_offset / contact.radius > THIN_FILM_LIMIT:
+    if results.film_offset / contact.radius > THIN_FILM_LIMIT:
         status = Status.ASYMPTOTE
         notes.append("film thicker than 1 % of the radius: the gap is that of a parabola")
-    elif found.loss_compliance[0] < 0.0:
+    elif results.loss_compliance[0] < 0.0:
         notes.append("negative damping at the valley; a contact law takes zero")
     if newtonian:
         notes.append(wall_stress_note(fine.film.x, fine.film.pressure, fine.film.film))
-    largest_error = abs(error(found.max_pressure, rough.max_pressure))
+    largest_error = abs(error(results.max_pressure, rough.max_pressure))
     largest_error += peak_sampling_error(fine.film.x, fine.film.pressure, cusp=True)
     return FilmSolution(
         status=status,
         reason="; ".join(filter(None, notes)),
-        film_offset=found.film_offset,
-        film_compliance=found.film_compliance[0],
-        loss_compliance=found.loss_compliance[0],
-        central_film=found.central_film,
-        minimum_film=found.minimum_film,
-        max_pressure=found.max_pressure,
+        film_offset=results.film_offset,
+        film_compliance=results.film_compliance[0],
+        loss_compliance=results.loss_compliance[0],
+        central_film=results.central_film,
+        minimum_film=results.minimum_film,
+        max_pressure=results.max_pressure,
         rolling_force=rolling,
         mass_flow=flow,
-        traction=found.traction,
-        wall_stress=found.wall_stress,
-        film_offset_error=error(found.film_offset, rough.film_offset),
-        film_compliance_error=error(found.film_compliance[0], rough.film_compliance[0]),
-        loss_compliance_error=error(found.loss_compliance[0], rough.loss_compliance[0]),
-        central_film_error=abs(error(found.central_film, rough.central_film)),
-        minimum_film_error=abs(error(found.minimum_film, rough.minimum_film)),
+        traction=results.traction,
+        wall_stress=results.wall_stress,
+        film_offset_error=error(results.film_offset, rough.film_offset),
+        film_compliance_error=error(results.film_compliance[0], rough.film_compliance[0]),
+        loss_compliance_error=error(results.loss_compliance[0], rough.loss_compliance[0]),
+        central_film_error=abs(error(results.central_film, rough.central_film)),
+        minimum_film_error=abs(error(results.minimum_film, rough.minimum_film)),
         max_pressure_error=largest_error,
         rolling_force_error=abs(error(rolling, rough_rolling)),
         mass_flow_error=abs(error(flow, rough_flow)),
-        film_temperature=found.film_temperature,
-        surface_temperature=found.surface_temperature,
-        iterations=rough.iterations + found.iterations,
+        film_temperature=results.film_temperature,
+        surface_temperature=results.surface_temperature,
+        iterations=rough.iterations + results.iterations,
         solve_seconds=seconds,
-        viscosity_extrapolated=found.max_pressure * (1.0 + largest_error) > state.fitted_pressure,
+        viscosity_extrapolated=results.max_pressure * (1.0 + largest_error) > state.fitted_pressure,
     )
 
 

@@ -133,8 +133,8 @@ def _log_ticks(low: float, high: float) -> list[float]:
     steps = (1.0, 2.0, 5.0) if math.log10(high / low) < 2.0 else (1.0,)
     every = max(math.ceil((last - first) / _MOST_TICKS), 1)
     powers = [power for power in range(first, last + 1) if power % every == 0]
-    found = [step * 10.0**power for power in powers for step in steps]
-    inside = [value for value in found if low * (1.0 - _ROUND_OFF) <= value <= high * (1.0 + _ROUND_OFF)]
+    ticks = [step * 10.0**power for power in powers for step in steps]
+    inside = [value for value in ticks if low * (1.0 - _ROUND_OFF) <= value <= high * (1.0 + _ROUND_OFF)]
     return inside if len(inside) > 1 else [value for value in _linear_ticks(low, high) if value > 0.0]
 
 
@@ -485,14 +485,14 @@ def path_of(across: FloatArray, along: FloatArray) -> str:
     across, along : ndarray, shape (n,)
         The points; far beyond a drawing they are held.
     """
-    found, pen = [], False
+    pieces, pen = [], False
     for x, y in zip(np.clip(across, -_FAR, _FAR).tolist(), np.clip(along, -_FAR, _FAR).tolist(), strict=True):
         if not (np.isfinite(x) and np.isfinite(y)):
             pen = False
             continue
-        found.append(f"{'L' if pen else 'M'}{x:.1f} {y:.1f}")
+        pieces.append(f"{'L' if pen else 'M'}{x:.1f} {y:.1f}")
         pen = True
-    return "".join(found)
+    return "".join(pieces)
 
 
 def _line(chart: Chart, curve: Curve) -> Markup | None:
@@ -592,8 +592,8 @@ def _data(chart: Chart, curves: Sequence[Curve]) -> Markup:
 
 def _numbers(values: FloatArray) -> list[float | None]:
     """Numbers with some digits; None where there is none."""
-    found: list[float | None] = []
+    numbers: list[float | None] = []
     for value in values.tolist():
         short = float(f"{value:.{DIGITS}g}") if np.isfinite(value) else None
-        found.append(int(short) if short is not None and short.is_integer() and abs(short) < 1e15 else short)
-    return found
+        numbers.append(int(short) if short is not None and short.is_integer() and abs(short) < 1e15 else short)
+    return numbers

@@ -32,10 +32,10 @@ def program(purpose: str) -> str:
     InputError
         If it is missing.
     """
-    found = shutil.which("ccx")
-    if found is None:
+    path = shutil.which("ccx")
+    if path is None:
         raise InputError(f"CalculiX: ccx is not in PATH; {purpose} needs it: on Debian apt-get install calculix-ccx")
-    return found
+    return path
 
 
 def version(purpose: str) -> str:
@@ -52,8 +52,8 @@ def version(purpose: str) -> str:
         If it is missing.
     """
     result = subprocess.run([program(purpose), "-v"], capture_output=True, text=True, check=False, timeout=60.0)
-    found = _VERSION.search(result.stdout)
-    return found[1] if found else "unknown"
+    match = _VERSION.search(result.stdout)
+    return match[1] if match else "unknown"
 
 
 def run_deck(text: str, folder: Path, job: str, purpose: str, coarser: str = "take larger elements") -> None:

@@ -159,11 +159,11 @@ def _along_y(skfem: Any) -> Any:
 
 def _dofs(basis: Any, mesh: PlaneMesh) -> IntArray:
     """Freedoms of the nodes along x and y, shape (2, nodes); scikit-fem numbers them by corners, then edges."""
-    found = np.zeros((2, len(mesh.positions)), dtype=np.int64)
+    dofs = np.zeros((2, len(mesh.positions)), dtype=np.int64)
     for node in range(6):
         for direction in range(2):
-            found[direction, mesh.elements[:, node]] = basis.element_dofs[2 * node + direction]
-    return found
+            dofs[direction, mesh.elements[:, node]] = basis.element_dofs[2 * node + direction]
+    return dofs
 
 
 def _contact_edges(mesh: PlaneMesh) -> IntArray:

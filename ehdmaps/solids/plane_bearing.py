@@ -139,7 +139,8 @@ def solve_contact(
     AnalysisError
         If there is no mesh.
     """
-    radius, modulus = _radius(bearing, name), reduced_modulus(sections.material, sections.material)
+    radius = bearing.inner_radius if name == "inner" else bearing.outer_radius
+    modulus = reduced_modulus(sections.material, sections.material)
     if plane == "stress":
         modulus *= 1.0 - sections.material.poisson_ratio**2
     widths = _half_widths(radius, modulus)
@@ -198,8 +199,8 @@ def check_contact(bearing: BearingGeometry, sections: Sections, name: str) -> Co
     smallest = 0.1 * float(widths[0])
     roller = roller_mesh(0.5 * fixed.roller_diameter, 0.5 * fixed.roller_bore, smallest, _CHECK_GRADING)
     ring, _ = _ring(fixed, name, smallest, _CHECK_GRADING)
-    found = contact_loads(roller, ring, fixed.material, approaches.tolist(), _REACH * float(widths[-1]))
-    return ContactCheck(tuple(approaches.tolist()), tuple(series.load[_CHECKED].tolist()), tuple(found.tolist()))
+    loads = contact_loads(roller, ring, fixed.material, approaches.tolist(), _REACH * float(widths[-1]))
+    return ContactCheck(tuple(approaches.tolist()), tuple(series.load[_CHECKED].tolist()), tuple(loads.tolist()))
 
 
 def contact_meshes(sections: Sections, name: str, grading: float) -> tuple[PlaneMesh, PlaneMesh]:
@@ -236,11 +237,6 @@ def seats(sections: Sections) -> Iterator[tuple[str, Sections]]:
     yield "shaft bore d/2, housing 1.5 D", replace(elastic, shaft_bore=0.5 * d)
 
 
-def _radius(bearing: BearingGeometry, name: str) -> float:
-    """Reduced radius of a contact [m]."""
-    return bearing.inner_radius if name == "inner" else bearing.outer_radius
-
-
 def _half_widths(radius: float, modulus: float) -> FloatArray:
     """Half-widths of a series [m]."""
     widths = math.sqrt(8.0 * FE_LOAD * radius / (math.pi * modulus)) * _WIDTHS
@@ -260,11 +256,11 @@ def _ring(sections: Sections, name: str, smallest: float, grading: float) -> tup
     return ring_mesh(raceway, seat, smallest, grading), None
 
 
-def _at_pitch(found: PlaneYield, width: int, rollers: int) -> float:
+def _at_pitch(of_ring: PlaneYield, width: int, rollers: int) -> float:
     """Displacement of the raceway where the next roller stands, over the load [m2/N]; 0 for a roller alone."""
     if rollers < 2:
         return 0.0
-    return float(np.interp(2.0 * math.pi / rollers, found.angles, found.surface[width]))
+    return float(np.interp(2.0 * math.pi / rollers, of_ring.angles, of_ring.surface[width]))
 
 
 CONTACTS = ("inner", "outer")
@@ -307,52 +303,52 @@ def bearing_record(
     AnalysisError
         If one of them fails.
     """
-    found: dict[str, Any] = {
+    record: dict[str, Any] = {
         "geometry": bearing.record(),
         "sections": sections.record(),
         "versions": {name: version(name) for name in ("gmsh", "scikit-fem")},
         "contacts": {},
     }
     if contact:
-        found["versions"]["CalculiX"] = calculix.version("the check of the contact")
+        record["versions"]["CalculiX"] = calculix.version("the check of the contact")
     for name in CONTACTS:
         tell(f"{name} contact")
         solved = solve_contact(bearing, sections, name)
-        record = contact_record(solved)
+        entry = contact_record(solved)
         free = solve_contact(bearing, sections, name, plane="stress")
-        record["plane_stress_approach"] = free.fit.fe_approach
+        entry["plane_stress_approach"] = free.fit.fe_approach
         if meshes:
             tell(f"{name} contact by three meshes")
-            record["convergence"] = asdict(converge(bearing, sections, name))
+            entry["convergence"] = asdict(converge(bearing, sections, name))
         if contact:
             tell(f"{name} contact by CalculiX")
             check = check_contact(bearing, sections, name)
-            record["contact_check"] = {**asdict(check), "difference": check.difference}
-        found["contacts"][name] = record
+            entry["contact_check"] = {**asdict(check), "difference": check.difference}
+        record["contacts"][name] = entry
     if meshes:
-        found["seats"] = {
+        record["seats"] = {
             label: {name: solve_contact(bearing, other, name).fit.fe_approach for name in CONTACTS}
             for label, other in seats(sections)
         }
-    return found
+    return record
 
 
-def contact_record(found: PlaneContact) -> dict[str, Any]:
+def contact_record(contact: PlaneContact) -> dict[str, Any]:
     """One contact as plain values.
 
     Parameters
     ----------
-    found : PlaneContact
+    contact : PlaneContact
         The contact.
     """
     return {
-        "radius": found.radius,
-        **asdict(found.fit),
-        "roller_share": found.roller_share,
-        "neighbour_share": found.neighbour_share,
-        "nodes": found.nodes,
-        "loads": found.series.load.tolist(),
-        "half_widths": found.series.half_width.tolist(),
-        "approaches": found.series.approach.tolist(),
-        "compliances": found.series.compliance.tolist(),
+        "radius": contact.radius,
+        **asdict(contact.fit),
+        "roller_share": contact.roller_share,
+        "neighbour_share": contact.neighbour_share,
+        "nodes": contact.nodes,
+        "loads": contact.series.load.tolist(),
+        "half_widths": contact.series.half_width.tolist(),
+        "approaches": contact.series.approach.tolist(),
+        "compliances": contact.series.compliance.tolist(),
     }

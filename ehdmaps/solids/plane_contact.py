@@ -66,12 +66,12 @@ def contact_loads(
         text = "\n".join(_deck(roller, ring, material, approaches, reach)) + "\n"
         run_deck(text, folder, _JOB, PURPOSE)
         path = folder / f"{_JOB}.dat"
-        found = _FORCE.findall(path.read_text("utf-8", "replace")) if path.is_file() else []
-    if len(found) != len(approaches):
+        forces = _FORCE.findall(path.read_text("utf-8", "replace")) if path.is_file() else []
+    if len(forces) != len(approaches):
         raise AnalysisError(
-            f"CalculiX: {path.name} holds {len(found)} of {len(approaches)} forces; take smaller elements"
+            f"CalculiX: {path.name} holds {len(forces)} of {len(approaches)} forces; take smaller elements"
         )
-    return 2.0 * _MM * np.abs([float(force[1]) for force in found])
+    return 2.0 * _MM * np.abs([float(force[1]) for force in forces])
 
 
 def _deck(

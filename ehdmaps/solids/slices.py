@@ -257,12 +257,12 @@ def plane_law(line: FiniteLine) -> SliceLaw:
 
     def law(approach: FloatArray) -> tuple[FloatArray, FloatArray]:
         loaded = approach > 0.0
-        found = np.maximum(np.interp(approach, approaches, loads), loads[1])
+        load = np.maximum(np.interp(approach, approaches, loads), loads[1])
         for _ in range(2):  # from the table to round-off
-            missing = approach - half_space(found, depth, line.radius, modulus)
-            found += missing / half_space_compliance(found, depth, line.radius, modulus)
-            found = np.clip(found, loads[1], loads[-1])
-        slope = 1.0 / half_space_compliance(found, depth, line.radius, modulus)
-        return np.where(loaded, found, 0.0), np.where(loaded, slope, 0.0)
+            missing = approach - half_space(load, depth, line.radius, modulus)
+            load += missing / half_space_compliance(load, depth, line.radius, modulus)
+            load = np.clip(load, loads[1], loads[-1])
+        slope = 1.0 / half_space_compliance(load, depth, line.radius, modulus)
+        return np.where(loaded, load, 0.0), np.where(loaded, slope, 0.0)
 
     return law

@@ -76,12 +76,12 @@ def touching(
         system[size:, :size] = (rigid[inside] / spans * (shares[inside, None] / largest)).T
         right = np.concatenate([-gap[inside], wanted / spans * (unit / largest)])
         try:
-            found = np.linalg.solve(system, right)
+            solution = np.linalg.solve(system, right)
         except np.linalg.LinAlgError:  # places in a row bear no moment
             break
-        motions = found[size:] / spans
+        motions = solution[size:] / spans
         forces = np.zeros(gap.size)
-        forces[inside] = found[:size] / unit
+        forces[inside] = solution[:size] / unit
         pulling = active & (forces <= 0.0)
         # New places only where none pulls: both at once may go round in circles.
         if np.any(pulling):
@@ -375,8 +375,8 @@ def _influence(
 
     def placed(sources: FloatArray) -> FloatArray:
         far = y[:, None] - sources[None, :]
-        found = love(shifts[:, None, None], far[None], half_x, half_y[None, None, :])
-        return np.asarray((found[apart] + found[mirrored_apart]).transpose(2, 0, 3, 1))
+        influence = love(shifts[:, None, None], far[None], half_x, half_y[None, None, :])
+        return np.asarray((influence[apart] + influence[mirrored_apart]).transpose(2, 0, 3, 1))
 
     def deep(sources: FloatArray, depth: float) -> FloatArray:
         return depth_term(y[:, None] - sources[None, :], depth) * (4.0 * half_x) * (2.0 * half_y)[None, :]

@@ -124,10 +124,10 @@ def _block(x: FloatArray, y: FloatArray, ends: object, parts: FloatArray) -> Flo
     """Nodes in columns from the surface down to where a body stands, (ny, nx, nz, 3)."""
     assert callable(ends)
     surface, ground = ends(x)
-    found = np.empty((y.size, x.size, parts.size, 3))
-    found[..., 0], found[..., 1] = x[None, :, None], y[:, None, None]
-    found[..., 2] = surface[None, :, None] + (ground - surface)[None, :, None] * parts
-    return found
+    nodes = np.empty((y.size, x.size, parts.size, 3))
+    nodes[..., 0], nodes[..., 1] = x[None, :, None], y[:, None, None]
+    nodes[..., 2] = surface[None, :, None] + (ground - surface)[None, :, None] * parts
+    return nodes
 
 
 def _graded(first: float, even: float, end: float, growth: float) -> FloatArray:
@@ -207,24 +207,24 @@ def _slopes(place: FloatArray) -> FloatArray:
 def _strains(gradients: FloatArray) -> FloatArray:
     """Strains xx, yy, zz, xy, yz, xz by the freedoms, (e, 6, 3 n), from gradients (e, n, 3)."""
     count, nodes, _ = gradients.shape
-    found = np.zeros((count, 6, nodes, 3))
+    strains = np.zeros((count, 6, nodes, 3))
     for row, axis in enumerate((0, 1, 2)):
-        found[:, row, :, axis] = gradients[..., axis]
+        strains[:, row, :, axis] = gradients[..., axis]
     for row, (first, second) in enumerate(((0, 1), (1, 2), (0, 2)), start=3):
-        found[:, row, :, first] = gradients[..., second]
-        found[:, row, :, second] = gradients[..., first]
-    return found.reshape(count, 6, 3 * nodes)
+        strains[:, row, :, first] = gradients[..., second]
+        strains[:, row, :, second] = gradients[..., first]
+    return strains.reshape(count, 6, 3 * nodes)
 
 
 def _elasticity(material: Material) -> FloatArray:
     """Stresses by strains, (6, 6) [Pa]."""
     e, nu = material.youngs_modulus, material.poisson_ratio
-    found = np.zeros((6, 6))
-    found[:3, :3] = e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu))
+    elasticity = np.zeros((6, 6))
+    elasticity[:3, :3] = e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu))
     shear = 0.5 * e / (1.0 + nu)
-    found[range(3), range(3)] += 2.0 * shear
-    found[range(3, 6), range(3, 6)] = shear
-    return found
+    elasticity[range(3), range(3)] += 2.0 * shear
+    elasticity[range(3, 6), range(3, 6)] = shear
+    return elasticity
 
 
 _NEAR = np.flatnonzero(np.repeat(CORNERS[:, 1] < 0.0, 3))
@@ -286,9 +286,9 @@ def surface_compliance(block: Block, material: Material) -> tuple[FloatArray, Fl
 
 def _loads(free: BoolArray, touching: BoolArray) -> FloatArray:
     """Unit forces on the nodes of a layer that may touch, a column each, in its free freedoms."""
-    found = np.zeros((free.size, int(touching.sum())))
-    found[np.flatnonzero(touching), np.arange(found.shape[1])] = 1.0
-    return found[free]
+    forces = np.zeros((free.size, int(touching.sum())))
+    forces[np.flatnonzero(touching), np.arange(forces.shape[1])] = 1.0
+    return forces[free]
 
 
 def _reduced(
@@ -340,7 +340,7 @@ def _back(
     right = _right(off[0], free[0], free[1], factors[0], rights[0], touching[0])
     reduced = _reduced(diagonal[0], off[0], free[0], free[1], factors[0])
     moved = cho_solve(cho_factor(reduced, lower=True, check_finite=False), right, check_finite=False)
-    found = np.zeros((total, total))
+    compliance = np.zeros((total, total))
     for j in range(len(diagonal)):
         if j > 0:
             loads = np.zeros((int(free[j].sum()), total))
@@ -350,5 +350,5 @@ def _back(
         here = touching[j][free[j]]
         rows = np.flatnonzero(touching[j])
         seen = free[j][rows]
-        found[np.arange(int(starts[j]), int(starts[j + 1]))[seen]] = moved[here]
-    return found
+        compliance[np.arange(int(starts[j]), int(starts[j + 1]))[seen]] = moved[here]
+    return compliance

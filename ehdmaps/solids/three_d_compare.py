@@ -80,8 +80,8 @@ class LengthComparison:
         there = ~self.inside & (self.case.load_per_length > 0.2 * _mean(self.case))
         if not np.any(there):
             return 0.0
-        found = np.abs(self.load_per_length / np.where(there, self.case.load_per_length, 1.0) - 1.0)
-        return float(found[there].max())
+        errors = np.abs(self.load_per_length / np.where(there, self.case.load_per_length, 1.0) - 1.0)
+        return float(errors[there].max())
 
     @property
     def pressure_error(self) -> float:
@@ -107,13 +107,13 @@ def compare_lengths(
     line = FiniteLine(model.reduced_radius, model.roller_length, 0.5 * model.roller_diameter, model.race_depth)
     law = plane_law(line)
     coupling = slice_coupling(line, SLICES, line.half_width_of(WIDEST_PRESSURE))
-    found = []
+    comparisons = []
     for case in reference.finest:
         profile = partial(profile_depths, case.profile, bearing)
         solution = solve_length(line, profile, case.load, case.moment, cells)
         width = line.half_width(_mean(case))
         inside = np.abs(case.places) <= 0.5 * line.length - width
-        found.append(
+        comparisons.append(
             LengthComparison(
                 case,
                 solution,
@@ -124,7 +124,7 @@ def compare_lengths(
                 SliceLoads(*balanced_loads(line, law, np.zeros_like(coupling), profile, case.load, case.moment)),
             )
         )
-    return found
+    return comparisons
 
 
 def mesh_change(reference: LengthReference) -> float:

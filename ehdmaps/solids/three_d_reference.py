@@ -358,10 +358,10 @@ def load_by_calculix(
     """
     text = "\n".join(_deck(roller, race, depths, material, approach)) + "\n"
     run_deck(text, folder, _JOB, PURPOSE)
-    found = _TOTAL.findall((folder / f"{_JOB}.dat").read_text("utf-8", "replace"))
-    if not found:
+    totals = _TOTAL.findall((folder / f"{_JOB}.dat").read_text("utf-8", "replace"))
+    if not totals:
         raise AnalysisError(f"CalculiX: {_JOB}.dat holds no total force; the contact may not have converged")
-    return -4.0 * float(found[-1][2])
+    return -4.0 * float(totals[-1][2])
 
 
 def _deck(roller: Block, race: Block, depths: FloatArray, material: Material, approach: float) -> Iterator[str]:

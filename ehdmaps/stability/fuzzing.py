@@ -113,9 +113,9 @@ def case_of(reader: Reader, seed: int, number: int) -> Case:
     names = [name for name in folder if not reader.damaged or name in reader.damaged]
     name = names[rng.integers(len(names))]
     others = [content for files in reader.folders for key, content in files.items() if _text(key) == _text(name)]
-    done: Damaged = damage(folder[name], _text(name), rng, others[rng.integers(len(others))])
-    label = f"{reader.name}, seed {seed}, number {number}: {name}: {done.how}"
-    return Case(label, {**folder, name: done.content})
+    damaged: Damaged = damage(folder[name], _text(name), rng, others[rng.integers(len(others))])
+    label = f"{reader.name}, seed {seed}, number {number}: {name}: {damaged.how}"
+    return Case(label, {**folder, name: damaged.content})
 
 
 def _text(name: str) -> bool:
@@ -141,28 +141,22 @@ def fuzz(reader: Reader, mutations: int, seed: int) -> Check:
         "file, no crash, no warning, no file changed",
     )
     slowest = 0.0
-    for problem in _good_problems(reader):
-        tally.failed(f"{reader.name}, the good files", problem)
-    for number, found in _outcomes(reader, mutations, seed):
-        label = case_of(reader, seed, number).label if found["failed"] else ""
-        if found["failed"]:
-            tally.failed(label, found["failed"])
-        elif found["refused"]:
-            tally.refused(found["refused"])
-        else:
-            tally.right()
-        slowest = max(slowest, found["seconds"])
-    check = tally.check()
-    return Check(**{**vars(check), "worst": f"{slowest:.2g} s for one file"})
-
-
-def _good_problems(reader: Reader) -> Iterator[str]:
-    """Yield what is wrong with the good files themselves; DependencyError for a package that is missing."""
     for files in reader.folders:
         with _folder(files) as folder:
             problem = reader.read(folder) or ("" if reader.writes else _changed(files, folder))
         if problem:
-            yield problem
+            tally.failed(f"{reader.name}, the good files", problem)
+    for number, outcome in _outcomes(reader, mutations, seed):
+        label = case_of(reader, seed, number).label if outcome["failed"] else ""
+        if outcome["failed"]:
+            tally.failed(label, outcome["failed"])
+        elif outcome["refused"]:
+            tally.refused(outcome["refused"])
+        else:
+            tally.right()
+        slowest = max(slowest, outcome["seconds"])
+    check = tally.check()
+    return Check(**{**vars(check), "worst": f"{slowest:.2g} s for one file"})
 
 
 def _outcomes(reader: Reader, mutations: int, seed: int) -> Iterator[tuple[int, dict[str, Any]]]:
@@ -170,8 +164,8 @@ def _outcomes(reader: Reader, mutations: int, seed: int) -> Iterator[tuple[int, 
     number = 0
     while number < mutations:
         end = min(mutations, number + _BATCH)
-        for last, found in _batch(reader, seed, number, end):
-            yield last, found
+        for last, outcome in _batch(reader, seed, number, end):
+            yield last, outcome
             number = last + 1
 
 
@@ -193,10 +187,10 @@ def _batch(reader: Reader, seed: int, begin: int, end: int) -> Iterator[tuple[in
                 ended = f"did not end within {MOST_WAIT:g} s"
                 os.kill(child, signal.SIGKILL)
                 break
-            got = os.read(source, 65536)
-            if not got:
+            chunk = os.read(source, 65536)
+            if not chunk:
                 break
-            *lines, rest = (rest + got).split(b"\n")
+            *lines, rest = (rest + chunk).split(b"\n")
             for line in lines:
                 yield number, json.loads(line)
                 number += 1
@@ -230,8 +224,8 @@ def _work(reader: Reader, seed: int, begin: int, end: int, sink: int) -> NoRetur
             case = case_of(reader, seed, number)
             _limit_seconds()
             with _folder(case.files) as folder:
-                found = _judged(reader, case, folder)
-            os.write(sink, json.dumps(found).encode() + b"\n")
+                outcome = _judged(reader, case, folder)
+            os.write(sink, json.dumps(outcome).encode() + b"\n")
         status = 0
     finally:
         os._exit(status)
@@ -270,7 +264,7 @@ def _judged(reader: Reader, case: Case, folder: Path) -> dict[str, Any]:
     """Outcome of a case: what failed, why it was refused, and the time."""
     before, began = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, time.process_time()
     failed = refused = ""
-    with warnings.catch_warnings(record=True) as told:
+    with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         try:
             failed = reader.read(folder)
@@ -281,8 +275,8 @@ def _judged(reader: Reader, case: Case, folder: Path) -> dict[str, Any]:
             failed = f"{type(error).__name__}: {error!s:.300}"
     seconds = time.process_time() - began
     grown = 1024.0 * (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before)
-    if not failed and told:
-        failed = f"warning: {told[0].message!s:.300}"
+    if not failed and caught:
+        failed = f"warning: {caught[0].message!s:.300}"
     if not failed and seconds > MOST_SECONDS:
         failed = f"took {seconds:.3g} s"
     if not failed and grown > MOST_MEMORY:

@@ -132,7 +132,7 @@ def _behead(content: bytes, rng: np.random.Generator, other: bytes) -> bytes:
     return content[_place(content, rng) :]
 
 
-def _lost(content: bytes, rng: np.random.Generator, other: bytes) -> bytes:
+def _cut_out(content: bytes, rng: np.random.Generator, other: bytes) -> bytes:
     """A part is lost."""
     begin, end = _part(content, rng)
     return content[:begin] + content[end:]
@@ -187,38 +187,38 @@ def _emptied(content: bytes, rng: np.random.Generator, other: bytes) -> bytes:
 
 def _another_number(content: bytes, rng: np.random.Generator, other: bytes) -> bytes:
     """A number written over."""
-    found = list(_NUMBER.finditer(content))
-    if not found:
+    numbers = list(_NUMBER.finditer(content))
+    if not numbers:
         return content
-    begin, end = found[rng.integers(len(found))].span()
+    begin, end = numbers[rng.integers(len(numbers))].span()
     return content[:begin] + str(NUMBERS[rng.integers(len(NUMBERS))]).encode() + content[end:]
 
 
 def _scaled_number(content: bytes, rng: np.random.Generator, other: bytes) -> bytes:
     """A number off by powers of ten, or of the other sign."""
-    found = list(_NUMBER.finditer(content))
-    if not found:
+    numbers = list(_NUMBER.finditer(content))
+    if not numbers:
         return content
-    chosen = found[rng.integers(len(found))]
+    chosen = numbers[rng.integers(len(numbers))]
     value = float(chosen[0]) * 10.0 ** float(rng.integers(-9, 10)) * float(rng.choice((1.0, -1.0)))
     return content[: chosen.start()] + repr(value).encode() + content[chosen.end() :]
 
 
 def _swapped_numbers(content: bytes, rng: np.random.Generator, other: bytes) -> bytes:
     """A number in the place of another."""
-    found = list(_NUMBER.finditer(content))
-    if len(found) < 2:
+    numbers = list(_NUMBER.finditer(content))
+    if len(numbers) < 2:
         return content
-    first, second = (found[int(index)] for index in rng.integers(len(found), size=2))
+    first, second = (numbers[int(index)] for index in rng.integers(len(numbers), size=2))
     return content[: first.start()] + content[second.start() : second.end()] + content[first.end() :]
 
 
 def _another_unit(content: bytes, rng: np.random.Generator, other: bytes) -> bytes:
     """Another unit behind a number."""
-    found = list(_UNIT.finditer(content))
-    if not found:
+    units = list(_UNIT.finditer(content))
+    if not units:
         return content
-    begin, end = found[rng.integers(len(found))].span()
+    begin, end = units[rng.integers(len(units))].span()
     return content[:begin] + UNITS[rng.integers(len(UNITS))].encode() + content[end:]
 
 
@@ -293,7 +293,7 @@ _ALL: Mapping[str, Way] = {
     "bytes set": _set_bytes,
     "cut off": _cut,
     "beginning lost": _behead,
-    "part lost": _lost,
+    "part lost": _cut_out,
     "part twice": _twice,
     "spliced": _spliced,
     "grafted": _grafted,

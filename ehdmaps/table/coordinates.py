@@ -142,7 +142,7 @@ def outside_family(solver: ContactSolver) -> str:
     if solver.name != TABLE_OF:
         return f"film table: holds films of the solver {TABLE_OF}, not of {solver.name}; solve them"
     settings = solver.settings()
-    asked = [f"{meaning} ({key} = {settings[key]})" for key, meaning in _MEANING.items() if key in settings]
-    if asked:
-        return f"film table: knows nothing of {', '.join(asked)}; solve these films"
+    unknown = [f"{meaning} ({key} = {settings[key]})" for key, meaning in _MEANING.items() if key in settings]
+    if unknown:
+        return f"film table: knows nothing of {', '.join(unknown)}; solve these films"
     return ""

@@ -133,10 +133,10 @@ def read_tables(path: Path) -> TableFile:
                 tables[law] = FilmTable(**parts, compressible=law != "incompressible")
     except (OSError, KeyError, IndexError, AttributeError) as error:
         raise MapError(f"{path}: cannot be read as a film table ({error}); make it again") from None
-    found = TableFile(tables, attributes)
-    if attributes.get(CHECKSUM) != content_sha256(found):
+    table_file = TableFile(tables, attributes)
+    if attributes.get(CHECKSUM) != content_sha256(table_file):
         raise MapError(f"{path}: was changed since it was made: its content does not match {CHECKSUM}; make it again")
-    return found
+    return table_file
 
 
 def _read_nodes(group: Any, path: Path) -> Nodes:
@@ -180,15 +180,15 @@ def _write_nodes(group: Any, nodes: Nodes, meanings: tuple[tuple[str, str], ...]
         variable = group.createVariable(name, "f8", (name,))
         variable[:] = places
         variable.setncatts({"long_name": meaning, "units": unit})
-    for name, kind, held, suffix, meaning in (
+    for name, kind, array, suffix, meaning in (
         ("values", "f4", nodes.values, "", "smooth forms of reduced films, see ehdmaps.table.fields"),
         ("error_codes", "u1", nodes.codes, "_cell", "their errors between nodes, see ehdmaps.table.nodes.encoded"),
     ):
         variable = group.createVariable(
             name, kind, ("field", *(f"{axis}{suffix}" for axis in AXES)), compression="zlib", complevel=6, shuffle=True,
-            chunksizes=(1, *held.shape[:-1]),
+            chunksizes=(1, *array.shape[:-1]),
         )  # fmt: skip
-        variable[:] = np.moveaxis(held, -1, 0)
+        variable[:] = np.moveaxis(array, -1, 0)
         variable.setncattr("long_name", meaning)
 
 

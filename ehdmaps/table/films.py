@@ -216,9 +216,9 @@ class FilmTable:
         if response:
             reduced, wrong = read(RESPONSES)
             wrong *= np.hypot(reduced, [field.scale for field in RESPONSES])
-            found = reduced[:, 0::2] + 1j * reduced[:, 1::2]
-            complex_response[good] = found * points.unit.compliance[good, None]
-            errors["response"][good] = np.hypot(wrong[:, 0::2], wrong[:, 1::2]) / np.abs(found)
+            reduced_response = reduced[:, 0::2] + 1j * reduced[:, 1::2]
+            complex_response[good] = reduced_response * points.unit.compliance[good, None]
+            errors["response"][good] = np.hypot(wrong[:, 0::2], wrong[:, 1::2]) / np.abs(reduced_response)
         cause[good] = _noted(numbers, hole, thickest_film * contact.radius, contact.radius, good)
         refused, dry = cause > _DRY, cause == _DRY
         for number in (*numbers.values(), *errors.values(), complex_response, law_error):
@@ -301,12 +301,12 @@ class FilmTable:
             (self.piezoviscous, share, (zeta_of(M, L, shift), np.log(L), np.log(alpha), bend)),
             (self.isoviscous, 1.0 - share, (zeta_of(M, L), np.log(L / alpha), alpha, 1.0 - exponent)),
         ):
-            (told,) = np.nonzero(part)
-            if told.size:
-                zeta, size, by_alpha, by_bend = (x[told] for x in coordinates)
+            (counting,) = np.nonzero(part)
+            if counting.size:
+                zeta, size, by_alpha, by_bend = (x[counting] for x in coordinates)
                 by_bend = np.clip(by_bend, nodes.axes.bend[0], nodes.axes.bend[-1])
                 place = place_of(nodes.axes, zeta, size, by_alpha, by_bend)
-                pieces.append(_Piece(nodes, told, part[told, None], place))
+                pieces.append(_Piece(nodes, counting, part[counting, None], place))
         return pieces
 
 

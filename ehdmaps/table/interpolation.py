@@ -135,7 +135,11 @@ def coefficients(axes: Axes, values: FloatArray) -> FloatArray:
     ndarray, shape (n_zeta, n_size, n_alpha n_bend, fields)
     """
     n, m, k, p, fields = values.shape
-    first, second = (_inverse(nodes, knots) for nodes, knots in zip((axes.zeta, axes.size), axes.knots, strict=True))
+    # matrices from values at nodes to the coefficients of their splines
+    first, second = (
+        np.linalg.inv(BSpline.design_matrix(nodes, knots, DEGREE).toarray())
+        for nodes, knots in zip((axes.zeta, axes.size), axes.knots, strict=True)
+    )
     along = (first @ values.reshape(n, -1)).reshape(n, m, k * p * fields)
     return np.ascontiguousarray((second @ along).reshape(n, m, k * p, fields))
 
@@ -152,10 +156,10 @@ def read(place: Place, coefficients: FloatArray, fields: Sequence[Field]) -> Flo
     fields : sequence of Field
         The fields.
     """
-    found = _read(place, slice(None), coefficients)
+    values = _read(place, slice(None), coefficients)
     if np.any(place.below) or np.any(place.above) or np.any(place.flatter):
-        _go_on(place, coefficients, fields, found)
-    return found
+        _go_on(place, coefficients, fields, values)
+    return values
 
 
 def _read(
@@ -164,10 +168,10 @@ def _read(
     """Values of some points, or their derivatives along zeta or the size, shape (n, fields)."""
     by_zeta = (place.zeta_slope if zeta else place.zeta)[part]
     by_size = (place.size_slope if size else place.size)[part]
-    found = np.zeros((by_zeta.shape[0], coefficients.shape[-1]))
+    values = np.zeros((by_zeta.shape[0], coefficients.shape[-1]))
     flat = coefficients.reshape(*coefficients.shape[:2], -1)
-    _sum_up(place.first[part], by_zeta, by_size, place.oil[part], flat, found)
-    return found
+    _sum_up(place.first[part], by_zeta, by_size, place.oil[part], flat, values)
+    return values
 
 
 @njit(error_model="numpy")
@@ -177,12 +181,12 @@ def _sum_up(
     by_size: FloatArray,
     by_oil: FloatArray,
     coefficients: FloatArray,
-    found: FloatArray,
+    sums: FloatArray,
 ) -> None:
     """Add to zeros (n, fields) the coefficients (n_zeta, n_size, oils fields) around each point times their weights."""
-    fields = found.shape[1]
+    fields = sums.shape[1]
     by_oils = np.empty(coefficients.shape[2])
-    for i in range(found.shape[0]):
+    for i in range(sums.shape[0]):
         for k in range(by_oils.size):
             by_oils[k] = 0.0
         for p in range(by_zeta.shape[1]):
@@ -192,14 +196,14 @@ def _sum_up(
                     by_oils[k] += weight * near[k]
         for oil in range(by_oil.shape[1]):
             for field in range(fields):
-                found[i, field] += by_oil[i, oil] * by_oils[oil * fields + field]
+                sums[i, field] += by_oil[i, oil] * by_oils[oil * fields + field]
 
 
-def _go_on(place: Place, coefficients: FloatArray, fields: Sequence[Field], found: FloatArray) -> None:
+def _go_on(place: Place, coefficients: FloatArray, fields: Sequence[Field], values: FloatArray) -> None:
     """Continue values beyond the nodes, in place: along zeta at the last size, and the derivative of this along it."""
     away = np.flatnonzero((place.below < 0.0) | (place.above > 0.0) | (place.flatter < 0.0))
     below, above, flatter = place.below[away], place.above[away], place.flatter[away]
-    value, slope = found[away], _read(place, away, coefficients, zeta=True)
+    value, slope = values[away], _read(place, away, coefficients, zeta=True)
     by_size, slope_by_size = (_read(place, away, coefficients, zeta=zeta, size=True) for zeta in (False, True))
     for k, field in enumerate(fields):
         # all but what fades is linear in value and slope
@@ -210,7 +214,7 @@ def _go_on(place: Place, coefficients: FloatArray, fields: Sequence[Field], foun
         if field.fades:
             rate = np.minimum(slope[:, k] / value[:, k], 0.0)
             heavier = (v + flatter * above * (slope_by_size[:, k] - rate * by_size[:, k])) * np.exp(rate * above)
-        found[away, k] = np.where(below < 0.0, lighter, heavier)
+        values[away, k] = np.where(below < 0.0, lighter, heavier)
 
 
 def heavier_films(field: Field, value: FloatArray, slope: FloatArray, above: FloatArray) -> FloatArray:
@@ -233,11 +237,6 @@ def heavier_films(field: Field, value: FloatArray, slope: FloatArray, above: Flo
 def _knots(nodes: FloatArray) -> FloatArray:
     """Knots of the cubic spline through nodes, that has no knot at the last node but one at either end."""
     return np.concatenate([(nodes[0],) * (DEGREE + 1), nodes[2:-2], (nodes[-1],) * (DEGREE + 1)])
-
-
-def _inverse(nodes: FloatArray, knots: FloatArray) -> FloatArray:
-    """Matrix from values at nodes to the coefficients of their spline."""
-    return np.asarray(np.linalg.inv(BSpline.design_matrix(nodes, knots, DEGREE).toarray()))
 
 
 def _weights(knots: FloatArray, x: FloatArray) -> tuple[IndexArray, FloatArray, FloatArray]:

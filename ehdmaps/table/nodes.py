@@ -76,8 +76,8 @@ class Nodes:
         fields : tuple of Field
             `LAW`, `OTHER_FILMS` or `RESPONSES`.
         """
-        held = {LAW: "_law", OTHER_FILMS: "_others", RESPONSES: "_responses"}[fields]
-        return read_fields(place, getattr(self, held), fields)
+        name = {LAW: "_law", OTHER_FILMS: "_others", RESPONSES: "_responses"}[fields]
+        return read_fields(place, getattr(self, name), fields)
 
     def errors(self, place: Place, fields: tuple[Field, ...]) -> FloatArray:
         """Errors of these, shape (n, fields)."""
@@ -95,9 +95,9 @@ def encoded(errors: FloatArray) -> ByteArray:
     errors : ndarray
         Errors of smooth forms, >= 0.
     """
-    held = np.clip(np.where(np.isnan(errors), LARGEST_ERROR, errors), LEAST_ERROR, LARGEST_ERROR)
+    clipped = np.clip(np.where(np.isnan(errors), LARGEST_ERROR, errors), LEAST_ERROR, LARGEST_ERROR)
     span = np.log(LARGEST_ERROR / LEAST_ERROR)
-    return np.asarray(np.ceil(CODES * np.log(held / LEAST_ERROR) / span - 1e-9).astype(np.uint8))
+    return np.asarray(np.ceil(CODES * np.log(clipped / LEAST_ERROR) / span - 1e-9).astype(np.uint8))
 
 
 _DECODED = LEAST_ERROR * (LARGEST_ERROR / LEAST_ERROR) ** (np.arange(CODES + 1) / CODES)

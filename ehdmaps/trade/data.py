@@ -127,7 +127,10 @@ def trade_json(trade: Trade) -> str:
     record["choices"] = [
         {
             **{entry.name: getattr(choice, entry.name) for entry in fields(choice)},
-            **{part: {name: _summary(found) for name, found in getattr(choice, part).items()} for part, *_ in _PARTS},
+            **{
+                part: {name: _summary(summary) for name, summary in getattr(choice, part).items()}
+                for part, *_ in _PARTS
+            },
             "seconds": _finite(choice.seconds),
         }
         for choice in trade.choices
@@ -135,9 +138,9 @@ def trade_json(trade: Trade) -> str:
     return json.dumps(record, indent=2, allow_nan=False, ensure_ascii=False)
 
 
-def _summary(found: ErrorSummary) -> dict[str, object]:
+def _summary(summary: ErrorSummary) -> dict[str, object]:
     """The numbers of a summary."""
-    return {name: _finite(value) for name, value in asdict(found).items()}
+    return {name: _finite(value) for name, value in asdict(summary).items()}
 
 
 def _finite(value: object) -> object:

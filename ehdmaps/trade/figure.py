@@ -115,21 +115,21 @@ def _panel(panel: Axes, trade: Trade, judged: Judged, groups: list[str]) -> None
     for index, choice in enumerate(trade.choices):
         if not _shown(choice, judged):
             continue
-        found = choice.errors[judged.name]
-        colour = _colour(choice, groups)
-        high = found.high if math.isfinite(found.high) else found.median
-        panel.plot([choice.seconds] * 2, [found.median, max(high, found.median)], color=colour, lw=0.8, alpha=0.6)
+        summary = choice.errors[judged.name]
+        colour = COLOURS[groups.index(choice.group) % len(COLOURS)]
+        high = summary.high if math.isfinite(summary.high) else summary.median
+        panel.plot([choice.seconds] * 2, [summary.median, max(high, summary.median)], color=colour, lw=0.8, alpha=0.6)
         panel.plot(
             choice.seconds,
-            found.median,
+            summary.median,
             "D" if choice.default else "o",
             color=colour,
             ms=5.5 if choice.default else 4.0,
         )
         panel.annotate(
-            str(index + 1), (choice.seconds, found.median), xytext=(4, 2), textcoords="offset points", fontsize=6.5
+            str(index + 1), (choice.seconds, summary.median), xytext=(4, 2), textcoords="offset points", fontsize=6.5
         )
-        places.setdefault(choice.reference, []).append((choice.seconds, found.median))
+        places.setdefault(choice.reference, []).append((choice.seconds, summary.median))
     # errors that are relative to one thing do not beat those that are relative to another
     for points in places.values():
         best = front([x for x, _ in points], [y for _, y in points])
@@ -168,10 +168,5 @@ def _key(panel: Axes, trade: Trade, groups: list[str], judged: list[Judged]) -> 
 
 def _shown(choice: Choice, judged: Judged) -> bool:
     """Tell whether a choice has a place on logarithmic axes."""
-    found = choice.errors.get(judged.name)
-    return found is not None and found.points > 0 and found.median > 0.0 and 0.0 < choice.seconds < math.inf
-
-
-def _colour(choice: Choice, groups: list[str]) -> str:
-    """Colour of a group."""
-    return COLOURS[groups.index(choice.group) % len(COLOURS)]
+    summary = choice.errors.get(judged.name)
+    return summary is not None and summary.points > 0 and summary.median > 0.0 and 0.0 < choice.seconds < math.inf

@@ -72,8 +72,8 @@ class ErrorSummary:
         Examples
         --------
         >>> import numpy as np
-        >>> found = ErrorSummary.of(np.array([-0.02, 0.01, np.nan]), ["a", "b", "c"], np.array([0.03, 0.005, 0.1]))
-        >>> found.points, found.largest, found.worst, found.covered
+        >>> summary = ErrorSummary.of(np.array([-0.02, 0.01, np.nan]), ["a", "b", "c"], np.array([0.03, 0.005, 0.1]))
+        >>> summary.points, summary.largest, summary.worst, summary.covered
         (2, 0.02, 'a', 0.5)
         """
         known = np.isfinite(errors)
@@ -83,7 +83,7 @@ class ErrorSummary:
         middle, high, largest = (float(value) for value in np.quantile(sizes, (0.5, 0.95, 1.0)))
         worst = np.asarray(places, dtype=object)[known][int(np.argmax(sizes))]
         own = np.full(sizes.shape, np.nan) if stated is None else np.asarray(stated, dtype=np.float64)[known]
-        told = np.isfinite(own)
+        has_own = np.isfinite(own)
         return cls(
             points=sizes.size,
             median=middle,
@@ -91,8 +91,8 @@ class ErrorSummary:
             largest=largest,
             bias=float(np.median(errors[known])),
             worst=str(worst),
-            stated=float(np.median(own[told])) if told.any() else np.nan,
-            covered=float(np.mean(sizes[told] <= own[told])) if told.any() else np.nan,
+            stated=float(np.median(own[has_own])) if has_own.any() else np.nan,
+            covered=float(np.mean(sizes[has_own] <= own[has_own])) if has_own.any() else np.nan,
         )
 
 
@@ -236,8 +236,8 @@ def front(cost: Sequence[float], error: Sequence[float]) -> tuple[int, ...]:
     (0, 1)
     """
     known = [index for index in range(len(cost)) if math.isfinite(cost[index]) and math.isfinite(error[index])]
-    found: list[int] = []
+    best: list[int] = []
     for index in sorted(known, key=lambda index: (cost[index], error[index])):
-        if not found or error[index] < error[found[-1]]:
-            found.append(index)
-    return tuple(found)
+        if not best or error[index] < error[best[-1]]:
+            best.append(index)
+    return tuple(best)

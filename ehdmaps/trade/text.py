@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from itertools import groupby
 
 from ehdmaps.trade.answer import FACTORS, UNITS, answer_lines, budget_lines, number
-from ehdmaps.trade.record import Choice, ErrorSummary, Judged, Trade
+from ehdmaps.trade.record import Choice, Judged, Trade
 
 _COLUMNS, _CELL, _GAP = 4, 18, 2
 """Quantities beside each other, least width of one, and the gap before its name."""
@@ -53,7 +53,7 @@ def _lines(trade: Trade) -> Iterator[str]:
     yield "largest error of each, and where"
     for choice in trade.choices:
         yield from _worst(choice, trade.judged)
-    yield from _lost(trade)
+    yield from _unanswered(trade)
 
 
 def _table(
@@ -84,8 +84,8 @@ def _table(
 
 def _error(choice: Choice, judged: Judged) -> str:
     """Median and 95 % quantile."""
-    found = choice.errors.get(judged.name)
-    return _NOTHING if found is None else _pair(found.median, found.high, judged)
+    summary = choice.errors.get(judged.name)
+    return _NOTHING if summary is None else _pair(summary.median, summary.high, judged)
 
 
 def _apart(choice: Choice, judged: Judged) -> str:
@@ -99,21 +99,19 @@ def _apart(choice: Choice, judged: Judged) -> str:
 
 def _stated(choice: Choice, judged: Judged) -> str:
     """Error that is stated, and how often it holds."""
-    found = _own(choice, judged.name)
-    if found is None or not math.isfinite(found.stated):
+    # the numerical ones, where they are told apart
+    summary = choice.numerical.get(judged.name) or choice.errors.get(judged.name)
+    if summary is None or not math.isfinite(summary.stated):
         return _NOTHING
-    return f"{number(found.stated * FACTORS[judged.unit])} / {found.covered:.0%}"
-
-
-def _own(choice: Choice, name: str) -> ErrorSummary | None:
-    """The errors beside which the stated one stands: the numerical ones, where they are told apart."""
-    return choice.numerical.get(name) or choice.errors.get(name)
+    return f"{number(summary.stated * FACTORS[judged.unit])} / {summary.covered:.0%}"
 
 
 def _states(choice: Choice) -> bool:
     """Tell whether a choice states errors of itself."""
     return any(
-        math.isfinite(found.stated) for found in (*choice.numerical.values(), *choice.errors.values()) if found.points
+        math.isfinite(summary.stated)
+        for summary in (*choice.numerical.values(), *choice.errors.values())
+        if summary.points
     )
 
 
@@ -129,15 +127,15 @@ def _worst(choice: Choice, judged: tuple[Judged, ...]) -> Iterator[str]:
     """Yield the largest errors of a choice; one line for all quantities that have it at the same place."""
     places: dict[str, list[str]] = {}
     for quantity in judged:
-        found = choice.errors.get(quantity.name)
-        if found is not None and found.points and found.largest > 0.0:
-            words = f"{quantity.name} {number(found.largest * FACTORS[quantity.unit])} {UNITS[quantity.unit]}"
-            places.setdefault(found.worst, []).append(words)
+        summary = choice.errors.get(quantity.name)
+        if summary is not None and summary.points and summary.largest > 0.0:
+            words = f"{quantity.name} {number(summary.largest * FACTORS[quantity.unit])} {UNITS[quantity.unit]}"
+            places.setdefault(summary.worst, []).append(words)
     for place, errors in places.items():
         yield f"  {choice.label}: {', '.join(errors)}" + (f" at {place}" if place else "")
 
 
-def _lost(trade: Trade) -> Iterator[str]:
+def _unanswered(trade: Trade) -> Iterator[str]:
     """Yield what has no answer, and is in no error."""
     if any(choice.lost for choice in trade.choices):
         yield ""

@@ -99,8 +99,8 @@ FAULTS = (
     Fault(
         "response from the table, sign of c",
         "ehdmaps/table/films.py",
-        "= found * points.unit",
-        "= np.conj(found) * points.unit",
+        "= reduced_response * points.unit",
+        "= np.conj(reduced_response) * points.unit",
     ),
     Fault(
         "tilt of a roller, sign",

@@ -120,25 +120,20 @@ def locked_table(law: ContactLaw) -> LockedTable:
     begin, end = (math.log(u) if u > 0.0 else 0.0 for u in (slow, fast))
     speeds = Axis.over(begin, end, 2 + math.ceil((end - begin) / SPEED_STEP))
     temperatures = Axis.over(1.0 / (cold - COLDEST), 1.0 / (hot - COLDEST), TEMPERATURES)
-    known = [[_factors(law, u, T) for T in 1.0 / temperatures.places + COLDEST] for u in np.exp(speeds.places)]
+    known = [
+        [law.locked_factors(float(u), float(T)) for T in 1.0 / temperatures.places + COLDEST]
+        for u in np.exp(speeds.places)
+    ]
     if any(factors is FORMULA for line in known for factors in line):
         return LockedTable(Axis(begin, 0.0, 1), Axis(temperatures.start, 0.0, 1), Axis(0.0, 0.0, 1), np.ones((1, 1, 1)))
     lowest, highest = min(factors.lowest for line in known for factors in line), math.log(law.load_range[1])
     loads = Axis.over(lowest, highest, 2 + math.ceil((highest - lowest) / LOAD_STEP))
     table = np.array([[np.interp(loads.places, _loads(factors), factors.values) for factors in line] for line in known])
-    return LockedTable(speeds, temperatures, loads, _rounded(table))
-
-
-def _factors(law: ContactLaw, speed: float, temperature: float) -> LockedFactors:
-    """Factors of a law at a place."""
-    return law.locked_factors(float(speed), float(temperature))
+    # with fewer digits: a file of them is a third as long
+    rounded = np.array([float(f"{value:.{_DIGITS}g}") for value in table.reshape(-1).tolist()]).reshape(table.shape)
+    return LockedTable(speeds, temperatures, loads, rounded)
 
 
 def _loads(factors: LockedFactors) -> FloatArray:
     """Places of factors in ln of the load."""
     return np.asarray(factors.lowest + np.arange(factors.values.size) / factors.per_log)
-
-
-def _rounded(values: FloatArray) -> FloatArray:
-    """Values with fewer digits: a file of them is a third as long."""
-    return np.array([float(f"{value:.{_DIGITS}g}") for value in values.reshape(-1).tolist()]).reshape(values.shape)

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from ehdmaps.jobs import solvers
-from ehdmaps.jobs.job import CorrectedBy, Job
+from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.make.batch import is_batch, read_batch
 from ehdmaps.jobs.make.batch_generate import plan_batch
 from ehdmaps.jobs.make.generate import planned_tasks
@@ -75,7 +75,14 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         if read
         else f"  points  {job.points} of the map, {extra} for its contact laws{corrected}",
         f"  time    {estimates[0].words}",
-        *([] if by is None else _correction_lines(by, estimates[1])),
+        *(
+            []
+            if by is None
+            else [
+                f"  correction by {by.solver}: {by.points} points besides, chosen one after the other",
+                f"  time    {estimates[1].words}",
+            ]
+        ),
         f"  memory  about {max(100.0 + cheap * _BYTES_PER_POINT / 1e6, 1.0):.0f} MB",
     ]
     return "\n".join(lines), 0 if solved else 1
@@ -107,12 +114,6 @@ class Estimate:
 
     words: str
     solved: bool = True
-
-
-def _correction_lines(by: CorrectedBy, estimate: Estimate) -> Iterator[str]:
-    """Say what the points of the correcting solver would cost."""
-    yield f"  correction by {by.solver}: {by.points} points besides, chosen one after the other"
-    yield f"  time    {estimate.words}"
 
 
 def oil_lines(job: Job) -> Iterator[str]:

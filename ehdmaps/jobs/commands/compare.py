@@ -12,5 +12,5 @@ from ehdmaps.maps.emap import open_map
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Compare two maps; the differences as a table or as JSON."""
     first, second = Path(arguments.first), Path(arguments.second)
-    found = compare(open_map(first), open_map(second), (str(first), str(second)))
-    return comparison_json(found) if arguments.json else comparison_text(found), 0
+    comparison = compare(open_map(first), open_map(second), (str(first), str(second)))
+    return comparison_json(comparison) if arguments.json else comparison_text(comparison), 0

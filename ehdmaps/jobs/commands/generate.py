@@ -38,10 +38,10 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     tolerance = None if arguments.tolerance is None else read_tolerance(arguments.tolerance)
     texts, status = [], 0
     for job, output in _planned(arguments):
-        text, found = _made(job, output, arguments, tolerance)
+        text, map_status = _made(job, output, arguments, tolerance)
         texts.append(text)
-        status = max(status, found)
-        if found == INTERRUPTED:
+        status = max(status, map_status)
+        if map_status == INTERRUPTED:
             break
     return "\n\n".join(text for text in texts if text), status
 
@@ -145,9 +145,9 @@ def _made(job: Job, output: Path, arguments: argparse.Namespace, tolerance: floa
     except KeyboardInterrupt:
         tell(f"\nstopped; what is solved is kept in {store_path(output)}: the same command goes on from there")
         return "", INTERRUPTED
-    lost = holes(generated.dataset) + unsolved(generated.dataset)
+    without_solution = holes(generated.dataset) + unsolved(generated.dataset)
     missed = unmet(generated.dataset, generated.backbone is not None)
-    return "\n".join([summary(generated, output), *missed]), 1 if lost or missed else 0
+    return "\n".join([summary(generated, output), *missed]), 1 if without_solution or missed else 0
 
 
 def _with_fresh_films(job: Job) -> Job:

@@ -16,5 +16,5 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     if bash is None:
         raise InputError(f"bash is not in PATH; needed: a shell that runs {script}")
     options = [f"--{name}" for name in ("install", "check") if getattr(arguments, name)]
-    done = subprocess.run([bash, str(script), *options], stdout=subprocess.PIPE, text=True, check=False)
-    return done.stdout.rstrip("\n"), done.returncode
+    result = subprocess.run([bash, str(script), *options], stdout=subprocess.PIPE, text=True, check=False)
+    return result.stdout.rstrip("\n"), result.returncode

@@ -31,7 +31,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     if bearing is None:
         raise InputError(f"{arguments.job}: has [contact]; allowed: a job with [bearing], whose solids are known")
     known = _known(job, bearing) if arguments.compare and arguments.output is None else None
-    record = {} if known else _found(arguments, job, bearing)
+    record = {} if known else _solved_record(arguments, job, bearing)
     approaches = known or {name: one["fe_approach"] for name, one in record["contacts"].items()}
     contacts = bearing.contacts(job.contacts[0].material, "fe", approaches)
     compared = {contact.name: compared_laws(contact, bearing, COMPARED_LOADS) for contact in contacts}
@@ -63,7 +63,7 @@ def _known(job: Job, bearing: BearingGeometry) -> Mapping[str, float] | None:
         return None
 
 
-def _found(arguments: argparse.Namespace, job: Job, bearing: BearingGeometry) -> dict[str, Any]:
+def _solved_record(arguments: argparse.Namespace, job: Job, bearing: BearingGeometry) -> dict[str, Any]:
     """Solve, and note how."""
     sections = job_sections(job.solids, bearing, job.contacts[0].material)
     options = [name for name in ("mesh_convergence", "contact") if getattr(arguments, name)]

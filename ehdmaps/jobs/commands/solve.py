@@ -71,17 +71,17 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         films, written = outputs.solve(solver, job, point)
         for line in written:
             tell(line)
-        found = [contact_solution(film, contact, point) for film, contact in zip(films, job.contacts, strict=True)]
+        solutions = [contact_solution(film, contact, point) for film, contact in zip(films, job.contacts, strict=True)]
     elif request.traction is not None:
         return _with_traction(arguments, solver, request, request.traction)
     elif request.supply is not None:
         return _with_supply(arguments, solver, request, request.supply)
     else:
-        found = [_solved(solver, contact, request) for contact in job.contacts]
+        solutions = [_solved(solver, contact, request) for contact in job.contacts]
     frequency = 0.0 if request.frequencies is None else float(request.frequencies[0])
     records = [
         point_record(solution, contact, job, point, frequency)
-        for solution, contact in zip(found, job.contacts, strict=True)
+        for solution, contact in zip(solutions, job.contacts, strict=True)
     ]
     text = _json(records) if arguments.json else point_table(job, records, point, request.length)
     return text, _exit_status(records)
@@ -112,22 +112,22 @@ def _over_frequency(arguments: argparse.Namespace, request: _Request) -> tuple[s
 
 
 def _with_traction(
-    arguments: argparse.Namespace, solver: ContactSolver, request: _Request, asked: TractionRequest
+    arguments: argparse.Namespace, solver: ContactSolver, request: _Request, slips: TractionRequest
 ) -> tuple[str, int]:
     """Solve each contact once, and tell its traction too."""
     job, point = request.job, request.point
     assert isinstance(solver, ReynoldsSolver)
-    solved = [solve_traction(solver, contact, job.lubricant, point, asked) for contact in job.contacts]
+    solved = [solve_traction(solver, contact, job.lubricant, point, slips) for contact in job.contacts]
     records = [
         point_record(contact_solution(film, contact, point), contact, job, point, 0.0)
         for (film, _), contact in zip(solved, job.contacts, strict=True)
     ]
     if arguments.json:
         both = zip(records, solved, strict=True)
-        text = _json([{**record, **traction_record(asked, found)} for record, (_, found) in both])
+        text = _json([{**record, **traction_record(slips, mu)} for record, (_, mu) in both])
     else:
-        found = {contact.name: found for contact, (_, found) in zip(job.contacts, solved, strict=True)}
-        text = point_table(job, records, point, request.length) + "\n" + traction_table(asked, found)
+        coefficients = {contact.name: mu for contact, (_, mu) in zip(job.contacts, solved, strict=True)}
+        text = point_table(job, records, point, request.length) + "\n" + traction_table(slips, coefficients)
     return text, _exit_status(records)
 
 
@@ -137,15 +137,15 @@ def _with_supply(
     """Solve each contact behind an oil layer."""
     job, point = request.job, request.point
     assert isinstance(solver, ReynoldsSolver)
-    found = {contact.name: solver.supplied_film(contact, job.lubricant, point, supply) for contact in job.contacts}
+    films = {contact.name: solver.supplied_film(contact, job.lubricant, point, supply) for contact in job.contacts}
     records = [
-        point_record(contact_solution(found[contact.name].film, contact, point), contact, job, point, 0.0)
+        point_record(contact_solution(films[contact.name].film, contact, point), contact, job, point, 0.0)
         for contact in job.contacts
     ]
     if arguments.json:
-        text = _json([{**record, **supplied_record(supply, found[record["contact"]])} for record in records])
+        text = _json([{**record, **supplied_record(supply, films[record["contact"]])} for record in records])
     else:
-        text = point_table(job, records, point, request.length) + "\n" + supplied_table(supply, found)
+        text = point_table(job, records, point, request.length) + "\n" + supplied_table(supply, films)
     return text, _exit_status(records)
 
 
@@ -305,10 +305,10 @@ def _traction(arguments: argparse.Namespace, job: Job | None, problems: list[str
                 "delete it; the stress of --shear is --shear-stress"
             )
         return None
-    if job is not None and (told := solvers.solver_words(job.solver_options)):
+    if job is not None and (words := solvers.solver_words(job.solver_options)):
         problems.append(
-            f"{option}: got FROM TO POINTS beside {told[2:]}; traction over the ratio is that of isothermal, newtonian "
-            "films of pure rolling; allowed: one ratio, with which the film is solved"
+            f"{option}: got FROM TO POINTS beside {words[2:]}; traction over the ratio is that of isothermal, "
+            "newtonian films of pure rolling; allowed: one ratio, with which the film is solved"
         )
     if job is not None and job.solver != "reynolds":
         problems.append(f"{option}: the solver {job.solver!r} keeps no film for it; allowed: with --solver reynolds")
@@ -344,9 +344,9 @@ def _supply(arguments: argparse.Namespace, job: Job | None, problems: list[str])
         return None
     if job is not None and job.solver != "reynolds":
         problems.append(f"--supply: the solver {job.solver!r} knows no meniscus; allowed: with --solver reynolds")
-    elif job is not None and (told := solvers.solver_words(job.solver_options)):
+    elif job is not None and (words := solvers.solver_words(job.solver_options)):
         problems.append(
-            f"--supply: stands beside {told[2:]}; allowed: with isothermal, newtonian films of pure rolling"
+            f"--supply: stands beside {words[2:]}; allowed: with isothermal, newtonian films of pure rolling"
         )
     for other in ("frequency", "frequencies", "slide_to_roll", "fields", "plot"):
         if getattr(arguments, other) is not None:

@@ -26,15 +26,15 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         raise InputError(problems)
     checks: list[Check] = []
     if arguments.only in (None, _CONTACT):
-        checks += contact_checks(job, arguments.points, arguments.seed, arguments.openfoam, _told)
+        checks += contact_checks(job, arguments.points, arguments.seed, arguments.openfoam, _announce)
     for name, make in READERS.items():
         if arguments.only in (None, name):
-            _told(f"{arguments.mutations} damaged files for: {name}")
+            _announce(f"{arguments.mutations} damaged files for: {name}")
             checks.append(fuzz(make(), arguments.mutations, arguments.seed))
     head = f"{job.title}, {job.lubricant.title}, seed {arguments.seed}"
     return told(head, checks, arguments.output, arguments.json)
 
 
-def _told(line: str) -> None:
+def _announce(line: str) -> None:
     """Tell how far it is."""
     tell(f"ehdmaps stability: {line}")

@@ -20,13 +20,13 @@ _STATUS = ".store.status"
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Look; status 1 if a map is neither finished nor being made."""
     outputs = _here() if arguments.map is None else [_output(arguments.map, arguments.output)]
-    found = [_described(output) for output in outputs]
-    return "\n".join(text for text, _ in found), max(status for _, status in found)
+    descriptions = [_described(output) for output in outputs]
+    return "\n".join(text for text, _ in descriptions), max(status for _, status in descriptions)
 
 
 def _here() -> list[Path]:
     """Maps of this folder that are being made, or were."""
-    traces = [path.name for path in Path().iterdir() if _is_trace(path)]
+    traces = [path.name for path in Path().iterdir() if path.name.endswith((_STORE, _STATUS)) and path.is_file()]
     names = {name.removesuffix(_STATUS).removesuffix(_STORE) for name in traces}
     if not names:
         raise InputError(
@@ -34,11 +34,6 @@ def _here() -> list[Path]:
             "name of a map, of its store, or of a job"
         )
     return [Path(name) for name in sorted(names)]
-
-
-def _is_trace(path: Path) -> bool:
-    """Tell whether a file is a store or a status of a map."""
-    return path.name.endswith((_STORE, _STATUS)) and path.is_file()
 
 
 def _output(name: str, output: str | None) -> Path:

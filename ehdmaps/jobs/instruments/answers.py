@@ -119,10 +119,10 @@ def film_answer(film: FilmSolution, question: Question) -> Answer:
         return Answer(
             lost=shorten("; ".join(filter(None, (film.status.word, film.reason))), _LONGEST, placeholder=" ...")
         )
-    found = contact_solution(film, question.contact, question.point)
-    values = {name: float(getattr(found, name.replace(" ", "_"))) for name in QUANTITIES}
+    solution = contact_solution(film, question.contact, question.point)
+    values = {name: float(getattr(solution, name.replace(" ", "_"))) for name in QUANTITIES}
     stated = {
-        name: abs(getattr(found, f"{name.replace(' ', '_')}_error") * values[name])
+        name: abs(getattr(solution, f"{name.replace(' ', '_')}_error") * values[name])
         for name in QUANTITIES
         if name != "approach"
     }
@@ -154,10 +154,10 @@ def scales(truth: Answer, question: Question, least_film: float = 0.0) -> dict[s
     least_film : float
         Film that errors of films are relative to at least [m].
     """
-    found = {name: abs(value) for name, value in truth.values.items()}
-    stiffness, time = found.get("stiffness", math.nan), question.passing_time
+    sizes = {name: abs(value) for name, value in truth.values.items()}
+    stiffness, time = sizes.get("stiffness", math.nan), question.passing_time
     floors = {
-        "approach": float(question.contact.structural_approach(question.point.load)) + found.get("film offset", 0.0),
+        "approach": float(question.contact.structural_approach(question.point.load)) + sizes.get("film offset", 0.0),
         "film compliance": COMPLIANCE_SHARE / stiffness,
         "damping": DAMPING_SHARE * stiffness * time,
         "loss compliance": DAMPING_SHARE * time / stiffness,
@@ -165,4 +165,4 @@ def scales(truth: Answer, question: Question, least_film: float = 0.0) -> dict[s
         "central film": least_film,
         "minimum film": least_film,
     }
-    return {name: max(value, floors.get(name, 0.0)) for name, value in found.items()}
+    return {name: max(value, floors.get(name, 0.0)) for name, value in sizes.items()}

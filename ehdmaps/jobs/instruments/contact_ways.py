@@ -210,18 +210,18 @@ class OnLayer:
 
     def __call__(self, question: Question) -> Answer:
         """Answer of the supplied film."""
-        found = self.solver.supplied_film(question.contact, question.lubricant, question.point, self.supply)
-        held = film_answer(found.film, question)
-        if held.lost or not math.isfinite(found.supplied_compliance):
-            return held
-        stiffness = 1.0 / (question.dry_compliance + found.supplied_compliance)
+        supplied = self.solver.supplied_film(question.contact, question.lubricant, question.point, self.supply)
+        answer = film_answer(supplied.film, question)
+        if answer.lost or not math.isfinite(supplied.supplied_compliance):
+            return answer
+        stiffness = 1.0 / (question.dry_compliance + supplied.supplied_compliance)
         following = {
-            "film compliance": found.supplied_compliance,
+            "film compliance": supplied.supplied_compliance,
             "stiffness": stiffness,
-            "loss compliance": held.values["damping"] / stiffness**2,
+            "loss compliance": answer.values["damping"] / stiffness**2,
         }
-        stated = {name: error for name, error in held.stated.items() if name not in following}
-        return Answer({**held.values, **following}, stated)
+        stated = {name: error for name, error in answer.stated.items() if name not in following}
+        return Answer({**answer.values, **following}, stated)
 
 
 @dataclass(frozen=True)
@@ -309,15 +309,15 @@ class RoughSolved:
         """Answer of the balance."""
         contact, point = question.contact, question.point
         try:
-            found = solved_sharing(self.solver, contact, question.lubricant, point, self.surface)
+            balance = solved_sharing(self.solver, contact, question.lubricant, point, self.surface)
         except SolverError as error:
             return Answer(lost=str(error))
         return Answer(
             {
-                "approach": float(contact.structural_approach(point.load)) - found.offset,
-                "stiffness": 1.0 / (question.dry_compliance + found.compliance),
-                "film offset": found.offset,
-                "film compliance": found.compliance,
+                "approach": float(contact.structural_approach(point.load)) - balance.offset,
+                "stiffness": 1.0 / (question.dry_compliance + balance.compliance),
+                "film offset": balance.offset,
+                "film compliance": balance.compliance,
             }
         )
 
@@ -340,11 +340,11 @@ class AtFrequency:
         film = self.solver.film_spectrum(contact, question.lubricant, point, np.array([question.frequency]))
         if not film.film.status.usable:
             return film_answer(film.film, question)
-        found = contact_spectrum(film, contact, point)
-        k, c = float(found.stiffness[0]), float(found.damping[0])
+        spectrum = contact_spectrum(film, contact, point)
+        k, c = float(spectrum.stiffness[0]), float(spectrum.damping[0])
         stated = {
-            "stiffness": abs(k) * float(found.stiffness_error[0]),
-            "damping": abs(c) * float(found.damping_error[0]),
+            "stiffness": abs(k) * float(spectrum.stiffness_error[0]),
+            "damping": abs(c) * float(spectrum.damping_error[0]),
         }
         return Answer({"stiffness": k, "damping": c}, known(stated))
 
@@ -363,8 +363,8 @@ class Slow:
 
     def __call__(self, question: Question) -> Answer:
         """Answer of slow motion; it states no error of that limit."""
-        found = film_answer(_film(self.solver, question), question)
-        return replace(found, values={name: found.values[name] for name in _DYNAMIC if name in found.values}, stated={})
+        slow = film_answer(_film(self.solver, question), question)
+        return replace(slow, values={name: slow.values[name] for name in _DYNAMIC if name in slow.values}, stated={})
 
 
 @dataclass(frozen=True)

@@ -246,8 +246,8 @@ def refined_check(job: Job, points: int, seed: int) -> Check:
     )
     coarse = ReynoldsSolver()
     fine = replace(coarse, density=4.0 * coarse.density, inlet_length=2.0 * coarse.inlet_length)
-    number = found = 0
-    while found < points and number < 40 * points:
+    number = solved = 0
+    while solved < points and number < 40 * points:
         wild = _drawn(job, seed + 3, number)
         number += 1
         if isinstance(wild, str):
@@ -262,7 +262,7 @@ def refined_check(job: Job, points: int, seed: int) -> Check:
             continue
         if whole is None or film.film_offset == 0.0:
             continue
-        found += 1
+        solved += 1
         if best is None:
             tally.refused(f"finer grid {exact.status.word}: {_alike(exact.reason)}")
             continue
@@ -380,19 +380,19 @@ def _count(tally: Tally, wild: WildPoint | str, judged: Callable[[WildPoint], _V
         return
     where = f"{place}{wild.label}"
     try:
-        found = judged(wild)
+        verdict = judged(wild)
     except EhdmapsError as error:
         tally.refused(_words(error))
         return
     except Exception as error:
         tally.failed(where, f"{type(error).__name__}: {error!s:.200}")
         return
-    if found.wrong:
-        tally.failed(where, found.wrong)
-    elif found.refusal:
-        tally.refused(found.refusal)
+    if verdict.wrong:
+        tally.failed(where, verdict.wrong)
+    elif verdict.refusal:
+        tally.refused(verdict.refusal)
     else:
-        tally.right(f"{100.0 * found.share:.3g} % of the bound at {where}", found.share)
+        tally.right(f"{100.0 * verdict.share:.3g} % of the bound at {where}", verdict.share)
 
 
 def _drawn(job: Job, seed: int, number: int) -> WildPoint | str:
@@ -468,11 +468,11 @@ def _border_problem(solver: ContactSolver, wild: WildPoint, low: float, high: fl
     first, last = at(low), at(high)
     while high / low - 1.0 > HAIR:
         middle = math.sqrt(low * high)
-        found = at(middle)
-        if found[1].status is first[1].status:
-            low, first = middle, found
+        between = at(middle)
+        if between[1].status is first[1].status:
+            low, first = middle, between
         else:
-            high, last = middle, found
+            high, last = middle, between
     if first[2] is None or last[2] is None:
         return "", 0.0
     wrong, by = jump(wild, first[1], first[2], last[1], last[2])

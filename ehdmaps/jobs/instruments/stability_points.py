@@ -153,20 +153,20 @@ def refusals(job: Job, use: Callable[[LineContact, Lubricant, float, float, floa
         Takes contact, oil, load [N/m], speed [m/s] and temperature [K], and solves.
     """
     contact, oil = job.contacts[0], job.lubricant
-    found = []
+    wrong = []
     for label, value in _WRONG:
         zero = value == 0.0
-        found.append(Refusal(f"load {label}", partial(use, contact, oil, value, 1.0, 313.15)))
-        found.append(Refusal(f"temperature {label}", partial(use, contact, oil, 1e5, 1.0, value)))
+        wrong.append(Refusal(f"load {label}", partial(use, contact, oil, value, 1.0, 313.15)))
+        wrong.append(Refusal(f"temperature {label}", partial(use, contact, oil, 1e5, 1.0, value)))
         if not zero:  # a contact at rest is one
-            found.append(Refusal(f"speed {label}", partial(use, contact, oil, 1e5, value, 313.15)))
-        found += [Refusal(f"{name} {label}", partial(_contact, contact, name, value)) for name in _LENGTH_NAMES]
-        found.append(Refusal(f"modulus {label}", partial(Material, value, 0.3)))
-        found += [Refusal(f"{name} {label}", partial(_barus, name, value)) for name in ("viscosity", "density")]
+            wrong.append(Refusal(f"speed {label}", partial(use, contact, oil, 1e5, value, 313.15)))
+        wrong += [Refusal(f"{name} {label}", partial(_contact, contact, name, value)) for name in _LENGTH_NAMES]
+        wrong.append(Refusal(f"modulus {label}", partial(Material, value, 0.3)))
+        wrong += [Refusal(f"{name} {label}", partial(_barus, name, value)) for name in ("viscosity", "density")]
         if not zero:  # an isoviscous oil is one
-            found.append(Refusal(f"pressure_viscosity {label}", partial(_barus, "pressure_viscosity", value)))
-    found += [Refusal(f"Poisson ratio {nu}", partial(Material, 210e9, nu)) for nu in (0.5, -1.0, math.nan, math.inf)]
-    return found
+            wrong.append(Refusal(f"pressure_viscosity {label}", partial(_barus, "pressure_viscosity", value)))
+    wrong += [Refusal(f"Poisson ratio {nu}", partial(Material, 210e9, nu)) for nu in (0.5, -1.0, math.nan, math.inf)]
+    return wrong
 
 
 _LENGTH_NAMES = ("radius", "roller_length")
@@ -340,7 +340,8 @@ def film_problem(wild: WildPoint, film: FilmSolution, whole: ContactSolution) ->
     wrong, share = _gross_problem(film, groups, isinstance(wild.oil.pressure_viscosity, Barus))
     if wrong:
         return wrong, share
-    alpha = groups.L / wild.point.contact.reduced_modulus / max(_speed_root(groups, wild), 1e-300)
+    speed_root = math.sqrt(groups.unit / wild.point.contact.radius)  # (eta us/(E'R))^(1/4)
+    alpha = groups.L / wild.point.contact.reduced_modulus / max(speed_root, 1e-300)
     if groups.M < 0.01 and alpha * film.max_pressure < 1e-3 and film.max_pressure < 1e6:
         # Elastic and viscous shares are below 0.1 %, compressibility below 0.06 %.
         martin = MARTIN_CONSTANT / groups.M * groups.unit
@@ -384,11 +385,6 @@ def hot_film_problem(wild: WildPoint, film: FilmSolution, whole: ContactSolution
         Film and contact of the point.
     """
     return _whole_problem(film, whole), 0.0
-
-
-def _speed_root(groups: Groups, wild: WildPoint) -> float:
-    """(eta us/(E'R))^(1/4), from the unit of the film number."""
-    return math.sqrt(groups.unit / wild.point.contact.radius)
 
 
 def stated_size(error: float) -> float:
@@ -435,14 +431,14 @@ def error_ratios(
     exact, best
         Film and contact on the finer grid.
     """
-    found = {}
+    ratios = {}
     for name, apart, size, _ in _differences(wild, film, whole, exact, best):
         stated = {"film": film.film_offset_error, "stiffness": whole.stiffness_error, "damping": whole.damping_error}[
             name
         ]
         own = abs(whole.damping) if name == "damping" else size
-        found[name] = apart / (stated_size(stated) * own + 1e-6 * size)
-    return found
+        ratios[name] = apart / (stated_size(stated) * own + 1e-6 * size)
+    return ratios
 
 
 def _differences(

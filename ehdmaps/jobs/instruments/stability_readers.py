@@ -167,11 +167,11 @@ def _stores() -> Reader:
     def read(folder: Path) -> str:
         with Store(folder / "map.nc.store") as store:
             for key, arrays in kept.items():
-                found = store.get(key)
-                if found is None:
+                stored = store.get(key)
+                if stored is None:
                     continue
-                if found.keys() != arrays.keys() or any(
-                    not np.array_equal(found[name], arrays[name]) for name in found
+                if stored.keys() != arrays.keys() or any(
+                    not np.array_equal(stored[name], arrays[name]) for name in stored
                 ):
                     return f"other arrays than were put under {key!r}"
         return ""

@@ -95,8 +95,8 @@ def _solver(model: ContactModel) -> str:
     """The solver of a model, with its grid."""
     solver = getattr(model, "solver", None)
     settings = {} if solver is None else solver.settings()
-    told = [f"{key.replace('_', ' ')} {settings[key]:g}" for key in ("density", "inlet_length") if key in settings]
-    return ", ".join([getattr(solver, "name", type(model).__name__), *told])
+    grid = [f"{key.replace('_', ' ')} {settings[key]:g}" for key in ("density", "inlet_length") if key in settings]
+    return ", ".join([getattr(solver, "name", type(model).__name__), *grid])
 
 
 def sample_words(job: Job, count: int, seed: int) -> tuple[str, ...]:
@@ -168,11 +168,11 @@ def truth_words(truths: Sequence[Truth], questions: Sequence[Question]) -> tuple
                 f"{name}: damping is not above zero at {below} of {len(pairs)} points; compared as solved, contact "
                 "laws take zero there"
             )
-        lost = [f"  {question.place}: {answer.lost}" for question, answer in pairs if answer.lost]
-        if lost:
+        unanswered = [f"  {question.place}: {answer.lost}" for question, answer in pairs if answer.lost]
+        if unanswered:
             lines += [
-                f"{name}: without a solution at {len(lost)} of {len(pairs)} points; nothing compared there",
-                *lost,
+                f"{name}: without a solution at {len(unanswered)} of {len(pairs)} points; nothing compared there",
+                *unanswered,
             ]
     return tuple(lines)
 
@@ -240,12 +240,12 @@ def measure(
         return known[model, len(at)]
 
     choices, groups = [], dict.fromkeys(entry.group for entry in chosen)
-    truths, lost = {group.truth for group in groups}, list[str]()
+    truths, gaps = {group.truth for group in groups}, list[str]()
     for entry in chosen:
         at = few if entry.few else questions
         # the truth is asked at all points once, the few are the first of them
         truth = asked(entry.group.truth, questions, f"reference of {entry.group.name}").answers[: len(at)]
-        found = asked(entry.model, at, entry.label)
+        own = asked(entry.model, at, entry.label)
         finest = None
         if entry.finest == entry.group.truth:
             finest = truth
@@ -253,12 +253,12 @@ def measure(
             longer = (entry.finest, len(questions)) in known
             finest = asked(entry.finest, questions if longer else at, f"finest of {entry.label}").answers[: len(at)]
             if entry.finest not in truths:  # whose gaps are told besides
-                lost += [
+                gaps += [
                     f"no numerical error told apart: finest of {entry.label} at {question.place}: {answer.lost}"
                     for question, answer in zip(at, finest, strict=True)
                     if answer.lost
                 ]
-        choices.append(_choice(entry, at, found, truth, finest))
+        choices.append(_choice(entry, at, own, truth, finest))
     references = [Truth(group, known[group.truth, len(questions)]) for group in groups]
     return Trade(
         level="contact",
@@ -271,7 +271,7 @@ def measure(
             *sample_words(job, len(questions), seed),
             *(openfoam_words(openfoam, missing) if entries is None else ()),
             *truth_words(references, questions),
-            *dict.fromkeys(lost),  # several choices may have one finest solution
+            *dict.fromkeys(gaps),  # several choices may have one finest solution
         ),
         scopes=(Scope("a contact in slow motion", (_SOLVING,), _SHOWN),),
         sources=sources(chosen),
@@ -295,30 +295,23 @@ def _question(job: Job, sample: SamplePoint, natural: float) -> Question:
     """One point, at a natural frequency of the film of Moes' formula."""
     contact, *values = sample
     point = OperatingPoint(*values)
-    (film,) = FormulaSolver("moes", thickest_film=math.inf).solve_line(contact, job.lubricant, *_line(point))
+    (film,) = FormulaSolver("moes", thickest_film=math.inf).solve_line(
+        contact, job.lubricant, (point.load,), point.entrainment_speed, point.temperature
+    )
     frequency = float(natural_to_hertz((natural,), film, contact, point)[0])
     return Question(contact, job.lubricant, point, min(max(frequency, LOWEST_FREQUENCY), HIGHEST_FREQUENCY))
 
 
-def _line(point: OperatingPoint) -> tuple[tuple[float, ...], float, float]:
-    """A point as the line of loads that it is."""
-    return (point.load,), point.entrainment_speed, point.temperature
-
-
 def _ask(model: ContactModel, questions: Sequence[Question]) -> Asked:
     """Answers to all questions, and what one took; a first answer that compiles is not in it."""
-    if questions and not _slow(model):
+    # a slow answer is too expensive to be given twice; programs of their own compile nothing here
+    if questions and not getattr(getattr(model, "solver", None), "slow", False):
         model(questions[0])
     began = cpu_seconds()
     many = getattr(model, "many", None)  # a table is read at all points at once
     answers = tuple(model(question) for question in questions) if many is None else many(questions)
     spent = cpu_seconds() - began
     return Asked(answers, spent / len(questions) if questions else math.nan)
-
-
-def _slow(model: ContactModel) -> bool:
-    """Tell whether an answer is too expensive to be given twice; programs of their own compile nothing here."""
-    return bool(getattr(getattr(model, "solver", None), "slow", False))
 
 
 def cpu_seconds() -> float:
@@ -328,14 +321,18 @@ def cpu_seconds() -> float:
 
 
 def _choice(
-    entry: Entry, questions: Sequence[Question], found: Asked, truth: Sequence[Answer], finest: Sequence[Answer] | None
+    entry: Entry,
+    questions: Sequence[Question],
+    answered: Asked,
+    truth: Sequence[Answer],
+    finest: Sequence[Answer] | None,
 ) -> Choice:
     """One row: errors at the points that both the choice and the reference answer."""
     units = [
         scales(answer, question, entry.group.least_film) for answer, question in zip(truth, questions, strict=True)
     ]
     places = [question.place for question in questions]
-    judged = [name for name in QUANTITIES if any(name in answer.values for answer in found.answers)]
+    judged = [name for name in QUANTITIES if any(name in answer.values for answer in answered.answers)]
 
     def summed(first: Sequence[Answer], second: Sequence[Answer], stated: bool) -> dict[str, ErrorSummary]:
         summaries = {}
@@ -348,28 +345,28 @@ def _choice(
                 summaries[name] = summary
         return summaries
 
-    errors = summed(found.answers, truth, True)
+    errors = summed(answered.answers, truth, True)
     numerical: Mapping[str, ErrorSummary] = {}
     model: Mapping[str, ErrorSummary] = errors if entry.closed else {}
     if finest is not None:
-        numerical = summed(found.answers, finest, True)
+        numerical = summed(answered.answers, finest, True)
         if finest is not truth:
             model = summed(finest, truth, False)
-    lost = tuple(
+    unanswered = tuple(
         f"{question.place}: {answer.lost}"
-        for question, answer in zip(questions, found.answers, strict=True)
+        for question, answer in zip(questions, answered.answers, strict=True)
         if answer.lost
     )
     return Choice(
         group=entry.group.name,
         label=entry.label,
-        seconds=found.seconds,
+        seconds=answered.seconds,
         errors=errors,
         numerical=numerical,
         model=model,
-        solved=len(questions) - len(lost),
+        solved=len(questions) - len(unanswered),
         asked=len(questions),
-        lost=lost,
+        lost=unanswered,
         default=entry.default,
         reference=entry.group.reference,
     )

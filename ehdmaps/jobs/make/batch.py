@@ -23,8 +23,9 @@ from __future__ import annotations
 import hashlib
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import product
 from os import PathLike, fspath
 from pathlib import Path
 from typing import Any
@@ -224,7 +225,7 @@ def _entries(section: Table, key: str, word: str, required: bool) -> dict[str, M
         return {}
     if not values:
         section.note(key, "got an empty list; allowed: at least one")
-    found: dict[str, Mapping[str, Any]] = {}
+    entries: dict[str, Mapping[str, Any]] = {}
     seen: Counter[str] = Counter()
     for index, value in enumerate(values[: MOST_MEMBERS + 1]):
         table = {word: value} if isinstance(value, str) else value
@@ -242,10 +243,10 @@ def _entries(section: Table, key: str, word: str, required: bool) -> dict[str, M
         elif seen[name.casefold()]:
             section.note(f"{key}[{index}]", f"got {name!r} again; allowed: each name once; give another label")
         else:
-            found[name] = table
+            entries[name] = table
         if name is not None:
             seen[name.casefold()] += 1
-    return found
+    return entries
 
 
 def _overrides(top: Table) -> dict[str, Mapping[str, Any]] | None:
@@ -258,7 +259,7 @@ def _overrides(top: Table) -> dict[str, Mapping[str, Any]] | None:
     if not isinstance(values, list) or not values:
         top.note("overrides", f"got {short(values)}; allowed: {form}")
         return None
-    found: dict[str, Mapping[str, Any]] = {}
+    overrides: dict[str, Mapping[str, Any]] = {}
     for index, value in enumerate(values[: MOST_MEMBERS + 1]):
         where = f"overrides[{index}]"
         if not isinstance(value, dict):
@@ -268,15 +269,15 @@ def _overrides(top: Table) -> dict[str, Mapping[str, Any]] | None:
         changes = {key: change for key, change in value.items() if key != "name"}
         if not isinstance(name, str) or not _NAME.fullmatch(name) or len(name) > LONGEST_NAME:
             top.note(where, f"name: got {short(name)}; allowed: {_NAMES}, in quotes")
-        elif name.casefold() in {known.casefold() for known in found}:
+        elif name.casefold() in {known.casefold() for known in overrides}:
             top.note(where, f"name: got {name!r} again; allowed: each name once")
         else:
-            found[name] = changes
+            overrides[name] = changes
         for key, change in changes.items():
             if key in _REPLACED or key not in _OF_JOB or not isinstance(change, dict):
                 allowed = ", ".join(k for k in _OF_JOB if k != "schema")
                 top.note(where, f"{short(key)[1:-1]}: got {short(change)}; allowed: a table, one of {allowed}")
-    return found if len(top.problems) == before else None
+    return overrides if len(top.problems) == before else None
 
 
 def _members(
@@ -291,7 +292,7 @@ def _members(
     members: list[Member] = []
     problems: dict[str, list[str]] = {}
     names: dict[str, str] = {}
-    for bearing, oil, override in _product(lists, overrides):
+    for bearing, oil, override in product(lists.bearings, lists.oils, overrides):
         name = "_".join(part for part in (bearing, oil, override) if part)
         if len(name) > LONGEST_NAME:
             problems.setdefault(f"its name has more than {LONGEST_NAME} characters; give shorter labels", []).append(
@@ -318,16 +319,8 @@ def _members(
     if problems:
         raise InputError(
             [
-                f"{where}, {found[0]}{f' and {len(found) - 1} more' if len(found) > 1 else ''}: {problem}"
-                for problem, found in problems.items()
+                f"{where}, {affected[0]}{f' and {len(affected) - 1} more' if len(affected) > 1 else ''}: {problem}"
+                for problem, affected in problems.items()
             ]
         )
     return tuple(members)
-
-
-def _product(lists: _Lists, overrides: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
-    """Yield all combinations of names."""
-    for bearing in lists.bearings:
-        for oil in lists.oils:
-            for override in overrides:
-                yield bearing, oil, override

@@ -115,7 +115,7 @@ _LONGEST_PIECE = 10
 _DIED = "the worker process died (killed, or out of memory); the same command tries again"
 
 _Item = TypeVar("_Item")
-_Found = TypeVar("_Found")
+_Result = TypeVar("_Result")
 
 
 _FOLDER = "allowed: a folder for the maps, in one that is there and may be written; choose another"
@@ -321,9 +321,9 @@ def _kept(member: Member, output: Path) -> Outcome | None:
 def _outcome(member: Member, output: Path, state: str, dataset: xr.Dataset, lines: bool, seconds: float) -> Outcome:
     """Outcome of a map that is there."""
     films = READ if schema.FILM_TABLE in dataset.attrs else SOLVED
-    lost = holes(dataset) + unsolved(dataset)
+    without_solution = holes(dataset) + unsolved(dataset)
     missed = tuple(unmet(dataset, lines))
-    return Outcome(member, output, state, films, int(lost), missed, _figures(dataset), "", seconds)
+    return Outcome(member, output, state, films, int(without_solution), missed, _figures(dataset), "", seconds)
 
 
 def _figures(dataset: xr.Dataset) -> dict[str, float]:
@@ -368,7 +368,8 @@ class _Run:
             raise
         except EhdmapsError as error:
             return Outcome(member, output, FAILED, reason=str(error))
-        self._count(made.sweep)
+        # without its arrays: those of a thousand maps need more memory than there is
+        self.result.add(replace(made.sweep, arrays={}))
         seconds = time.monotonic() - begin
         return _outcome(member, output, MADE, made.dataset, made.backbone is not None, seconds)
 
@@ -380,9 +381,9 @@ class _Run:
         if counter:
             counter.taken_over(0)
         left = []
-        for piece, found in _each(_made, pieces, self.workers):
+        for piece, of_piece in _each(_made, pieces, self.workers):
             died = [Outcome(m.member, self.folder / f"{m.member.name}.nc", FAILED, reason=_DIED) for m in piece.maps]
-            for planned, outcome in zip(piece.maps, found or died, strict=True):
+            for planned, outcome in zip(piece.maps, of_piece or died, strict=True):
                 if outcome is None:
                     left.append(planned)
                 else:
@@ -391,10 +392,6 @@ class _Run:
             if counter:
                 counter.solved(len(piece.maps))
         return left
-
-    def _count(self, result: SweepResult) -> None:
-        """Count a sweep, without keeping its arrays: those of a thousand maps need more memory than there is."""
-        self.result.add(replace(result, arrays={}))
 
 
 @dataclass(frozen=True)
@@ -423,21 +420,21 @@ def _made(piece: _Piece) -> list[Outcome | None]:
 
 
 def _each(
-    function: Callable[[_Item], _Found], items: Sequence[_Item], workers: int
-) -> Iterator[tuple[_Item, _Found | None]]:
+    function: Callable[[_Item], _Result], items: Sequence[_Item], workers: int
+) -> Iterator[tuple[_Item, _Result | None]]:
     """Do something with each item, in worker processes where there are several; None where its process died."""
     if workers <= 1 or len(items) <= 1:
         for item in items:
             yield item, function(item)
         return
-    running: dict[Future[_Found], _Item] = {}
+    running: dict[Future[_Result], _Item] = {}
     try:
         with worker_pool(min(workers, len(items))) as pool:
             for item in items:
                 running[pool.submit(function, item)] = item
             for future in as_completed(list(running)):
-                found = future.result()
-                yield running.pop(future), found
+                result = future.result()
+                yield running.pop(future), result
     except WorkersDied as died:
         if not died.begun:
             raise died.error from None

@@ -122,8 +122,8 @@ def summary(result: BatchResult, written: Path) -> str:
 def _lines(result: BatchResult, written: Path) -> Iterator[str]:
     """Yield the lines of the summary."""
     counts = Counter(outcome.state for outcome in result.outcomes)
-    told = ", ".join(f"{count} {state}" for state, count in sorted(counts.items(), reverse=True))
-    yield f"{result.batch.name}: {len(result.outcomes)} maps: {told}"
+    states = ", ".join(f"{count} {state}" for state, count in sorted(counts.items(), reverse=True))
+    yield f"{result.batch.name}: {len(result.outcomes)} maps: {states}"
     if read := sum(outcome.films == READ for outcome in result.outcomes):
         yield f"films: {read} maps read from the film table"
     yield f"points: {result.sweep.taken_over} taken over, {result.sweep.solved} solved now"
@@ -142,5 +142,5 @@ def _words(outcome: Outcome) -> str:
     """Shortcomings of a map, in words."""
     if outcome.state == FAILED:
         return f"failed: {outcome.reason}"
-    lost = [f"{outcome.lost} points without a solution"] if outcome.lost else []
-    return "; ".join([*lost, *outcome.missed])
+    shortcomings = [f"{outcome.lost} points without a solution"] if outcome.lost else []
+    return "; ".join([*shortcomings, *outcome.missed])

@@ -133,15 +133,15 @@ class Correction:
         loads = np.array(task.loads)
         places = places_of(task.contact, task.lubricant, loads, task.entrainment_speed, task.temperature)
         where = Place(loads, _width(task.contact, loads), task.entrainment_speed)
-        found = self.films(films, places, where)
+        new_films = self.films(films, places, where)
         result = dict(arrays)
-        for name, old, new in zip(("film_offset", "film_compliance", "loss_compliance"), films, found, strict=True):
+        for name, old, new in zip(("film_offset", "film_compliance", "loss_compliance"), films, new_films, strict=True):
             result[name] = np.where(known, new, old)
         for name, regression in self.also.items() if self.applied[0] else ():
             if name in arrays:
                 result[name] = arrays[name] * np.where(known, np.exp(regression.at(places)[0]), 1.0)
         if task.natural_frequencies:
-            added = _slow_change(task, loads, films, found)
+            added = _slow_change(task, loads, films, new_films)
             for name, part in zip(SPECTRUM_FIELDS, (added.real, added.imag), strict=False):
                 result[name] = arrays[name] + np.where(known[:, None], part, 0.0)
         return result
@@ -180,10 +180,10 @@ class Correction:
         per_load = films.offset / where.load
         steep = films.compliance / per_load
         share = per_load / (contact.structural_compliance(where.load) + films.compliance)
-        of_slope, of_lost = _doubts(share, _share(films, where))
+        of_slope, doubt_of_loss = _doubts(share, _share(films, where))
         sure, stretched = np.ones(share.shape), per_zeta(places)
         spread = self.offset.spread(places, np.column_stack([sure, of_slope / stretched]))
-        of_loss = self.loss.spread(places, np.column_stack([of_lost, sure]))[:, 0, 0]
+        of_loss = self.loss.spread(places, np.column_stack([doubt_of_loss, sure]))[:, 0, 0]
         if not self.applied[0]:
             known = np.column_stack(self.offset.at(places))
             spread = spread + known[:, :, None] * known[:, None, :]
@@ -196,8 +196,9 @@ class Correction:
         of_stiffness = stiffness**2 * np.maximum(of_compliance, 0.0)
         unit = per_load * where.width / where.speed
         with np.errstate(divide="ignore", invalid="ignore"):
-            lost = (unit / films.loss) ** 2 * (LOSS_SCALE**2 + (films.loss / unit) ** 2) * of_loss + spread[:, 0, 0]
-        return np.sqrt(of_stiffness), np.sqrt(lost + 4.0 * of_stiffness)
+            per_loss = unit / films.loss
+            loss_variance = per_loss**2 * (LOSS_SCALE**2 + (films.loss / unit) ** 2) * of_loss + spread[:, 0, 0]
+        return np.sqrt(of_stiffness), np.sqrt(loss_variance + 4.0 * of_stiffness)
 
     @property
     def usable(self) -> int:
@@ -234,7 +235,7 @@ class Correction:
 
 
 @dataclass
-class _Asked:
+class _Sample:
     """Points that both solvers were asked for, by their indices among the candidates, and what they found."""
 
     chosen: list[int]
@@ -273,24 +274,26 @@ def correction(
         If too few points have a solution by both.
     """
     among = candidates(job)
-    asked = _Asked([], [], [])
+    sample = _Sample([], [], [])
     first = min(max(ceil(count / _FIRST), FEWEST), count, len(among.points))
     chosen = spread_out(among, first) if first else []
     while chosen:
-        _ask(asked, job, (cheap, dear), among, chosen, solve)
-        both = _both(asked)
-        left = min(count, len(among.points)) - len(asked.chosen)
+        _ask(sample, job, (cheap, dear), among, chosen, solve)
+        both = _both(sample)
+        left = min(count, len(among.points)) - len(sample.chosen)
         if left <= 0 or not both.any():
             break
         size = min(ceil(count / _LATER), left)
-        chosen = _next(among, asked, both, size) if np.count_nonzero(both) >= FEWEST else _farthest(among, asked, size)
-    both = _both(asked)
+        chosen = (
+            _next(among, sample, both, size) if np.count_nonzero(both) >= FEWEST else _farthest(among, sample, size)
+        )
+    both = _both(sample)
     if np.count_nonzero(both) < FEWEST:
-        raise MapError(_too_few(cheap, dear, among, asked, both))
-    return _regressed(job, among, asked, both)
+        raise MapError(_too_few(cheap, dear, among, sample, both))
+    return _regressed(job, among, sample, both)
 
 
-def error_of(contact: LineContact, where: Place, found: Films, true: Films) -> dict[str, FloatArray]:
+def error_of(contact: LineContact, where: Place, films: Films, true: Films) -> dict[str, FloatArray]:
     """Relative errors of `JUDGED`, signed; that of damping over `SMALL_DAMPING` where damping is below it.
 
     Parameters
@@ -299,15 +302,15 @@ def error_of(contact: LineContact, where: Place, found: Films, true: Films) -> d
         The contact, with its structural law.
     where : Place
         Loads, half-widths and speeds.
-    found, true : Films
+    films, true : Films
         What is judged, and by what.
     """
     dry = contact.structural_compliance(where.load)
-    k, true_k = 1.0 / (dry + found.compliance), 1.0 / (dry + true.compliance)
-    c, true_c = found.loss * k**2, true.loss * true_k**2
+    k, true_k = 1.0 / (dry + films.compliance), 1.0 / (dry + true.compliance)
+    c, true_c = films.loss * k**2, true.loss * true_k**2
     scale = np.maximum(true_c, SMALL_DAMPING * true_k * where.width / where.speed)
     return {
-        "film_offset": found.offset / true.offset - 1.0,
+        "film_offset": films.offset / true.offset - 1.0,
         "stiffness": k / true_k - 1.0,
         "damping": (c - true_c) / scale,
     }
@@ -341,7 +344,7 @@ def point_words(point: SamplePoint) -> str:
 
 
 def _ask(
-    asked: _Asked,
+    sample: _Sample,
     job: Job,
     pair: tuple[ContactSolver, ContactSolver],
     among: Candidates,
@@ -353,10 +356,10 @@ def _ask(
         [LineTask(p.contact, job.lubricant, (p.load,), p.speed, p.temperature, solver) for solver in pair]
         for p in (among.points[i] for i in chosen)
     ]
-    found = solve([task for both in tasks for task in both])
-    asked.chosen += chosen
-    asked.cheap += [with_later_fields(found[cheap.key]) for cheap, _ in tasks]
-    asked.dear += [with_later_fields(found[dear.key]) for _, dear in tasks]
+    results = solve([task for both in tasks for task in both])
+    sample.chosen += chosen
+    sample.cheap += [with_later_fields(results[cheap.key]) for cheap, _ in tasks]
+    sample.dear += [with_later_fields(results[dear.key]) for _, dear in tasks]
 
 
 def _known(arrays: Arrays) -> BoolArray:
@@ -367,16 +370,16 @@ def _known(arrays: Arrays) -> BoolArray:
     return np.asarray(usable & (arrays["film_offset"] > 0.0))
 
 
-def _both(asked: _Asked) -> BoolArray:
+def _both(sample: _Sample) -> BoolArray:
     """True where both solvers have solved a point."""
-    pairs = zip(asked.cheap, asked.dear, strict=True)
+    pairs = zip(sample.cheap, sample.dear, strict=True)
     return np.array([bool(_known(cheap)[0] and _known(dear)[0]) for cheap, dear in pairs], dtype=bool)
 
 
-def _films(found: Sequence[Arrays]) -> Films:
+def _films(results: Sequence[Arrays]) -> Films:
     """Films of single points."""
     names = ("film_offset", "film_compliance", "loss_compliance")
-    return Films(*(np.array([float(arrays[name][0]) for arrays in found]) for name in names))
+    return Films(*(np.array([float(arrays[name][0]) for arrays in results]) for name in names))
 
 
 def _place(points: Sequence[SamplePoint]) -> Place:
@@ -419,15 +422,15 @@ def _doubts(stiffness_share: FloatArray, loss_share: FloatArray) -> tuple[FloatA
 
 
 def _applied(
-    films: Films, where: Place, value: FloatArray, slope: FloatArray, lost: FloatArray, applied: tuple[bool, bool]
+    films: Films, where: Place, value: FloatArray, slope: FloatArray, loss: FloatArray, applied: tuple[bool, bool]
 ) -> Films:
     """Films with a correction of ln(h), of its slope along zeta, and of the loss, as far as it is to be applied."""
-    value, slope, lost = value * applied[0], slope * applied[0], lost * applied[1]
+    value, slope, loss = value * applied[0], slope * applied[0], loss * applied[1]
     with np.errstate(invalid="ignore"):
         ratio = np.exp(value)
         offset = ratio * films.offset
         compliance = ratio * films.compliance - offset / where.load * slope
-        share = LOSS_SCALE * np.sinh(_loss(films, where) + lost)
+        share = LOSS_SCALE * np.sinh(_loss(films, where) + loss)
     return Films(offset, compliance, share * offset * where.width / (where.load * where.speed))
 
 
@@ -442,17 +445,17 @@ def _slow_change(task: LineTask, loads: FloatArray, old: Films, new: Films) -> A
     per_time = [
         film.loss / natural_time(loads, film.offset, task.entrainment_speed, radius, modulus) for film in (old, new)
     ]
-    lost = per_time[1] - per_time[0]
+    loss = per_time[1] - per_time[0]
     at = 1j * np.array(task.natural_frequencies)
-    first = (2.0 * RIGID_MEMORY * compliance - lost)[:, None] * at
+    first = (2.0 * RIGID_MEMORY * compliance - loss)[:, None] * at
     return (compliance[:, None] + first) / (1.0 + RIGID_MEMORY * at) ** 2
 
 
-def _regressions(among: Candidates, asked: _Asked, both: BoolArray) -> tuple[Regression, Regression]:
+def _regressions(among: Candidates, sample: _Sample, both: BoolArray) -> tuple[Regression, Regression]:
     """Regressions of film offset and loss, over the points that both solvers have solved."""
     kept = np.flatnonzero(both)
-    chosen = [asked.chosen[i] for i in kept]
-    cheap, dear = (_films([found[i] for i in kept]) for found in (asked.cheap, asked.dear))
+    chosen = [sample.chosen[i] for i in kept]
+    cheap, dear = (_films([results[i] for i in kept]) for results in (sample.cheap, sample.dear))
     where, places = _place([among.points[i] for i in chosen]), among.places[chosen]
     slopes = [films.compliance * where.load / films.offset for films in (cheap, dear)]
     largest = np.maximum(np.abs(_share(cheap, where)), np.abs(_share(dear, where)))
@@ -464,12 +467,12 @@ def _regressions(among: Candidates, asked: _Asked, both: BoolArray) -> tuple[Reg
     return offset, loss
 
 
-def _next(among: Candidates, asked: _Asked, both: BoolArray, size: int) -> list[int]:
+def _next(among: Candidates, sample: _Sample, both: BoolArray, size: int) -> list[int]:
     """The next points: where what is not known, and was told too small nearby, is largest."""
-    solved = [among.places[i] for i, known in zip(asked.chosen, both, strict=True) if known]
-    tried = among.places[[i for i, known in zip(asked.chosen, both, strict=True) if not known]]
+    solved = [among.places[i] for i, known in zip(sample.chosen, both, strict=True) if known]
+    tried = among.places[[i for i, known in zip(sample.chosen, both, strict=True) if not known]]
     nearest = among.nearest(np.array(solved))
-    offset, loss = _regressions(among, asked, both)
+    offset, loss = _regressions(among, sample, both)
     weights = [0.5 + 0.5 * one.left_out.squares[nearest] for one in (offset, loss)]
     weights[1] /= loss.doubts[nearest] ** 2
     if len(tried):
@@ -479,31 +482,31 @@ def _next(among: Candidates, asked: _Asked, both: BoolArray, size: int) -> list[
         spread = offset.spread(among.places)
         of_offset = spread[:, 0, 0] + (among.stiffness_shares * per_zeta(among.places)) ** 2 * spread[:, 1, 1]
         unknown = weights[0] * of_offset + weights[1] * loss.spread(among.places)[:, 0, 0]
-        open_ones = free(among, [*asked.chosen, *chosen])
+        open_ones = free(among, [*sample.chosen, *chosen])
         chosen.append(int(open_ones[np.argmax(unknown[open_ones])]))
         here = among.places[chosen[-1:]]
         offset, loss = offset.and_at(here), loss.and_at(here)
     return chosen
 
 
-def _farthest(among: Candidates, asked: _Asked, size: int) -> list[int]:
+def _farthest(among: Candidates, sample: _Sample, size: int) -> list[int]:
     """The next points where nothing can be regressed yet: far from all that were asked."""
     chosen: list[int] = []
     for _ in range(size):
-        taken = [*asked.chosen, *chosen]
+        taken = [*sample.chosen, *chosen]
         apart = np.min(np.sum((among.scaled[:, None] - among.scaled[taken][None]) ** 2, axis=2), axis=1)
         chosen.append(int(np.argmax(apart)))
     return chosen
 
 
-def _regressed(job: Job, among: Candidates, asked: _Asked, both: BoolArray) -> Correction:
+def _regressed(job: Job, among: Candidates, sample: _Sample, both: BoolArray) -> Correction:
     """The correction from all points."""
     kept = np.flatnonzero(both)
-    chosen = [asked.chosen[i] for i in kept]
+    chosen = [sample.chosen[i] for i in kept]
     points, places = [among.points[i] for i in chosen], among.places[chosen]
-    cheap, dear = (_films([found[i] for i in kept]) for found in (asked.cheap, asked.dear))
+    cheap, dear = (_films([results[i] for i in kept]) for results in (sample.cheap, sample.dear))
     where = _place(points)
-    offset, loss = _regressions(among, asked, both)
+    offset, loss = _regressions(among, sample, both)
     without = offset.left_out
     before, shares = _errors(points, where, cheap, dear), among.shares(places)
 
@@ -517,22 +520,22 @@ def _regressed(job: Job, among: Candidates, asked: _Asked, both: BoolArray) -> C
         # damping that is wrong altogether is not worse for being so by ten times itself.
         sizes = [np.minimum(np.abs([left_out(applied)[name] for name in names]), 1.0) for applied in (new, old)]
         squares = [freedom * sizes[0] ** 2, sizes[1] ** 2]
-        means = [[float(np.sum(found**power @ shares)) for power in (0.5, 1.0)] for found in squares]
+        means = [[float(np.sum(errors**power @ shares)) for power in (0.5, 1.0)] for errors in squares]
         return means[0][0] < means[1][0] and means[0][1] < means[1][1]
 
     of_films = better((True, False), (False, False), JUDGED[:2], offset.freedom)
     of_loss = better((of_films, True), (of_films, False), JUDGED[2:], loss.freedom)
     also = {}
     for name in ALSO:
-        pair = [np.array([float(found[i][name][0]) for i in kept]) for found in (asked.cheap, asked.dear)]
+        pair = [np.array([float(results[i][name][0]) for i in kept]) for results in (sample.cheap, sample.dear)]
         if all(np.all(np.isfinite(values) & (values > 0.0)) for values in pair):
             also[name] = Regression.fitted(places, among.ranges, np.log(pair[1] / pair[0]), np.ones(len(kept)))
-    statuses, reasons = zip(*(_ended(*pair) for pair in zip(asked.cheap, asked.dear, strict=True)), strict=True)
+    statuses, reasons = zip(*(_ended(*pair) for pair in zip(sample.cheap, sample.dear, strict=True)), strict=True)
     return Correction(
-        points=tuple(among.points[i] for i in asked.chosen),
+        points=tuple(among.points[i] for i in sample.chosen),
         statuses=statuses,
         reasons=reasons,
-        seconds=float(sum(np.nansum(arrays["solve_seconds"]) for arrays in asked.dear)),
+        seconds=float(sum(np.nansum(arrays["solve_seconds"]) for arrays in sample.dear)),
         offset=offset,
         loss=loss,
         also=also,
@@ -543,13 +546,13 @@ def _regressed(job: Job, among: Candidates, asked: _Asked, both: BoolArray) -> C
     )
 
 
-def _errors(points: Sequence[SamplePoint], where: Place, found: Films, true: Films) -> dict[str, FloatArray]:
+def _errors(points: Sequence[SamplePoint], where: Place, films: Films, true: Films) -> dict[str, FloatArray]:
     """Errors at points of several contacts."""
     errors = {name: np.empty(len(points)) for name in JUDGED}
     for contact in {point.contact for point in points}:
         here = np.array([point.contact == contact for point in points])
         at = Place(where.load[here], where.width[here], np.asarray(where.speed)[here])
-        for name, values in error_of(contact, at, *(Films(*(v[here] for v in f)) for f in (found, true))).items():
+        for name, values in error_of(contact, at, *(Films(*(v[here] for v in f)) for f in (films, true))).items():
             errors[name][here] = values
     return errors
 
@@ -565,15 +568,15 @@ def _ended(cheap: Arrays, dear: Arrays) -> tuple[Status, str]:
     return Status(int(dear["status"][0])), ""
 
 
-def _too_few(cheap: ContactSolver, dear: ContactSolver, among: Candidates, asked: _Asked, both: BoolArray) -> str:
+def _too_few(cheap: ContactSolver, dear: ContactSolver, among: Candidates, sample: _Sample, both: BoolArray) -> str:
     """Reason why there is no correction."""
     causes = Counter(
         (status.word, reason)
-        for pair, solved in zip(zip(asked.cheap, asked.dear, strict=True), both, strict=True)
+        for pair, solved in zip(zip(sample.cheap, sample.dear, strict=True), both, strict=True)
         if not solved
         for status, reason in [_ended(*pair)]
     )
-    first = next((i for i, solved in zip(asked.chosen, both, strict=True) if not solved), None)
+    first = next((i for i, solved in zip(sample.chosen, both, strict=True) if not solved), None)
     where = f", the first {point_words(among.points[first])}" if first is not None else ""
     listed = "; ".join(f"{n} {word}{': ' if reason else ''}{reason}" for (word, reason), n in causes.most_common(3))
     return (

@@ -204,9 +204,9 @@ def generate(
             if more:
                 status.more(points)
             if missing:
-                told = progress(points) if progress else None
+                counter = progress(points) if progress else None
                 few = isinstance(chosen_solver, TableSolver) and points <= FEW
-                result.add(sweep(missing, store, 1 if few else processes, told, [status], executor))
+                result.add(sweep(missing, store, 1 if few else processes, counter, [status], executor))
             status.write()
             return result.arrays
 
@@ -236,8 +236,8 @@ def generate_in_memory(
 
     def solve(tasks: Sequence[LineTask]) -> Mapping[str, Arrays]:
         points = sum(task.points for task in tasks)
-        told = progress(points) if progress else None
-        result.add(sweep(tasks, NoStore(), workers or available_cores(), told, executor=executor))
+        counter = progress(points) if progress else None
+        result.add(sweep(tasks, NoStore(), workers or available_cores(), counter, executor=executor))
         return result.arrays
 
     planned = _corrected(planned, solve)
@@ -418,20 +418,20 @@ def _finer(planned: _Plan, dataset: xr.Dataset, group: xr.Dataset | None, result
 
 def _finished(planned: _Plan, result: SweepResult, where: str) -> tuple[xr.Dataset, xr.Dataset | None]:
     """Put results together, with the check of the laws and a checksum: the map and its backbone."""
-    found = _results(planned, result)
+    arrays = _results(planned, result)
     if planned.from_table and isinstance(planned.solver, TableSolver):
         films = table_films(planned.job, planned.solver.thickest_film)
     else:
-        films = placed(planned.job, planned.tasks, found)
+        films = placed(planned.job, planned.tasks, arrays)
     dataset = assemble(planned.job, planned.solver, films)
     if planned.from_table:
         dataset.attrs[schema.FILM_TABLE] = shipped_tables().attributes[CHECKSUM]
     if planned.correction and planned.corrector:
         dataset = with_correction(dataset, planned.job, planned.correction, planned.corrector)
     validate(dataset, where)
-    group = backbone_group(planned.refined, found) if planned.refined else None
+    group = backbone_group(planned.refined, arrays) if planned.refined else None
     if planned.check:
-        dataset.attrs.update(checked_laws(planned.check, EHDMap(dataset, group), found))
+        dataset.attrs.update(checked_laws(planned.check, EHDMap(dataset, group), arrays))
     if planned.unserved:
         dataset.attrs[schema.UNSERVED] = planned.unserved
     if planned.halved:

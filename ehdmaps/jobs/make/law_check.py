@@ -77,8 +77,8 @@ def at_loads(
     dry = np.array([law.contacts[0].structural_compliance(float(w)) for w in load])
     approach = approach.copy()
     for _ in range(8):
-        found, stiffness, damping = law(approach, 0.0, speed, temperature)
-        approach -= (found - load) / np.maximum(stiffness, 1e-12 / dry)
+        law_load, stiffness, damping = law(approach, 0.0, speed, temperature)
+        approach -= (law_load - load) / np.maximum(stiffness, 1e-12 / dry)
     _, stiffness, damping = law(approach, 0.0, speed, temperature)
     return approach, stiffness, damping
 
@@ -197,11 +197,11 @@ def unmet(dataset: xr.Dataset, with_backbone: bool) -> list[str]:
     missed = []
     if REFUSED in dataset.attrs:
         missed.append(f"no contact law: {dataset.attrs[REFUSED]}")
-    for prefix, name, found, share in _shares(dataset.attrs):
-        if found < share:
+    for prefix, name, within, share in _shares(dataset.attrs):
+        if within < share:
             where = "in the damping valley" if "valley" in prefix else "over the map"
             missed.append(
-                f"unmet: {name.replace('_', ' ')} of the contact laws is within its bar at {found:.1%} of the "
+                f"unmet: {name.replace('_', ' ')} of the contact laws is within its bar at {within:.1%} of the "
                 f"points {where}; wanted {share:.0%}"
             )
     if any(line.startswith("unmet") for line in missed):
@@ -218,16 +218,16 @@ def met(attributes: Mapping[str, Any]) -> bool:
     attributes : mapping
         What `checked_laws` found, of a map that makes laws.
     """
-    return not any(found < share for *_, found, share in _shares(attributes))
+    return not any(within < share for *_, within, share in _shares(attributes))
 
 
 def _shares(attributes: Mapping[str, Any]) -> Iterator[tuple[str, str, float, float]]:
     """Yield prefix, name, share found and share wanted of points within each bar that was checked."""
     for prefix, share in SHARES.items():
         for name in ("film_compliance", "damping", "film_offset"):
-            found = attributes.get(f"{prefix}{name}_within_bar")
-            if found is not None:
-                yield prefix, name, float(found), share
+            within = attributes.get(f"{prefix}{name}_within_bar")
+            if within is not None:
+                yield prefix, name, float(within), share
 
 
 def coarse_axis(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> Axis | None:
@@ -272,7 +272,7 @@ def films_met(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> b
     for *_, region, wrong in _between(check, emap, results):
         missed[region].append(wrong)
     shares = zip(missed.values(), SHARES.values(), strict=True)
-    return all(np.mean(found) <= 1.0 - share for found, share in shares if found)
+    return all(np.mean(misses) <= 1.0 - share for misses, share in shares if misses)
 
 
 def _between(
@@ -345,7 +345,7 @@ def check_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> 
         return record
     table = np.concatenate(rows)
     for region in INSIDE:
-        mask = np.array([found == region for found in regions])
+        mask = np.array([of_point == region for of_point in regions])
         if not np.any(mask):
             continue
         where = f"_{region}" if region else ""

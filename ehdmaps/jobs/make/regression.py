@@ -150,7 +150,7 @@ class Regression:
             return best
 
         starts = [(*([_BEGIN_LENGTH] * coordinates), *([noise] * kinds)) for noise in _BEGIN_NOISES]
-        return max((improved(numbers) for numbers in starts), key=lambda found: found.likelihood)
+        return max((improved(numbers) for numbers in starts), key=lambda regression: regression.likelihood)
 
     @property
     def with_slopes(self) -> bool:

@@ -85,14 +85,14 @@ def status_counts(dataset: xr.Dataset, roughness: float = 0.0) -> dict[str, Bool
     below = converged & (film < CONTINUUM)
     rough = converged & ~below & (film < roughness)
     word = Status.CONVERGED.word
-    found = {known.word: status == int(known) for known in Status}
-    found = {
-        word: found[word] & ~below & ~rough,
+    masks = {known.word: status == int(known) for known in Status}
+    masks = {
+        word: masks[word] & ~below & ~rough,
         f"{word}, {BELOW_ROUGHNESS}": rough,
         f"{word}, {NO_CONTINUUM}": below,
-        **{known: here for known, here in found.items() if known != word},
+        **{known: here for known, here in masks.items() if known != word},
     }
-    return {words: here for words, here in found.items() if here.any()}
+    return {words: here for words, here in masks.items() if here.any()}
 
 
 def status_lines(dataset: xr.Dataset, roughness: float = 0.0) -> Iterator[str]:
@@ -227,11 +227,11 @@ def films_lines(dataset: xr.Dataset) -> Iterator[str]:
 def error_lines(dataset: xr.Dataset) -> Iterator[str]:
     """Yield median, 95 % quantile and maximum of the error estimates over the solved points."""
     yield "  estimated relative error       median       95 %    largest"
-    for label, found in error_rows(dataset):
-        if found is None:
+    for label, numbers in error_rows(dataset):
+        if numbers is None:
             yield f"  {label:25s} {NONE_STATED:>11s}"
         else:
-            middle, high, most = found
+            middle, high, most = numbers
             yield f"  {label:25s} {middle:11.2g} {high:10.2g} {most:10.2g}"
     if tip := tip_line(dataset):
         yield f"  {tip}"

@@ -92,14 +92,14 @@ class Store:
             self._database = self._open()
         except sqlite3.Error as error:
             if not (fresh and _code(error) in _BROKEN):
-                raise self._told(error) from error
+                raise self._unusable(error) from error
             if not _is_ours(path):
                 raise self._foreign("it does not begin as one") from error
             self._drop()
             try:
                 self._database = self._open()
             except sqlite3.Error as again:
-                raise self._told(again) from again
+                raise self._unusable(again) from again
         if fresh:
             self._write("DELETE FROM results", ())
             self.commit()
@@ -130,7 +130,7 @@ class Store:
                 "SELECT CAST(checksum AS BLOB), CAST(content AS BLOB) FROM results WHERE key = ?", (key,)
             ).fetchone()
         except (sqlite3.Error, UnicodeDecodeError) as error:
-            raise self._told(error) from error
+            raise self._unusable(error) from error
         if row is None:
             return None
         checksum, content = row
@@ -182,7 +182,7 @@ class Store:
         try:
             self._database.commit()
         except sqlite3.Error as error:
-            raise self._told(error) from error
+            raise self._unusable(error) from error
         self._last_commit = time.monotonic()
 
     def _write(self, statement: str, values: tuple[object, ...]) -> None:
@@ -190,7 +190,7 @@ class Store:
         try:
             self._database.execute(statement, values)
         except (sqlite3.Error, UnicodeDecodeError) as error:
-            raise self._told(error) from error
+            raise self._unusable(error) from error
 
     def _open(self) -> sqlite3.Connection:
         """Open, lock and check the file."""
@@ -233,7 +233,7 @@ class Store:
             "choose another output with -o"
         )
 
-    def _told(self, error: Exception) -> StoreError:
+    def _unusable(self, error: Exception) -> StoreError:
         """Say what went wrong with the store, and what to do."""
         code = _code(error)
         if code in _BUSY:

@@ -171,7 +171,7 @@ def sweep(
     KeyboardInterrupt
         On Ctrl-C, after the workers are stopped and the store is committed.
     """
-    told = progress or NoProgress()
+    counter = progress or NoProgress()
     begin = time.monotonic()
     result = SweepResult()
     todo: list[Task] = []
@@ -185,7 +185,7 @@ def sweep(
             for watch in watches:
                 watch.found(task, known, now=False)
     result.damaged = store.damaged
-    told.taken_over(result.taken_over)
+    counter.taken_over(result.taken_over)
     if executor is not None:
         outcomes = _in_executor(todo, executor, store)
     else:
@@ -196,7 +196,7 @@ def sweep(
                 store.put(task.key, arrays, at_once=task.slow)
             result.arrays[task.key] = arrays
             result.solved += task.points
-            told.solved(task.points)
+            counter.solved(task.points)
             for watch in watches:
                 watch.found(task, arrays, now=True)
     except WorkerError as error:
@@ -320,7 +320,7 @@ def _in_executor(tasks: Sequence[Task], executor: Executor, store: Results) -> _
             for future in done:
                 task, first = running.pop(future)
                 try:
-                    found = future.result()
+                    outcome = future.result()
                 except Exception as error:  # of the executor's own kind, which is not known here
                     if first:
                         waiting.append((task, False))
@@ -328,9 +328,9 @@ def _in_executor(tasks: Sequence[Task], executor: Executor, store: Results) -> _
                     reason = f"the executor lost the task twice ({error!s:.200}); the same command tries again"
                     yield task, task.failed(reason), False
                     continue
-                if isinstance(found, _Raised):
-                    raise found.error
-                yield task, found, True
+                if isinstance(outcome, _Raised):
+                    raise outcome.error
+                yield task, outcome, True
     finally:
         for future in running:
             future.cancel()

@@ -69,11 +69,11 @@ def unserved(job: Job, solver: ContactSolver) -> str:
     over, valley = draw_apart(job, np.random.default_rng(_SEED), _LOOKED_AT)
     regions = (over, "over the map"), (valley, "in the damping valley")
     for (points, where), wanted in zip(regions, SHARES, strict=True):
-        found = float(np.mean(within_bars(job.lubricant, points))) if points else 1.0
-        if found < wanted:
+        share = float(np.mean(within_bars(job.lubricant, points))) if points else 1.0
+        if share < wanted:
             return (
                 f"film table: states errors within {STIFFNESS_BAR:.1%} of the stiffness and {DAMPING_BARS[0]:.0%} of "
-                f"the damping at {found:.1%} of the points {where}; wanted {wanted:.0%}"
+                f"the damping at {share:.1%} of the points {where}; wanted {wanted:.0%}"
             )
     return ""
 
@@ -136,7 +136,7 @@ def _film_arrays(films: TableFilms) -> dict[str, npt.NDArray[Any]]:
     """Films by the names of `FilmSolution`, of one shape."""
     numbers = {field.name: getattr(films, field.name) for field in FILMS}
     errors = {f"{name}_error": films.errors[name] for name in numbers if name != "wall_stress"}
-    found: dict[str, npt.NDArray[Any]] = {
+    arrays: dict[str, npt.NDArray[Any]] = {
         **numbers,
         **errors,
         "status": films.status,
@@ -145,7 +145,7 @@ def _film_arrays(films: TableFilms) -> dict[str, npt.NDArray[Any]]:
         "traction": np.where(films.usable, 0.0, np.nan),
     }
     for entry in fields(FilmSolution):
-        if entry.name not in found:
+        if entry.name not in arrays:
             dtype = np.int32 if entry.name == "iterations" else np.float64
-            found[entry.name] = np.full(films.status.shape, entry.default, dtype=dtype)
-    return found
+            arrays[entry.name] = np.full(films.status.shape, entry.default, dtype=dtype)
+    return arrays

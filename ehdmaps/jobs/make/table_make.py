@@ -236,17 +236,17 @@ def filled(zeta: FloatArray, values: FloatArray) -> FloatArray:
     values : ndarray, shape (n_zeta, n_size, n_alpha, n_bend, fields)
         Smooth forms; NaN where there is no film.
     """
-    found = values.copy()
+    whole = values.copy()
     solved: BoolArray = np.asarray(np.isfinite(values).all(axis=-1))
     for place in np.ndindex(solved.shape[1:]):
-        line, known = found[(slice(None), *place)], solved[(slice(None), *place)]
+        line, known = whole[(slice(None), *place)], solved[(slice(None), *place)]
         z, held = zeta[known], line[known]
         inside, beyond = ~known & (zeta < z[-1]), zeta > z[-1]
         line[inside] = PchipInterpolator(z, held)(zeta[inside])
         slope = (held[-1] - held[-3]) / (z[-1] - z[-3])
         for k, field in enumerate(FIELDS):
             line[beyond, k] = heavier_films(field, held[-1:, k], slope[k : k + 1], zeta[beyond] - z[-1])
-    return found
+    return whole
 
 
 def middles(nodes: FloatArray) -> FloatArray:
@@ -304,7 +304,7 @@ def make_nodes(
         Told the lines that are done, and all of them.
     """
     of, done = int(np.prod(axes.shape[1:]) + np.prod(axes.cells[1:])), 0
-    held = []
+    solved = []
     for between in (False, True):
         zeta, *oil = (middles(x) if between else x for x in (axes.zeta, axes.size, axes.alpha, axes.bend))
         values, errors = (np.full((*(x.size for x in (zeta, *oil)), len(FIELDS)), math.nan) for _ in range(2))
@@ -318,8 +318,8 @@ def make_nodes(
                 values[part, j, k, p], errors[part, j, k, p] = line.values, line.errors
             done += 1
             progress(done, of)
-        held.append((values, errors))
-    (values, _), (between_values, between_errors) = held
+        solved.append((values, errors))
+    (values, _), (between_values, between_errors) = solved
     empty = np.zeros((*axes.cells, len(FIELDS)), dtype=np.uint8)
     nodes = Nodes(axes, rounded(filled(axes.zeta, values)), empty)
     return replace(nodes, codes=encoded(measured(nodes, between_values, between_errors)))

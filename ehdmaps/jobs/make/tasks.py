@@ -321,6 +321,6 @@ def _films(
         status[along, speed, temperature] = arrays["status"]
         usable = np.isin(arrays["status"], [int(known) for known in Status if known.usable])
         for name, array in values.items():
-            found = arrays[sources[name]]
-            array[along, speed, temperature] = np.where(usable if found.ndim == 1 else usable[:, None], found, np.nan)
+            column = arrays[sources[name]]
+            array[along, speed, temperature] = np.where(usable if column.ndim == 1 else usable[:, None], column, np.nan)
     return {**values, "status": status}

@@ -94,13 +94,13 @@ def sampled_films(first: EHDMap, second: EHDMap, names: tuple[str, str], seed: i
         }
         for _ in range(count)
     ]
-    found = []
+    films = []
     for emap, name in zip((first, second), names, strict=True):
         try:
-            found.append(_films(emap, places))
+            films.append(_films(emap, places))
         except MapError as error:
             raise MapError(f"{name}: {error}") from error
-    return FilmSample(seed, ranges, tuple(places), found[0], found[1])
+    return FilmSample(seed, ranges, tuple(places), films[0], films[1])
 
 
 def _ranges(first: EHDMap, second: EHDMap, names: tuple[str, str]) -> dict[str, tuple[float, float]]:
@@ -300,9 +300,9 @@ def compare(
             reason = str(error)
     usable = _usable(here) & _usable(there)
     variables = [name for name in COMPARED if name in here and name in there] if common else []
-    found = {name: _relative(here[name].values, there[name].values, usable) for name in variables}
-    left_out = {name: int(np.count_nonzero(np.isinf(values))) for name, values in found.items()}
-    known = {name: np.where(np.isfinite(values), values, np.nan) for name, values in found.items()}
+    relative = {name: _relative(here[name].values, there[name].values, usable) for name in variables}
+    left_out = {name: int(np.count_nonzero(np.isinf(values))) for name, values in relative.items()}
+    known = {name: np.where(np.isfinite(values), values, np.nan) for name, values in relative.items()}
     dims = here["status"].dims
     place = _Grid(here)
     return Comparison(
@@ -341,10 +341,12 @@ def _between(sample: FilmSample) -> Between:
     differences = []
     for name in COMPARED_FILMS:
         if name in sample.first and name in sample.second:
-            found = _relative(sample.first[name], sample.second[name], every)
-            lost = int(np.count_nonzero(np.isinf(found)))
-            known = np.where(np.isfinite(found), found, np.nan)
-            differences.append(_difference(name, known, np.full(known.shape, np.nan), lost, sample.places.__getitem__))
+            relative = _relative(sample.first[name], sample.second[name], every)
+            left_out = int(np.count_nonzero(np.isinf(relative)))
+            known = np.where(np.isfinite(relative), relative, np.nan)
+            differences.append(
+                _difference(name, known, np.full(known.shape, np.nan), left_out, sample.places.__getitem__)
+            )
     return Between(sample, tuple(differences))
 
 
@@ -386,8 +388,8 @@ def _difference(name: str, relative: FloatArray, stated: FloatArray, left_out: i
     size = np.abs(signed)
     middle, high = (float(value) for value in np.quantile(size[known], (0.5, 0.95)))
     worst = int(np.argmax(np.where(known, size, -1.0)))
-    told = known & np.isfinite(stated.ravel()) & (stated.ravel() > 0.0)
-    ratio = size[told] / stated.ravel()[told]
+    has_stated = known & np.isfinite(stated.ravel()) & (stated.ravel() > 0.0)
+    ratio = size[has_stated] / stated.ravel()[has_stated]
     return Difference(
         variable=name,
         points=int(known.sum()),
@@ -431,34 +433,34 @@ def _common(first: xr.Dataset, second: xr.Dataset) -> tuple[xr.Dataset, xr.Datas
     return first.isel(here), second.isel(there)
 
 
-def comparison_text(found: Comparison) -> str:
+def comparison_text(comparison: Comparison) -> str:
     """Return a comparison as the table that is printed.
 
     Parameters
     ----------
-    found : Comparison
+    comparison : Comparison
         The comparison.
     """
-    return "\n".join(_lines(found))
+    return "\n".join(_lines(comparison))
 
 
-def comparison_json(found: Comparison) -> str:
+def comparison_json(comparison: Comparison) -> str:
     """Return a comparison as JSON: its fields by their names, without single points; null for what is not known.
 
     Parameters
     ----------
-    found : Comparison
+    comparison : Comparison
         The comparison.
     """
-    between = found.between
+    between = comparison.between
     record = {
-        "names": found.names,
-        "titles": found.titles,
-        "points": found.points,
-        "common": found.common,
-        "solved": found.solved,
-        "differing": found.differing,
-        "differences": _records(found.differences),
+        "names": comparison.names,
+        "titles": comparison.titles,
+        "points": comparison.points,
+        "common": comparison.common,
+        "solved": comparison.solved,
+        "differing": comparison.differing,
+        "differences": _records(comparison.differences),
         "between": None
         if between is None
         else {
@@ -467,7 +469,7 @@ def comparison_json(found: Comparison) -> str:
             "ranges": between.sample.ranges,
             "differences": _records(between.differences),
         },
-        "not_between": found.not_between,
+        "not_between": comparison.not_between,
     }
     return json.dumps(record, indent=2, allow_nan=False, ensure_ascii=False)
 
@@ -483,26 +485,28 @@ def _records(differences: Sequence[Difference]) -> list[dict[str, Any]]:
     ]
 
 
-def _lines(found: Comparison) -> Iterator[str]:
-    yield f"A  {found.names[0]}: {found.titles[0]}"
-    yield f"B  {found.names[1]}: {found.titles[1]}"
-    yield f"   differ in {', '.join(found.differing)}" if found.differing else "   made from the same settings"
+def _lines(comparison: Comparison) -> Iterator[str]:
+    yield f"A  {comparison.names[0]}: {comparison.titles[0]}"
+    yield f"B  {comparison.names[1]}: {comparison.titles[1]}"
     yield (
-        f"   {found.common} points in common, {found.solved} of them solved in both "
-        f"(A has {found.points[0]}, B {found.points[1]})"
+        f"   differ in {', '.join(comparison.differing)}" if comparison.differing else "   made from the same settings"
     )
-    yield from _table(found.differences, True)
-    if found.between is not None:
-        sample = found.between.sample
+    yield (
+        f"   {comparison.common} points in common, {comparison.solved} of them solved in both "
+        f"(A has {comparison.points[0]}, B {comparison.points[1]})"
+    )
+    yield from _table(comparison.differences, True)
+    if comparison.between is not None:
+        sample = comparison.between.sample
         ranges = ", ".join(_range(sample.ranges[axis], display) for axis, display in AXES)
         yield (
             f"   not all points are shared: films between them, as contact laws read them, at {len(sample.places)} "
             f"random points (seed {sample.seed}) of the common range, {ranges}; what each map is off by between its "
             "points is part of the differences"
         )
-        yield from _table(found.between.differences, False)
-    if found.not_between:
-        yield f"   not all points are shared, and nothing is compared between them: {found.not_between}"
+        yield from _table(comparison.between.differences, False)
+    if comparison.not_between:
+        yield f"   not all points are shared, and nothing is compared between them: {comparison.not_between}"
 
 
 def _range(ends: tuple[float, float], display: Any) -> str:

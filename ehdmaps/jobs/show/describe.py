@@ -122,8 +122,8 @@ def _lines(emap: EHDMap, name: str) -> Iterator[str]:
 
 def roughness_lines(emap: EHDMap) -> Iterator[str]:
     """Yield what the roughness makes of the films: Lambda, and the film's share of the load."""
-    found = rough_variables(emap.dataset, emap.contacts, emap.lubricant, emap.surface)
-    parameter, share = (found[name].values[np.isfinite(found[name].values)] for name in (FILM_PARAMETER, FILM_SHARE))
+    rough = rough_variables(emap.dataset, emap.contacts, emap.lubricant, emap.surface)
+    parameter, share = (rough[name].values[np.isfinite(rough[name].values)] for name in (FILM_PARAMETER, FILM_SHARE))
     if not parameter.size:
         return
     yield f"  {emap.surface.label}, combined rms of both surfaces"
@@ -131,9 +131,9 @@ def roughness_lines(emap: EHDMap) -> Iterator[str]:
     yield f"    Lambda, minimum film over roughness: {', '.join(below)}; median {np.median(parameter):.3g}"
     most = ", ".join(f"{100.0 * np.mean(share < part):.0f} % below {part:g}" for part in (0.5, 0.9, 0.99))
     yield f"    share of the film in the load: {most} (of the points); smallest {np.min(share):.2g}"
-    beyond = overlapping(found[FILM_SHARE].values, found[MEAN_DISTANCE].values)
+    beyond = overlapping(rough[FILM_SHARE].values, rough[MEAN_DISTANCE].values)
     if beyond.any():
-        reach = np.max(found[FILM_PARAMETER].values[beyond])
+        reach = np.max(rough[FILM_PARAMETER].values[beyond])
         yield f"    at {100.0 * np.mean(beyond):.0f} % of the points, Lambda up to {reach:.2g}, {OVERLAP}"
 
 
@@ -167,8 +167,8 @@ def geometry_rows(emap: EHDMap) -> Iterator[tuple[str, str]]:
         yield from _bearing_rows(emap.bearing)
     for contact in emap.contacts:
         depth = f", depth d* {LENGTH.text(contact.reference_depth)}" if contact.reference_depth else ""
-        found = f", approach {FILM.text(contact.fe_approach, 5)} at {LOAD.text(FE_LOAD)}" if contact.fe_approach else ""
-        shown = {"half_space": depth, "fe": found}.get(contact.structural_law, "")
+        by_fe = f", approach {FILM.text(contact.fe_approach, 5)} at {LOAD.text(FE_LOAD)}" if contact.fe_approach else ""
+        shown = {"half_space": depth, "fe": by_fe}.get(contact.structural_law, "")
         yield f"{contact.name} contact", f"reduced radius {LENGTH.text(contact.radius, 5)}{shown}"
     material = emap.contacts[0].material
     modulus = PRESSURE.text(material.youngs_modulus)
@@ -246,8 +246,8 @@ def backbone_lines(backbone: xr.Dataset) -> Iterator[str]:
     """Yield the size of the group of refinement lines."""
     sizes = [backbone.sizes[name] for name in schema.BACKBONE_DIMS]
     yield "refinement lines of the contact law (group backbone)"
-    held = [name for name in ("status", f"{schema.OWN}status") if name in backbone]
-    status = np.stack([backbone[name].values for name in held])
+    statuses = [name for name in ("status", f"{schema.OWN}status") if name in backbone]
+    status = np.stack([backbone[name].values for name in statuses])
     solved = int((status != schema.NOT_NEEDED).sum())
     whose = ", of each contact its own" if has_own_lines(backbone) else ""
     yield (

@@ -161,8 +161,8 @@ class MapCurves:
                 return film_between(self.emap, name, contact.name, at, speed, temperature)
             except (FloatingPointError, ValueError):
                 return np.full(at.size, np.nan)
-        found = curves(self.field, (contact,), at, speed, temperature, rough_layers(self.emap))
-        return np.asarray(getattr(found, name))
+        curve = curves(self.field, (contact,), at, speed, temperature, rough_layers(self.emap))
+        return np.asarray(getattr(curve, name))
 
 
 def contact_charts(of: MapCurves, contact: LineContact, operated: Sequence[Operated], prefix: str) -> Markup:
@@ -248,16 +248,16 @@ def _chart(
     loads = of.loads
     if speed is None and temperature is not None:
         varied, axis = _spread(of.speeds), SPEED
-        found = [of.values(name, contact, float(value), temperature) for value in varied]
+        lines = [of.values(name, contact, float(value), temperature) for value in varied]
         where = f"at {shown(TEMPERATURE, temperature)}, by entrainment speed"
     else:
         varied, axis = _spread(of.temperatures), TEMPERATURE
-        found = [of.values(name, contact, float(speed or 0.0), float(value)) for value in varied]
+        lines = [of.values(name, contact, float(speed or 0.0), float(value)) for value in varied]
         where = f"at {shown(SPEED, float(speed or 0.0))}, by temperature of the raceways"
     colours = [SEQUENCE[round(i * (len(SEQUENCE) - 1) / max(varied.size - 1, 1))] for i in range(varied.size)]
     drawn = [
         Curve(shown(axis, float(value)), display.factor * values, colour)
-        for value, values, colour in zip(varied, found, colours, strict=True)
+        for value, values, colour in zip(varied, lines, colours, strict=True)
     ]
     points = (
         []
@@ -274,8 +274,8 @@ def _chart(
     return Chart(
         place,
         f"{label[0].upper()}{label[1:]} of the {contact.name} contact {where}",
-        " ".join(_says(of, name, loads, varied, axis, found)),
-        _load_axis(loads),
+        " ".join(_says(of, name, loads, varied, axis, lines)),
+        log_axis("load", LOAD.unit, LOAD.factor * loads),
         _axis(name, label, unit, [curve.values for curve in drawn]),
         LOAD.factor * loads,
         drawn,
@@ -283,11 +283,6 @@ def _chart(
         _shades(of, contact, temperature) if speed is None else [],
         [(BOUNDARY, "Λ = 1"), (MIXED, "Λ = 3")] if name == FILM_PARAMETER else [],
     )
-
-
-def _load_axis(loads: FloatArray) -> Axis:
-    """The axis of all charts."""
-    return log_axis("load", LOAD.unit, LOAD.factor * loads)
 
 
 def _axis(name: str, label: str, unit: str, values: Sequence[FloatArray]) -> Axis:
@@ -313,14 +308,14 @@ def _marks(
         line = here.sel(entrainment_speed=speed)
         values, status = display.factor * line[name].values, line["status"].values
         filled = line["filled"].values.astype(bool)
-        lost = ~np.isin(status, [int(known) for known in Status if known.usable])
+        unsolved = ~np.isin(status, [int(known) for known in Status if known.usable])
         limit = status == int(Status.ASYMPTOTE)
-        plain = ~lost & ~limit & np.isfinite(values)
+        plain = ~unsolved & ~limit & np.isfinite(values)
         yield Points("", loads[plain], values[plain], "dot", colour)
         for label, chosen, shape, paint in (
             ("limit of thin films", limit, "triangle", colour),
-            ("no solution, filled", lost & filled, "ring", WARNING),
-            ("no solution", lost & ~filled, "cross", WARNING),
+            ("no solution, filled", unsolved & filled, "ring", WARNING),
+            ("no solution", unsolved & ~filled, "cross", WARNING),
         ):
             if chosen.any():
                 yield Points(label, loads[chosen], values[chosen], shape, paint)
@@ -357,12 +352,12 @@ def _shades(of: MapCurves, contact: LineContact, temperature: float | None) -> l
 
 
 def _says(
-    of: MapCurves, name: str, loads: FloatArray, varied: FloatArray, axis: Display, found: Sequence[FloatArray]
+    of: MapCurves, name: str, loads: FloatArray, varied: FloatArray, axis: Display, lines: Sequence[FloatArray]
 ) -> Iterator[str]:
     """Yield what the curves say, in sentences."""
     label, display = _NAMES[name]
     middle = int(np.argmin(np.abs(np.log(loads / np.sqrt(loads[0] * loads[-1])))))
-    first, last = float(found[0][middle]), float(found[-1][middle])
+    first, last = float(lines[0][middle]), float(lines[-1][middle])
     at = shown(LOAD, float(loads[middle]))
     if not (np.isfinite(first) and np.isfinite(last)):
         yield f"At {at} there is no solution at one end of the curves."
@@ -374,8 +369,8 @@ def _says(
         if varied.size == 1
         else f"At {at} {symbol} is {shown(display, first)} and {shown(display, last)} at {ends}."
     )
-    half = found[len(found) // 2]
-    at_half = shown(axis, float(varied[len(found) // 2]))
+    half = lines[len(lines) // 2]
+    at_half = shown(axis, float(varied[len(lines) // 2]))
     if name == "stiffness":
         change = half[-1] / half[0] if half[0] > 0.0 else np.nan
         if loads.size > 1 and np.isfinite(change):
@@ -391,7 +386,7 @@ def _says(
         power = np.log(last / first) / np.log(varied[-1] / varied[0])
         yield f"Between these speeds it grows about as the speed to the power {power:.2f}."
     elif name == FILM_PARAMETER:
-        yield from _lambda_words(loads, varied, axis, found)
+        yield from _lambda_words(loads, varied, axis, lines)
 
 
 def _valley(values: FloatArray, loads: FloatArray, at: str) -> Iterator[str]:
@@ -406,12 +401,12 @@ def _valley(values: FloatArray, loads: FloatArray, at: str) -> Iterator[str]:
         yield f"At {at} it has a valley near {load}, where it falls to {least}."
 
 
-def _lambda_words(loads: FloatArray, varied: FloatArray, axis: Display, found: Sequence[FloatArray]) -> Iterator[str]:
+def _lambda_words(loads: FloatArray, varied: FloatArray, axis: Display, lines: Sequence[FloatArray]) -> Iterator[str]:
     """Yield where Lambda is below 1 and 3 on these curves."""
     for limit, words in ((BOUNDARY, "boundary lubrication"), (MIXED, "mixed lubrication")):
-        below = [shown(axis, float(value)) for value, curve in zip(varied, found, strict=True) if (curve < limit).any()]
+        below = [shown(axis, float(value)) for value, curve in zip(varied, lines, strict=True) if (curve < limit).any()]
         if not below:
             yield f"Λ is nowhere below {limit:g} here ({words})."
             continue
-        lowest = [float(loads[curve < limit][0]) for curve in found if (curve < limit).any()]
+        lowest = [float(loads[curve < limit][0]) for curve in lines if (curve < limit).any()]
         yield f"Λ is below {limit:g} ({words}) from {shown(LOAD, min(lowest))} on, at {', '.join(below)}."

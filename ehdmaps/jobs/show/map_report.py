@@ -93,10 +93,12 @@ def _sentences(emap: EHDMap) -> Iterator[str]:
         f"The map covers {ranges} (temperature of the raceways). Beyond that a contact law refuses, or where it is "
         "asked to, holds its edge."
     )
-    lost, filled = holes(dataset), int(np.count_nonzero(dataset["filled"].values))
+    missing, filled = holes(dataset), int(np.count_nonzero(dataset["filled"].values))
     total = dataset["status"].size
-    if lost:
-        yield f"Without a solution: {lost} of {total} points; isolated and filled from neighbours: {filled} of these."
+    if missing:
+        yield (
+            f"Without a solution: {missing} of {total} points; isolated and filled from neighbours: {filled} of these."
+        )
     else:
         yield f"All {total} points have a solution."
     try:
@@ -143,10 +145,10 @@ def _states(dataset: xr.Dataset) -> IntArray:
     ordered = dataset.transpose(*schema.DIMS, ...)
     status, filled = ordered["status"].values, ordered["filled"].values.astype(bool)
     reason = np.vectorize(bool, otypes=[bool])(ordered["reason"].values)
-    lost = ~np.isin(status, [int(known) for known in Status if known.usable])
+    unsolved = ~np.isin(status, [int(known) for known in Status if known.usable])
     limit = status == int(Status.ASYMPTOTE)
     doubtful = reason | ordered["viscosity_extrapolated"].values.astype(bool)
-    return np.select([lost & ~filled, lost, limit, doubtful], [4, 3, 2, 1], 0)
+    return np.select([unsolved & ~filled, unsolved, limit, doubtful], [4, 3, 2, 1], 0)
 
 
 def _drawings(emap: EHDMap, prefix: str) -> Iterator[Markup]:
@@ -266,30 +268,30 @@ def in_short(of: MapCurves) -> Iterator[str]:
     loads = of.loads[[0, of.loads.size // 2, -1]]
     at = f"{shown(SPEED, speed)} and {TEMPERATURE.text(temperature)}"
     for contact in emap.contacts:
-        found = {
+        numbers = {
             name: of.values(name, contact, speed, temperature, loads)
             for name in ("stiffness", "damping", "minimum_film")
         }
-        if not all(np.isfinite(values).all() for values in found.values()):
+        if not all(np.isfinite(values).all() for values in numbers.values()):
             yield f"{contact_words(contact.name)}: at {at} some loads have no solution."
             continue
         dry = 1.0 / contact.structural_compliance(loads)
-        softer = 100.0 * (1.0 - found["stiffness"][1] / dry[1])
-        film = f", {softer:.3g} % below that of the dry contact" if found["minimum_film"][1] > 0.0 else ""
+        softer = 100.0 * (1.0 - numbers["stiffness"][1] / dry[1])
+        film = f", {softer:.3g} % below that of the dry contact" if numbers["minimum_film"][1] > 0.0 else ""
         yield (
             f"{contact_words(contact.name)}: at {shown(LOAD, float(loads[1]))}, {at} the stiffness is "
-            f"{shown(STIFFNESS, float(found['stiffness'][1]))}{film}, the damping "
-            f"{shown(DAMPING, float(found['damping'][1]))}, the minimum film "
-            f"{shown(FILM, float(found['minimum_film'][1]))}."
+            f"{shown(STIFFNESS, float(numbers['stiffness'][1]))}{film}, the damping "
+            f"{shown(DAMPING, float(numbers['damping'][1]))}, the minimum film "
+            f"{shown(FILM, float(numbers['minimum_film'][1]))}."
         )
-    lost, total = holes(emap.dataset), emap.dataset["status"].size
-    yield f"{total - lost} of {total} points are solved; {_usable(emap)}."
+    missing, total = holes(emap.dataset), emap.dataset["status"].size
+    yield f"{total - missing} of {total} points are solved; {_usable(emap)}."
     if emap.surface.smooth:
         yield "No roughness is stated, so that there is no film parameter Lambda; --roughness gives one."
     else:
-        yield from (f"{line.strip()[0].upper()}{line.strip()[1:]}." for line in roughness_lines(emap))
+        yield from (f"{_sentence(line)}." for line in roughness_lines(emap))
     checked = dict(law_rows(emap.dataset)).get("film compliance error")
-    errors = [f"{label} {found[1]:.2g}" for label, found in error_rows(emap.dataset) if found is not None][:4]
+    errors = [f"{label} {numbers[1]:.2g}" for label, numbers in error_rows(emap.dataset) if numbers is not None][:4]
     if errors:
         yield f"Estimated relative errors of 95 % of the points are at most: {', '.join(errors)}."
     if checked:
@@ -417,8 +419,8 @@ def accuracy(emap: EHDMap) -> Markup:
     """
     dataset = emap.dataset
     rows = [
-        (label, *(f"{value:.2g}" for value in found)) if found else (label, NONE_STATED, "", "")
-        for label, found in error_rows(dataset)
+        (label, *(f"{value:.2g}" for value in numbers)) if numbers else (label, NONE_STATED, "", "")
+        for label, numbers in error_rows(dataset)
     ]
     parts: list[Markup] = [
         table(("quantity", "median", "95 % of points", "largest"), rows, "Estimated relative errors of the points")

@@ -129,7 +129,8 @@ def _page(sheet: Sheet) -> Figure:
     if small:
         _small_multiples(figure, sheet, temperatures, middle)
     speed_bar(figure, sheet, (0.936, middle + 0.055, 0.011, 0.875 - middle - 0.055))
-    _legend(figure, sheet)
+    page_legend(figure, _entries(sheet))
+    write_line(figure, 0.014, _facts(sheet.dataset, sheet.emap.surface.roughness), 6.5, colour="0.35")
     return figure
 
 
@@ -157,9 +158,9 @@ def speed_bar(figure: Figure, sheet: Sheet, place: tuple[float, float, float, fl
 
 def _thin(sheet: Sheet) -> list[tuple[float, str]]:
     """Films that are too thin for the theory: below which [m], and why; those that the map has."""
-    found, roughness = sheet.dataset["minimum_film"].values, sheet.emap.surface.roughness
+    films, roughness = sheet.dataset["minimum_film"].values, sheet.emap.surface.roughness
     limits = ((roughness, BELOW_ROUGHNESS), (CONTINUUM, NO_CONTINUUM))
-    return [(limit, words) for limit, words in limits if np.any((found > 0.0) & (found < limit))]
+    return [(limit, words) for limit, words in limits if np.any((films > 0.0) & (films < limit))]
 
 
 def _shade_thin(axes: Axes, sheet: Sheet, display: Display) -> None:
@@ -311,12 +312,6 @@ def page_legend(figure: Figure, entries: Sequence[Line2D | Patch], bottom: float
     return legend
 
 
-def _legend(figure: Figure, sheet: Sheet) -> None:
-    """Explain what is drawn, and only that, and write how the map was made."""
-    page_legend(figure, _entries(sheet))
-    write_line(figure, 0.014, _facts(sheet.dataset, sheet.emap.surface.roughness), 6.5, colour="0.35")
-
-
 def _entries(sheet: Sheet) -> list[Line2D | Patch]:
     """Entries of the legend."""
     entries: list[Line2D | Patch] = [
@@ -342,7 +337,7 @@ def mark_entries(sheet: Sheet) -> list[Line2D | Patch]:
     """
     dataset = sheet.dataset
     status, filled = dataset["status"].values, dataset["filled"].values.astype(bool)
-    lost = ~np.isin(status, [int(known) for known in Status if known.usable])
+    unsolved = ~np.isin(status, [int(known) for known in Status if known.usable])
     entries: list[Line2D | Patch] = []
     if sheet.extrapolated_from:
         oil = sheet.emap.lubricant
@@ -354,9 +349,9 @@ def mark_entries(sheet: Sheet) -> list[Line2D | Patch]:
             entries.append(Patch(label=f"viscosity extrapolated: {above}", **HATCH))
     if (status == int(Status.ASYMPTOTE)).any():
         entries.append(Line2D([], [], ls="", mec="0.3", label=f"asymptote: {_limits(dataset)}", **ASYMPTOTE))
-    if (lost & filled).any():
+    if (unsolved & filled).any():
         entries.append(Line2D([], [], ls="", label="no solution, filled from neighbours", **FILLED))
-    if (lost & ~filled).any():
+    if (unsolved & ~filled).any():
         entries.append(Line2D([], [], ls="", label="no solution", **LOST))
     return entries
 
@@ -371,8 +366,8 @@ def _limits(dataset: xr.Dataset) -> str:
 def _facts(dataset: xr.Dataset, roughness: float) -> str:
     """Return the line on how the map was made."""
     attributes = dataset.attrs
-    found = status_counts(dataset, roughness)
-    counts = [f"{np.count_nonzero(here)} {words}" for words, here in found.items()]
+    masks = status_counts(dataset, roughness)
+    counts = [f"{np.count_nonzero(here)} {words}" for words, here in masks.items()]
     filled = int(np.count_nonzero(dataset["filled"].values))
     if filled:
         counts.append(f"{filled} filled")

@@ -140,8 +140,8 @@ def _dense(sheet: Sheet, name: str, contact: int, temperature: int, speed: int) 
         return None
     loads = np.geomspace(axis[0], axis[-1], CURVE_POINTS)
     celsius = float(sheet.dataset["temperature"].values[temperature])
-    found = curves(sheet.field, (sheet.emap.contacts[contact],), loads, u, celsius)
-    return loads, getattr(found, name)
+    curve = curves(sheet.field, (sheet.emap.contacts[contact],), loads, u, celsius)
+    return loads, getattr(curve, name)
 
 
 def _marks(
@@ -162,9 +162,9 @@ def _marks(
     asymptote = status == int(Status.ASYMPTOTE)
     axes.plot(loads[asymptote], curve[asymptote], ls="", mec=colour, **ASYMPTOTE)
     axes.plot(loads[filled], curve[filled], ls="", **FILLED)
-    lost = ~np.isin(status, [int(known) for known in Status if known.usable]) & ~filled
-    low = np.full(np.count_nonzero(lost), 0.03)
-    axes.plot(loads[lost], low, ls="", **LOST, transform=axes.get_xaxis_transform())
+    unsolved = ~np.isin(status, [int(known) for known in Status if known.usable]) & ~filled
+    low = np.full(np.count_nonzero(unsolved), 0.03)
+    axes.plot(loads[unsolved], low, ls="", **LOST, transform=axes.get_xaxis_transform())
 
 
 def _colour(sheet: Sheet, index: int) -> Any:

@@ -158,7 +158,7 @@ def _shade_parameters(axes: Axes, sheet: Sheet, place: tuple[int, int]) -> None:
 
 def _below(sheet: Sheet) -> str:
     """Say how many points lie below the limits."""
-    found = sheet.dataset[FILM_PARAMETER].values
-    known = found[np.isfinite(found)]
+    values = sheet.dataset[FILM_PARAMETER].values
+    known = values[np.isfinite(values)]
     shares = ", ".join(f"{100.0 * np.mean(known < limit):.0f} % below {limit:g}" for limit in (BOUNDARY, MIXED))
     return f"{shares} of the points"

@@ -60,8 +60,8 @@ def _lines(record: Mapping[str, Any], bearing: BearingGeometry) -> Iterator[str]
     if "seats" in record:
         yield ""
         yield "approach on other seats (D, d: outside diameter and bore of the bearing)"
-        for label, found in record["seats"].items():
-            yield _row(f"  {label}", [FILM.text(found[name], 5) for name in contacts])
+        for label, approaches in record["seats"].items():
+            yield _row(f"  {label}", [FILM.text(approaches[name], 5) for name in contacts])
     yield ""
     yield from job_lines({name: c["fe_approach"] for name, c in contacts.items()})
 
@@ -103,14 +103,14 @@ def sections_words(sections: Mapping[str, Any]) -> str:
     return f"{roller}, {rings}, {shaft}, housing held at {mm['housing_diameter']} mm"
 
 
-def _convergence(found: Mapping[str, Mapping[str, Any]]) -> Iterator[str]:
+def _convergence(contacts: Mapping[str, Mapping[str, Any]]) -> Iterator[str]:
     """Lines of the three meshes."""
     yield "approach by element size over distance from the contact"
-    first = next(iter(found.values()))
+    first = next(iter(contacts.values()))
     for place, grading in enumerate(first["gradings"]):
-        yield _row(f"  {grading:g}", [FILM.text(one["approaches"][place], 7) for one in found.values()])
-    yield _row("  limit (Richardson)", [FILM.text(one["limit"], 7) for one in found.values()])
-    yield _row("  order", [f"{one['order']:.2f}" for one in found.values()])
+        yield _row(f"  {grading:g}", [FILM.text(one["approaches"][place], 7) for one in contacts.values()])
+    yield _row("  limit (Richardson)", [FILM.text(one["limit"], 7) for one in contacts.values()])
+    yield _row("  order", [f"{one['order']:.2f}" for one in contacts.values()])
 
 
 def _row(label: str, values: Any) -> str:
@@ -154,12 +154,12 @@ def compared_laws(contact: LineContact, bearing: BearingGeometry, loads: Sequenc
     }
 
 
-def compared_text(found: Mapping[str, Mapping[str, Mapping[str, Any]]], loads: Sequence[float], title: str) -> str:
+def compared_text(contacts: Mapping[str, Mapping[str, Mapping[str, Any]]], loads: Sequence[float], title: str) -> str:
     """Tables of the structural laws, one a contact.
 
     Parameters
     ----------
-    found : mapping
+    contacts : mapping
         What `compared_laws` gives, by the names of the contacts.
     loads : sequence of float
         w [N/m].
@@ -167,7 +167,7 @@ def compared_text(found: Mapping[str, Mapping[str, Mapping[str, Any]]], loads: S
         The bearing.
     """
     lines = [f"{title}: stiffness of the solids of one contact, and its difference from fe"]
-    for name, laws in found.items():
+    for name, laws in contacts.items():
         lines += [
             "",
             f"{name + ' contact':14s}" + f"{'fe':>20s}" + "".join(f"{law:>12s}" for law in laws if law != "fe"),
@@ -177,7 +177,7 @@ def compared_text(found: Mapping[str, Mapping[str, Mapping[str, Any]]], loads: S
             others = (one["stiffness_difference"][place] for law, one in laws.items() if law != "fe")
             lines.append(row + "".join(f"{value:>+12.1%}" for value in others))
     lines += ["", "  of the approach:"]
-    for name, laws in found.items():
+    for name, laws in contacts.items():
         for place, load in enumerate(loads):
             row = f"  {name:7s}{LOAD.text(load, 4):>10s}{FILM.text(laws['fe']['approach'][place], 4):>15s}"
             others = (one["approach_difference"][place] for law, one in laws.items() if law != "fe")
@@ -252,8 +252,8 @@ def _case(entry: LengthComparison) -> list[str]:
 
 def _apart(places: FloatArray, loads: FloatArray, at: FloatArray, other: FloatArray) -> float:
     """Largest difference of slices from loads at nodes, over their mean; without the slices at both ends."""
-    found = np.abs(other - np.interp(at, places, loads))[1:-1].max()
-    return float(found / (np.trapezoid(loads, places) / np.ptp(places)))
+    largest = np.abs(other - np.interp(at, places, loads))[1:-1].max()
+    return float(largest / (np.trapezoid(loads, places) / np.ptp(places)))
 
 
 def _clean(value: float) -> float:

@@ -292,34 +292,34 @@ def _shown(value: Any) -> str:
     return value if isinstance(value, str) else f"{value:.5g}"
 
 
-def supplied_record(supply: OilSupply, found: SuppliedFilm) -> dict[str, Any]:
+def supplied_record(supply: OilSupply, film: SuppliedFilm) -> dict[str, Any]:
     """Return what a supply adds to the plain values of one contact, SI; None where there is no number.
 
     Parameters
     ----------
     supply : OilSupply
         Oil supply of the contact.
-    found : SuppliedFilm
+    film : SuppliedFilm
         Film behind it.
     """
     values = {
         "oil_layer": supply.oil_layer,
-        "flow_ratio": found.flow_ratio,
-        "meniscus": found.meniscus,
-        "supplied_compliance": found.supplied_compliance,
+        "flow_ratio": film.flow_ratio,
+        "meniscus": film.meniscus,
+        "supplied_compliance": film.supplied_compliance,
     }
     plain = {key: value if math.isfinite(value) else None for key, value in values.items()}
     return {"supply": supply.label, **plain}
 
 
-def supplied_table(supply: OilSupply, found: dict[str, SuppliedFilm]) -> str:
+def supplied_table(supply: OilSupply, films: dict[str, SuppliedFilm]) -> str:
     """Return the printed table: a line a contact.
 
     Parameters
     ----------
     supply : OilSupply
         Oil supply of the contacts.
-    found : dict
+    films : dict
         Films by the name of the contact.
     """
     lines = [
@@ -327,7 +327,7 @@ def supplied_table(supply: OilSupply, found: dict[str, SuppliedFilm]) -> str:
         f"  {'':12s}{'flow over flooded':>20s}{'meniscus before the centre':>30s}",
     ]
     lines += [
-        f"  {name:12s}{_number(film.flow_ratio):>20s}{_place(film.meniscus):>30s}" for name, film in found.items()
+        f"  {name:12s}{_number(film.flow_ratio):>20s}{_place(film.meniscus):>30s}" for name, film in films.items()
     ]
     return "\n".join(lines)
 

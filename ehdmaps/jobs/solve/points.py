@@ -68,10 +68,10 @@ def solve_points(
         for index, contact in enumerate(contacts)
         for line in lines
     ]
-    found = sweep([task for _, _, task in tasks], NoStore(), workers).arrays
+    results = sweep([task for _, _, task in tasks], NoStore(), workers).arrays
     films: dict[str, npt.NDArray[Any]] = {}
     for index, line, task in tasks:
-        for name, array in found[task.key].items():
+        for name, array in results[task.key].items():
             if name not in films:
                 dtype = object if array.dtype.kind == "U" else array.dtype
                 films[name] = np.empty((len(contacts), values[0].size), dtype=dtype)

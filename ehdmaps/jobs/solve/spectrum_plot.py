@@ -110,7 +110,7 @@ def _column(chosen: xr.Dataset, contact: str, panels: list[Axes]) -> None:
         for first, last in _bands(fed):
             ends = _edges(frequency, first, last)
             words = (
-                "negative damping: the film feeds the oscillation" if axes is loss and first == _first(fed) else None
+                "negative damping: the film feeds the oscillation" if axes is loss and first == np.argmax(fed) else None
             )
             axes.axvspan(*ends, facecolor=_NEGATIVE, alpha=0.13, lw=0.0, label=words)
     loss.axhline(0.0, color="black", lw=0.5)
@@ -132,11 +132,6 @@ def _limits(low: FloatArray, high: FloatArray) -> tuple[float, float]:
     bottom, top = min(float(np.min(low)), 0.0), max(float(np.max(high)), 0.0)
     margin = 0.08 * (top - bottom or 1.0)
     return bottom - margin, top + margin
-
-
-def _first(fed: BoolArray) -> int:
-    """Index of the first frequency that is fed."""
-    return int(np.argmax(fed))
 
 
 def _bands(fed: BoolArray) -> list[tuple[int, int]]:

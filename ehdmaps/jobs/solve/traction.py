@@ -72,21 +72,21 @@ def solve_traction(
         return film, {law: np.full(request.slide_to_roll.shape, np.nan) for law in LAWS}
     laws = (newtonian_stress, eyring_stress(request.eyring), limiting_stress(profile.pressure, request.limiting))
     at = oil.at(point.temperature), point.load, point.entrainment_speed
-    found = (traction_coefficients(profile, *at, request.slide_to_roll, law) for law in laws)
-    return film, dict(zip(LAWS, found, strict=True))
+    coefficients = (traction_coefficients(profile, *at, request.slide_to_roll, law) for law in laws)
+    return film, dict(zip(LAWS, coefficients, strict=True))
 
 
-def traction_record(request: TractionRequest, found: dict[str, FloatArray]) -> dict[str, Any]:
+def traction_record(request: TractionRequest, coefficients: dict[str, FloatArray]) -> dict[str, Any]:
     """Return the traction of one contact as plain values; None where there is no film.
 
     Parameters
     ----------
     request : TractionRequest
         Ratios and stresses.
-    found : dict of str to ndarray
+    coefficients : dict of str to ndarray
         Traction coefficients by law.
     """
-    plain = {law: [float(mu) if np.isfinite(mu) else None for mu in values] for law, values in found.items()}
+    plain = {law: [float(mu) if np.isfinite(mu) else None for mu in values] for law, values in coefficients.items()}
     return {
         "slide_to_roll": request.slide_to_roll.tolist(),
         "eyring_stress": request.eyring,
@@ -95,25 +95,25 @@ def traction_record(request: TractionRequest, found: dict[str, FloatArray]) -> d
     }
 
 
-def traction_table(request: TractionRequest, found: dict[str, dict[str, FloatArray]]) -> str:
+def traction_table(request: TractionRequest, coefficients: dict[str, dict[str, FloatArray]]) -> str:
     """Return the printed table: a column a contact and law, a line a ratio.
 
     Parameters
     ----------
     request : TractionRequest
         Ratios and stresses.
-    found : dict
+    coefficients : dict
         Traction coefficients by law, by the name of the contact.
     """
     lines = [
         "traction coefficient on the film of pure rolling, isothermal: too high where slip heats it, above 0.1 or so",
         f"  eyring: {STRESS.text(request.eyring)}; limiting: {STRESS.text(LIMITING_STRESS_AT_REST)} + "
         f"{request.limiting:g} p; newtonian oil has no bound: of no use above 0.6 GPa",
-        f"  {'slide to roll':>13s}" + "".join(f"{contact:>12s}{'':24s}" for contact in found),
-        f"  {'':13s}" + "".join(f"{law:>12s}" for law in LAWS) * len(found),
+        f"  {'slide to roll':>13s}" + "".join(f"{contact:>12s}{'':24s}" for contact in coefficients),
+        f"  {'':13s}" + "".join(f"{law:>12s}" for law in LAWS) * len(coefficients),
     ]
     for index, slip in enumerate(request.slide_to_roll):
-        values = [mu[index] for laws in found.values() for mu in laws.values()]
+        values = [mu[index] for laws in coefficients.values() for mu in laws.values()]
         lines.append(
             f"  {slip:13.4g}" + "".join(f"{'-' if np.isnan(value) else f'{value:.4g}':>12s}" for value in values)
         )
