@@ -21,7 +21,7 @@ far away.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -44,7 +44,7 @@ BLUR = 0.1
 """Length over which the term of the Hertz zone is rounded at its ends, in the contact's own length."""
 
 LEAST_INLET = 6.0
-"""Inlet of a film without thickness [b]; `Resolution.inlet_length` comes to it."""
+"""Inlet of a film without thickness [b]; `Resolution.inlet` comes to it."""
 
 
 class Grid(NamedTuple):
@@ -136,6 +136,12 @@ class Layout:
         """s(exit) - s(inlet end): how many e-folds of distance the grid has to resolve."""
         first, last = (_index(x, self.inlet_edge, self.blur, self.core, self.terms)[0] for x in (-self.length, 0.0))
         return float(last - first)
+
+    def with_moved_spike(self, shift: float) -> Layout:
+        """The same with its spike, the last term, shifted towards the exit [b]."""
+        terms = self.terms.copy()
+        terms[0, -1] += shift
+        return replace(self, terms=terms)
 
     def grid(self, cells: int) -> Grid:
         """Nodes at equal steps of s."""

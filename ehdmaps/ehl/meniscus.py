@@ -143,7 +143,7 @@ class _Search:
 
     def __init__(self, resolution: Resolution, film: float, layer: float) -> None:
         self.resolution, self.film, self.layer = resolution, film, layer
-        self.edge, self.zone = lay_out(film, resolution.inlet_length, resolution.shape).inlet_edge, zone_width(film)
+        self.edge, self.zone = lay_out(film, resolution.inlet, resolution.shape).inlet_edge, zone_width(film)
         self.steps = 0
         self.known: list[_Place] = []
 

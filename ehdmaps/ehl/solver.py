@@ -22,7 +22,7 @@ from ehdmaps.ehl.limits import SETTING_LIMITS
 from ehdmaps.ehl.line import group_spectrum, solve_groups
 from ehdmaps.ehl.meniscus import starved_groups
 from ehdmaps.ehl.newton import CONVERGED, DIVERGED
-from ehdmaps.ehl.profile import Profile, Resolution
+from ehdmaps.ehl.profile import USUAL_DENSITY, Profile, Resolution
 from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.errors import InputError
 from ehdmaps.physics.closed_form import (
@@ -111,8 +111,9 @@ class ReynoldsSolver(ContactSolverDefaults):
     ----------
     density : float
         Cells per e-fold of distance from inlet, exit and spike; 6.5 gives about 90 cells a contact.
-    inlet_length : float
-        Length of the inlet in units of sqrt(2 h R).
+    inlet_length : float, optional
+        Length of the inlet in units of sqrt(2 h R); left out it is 200 at the default density, and goes with the square
+        of the density.
     tolerance : float
         Newton tolerance on the last (quadratic) step.
     thickest_film : float
@@ -133,8 +134,8 @@ class ReynoldsSolver(ContactSolverDefaults):
         If a setting is outside its range.
     """
 
-    density: float = 6.5
-    inlet_length: float = 300.0
+    density: float = USUAL_DENSITY
+    inlet_length: float | None = None
     tolerance: float = 1e-6
     thickest_film: float = THICKEST_FILM
     physics: str = ISOTHERMAL
@@ -149,7 +150,7 @@ class ReynoldsSolver(ContactSolverDefaults):
             f"reynolds solver, {name}: got {getattr(self, name)!r}; allowed: {low:g} to {high:g}; "
             "leave it out for the default"
             for name, (low, high) in SETTING_LIMITS.items()
-            if not low <= getattr(self, name) <= high
+            if (name, self.inlet_length) != ("inlet_length", None) and not low <= getattr(self, name) <= high
         ]
         if self.physics not in PHYSICS:
             problems.append(f"reynolds solver, physics: got {self.physics!r:.60}; allowed: {', '.join(PHYSICS)}")
@@ -199,7 +200,7 @@ class ReynoldsSolver(ContactSolverDefaults):
         shape = GridShape()
         return {
             "density": self.density,
-            "inlet_length": self.inlet_length,
+            "inlet_length": self.resolution.inlet,
             "tolerance": self.tolerance,
             "grid_shape": f"{shape}",
             **({} if self.thickest_film == THICKEST_FILM else {"thickest_film": self.thickest_film}),

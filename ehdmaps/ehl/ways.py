@@ -224,7 +224,7 @@ def on_coarse_grid(
         spike = Spike(place * ratio**-0.7, finest)
     solution = near = previous
     for attempt in range(MOST_MOVES):
-        layout = lay_out(guess, resolution.inlet_length, resolution.shape, spike, length)
+        layout = lay_out(guess, resolution.inlet, resolution.shape, spike, length)
         span = layout.span if length is None else max(layout.span, LEAST_SPAN)
         grid = layout.grid(math.ceil(0.5 * resolution.density * span))
         if solution is None:

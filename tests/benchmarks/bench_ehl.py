@@ -3,7 +3,7 @@
 Run: python -m tests.benchmarks.bench_ehl [--points N]
 
 One process, one thread. Points are drawn along load lines of the NU308 map, as a sweep solves them. Errors are against
-four times the default density of cells and twice the inlet. The plain solvers get the same grid and the same start
+four times the default density of cells. The plain solvers get the same grid and the same start
 (the interpolated coarse solution), and solve the fine grid's equations only: no linear response, no coarse grid, no
 estimate.
 """
@@ -151,7 +151,7 @@ def lines(points: int) -> list[tuple[tuple[float, ...], float, float]]:
 
 def errors(solver: ReynoldsSolver, sample: list[tuple[tuple[float, ...], float, float]]) -> str:
     """Median and 95 % quantile of the error in k and c (of the contact) and film offset and film compliance."""
-    fine = ReynoldsSolver(density=26.0, inlet_length=600.0)
+    fine = ReynoldsSolver(density=26.0)
     found = []
     for loads, speed, temperature in sample:
         pair = (s.solve_line(CONTACT, OIL, loads[::5], speed, temperature) for s in (solver, fine))

@@ -5,7 +5,7 @@ Run: python -m tests.benchmarks.bench_frequency [--transient]
 Points of the NU308 with FVA 3 along the regimes, by the Reynolds solver. Costs are of one operating point from a cold
 start, with its error estimates: the limit of slow motion alone, and with 60 frequencies from 0.01/T to 10/T, where T is
 the natural time sqrt(b^2 + 2 h R)/u. The largest differences of K follow, relative to abs(K): from a direct complex
-solve of all equations at each frequency (round-off), and from four times the cells and twice the inlet (the error),
+solve of all equations at each frequency (round-off), and from four times the cells (the error),
 beside the largest estimate.
 With --transient the linear response at 6 points and 3 frequencies beside the nonlinear film in time.
 """
@@ -85,7 +85,7 @@ def _direct(linear: Linearisation, omegas: np.ndarray) -> np.ndarray:
 
 def costs() -> None:
     """Print the table of costs and differences."""
-    solver, fine = ReynoldsSolver(), ReynoldsSolver(density=26.0, inlet_length=600.0)
+    solver, fine = ReynoldsSolver(), ReynoldsSolver(density=26.0)
     print(f"{'M':>6s} {'L':>4s}  slow, ms  {FREQUENCIES} f., ms  ratio   direct     error  estimate   (largest)")
     ratios = []
     for M, L, celsius in POINTS:
@@ -111,7 +111,7 @@ def costs() -> None:
         profile = solve_groups(problem, M, L, solver.resolution).profile
         assert profile is not None
         omegas = 2.0 * np.pi * frequencies * half / speed
-        direct = _direct(linearised_profile(profile, solver.resolution), omegas) * 4.0 / CONTACT.reduced_modulus
+        direct = _direct(linearised_profile(profile), omegas) * 4.0 / CONTACT.reduced_modulus
         stiffness = np.abs(spectra[0].dynamic_stiffness)
         apart = np.max(np.abs(direct - spectra[0].film_compliance) * stiffness)
         error = np.max(np.abs(spectra[1].film_compliance - spectra[0].film_compliance) * stiffness)
@@ -132,7 +132,7 @@ def transients() -> None:
     for M, L, omegas in OSCILLATIONS:
         solution = solve_groups(roelands_problem(M, L) if L else isoviscous_problem(M), M, L, TRANSIENT)
         assert solution.profile is not None
-        linear = film_compliances(linearised_profile(solution.profile, TRANSIENT), np.array(omegas))
+        linear = film_compliances(linearised_profile(solution.profile), np.array(omegas))
         natural = math.sqrt(1.0 + 2.0 * solution.film_offset)
         for omega, expected in zip(omegas, linear, strict=True):
             # at high frequency what is left of the start takes more periods to decay

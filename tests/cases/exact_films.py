@@ -88,7 +88,7 @@ class ExactFilms:
             assert groups.profile is not None, f"no film at {load} N/m, {self.speed} m/s"
             previous = groups.profile
             time = float(half_width(load, contact.radius, contact.reduced_modulus)) / self.speed
-            space = film_space(linearised_profile(groups.profile, resolution), 2.0 * math.pi * HIGHEST * time)
+            space = film_space(linearised_profile(groups.profile), 2.0 * math.pi * HIGHEST * time)
             dry = float(contact.structural_compliance(load))
             found.append(ExactFilm(space, time, dry, 4.0 / contact.reduced_modulus))
         return found

@@ -101,8 +101,8 @@ def _random_points(seed: int, count: int) -> list[tuple[LineContact, float, floa
 
 @cache
 def _solved() -> list[tuple[tuple[LineContact, float, float, float], FilmSolution, FilmSolution]]:
-    """Random points of the shipped maps, their films, and those with four times the cells and twice the inlet."""
-    fine = replace(SOLVER, density=4.0 * SOLVER.density, inlet_length=2.0 * SOLVER.inlet_length)
+    """Random points of the shipped maps, their films, and those with four times the cells."""
+    fine = replace(SOLVER, density=4.0 * SOLVER.density)
     found = []
     for drawn in _random_points(20, 60):
         contact, load, speed, temperature = drawn
@@ -161,7 +161,7 @@ def test_errors_of_films_and_pressure_and_their_estimates() -> None:
 def test_errors_at_steep_spikes() -> None:
     """Cold, loaded contacts of four oils: what is stated bounds what is wrong, and finer grids have a solution."""
     points = spikes.random_points(7, 24)
-    fine = Resolution(density=18.0, inlet_length=600.0)
+    fine = Resolution(density=18.0)
     ratios = []
     for point in points:
         found, exact = (solve_groups(point.problem, point.M, point.L, each) for each in (Resolution(), fine))
@@ -193,9 +193,11 @@ def test_cold_gear_oil_beside_its_damping_valley(load: float, speed: float, cels
     near = (load, 1.02 * load)
     film, other = (SOLVER.solve_line(CONTACTS[0], lubricant, (at,), speed, celsius + 273.15)[0] for at in near)
     assert film.status is Status.CONVERGED, film.reason
-    # -d ln(h)/d ln(w) of both films is the compliance of the one, to the curvature over a step of 2 %
     slope = math.log(film.film_offset / other.film_offset) / math.log(1.02)
-    assert slope == pytest.approx(film.film_compliance * load / film.film_offset, rel=2e-2)
+    # of both films, as one load differs by the curvature: 2 %
+    compliances = [each.film_compliance * at / each.film_offset for each, at in zip((film, other), near, strict=True)]
+    # films on two grids: their errors, of 1e-4 to 2e-4, over a step of 2 %
+    assert slope == pytest.approx(0.5 * sum(compliances), rel=2e-2)
 
 
 def test_wall_stress_of_a_spike_is_flagged() -> None:

@@ -39,7 +39,7 @@ def test_damping_falls_with_the_frequency(M: float, L: float) -> None:
     """c = Im(1/S)/Omega of film and solids in series, over its low-frequency limit: as the reference page says."""
     profile = solved(M, L).profile
     assert profile is not None
-    linear = linearised_profile(profile, Resolution())
+    linear = linearised_profile(profile)
     slow = linear.slow_response()
     limit = slow.loss / (slow.compliance + SOLIDS) ** 2
     frequencies = np.array([0.3, 0.5, 1.0, 2.0])
@@ -74,16 +74,16 @@ def _natural(solution: GroupSolution) -> float:
     return math.sqrt(1.0 + 2.0 * solution.film_offset)
 
 
-def _responses(solution: GroupSolution, frequencies: np.ndarray, resolution: Resolution) -> np.ndarray:
+def _responses(solution: GroupSolution, frequencies: np.ndarray) -> np.ndarray:
     assert solution.profile is not None
-    return film_compliances(linearised_profile(solution.profile, resolution), frequencies)
+    return film_compliances(linearised_profile(solution.profile), frequencies)
 
 
 @pytest.mark.parametrize(("M", "L"), [(0.003, 20.0), (0.4, 20.0), (0.82, 20.0), (4.0, 20.0), (50.0, 20.0), (10.0, 0.0)])
 def test_krylov_space_against_a_direct_solve_at_each_frequency(M: float, L: float) -> None:
     solution = solved(M, L)
     assert solution.profile is not None
-    linear = linearised_profile(solution.profile, Resolution())
+    linear = linearised_profile(solution.profile)
     assert (linear.size > linear.height + 1) == (solution.profile.spike is not None)
     real = np.geomspace(0.01, 30.0, 12) / _natural(solution)
     # complex ones are of modes: e^(lambda t), Omega = -i lambda b/u
@@ -103,7 +103,7 @@ def test_krylov_space_against_a_direct_solve_at_each_frequency(M: float, L: floa
 def test_space_grows_to_all_unknowns_where_frequencies_are_absurd() -> None:
     solution = solved(4.0, 20.0)
     assert solution.profile is not None
-    linear = linearised_profile(solution.profile, Resolution())
+    linear = linearised_profile(solution.profile)
     rates = np.column_stack([linear.storage(column) for column in np.eye(linear.size)])
     frequency = 1e4
     direct = np.linalg.solve(linear.matrix + 1j * frequency * rates, linear.unit.astype(complex))[linear.height]
@@ -115,7 +115,7 @@ def test_space_grows_to_all_unknowns_where_frequencies_are_absurd() -> None:
 def test_low_frequencies_give_film_compliance_and_loss_of_slow_motion(M: float, L: float) -> None:
     solution = solved(M, L)
     frequency = 1e-4 / _natural(solution)
-    (found,) = _responses(solution, np.array([frequency]), Resolution())
+    (found,) = _responses(solution, np.array([frequency]))
     # O(Omega^2) = 1e-8 of the largest parts, and round-off of the difference with the dry compliance
     scale = SOLIDS + abs(solution.film_compliance)
     assert found.real == pytest.approx(solution.film_compliance, abs=1e-8 * scale)
@@ -171,7 +171,7 @@ def test_a_rigid_film_has_no_memory(M: float, L: float, bound: float) -> None:
     solution = solved(M, L)
     frequencies = np.geomspace(0.01, 10.0, 9) / _natural(solution)
     one_pole = solution.film_compliance / (1.0 + 1j * frequencies * solution.loss / solution.film_compliance)
-    found = _responses(solution, frequencies, Resolution())
+    found = _responses(solution, frequencies)
     assert np.max(np.abs(found - one_pole)) < bound * solution.film_compliance
 
 
@@ -180,7 +180,7 @@ def test_a_locked_film_is_a_punch_that_widens_with_the_logarithm_of_the_period()
     resolution = Resolution(density=13.0)
     solution = solve_groups(isoviscous_problem(0.5), 0.5, 0.0, resolution)
     frequencies = np.array([100.0, 150.0]) / _natural(solution)
-    found = _responses(solution, frequencies, resolution)
+    found = _responses(solution, frequencies)
     # 5 %: the next terms of the limit, of the order of the width of the locked zone; the grid adds below 1 %
     assert found.imag == pytest.approx(np.full(2, -1.0 / 6.0), rel=0.05)
     assert np.diff(found.real)[0] == pytest.approx(-math.log(1.5) / (3.0 * math.pi), rel=0.05)
@@ -263,8 +263,8 @@ def _random_points(seed: int, count: int) -> list[tuple[LineContact, Lubricant, 
 
 @pytest.mark.slow
 def test_errors_at_a_frequency_and_their_estimates() -> None:
-    """Against four times the cells and twice the inlet, at random points and frequencies."""
-    solver, fine = ReynoldsSolver(), ReynoldsSolver(density=26.0, inlet_length=600.0)
+    """Against four times the cells, at random points and frequencies."""
+    solver, fine = ReynoldsSolver(), ReynoldsSolver(density=26.0)
     table = []
     for contact, oil, point, natural in _random_points(2026, 75):
         (film,) = solver.solve_line(contact, oil, (point.load,), point.entrainment_speed, point.temperature)
@@ -306,7 +306,7 @@ def test_estimate_says_where_a_wave_is_not_resolved() -> None:
     omega = np.array([1.0, 20.0, 30.0])
     found = group_spectrum(M, L, solution, omega)
     fine = Resolution(density=40.0)
-    exact = _responses(solve_groups(roelands_problem(M, L), M, L, fine), omega, fine)
+    exact = _responses(solve_groups(roelands_problem(M, L), M, L, fine), omega)
     wrong = np.abs(found.compliance - exact) / np.abs(exact)
     stated = np.max(np.abs(found.errors), axis=1) / np.abs(found.compliance)
     assert np.all(wrong < stated)

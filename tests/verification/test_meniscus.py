@@ -206,7 +206,7 @@ def test_a_flooded_contact_has_no_meniscus_to_follow():
     profile = solved(1.0, 10.0).profile
     assert profile is not None
     with pytest.raises(ValueError, match="no meniscus"):
-        linearised_profile(profile, Resolution()).supplied_compliance()
+        linearised_profile(profile).supplied_compliance()
 
 
 # ---- facts of a second method: a solver of its own, whose secant finds the length of the film
@@ -260,10 +260,10 @@ def flooded_and_starved(point: OperatingPoint, ratio: float) -> tuple[FilmSoluti
 
 @pytest.mark.parametrize("load", [0.3e3, 5e3, 200e3])
 def test_a_layer_that_just_fails_to_flood_changes_nothing(load):
-    """1e-7 less than flooded: bars are what the end of the inlet changes, 6 over the squared length of 300."""
+    """1e-7 less than flooded: bars are what the end of the inlet changes, 6 over the squared length."""
     point = OperatingPoint(load, 2.0, 333.15)
     flooded, found = flooded_and_starved(point, 1.0 - 1e-7)
-    lost = 6.0 / SOLVER.inlet_length**2
+    lost = 6.0 / SOLVER.resolution.inlet**2
     assert 0.0 < found.flow_ratio < 1.0 and found.meniscus < math.inf
     assert found.film.film_offset == pytest.approx(flooded.film_offset, rel=lost)
     assert found.film.film_compliance == pytest.approx(flooded.film_compliance, rel=2.0 * lost)

@@ -44,7 +44,7 @@ from ehdmaps.physics.surface import Surface
 from ehdmaps.trade.record import Source
 
 REFINEMENT = 4.0
-"""Grid density of the reference over that of the job; its inlet is twice as long."""
+"""Grid density of the reference over that of the job; its inlet is as many times as long, squared."""
 
 RULE_REFINEMENT = 2.0
 """Grid density of the films of the finest solution of a rule, over that of the job."""
@@ -69,7 +69,7 @@ DATA, RINGS = 1.1, 5.0
 _RESOLUTIONS = (0.5, 0.7, 1.0, 1.4, 2.0)
 """Grid densities that are measured, over that of the job."""
 
-_INLETS = (0.2, 1.0 / 3.0)
+_INLETS = (0.5, 2.0)
 """Inlets that are measured, over that of the job."""
 
 
@@ -154,7 +154,7 @@ def contestants(job: Job, openfoam: bool) -> tuple[Entry, ...]:
     """
     stated = _own(job, "reynolds")
     own = {key: value for key, value in stated.items() if key not in solvers.PHYSICAL}
-    usual, fine, rule = _finer(own, 1.0), _finer(own, REFINEMENT, 2.0), _finer(own, RULE_REFINEMENT)
+    usual, fine, rule = _finer(own, 1.0), _finer(own, REFINEMENT), _finer(own, RULE_REFINEMENT)
     layer = OIL_LAYER if job.supply is None or job.supply.flooded else job.supply
     surface = ROUGHNESS if job.surface is None or job.surface.smooth else job.surface
     density = f"density {usual.density:g}"
@@ -189,7 +189,7 @@ def contestants(job: Job, openfoam: bool) -> tuple[Entry, ...]:
             for grid in dict.fromkeys(_finer(own, factor) for factor in _RESOLUTIONS)
         ),
         *(
-            Entry(grids, f"reynolds, {density}, inlet {grid.inlet_length:g}", Flooded(grid), solved)
+            Entry(grids, f"reynolds, {density}, inlet {grid.resolution.inlet:g}", Flooded(grid), solved)
             for grid in dict.fromkeys(_finer(own, 1.0, factor) for factor in _INLETS)
         ),
         *(_openfoam_entries(job, solved) if openfoam else ()),
@@ -360,13 +360,15 @@ def _own(job: Job, solver: str) -> dict[str, Any]:
 
 
 def _finer(own: dict[str, Any], density: float, inlet: float = 1.0) -> ReynoldsSolver:
-    """`reynolds` with other grids, as far as they are allowed."""
+    """`reynolds` with other grids, as far as they are allowed; their inlets go with the square of the density."""
     used = ReynoldsSolver(**own)
+    if density == inlet == 1.0:
+        return used
     (low, high), (short, long) = SETTING_LIMITS["density"], SETTING_LIMITS["inlet_length"]
     return ReynoldsSolver(
         **{
             **own,
             "density": min(max(round(used.density * density, 2), low), high),
-            "inlet_length": min(max(round(used.inlet_length * inlet, 1), short), long),
+            "inlet_length": min(max(round(used.resolution.inlet * density**2 * inlet, 1), short), long),
         }
     )
