@@ -40,6 +40,7 @@ PAGES = (
     "README.md",
     "FILMS.md",
     "TRADE.md",
+    "docs/measured.md",
     "docs/accuracy.md",
     "docs/solids.md",
     "docs/python.md",

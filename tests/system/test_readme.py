@@ -110,6 +110,7 @@ PAGES = (
     "README.md",
     "FILMS.md",
     "TRADE.md",
+    "docs/measured.md",
     "docs/accuracy.md",
     "docs/solids.md",
     "ehdmaps/REFERENCE.md",
