@@ -7,13 +7,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ehdmaps.ehl.grid import zone_width
 from ehdmaps.ehl.linearisation import GridShift, Linearisation, Neighbour, Response, linearised
 from ehdmaps.ehl.newton import CONVERGED, STAGNATED
-from ehdmaps.ehl.profile import Profile, Resolution, front_node
+from ehdmaps.ehl.profile import Profile, Resolution, front, front_node
 from ehdmaps.ehl.warm_response import WarmLinearisation, warm_linearised
 from ehdmaps.ehl.ways import LOAD
 from ehdmaps.physics.isotherm import log_viscosity
-from ehdmaps.physics.rheology import LIMITING
+from ehdmaps.physics.rheology import LIMITING, NEWTONIAN
 from ehdmaps.physics.solution import peak_sampling_error
 
 SPIKE_SHIFT = 1e-4
@@ -60,6 +61,10 @@ FIRST_ORDER = 1.5
 FILM_LOST, COMPLIANCE_LOST, LOSS_LOST, ROLLING_GAINED = 3.0, 6.0, 7.5, 1.5
 """Bounds of what an inlet of X film lengths takes away of film and mass flow, film compliance and loss, or adds to the
 rolling force, in 1/X^2. Of a rigid film, of which it takes most, it is 2.47, 4.95, 6.25 and 1.22."""
+
+STEEP = 0.2
+"""Fall of pressure at the exit, in p_H per width of its zone, above which an oil that is not Newtonian has kinks there:
+a third of what gives a spike cells of its own, see `Resolution.spike_steepness`."""
 
 MOST_TIP = 5.0
 """Pressure of a tip over that of its cell to which an estimate goes: an oil with a largest viscosity has no limit."""
@@ -196,6 +201,17 @@ def _front_error(profile: Profile, response: Response) -> Response:
     return Response(standing.compliance - response.compliance, standing.loss - response.loss)
 
 
+def _unresolved(profile: Profile) -> bool:
+    """Whether an oil that is not Newtonian has a steep front behind the Hertz zone, without cells of its own.
+
+    Its stress bounds the fall of the pressure there, and where that begins and ends the pressure has kinks. A Newtonian
+    film whose pressure falls as much gets cells for its spike, or carries them over from a lighter load.
+    """
+    if profile.spike is not None or profile.problem.shear.form == NEWTONIAN:
+        return False
+    return front(profile)[1] * zone_width(profile.layout.film) > STEEP
+
+
 def _with_inlet(grid: float, lost: float) -> float:
     """Error of cells, with its sign, and of an inlet that ends: the latter lowers a value by up to `lost`.
 
@@ -214,7 +230,7 @@ def _film_errors(fine: Profile, coarse: Profile, scale: float, share: float) -> 
     """
     (central, minimum), (rough, rough_minimum) = fine.central_and_minimum_film, coarse.central_and_minimum_film
     moved_by, narrowed = abs(scale * rough / central - 1.0), abs(scale * rough_minimum / minimum - 1.0)
-    if fine.spike is None:
+    if fine.spike is None and not _unresolved(fine):
         return share * moved_by, share * narrowed
     return share * moved_by, FIRST_ORDER * narrowed + 0.5 * moved_by
 
@@ -266,7 +282,7 @@ def _rolling_error(fine: Profile, coarse: Profile) -> float:
     thickest, which is as rough.
     """
     moved_by = abs(coarse.rolling_force / fine.rolling_force - 1.0)
-    if fine.spike is None and not fine.layout.starved:
+    if fine.spike is None and not fine.layout.starved and not _unresolved(fine):
         return FOURTH * moved_by
     return FIRST_ORDER * moved_by + 0.1 * fine.fourth_order_share
 

@@ -10,8 +10,10 @@ import numpy as np
 import pytest
 
 from ehdmaps.ehl.grid import DRY_DATUM, lay_out, log_kernel
+from ehdmaps.ehl.group_solution import COMPLIANCE_LOST, FILM_LOST, LOSS_LOST, ROLLING_GAINED
 from ehdmaps.ehl.line import solve_groups
 from ehdmaps.ehl.profile import Resolution
+from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.physics.films import dowson_higginson_minimum, dowson_toyoda_central, moes_central
 from ehdmaps.physics.hertz import DRY_COMPLIANCE
 from tests.cases.ehl import isoviscous_problem, moes_film, solved
@@ -51,6 +53,34 @@ def test_inlet_length() -> None:
     lost = 1.0 - short.film_offset / long.film_offset
     assert lost == pytest.approx(2.4 / 60.0**2, rel=0.1)  # 10 %: the next term of the series
     assert lost < short.film_offset_error < 5.0 * lost
+
+
+def test_what_an_inlet_loses_and_what_is_stated() -> None:
+    """Of a rigid film the bounds are a fifth larger than the loss, and what is stated no more than a third."""
+    long, short = (solved(1e-3, 0.0, density=26.0, inlet_length=x) for x in (3000.0, 60.0))
+    for name, bound in (
+        ("film_offset", FILM_LOST),
+        ("mass_flow", FILM_LOST),
+        ("film_compliance", COMPLIANCE_LOST),
+        ("loss", LOSS_LOST),
+        ("rolling_force", -ROLLING_GAINED),
+    ):
+        lost = 1.0 - getattr(short, name) / getattr(long, name)
+        assert lost * 60.0**2 == pytest.approx(bound / 1.22, rel=0.03)  # 3 %: rounded, and the next term of the series
+        assert abs(lost) < abs(getattr(short, f"{name}_error")) < 1.3 * abs(lost)
+
+
+def test_default_inlet_loses_less_than_the_cells_add() -> None:
+    """Of a rigid film, of which it loses most, less than half; at a density of 13 too, whose inlet is longer."""
+    for density in (Resolution().density, 13.0):
+        usual, long, exact = (
+            solved(1e-3, 0.0, density=d, inlet_length=x)
+            for d, x in ((density, None), (density, 3000.0), (26.0, 3000.0))
+        )
+        added = long.film_offset / exact.film_offset - 1.0
+        lost = 1.0 - usual.film_offset / long.film_offset
+        assert 0.0 < lost < 0.5 * added
+    assert ReynoldsSolver(density=13.0).settings()["inlet_length"] == 4.0 * Resolution().inlet
 
 
 def test_martin_limit() -> None:
