@@ -124,7 +124,7 @@ def budget(trade: Trade) -> tuple[Bar, ...]:
     bars = []
     for source in trade.sources:
         off = [choice for choice in trade.choices if choice.label == source.off]
-        on = {choice.group: choice for choice in trade.choices if choice.label == source.on}
+        on = [choice for choice in trade.choices if choice.label == source.on]
         errors = {
             name: choice.errors[name]
             for choice in off
@@ -134,7 +134,12 @@ def budget(trade: Trade) -> tuple[Bar, ...]:
         if not errors:
             continue
         # of a linear analysis and of a run the dearer one, which is the last
-        costs = [on[choice.group].seconds / choice.seconds for choice in off if choice.group in on and choice.seconds]
+        costs = [
+            having.seconds / choice.seconds
+            for choice in off
+            for having in on
+            if choice.seconds and (having.group == choice.group or len(off) == len(on) == 1)
+        ]
         against = next((choice.reference for choice in off if choice.reference), trade.reference)
         bars.append(Bar(source.name, errors, costs[-1] if costs else math.nan, against))
     return tuple(sorted(bars, key=lambda bar: -bar.largest(trade)))
