@@ -44,8 +44,8 @@ NATURAL_FREQUENCIES = (0.1, 10.0)
 _STATED = _SHOWN = ("stiffness", "damping", "film offset")
 
 _SOLVING = ("closed forms", TABLE, "reynolds")
-"""Groups whose choices answer one question: the flooded, smooth film in slow motion. The few points of openfoam do not say
-how wrong it is at 95 % of them."""
+"""Groups whose choices answer one question: the flooded, smooth film in slow motion. The few points of openfoam say
+nothing of 95 %."""
 
 
 @dataclass(frozen=True)
