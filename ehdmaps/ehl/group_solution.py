@@ -202,7 +202,7 @@ def _front_error(profile: Profile, response: Response) -> Response:
 
 
 def _unresolved(profile: Profile) -> bool:
-    """Whether an oil that is not Newtonian has a steep front behind the Hertz zone, without cells of its own.
+    """True where an oil that is not Newtonian has a steep front behind the Hertz zone, without cells of its own.
 
     Its stress bounds the fall of the pressure there, and where that begins and ends the pressure has kinks. A Newtonian
     film whose pressure falls as much gets cells for its spike, or carries them over from a lighter load.

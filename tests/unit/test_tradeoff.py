@@ -92,7 +92,7 @@ def test_numerical_error_falls_with_the_grid_and_is_what_the_solver_states():
         assert first.errors[name] == first.numerical[name] and not first.model
         # the solver's estimate holds at nineteen of twenty points, so at seven of eight
         assert first.numerical[name].covered >= 0.875
-    assert trade.reference.startswith("reynolds, density 20, inlet length 300 (")
+    assert trade.reference.startswith("reynolds, density 20, inlet length 1893.49 (")
     assert first.solved == first.asked == 8 and 0.0 < first.seconds < second.seconds
 
 

@@ -14,12 +14,13 @@ from tests.cases.ehl import solved
 
 DENSITIES = (5.0, 10.0)
 FINE = 40.0
+INLET = 300.0
 
 
 def _order(M: float, L: float, name: str) -> float:
     """Order from the errors of two grids against one with four times the cells of the finer; inlet the same."""
-    reference = getattr(solved(M, L, density=FINE), name)
-    coarse, fine = (abs(getattr(solved(M, L, density=d), name) - reference) for d in DENSITIES)
+    reference = getattr(solved(M, L, density=FINE, inlet_length=INLET), name)
+    coarse, fine = (abs(getattr(solved(M, L, density=d, inlet_length=INLET), name) - reference) for d in DENSITIES)
     return math.log(coarse / fine) / math.log(DENSITIES[1] / DENSITIES[0])
 
 
@@ -67,7 +68,7 @@ def test_flow_over_a_cell(exponent: float, scale: float, start: float) -> None:
 @pytest.mark.parametrize(("M", "L"), [(5.0, 15.0), (20.0, 12.0)])
 def test_error_with_a_spike(M: float, L: float) -> None:
     """A front narrower than a cell: the error of the film offset is not large, and no larger on the finer grid."""
-    reference = solved(M, L, density=FINE).film_offset
-    errors = [abs(solved(M, L, density=d).film_offset / reference - 1.0) for d in (6.5, 13.0)]
+    reference = solved(M, L, density=FINE, inlet_length=INLET).film_offset
+    errors = [abs(solved(M, L, density=d, inlet_length=INLET).film_offset / reference - 1.0) for d in (6.5, 13.0)]
     assert errors[0] < 3e-4  # a third of the bar for the default grid
     assert errors[1] < errors[0]

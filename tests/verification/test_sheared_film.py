@@ -54,11 +54,14 @@ def test_tangents_of_a_column(law: ShearLaw, pressure: float, rise: float, slidi
 
 
 def test_strong_oil_is_newtonian() -> None:
-    """An Eyring stress of 1 TPa changes nothing: the same equations, up to the rounding of sums."""
+    """An Eyring stress of 10 GPa changes the flow by its square, which the front of the spike alone feels."""
     strong = film(5e4, 2.0, 60.0, ReynoldsSolver(shear="eyring", shear_stress=1e10, slide_to_roll=0.1))
     plain = film(5e4, 2.0, 60.0, ReynoldsSolver())
-    for name in ("film_offset", "central_film", "film_compliance", "loss_compliance", "max_pressure"):
+    for name in ("film_offset", "central_film", "film_compliance", "loss_compliance"):
         assert getattr(strong, name) == pytest.approx(getattr(plain, name), rel=1e-6)
+    # sinh(t)/t = 1 + t^2/6: at the front of the spike the stress is a tenth of Eyring's
+    eased = (strong.wall_stress / 1e10) ** 2 / 6.0
+    assert strong.max_pressure == pytest.approx(plain.max_pressure, rel=eased)
 
 
 @pytest.mark.parametrize("shear", ["eyring", "limiting"])

@@ -365,10 +365,6 @@ def _finer(own: dict[str, Any], density: float, inlet: float = 1.0) -> ReynoldsS
     if density == inlet == 1.0:
         return used
     (low, high), (short, long) = SETTING_LIMITS["density"], SETTING_LIMITS["inlet_length"]
-    return ReynoldsSolver(
-        **{
-            **own,
-            "density": min(max(round(used.density * density, 2), low), high),
-            "inlet_length": min(max(round(used.resolution.inlet * density**2 * inlet, 1), short), long),
-        }
-    )
+    cells = min(max(round(used.density * density, 2), low), high)
+    length = used.resolution.inlet * (cells / used.density) ** 2 * inlet
+    return ReynoldsSolver(**{**own, "density": cells, "inlet_length": min(max(round(length, 1), short), long)})
