@@ -15,16 +15,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.job_text import Entry
+from ehdmaps.jobs.make.law_check import SMALL_DAMPING
 from ehdmaps.maps.film_field import RIGID, load_at
 from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.heat import INLET_HEAT, ISOTHERMAL, inlet_heat
+from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, THICKEST, THINNEST, OilSupply
 from ehdmaps.physics.solids import STEEL
@@ -63,13 +65,34 @@ def shear_effect(state: ClosedContact, lubricant: Lubricant, loads: FloatArray) 
         -1 where no load has both solutions.
     """
     both = (solvers.build("reynolds", {"shear": shear}) for shear in ("newtonian", "limiting"))
-    pairs = zip(*(_solved(solver, state, lubricant, loads) for solver in both), strict=True)
+    pairs = zip(*(_solved(solver, state, lubricant, loads) for solver in both), loads.tolist(), strict=True)
     sizes = [
-        max(abs(limited.stiffness / plain.stiffness - 1.0), abs(limited.damping / plain.damping - 1.0))
-        for plain, limited in pairs
-        if plain.status.usable and limited.status.usable and plain.damping != 0.0
+        change_felt(state, load, plain, limited)
+        for plain, limited, load in pairs
+        if plain.status.usable and limited.status.usable
     ]
     return float(np.max(sizes, initial=-1.0))
+
+
+def change_felt(state: ClosedContact, load: float, plain: ContactSolution, other: ContactSolution) -> float:
+    """By how much k or c of a contact changes, the larger of the two, as a part of the plain value.
+
+    Damping runs through zero in its valley. There its change is related to `SMALL_DAMPING` k b/u, as in the check of
+    the laws of a map: a damper below that is one that nothing feels.
+
+    Parameters
+    ----------
+    state : ClosedContact
+        Contact and speed.
+    load : float
+        Load [N/m].
+    plain, other : ContactSolution
+        Solutions at the load, without the physics and with it.
+    """
+    width = half_width(load, state.contact.radius, state.contact.reduced_modulus)
+    least = SMALL_DAMPING * plain.stiffness * width / state.speed
+    by_damping = abs(other.damping - plain.damping) / max(abs(plain.damping), least)
+    return float(max(abs(other.stiffness / plain.stiffness - 1.0), by_damping))
 
 
 def _solved(
@@ -100,9 +123,10 @@ class Verdict:
     Attributes
     ----------
     physics : str
-        Which: "film memory", "oil supply", "roughness", "inlet heating", "limiting shear stress".
-    on : bool
-        Whether the analysis has it.
+        Which: "film memory", "oil supply", "roughness", "inlet heating", "limiting shear stress", or of the machine
+        (`mbs.planning.machine`).
+    on : bool or None
+        Whether the analysis has it; None for what cannot be decided.
     size : float
         How much it matters: the largest change of a stiffness or damping, as a part of it; of roughness the smallest
         Lambda. NaN where it was not looked at.
@@ -110,18 +134,32 @@ class Verdict:
         The reason, for people.
     solver : mapping
         Keys of [solver] of the map that it takes.
+    warns : bool
+        Whether physics that matters is left out, since it cannot be had.
     """
 
     physics: str
-    on: bool
+    on: bool | None
     size: float
     words: str
     solver: Mapping[str, Entry] = field(default_factory=dict)
+    warns: bool = False
 
     @property
     def line(self) -> str:
         """The verdict in a line."""
-        return f"{self.physics}: {'on' if self.on else 'off'}, {self.words}"
+        state = "" if self.on is None else "on, " if self.on else "off, "
+        return f"{self.physics}: {state}{self.words}"
+
+    def left_out(self, reason: str) -> Verdict:
+        """The verdict on physics that cannot be had: off, and a warning of what that leaves out.
+
+        Parameters
+        ----------
+        reason : str
+            Why it cannot be had.
+        """
+        return replace(self, on=False, words=f"left out although {self.words}: {reason}", solver={}, warns=True)
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,11 +182,6 @@ class Range:
     highest: float
     lubricant: Lubricant
     tolerance: float
-
-    @property
-    def percent(self) -> str:
-        """The tolerance, for people."""
-        return _percent(self.tolerance)
 
     @property
     def slowest_and_fastest(self) -> tuple[ClosedContact, ...]:
@@ -194,7 +227,7 @@ def visited(needed: Needed, lubricant: Lubricant, tolerance: float) -> Range:
     return Range(states, highest, lubricant, tolerance)
 
 
-def memory_verdict(found: Range, frequency: float, asked: Films | None, possible: bool = True) -> Verdict:
+def memory_verdict(found: Range, frequency: float, asked: Films | None, without: str = "") -> Verdict:
     """Judge whether films need their memory.
 
     Parameters
@@ -205,22 +238,22 @@ def memory_verdict(found: Range, frequency: float, asked: Films | None, possible
         Highest frequency that is looked at [Hz]; 0 for an equilibrium.
     asked : {"slow", "memory"} or None
         What was asked for.
-    possible : bool
-        Whether the law can have it.
+    without : str
+        What of the scene films with memory do not go with; empty where they do.
     """
     name = "film memory"
     if frequency == 0.0:
         return Verdict(name, False, math.nan, "as an equilibrium has no frequency")
     size, state = found.carrying(lambda entry: memory_effect(entry, frequency))
     words = (
-        f"films of slow motion would be up to {_percent(size)} wrong in k + i omega c of a contact at "
+        f"films of slow motion would be wrong by {up_to(size)} in k + i omega c of a contact at "
         f"{HERTZ.text(frequency)} and {SPEED.text(state.speed)}"
     )
     if asked is not None:
         return Verdict(name, asked == "memory", size, f"as asked; {words}")
-    if not possible:
-        return Verdict(name, False, size, f"{words}; with a centrifugal load of massless rollers there is none")
-    return Verdict(name, size > found.tolerance, size, f"{words} ({_beside(size, found)})")
+    if without:
+        return Verdict(name, False, size, f"{words}; with {without} there is none", warns=size > found.tolerance)
+    return Verdict(name, size > found.tolerance, size, f"{words} ({beside(size, found.tolerance)})")
 
 
 def supply_verdict(found: Range, supplies: tuple[OilSupply, ...], asked: bool = False) -> Verdict:
@@ -242,7 +275,7 @@ def supply_verdict(found: Range, supplies: tuple[OilSupply, ...], asked: bool = 
         return Verdict(name, False, math.nan, f"none is stated; a layer below {MICROMETRE.text(layer, 3)} would matter")
     thinnest = min(stated, key=lambda supply: supply.oil_layer)
     size = max(float(np.max(supply_effect(state, thinnest.oil_layer))) for state in found.states)
-    words = f"{thinnest.label} changes k or c of a contact by up to {_percent(size)} ({_beside(size, found)})"
+    words = f"{thinnest.label} changes k or c of a contact by {up_to(size)} ({beside(size, found.tolerance)})"
     return Verdict(name, asked or size > found.tolerance, size, f"{'as asked; ' if asked else ''}{words}")
 
 
@@ -287,8 +320,8 @@ def heat_verdict(found: Range, asked: str | None = None) -> Verdict:
     size, state = found.carrying(lambda entry: heat_effect(entry, found.lubricant))
     if math.isnan(size):
         return Verdict(name, False, size, f"unknown: no thermal conductivity of {found.lubricant.title} is known")
-    change = "more than the formula covers" if size >= 1.0 else f"up to {_percent(size)} at {SPEED.text(state.speed)}"
-    words = f"it would lower c by {change} ({_beside(size, found)})"
+    change = "more than the formula covers" if size >= 1.0 else f"{up_to(size)} at {SPEED.text(state.speed)}"
+    words = f"it would lower c by {change} ({beside(size, found.tolerance)})"
     if asked is not None:
         on = asked != ISOTHERMAL
         return Verdict(name, on, size, f"as asked, {asked}; {words}", {"physics": asked} if on else {})
@@ -321,8 +354,8 @@ def shear_verdict(found: Range, asked: str | None = None) -> Verdict:
         size = math.nan
     else:
         words = (
-            f"it would change k or c of a contact by up to {_percent(size)} at {SPEED.text(state.speed)} "
-            f"({_beside(size, found)})"
+            f"it would change k or c of a contact by {up_to(size)} at {SPEED.text(state.speed)} "
+            f"({beside(size, found.tolerance)})"
         )
     if asked is not None:
         on = asked != "newtonian"
@@ -381,11 +414,53 @@ def _changes(found: Range, layer: float) -> bool:
     return any(np.any(supply_effect(state, layer) > found.tolerance) for state in found.states)
 
 
-def _percent(part: float) -> str:
-    """A part in per cent, with two digits or more, and no exponent above."""
+MOST_TOLD = 10.0
+"""Change, as a part, above which its size is not told: what grows tenfold or vanishes is another contact."""
+
+
+def percent(part: float) -> str:
+    """A part in per cent, with two digits or more, and no exponent above.
+
+    Parameters
+    ----------
+    part : float
+        The part, >= 0.
+
+    Examples
+    --------
+    >>> percent(0.0123), percent(1.234)
+    ('1.2 %', '123 %')
+    """
     return f"{100.0 * part:.2g} %" if part < 0.995 else f"{100.0 * part:.0f} %"
 
 
-def _beside(size: float, found: Range) -> str:
-    """A size beside the tolerance."""
-    return f"{'more' if size > found.tolerance else 'not more'} than {found.percent}"
+def up_to(part: float) -> str:
+    """The largest of some changes, for people.
+
+    Parameters
+    ----------
+    part : float
+        The part, >= 0.
+
+    Examples
+    --------
+    >>> up_to(0.55), up_to(5820.6)
+    ('up to 55 %', 'more than 10 times')
+    """
+    return f"up to {percent(part)}" if part <= MOST_TOLD else f"more than {MOST_TOLD:g} times"
+
+
+def beside(size: float, tolerance: float) -> str:
+    """A size beside the tolerance, for people.
+
+    Parameters
+    ----------
+    size, tolerance : float
+        As parts.
+
+    Examples
+    --------
+    >>> beside(0.1, 0.05), beside(0.01, 0.05)
+    ('more than 5 %', 'not more than 5 %')
+    """
+    return f"{'more' if size > tolerance else 'not more'} than {percent(tolerance)}"
