@@ -36,6 +36,7 @@ from mbs.planning.verdicts import (
     Verdict,
     heat_verdict,
     in_force,
+    left_out_verdict,
     memory_verdict,
     roughness_verdict,
     shear_verdict,
@@ -165,7 +166,7 @@ class Automatic(Generic[R]):
         Maps that were made, of the types of bearing whose films the film table has not.
     verdicts : tuple of Verdict
         Which physics is on, and why: memory, supply, roughness, then heat of each type of bearing, shear of each, and
-        what the scene file switches (`mbs.planning.machine`).
+        what the scene file switches (`mbs.planning.machine`); last, what films leave out of k and c.
     """
 
     result: R
@@ -249,13 +250,22 @@ def settled(
     looked_at = planned_for or scene
     warm = settings.shear is None and settings.physics is None and any(entry.thermal for entry in scene.bearings)
     found = plan(_of_one_temperature(looked_at) if warm else looked_at, PlanSettings(settings.clearance))
+    found = dataclasses.replace(found, scene=looked_at)
     supplies = _supplies(scene, settings.supply)
     required = _verdicts(scene, found, settings, supplies, highest)
     pairs = tuple(pair.of_table(settings) for pair in required.of_maps) if warm else required.of_maps
     films, pairs = _films(looked_at, found, pairs, settings, progress)
-    maps = MapSet([one.emap if isinstance(one, MadeMap) else one for one in films])
+    summed = [left_out_verdict((required.of_laws[1], pair.heat, pair.shear)) for pair in pairs]
+    maps = MapSet(
+        [
+            (one.emap if isinstance(one, MadeMap) else one).with_left_out(*errors)
+            for one, (_, errors) in zip(films, summed, strict=True)
+        ]
+    )
     subject = _subject(scene, maps, required.of_laws, supplies, settings)
     verdicts = dataclasses.replace(required, of_maps=pairs).all
+    if highest > 0.0:  # an equilibrium has no bands
+        verdicts = (*verdicts, _worst([verdict for verdict, _ in summed]))
     try:
         result = analyse(subject)
     except MapError as error:

@@ -125,7 +125,7 @@ def _along_loads(model: Model, balance: Equilibrium) -> FloatArray:
 
 
 def centrifugal_verdict(found: PlanResult, ranges: Sequence[Range]) -> Verdict:
-    """Judge the centrifugal load of the rollers, by the outer contact of those that carry the bearing.
+    """Judge the centrifugal load of the rollers that carry a bearing: it is added to the load of the outer contact.
 
     Parameters
     ----------
@@ -143,18 +143,22 @@ def centrifugal_verdict(found: PlanResult, ranges: Sequence[Range]) -> Verdict:
             for entry in found.model.bearings
             if entry.name in needed.bearings
         )
-        state = next(state for state in reversed(there.states) if state.contact.name == "outer")
-        plain, loaded = (
+        inner, plain, loaded = (
             closed_contact(state.contact, there.lubricant, load, state.speed, state.temperature)
-            for load in (loads, loads + more * fastest**2)
+            for state, load in (
+                (_fastest(there, "inner"), loads),
+                (_fastest(there, "outer"), loads),
+                (_fastest(there, "outer"), loads + more * fastest**2),
+            )
         )
-        sizes.append(_change(plain, loaded))
+        parts = zip(_in_series(inner, loaded), _in_series(inner, plain), strict=True)
+        sizes.append(max(float(np.max(np.abs(new / old - 1.0))) for new, old in parts))
     size, tolerance = max(sizes), ranges[0].tolerance
     return _stated(
         "centrifugal load",
         [entry.centrifugal for entry in found.scene.bearings],
         size,
-        f"changes k or c of an outer contact by {up_to(size)} at {RPM.text(fastest)} ({beside(size, tolerance)})",
+        f"changes k or c of a roller by {up_to(size)} at {RPM.text(fastest)} ({beside(size, tolerance)})",
         "centrifugal in [[bearings]]",
     )
 
@@ -365,6 +369,17 @@ def undecided(rest: _AtRest, flooded: bool) -> Verdict:
 
 
 _LOADS = 9
+
+
+def _fastest(there: Range, name: str) -> ClosedContact:
+    """A contact at its highest speed."""
+    return max((state for state in there.states if state.contact.name == name), key=lambda state: state.speed)
+
+
+def _in_series(first: ClosedContact, second: ClosedContact) -> tuple[FloatArray, FloatArray]:
+    """Stiffness and damping of a roller between two contacts: compliances add, and losses c/k^2 do."""
+    stiffness = np.asarray(1.0 / (1.0 / first.stiffness + 1.0 / second.stiffness))
+    return stiffness, np.asarray((first.loss + second.loss) * stiffness**2)
 
 
 def _change(plain: ClosedContact, other: ClosedContact) -> float:

@@ -14,7 +14,7 @@ that of idle rollers, whose films are the thick ones.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -47,8 +47,8 @@ from mbs.planning.ranges import Needed
 from mbs.scene.fields import HERTZ, MICROMETRE
 
 
-def shear_effect(state: ClosedContact, lubricant: Lubricant, loads: FloatArray) -> float:
-    """By how much a limiting stress changes k or c, the largest over some loads, as a part of the Newtonian value.
+def shear_effect(state: ClosedContact, lubricant: Lubricant, loads: FloatArray) -> tuple[float, float]:
+    """By how much a limiting stress changes k and c of a contact, the largest over some loads, as parts.
 
     Parameters
     ----------
@@ -61,8 +61,8 @@ def shear_effect(state: ClosedContact, lubricant: Lubricant, loads: FloatArray) 
 
     Returns
     -------
-    float
-        -1 where no load has both solutions.
+    (float, float)
+        As of `change_felt`; -1 where no load has both solutions.
     """
     both = (solvers.build("reynolds", {"shear": shear}) for shear in ("newtonian", "limiting"))
     pairs = zip(*(_solved(solver, state, lubricant, loads) for solver in both), loads.tolist(), strict=True)
@@ -71,11 +71,14 @@ def shear_effect(state: ClosedContact, lubricant: Lubricant, loads: FloatArray) 
         for plain, limited, load in pairs
         if plain.status.usable and limited.status.usable
     ]
-    return float(np.max(sizes, initial=-1.0))
+    stiffness, damping = np.max(sizes, axis=0, initial=-1.0) if sizes else (-1.0, -1.0)
+    return float(stiffness), float(damping)
 
 
-def change_felt(state: ClosedContact, load: float, plain: ContactSolution, other: ContactSolution) -> float:
-    """By how much k or c of a contact changes, the larger of the two, as a part of the plain value.
+def change_felt(
+    state: ClosedContact, load: float, plain: ContactSolution, other: ContactSolution
+) -> tuple[float, float]:
+    """By how much k and c of a contact change, as parts of the plain values.
 
     Damping runs through zero in its valley. There its change is related to `SMALL_DAMPING` k b/u, as in the check of
     the laws of a map: a damper below that is one that nothing feels.
@@ -92,7 +95,7 @@ def change_felt(state: ClosedContact, load: float, plain: ContactSolution, other
     width = half_width(load, state.contact.radius, state.contact.reduced_modulus)
     least = SMALL_DAMPING * plain.stiffness * width / state.speed
     by_damping = abs(other.damping - plain.damping) / max(abs(plain.damping), least)
-    return float(max(abs(other.stiffness / plain.stiffness - 1.0), by_damping))
+    return abs(other.stiffness / plain.stiffness - 1.0), float(by_damping)
 
 
 def _solved(
@@ -134,6 +137,8 @@ class Verdict:
         The reason, for people.
     solver : mapping
         Keys of [solver] of the map that it takes.
+    errors : (float, float)
+        What k and c of a contact may be wrong by without it, as parts; 0 where that is not known.
     warns : bool
         Whether physics that matters is left out, since it cannot be had.
     """
@@ -143,7 +148,13 @@ class Verdict:
     size: float
     words: str
     solver: Mapping[str, Entry] = field(default_factory=dict)
+    errors: tuple[float, float] = (0.0, 0.0)
     warns: bool = False
+
+    @property
+    def missing(self) -> tuple[float, float]:
+        """What k and c of a contact lack, as parts: nothing where it is on."""
+        return (0.0, 0.0) if self.on else self.errors
 
     @property
     def line(self) -> str:
@@ -276,7 +287,8 @@ def supply_verdict(found: Range, supplies: tuple[OilSupply, ...], asked: bool = 
     thinnest = min(stated, key=lambda supply: supply.oil_layer)
     size = max(float(np.max(supply_effect(state, thinnest.oil_layer))) for state in found.states)
     words = f"{thinnest.label} changes k or c of a contact by {up_to(size)} ({beside(size, found.tolerance)})"
-    return Verdict(name, asked or size > found.tolerance, size, f"{'as asked; ' if asked else ''}{words}")
+    on = asked or size > found.tolerance
+    return Verdict(name, on, size, f"{'as asked; ' if asked else ''}{words}", errors=(size, size))
 
 
 def roughness_verdict(found: Range, surface: Surface | None) -> Verdict:
@@ -320,17 +332,19 @@ def heat_verdict(found: Range, asked: str | None = None) -> Verdict:
     size, state = found.carrying(lambda entry: heat_effect(entry, found.lubricant))
     if math.isnan(size):
         return Verdict(name, False, size, f"unknown: no thermal conductivity of {found.lubricant.title} is known")
+    errors = (0.0, size)
     change = "more than the formula covers" if size >= 1.0 else f"{up_to(size)} at {SPEED.text(state.speed)}"
     words = f"it would lower c by {change} ({beside(size, found.tolerance)})"
     if asked is not None:
         on = asked != ISOTHERMAL
-        return Verdict(name, on, size, f"as asked, {asked}; {words}", {"physics": asked} if on else {})
+        return Verdict(name, on, size, f"as asked, {asked}; {words}", {"physics": asked} if on else {}, errors)
     if size <= found.tolerance:
-        return Verdict(name, False, size, words)
+        return Verdict(name, False, size, words, errors=errors)
     refused = _no_rule(found)
     if not refused:
-        return Verdict(name, True, size, f"{words}; the map has it by its rule", {"physics": INLET_HEAT})
-    return Verdict(name, False, size, f"{words}; its rule does not hold here ({refused}); --physics thermal has it")
+        return Verdict(name, True, size, f"{words}; the map has it by its rule", {"physics": INLET_HEAT}, errors)
+    words = f"{words}; its rule does not hold here ({refused}); --physics thermal has it"
+    return Verdict(name, False, size, words, errors=errors)
 
 
 def shear_verdict(found: Range, asked: str | None = None) -> Verdict:
@@ -345,10 +359,9 @@ def shear_verdict(found: Range, asked: str | None = None) -> Verdict:
     """
     name = "limiting shear stress"
     loads = np.geomspace(*SHARES, _SOLVED_LOADS) * found.highest
-    size, state = max(
-        ((shear_effect(state, found.lubricant, loads), state) for state in found.slowest_and_fastest),
-        key=lambda entry: entry[0],
-    )
+    effects = [shear_effect(state, found.lubricant, loads) for state in found.slowest_and_fastest]
+    size, state = max(zip(map(max, effects), found.slowest_and_fastest, strict=True), key=lambda entry: entry[0])
+    errors = max(0.0, *(k for k, _ in effects)), max(0.0, *(c for _, c in effects))
     if size < 0.0:
         words = "unknown: no film of these contacts could be solved with it and without"
         size = math.nan
@@ -359,9 +372,9 @@ def shear_verdict(found: Range, asked: str | None = None) -> Verdict:
         )
     if asked is not None:
         on = asked != "newtonian"
-        return Verdict(name, on, size, f"as asked, {asked}; {words}", {"shear": asked} if on else {})
+        return Verdict(name, on, size, f"as asked, {asked}; {words}", {"shear": asked} if on else {}, errors)
     on = size > found.tolerance
-    return Verdict(name, on, size, words, {"shear": "limiting"} if on else {})
+    return Verdict(name, on, size, words, {"shear": "limiting"} if on else {}, errors)
 
 
 def _no_rule(found: Range) -> str:
@@ -412,6 +425,28 @@ def _layer_that_matters(found: Range) -> float:
 def _changes(found: Range, layer: float) -> bool:
     """Tell whether an oil layer changes a contact by more than the tolerance."""
     return any(np.any(supply_effect(state, layer) > found.tolerance) for state in found.states)
+
+
+MOST_STATED = 0.9
+"""Most that an error of k or c is stated as, as a part: laws that are wrong on purpose keep a stiffness."""
+
+
+def left_out_verdict(verdicts: Sequence[Verdict]) -> tuple[Verdict, tuple[float, float]]:
+    """Sum up what films leave out, and what errors of k and c a law is to state for it.
+
+    Parameters
+    ----------
+    verdicts : sequence of Verdict
+        Those on the films of one type of bearing.
+    """
+    stiffness, damping = (math.fsum(parts) for parts in zip(*(verdict.missing for verdict in verdicts), strict=True))
+    stated = min(stiffness, MOST_STATED), min(damping, MOST_STATED)
+    capped = f", at most {percent(MOST_STATED)} each" if (stiffness, damping) != stated else ""
+    words = (
+        f"{percent(stated[0])} of k and {percent(stated[1])} of c of a contact, by the sizes above{capped}; the bands "
+        "(+-) have them"
+    )
+    return Verdict("left out of the films", None, max(stiffness, damping), words), stated
 
 
 MOST_TOLD = 10.0

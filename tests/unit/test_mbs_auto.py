@@ -27,7 +27,17 @@ from mbs.planning.auto import settled
 from mbs.planning.criteria import closed_contact, film_over_roughness, heat_effect, memory_effect, supply_effect
 from mbs.planning.question import at_one_speed, in_time, over_speeds
 from mbs.planning.ranges import Needed
-from mbs.planning.verdicts import change_felt, heat_verdict, memory_verdict, shear_verdict, up_to, visited
+from mbs.planning.verdicts import (
+    Verdict,
+    change_felt,
+    heat_verdict,
+    left_out_verdict,
+    memory_verdict,
+    shear_verdict,
+    up_to,
+    visited,
+)
+from mbs.scene.map_set import table_maps
 from mbs.settings import SweepRange
 from tests.cases.commands import run
 
@@ -266,7 +276,8 @@ def test_a_map_that_cannot_be_used_says_what_makes_another(monkeypatch):
     def unfit(subject):
         raise MapError("backbone of the map: has 2 unsolved points")
 
-    monkeypatch.setattr(auto, "_films", lambda scene, found, pairs, *given: ([], pairs))
+    stand_in = SimpleNamespace(with_left_out=lambda *errors: None)
+    monkeypatch.setattr(auto, "_films", lambda scene, found, pairs, *given: ([stand_in], pairs))
     monkeypatch.setattr(auto, "MapSet", lambda maps: None)
     monkeypatch.setattr(auto, "_subject", lambda *given: None)
     with pytest.raises(MapError, match=r"^backbone of the map: has 2 unsolved points\nauto: the map was made with lim"):
@@ -363,7 +374,7 @@ def holes(monkeypatch):
 
 
 def test_physics_whose_map_makes_no_law_is_left_out_and_said(file, capsys, holes, monkeypatch):
-    monkeypatch.setattr(verdicts, "shear_effect", lambda *given: 2.68)
+    monkeypatch.setattr(verdicts, "shear_effect", lambda *given: (0.1, 2.68))
     Path(file).write_text(SHORT.replace("500 rpm", "9000 rpm"))
     status, out, _ = run(capsys, "statics", file, "--auto")
     assert status == 1 and "films from the film table" in out and "equilibrium in" in out
@@ -375,7 +386,7 @@ def test_physics_whose_map_makes_no_law_is_left_out_and_said(file, capsys, holes
 
 
 def test_heat_stays_in_the_map_where_a_limiting_stress_is_left_out(holes, monkeypatch, tmp_path, by_formula):
-    monkeypatch.setattr(verdicts, "shear_effect", lambda *given: 2.68)
+    monkeypatch.setattr(verdicts, "shear_effect", lambda *given: (0.1, 2.68))
     hot = dataclasses.replace(scene(SHORT.replace("500 rpm", "6000 rpm")), temperature=383.15)
     found = automatic(hot, statics, AutoSettings(folder=tmp_path, highest=0.0))
     assert [job.solver_options.get("shear") for job in by_formula] == ["limiting", None]
@@ -399,9 +410,9 @@ def test_a_change_of_damping_in_its_valley_is_held_against_what_is_felt():
     def solved(damping, stiffness=k):
         return SimpleNamespace(stiffness=stiffness, damping=damping)
 
-    assert change_felt(state, 1e4, solved(1e-9 * small), solved(0.5 * small)) == pytest.approx(0.5)
-    assert change_felt(state, 1e4, solved(10.0 * small), solved(5.0 * small)) == pytest.approx(0.5)
-    assert change_felt(state, 1e4, solved(small), solved(small, 1.2 * k)) == pytest.approx(0.2)
+    assert change_felt(state, 1e4, solved(1e-9 * small), solved(0.5 * small)) == pytest.approx((0.0, 0.5))
+    assert change_felt(state, 1e4, solved(10.0 * small), solved(5.0 * small)) == pytest.approx((0.0, 0.5))
+    assert change_felt(state, 1e4, solved(small), solved(small, 1.2 * k)) == pytest.approx((0.2, 0.0))
 
 
 def test_no_size_is_told_beyond_ten_times():
@@ -409,3 +420,34 @@ def test_no_size_is_told_beyond_ten_times():
     assert up_to(10.0) == "up to 1000 %"
     huge = dataclasses.replace(there(1.0, 313.15), tolerance=1e-6)
     assert "%" not in re.search(r"wrong by (.*?) in k", memory_verdict(huge, 1e7, None).words).group(1)
+
+
+# what is left out is in the bands
+
+
+def test_physics_that_is_left_out_is_in_the_errors_that_bands_are_made_of(holes, monkeypatch, tmp_path):
+    monkeypatch.setattr(verdicts, "shear_effect", lambda *given: (0.1, 2.68))
+    fast = scene(SHORT.replace("500 rpm", "9000 rpm"))
+    found = automatic(fast, statics, AutoSettings(folder=tmp_path))
+    (emap,) = found.subject.law.maps.maps
+    (plain,) = table_maps(fast).maps
+    loads = np.geomspace(1e3, 1e5, 5)
+    ours, theirs = (one.law_errors.bounds(["inner"], loads, 14.85, 313.15) for one in (emap, plain))
+    np.testing.assert_allclose(ours.stiffness - theirs.stiffness, 0.1, rtol=1e-5)
+    # heat and a limiting stress together are more than bands can have
+    np.testing.assert_allclose(ours.damping - theirs.damping, 0.9, rtol=1e-5)
+    summed = found.verdicts[-1]
+    assert summed.on is None and summed.size > 2.68
+    assert summed.line.startswith(
+        "left out of the films: 10 % of k and 90 % of c of a contact, by the sizes above, at mo"
+    )
+
+
+def test_an_equilibrium_has_no_bands_and_what_is_on_is_not_left_out(folder):
+    found = automatic(scene(), statics, AutoSettings(folder=folder, highest=0.0))
+    assert found.verdicts[-1].physics == "not decided"
+    on, off = (Verdict("heat", state, 0.2, "", errors=(0.0, 0.2)) for state in (True, False))
+    verdict, errors = left_out_verdict((on, off))
+    assert errors == (0.0, 0.2) and verdict.words.startswith(
+        "0 % of k and 20 % of c of a contact, by the sizes above; "
+    )
