@@ -8,9 +8,10 @@ Three kinds of error, each relative, at a load, entrainment speed and temperatur
   larger one of that and the quantile of the valley;
 - of the model: `stiffness_model_error` and `damping_model_error`, where the map has them.
 
-All are taken as systematic: an estimate that has one sign at one point has it at all loads, in both contacts of a
-roller, and in all bearings that share the map. So the three kinds are added, and so are the contacts of a roller. Where
-signs alternate, as those of an interpolation do, that is more than need be.
+Physics that the films leave out, and of which the size is known, is added as a fourth where whoever uses the map says
+so (`EHDMap.with_left_out`). All are taken as systematic: an estimate that has one sign at one point has it at all
+loads, in both contacts of a roller, and in all bearings that share the map. So the kinds are added, and so are the
+contacts of a roller. Where signs alternate, as those of an interpolation do, that is more than need be.
 
 What a map does not state is in no bound: physics that its solver leaves out (heat, starvation, roughness, shear
 thinning, slip), the structural law, geometry, and the relaxation of the film beyond slow motion. A bound of 0.1 % of a
@@ -78,6 +79,9 @@ def changed_table(table: ApproachTable, change: LawChange) -> ApproachTable:
 
 QUANTILES = {"median": 0.5, "95 %": 0.95, "99 %": 0.99, "largest": 1.0}
 """Words and numbers of the quantiles that the check of a law writes."""
+
+LEFT_OUT = ("left_out_stiffness_error", "left_out_damping_error")
+"""Attributes of a map with the relative errors of k and c for physics that its films leave out."""
 
 TAKEN = "95 %"
 """Quantile of the errors of a law that a bound takes."""
@@ -191,6 +195,7 @@ class LawErrors:
         self._checked, self._in_valley = (_Checked.of(dataset.attrs, region) for region in ("", "_valley"))
         points = dataset.attrs.get("law_check_usable", dataset.attrs.get("tolerance_points"))
         self.checked_points = 0 if self._checked is None or points is None else int(points)
+        self.left_out = float(dataset.attrs.get(LEFT_OUT[0], 0.0)), float(dataset.attrs.get(LEFT_OUT[1], 0.0))
         self.has_model_errors = any(name in data for name in MODEL_ERRORS)
         self._data = data
 
@@ -248,16 +253,16 @@ class LawErrors:
             parts.append(f"errors of its law ({TAKEN} of {self.checked_points} checked points)")
         if self.has_model_errors:
             parts.append("errors of its model")
+        if any(self.left_out):
+            k, c = (f"{100.0 * part:.2g} %" for part in self.left_out)
+            parts.append(f"physics of known size that its films leave out ({k} of k, {c} of c)")
         lacking = [
             *([] if self._checked is not None else ["errors of its law between its points (it was not checked)"]),
             *([] if self.has_model_errors else ["errors of its model (none stated)"]),
             *(f"{name} (not known)" for name in self.unknown),
         ]
-        return (
-            f"{' and '.join(parts)}; without {', '.join(lacking)}; {NOT_IN}"
-            if lacking
-            else (f"{' and '.join(parts)}; {NOT_IN}")
-        )
+        without = f"; without {', '.join(lacking)}" if lacking else ""
+        return f"{' and '.join(parts)}{without}; {'other ' if any(self.left_out) else ''}{NOT_IN}"
 
     def bounds(self, names: Sequence[str], loads: FloatArray, speed: float, temperature: float) -> LawBounds | None:
         """Bounds of one contact, or of several in series.
@@ -314,7 +319,7 @@ class LawErrors:
                     (k, c, offset), self._of_law(logs - np.log(valley), share, film), strict=True
                 )
             )
-        return k, c, offset, compliance, loss
+        return k + self.left_out[0], c + self.left_out[1], offset, compliance, loss
 
     def _of_law(self, zeta: FloatArray, share: FloatArray, film: FloatArray) -> tuple[FloatArray, ...]:
         """Errors of the law: relative ones of k and c, and that of the film offset [m]."""

@@ -141,7 +141,8 @@ def budget(trade: Trade) -> tuple[Bar, ...]:
             if choice.seconds and (having.group == choice.group or len(off) == len(on) == 1)
         ]
         against = next((choice.reference for choice in off if choice.reference), trade.reference)
-        bars.append(Bar(source.name, errors, costs[-1] if costs else math.nan, against))
+        if max(found.high for found in errors.values()) > 0.0:
+            bars.append(Bar(source.name, errors, costs[-1] if costs else math.nan, against))
     return tuple(sorted(bars, key=lambda bar: -bar.largest(trade)))
 
 
@@ -155,19 +156,18 @@ def answer_lines(trade: Trade) -> Iterator[str]:
     """
     for scope in trade.scopes:
         usual = default(trade, scope)
-        base = sum(choice.seconds for choice in usual)
         yield f"{scope.words}: what to use where 95 % of the points may be wrong by no more than"
         units = " or ".join(dict.fromkeys(UNITS[one.unit] for one in trade.judged if one.name in scope.judged))
         for chosen, alike in groupby(TOLERANCES, key=lambda tolerance: cheapest(trade, scope, tolerance)):
             head = f"{', '.join(f'{tolerance:g}' for tolerance in alike)} {units}"
             if chosen:
-                ratio = sum(choice.seconds for choice in chosen) / base if base else math.nan
-                yield f"  {head:12s} {_names(chosen)}: {_cost(trade, chosen)}{_of_default(ratio)}"
+                ratio = _ratio(chosen, usual)
+                yield f"  {head:12s} {_names(chosen)}: {_cost(trade, chosen, usual)}{_of_default(ratio)}"
             else:
                 yield f"  {head:12s} nothing that was measured keeps it"
         if usual:
             errors = ", ".join(_words(trade, scope, usual))
-            yield f"  {'default':12s} {_names(usual)}: {_cost(trade, usual)}; wrong by {errors}"
+            yield f"  {'default':12s} {_names(usual)}: {_cost(trade, usual, usual)}; wrong by {errors}"
 
 
 def budget_lines(trade: Trade) -> Iterator[str]:
@@ -252,9 +252,19 @@ def _names(chosen: tuple[Choice, ...]) -> str:
     return " + ".join(choice.label for choice in chosen)
 
 
-def _cost(trade: Trade, chosen: tuple[Choice, ...]) -> str:
-    """Cost of a choice: of several that are made together the dearest."""
-    return f"{time_text(max(choice.seconds for choice in chosen))}{trade.cost.removeprefix('s')}"
+def _ratio(chosen: tuple[Choice, ...], usual: tuple[Choice, ...]) -> float:
+    """Cost of choices that are made together over that of the default: the product of what each of them alone makes."""
+    if len(chosen) != len(usual) or not all(choice.seconds > 0.0 for choice in usual):
+        return math.nan
+    return math.prod(one.seconds / other.seconds for one, other in zip(chosen, usual, strict=True))
+
+
+def _cost(trade: Trade, chosen: tuple[Choice, ...], usual: tuple[Choice, ...]) -> str:
+    """Cost of choices that are made together; of several, by that of the default."""
+    ratio = _ratio(chosen, usual)
+    alone = len(chosen) == 1 or not math.isfinite(ratio)
+    seconds = max(choice.seconds for choice in (chosen if alone else usual)) * (1.0 if alone else ratio)
+    return f"{time_text(seconds)}{trade.cost.removeprefix('s')}"
 
 
 def _of_default(ratio: float) -> str:

@@ -64,7 +64,8 @@ def with_own_maps(
         if stores:
             tell(f"\nstopped; what is solved of a map is kept ({stores}): the same command goes on from there")
         raise
-    return Done(found.result, (*_lines(found),), 1 if any(one.unmet for one in found.made) else 0)
+    warned = any(one.unmet for one in found.made) or any(verdict.warns for verdict in found.verdicts)
+    return Done(found.result, (*_lines(found),), 1 if warned else 0)
 
 
 def read_tolerance(text: str | None, problems: list[str]) -> float:
@@ -178,7 +179,7 @@ def _lines(found: Automatic[Any]) -> list[str]:
     maps = found.subject.law.maps
     read = maps is not None and any(emap.from_table for emap in maps.maps)
     lines = [*(["auto: films from the film table"] if read else []), *map(_map_line, found.made)]
-    lines += [f"auto: {verdict.line}" for verdict in found.verdicts]
+    lines += [f"{'warning: ' if verdict.warns else ''}auto: {verdict.line}" for verdict in found.verdicts]
     return lines + [f"warning: auto: {one.path}: {line}" for one in found.made for line in one.unmet]
 
 

@@ -40,6 +40,7 @@ from mbs.output.campbell_table import (
 from mbs.output.model_text import band_lines, clearance_text, common_supply, heading, held_lines, temperature_text
 from mbs.output.result_text import drive_lines, energy_lines
 from mbs.output.time_files import is_time_data, write_time_data
+from mbs.planning.question import in_time
 from mbs.scene.assembly import Model
 from mbs.settings import CampbellSettings
 from mbs.spectral.levels import Reference, difference_text
@@ -135,7 +136,8 @@ def _ran(asked: _Asked, with_modes: bool, workers: int) -> _Ran:
 
 def _looks_at(asked: _Asked) -> Looked:
     """The scene with the largest loads, and the highest frequency."""
-    return Looked(max(asked.cases, key=lambda case: case.load_factor).model.scene, asked.settings.highest)
+    scene = max(asked.cases, key=lambda case: case.load_factor).model.scene
+    return Looked(in_time(scene), asked.settings.highest)
 
 
 def _asked(arguments: argparse.Namespace) -> _Asked:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import dataclasses
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -25,6 +24,7 @@ from mbs.linearised.critical import CriticalSpeed
 from mbs.linearised.linear import sensor_unit
 from mbs.output.model_text import heading
 from mbs.output.sweep_data import orbits, sensed
+from mbs.planning.question import over_speeds
 
 if TYPE_CHECKING:
     from mbs.output.sweep_plot import CriticalCurves
@@ -151,7 +151,7 @@ def _looks_at(asked: _Asked) -> Looked:
     speeds = asked.settings.speeds or model.scene.sweep
     end = 0.0 if speeds is None else speeds.end
     highest = max(orders(model.system), default=1.0) * end / (2.0 * math.pi)
-    return Looked(dataclasses.replace(model.scene, sweep=speeds), highest)
+    return Looked(over_speeds(model.scene, speeds), highest)
 
 
 def _critical(result: CriticalResult) -> list[str]:

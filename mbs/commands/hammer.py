@@ -23,6 +23,7 @@ from mbs.linearised.modes import Modes
 from mbs.modal.uff import UFF, Measurement, write_uff
 from mbs.model.relaxation import FILM_WORDS
 from mbs.output.model_text import clean, film_lines, free_words, heading
+from mbs.planning.question import at_one_speed
 from mbs.scene.fields import MILLISECOND
 from mbs.transient.hammer import HammerTest
 
@@ -37,7 +38,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         arguments,
         _asked,
         lambda cases: (hammers(cases, settings, told, workers=workers), [case.label for case in cases]),
-        lambda cases: Looked(cases[0].model.scene, highest or max(cases[0].model.scene.frequencies, default=HIGHEST)),
+        lambda cases: _looks_at(cases, highest),
     )
     found, labels = done.result
     paths = dict(zip(labels, _files(arguments.output, len(labels)), strict=True))
@@ -67,6 +68,12 @@ def _asked(arguments: argparse.Namespace) -> list[Case]:
         read = [arguments.scene, *(getattr(arguments, "map", None) or ()), *cases[0].model.scene.files]
         check_outputs([Output("-o", path, UFF) for path in _files(arguments.output, len(cases))], read)
     return cases
+
+
+def _looks_at(cases: list[Case], highest: float | None) -> Looked:
+    """The scene at its operating speed, and the highest frequency of the test."""
+    scene = cases[0].model.scene
+    return Looked(at_one_speed(scene), highest or max(scene.frequencies, default=HIGHEST))
 
 
 def _files(path: str, count: int) -> list[Path]:

@@ -25,6 +25,7 @@ from mbs.linearised.validity import DynamicLoad
 from mbs.output.files import RESULT
 from mbs.output.model_text import band_lines, film_lines, heading
 from mbs.output.state_space_file import write_spaces
+from mbs.planning.question import at_one_speed
 from mbs.scene.assembly import Model
 
 MOST_COMPARED_CASES = 8
@@ -43,7 +44,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         arguments,
         _asked,
         lambda cases: list(zip([c.label for c in cases], lsa_of([c.model for c in cases], settings), strict=True)),
-        lambda cases: Looked(cases[0].model.scene, max(cases[0].model.scene.frequencies, default=0.0)),
+        _looks_at,
     )
     found = done.result
     figure = None
@@ -103,6 +104,12 @@ def _asked(arguments: argparse.Namespace) -> list[Case]:
             f"{MOST_COMPARED_CASES} side by side"
         )
     return cases
+
+
+def _looks_at(cases: list[Case]) -> Looked:
+    """The scene at its operating speed, and the highest frequency of the responses."""
+    scene = cases[0].model.scene
+    return Looked(at_one_speed(scene), max(scene.frequencies, default=0.0))
 
 
 def _report(found: LsaResult, label: str) -> list[str]:

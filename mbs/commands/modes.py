@@ -25,6 +25,7 @@ from mbs.output.model_text import band_lines, clean, film_law_line, film_lines, 
 from mbs.output.result_text import kinds, share_words
 from mbs.output.shapes_file import MOST_SHAPES as MOST_WRITTEN
 from mbs.output.shapes_file import SHAPES, write_shapes
+from mbs.planning.question import at_one_speed
 from mbs.scene.assembly import Model
 from mbs.scene.fields import HERTZ, MILLISECOND
 from mbs.scene.reader import HIGHEST_HIGHEST, LOWEST_HIGHEST
@@ -38,7 +39,12 @@ _LAST = 100_000
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Find the modes."""
-    done = analysed(arguments, _asked, lambda asked: modes(asked[0]), lambda asked: Looked(asked[0].scene, asked[1]))
+    done = analysed(
+        arguments,
+        _asked,
+        lambda asked: modes(asked[0]),
+        lambda asked: Looked(at_one_speed(asked[0].scene), asked[1]),
+    )
     result, highest = done.result, _highest(arguments, done.result.model.scene, [])
     model, found = result.model, result.modes
     free, overdamped, swinging = kinds(found)

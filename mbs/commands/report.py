@@ -19,8 +19,9 @@ from mbs.commands.auto import analysed
 from mbs.commands.cases import load_cases
 from mbs.commands.common import Looked
 from mbs.commands.sweep import read_speeds
+from mbs.planning.question import at_one_speed, over_speeds
 from mbs.report.campbell import read_result
-from mbs.report.examination import Examination, examined
+from mbs.report.examination import Examination, examined, speeds_of
 from mbs.report.machine import warnings
 from mbs.report.scene_report import scene_report
 from mbs.scene.choices import OPTIONS
@@ -94,9 +95,11 @@ def _maps(asked: _Asked) -> MapSet | None:
 
 
 def _looks_at(asked: _Asked) -> Looked:
-    """The scene, up to the highest frequency of its modes."""
+    """The scene at its operating speed and over those of the diagram, up to the highest frequency of its modes."""
     scene = asked.case.model.scene
-    return Looked(scene, max(scene.frequencies, default=scene.campbell.highest))
+    swept = None if asked.saved is not None else asked.speeds or speeds_of(scene)
+    visited = at_one_speed(scene) if swept is None else over_speeds(scene, swept, and_operation=True)
+    return Looked(visited, max(scene.frequencies, default=scene.campbell.highest))
 
 
 def _command(arguments: argparse.Namespace) -> str:

@@ -30,6 +30,7 @@ from mbs.output.model_text import heading, held_lines
 from mbs.output.result_text import drive_lines, energy_lines, signal_lines
 from mbs.output.results import with_spectra
 from mbs.output.time_files import is_time_data, read_time_data, write_time_data
+from mbs.planning.question import in_time
 from mbs.scene.fields import HERTZ, MICROSECOND, MILLISECOND
 from mbs.scene.reader import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
 from mbs.scene.scene import Scene
@@ -274,7 +275,7 @@ def _step_check_lines(found: StepCheck | None) -> list[str]:
 
 def _looks_at(scene: Scene) -> Looked:
     """Scope of the run; frequencies up to those of a Campbell diagram."""
-    return Looked(scene, scene.campbell.highest)
+    return Looked(in_time(scene), scene.campbell.highest)
 
 
 def _changes(size: FloatArray, speed: FloatArray, fade: Fade | None) -> str:

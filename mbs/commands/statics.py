@@ -22,6 +22,7 @@ from mbs.model.equilibrium import Equilibrium
 from mbs.model.relaxation import NOTABLE
 from mbs.output.model_text import heading
 from mbs.output.state_text import DAMPINGS, STIFFNESSES, flooded_note, loss_words
+from mbs.planning.question import at_one_speed
 from mbs.scene.assembly import Model, ring_motions
 
 _SHOWN = (1, 2, 4, 5)
@@ -32,7 +33,7 @@ _NAMES = ("y", "z", "theta_y", "theta_z")
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Find the equilibrium at the operating speed and describe it."""
-    done = analysed(arguments, _asked, statics, lambda model: Looked(model.scene, 0.0))
+    done = analysed(arguments, _asked, statics, lambda model: Looked(at_one_speed(model.scene), 0.0))
     found = done.result
     model = found.model
     balance, contacts = found.balance, found.contacts

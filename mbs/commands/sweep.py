@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import dataclasses
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -39,6 +38,7 @@ from mbs.output.model_text import (
     temperature_text,
 )
 from mbs.output.state_text import flooded_note, state_lines
+from mbs.planning.question import over_speeds
 from mbs.scene.assembly import Model
 from mbs.settings import MOST_SPEEDS, SweepRange
 
@@ -104,8 +104,8 @@ class _Asked(NamedTuple):
 def _looks_at(asked: _Asked) -> Looked:
     """The scene with the speeds and the largest loads of the sweep; modes and responses up to those of [linear]."""
     scene = max(asked.cases, key=lambda case: case.load_factor).model.scene
-    speeds = asked.settings.speeds or scene.sweep
-    return Looked(dataclasses.replace(scene, sweep=speeds), max(scene.frequencies, default=scene.campbell.highest))
+    speeds = over_speeds(scene, asked.settings.speeds)
+    return Looked(speeds, max(scene.frequencies, default=scene.campbell.highest))
 
 
 def _figure(cases: Sequence[Case], found: Sequence[Sweep]) -> Figure:

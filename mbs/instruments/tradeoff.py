@@ -217,7 +217,9 @@ def _sources(base: Subject, choices: Sequence[Choice]) -> tuple[Source, ...]:
         usual = next((index for index, choice in enumerate(labels) if choice.default), None)
         if usual is not None:
             finer = labels[usual + 1].label if usual + 1 < len(labels) else ""
-            found.append(Source(f"{part}: {labels[usual].label}", labels[usual].label, finer))
+            # "1 angle" says least of all what it is
+            name = f"{labels[usual].label} of the cages" if part == "cage angles" else labels[usual].label
+            found.append(Source(name, labels[usual].label, finer))
     return tuple(found)
 
 

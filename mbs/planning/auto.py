@@ -1,9 +1,10 @@
 """An analysis that chooses its physics: what a scene requires, films of the film table, maps of what that has not.
 
-The order of things: the ranges of the scene (`mbs.planning.plan`), the physics that they require
-(`mbs.planning.verdicts`), films of each type of bearing, and the analysis. Films come from the film table; where
-heat or a limiting stress matter, a map is made by `ehdmaps.jobs.make.generate`, whose store beside it knows what is
-solved.
+The order of things: the ranges of the scene as the analysis visits it (`mbs.planning.question`, `mbs.planning.plan`),
+the physics that they require (`mbs.planning.verdicts`), films of each type of bearing, and the analysis. Films come
+from the film table; where heat or a limiting stress matter, a map is made by `ehdmaps.jobs.make.generate`, whose store
+beside it knows what is solved. Where no contact law can be made of that map, as the solver ended at some of its points,
+the physics that was chosen for it is left out again, and its verdict says so.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.job_text import Entry
 from ehdmaps.jobs.make.batch_generate import make_folder
 from ehdmaps.jobs.make.generate import Generated, generate
-from ehdmaps.jobs.make.law_check import unmet
+from ehdmaps.jobs.make.law_check import REFUSED, unmet
 from ehdmaps.jobs.make.sweep import Progress
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.outputs import MAP, Output, check_outputs
@@ -29,11 +30,13 @@ from ehdmaps.physics.heat import PHYSICS
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.rheology import SHEARS
 from mbs.model.relaxation import Films
+from mbs.planning.machine import machine_verdicts
 from mbs.planning.plan import PlanResult, PlanSettings, plan
 from mbs.planning.verdicts import (
     Verdict,
     heat_verdict,
     in_force,
+    left_out_verdict,
     memory_verdict,
     roughness_verdict,
     shear_verdict,
@@ -138,6 +141,11 @@ class MadeMap:
         return EHDMap(self.generated.dataset, self.generated.backbone)
 
     @property
+    def refused(self) -> str:
+        """Why no contact law can be made of it; empty where one can, or where that was not looked at."""
+        return str(self.generated.dataset.attrs.get(REFUSED, ""))
+
+    @property
     def unmet(self) -> tuple[str, ...]:
         """Bars that its contact laws miss, without the advice, as the job was planned."""
         lines = unmet(self.generated.dataset, self.generated.backbone is not None)
@@ -157,7 +165,8 @@ class Automatic(Generic[R]):
     made : tuple of MadeMap
         Maps that were made, of the types of bearing whose films the film table has not.
     verdicts : tuple of Verdict
-        Which physics is on, and why: memory, supply, roughness, and heat and shear of each type of bearing.
+        Which physics is on, and why: memory, supply, roughness, then heat of each type of bearing, shear of each, and
+        what the scene file switches (`mbs.planning.machine`); last, what films leave out of k and c.
     """
 
     result: R
@@ -171,6 +180,7 @@ def automatic(
     analysis: Callable[[Model], R],
     settings: AutoSettings | None = None,
     progress: TellMap | None = None,
+    planned_for: Scene | None = None,
 ) -> Automatic[R]:
     """Analyse a scene with the physics that it requires.
 
@@ -185,6 +195,9 @@ def automatic(
         Tolerance, frequencies, folder of the maps.
     progress : callable, optional
         Told about maps that are made.
+    planned_for : Scene, optional
+        The scene as the analysis visits it, such as `mbs.planning.question.at_one_speed(scene)` for statics; the scene
+        with all its speeds if left out.
 
     Raises
     ------
@@ -192,6 +205,8 @@ def automatic(
         With everything because of which there is no plan, or no map.
     AnalysisError
         If there is no equilibrium, or what the analysis raises.
+    MapError
+        If no contact law can be made of a map with physics that was asked for.
 
     Examples
     --------
@@ -203,7 +218,7 @@ def automatic(
         [verdict.line for verdict in found.verdicts]
         found.result.dataset["frequency"]
     """
-    return settled(scene, lambda subject: analysis(subject.model()), settings, progress)
+    return settled(scene, lambda subject: analysis(subject.model()), settings, progress, planned_for)
 
 
 def settled(
@@ -226,19 +241,31 @@ def settled(
     progress : callable, optional
         Told about maps that are made.
     planned_for : Scene, optional
-        The scene as the analysis changes it: with its speeds, loads and clearances.
+        The scene as the analysis visits it, see `mbs.planning.question`; the scene with all its speeds if left out.
     """
     settings = settings or AutoSettings()
     highest = settings.highest
     if highest is None:
         highest = max(scene.frequencies, default=scene.campbell.highest)
     looked_at = planned_for or scene
-    found = plan(looked_at, PlanSettings(settings.clearance))
+    warm = settings.shear is None and settings.physics is None and any(entry.thermal for entry in scene.bearings)
+    found = plan(_of_one_temperature(looked_at) if warm else looked_at, PlanSettings(settings.clearance))
+    found = dataclasses.replace(found, scene=looked_at)
     supplies = _supplies(scene, settings.supply)
-    verdicts = _verdicts(scene, found, settings, supplies, highest)
-    films = _films(looked_at, found, verdicts, settings, progress)
-    maps = MapSet([one.emap if isinstance(one, MadeMap) else one for one in films])
-    subject = _subject(scene, maps, verdicts, supplies, settings)
+    required = _verdicts(scene, found, settings, supplies, highest)
+    pairs = tuple(pair.of_table(settings) for pair in required.of_maps) if warm else required.of_maps
+    films, pairs = _films(looked_at, found, pairs, settings, progress)
+    summed = [left_out_verdict((required.of_laws[1], pair.heat, pair.shear)) for pair in pairs]
+    maps = MapSet(
+        [
+            (one.emap if isinstance(one, MadeMap) else one).with_left_out(*errors)
+            for one, (_, errors) in zip(films, summed, strict=True)
+        ]
+    )
+    subject = _subject(scene, maps, required.of_laws, supplies, settings)
+    verdicts = dataclasses.replace(required, of_maps=pairs).all
+    if highest > 0.0:  # an equilibrium has no bands
+        verdicts = (*verdicts, _worst([verdict for verdict, _ in summed]))
     try:
         result = analyse(subject)
     except MapError as error:
@@ -268,28 +295,83 @@ def map_name(scene: str, job: Job) -> str:
     return "_".join((*words, job.sha256[:DIGITS])) + ".nc"
 
 
+@dataclass(frozen=True)
+class _OfMap:
+    """Verdicts on the physics that a map of one type of bearing has to have, or else its films are of the table."""
+
+    heat: Verdict
+    shear: Verdict
+
+    @property
+    def solver(self) -> dict[str, Entry]:
+        """Keys of [solver] of the map; none where the film table serves."""
+        return {**self.heat.solver, **self.shear.solver}
+
+    def of_table(self, asked: AutoSettings) -> _OfMap:
+        """The same without all that only a map has, for rings of temperatures of their own."""
+        less = self.without(asked, "rings have temperatures of their own, and a map that is made has a single one")
+        return self if less is None else less.of_table(asked)
+
+    def without(self, asked: AutoSettings, reason: str) -> _OfMap | None:
+        """The same without what was chosen last, for a reason; None where all that is left was asked for."""
+        for name, given in (("shear", asked.shear), ("heat", asked.physics)):
+            verdict: Verdict = getattr(self, name)
+            if verdict.solver and given is None:
+                return dataclasses.replace(self, **{name: verdict.left_out(reason)})
+        return None
+
+
+@dataclass(frozen=True)
+class _Found:
+    """All verdicts: on what the laws of a map can have, on what a map of each type has, on the machine."""
+
+    of_laws: tuple[Verdict, ...]
+    of_maps: tuple[_OfMap, ...]
+    of_machine: tuple[Verdict, ...]
+
+    @property
+    def all(self) -> tuple[Verdict, ...]:
+        """In the order in which they are told."""
+        heats, shears = (pair.heat for pair in self.of_maps), (pair.shear for pair in self.of_maps)
+        return (*self.of_laws, *heats, *shears, *self.of_machine)
+
+
 def _films(
     scene: Scene,
     found: PlanResult,
-    verdicts: tuple[Verdict, ...],
+    pairs: tuple[_OfMap, ...],
     settings: AutoSettings,
     progress: TellMap | None,
-) -> list[EHDMap | MadeMap]:
-    """Films of each type of bearing: from the film table, or of a map where its verdicts ask for more."""
-    films: list[EHDMap | MadeMap] = []
-    keys = _solver_keys(verdicts, len(found.needed))
-    jobs = found.jobs(solvers=keys) if any(keys) else ()
-    for index, (needed, wanted) in enumerate(zip(found.needed, keys, strict=True)):
-        read = None if wanted else table_maps(scene).of(needed.geometry)
-        if read is not None:
-            films.append(read)
-            continue
-        make_folder(settings.folder, "--maps")
-        path = settings.folder / map_name(scene.name, jobs[index])
-        check_outputs([Output("--maps", path, MAP)])
-        job = dataclasses.replace(jobs[index], name=path.stem)
-        films.append(MadeMap(path, generate(job, path, settings.workers, progress=progress)))
-    return films
+) -> tuple[list[EHDMap | MadeMap], tuple[_OfMap, ...]]:
+    """Films of each type of bearing, from the film table or of a map, and the verdicts that they could be made by."""
+    if any(pair.solver for pair in pairs):
+        found.jobs(solvers=[pair.solver for pair in pairs])  # problems of all of them, before one is made
+    made = [_usable(scene, found, index, settings, pair, progress) for index, pair in enumerate(pairs)]
+    return [films for films, _ in made], tuple(pair for _, pair in made)
+
+
+def _usable(
+    scene: Scene, found: PlanResult, index: int, settings: AutoSettings, pair: _OfMap, progress: TellMap | None
+) -> tuple[EHDMap | MadeMap, _OfMap]:
+    """Films of one type of bearing that make a contact law: without what was chosen where that makes none."""
+    films = _film(scene, found, index, pair, settings, progress)
+    refused = films.refused.partition("; ")[0] if isinstance(films, MadeMap) else ""
+    less = pair.without(settings, f"the map with it makes no contact law ({refused})") if refused else None
+    return (films, pair) if less is None else _usable(scene, found, index, settings, less, progress)
+
+
+def _film(
+    scene: Scene, found: PlanResult, index: int, pair: _OfMap, settings: AutoSettings, progress: TellMap | None
+) -> EHDMap | MadeMap:
+    """Films of one type of bearing: from the film table, or of a map where its verdicts ask for more."""
+    read = None if pair.solver else table_maps(scene).of(found.needed[index].geometry)
+    if read is not None:
+        return read
+    job = found.job(index, solver=pair.solver)
+    make_folder(settings.folder, "--maps")
+    path = settings.folder / map_name(scene.name, job)
+    check_outputs([Output("--maps", path, MAP)])
+    return MadeMap(path, generate(dataclasses.replace(job, name=path.stem), path, settings.workers, progress=progress))
 
 
 def _remedies(verdicts: tuple[Verdict, ...]) -> list[str]:
@@ -303,6 +385,11 @@ def _remedies(verdicts: tuple[Verdict, ...]) -> list[str]:
     ]
 
 
+def _of_one_temperature(scene: Scene) -> Scene:
+    """The scene with raceways of its own temperature, by which ranges are planned."""
+    return scene.with_bearings(dataclasses.replace(entry, thermal=None) for entry in scene.bearings)
+
+
 def _supplies(scene: Scene, asked: OilSupply | None) -> tuple[OilSupply, ...]:
     """The oil supply of each bearing."""
     return tuple(asked or entry.supply or scene.supply or FLOODED for entry in scene.bearings)
@@ -310,18 +397,18 @@ def _supplies(scene: Scene, asked: OilSupply | None) -> tuple[OilSupply, ...]:
 
 def _verdicts(
     scene: Scene, found: PlanResult, settings: AutoSettings, supplies: tuple[OilSupply, ...], highest: float
-) -> tuple[Verdict, ...]:
+) -> _Found:
     """Find the physics required: memory, supply and roughness, each where it matters most; heat and shear by type."""
     assert scene.lubricant is not None  # the plan saw to it
-    possible = not any(entry.centrifugal and not entry.rollers_as_bodies for entry in scene.bearings)
+    without = _without_memory(scene)
     memory, supply, rough, heat, shear = (list[Verdict]() for _ in range(5))
-    for entry in found.needed:
-        there = visited(entry, scene.lubricant, settings.tolerance)
+    ranges = [visited(entry, scene.lubricant, settings.tolerance) for entry in found.needed]
+    for entry, there in zip(found.needed, ranges, strict=True):
         theirs = tuple(
             given for spec, given in zip(scene.bearings, supplies, strict=True) if spec.name in entry.bearings
         )
         verdicts = (
-            memory_verdict(there, highest, settings.films, possible),
+            memory_verdict(there, highest, settings.films, without),
             supply_verdict(there, theirs, settings.supply is not None),
             roughness_verdict(there, scene.surface),
             heat_verdict(there, settings.physics),
@@ -330,7 +417,20 @@ def _verdicts(
         for group, verdict in zip((memory, supply, rough, heat, shear), verdicts, strict=True):
             named = f"{entry.geometry.name}: {verdict.words}" if len(found.needed) > 1 else verdict.words
             group.append(dataclasses.replace(verdict, words=named))
-    return _worst(memory), _worst(supply), _worst(rough, least=True), *heat, *shear
+    machine = machine_verdicts(found, ranges, highest, all(supply.flooded for supply in supplies))
+    return _Found(
+        (_worst(memory), _worst(supply), _worst(rough, least=True)),
+        tuple(_OfMap(*pair) for pair in zip(heat, shear, strict=True)),
+        machine,
+    )
+
+
+def _without_memory(scene: Scene) -> str:
+    """What of a scene films with memory do not go with, in words; empty where they do."""
+    bearings = scene.bearings
+    if any(entry.centrifugal and not entry.rollers_as_bodies for entry in bearings):
+        return "a centrifugal load of massless rollers"
+    return "coupled slices" if any(entry.slices_coupled for entry in bearings) else ""
 
 
 def _worst(verdicts: list[Verdict], least: bool = False) -> Verdict:
@@ -344,15 +444,9 @@ def _worst(verdicts: list[Verdict], least: bool = False) -> Verdict:
 
     def weight(verdict: Verdict) -> tuple[bool, float]:
         size = -verdict.size if least else verdict.size
-        return verdict.on, -math.inf if math.isnan(size) else size
+        return bool(verdict.on), -math.inf if math.isnan(size) else size
 
     return max(verdicts, key=weight)
-
-
-def _solver_keys(verdicts: tuple[Verdict, ...], types: int) -> list[dict[str, Entry]]:
-    """Keys of [solver] of the map of each bearing type: what its verdicts on heat and shear ask for."""
-    heat, shear = verdicts[3 : 3 + types], verdicts[3 + types :]
-    return [{**warm.solver, **limited.solver} for warm, limited in zip(heat, shear, strict=True)]
 
 
 def _subject(
@@ -363,7 +457,7 @@ def _subject(
     settings: AutoSettings,
 ) -> Subject:
     """Scene and law with what is switched on."""
-    memory, supply, rough = verdicts[:3]
+    memory, supply, rough = verdicts
     surface = surface_in_force(scene.surface, rough)
     law = LawChoice(
         law_label("map", maps),

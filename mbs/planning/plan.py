@@ -137,12 +137,29 @@ class PlanResult:
         Lowest and highest speed of the system [rad/s].
     needed : tuple of Needed
         Ranges by geometry.
+    filled : Model
+        The model with clearances that the films have taken up at the highest speed.
     """
 
     scene: Scene
     model: Model
     speeds: tuple[float, float]
     needed: tuple[Needed, ...]
+    filled: Model
+
+    def job(self, index: int, name: str = "plan", solver: Mapping[str, Entry] | None = None) -> Job:
+        """The job of one geometry, as `planned_job`.
+
+        Parameters
+        ----------
+        index : int
+            Which of `needed`.
+        name : str
+            Name of the job.
+        solver : mapping, optional
+            Further keys of [solver].
+        """
+        return planned_job(self.scene, self.needed[index], name, solver)
 
     def jobs(self, names: Sequence[str] = (), solvers: Sequence[Mapping[str, Entry]] = ()) -> tuple[Job, ...]:
         """Jobs that cover the ranges, one a geometry, read back by the reader of jobs.
@@ -198,8 +215,7 @@ def plan(scene: Scene, settings: PlanSettings | None = None) -> PlanResult:
     """
     settings = settings or PlanSettings()
     model = _dry_model(scene, settings)
-    speeds, needed = _needed(scene, model, settings)
-    return PlanResult(scene, model, speeds, needed)
+    return _planned(scene, model, settings)
 
 
 def _dry_model(scene: Scene, settings: PlanSettings) -> Model:
@@ -241,8 +257,8 @@ def _dry_scene(scene: Scene, rooms: tuple[float, ...] = ()) -> Scene:
     return scene.with_bearings(bearings)
 
 
-def _needed(scene: Scene, model: Model, settings: PlanSettings) -> tuple[tuple[float, float], tuple[Needed, ...]]:
-    """Speeds of the system [rad/s], and the ranges that the scene needs."""
+def _planned(scene: Scene, model: Model, settings: PlanSettings) -> PlanResult:
+    """Speeds of the system, and the ranges that the scene needs."""
     oil = scene.lubricant
     assert oil is not None  # `_dry_model` saw to it
     steady = (scene.speed, *(scene.sweep.speeds.tolist() if scene.sweep else ()))
@@ -273,4 +289,5 @@ def _needed(scene: Scene, model: Model, settings: PlanSettings) -> tuple[tuple[f
         for entry, given in zip(model.bearings, scene.bearings, strict=True)
     ]
     static = [max(pair) + more for *pair, more in zip(dry, preloaded, centrifugal, strict=True)]
-    return speeds, ranges.needed_ranges(model.bearings, static, rooms, speeds, settings.margin)
+    needed = ranges.needed_ranges(model.bearings, static, rooms, speeds, settings.margin)
+    return PlanResult(scene, model, speeds, needed, filled)

@@ -14,17 +14,19 @@ that of idle rollers, whose films are the thick ones.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.job_text import Entry
+from ehdmaps.jobs.make.law_check import SMALL_DAMPING
 from ehdmaps.maps.film_field import RIGID, load_at
 from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.heat import INLET_HEAT, ISOTHERMAL, inlet_heat
+from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, THICKEST, THINNEST, OilSupply
 from ehdmaps.physics.solids import STEEL
@@ -45,8 +47,8 @@ from mbs.planning.ranges import Needed
 from mbs.scene.fields import HERTZ, MICROMETRE
 
 
-def shear_effect(state: ClosedContact, lubricant: Lubricant, loads: FloatArray) -> float:
-    """By how much a limiting stress changes k or c, the largest over some loads, as a part of the Newtonian value.
+def shear_effect(state: ClosedContact, lubricant: Lubricant, loads: FloatArray) -> tuple[float, float]:
+    """By how much a limiting stress changes k and c of a contact, the largest over some loads, as parts.
 
     Parameters
     ----------
@@ -59,17 +61,41 @@ def shear_effect(state: ClosedContact, lubricant: Lubricant, loads: FloatArray) 
 
     Returns
     -------
-    float
-        -1 where no load has both solutions.
+    (float, float)
+        As of `change_felt`; -1 where no load has both solutions.
     """
     both = (solvers.build("reynolds", {"shear": shear}) for shear in ("newtonian", "limiting"))
-    pairs = zip(*(_solved(solver, state, lubricant, loads) for solver in both), strict=True)
+    pairs = zip(*(_solved(solver, state, lubricant, loads) for solver in both), loads.tolist(), strict=True)
     sizes = [
-        max(abs(limited.stiffness / plain.stiffness - 1.0), abs(limited.damping / plain.damping - 1.0))
-        for plain, limited in pairs
-        if plain.status.usable and limited.status.usable and plain.damping != 0.0
+        change_felt(state, load, plain, limited)
+        for plain, limited, load in pairs
+        if plain.status.usable and limited.status.usable
     ]
-    return float(np.max(sizes, initial=-1.0))
+    stiffness, damping = np.max(sizes, axis=0, initial=-1.0) if sizes else (-1.0, -1.0)
+    return float(stiffness), float(damping)
+
+
+def change_felt(
+    state: ClosedContact, load: float, plain: ContactSolution, other: ContactSolution
+) -> tuple[float, float]:
+    """By how much k and c of a contact change, as parts of the plain values.
+
+    Damping runs through zero in its valley. There its change is related to `SMALL_DAMPING` k b/u, as in the check of
+    the laws of a map: a damper below that is one that nothing feels.
+
+    Parameters
+    ----------
+    state : ClosedContact
+        Contact and speed.
+    load : float
+        Load [N/m].
+    plain, other : ContactSolution
+        Solutions at the load, without the physics and with it.
+    """
+    width = half_width(load, state.contact.radius, state.contact.reduced_modulus)
+    least = SMALL_DAMPING * plain.stiffness * width / state.speed
+    by_damping = abs(other.damping - plain.damping) / max(abs(plain.damping), least)
+    return abs(other.stiffness / plain.stiffness - 1.0), float(by_damping)
 
 
 def _solved(
@@ -100,9 +126,10 @@ class Verdict:
     Attributes
     ----------
     physics : str
-        Which: "film memory", "oil supply", "roughness", "inlet heating", "limiting shear stress".
-    on : bool
-        Whether the analysis has it.
+        Which: "film memory", "oil supply", "roughness", "inlet heating", "limiting shear stress", or of the machine
+        (`mbs.planning.machine`).
+    on : bool or None
+        Whether the analysis has it; None for what cannot be decided.
     size : float
         How much it matters: the largest change of a stiffness or damping, as a part of it; of roughness the smallest
         Lambda. NaN where it was not looked at.
@@ -110,18 +137,40 @@ class Verdict:
         The reason, for people.
     solver : mapping
         Keys of [solver] of the map that it takes.
+    errors : (float, float)
+        What k and c of a contact may be wrong by without it, as parts; 0 where that is not known.
+    warns : bool
+        Whether physics that matters is left out, since it cannot be had.
     """
 
     physics: str
-    on: bool
+    on: bool | None
     size: float
     words: str
     solver: Mapping[str, Entry] = field(default_factory=dict)
+    errors: tuple[float, float] = (0.0, 0.0)
+    warns: bool = False
+
+    @property
+    def missing(self) -> tuple[float, float]:
+        """What k and c of a contact lack, as parts: nothing where it is on."""
+        return (0.0, 0.0) if self.on else self.errors
 
     @property
     def line(self) -> str:
         """The verdict in a line."""
-        return f"{self.physics}: {'on' if self.on else 'off'}, {self.words}"
+        state = "" if self.on is None else "on, " if self.on else "off, "
+        return f"{self.physics}: {state}{self.words}"
+
+    def left_out(self, reason: str) -> Verdict:
+        """The verdict on physics that cannot be had: off, and a warning of what that leaves out.
+
+        Parameters
+        ----------
+        reason : str
+            Why it cannot be had.
+        """
+        return replace(self, on=False, words=f"left out although {self.words}: {reason}", solver={}, warns=True)
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,11 +193,6 @@ class Range:
     highest: float
     lubricant: Lubricant
     tolerance: float
-
-    @property
-    def percent(self) -> str:
-        """The tolerance, for people."""
-        return _percent(self.tolerance)
 
     @property
     def slowest_and_fastest(self) -> tuple[ClosedContact, ...]:
@@ -194,7 +238,7 @@ def visited(needed: Needed, lubricant: Lubricant, tolerance: float) -> Range:
     return Range(states, highest, lubricant, tolerance)
 
 
-def memory_verdict(found: Range, frequency: float, asked: Films | None, possible: bool = True) -> Verdict:
+def memory_verdict(found: Range, frequency: float, asked: Films | None, without: str = "") -> Verdict:
     """Judge whether films need their memory.
 
     Parameters
@@ -205,22 +249,22 @@ def memory_verdict(found: Range, frequency: float, asked: Films | None, possible
         Highest frequency that is looked at [Hz]; 0 for an equilibrium.
     asked : {"slow", "memory"} or None
         What was asked for.
-    possible : bool
-        Whether the law can have it.
+    without : str
+        What of the scene films with memory do not go with; empty where they do.
     """
     name = "film memory"
     if frequency == 0.0:
         return Verdict(name, False, math.nan, "as an equilibrium has no frequency")
     size, state = found.carrying(lambda entry: memory_effect(entry, frequency))
     words = (
-        f"films of slow motion would be up to {_percent(size)} wrong in k + i omega c of a contact at "
+        f"films of slow motion would be wrong by {up_to(size)} in k + i omega c of a contact at "
         f"{HERTZ.text(frequency)} and {SPEED.text(state.speed)}"
     )
     if asked is not None:
         return Verdict(name, asked == "memory", size, f"as asked; {words}")
-    if not possible:
-        return Verdict(name, False, size, f"{words}; with a centrifugal load of massless rollers there is none")
-    return Verdict(name, size > found.tolerance, size, f"{words} ({_beside(size, found)})")
+    if without:
+        return Verdict(name, False, size, f"{words}; with {without} there is none", warns=size > found.tolerance)
+    return Verdict(name, size > found.tolerance, size, f"{words} ({beside(size, found.tolerance)})")
 
 
 def supply_verdict(found: Range, supplies: tuple[OilSupply, ...], asked: bool = False) -> Verdict:
@@ -242,8 +286,9 @@ def supply_verdict(found: Range, supplies: tuple[OilSupply, ...], asked: bool = 
         return Verdict(name, False, math.nan, f"none is stated; a layer below {MICROMETRE.text(layer, 3)} would matter")
     thinnest = min(stated, key=lambda supply: supply.oil_layer)
     size = max(float(np.max(supply_effect(state, thinnest.oil_layer))) for state in found.states)
-    words = f"{thinnest.label} changes k or c of a contact by up to {_percent(size)} ({_beside(size, found)})"
-    return Verdict(name, asked or size > found.tolerance, size, f"{'as asked; ' if asked else ''}{words}")
+    words = f"{thinnest.label} changes k or c of a contact by {up_to(size)} ({beside(size, found.tolerance)})"
+    on = asked or size > found.tolerance
+    return Verdict(name, on, size, f"{'as asked; ' if asked else ''}{words}", errors=(size, size))
 
 
 def roughness_verdict(found: Range, surface: Surface | None) -> Verdict:
@@ -287,17 +332,19 @@ def heat_verdict(found: Range, asked: str | None = None) -> Verdict:
     size, state = found.carrying(lambda entry: heat_effect(entry, found.lubricant))
     if math.isnan(size):
         return Verdict(name, False, size, f"unknown: no thermal conductivity of {found.lubricant.title} is known")
-    change = "more than the formula covers" if size >= 1.0 else f"up to {_percent(size)} at {SPEED.text(state.speed)}"
-    words = f"it would lower c by {change} ({_beside(size, found)})"
+    errors = (0.0, size)
+    change = "more than the formula covers" if size >= 1.0 else f"{up_to(size)} at {SPEED.text(state.speed)}"
+    words = f"it would lower c by {change} ({beside(size, found.tolerance)})"
     if asked is not None:
         on = asked != ISOTHERMAL
-        return Verdict(name, on, size, f"as asked, {asked}; {words}", {"physics": asked} if on else {})
+        return Verdict(name, on, size, f"as asked, {asked}; {words}", {"physics": asked} if on else {}, errors)
     if size <= found.tolerance:
-        return Verdict(name, False, size, words)
+        return Verdict(name, False, size, words, errors=errors)
     refused = _no_rule(found)
     if not refused:
-        return Verdict(name, True, size, f"{words}; the map has it by its rule", {"physics": INLET_HEAT})
-    return Verdict(name, False, size, f"{words}; its rule does not hold here ({refused}); --physics thermal has it")
+        return Verdict(name, True, size, f"{words}; the map has it by its rule", {"physics": INLET_HEAT}, errors)
+    words = f"{words}; its rule does not hold here ({refused}); --physics thermal has it"
+    return Verdict(name, False, size, words, errors=errors)
 
 
 def shear_verdict(found: Range, asked: str | None = None) -> Verdict:
@@ -312,23 +359,22 @@ def shear_verdict(found: Range, asked: str | None = None) -> Verdict:
     """
     name = "limiting shear stress"
     loads = np.geomspace(*SHARES, _SOLVED_LOADS) * found.highest
-    size, state = max(
-        ((shear_effect(state, found.lubricant, loads), state) for state in found.slowest_and_fastest),
-        key=lambda entry: entry[0],
-    )
+    effects = [shear_effect(state, found.lubricant, loads) for state in found.slowest_and_fastest]
+    size, state = max(zip(map(max, effects), found.slowest_and_fastest, strict=True), key=lambda entry: entry[0])
+    errors = max(0.0, *(k for k, _ in effects)), max(0.0, *(c for _, c in effects))
     if size < 0.0:
         words = "unknown: no film of these contacts could be solved with it and without"
         size = math.nan
     else:
         words = (
-            f"it would change k or c of a contact by up to {_percent(size)} at {SPEED.text(state.speed)} "
-            f"({_beside(size, found)})"
+            f"it would change k or c of a contact by {up_to(size)} at {SPEED.text(state.speed)} "
+            f"({beside(size, found.tolerance)})"
         )
     if asked is not None:
         on = asked != "newtonian"
-        return Verdict(name, on, size, f"as asked, {asked}; {words}", {"shear": asked} if on else {})
+        return Verdict(name, on, size, f"as asked, {asked}; {words}", {"shear": asked} if on else {}, errors)
     on = size > found.tolerance
-    return Verdict(name, on, size, words, {"shear": "limiting"} if on else {})
+    return Verdict(name, on, size, words, {"shear": "limiting"} if on else {}, errors)
 
 
 def _no_rule(found: Range) -> str:
@@ -381,11 +427,75 @@ def _changes(found: Range, layer: float) -> bool:
     return any(np.any(supply_effect(state, layer) > found.tolerance) for state in found.states)
 
 
-def _percent(part: float) -> str:
-    """A part in per cent, with two digits or more, and no exponent above."""
+MOST_STATED = 0.9
+"""Most that an error of k or c is stated as, as a part: laws that are wrong on purpose keep a stiffness."""
+
+
+def left_out_verdict(verdicts: Sequence[Verdict]) -> tuple[Verdict, tuple[float, float]]:
+    """Sum up what films leave out, and what errors of k and c a law is to state for it.
+
+    Parameters
+    ----------
+    verdicts : sequence of Verdict
+        Those on the films of one type of bearing.
+    """
+    stiffness, damping = (math.fsum(parts) for parts in zip(*(verdict.missing for verdict in verdicts), strict=True))
+    stated = min(stiffness, MOST_STATED), min(damping, MOST_STATED)
+    capped = f", at most {percent(MOST_STATED)} each" if (stiffness, damping) != stated else ""
+    words = (
+        f"{percent(stated[0])} of k and {percent(stated[1])} of c of a contact, by the sizes above{capped}; the bands "
+        "(+-) have them"
+    )
+    return Verdict("left out of the films", None, max(stiffness, damping), words), stated
+
+
+MOST_TOLD = 10.0
+"""Change, as a part, above which its size is not told: what grows tenfold or vanishes is another contact."""
+
+
+def percent(part: float) -> str:
+    """A part in per cent, with two digits or more, and no exponent above.
+
+    Parameters
+    ----------
+    part : float
+        The part, >= 0.
+
+    Examples
+    --------
+    >>> percent(0.0123), percent(1.234)
+    ('1.2 %', '123 %')
+    """
     return f"{100.0 * part:.2g} %" if part < 0.995 else f"{100.0 * part:.0f} %"
 
 
-def _beside(size: float, found: Range) -> str:
-    """A size beside the tolerance."""
-    return f"{'more' if size > found.tolerance else 'not more'} than {found.percent}"
+def up_to(part: float) -> str:
+    """The largest of some changes, for people.
+
+    Parameters
+    ----------
+    part : float
+        The part, >= 0.
+
+    Examples
+    --------
+    >>> up_to(0.55), up_to(5820.6)
+    ('up to 55 %', 'more than 10 times')
+    """
+    return f"up to {percent(part)}" if part <= MOST_TOLD else f"more than {MOST_TOLD:g} times"
+
+
+def beside(size: float, tolerance: float) -> str:
+    """A size beside the tolerance, for people.
+
+    Parameters
+    ----------
+    size, tolerance : float
+        As parts.
+
+    Examples
+    --------
+    >>> beside(0.1, 0.05), beside(0.01, 0.05)
+    ('more than 5 %', 'not more than 5 %')
+    """
+    return f"{'more' if size > tolerance else 'not more'} than {percent(tolerance)}"

@@ -13,6 +13,7 @@ from mbs.analyses.statics import StaticsResult, statics
 from mbs.analyses.sweep import SweepResult, SweepSettings, sweep
 from mbs.scene.assembly import Model
 from mbs.scene.map_set import MapSet
+from mbs.scene.scene import Scene
 from mbs.settings import SweepRange
 
 R = TypeVar("R")
@@ -78,17 +79,25 @@ def examined(model: Model, maps: MapSet | None, speeds: SweepRange | None, swept
     )
 
 
+def speeds_of(scene: Scene) -> SweepRange | None:
+    """Speeds of the Campbell diagram where none are given: those of [sweep], or around the operating speed.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene; None for one that stands still and has no [sweep].
+    """
+    if scene.sweep is not None:
+        return SweepRange(scene.sweep.begin, scene.sweep.end, min(scene.sweep.points, MOST_SPEEDS))
+    return SweepRange(_BELOW * scene.speed, _ABOVE * scene.speed, MOST_SPEEDS) if scene.speed > 0.0 else None
+
+
 def _sweep(model: Model, speeds: SweepRange | None) -> SweepResult:
     """Modes over a few speeds, without frequency responses."""
     scene = model.scene
+    speeds = speeds or speeds_of(scene)
     if speeds is None:
-        given = scene.sweep
-        if given is not None:
-            speeds = SweepRange(given.begin, given.end, min(given.points, MOST_SPEEDS))
-        elif scene.speed > 0.0:
-            speeds = SweepRange(_BELOW * scene.speed, _ABOVE * scene.speed, MOST_SPEEDS)
-        else:
-            raise AnalysisError("the scene stands still and has no [sweep]; --speeds gives speeds")
+        raise AnalysisError("the scene stands still and has no [sweep]; --speeds gives speeds")
     return sweep(dataclasses.replace(model, scene=dataclasses.replace(scene, frequencies=())), SweepSettings(speeds))
 
 

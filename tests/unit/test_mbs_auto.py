@@ -6,6 +6,7 @@ import dataclasses
 import re
 from importlib import resources
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,17 +15,30 @@ from ehdmaps.errors import AnalysisError, InputError, MapError
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.make.generate import generate
 from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.surface import Surface
 from mbs import AutoSettings, automatic, parse_scene, statics
 from mbs.commands.auto_maps import read_tolerance
-from mbs.planning import auto, plan
+from mbs.planning import auto, plan, verdicts
 from mbs.planning.auto import settled
 from mbs.planning.criteria import closed_contact, film_over_roughness, heat_effect, memory_effect, supply_effect
+from mbs.planning.question import at_one_speed, in_time, over_speeds
 from mbs.planning.ranges import Needed
-from mbs.planning.verdicts import heat_verdict, shear_verdict, visited
+from mbs.planning.verdicts import (
+    Verdict,
+    change_felt,
+    heat_verdict,
+    left_out_verdict,
+    memory_verdict,
+    shear_verdict,
+    up_to,
+    visited,
+)
+from mbs.scene.map_set import table_maps
+from mbs.settings import SweepRange
 from tests.cases.commands import run
 
 TEXT = (resources.files("mbs") / "systems" / "nu308_rigid.toml").read_text(encoding="utf-8")
@@ -118,7 +132,7 @@ def test_bearings_of_two_types_have_films_each(folder):
     found = automatic(two, statics, AutoSettings(folder=folder, highest=0.0, shear="limiting"))
     assert [one.emap.bearing.name for one in found.made] == ["NU308", "N1014"]
     assert "maps of NU308 and N1014, FVA3, solver formula" in found.subject.model().law
-    supply, *heats_and_shears = found.verdicts[1], *found.verdicts[3:]
+    supply, *heats_and_shears = found.verdicts[1], *found.verdicts[3:7]
     assert re.fullmatch("NU308: none is stated; .* would matter; N1014: none is stated; .* would matter", supply.words)
     assert [verdict.words[:7] for verdict in heats_and_shears] == ["NU308: ", "N1014: "] * 2
     # a limiting stress matters in one of them alone: the other one's films are those of the table
@@ -131,14 +145,14 @@ def test_bearings_of_two_types_have_films_each(folder):
 def test_options_that_do_not_go_together_are_refused_before_a_map_is_made(file, capsys, by_formula):
     status, _, err = run(
         capsys, "modes", file, "--auto", "--map", "a.nc", "--clearance", "1 um", "--clearance", "2 um",
-        "--maps", "none/where", "--tolerance", "5", "--highest", "far", "--law", "hertz", "--films", "thick",
+        "--maps", file, "--tolerance", "5", "--highest", "far", "--law", "hertz", "--films", "thick",
         "--supply", "much",
     )  # fmt: skip
     assert status == 2
     for words in (
         "--map: stands beside --auto",
         "--clearance: got 2 of them",
-        "--maps: got 'none/where', which is no folder and cannot be made",
+        f"--maps: got {file!r}, which is no folder and cannot be made",
         "--tolerance: got '5'; allowed: above 0 up to 900 % or 20 dB",
         "--highest: got 'far'",
         "--law: stands beside --auto",
@@ -147,7 +161,7 @@ def test_options_that_do_not_go_together_are_refused_before_a_map_is_made(file, 
     ):
         assert words in err
     assert run(capsys, "modes", file, "--maps", ".")[0] == 2
-    assert not by_formula and not Path("none").exists()
+    assert not by_formula
 
 
 @pytest.mark.parametrize("tolerance", [0.0, 9.5, float("nan")])
@@ -262,7 +276,8 @@ def test_a_map_that_cannot_be_used_says_what_makes_another(monkeypatch):
     def unfit(subject):
         raise MapError("backbone of the map: has 2 unsolved points")
 
-    monkeypatch.setattr(auto, "_films", lambda *given: [])
+    stand_in = SimpleNamespace(with_left_out=lambda *errors: None)
+    monkeypatch.setattr(auto, "_films", lambda scene, found, pairs, *given: ([stand_in], pairs))
     monkeypatch.setattr(auto, "MapSet", lambda maps: None)
     monkeypatch.setattr(auto, "_subject", lambda *given: None)
     with pytest.raises(MapError, match=r"^backbone of the map: has 2 unsolved points\nauto: the map was made with lim"):
@@ -294,3 +309,145 @@ def test_a_limiting_stress_is_in_the_map_where_it_matters():
     assert not shear_verdict(cold, "newtonian").on
     with pytest.raises(InputError, match="auto, shear: got 'thin'; allowed: newtonian, eyring, carreau, limiting"):
         AutoSettings(shear="thin")
+
+
+# what an analysis asks for
+
+FASTEST_OF_MAPS = '[runup]\nfrom = "0 rpm"\nto = "3000 rpm"\nduration = "0.2 s"\nstep = "20 us"\nsample = "0.1 ms"\n'
+SWEPT = '[sweep]\nfrom = "300 rpm"\nto = "2400 rpm"\npoints = 5\n'
+
+
+@pytest.mark.parametrize("bearing", ["NU308", "N1014"])
+@pytest.mark.parametrize("rpm", [500.0, 1200.0])
+def test_only_the_speeds_that_an_analysis_visits_are_planned_for(bearing, rpm):
+    text = SHORT.replace('"500 rpm"', f'"{rpm:g} rpm"').replace("NU308", bearing)
+    alone, whole = scene(text), scene(f"{text}\n{FASTEST_OF_MAPS}\n{SWEPT}")
+    speeds = [
+        plan.plan(visited_by).speeds
+        for visited_by in (at_one_speed(whole), at_one_speed(alone), over_speeds(whole, None), in_time(whole), whole)
+    ]
+    turning = np.pi / 30.0
+    np.testing.assert_allclose(
+        speeds,
+        np.array([[rpm, rpm], [rpm, rpm], [300.0, 2400.0], [150.0, 3000.0], [150.0, 3000.0]]) * turning,
+    )
+    narrow = over_speeds(whole, SweepRange(100.0, 150.0, 3))
+    assert plan.plan(narrow).speeds == (100.0, 150.0)
+    assert over_speeds(alone, None).speed == alone.speed and in_time(alone) is alone
+    # the operating speed of a report is visited beside those of its diagram
+    both = over_speeds(whole, SweepRange(100.0, 150.0, 3), and_operation=True)
+    np.testing.assert_allclose(plan.plan(both).speeds, sorted([rpm * turning, 100.0, 150.0])[::2])
+
+
+def test_a_scene_that_stands_still_is_judged_at_its_other_speeds():
+    still = scene(f"{SHORT.replace('500 rpm', '0 rpm')}\n{FASTEST_OF_MAPS}")
+    assert at_one_speed(still) is still
+
+
+def test_statics_and_a_run_up_of_one_scene_are_judged_each_at_their_own_speed(file, capsys, by_formula):
+    Path(file).write_text(f"{SHORT}\n{FASTEST_OF_MAPS}")
+    limiting = ("--auto", "--shear", "limiting", "--maps", "maps")
+    # 500 rpm of an NU308 are 0.8251 m/s, 3000 rpm are 4.951 m/s
+    assert "0.8251 m/s" in (out := run(capsys, "statics", file, *limiting)[1]) and "4.951" not in out
+    assert "0.24 to 5 m/s" in run(capsys, "runup", file, *limiting)[1]
+    assert len({job.sha256 for job in by_formula}) == len(list(Path("maps").glob("*.nc"))) == 2
+    # the map of the run-up left that of statics as it was
+    status, out, _ = run(capsys, "statics", file, *limiting)
+    assert status == 0 and ": 0 points solved, " in out
+
+
+# never a dead end
+
+
+@pytest.fixture
+def holes(monkeypatch):
+    """Maps with a limiting stress make no law, as where the solver ends beside one another."""
+    quick = auto.generate
+
+    def generated(job, path, workers, progress=None):
+        found = quick(job, path, workers, progress)
+        if "limiting" in job.solver_options.values():
+            found.dataset.attrs["law_refused"] = "backbone of the map: has 2 unsolved points; the solver ended there"
+        return found
+
+    monkeypatch.setattr(auto, "generate", generated)
+
+
+def test_physics_whose_map_makes_no_law_is_left_out_and_said(file, capsys, holes, monkeypatch):
+    monkeypatch.setattr(verdicts, "shear_effect", lambda *given: (0.1, 2.68))
+    Path(file).write_text(SHORT.replace("500 rpm", "9000 rpm"))
+    status, out, _ = run(capsys, "statics", file, "--auto")
+    assert status == 1 and "films from the film table" in out and "equilibrium in" in out
+    assert (
+        "warning: auto: limiting shear stress: off, left out although it would change k or c of a contact by up to "
+        "268 % at 14.85 m/s (more than 5 %): the map with it makes no contact law (backbone of the map: has 2 unsolved "
+        "points)\n"
+    ) in out
+
+
+def test_heat_stays_in_the_map_where_a_limiting_stress_is_left_out(holes, monkeypatch, tmp_path, by_formula):
+    monkeypatch.setattr(verdicts, "shear_effect", lambda *given: (0.1, 2.68))
+    hot = dataclasses.replace(scene(SHORT.replace("500 rpm", "6000 rpm")), temperature=383.15)
+    found = automatic(hot, statics, AutoSettings(folder=tmp_path, highest=0.0))
+    assert [job.solver_options.get("shear") for job in by_formula] == ["limiting", None]
+    assert [job.solver_options.get("physics") for job in by_formula] == ["inlet-heat"] * 2
+    assert len(found.made) == 1 and not found.made[0].refused
+    assert [verdict.on for verdict in found.verdicts[3:5]] == [True, False]
+    assert [verdict.warns for verdict in found.verdicts[3:5]] == [False, True]
+
+
+def test_folders_of_maps_are_made_with_those_that_they_lie_in(file, capsys):
+    assert run(capsys, "statics", file, "--auto", "--maps", "none/where")[0] == 0
+    assert Path("none/where").is_dir()
+
+
+def test_a_change_of_damping_in_its_valley_is_held_against_what_is_felt():
+    state = contact([1e4])
+    width = half_width(1e4, state.contact.radius, state.contact.reduced_modulus)
+    k = 1e9
+    small = 0.02 * k * width / state.speed
+
+    def solved(damping, stiffness=k):
+        return SimpleNamespace(stiffness=stiffness, damping=damping)
+
+    assert change_felt(state, 1e4, solved(1e-9 * small), solved(0.5 * small)) == pytest.approx((0.0, 0.5))
+    assert change_felt(state, 1e4, solved(10.0 * small), solved(5.0 * small)) == pytest.approx((0.0, 0.5))
+    assert change_felt(state, 1e4, solved(small), solved(small, 1.2 * k)) == pytest.approx((0.2, 0.0))
+
+
+def test_no_size_is_told_beyond_ten_times():
+    assert up_to(5820.6) == "more than 10 times"
+    assert up_to(10.0) == "up to 1000 %"
+    huge = dataclasses.replace(there(1.0, 313.15), tolerance=1e-6)
+    assert "%" not in re.search(r"wrong by (.*?) in k", memory_verdict(huge, 1e7, None).words).group(1)
+
+
+# what is left out is in the bands
+
+
+def test_physics_that_is_left_out_is_in_the_errors_that_bands_are_made_of(holes, monkeypatch, tmp_path):
+    monkeypatch.setattr(verdicts, "shear_effect", lambda *given: (0.1, 2.68))
+    fast = scene(SHORT.replace("500 rpm", "9000 rpm"))
+    found = automatic(fast, statics, AutoSettings(folder=tmp_path))
+    (emap,) = found.subject.law.maps.maps
+    (plain,) = table_maps(fast).maps
+    loads = np.geomspace(1e3, 1e5, 5)
+    ours, theirs = (one.law_errors.bounds(["inner"], loads, 14.85, 313.15) for one in (emap, plain))
+    np.testing.assert_allclose(ours.stiffness - theirs.stiffness, 0.1, rtol=1e-5)
+    # heat and a limiting stress together are more than bands can have
+    np.testing.assert_allclose(ours.damping - theirs.damping, 0.9, rtol=1e-5)
+    summed = found.verdicts[-1]
+    assert summed.on is None and summed.size > 2.68
+    assert summed.line.startswith(
+        "left out of the films: 10 % of k and 90 % of c of a contact, by the sizes above, at mo"
+    )
+
+
+def test_an_equilibrium_has_no_bands_and_what_is_on_is_not_left_out(folder):
+    found = automatic(scene(), statics, AutoSettings(folder=folder, highest=0.0))
+    assert found.verdicts[-1].physics == "not decided"
+    on, off = (Verdict("heat", state, 0.2, "", errors=(0.0, 0.2)) for state in (True, False))
+    verdict, errors = left_out_verdict((on, off))
+    assert errors == (0.0, 0.2) and verdict.words.startswith(
+        "0 % of k and 20 % of c of a contact, by the sizes above; "
+    )

@@ -118,7 +118,7 @@ _Item = TypeVar("_Item")
 _Result = TypeVar("_Result")
 
 
-_FOLDER = "allowed: a folder for the maps, in one that is there and may be written; choose another"
+_FOLDER = "allowed: a folder for the maps, which may be there or be made; choose another"
 
 
 @dataclass(frozen=True)
@@ -192,12 +192,12 @@ def batch_path(batch: Batch, folder: Path) -> Path:
 
 
 def make_folder(folder: Path, option: str = "-o") -> None:
-    """Make the folder of the maps, where it is not there.
+    """Make the folder of the maps, and those that it lies in, where they are not there.
 
     Parameters
     ----------
     folder : Path
-        The folder; the one that it lies in is there.
+        The folder.
     option : str
         That names it, for messages.
 
@@ -209,7 +209,7 @@ def make_folder(folder: Path, option: str = "-o") -> None:
     if problem := folder_problem(folder, option):
         raise InputError(problem)
     try:
-        folder.mkdir(exist_ok=True)
+        folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"{option}: got {folder}, which cannot be made ({error.strerror}); {_FOLDER}") from error
 
@@ -226,7 +226,8 @@ def folder_problem(folder: Path, option: str) -> str:
     """
     if problem := name_problem(folder):
         return f"{option}: got {str(folder)!r:.300}, {problem}"
-    if not folder.is_dir() and (folder.exists() or not folder.parent.is_dir()):
+    there = next((place for place in (folder, *folder.parents) if place.exists()), Path())
+    if not there.is_dir():
         return f"{option}: got {str(folder)!r:.300}, which is no folder and cannot be made; {_FOLDER}"
     return ""
 

@@ -1,0 +1,407 @@
+"""Verdicts on what a scene file switches: slices, rollers, solids, rings, housing, gears.
+
+An analysis takes these as the scene has them. Each verdict says what that is, how much the other choice would change,
+and which key switches it. A size is either a closed form of one contact (`mbs.planning.criteria`), over the loads of
+rollers that carry a bearing; or the change of the stiffness of a bearing along its load, by equilibria with and
+without, of dry contacts in clearances that the films have taken up (`PlanResult.filled`). What cannot matter to an
+analysis has no verdict: an equilibrium has neither masses of rollers nor gears that excite.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.physics.approach import StructuralLaw
+from ehdmaps.physics.bearing import with_law
+from ehdmaps.units import RPM
+from mbs.bearings.bearing import MOST_COUPLED
+from mbs.bearings.thermal import STEEL_EXPANSION
+from mbs.gears.gear_kernel import FORCE
+from mbs.linearised.modes import energy_shares
+from mbs.model.equilibrium import Equilibrium, equilibrium
+from mbs.planning.criteria import ClosedContact, closed_contact
+from mbs.planning.plan import PlanResult
+from mbs.planning.verdicts import SHARES, Range, Verdict, beside, percent, up_to
+from mbs.scene.assembly import Model, assemble
+from mbs.scene.fields import HERTZ, MICROMETRE
+from mbs.scene.specs import BearingSpec, FlexibleSpec
+
+WARMER = 10.0
+"""Difference of the temperatures of the rings whose effect is told [K]."""
+
+NARROWER = 10e-6
+"""Difference of a clearance whose effect is told [m]."""
+
+_OTHER_LAWS: tuple[StructuralLaw, ...] = ("palmgren", "half_space")
+"""Laws of the solids beside which that of planned maps, ISO 16281, is held."""
+
+_SOFT = 1e-9
+"""Mass that is added to a singular stiffness, in squares of its mean frequency, as where an equilibrium is sought."""
+
+_UPRIGHT = 1e-9
+"""Tilt that is left by round-off [rad]."""
+
+_Changed = Callable[[BearingSpec], BearingSpec]
+
+
+def machine_verdicts(
+    found: PlanResult, ranges: Sequence[Range], frequency: float, flooded: bool
+) -> tuple[Verdict, ...]:
+    """Judge what the scene file switches, as far as it may matter to the analysis.
+
+    Parameters
+    ----------
+    found : PlanResult
+        The scene as the analysis visits it, with dry contacts. One with [runup] is analysed in time.
+    ranges : sequence of Range
+        Contacts of each geometry of `found.needed`, in its order.
+    frequency : float
+        Highest frequency that is looked at [Hz]; 0 for an equilibrium.
+    flooded : bool
+        Whether no oil supply is stated.
+    """
+    tolerance = ranges[0].tolerance
+    rest = _AtRest(found.filled)
+    verdicts = [
+        centrifugal_verdict(found, ranges),
+        *([rollers_verdict(found, ranges, frequency)] if frequency > 0.0 else []),
+        slices_verdict(found, rest, tolerance),
+        coupling_verdict(found, rest, tolerance),
+        rings_verdict(found, rest, tolerance),
+        structure_verdict(ranges),
+        housing_verdict(rest, tolerance),
+        *([mesh_verdict(rest, tolerance)] if found.scene.gears and found.scene.run_up is not None else []),
+    ]
+    return (*verdicts, undecided(rest, flooded))
+
+
+class _AtRest:
+    """Equilibrium of the scene with dry contacts at its operating speed, and of the same with other bearings.
+
+    Parameters
+    ----------
+    model : Model
+        The scene with dry contacts.
+    """
+
+    def __init__(self, model: Model) -> None:
+        self.model = model
+        self.balance = equilibrium(model.system, model.operation)
+        self._stiffness = _along_loads(model, self.balance)
+
+    def change(self, changed: _Changed) -> float:
+        """Largest change of the stiffness of a bearing along its load, as a part; NaN where there is no equilibrium.
+
+        Parameters
+        ----------
+        changed : callable
+            Gives another bearing for each of the scene.
+        """
+        scene = self.model.scene
+        try:
+            other = assemble(scene.with_bearings(map(changed, scene.bearings)), "hertz")
+            stiffness = _along_loads(other, equilibrium(other.system, other.operation, self.balance.displacement))
+        except (AnalysisError, InputError):
+            return math.nan
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return float(np.nanmax(np.abs(stiffness / self._stiffness - 1.0), initial=0.0))
+
+
+def _along_loads(model: Model, balance: Equilibrium) -> FloatArray:
+    """Stiffness of each bearing along its load [N/m]; NaN without one."""
+    found = []
+    for index, _ in enumerate(model.bearings):
+        force = balance.forces[index][1:3]
+        size = float(np.linalg.norm(force))
+        along = force / size if size > 0.0 else np.full(2, math.nan)
+        found.append(float(along @ balance.element_stiffness[index][1:3, 1:3] @ along))
+    return np.array(found)
+
+
+def centrifugal_verdict(found: PlanResult, ranges: Sequence[Range]) -> Verdict:
+    """Judge the centrifugal load of the rollers that carry a bearing: it is added to the load of the outer contact.
+
+    Parameters
+    ----------
+    found : PlanResult
+        The plan.
+    ranges : sequence of Range
+        Contacts of each geometry.
+    """
+    fastest = found.speeds[1]
+    sizes = []
+    for needed, there in zip(found.needed, ranges, strict=True):
+        loads = np.geomspace(*SHARES, _LOADS) * there.highest
+        more = max(
+            entry.bearing.centrifugal_load(entry.inner_spin, entry.outer_spin)
+            for entry in found.model.bearings
+            if entry.name in needed.bearings
+        )
+        inner, plain, loaded = (
+            closed_contact(state.contact, there.lubricant, load, state.speed, state.temperature)
+            for state, load in (
+                (_fastest(there, "inner"), loads),
+                (_fastest(there, "outer"), loads),
+                (_fastest(there, "outer"), loads + more * fastest**2),
+            )
+        )
+        parts = zip(_in_series(inner, loaded), _in_series(inner, plain), strict=True)
+        sizes.append(max(float(np.max(np.abs(new / old - 1.0))) for new, old in parts))
+    size, tolerance = max(sizes), ranges[0].tolerance
+    return _stated(
+        "centrifugal load",
+        [entry.centrifugal for entry in found.scene.bearings],
+        size,
+        f"changes k or c of a roller by {up_to(size)} at {RPM.text(fastest)} ({beside(size, tolerance)})",
+        "centrifugal in [[bearings]]",
+    )
+
+
+def rollers_verdict(found: PlanResult, ranges: Sequence[Range], frequency: float) -> Verdict:
+    """Judge whether rollers have a mass of their own: by the dynamic stiffness of both contacts with it between them.
+
+    Parameters
+    ----------
+    found : PlanResult
+        The plan.
+    ranges : sequence of Range
+        Contacts of each geometry.
+    frequency : float
+        Highest frequency that is looked at [Hz].
+
+    Notes
+    -----
+    With Z = k + i omega c of each contact and the mass m, the inner ring feels Z_i - Z_i^2/(Z_i + Z_o - m omega^2),
+    which is beside the same with m = 0.
+    """
+    omega, sizes = 2.0 * math.pi * frequency, []
+    for needed, there in zip(found.needed, ranges, strict=True):
+        bearing = next(entry.bearing for entry in found.model.bearings if entry.name in needed.bearings)
+        mass = bearing.roller_mass / bearing.geometry.roller_length
+        pairs = len(there.states) // 2  # speeds of the inner contact, then of the outer one
+        for inner, outer in zip(there.states[:pairs], there.states[pairs:], strict=True):
+            carrying = inner.load >= SHARES[0] * there.highest * (1.0 - 1e-9)
+            first, second = ((state.stiffness + 1j * omega * state.damping)[carrying] for state in (inner, outer))
+            massless, massive = (first - first**2 / (first + second - load) for load in (0.0, mass * omega**2))
+            sizes.append(float(np.max(np.abs(massive - massless) / np.abs(massless))))
+    size, tolerance = max(sizes), ranges[0].tolerance
+    return _stated(
+        "rollers as bodies",
+        [entry.rollers_as_bodies for entry in found.scene.bearings],
+        size,
+        f"changes the stiffness of a roller by {up_to(size)} at {HERTZ.text(frequency)} ({beside(size, tolerance)})",
+        "rollers in [[bearings]]",
+    )
+
+
+def slices_verdict(found: PlanResult, rest: _AtRest, tolerance: float) -> Verdict:
+    """Judge the slices of the rollers: one of them would know neither profile nor tilt.
+
+    Parameters
+    ----------
+    found : PlanResult
+        The plan.
+    rest : _AtRest
+        Its equilibrium with dry contacts.
+    tolerance : float
+        Accepted change, as a part.
+    """
+    single = rest.change(lambda entry: dataclasses.replace(entry, slices=1, slices_coupled=False))
+    finer = rest.change(lambda entry: dataclasses.replace(entry, slices=2 * entry.slices, slices_coupled=False))
+    tilts = [
+        float(np.hypot(*(connected.transform @ rest.balance.displacement)[4:6]))
+        for connected in rest.model.system.elements[: len(rest.model.bearings)]
+    ]
+    numbers = "/".join(map(str, dict.fromkeys(entry.slices for entry in found.scene.bearings)))
+    tilt = f"tilt by up to {1e6 * max(tilts):.3g} urad" if max(tilts) > _UPRIGHT else "do not tilt"
+    words = (
+        f"{numbers} a roller, whose rings {tilt} at rest; a single one changes k of a bearing by "
+        f"{_told(single, tolerance)}, twice as many by {_told(finer, tolerance)}; slices in [[bearings]]"
+    )
+    return Verdict("slices", any(entry.slices > 1 for entry in found.scene.bearings), single, words)
+
+
+def coupling_verdict(found: PlanResult, rest: _AtRest, tolerance: float) -> Verdict:
+    """Judge whether slices need to know of their neighbours.
+
+    Parameters
+    ----------
+    found, rest, tolerance
+        As for `slices_verdict`.
+    """
+    size = rest.change(
+        lambda entry: dataclasses.replace(
+            entry, slices=min(entry.slices, MOST_COUPLED), slices_coupled=not entry.slices_coupled
+        )
+    )
+    return _stated(
+        "coupled slices",
+        [entry.slices_coupled for entry in found.scene.bearings],
+        size,
+        f"changes k of a bearing by {_told(size, tolerance)}",
+        "slices_coupled in [[bearings]]",
+    )
+
+
+def rings_verdict(found: PlanResult, rest: _AtRest, tolerance: float) -> Verdict:
+    """Judge temperatures of the rings and fits, by the clearance that an inner ring takes up that is warmer.
+
+    Parameters
+    ----------
+    found, rest, tolerance
+        As for `slices_verdict`.
+
+    Notes
+    -----
+    Rollers have the mean of both rings, so that the clearance falls by alpha dT times the pitch diameter.
+    """
+    size = rest.change(lambda entry: _narrower(entry, STEEL_EXPANSION * WARMER * entry.geometry.pitch_diameter))
+    taken = max(STEEL_EXPANSION * WARMER * entry.geometry.pitch_diameter for entry in found.scene.bearings)
+    return _stated(
+        "ring temperatures and fits",
+        [entry.changes_in_operation for entry in found.scene.bearings],
+        size,
+        f"matters: an inner ring {WARMER:g} K warmer takes {MICROMETRE.text(taken, 2)} of the clearance, which changes "
+        f"k of a bearing by {_told(size, tolerance)}",
+        "thermal and mounting in [[bearings]]",
+    )
+
+
+def structure_verdict(ranges: Sequence[Range]) -> Verdict:
+    """Judge the law of the solids, which is that of ISO 16281, beside others.
+
+    Parameters
+    ----------
+    ranges : sequence of Range
+        Contacts of each geometry.
+    """
+    sizes: dict[str, float] = {}
+    for law in _OTHER_LAWS:
+        for there in ranges:
+            for state in there.slowest_and_fastest:
+                loads = np.geomspace(*SHARES, _LOADS) * there.highest
+                contacts = (state.contact, with_law(state.contact, law, None))
+                own, other = (
+                    closed_contact(contact, there.lubricant, loads, state.speed, state.temperature)
+                    for contact in contacts
+                )
+                sizes[law] = max(sizes.get(law, 0.0), _change(own, other))
+    size = max(sizes.values())
+    words = ", ".join(f"by {up_to(part)} with {law}" for law, part in sizes.items())
+    told = f"iso16281; k or c of a contact changes {words} ({beside(size, ranges[0].tolerance)})"
+    return Verdict("structural law", True, size, f"{told}; --structure beside --map has another")
+
+
+def housing_verdict(rest: _AtRest, tolerance: float) -> Verdict:
+    """Judge bodies of finite elements: which part of the strain energy they have under the loads of the scene.
+
+    Parameters
+    ----------
+    rest, tolerance
+        As for `slices_verdict`.
+    """
+    name, balance = "flexible housing", rest.balance
+    bodies = [body.name for body in rest.model.scene.bodies if isinstance(body, FlexibleSpec)]
+    if not bodies:
+        words = "what holds the rings is rigid, or on springs; how much another gives way is not known without its mesh"
+        return Verdict(name, False, math.nan, f"{words}; [[flexible]] has it")
+    system = balance.system
+    soft = _SOFT * max(float(np.trace(balance.stiffness) / np.trace(system.mass)), 1.0)
+    motion: FloatArray = np.linalg.solve(balance.stiffness + soft * system.mass, system.loads(0.0)).astype(np.float64)
+    shares = energy_shares(balance, motion[:, None])[:, 0]
+    size = float(sum(share for part, share in zip(balance.parts, shares, strict=True) if part in bodies))
+    words = (
+        f"{', '.join(bodies)} gives way by {percent(size)} of what the scene does under its loads "
+        f"({beside(size, tolerance)}); a rigid body in place of [[flexible]] leaves that out"
+    )
+    return Verdict(name, True, size, words)
+
+
+def mesh_verdict(rest: _AtRest, tolerance: float) -> Verdict:
+    """Judge the excitation by gear meshes: transmission error and varying stiffness over the mean force of the mesh.
+
+    Parameters
+    ----------
+    rest, tolerance
+        As for `slices_verdict`.
+    """
+    name, sizes, on = "gear mesh excitation", [], False
+    still = np.zeros(12)
+    elements = rest.model.system.elements
+    for mesh in rest.model.gears:
+        place = next(entry.transform for entry in elements if entry.element.name == mesh.name)
+        steady = mesh.steady()
+        force = float(np.max(steady.flanks(place @ rest.balance.displacement, still, rest.balance.operation)[:, FORCE]))
+        pair = mesh.pair
+        varying = force * float(np.sum(np.abs(pair.stiffness_harmonics)))
+        error = pair.mean_stiffness * float(np.sum(np.abs(pair.transmission_error)))
+        on = on or varying + error > 0.0
+        sizes.append((varying + error) / force if force > 0.0 else math.inf)
+    size = max(sizes)
+    words = (
+        f"varying stiffness and transmission error change the force of a mesh at rest by {up_to(size)} "
+        f"({beside(size, tolerance)}); harmonics and transmission_error in [[gears]]"
+    )
+    return Verdict(name, on, size, words)
+
+
+def undecided(rest: _AtRest, flooded: bool) -> Verdict:
+    """Name what no analysis can decide: what the scene states of the clearance, and of the oil.
+
+    Parameters
+    ----------
+    rest : _AtRest
+        Equilibrium with dry contacts.
+    flooded : bool
+        Whether no oil supply is stated.
+    """
+    size = rest.change(lambda entry: _narrower(entry, NARROWER))
+    change = "has no equilibrium" if math.isnan(size) else f"changes k of a bearing by {up_to(size)}"
+    layer = "none is stated, all contacts are flooded" if flooded else "as stated"
+    words = f"clearance (as stated; {MICROMETRE.text(NARROWER)} less {change}) and oil layer ({layer}): measure them"
+    return Verdict("not decided", None, size, words)
+
+
+_LOADS = 9
+
+
+def _fastest(there: Range, name: str) -> ClosedContact:
+    """A contact at its highest speed."""
+    return max((state for state in there.states if state.contact.name == name), key=lambda state: state.speed)
+
+
+def _in_series(first: ClosedContact, second: ClosedContact) -> tuple[FloatArray, FloatArray]:
+    """Stiffness and damping of a roller between two contacts: compliances add, and losses c/k^2 do."""
+    stiffness = np.asarray(1.0 / (1.0 / first.stiffness + 1.0 / second.stiffness))
+    return stiffness, np.asarray((first.loss + second.loss) * stiffness**2)
+
+
+def _change(plain: ClosedContact, other: ClosedContact) -> float:
+    """Largest change of k or c, as a part of the plain value."""
+    parts = ((other.stiffness, plain.stiffness), (other.damping, plain.damping))
+    return float(max(np.max(np.abs(new / old - 1.0)) for new, old in parts))
+
+
+def _narrower(entry: BearingSpec, by: float) -> BearingSpec:
+    """The bearing with a smaller clearance."""
+    clearance = entry.geometry.diametral_clearance - by
+    return dataclasses.replace(entry, geometry=dataclasses.replace(entry.geometry, diametral_clearance=clearance))
+
+
+def _told(size: float, tolerance: float) -> str:
+    """A size with what it is beside the tolerance; that there is none where no equilibrium was found."""
+    if math.isnan(size):
+        return "an unknown part, as it has no equilibrium"
+    return f"{up_to(size)} ({beside(size, tolerance)})"
+
+
+def _stated(physics: str, has: Sequence[bool], size: float, words: str, key: str) -> Verdict:
+    """A verdict on what bearings of the scene have, or some of them."""
+    some = f"in {sum(has)} of {len(has)} bearings, " if any(has) and not all(has) else ""
+    return Verdict(physics, any(has), size, f"{some}as the scene has it; it {words}; {key}")
