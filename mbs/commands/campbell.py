@@ -261,6 +261,7 @@ def _report(entry: LawRun, sensors: Sequence[Sensor]) -> list[str]:
             for place, (sensor, spectra) in enumerate(zip(sensors, entry.spectra, strict=True))
         ),
         *(f"  note: {line}" for line in record.notes),
+        *(f"  {line}" for line in (entry.steps.lines if entry.steps else ())),
     ]
     if not sensors[1:] and entry.modes is not None and entry.spectra[0].peaks:
         lines += [PEAKS, *(_peak(peak, entry.modes) for peak in entry.spectra[0].peaks)]

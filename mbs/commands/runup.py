@@ -17,7 +17,7 @@ from ehdmaps.units import RPM
 from ehdmaps.workers import available_cores
 from mbs.analyses.case import Case
 from mbs.analyses.film_errors import film_course
-from mbs.analyses.ramp import NOTABLE, StepCheck, resolution, silent_run, step_lines
+from mbs.analyses.ramp import resolution, silent_run, step_lines
 from mbs.analyses.reach import POINTS, Fade, axes_outside, fade_lines, fade_of, outside_lines, source_of, sources_of
 from mbs.analyses.recorded import amplitudes_at, simulated
 from mbs.analyses.runup import RunUpResult, RunUps, runup_problems, runups
@@ -30,7 +30,7 @@ from mbs.output.model_text import heading, held_lines
 from mbs.output.result_text import drive_lines, energy_lines, signal_lines
 from mbs.output.results import with_spectra
 from mbs.output.time_files import is_time_data, read_time_data, write_time_data
-from mbs.scene.fields import HERTZ, MICROSECOND, MILLISECOND
+from mbs.scene.fields import HERTZ, MILLISECOND
 from mbs.scene.reader import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
 from mbs.scene.scene import Scene
 from mbs.settings import HIGHEST
@@ -234,7 +234,7 @@ def _report(found: RunUpResult) -> list[str]:
         f"{result.iterations / max(result.steps, 1):.3g} Newton iterations a step, "
         f"{1e6 * found.seconds / max(result.steps, 1):.0f} us a step",
         *step_lines(resolution(model, found.course)),
-        *_step_check_lines(found.steps),
+        *(found.steps.lines if found.steps else ()),
         *(f"note: {line}" for line in result.notes),
     ]
     end = POINTS if source_of(model) == POINTS else "the map"
@@ -251,25 +251,6 @@ def _report(found: RunUpResult) -> list[str]:
     lines += outside_lines(outside, "{} calls outside the map", axes_outside(model, fastest), sources=sources_of(model))
     # The equilibria of this line are no part of the run, whose calls were counted above.
     return lines + film_course(model, (float(result.speed[0]), float(result.speed[-1])))
-
-
-def _step_check_lines(found: StepCheck | None) -> list[str]:
-    """A line on what half of the step changes in the first part of the run."""
-    if found is None:
-        return []
-    worst = int(np.argmax(found.errors))
-    half, step = MICROSECOND.text(0.5 * found.step), MICROSECOND.text(found.step)
-    first = f"the first {found.duration:.4g} s again with steps of {half}"
-    if found.converged:
-        return [f"{first}: signals are right within {100.0 * found.errors[worst]:.2g} % (rms, {found.names[worst]})"]
-    wrong = [
-        f"{found.names[k]} {found.with_step[k]:.3g} {found.units[k]} rms, and {found.with_half[k]:.3g}"
-        for k in np.flatnonzero(found.errors > NOTABLE)
-    ]
-    return [
-        f"warning: this run is not converged: {first} has other signals ({'; '.join(wrong)} with these, more than "
-        f"{100.0 * NOTABLE:g} % off with {step}); take shorter steps in [runup], until they agree"
-    ]
 
 
 def _looks_at(scene: Scene) -> Looked:
