@@ -94,7 +94,7 @@ class StepCheck:
         Parameters
         ----------
         sensor : str
-            Its name.
+            Name of the sensor.
         """
         return float(self.largest[self.names.index(sensor)])
 
@@ -105,7 +105,7 @@ class StepCheck:
 
     @property
     def lines(self) -> list[str]:
-        """What was found, in words: one line, a warning where steps are too long."""
+        """One line of words on the estimate; a warning where steps are too long."""
         parts = " and ".join(
             f"{RPM.value(abs(first)):.4g} to {RPM.text(abs(last))}" for first, last in dict.fromkeys(self.speeds)
         )
@@ -133,7 +133,7 @@ class StepCheck:
 
     @property
     def _growth(self) -> str:
-        """What "at least" means, where it is said."""
+        """Reason of "at least", where it is said."""
         largest = np.argmax(self.errors, axis=0), np.arange(len(self.names))
         return "; at least: signals still come apart at the end of a part" if self.growing[largest].any() else ""
 

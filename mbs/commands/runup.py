@@ -25,6 +25,8 @@ from mbs.commands.auto import analysed
 from mbs.commands.campbell_recorded import read_source, signal_problems
 from mbs.commands.cases import load_cases
 from mbs.commands.common import Looked, Told, read_option, unsound_lines, write
+from mbs.instruments.commands.tolerance import asked_tolerance, several_problems, tolerated_case
+from mbs.instruments.tolerance import Tolerated
 from mbs.output.files import described
 from mbs.output.model_text import heading, held_lines
 from mbs.output.result_text import drive_lines, energy_lines, signal_lines
@@ -61,10 +63,11 @@ class _Spectra:
 
 @dataclass(frozen=True, eq=False)
 class _Asked:
-    """Laws that are run, and which spectra are wanted."""
+    """Laws that are run, which spectra are wanted, and the tolerance of levels if there is one [dB]."""
 
     cases: list[Case]
     spectra: _Spectra
+    tolerance: float | None = None
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
@@ -75,10 +78,11 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     done = analysed(
         arguments,
         _asked,
-        lambda asked: (runups(asked.cases, Told("step"), keep_partial=True, workers=workers), asked),
+        lambda asked: _ran(asked, workers),
         lambda asked: _looks_at(asked.cases[0].model.scene),
+        own_tolerance=True,
     )
-    found, asked = done.result
+    found, asked, tolerated = done.result
     names = tuple(label if found.runs[1:] else entry.model.label for label, entry in _pairs(found))
     data = _signals(found, names)
     spectra = _spectra_of(data, asked.spectra, found.runs[0].model.scene) if data else []
@@ -87,22 +91,31 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     unsound = [
         line for label, entry in _pairs(found) for line in unsound_lines(entry.unsound, label if found.runs[1:] else "")
     ]
-    lines = [*unsound, *done.lines]
-    outside = bool(unsound)
+    lines = [*unsound, *done.lines, *(tolerated.lines if tolerated else ())]
+    outside = bool(unsound) or (tolerated is not None and not tolerated.met)
     for label, entry in _pairs(found):
         lines += [*([label] if found.runs[1:] else []), *_report(entry)]
         outside = outside or any(entry.record.outside.values())
     lines += signal_lines(data.records) if data else []
     lines += [f"warning: {line}" for line in found.failed]
-    lines += write(arguments, with_spectra(found.dataset, spectra), figure)
+    dataset = with_spectra(found.dataset, spectra)
+    dataset = dataset.assign_attrs(tolerance="\n".join(tolerated.lines)) if tolerated else dataset
+    lines += write(arguments, dataset, figure)
     if getattr(arguments, "signals", None) and data:
         lines += write_time_data(arguments.signals, data)
     return "\n".join(lines), 1 if outside or found.failed else done.status
 
 
+def _ran(asked: _Asked, workers: int) -> tuple[RunUps, _Asked, Tolerated | None]:
+    """Choose the numerical settings where a tolerance is given, and run."""
+    cases, tolerated = tolerated_case(asked.cases, asked.tolerance)
+    return runups(cases, Told("step"), keep_partial=True, workers=workers), asked, tolerated
+
+
 def _asked(arguments: argparse.Namespace) -> _Asked:
-    """Laws and spectra; all problems at once, before anything runs."""
+    """Laws, spectra and tolerance; all problems at once, before anything runs."""
     problems: list[str] = []
+    tolerance = asked_tolerance(arguments, problems)
     wanted = _read_spectra(arguments, problems)
     problems += [
         f"--{name.replace('_', '-')}: stands beside a scene, whose speed is known; allowed: with a recorded run"
@@ -118,6 +131,7 @@ def _asked(arguments: argparse.Namespace) -> _Asked:
         problems.append(
             f"--law, --map, --films, --supply, --clearance: got {len(cases)} cases; allowed: {len(COLOURS)}"
         )
+    problems += several_problems(tolerance, cases)
     read = [arguments.scene, *(getattr(arguments, "map", None) or ()), *scene.files]
     problems += signal_problems(arguments, read, len(cases))
     if (getattr(arguments, "signals", None) or wanted.speeds) and not scene.sensors:
@@ -134,7 +148,7 @@ def _asked(arguments: argparse.Namespace) -> _Asked:
             problems += [f"--spectrum-at: {line}" for line in error.problems]
     if problems:
         raise InputError(tuple(dict.fromkeys(problems)))
-    return _Asked(cases, wanted)
+    return _Asked(cases, wanted, tolerance)
 
 
 def _read_spectra(arguments: argparse.Namespace, problems: list[str]) -> _Spectra:

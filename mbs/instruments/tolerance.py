@@ -1,7 +1,9 @@
 """Step, slices and cut-off of a run-up that keep its sum level within a tolerance, found by short trials.
 
 Two parts of the ramp are run again and again: the loudest one, as a run through the whole ramp in an eighth of its
-time shows it, and the fastest one. The step is halved from the longest one that the highest frequency allows on, until
+time shows it, and the fastest one. First with the settings of the scene, and with half its step, twice its slices and
+all modes. Where that changes the level by less than the tolerance, the settings stay: no part has helped to choose
+them, and both confirm them. Else the step is halved from the longest one that the highest frequency allows on, until
 the sum level at equal speed hardly changes; then slices are doubled from a few on, and modes are added, by twice that
 step. What was chosen has to prove itself on the loudest part of the ramp that was not used to choose, beside half the
 step, twice the slices and all modes. Where it fails, that part helps to choose, and another one is asked.
@@ -73,6 +75,9 @@ SCOUT = 1.0 / 8.0
 
 LEAST_SCOUT = 0.25
 """Shortest such run [s], as long as bodies ring; a ramp that is shorter is run as it is."""
+
+LONGEST_WINDOW = 1.0 / 200.0
+"""Longest window, as a part of the ramp, so that what confirms the settings of the scene costs a fifth of the run."""
 
 LEAST_PARTS = 6
 """Parts of a ramp: two to choose by, one to confirm, and none of them neighbours."""
@@ -255,7 +260,7 @@ def within(
         raise InputError(f"tolerance: got {tolerance!r} dB; allowed: {ALLOWED}")
     settings = settings or subject.scene.campbell
     numerics = Numerics.of(subject.scene)
-    ramp = ramp_of(subject.model(), settings, looked_at(subject.scene, settings))
+    ramp = ramp_of(subject.model(), settings, looked_at(subject.scene, settings), LONGEST_WINDOW)
     head = (
         f"tolerance {tolerance:g} dB of the sum level of {ramp.sensors[0].name} at equal speed, in "
         f"{100.0 * QUANTILE:g} % of windows of {MILLISECOND.text(ramp.window)}"
@@ -368,6 +373,11 @@ def _chosen(trials: _Trials, tolerance: float, given: Numerics) -> tuple[Numeric
     loudest = next(part for part in by_level if part is not fastest)
     used = [loudest, fastest]
     trials.told.append(f"  tried on {_rpm(loudest)} (loudest), {_rpm(fastest)} (fastest)")
+    difference = _LIMIT * trials.difference(given, _finer(given, given), used)[0]
+    words = f"{_decibel(difference)} beside {_finer(given, given).text}"
+    if difference <= tolerance:
+        return given, [f"  chosen: {given.text}, as the scene has it; confirmed on both parts: {words}"], difference
+    trials.told.append(f"  {given.text}, as the scene has it: {words}")
     share, before = 1.0, None
     failed: list[str] = []
     difference = math.nan

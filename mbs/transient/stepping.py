@@ -110,7 +110,7 @@ class Mark:
         Parameters
         ----------
         ratio : float
-            Its step, as a part of the one of the run that was marked.
+            Length of its step, as a part of the one of the run that was marked.
 
         Notes
         -----
