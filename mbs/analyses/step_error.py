@@ -7,8 +7,9 @@ the run itself begins. The larger error of both parts is stated, for each sensor
 
 Where both signals have come apart as far as they will, their levels tell the error: a method of second order that
 changes by d is 4/3 d away from its limit. Where they still come apart at the end of the part, as with little damping,
-their levels are yet those of their common start, and the distance of the signals themselves bounds the error, as it is
-in the last quarter; it may become larger. Levels that are more than 20 dB below the loudest ones count as these 20 dB.
+their levels are yet those of their common start, and the distance of the signals themselves in the last quarter says by
+how much levels may differ; such errors are told as "up to". A run that does not forget its start may be farther off.
+Levels that are more than 20 dB below the loudest ones count as these 20 dB.
 """
 
 from __future__ import annotations
@@ -70,7 +71,7 @@ class StepCheck:
     errors : array, shape (parts, sensors)
         Estimated error of each level [dB].
     growing : array of bool, shape (parts, sensors)
-        Whether the signals still come apart at the end of the part, so that the error may become larger.
+        Whether the signals still come apart at the end of the part, so that the error is that of their distance.
     """
 
     duration: float
@@ -114,28 +115,30 @@ class StepCheck:
         if self.converged:
             each = ", ".join(f"{name} {self._size(k)}" for k, name in enumerate(self.names))
             return [f"estimated error of the step of {step}: {each}; {how}{self._growth}"]
-        wrong = []
+        wrong, sure = [], False
         for k in np.flatnonzero(self.largest > NOTABLE).tolist():
             at = int(np.argmax(self.errors[:, k]))
+            sure = sure or not self.growing[at, k]
             wrong.append(
                 f"{self.names[k]} {self._size(k)} off, {self.with_step[at, k]:.3g} {self.units[k]} rms and "
                 f"{self.with_half[at, k]:.3g} with half the step"
             )
+        is_not = "is not" if sure else "may not be"
         return [
-            f"warning: this run is not converged with steps of {step}: {'; '.join(wrong)}; estimated {how}"
+            f"warning: this run {is_not} converged with steps of {step}: {'; '.join(wrong)}; estimated {how}"
             f"{self._growth}; take shorter steps in [runup], or --tolerance"
         ]
 
     def _size(self, sensor: int) -> str:
         """The error of a sensor in words."""
         at = int(np.argmax(self.errors[:, sensor]))
-        return f"{'at least ' if self.growing[at, sensor] else ''}{self.errors[at, sensor]:.2g} dB"
+        return f"{'up to ' if self.growing[at, sensor] else ''}{self.errors[at, sensor]:.2g} dB"
 
     @property
     def _growth(self) -> str:
-        """Reason of "at least", where it is said."""
+        """Reason of "up to", where it is said."""
         largest = np.argmax(self.errors, axis=0), np.arange(len(self.names))
-        return "; at least: signals still come apart at the end of a part" if self.growing[largest].any() else ""
+        return "; up to: signals still come apart at the end of a part" if self.growing[largest].any() else ""
 
 
 def step_check(model: Model, course: RunUp, record: Recording, highest: float = math.inf) -> StepCheck | None:

@@ -124,9 +124,7 @@ class PartRun:
         )
 
 
-def ramp_of(
-    model: Model, settings: CampbellSettings, sensors: tuple[Sensor, ...], longest: float = LONGEST_WINDOW
-) -> Ramp:
+def ramp_of(model: Model, settings: CampbellSettings, sensors: tuple[Sensor, ...]) -> Ramp:
     """Cut the ramp of a model into parts.
 
     Parameters
@@ -134,11 +132,10 @@ def ramp_of(
     model : Model
         Scene with a law; held speeds before and after its ramp are in no part.
     settings : CampbellSettings
-        Highest frequency, and window; a window that is left out, and one that is longer, is shortened to `longest`.
+        Highest frequency, and window; a window that is left out, and one longer than `LONGEST_WINDOW`, is shortened to
+        that.
     sensors : tuple of Sensor
         Whose levels are looked at.
-    longest : float
-        Longest window, as a part of the ramp.
 
     Raises
     ------
@@ -156,7 +153,7 @@ def ramp_of(
     coarsest = _coarsest(course, settings.highest)
     # Whole numbers of the coarsest steps, so that windows of all steps are at the same speeds.
     unit = 8.0 * coarsest
-    window = min(whole.window, longest * ramp.duration)
+    window = min(whole.window, LONGEST_WINDOW * ramp.duration)
     window = unit * max(round(window / unit), math.ceil(LEAST_PERIODS / settings.highest / unit - 1e-9))
     length = WINDOWS * window
     first, count = float(ramp.time[0]), int(ramp.duration / length + 1e-9)

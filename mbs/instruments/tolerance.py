@@ -76,9 +76,6 @@ SCOUT = 1.0 / 8.0
 LEAST_SCOUT = 0.25
 """Shortest such run [s], as long as bodies ring; a ramp that is shorter is run as it is."""
 
-LONGEST_WINDOW = 1.0 / 200.0
-"""Longest window, as a part of the ramp, so that what confirms the settings of the scene costs a fifth of the run."""
-
 LEAST_PARTS = 6
 """Parts of a ramp: two to choose by, one to confirm, and none of them neighbours."""
 
@@ -260,7 +257,7 @@ def within(
         raise InputError(f"tolerance: got {tolerance!r} dB; allowed: {ALLOWED}")
     settings = settings or subject.scene.campbell
     numerics = Numerics.of(subject.scene)
-    ramp = ramp_of(subject.model(), settings, looked_at(subject.scene, settings), LONGEST_WINDOW)
+    ramp = ramp_of(subject.model(), settings, looked_at(subject.scene, settings))
     head = (
         f"tolerance {tolerance:g} dB of the sum level of {ramp.sensors[0].name} at equal speed, in "
         f"{100.0 * QUANTILE:g} % of windows of {MILLISECOND.text(ramp.window)}"
@@ -373,7 +370,10 @@ def _chosen(trials: _Trials, tolerance: float, given: Numerics) -> tuple[Numeric
     loudest = next(part for part in by_level if part is not fastest)
     used = [loudest, fastest]
     trials.told.append(f"  tried on {_rpm(loudest)} (loudest), {_rpm(fastest)} (fastest)")
-    difference = _LIMIT * trials.difference(given, _finer(given, given), used)[0]
+    for asked in ([loudest], used):
+        difference = _LIMIT * trials.difference(given, _finer(given, given), asked)[0]
+        if difference > tolerance:
+            break
     words = f"{_decibel(difference)} beside {_finer(given, given).text}"
     if difference <= tolerance:
         return given, [f"  chosen: {given.text}, as the scene has it; confirmed on both parts: {words}"], difference

@@ -105,7 +105,10 @@ class TestEstimate:
         long, short = ran(scene, 2e-5).steps, ran(scene, 2.5e-6).steps
         assert not long.converged and long.largest.max() > NOTABLE > short.largest.max() and short.converged
         (line,) = long.lines
-        assert line.startswith("warning: this run is not converged with steps of 20 us: ")
+        beginnings = (
+            f"warning: this run {words} converged with steps of 20 us: " for words in ("is not", "may not be")
+        )
+        assert line.startswith(tuple(beginnings))
         assert " dB off, " in line and "with half the step" in line
         assert line.endswith("take shorter steps in [runup], or --tolerance")
         (line,) = short.lines
@@ -116,7 +119,7 @@ class TestEstimate:
         found = ran(with_duration(read_scene("nu308_rigid"), 0.1), 1e-5).steps
         assert found.growing[:, 0].any()
         (line,) = found.lines
-        assert "at least" in line and "signals still come apart at the end of a part" in line
+        assert "up to" in line and "signals still come apart at the end of a part" in line
 
     def test_where_nothing_can_be_compared_nothing_is_said(self, swinging):
         found = ran(with_duration(swinging, 0.02), 2e-5)
