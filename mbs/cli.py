@@ -126,6 +126,7 @@ def _shapes(command: argparse.ArgumentParser) -> None:
 def _runup(command: argparse.ArgumentParser) -> None:
     """Add the options of runs in time."""
     _parallel(command)
+    _level_tolerance(command)
     command.add_argument(
         "--spectrum-at",
         metavar="SPEED",
@@ -205,13 +206,18 @@ def _campbell(command: argparse.ArgumentParser) -> None:
         help="runs more of each law, up to 8, with laws that are wrong by the errors of the map: a band of the sum "
         "level; each costs a run (0)",
     )
+    _level_tolerance(command)
+    command.add_argument("--modes", action="store_true", help="draw in the linear modes, with the films of each run")
+
+
+def _level_tolerance(command: argparse.ArgumentParser) -> None:
+    """Add the tolerance of the levels of a run-up."""
     command.add_argument(
         "--tolerance",
         metavar="LEVEL",
         help="of one law: choose step, slices and cut-off by short trials so that the sum level at equal speed keeps "
-        'it, such as "1 dB"; with --auto films, supply and roughness, too',
+        'it, such as "1 dB"; with --auto films, supply and roughness, too; a choice is kept and used again',
     )
-    command.add_argument("--modes", action="store_true", help="draw in the linear modes, with the films of each run")
 
 
 def _recorded(command: argparse.ArgumentParser) -> None:
@@ -398,8 +404,8 @@ def _scene_command(commands: Any, name: str, words: str, compares: bool) -> argp
         command.add_argument("-o", "--output", metavar="OUT.nc", help="result as netCDF")
         command.add_argument("--plot", metavar="FIG.png", help="figure; also .pdf, .svg")
     if name != "variants":
-        # That of a Campbell diagram is one of levels, and stands without --auto, too.
-        _auto(command, tolerance=name != "campbell")
+        # That of a run-up is one of levels, and stands without --auto, too.
+        _auto(command, tolerance=name not in ("campbell", "runup"))
     return command
 
 

@@ -19,9 +19,10 @@ settings.load_profile("ci" if os.environ.get("CI") else "developer")
 
 @pytest.fixture(scope="session", autouse=True)
 def own_reductions() -> Iterator[None]:
-    """Keep reductions of finite-element bodies out of the user's folder, in programs that tests start too."""
+    """Keep reductions of bodies, and choices, out of the user's folder, in programs that tests start too."""
     with tempfile.TemporaryDirectory() as folder, pytest.MonkeyPatch.context() as patch:
         patch.setenv("EHDMAPS_REDUCED", folder)
+        patch.setenv("EHDMAPS_CHOICES", folder)
         yield
 
 

@@ -23,6 +23,7 @@ from mbs.analyses.case import Case, Failed, Progress, as_cases, side_by_side, si
 from mbs.analyses.operating import held, operating, states_of
 from mbs.analyses.ramp import recorded_run, rehearsed, run_course
 from mbs.analyses.sensors import chosen_sensors, followed_orders
+from mbs.analyses.step_error import StepCheck, step_check
 from mbs.bearings.bearing_element import BearingElement, RingElement, RollerElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.roller_contacts import RollerContacts
@@ -34,7 +35,7 @@ from mbs.model.elements import Element, Operation, Sensor
 from mbs.model.equilibrium import equilibrium
 from mbs.output.campbell_table import campbell_dataset, of_sensors
 from mbs.output.files import described
-from mbs.output.results import BAND, with_states
+from mbs.output.results import BAND, STEP_ERROR, with_states
 from mbs.scene.assembly import Model, choice_attributes, law_attributes
 from mbs.scene.scene import Scene
 from mbs.settings import CampbellSettings, RunUp
@@ -176,6 +177,8 @@ class LawRun:
     level_error : tuple of array, shape (windows,), or None
         Band of the sum level of each sensor, either way [dB]: its largest difference in runs whose laws are wrong by
         the errors that the map states. None where no such runs were asked for, or the law states no errors.
+    steps : StepCheck or None
+        Errors of its levels by its step, up to the highest frequency; None where that was not possible.
     """
 
     case: Case
@@ -184,6 +187,7 @@ class LawRun:
     modes: Sweep | None
     seconds: float
     level_error: tuple[FloatArray, ...] | None = None
+    steps: StepCheck | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -295,6 +299,8 @@ def campbell(
         part = campbell_dataset(labels, [entry.spectra[place] for entry in runs], Reference.of(sensor), sensor.name)
         errors = [np.full(known.size, np.nan) if run.level_error is None else run.level_error[place] for run in runs]
         part["sum_level_error"] = (("law", "speed"), np.array(errors), {"units": "dB", "long_name": words})
+        by_step = [np.nan if run.steps is None else run.steps.of(sensor.name) for run in runs]
+        part["step_error"] = ("law", np.array(by_step), STEP_ERROR)
         parts.append(part)
     dataset = of_sensors(parts)
     dataset = with_states(dataset, [states_of(entry.case.model) for entry in runs], ("law",))
@@ -353,7 +359,7 @@ def _runs(
             return _one(cases[index].model, look, told, with_modes)
         if index in lost:
             raise AnalysisError(lost[index])
-        return _sum_levels(_one(with_changed_laws(cases[index].model, change, signs), look, told, False).spectra)
+        return _sum_levels(_one(with_changed_laws(cases[index].model, change, signs), look, told, False, False).spectra)
 
     tell(0, total)
     made = side_by_side(
@@ -373,7 +379,7 @@ def _runs(
                 part = "" if signs is None else ", a run of its band"
                 lost.setdefault(index, f"{cases[index].label}{part}: {found.error}")
             elif isinstance(found, _Made):
-                runs[index] = LawRun(cases[index], *found)
+                runs[index] = LawRun(cases[index], *found[:4], steps=found.steps)
             elif index not in lost:
                 levels.setdefault(index, []).append(found)
                 if len(levels[index]) == bands:
@@ -402,13 +408,15 @@ class _Made(NamedTuple):
     spectra: tuple[RunUpSpectra, ...]
     modes: Sweep | None
     seconds: float
+    steps: StepCheck | None
 
 
-def _one(model: Model, look: _Look, told: Callable[[int], None], with_modes: bool) -> _Made:
-    """Run up with one law; all sensors of the scene are recorded."""
+def _one(model: Model, look: _Look, told: Callable[[int], None], with_modes: bool, check: bool = True) -> _Made:
+    """Run up with one law, and check its step; all sensors of the scene are recorded."""
     begin = time.perf_counter()
-    record = recorded_run(model, look.course, model.scene.sensors, told)
+    record = recorded_run(model, look.course, model.scene.sensors, told, marks=check)
     seconds = time.perf_counter() - begin
+    checked = step_check(model, look.course, record, look.settings.highest) if check else None
     settings, orders = look.settings, [order for order, _ in look.orders]
     spectra = []
     places = {sensor.name: place for place, sensor in enumerate(model.scene.sensors)}
@@ -416,7 +424,7 @@ def _one(model: Model, look: _Look, told: Callable[[int], None], with_modes: boo
         signal = RunSignal(record.time, record.speed, record.angle, record.signals[:, places[sensor.name]])
         reference = Reference.of(sensor).value
         spectra.append(run_up_spectra(signal, reference, settings.highest, settings.window, orders))
-    return _Made(record, tuple(spectra), _modes(model, spectra[0]) if with_modes else None, seconds)
+    return _Made(record, tuple(spectra), _modes(model, spectra[0]) if with_modes else None, seconds, checked)
 
 
 def _modes(model: Model, spectra: RunUpSpectra) -> Sweep:

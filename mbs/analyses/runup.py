@@ -14,13 +14,14 @@ import xarray as xr
 from ehdmaps.errors import AnalysisError, InputError
 from mbs.analyses.case import Case, Failed, Progress, side_by_side, silent
 from mbs.analyses.operating import held, states_of
-from mbs.analyses.ramp import StepCheck, course_of, step_check
+from mbs.analyses.ramp import course_of
 from mbs.analyses.recorded import simulated
 from mbs.analyses.soundness import Unsound, unsound_run, with_unsound
+from mbs.analyses.step_error import StepCheck, step_check
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.output.files import described
-from mbs.output.results import run_dataset, with_energy, with_states
+from mbs.output.results import STEP_ERROR, run_dataset, with_energy, with_states
 from mbs.scene.assembly import Model, choice_attributes, law_attributes
 from mbs.scene.scene import Scene
 from mbs.settings import RunUp
@@ -28,7 +29,7 @@ from mbs.timedata.netcdf_file import signal_variables
 from mbs.transient.run import Options, Recording
 from mbs.transient.run import run as run_system
 
-_KEPT = Options(states=True, every_step=True)
+_KEPT = Options(states=True, every_step=True, marks=True)
 """States at the samples, and sensors at every step: fewer would fold what lies above their band into it."""
 
 
@@ -51,7 +52,7 @@ class RunUpResult:
     unsound : tuple of Unsound
         Why its figures mean nothing; empty where they do.
     steps : StepCheck or None
-        Whether its steps are short enough, measured; None where that was not.
+        Errors of its signals by its step, estimated; None where that was not possible.
     """
 
     model: Model
@@ -156,7 +157,9 @@ def _run(model: Model, told: Callable[[int], None], settings: RunUp | None = Non
         signals = signal_variables(simulated([(model.label, model, record)]))
         dataset = dataset.merge(signals).assign_attrs({**signals.attrs, **dataset.attrs})
     unsound = unsound_run(model, record)
-    checked = None if unsound else step_check(model, course, start)
+    checked = None if unsound else step_check(model, course, record)
+    if checked is not None:
+        dataset["step_error"] = ("sensor", checked.largest, STEP_ERROR)
     return _Made(course, record, seconds, with_unsound(dataset, unsound), unsound, checked)
 
 

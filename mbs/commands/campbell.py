@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import dataclasses
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -25,7 +24,8 @@ from mbs.commands.auto import analysed
 from mbs.commands.campbell_recorded import measured_lines, measured_run, read_look, recorded_runs, signal_problems
 from mbs.commands.cases import load_cases
 from mbs.commands.common import Looked, Told, marked, unsound_lines, write
-from mbs.instruments.tolerance import Tolerated, read_tolerance, within
+from mbs.instruments.commands.tolerance import asked_tolerance, several_problems, tolerated_case
+from mbs.instruments.tolerance import Tolerated
 from mbs.linearised.sweep_result import ComplexSweep, Sweep
 from mbs.model.elements import Sensor
 from mbs.output.campbell_table import (
@@ -117,10 +117,7 @@ class _Ran(NamedTuple):
 
 def _ran(asked: _Asked, with_modes: bool, workers: int) -> _Ran:
     """Choose the numerical settings where a tolerance is given, and run up."""
-    cases, tolerated = asked.cases, None
-    if asked.tolerance is not None and cases[0].subject is not None:
-        tolerated = within(cases[0].subject, asked.tolerance, asked.settings, Told("trial"))
-        cases = [dataclasses.replace(cases[0], model=tolerated.subject.model(), subject=tolerated.subject)]
+    cases, tolerated = tolerated_case(asked.cases, asked.tolerance, asked.settings)
     found = campbell(
         cases,
         asked.settings,
@@ -147,14 +144,7 @@ def _asked(arguments: argparse.Namespace) -> _Asked:
     bands = int(text) if text.isascii() and text.isdigit() and len(text) < 4 else -1
     if not 0 <= bands <= MOST_BANDS:
         problems.append(f"--bands: got {text!r:.40}; allowed: a whole number of runs, 0 to {MOST_BANDS}")
-    tolerance = None
-    # A part of a stiffness or damping is for --auto alone, which chooses physics by it.
-    of_levels = not (getattr(arguments, "auto", False) and (arguments.tolerance or "").rstrip().endswith("%"))
-    if arguments.tolerance is not None and of_levels:
-        try:
-            tolerance = read_tolerance(arguments.tolerance)
-        except InputError as error:
-            problems.append(f"--tolerance: {error.problems[0]}")
+    tolerance = asked_tolerance(arguments, problems)
     from mbs.output.campbell_plot import MOST_LAWS
 
     looked = read_look(arguments, problems)
@@ -170,11 +160,7 @@ def _asked(arguments: argparse.Namespace) -> _Asked:
             f"--law, --map, --films, --supply, --clearance, --load-factor: got {len(cases)} combinations; allowed: up "
             f"to {MOST_LAWS} side by side"
         )
-    if arguments.tolerance is not None and of_levels and len(cases) > 1:
-        problems.append(
-            f"--tolerance: got {len(cases)} combinations of laws, films and the like; allowed: one, for which step, "
-            "slices and cut-off are chosen"
-        )
+    problems += several_problems(tolerance, cases)
     scene = cases[0].model.scene
     settings = looked.settings(scene.campbell)
     read = [arguments.scene, *(getattr(arguments, "map", None) or ()), *scene.files, *looked.files]
@@ -263,6 +249,7 @@ def _report(entry: LawRun, sensors: Sequence[Sensor]) -> list[str]:
             for place, (sensor, spectra) in enumerate(zip(sensors, entry.spectra, strict=True))
         ),
         *(f"  note: {line}" for line in record.notes),
+        *(f"  {line}" for line in (entry.steps.lines if entry.steps else ())),
     ]
     if not sensors[1:] and entry.modes is not None and entry.spectra[0].peaks:
         lines += [PEAKS, *(_peak(peak, entry.modes) for peak in entry.spectra[0].peaks)]

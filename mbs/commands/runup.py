@@ -17,7 +17,7 @@ from ehdmaps.units import RPM
 from ehdmaps.workers import available_cores
 from mbs.analyses.case import Case
 from mbs.analyses.film_errors import film_course
-from mbs.analyses.ramp import NOTABLE, StepCheck, resolution, silent_run, step_lines
+from mbs.analyses.ramp import resolution, silent_run, step_lines
 from mbs.analyses.reach import POINTS, Fade, axes_outside, fade_lines, fade_of, outside_lines, source_of, sources_of
 from mbs.analyses.recorded import amplitudes_at, simulated
 from mbs.analyses.runup import RunUpResult, RunUps, runup_problems, runups
@@ -25,13 +25,15 @@ from mbs.commands.auto import analysed
 from mbs.commands.campbell_recorded import read_source, signal_problems
 from mbs.commands.cases import load_cases
 from mbs.commands.common import Looked, Told, read_option, unsound_lines, write
+from mbs.instruments.commands.tolerance import asked_tolerance, several_problems, tolerated_case
+from mbs.instruments.tolerance import Tolerated
 from mbs.output.files import described
 from mbs.output.model_text import heading, held_lines
 from mbs.output.result_text import drive_lines, energy_lines, signal_lines
 from mbs.output.results import with_spectra
 from mbs.output.time_files import is_time_data, read_time_data, write_time_data
 from mbs.planning.question import in_time
-from mbs.scene.fields import HERTZ, MICROSECOND, MILLISECOND
+from mbs.scene.fields import HERTZ, MILLISECOND
 from mbs.scene.reader import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
 from mbs.scene.scene import Scene
 from mbs.settings import HIGHEST
@@ -62,10 +64,11 @@ class _Spectra:
 
 @dataclass(frozen=True, eq=False)
 class _Asked:
-    """Laws that are run, and which spectra are wanted."""
+    """Laws that are run, which spectra are wanted, and the tolerance of levels if there is one [dB]."""
 
     cases: list[Case]
     spectra: _Spectra
+    tolerance: float | None = None
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
@@ -76,10 +79,11 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     done = analysed(
         arguments,
         _asked,
-        lambda asked: (runups(asked.cases, Told("step"), keep_partial=True, workers=workers), asked),
+        lambda asked: _ran(asked, workers),
         lambda asked: _looks_at(asked.cases[0].model.scene),
+        own_tolerance=True,
     )
-    found, asked = done.result
+    found, asked, tolerated = done.result
     names = tuple(label if found.runs[1:] else entry.model.label for label, entry in _pairs(found))
     data = _signals(found, names)
     spectra = _spectra_of(data, asked.spectra, found.runs[0].model.scene) if data else []
@@ -88,22 +92,31 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     unsound = [
         line for label, entry in _pairs(found) for line in unsound_lines(entry.unsound, label if found.runs[1:] else "")
     ]
-    lines = [*unsound, *done.lines]
-    outside = bool(unsound)
+    lines = [*unsound, *done.lines, *(tolerated.lines if tolerated else ())]
+    outside = bool(unsound) or (tolerated is not None and not tolerated.met)
     for label, entry in _pairs(found):
         lines += [*([label] if found.runs[1:] else []), *_report(entry)]
         outside = outside or any(entry.record.outside.values())
     lines += signal_lines(data.records) if data else []
     lines += [f"warning: {line}" for line in found.failed]
-    lines += write(arguments, with_spectra(found.dataset, spectra), figure)
+    dataset = with_spectra(found.dataset, spectra)
+    dataset = dataset.assign_attrs(tolerance="\n".join(tolerated.lines)) if tolerated else dataset
+    lines += write(arguments, dataset, figure)
     if getattr(arguments, "signals", None) and data:
         lines += write_time_data(arguments.signals, data)
     return "\n".join(lines), 1 if outside or found.failed else done.status
 
 
+def _ran(asked: _Asked, workers: int) -> tuple[RunUps, _Asked, Tolerated | None]:
+    """Choose the numerical settings where a tolerance is given, and run."""
+    cases, tolerated = tolerated_case(asked.cases, asked.tolerance)
+    return runups(cases, Told("step"), keep_partial=True, workers=workers), asked, tolerated
+
+
 def _asked(arguments: argparse.Namespace) -> _Asked:
-    """Laws and spectra; all problems at once, before anything runs."""
+    """Laws, spectra and tolerance; all problems at once, before anything runs."""
     problems: list[str] = []
+    tolerance = asked_tolerance(arguments, problems)
     wanted = _read_spectra(arguments, problems)
     problems += [
         f"--{name.replace('_', '-')}: stands beside a scene, whose speed is known; allowed: with a recorded run"
@@ -119,6 +132,7 @@ def _asked(arguments: argparse.Namespace) -> _Asked:
         problems.append(
             f"--law, --map, --films, --supply, --clearance: got {len(cases)} cases; allowed: {len(COLOURS)}"
         )
+    problems += several_problems(tolerance, cases)
     read = [arguments.scene, *(getattr(arguments, "map", None) or ()), *scene.files]
     problems += signal_problems(arguments, read, len(cases))
     if (getattr(arguments, "signals", None) or wanted.speeds) and not scene.sensors:
@@ -135,7 +149,7 @@ def _asked(arguments: argparse.Namespace) -> _Asked:
             problems += [f"--spectrum-at: {line}" for line in error.problems]
     if problems:
         raise InputError(tuple(dict.fromkeys(problems)))
-    return _Asked(cases, wanted)
+    return _Asked(cases, wanted, tolerance)
 
 
 def _read_spectra(arguments: argparse.Namespace, problems: list[str]) -> _Spectra:
@@ -235,7 +249,7 @@ def _report(found: RunUpResult) -> list[str]:
         f"{result.iterations / max(result.steps, 1):.3g} Newton iterations a step, "
         f"{1e6 * found.seconds / max(result.steps, 1):.0f} us a step",
         *step_lines(resolution(model, found.course)),
-        *_step_check_lines(found.steps),
+        *(found.steps.lines if found.steps else ()),
         *(f"note: {line}" for line in result.notes),
     ]
     end = POINTS if source_of(model) == POINTS else "the map"
@@ -252,25 +266,6 @@ def _report(found: RunUpResult) -> list[str]:
     lines += outside_lines(outside, "{} calls outside the map", axes_outside(model, fastest), sources=sources_of(model))
     # The equilibria of this line are no part of the run, whose calls were counted above.
     return lines + film_course(model, (float(result.speed[0]), float(result.speed[-1])))
-
-
-def _step_check_lines(found: StepCheck | None) -> list[str]:
-    """A line on what half of the step changes in the first part of the run."""
-    if found is None:
-        return []
-    worst = int(np.argmax(found.errors))
-    half, step = MICROSECOND.text(0.5 * found.step), MICROSECOND.text(found.step)
-    first = f"the first {found.duration:.4g} s again with steps of {half}"
-    if found.converged:
-        return [f"{first}: signals are right within {100.0 * found.errors[worst]:.2g} % (rms, {found.names[worst]})"]
-    wrong = [
-        f"{found.names[k]} {found.with_step[k]:.3g} {found.units[k]} rms, and {found.with_half[k]:.3g}"
-        for k in np.flatnonzero(found.errors > NOTABLE)
-    ]
-    return [
-        f"warning: this run is not converged: {first} has other signals ({'; '.join(wrong)} with these, more than "
-        f"{100.0 * NOTABLE:g} % off with {step}); take shorter steps in [runup], until they agree"
-    ]
 
 
 def _looks_at(scene: Scene) -> Looked:

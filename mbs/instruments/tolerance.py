@@ -1,7 +1,9 @@
 """Step, slices and cut-off of a run-up that keep its sum level within a tolerance, found by short trials.
 
 Two parts of the ramp are run again and again: the loudest one, as a run through the whole ramp in an eighth of its
-time shows it, and the fastest one. The step is halved from the longest one that the highest frequency allows on, until
+time shows it, and the fastest one. First with the settings of the scene, and with half its step, twice its slices and
+all modes. Where that changes the level by less than the tolerance, the settings stay: no part has helped to choose
+them, and both confirm them. Else the step is halved from the longest one that the highest frequency allows on, until
 the sum level at equal speed hardly changes; then slices are doubled from a few on, and modes are added, by twice that
 step. What was chosen has to prove itself on the loudest part of the ramp that was not used to choose, beside half the
 step, twice the slices and all modes. Where it fails, that part helps to choose, and another one is asked.
@@ -368,6 +370,14 @@ def _chosen(trials: _Trials, tolerance: float, given: Numerics) -> tuple[Numeric
     loudest = next(part for part in by_level if part is not fastest)
     used = [loudest, fastest]
     trials.told.append(f"  tried on {_rpm(loudest)} (loudest), {_rpm(fastest)} (fastest)")
+    for asked in ([loudest], used):
+        difference = _LIMIT * trials.difference(given, _finer(given, given), asked)[0]
+        if difference > tolerance:
+            break
+    words = f"{_decibel(difference)} beside {_finer(given, given).text}"
+    if difference <= tolerance:
+        return given, [f"  chosen: {given.text}, as the scene has it; confirmed on both parts: {words}"], difference
+    trials.told.append(f"  {given.text}, as the scene has it: {words}")
     share, before = 1.0, None
     failed: list[str] = []
     difference = math.nan

@@ -272,6 +272,9 @@ def _is_rigid_in_x(model: Model, body: str) -> bool:
 BAND = "band, either way, by the errors that the map states, of"
 """How datasets call the bands; they are NaN where none is stated."""
 
+STEP_ERROR = {"units": "dB", "long_name": "estimated error of the level by the step, from parts with half of it"}
+"""Attributes of the variable `step_error` of runs in time."""
+
 LEFT_OUT = "what the film law with memory leaves out, true less found, to first order,"
 """How datasets call the part of the film law; it is NaN where it is not known."""
 

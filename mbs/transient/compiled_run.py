@@ -22,7 +22,7 @@ from mbs.transient.linear_part import LinearPart
 from mbs.transient.run_arrays import Course, Energies, Numbers, Records, State
 from mbs.transient.run_elements import RunElements
 from mbs.transient.run_kernel import advance, advance_anew, observe
-from mbs.transient.stepping import ITERATIONS, Method, Stepper
+from mbs.transient.stepping import ITERATIONS, Mark, Method, Stepper
 
 _NOTHING = 1e-15
 """Damping of a pair of modes, as a part of the largest, that is round-off."""
@@ -182,6 +182,18 @@ class CompiledRun:
         """Displacement and velocity of the coordinates, and states of the elements, after the last step."""
         p, v = self._state.motion[:2]
         return self._modes @ p, self._modes @ v, self._elements.states(self._stepper.states)
+
+    def mark(self, time: float) -> Mark:
+        """The state at a time, that of the last step.
+
+        Parameters
+        ----------
+        time : float
+            The time [s].
+        """
+        motion = np.array([self._modes @ part for part in self._state.motion])
+        states = tuple(self._elements.states(self._stepper.states))
+        return Mark(time, motion, self._state.forces[0] @ self._expand, states)
 
     @property
     def sums(self) -> Sums:

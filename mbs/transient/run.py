@@ -29,13 +29,16 @@ from mbs.settings import Settings
 from mbs.transient.compiled_run import CompiledRun
 from mbs.transient.energy import EnergyBalance, Sums, balance, stored_energy
 from mbs.transient.run_elements import in_python
-from mbs.transient.stepping import Stepper
+from mbs.transient.stepping import Mark, Stepper
 
 HALVINGS = 10
 """How often a step is halved at most, where Newton or the error estimate asks for it."""
 
 CHUNK = 2000
 """Steps between two looks at the caller."""
+
+MARKS = 100
+"""Marks of a run at most; the first one is its start."""
 
 MOST_RECORDED = 200_000_000
 """Numbers that a run may record: 1.6 GB."""
@@ -85,6 +88,8 @@ class Recording:
         Makes the energy balance; `energy` has it.
     drive : DriveAccount or None
         Energies of the drive; None where the speed is prescribed.
+    marks : tuple of Mark
+        States from which the run can go on, rising in time; none if they were not asked for.
     """
 
     time: FloatArray
@@ -105,10 +110,11 @@ class Recording:
     states: States
     account: Callable[[], EnergyBalance]
     drive: DriveAccount | None = None
+    marks: tuple[Mark, ...] = ()
 
     def __getstate__(self) -> dict[str, Any]:
-        """For other processes, which have no system to account for: with the balance made."""
-        return {**self.__dict__, "account": functools.partial(_the_same, self.energy)}
+        """For other processes, which have no system to account for or to go on with: with the balance made."""
+        return {**self.__dict__, "account": functools.partial(_the_same, self.energy), "marks": ()}
 
     @functools.cached_property
     def energy(self) -> EnergyBalance:
@@ -133,11 +139,14 @@ class Options:
         Whether sensors are recorded at every step instead of at the samples, so that nothing is folded into their band.
     compiled : bool
         False: the reference, step by step in Python.
+    marks : bool
+        Whether states are kept from which the run can go on.
     """
 
     states: bool = False
     every_step: bool = False
     compiled: bool = True
+    marks: bool = False
 
 
 WITH_STATES = Options(states=True)
@@ -154,6 +163,7 @@ def run(
     velocity: FloatArray | None = None,
     progress: Callable[[int], None] | None = None,
     options: Options = Options(),
+    begin: Mark | None = None,
 ) -> Recording:
     """Run a system in time, and record sensors and elements.
 
@@ -175,6 +185,9 @@ def run(
         Told the number of samples done: once for each, some at a time.
     options : Options
         What is kept besides, and whether compiled code is used.
+    begin : Mark, optional
+        State of another run of this system from which to go on, at its time, instead of from a motion at time zero;
+        that run may have had other steps.
 
     Raises
     ------
@@ -190,7 +203,15 @@ def run(
     if isinstance(speed, DrivenSpeed):
         _check_driven(system)
         given = followed = speed.started()
-    stepper = Stepper(system, given, settings, start[0], start[1])
+    if begin is not None:
+        if followed is not None:
+            raise InputError(
+                "run, begin: got a mark beside a speed by torques, which has a state of its own; allowed: a prescribed "
+                "speed, such as the one that was recorded"
+            )
+        start = [begin.motion[0], begin.motion[1]]
+    first = 0.0 if begin is None else begin.time
+    stepper = Stepper(system, given, settings, start[0], start[1], begin)
     engine: _Engine
     notes = _notes(system) if options.compiled else ()
     if options.compiled and not notes:
@@ -198,13 +219,14 @@ def run(
         engine = CompiledRun(system, given, settings, stepper, *records)
     else:
         engine = _Reference(stepper, plan, settings)
-    begin = stored_energy(system, stepper.q, stepper.v, stepper.states, Operation(*given.at(0.0), 0.0))
+    stored = stored_energy(system, stepper.q, stepper.v, stepper.states, Operation(*given.at(first), first))
     shaft = None if followed is None else _Shaft(followed, engine, system)
-    steps, halved = _drive(engine, settings, plan, progress, shaft)
-    last = plan.samples * settings.sample
+    marks = [engine.mark(first)] if options.marks else None
+    steps, halved = _drive(engine, settings, plan, progress, shaft, first, marks)
+    last = first + plan.samples * settings.sample
     end = stored_energy(system, *engine.ends(), Operation(*given.at(last), last))
     outputs, forces, motions = engine.recorded()
-    fine = plan.times(settings)
+    fine = first + plan.times(settings)
     seen_at = np.array([given.at(time) for time in fine.tolist()])
     times, courses = fine[:: plan.stride], seen_at[:: plan.stride]
     ports = [connected.transform.shape[0] for connected in system.elements]
@@ -220,7 +242,7 @@ def run(
         by_speed = [
             element.brought_by_speed(motion, operations) for element, motion in zip(elements, port_motions, strict=True)
         ]
-        return balance(system, engine.sums, begin, end, by_speed)
+        return balance(system, engine.sums, stored, end, by_speed)
 
     return Recording(
         time=times,
@@ -241,6 +263,7 @@ def run(
         states=States(motions[:, 0], motions[:, 1], motions[:, 2]),
         account=account,
         drive=None if followed is None else followed.account(),
+        marks=tuple(marks or ()),
     )
 
 
@@ -344,6 +367,10 @@ class _Engine(Protocol):
         """Displacement and velocity of the coordinates, and states of the elements, after the last step."""
         ...
 
+    def mark(self, time: float) -> Mark:
+        """The state at a time, that of the last step."""
+        ...
+
     def recorded(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Outputs, forces in all ports, and motions of all coordinates, at the samples."""
         ...
@@ -355,31 +382,37 @@ def _drive(
     plan: _Plan,
     progress: Callable[[int], None] | None,
     shaft: _Shaft | None,
+    first: float = 0.0,
+    marks: list[Mark] | None = None,
 ) -> tuple[int, int]:
-    """Step to the end, with halved steps where they are needed; steps made, and steps taken back."""
+    """Step to the end, with halved steps where they are needed, and add marks; steps made, and steps taken back."""
     chunk = CHUNK if shaft is None else max(round(FOLLOWED / settings.step), FEWEST)
     finest = 1 << HALVINGS
     tick = settings.step / finest
     sample = settings.steps_per_sample * finest
     row = sample // plan.stride
     ticks, end = 0, plan.samples * sample
+    apart = end // MARKS
     level = steps = halved = samples = 0
     while ticks < end:
         stride = finest >> level
         count = min(chunk, (end - ticks) // finest) if level == 0 else 1
         reached = ticks + stride * np.arange(1, count + 1)
         rows = np.where(reached % row == 0, reached // row, -1)
-        done, error = engine.steps(np.asarray(reached * tick, dtype=np.float64), stride * tick, rows)
+        done, error = engine.steps(np.asarray(first + reached * tick, dtype=np.float64), stride * tick, rows)
         ticks += done * stride
         steps += done
         if shaft is not None and done:
             shaft.settle(ticks * tick)
+        # At rows, where the run has signals to compare with.
+        if marks is not None and ticks % row == 0 and first + ticks * tick - marks[-1].time >= apart * tick:
+            marks.append(engine.mark(first + ticks * tick))
         if done < count:
             halved += 1
             level += 1
             if level > HALVINGS:
                 raise AnalysisError(
-                    f"time integration: no solution at {ticks * tick:.6g} s with steps of {tick:.3g} s; "
+                    f"time integration: no solution at {first + ticks * tick:.6g} s with steps of {tick:.3g} s; "
                     "start nearer to an equilibrium, or check units and signs of the loads"
                 )
         # The error goes with the third power of the step.
@@ -436,6 +469,10 @@ class _Reference:
     def ends(self) -> tuple[FloatArray, FloatArray, Sequence[Any]]:
         """Displacement, velocity and states after the last step."""
         return self._stepper.q, self._stepper.v, self._stepper.states
+
+    def mark(self, time: float) -> Mark:
+        """The state at a time, that of the last step."""
+        return self._stepper.mark(time)
 
     def recorded(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Outputs, forces and motions."""

@@ -24,6 +24,7 @@ J. Chung, G. M. Hulbert, J. Appl. Mech. 60 (1993) 371-375. M. Arnold, O. Bruels,
 from __future__ import annotations
 
 import cmath
+import dataclasses
 import math
 from dataclasses import dataclass
 from typing import Any
@@ -82,6 +83,44 @@ class Method:
         return abs(self.beta - 1.0 / 6.0) * h * h
 
 
+@dataclass(frozen=True, eq=False)
+class Mark:
+    """State of a run at a time, from which it can go on with other steps.
+
+    Attributes
+    ----------
+    time : float
+        When that was [s].
+    motion : array, shape (4, n)
+        Displacement, velocity, acceleration, and what the method carries of it, of all coordinates.
+    forces : array, shape (ports,)
+        Forces of all elements in their ports [N or N m].
+    states : tuple
+        What elements with states of their own have, see `Element.advance`.
+    """
+
+    time: float
+    motion: FloatArray
+    forces: FloatArray
+    states: tuple[Any, ...]
+
+    def stepped(self, ratio: float) -> Mark:
+        """The mark for a run whose steps have another length.
+
+        Parameters
+        ----------
+        ratio : float
+            Length of its step, as a part of the one of the run that was marked.
+
+        Notes
+        -----
+        What the method carries is the acceleration at a time that is off by a part of the step.
+        """
+        q, v, acceleration, carried = self.motion
+        shifted = acceleration + ratio * (carried - acceleration)
+        return dataclasses.replace(self, motion=np.array([q, v, acceleration, shifted]))
+
+
 class Stepper:
     """State of a system in time, and how it goes on by a step.
 
@@ -108,6 +147,7 @@ class Stepper:
         settings: Settings,
         displacement: FloatArray,
         velocity: FloatArray,
+        begin: Mark | None = None,
     ) -> None:
         self._system, self._speed, self._settings = system, speed, settings
         ends = np.cumsum([0, *(connected.transform.shape[0] for connected in system.elements)]).tolist()
@@ -128,11 +168,16 @@ class Stepper:
         self.q, self.v = displacement.copy(), velocity.copy()
         self.iterations = 0
         self.outside = np.zeros(len(self._elements), dtype=np.int64)
-        self._residual(self.q, self.v, np.zeros(system.size), 0.0)
+        time = 0.0 if begin is None else begin.time
+        self._residual(self.q, self.v, np.zeros(system.size), time)
         self.states = list(self._trial)
         self.acceleration = np.asarray(np.linalg.solve(system.mass, -self._unbalanced), dtype=np.float64)
         self.carried = self.acceleration.copy()
-        self.account = Account(system, [rows for _, rows in self._elements], self._instant(0.0))
+        if begin is not None:
+            # What the films of a system at rest in this pose would do has been evaluated; they are in motion.
+            self.q, self.v, self.acceleration, self.carried = begin.motion.copy()
+            self.states, self._port_force[:] = list(begin.states), begin.forces
+        self.account = Account(system, [rows for _, rows in self._elements], self._instant(time))
 
     def step(self, time: float, h: float) -> float:
         """Make a step and return the estimate of its error; leave the state as it is where that is too large.
@@ -173,6 +218,17 @@ class Stepper:
             self.states = list(self._trial)
             self.account.add(h, self._instant(time))
         return error
+
+    def mark(self, time: float) -> Mark:
+        """The state at a time, that of the last step.
+
+        Parameters
+        ----------
+        time : float
+            The time [s].
+        """
+        motion = np.array([self.q, self.v, self.acceleration, self.carried])
+        return Mark(time, motion, self._port_force.copy(), tuple(self.states))
 
     def _instant(self, time: float) -> Instant:
         """The end of the step that was evaluated last."""
