@@ -142,7 +142,7 @@ class MadeMap:
 
     @property
     def refused(self) -> str:
-        """Why no contact law can be made of it; empty where one can, or where that was not looked at."""
+        """Reason why no contact law can be made of it; empty where one can, or where that was not looked at."""
         return str(self.generated.dataset.attrs.get(REFUSED, ""))
 
     @property
@@ -426,7 +426,7 @@ def _verdicts(
 
 
 def _without_memory(scene: Scene) -> str:
-    """What of a scene films with memory do not go with, in words; empty where they do."""
+    """Name the part of a scene that films with memory do not go with; empty where they do."""
     bearings = scene.bearings
     if any(entry.centrifugal and not entry.rollers_as_bodies for entry in bearings):
         return "a centrifugal load of massless rollers"

@@ -158,7 +158,7 @@ def centrifugal_verdict(found: PlanResult, ranges: Sequence[Range]) -> Verdict:
         "centrifugal load",
         [entry.centrifugal for entry in found.scene.bearings],
         size,
-        f"changes k or c of a roller by {up_to(size)} at {RPM.text(fastest)} ({beside(size, tolerance)})",
+        f"it changes k or c of a roller by {up_to(size)} at {RPM.text(fastest)} ({beside(size, tolerance)})",
         "centrifugal in [[bearings]]",
     )
 
@@ -195,7 +195,7 @@ def rollers_verdict(found: PlanResult, ranges: Sequence[Range], frequency: float
         "rollers as bodies",
         [entry.rollers_as_bodies for entry in found.scene.bearings],
         size,
-        f"changes the stiffness of a roller by {up_to(size)} at {HERTZ.text(frequency)} ({beside(size, tolerance)})",
+        f"it changes the stiffness of a roller by {up_to(size)} at {HERTZ.text(frequency)} ({beside(size, tolerance)})",
         "rollers in [[bearings]]",
     )
 
@@ -208,7 +208,7 @@ def slices_verdict(found: PlanResult, rest: _AtRest, tolerance: float) -> Verdic
     found : PlanResult
         The plan.
     rest : _AtRest
-        Its equilibrium with dry contacts.
+        Equilibrium of the scene with dry contacts.
     tolerance : float
         Accepted change, as a part.
     """
@@ -233,7 +233,7 @@ def coupling_verdict(found: PlanResult, rest: _AtRest, tolerance: float) -> Verd
     Parameters
     ----------
     found, rest, tolerance
-        As for `slices_verdict`.
+        Same as for `slices_verdict`.
     """
     size = rest.change(
         lambda entry: dataclasses.replace(
@@ -244,7 +244,7 @@ def coupling_verdict(found: PlanResult, rest: _AtRest, tolerance: float) -> Verd
         "coupled slices",
         [entry.slices_coupled for entry in found.scene.bearings],
         size,
-        f"changes k of a bearing by {_told(size, tolerance)}",
+        f"it changes k of a bearing by {_told(size, tolerance)}",
         "slices_coupled in [[bearings]]",
     )
 
@@ -255,7 +255,7 @@ def rings_verdict(found: PlanResult, rest: _AtRest, tolerance: float) -> Verdict
     Parameters
     ----------
     found, rest, tolerance
-        As for `slices_verdict`.
+        Same as for `slices_verdict`.
 
     Notes
     -----
@@ -267,7 +267,7 @@ def rings_verdict(found: PlanResult, rest: _AtRest, tolerance: float) -> Verdict
         "ring temperatures and fits",
         [entry.changes_in_operation for entry in found.scene.bearings],
         size,
-        f"matters: an inner ring {WARMER:g} K warmer takes {MICROMETRE.text(taken, 2)} of the clearance, which changes "
+        f"an inner ring {WARMER:g} K warmer takes {MICROMETRE.text(taken, 2)} of the clearance, which changes "
         f"k of a bearing by {_told(size, tolerance)}",
         "thermal and mounting in [[bearings]]",
     )
@@ -304,7 +304,7 @@ def housing_verdict(rest: _AtRest, tolerance: float) -> Verdict:
     Parameters
     ----------
     rest, tolerance
-        As for `slices_verdict`.
+        Same as for `slices_verdict`.
     """
     name, balance = "flexible housing", rest.balance
     bodies = [body.name for body in rest.model.scene.bodies if isinstance(body, FlexibleSpec)]
@@ -329,7 +329,7 @@ def mesh_verdict(rest: _AtRest, tolerance: float) -> Verdict:
     Parameters
     ----------
     rest, tolerance
-        As for `slices_verdict`.
+        Same as for `slices_verdict`.
     """
     name, sizes, on = "gear mesh excitation", [], False
     still = np.zeros(12)
@@ -404,4 +404,4 @@ def _told(size: float, tolerance: float) -> str:
 def _stated(physics: str, has: Sequence[bool], size: float, words: str, key: str) -> Verdict:
     """A verdict on what bearings of the scene have, or some of them."""
     some = f"in {sum(has)} of {len(has)} bearings, " if any(has) and not all(has) else ""
-    return Verdict(physics, any(has), size, f"{some}as the scene has it; it {words}; {key}")
+    return Verdict(physics, any(has), size, f"{some}as the scene has it; {words}; {key}")

@@ -1,4 +1,4 @@
-"""What an analysis asks of a scene: of all speeds that a scene file states, those that the analysis visits.
+"""Question that an analysis asks of a scene: of all speeds that a scene file states, those that the analysis visits.
 
 Loads, films and the physics that matters follow from these. `at_one_speed` is for statics, modes, responses and hammer
 tests, `over_speeds` for sweeps and critical speeds, `in_time` for run-ups.

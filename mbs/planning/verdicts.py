@@ -62,7 +62,7 @@ def shear_effect(state: ClosedContact, lubricant: Lubricant, loads: FloatArray) 
     Returns
     -------
     (float, float)
-        As of `change_felt`; -1 where no load has both solutions.
+        Changes as of `change_felt`; -1 where no load has both solutions.
     """
     both = (solvers.build("reynolds", {"shear": shear}) for shear in ("newtonian", "limiting"))
     pairs = zip(*(_solved(solver, state, lubricant, loads) for solver in both), loads.tolist(), strict=True)
@@ -153,7 +153,7 @@ class Verdict:
 
     @property
     def missing(self) -> tuple[float, float]:
-        """What k and c of a contact lack, as parts: nothing where it is on."""
+        """Errors of k and c of a contact for want of it, as parts: none where it is on."""
         return (0.0, 0.0) if self.on else self.errors
 
     @property
@@ -491,7 +491,7 @@ def beside(size: float, tolerance: float) -> str:
     Parameters
     ----------
     size, tolerance : float
-        As parts.
+        Change, and the accepted one, as parts.
 
     Examples
     --------
