@@ -247,23 +247,22 @@ def _data_entries(job: Job, usual: ReynoldsSolver) -> tuple[Entry, ...]:
     """Entries of what is stated, beside what may be: the oil's coefficient, the law of the solids, the temperature."""
     stated = Flooded(usual)
     other: StructuralLaw = "iso16281" if job.contacts[0].structural_law == "half_space" else "half_space"
-    told: list[tuple[str, ContactModel]] = [(f"rings {RINGS:g} K warmer than told", Warmer(stated, RINGS))]
+    others: list[tuple[str, str, ContactModel]] = [
+        ("temperature", f"rings {RINGS:g} K warmer than told", Warmer(stated, RINGS))
+    ]
     if job.lubricant.pressure_viscosity.coefficient != "none":
         more = f"pressure-viscosity data {DATA - 1.0:.0%} off"
-        told.append((more, MorePiezoviscous(stated, DATA)))
+        others.append(("pressure-viscosity", more, MorePiezoviscous(stated, DATA)))
     try:
         with_law(job.contacts[0], other, job.bearing)
-        told.append(
-            (
-                f"structural law {other} in place of {job.contacts[0].structural_law}",
-                OtherSolids(stated, other, job.bearing),
-            )
-        )
     except InputError:
         pass  # a contact without the lengths that this law needs
+    else:
+        words = f"structural law {other} in place of {job.contacts[0].structural_law}"
+        others.append(("structural law", words, OtherSolids(stated, other, job.bearing)))
     return tuple(
-        Entry(Group(name, model, f"{name}, density {usual.density:g}"), f"as told, not {name}", stated, lacks=name)
-        for name, model in told
+        Entry(Group("as stated", model, f"{name}, density {usual.density:g}"), f"{what} as stated", stated, lacks=name)
+        for what, name, model in others
     )
 
 
