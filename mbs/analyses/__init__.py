@@ -10,6 +10,7 @@ lsa            state space and frequency responses at the equilibrium
 sweep          modes, bearings, responses, critical speeds over speed, of one or more models
 runup          the nonlinear system in time over its speed profile
 ramp           its course, by torques too, what is recorded, and whether its steps are short enough
+step_error     by how much the levels of a run are off because of its step
 campbell       run-ups with one or more laws as levels over speed, frequency and order, with their errors
 sensors        sensors and orders that are looked at
 recorded       runs that are recorded, measured or simulated before: signals, levels, amplitudes
