@@ -9,7 +9,7 @@ modes          complex modes at the equilibrium
 lsa            state space and frequency responses at the equilibrium
 sweep          modes, bearings, responses, critical speeds over speed, of one or more models
 runup          the nonlinear system in time over its speed profile
-ramp           its course, by torques too, what is recorded, and whether its steps are short enough
+ramp           its course, by torques too, what is recorded, and what its steps resolve
 campbell       run-ups with one or more laws as levels over speed, frequency and order, with their errors
 sensors        sensors and orders that are looked at
 recorded       runs that are recorded, measured or simulated before: signals, levels, amplitudes
@@ -21,6 +21,7 @@ losses         what contacts feel at an equilibrium, and what rolling costs ther
 film_errors    how wrong the films are estimated to be over frequency
 reach          where the films of a law begin, and calls outside its map, with the lines that say so
 soundness      results whose own checks failed so grossly that their figures mean nothing
+step_error     error of a run by its step, from parts of it with half the step
 =============  ====================================================================================
 
 What a scene requires of its maps and physics is in `mbs.planning`, what measures the program and its
