@@ -4,6 +4,7 @@
 tradeoff     speed against accuracy of a scene
 linear_look  what a user looks at in a linear system
 tolerance    step, slices and cut-off that keep the level of a run-up within a tolerance
+kept_choice  a choice of these that is kept, and used again
 ramp_parts   short runs around some speeds of a ramp
 variants     how far a difference between two laws depends on what was assumed
 element      laws and bearing element at the extremes: derivatives, symmetry, closed cycles
