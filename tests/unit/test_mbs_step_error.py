@@ -70,7 +70,9 @@ class TestMarks:
         course = model.scene.run_up
         assert isinstance(course.speed, DrivenSpeed)
         whole = run_system(model.system, course.speed, 0.01, course.settings, options=KEPT)
-        with pytest.raises(InputError, match=r"run, begin: got a mark beside a speed by torques, .*; allowed: a prescribed"):
+        with pytest.raises(
+            InputError, match=r"run, begin: got a mark beside a speed by torques, .*; allowed: a prescribed"
+        ):
             run_system(model.system, course.speed, 0.01, course.settings, begin=whole.marks[0])
 
 
