@@ -42,6 +42,10 @@ class ReynoldsStart:
     spike_width: float
 
 
+_RESOLUTION = Resolution(inlet_length=300.0)
+"""Grid of the start. Cells of the other solver are laid by it, so that it does not follow a default of this one."""
+
+
 def reynolds_start(
     contact: LineContact,
     lubricant: Lubricant,
@@ -81,7 +85,7 @@ def reynolds_start(
         problem, M, L = line_problem(contact, lubricant.at(temperature), load, entrainment_speed, law, slide_to_roll)
         if _beyond_reach(peak, M, L):
             return None
-        solution = solve_groups(problem, M, L, Resolution())
+        solution = solve_groups(problem, M, L, _RESOLUTION)
         if solution.outcome == CONVERGED and solution.profile is not None:
             profile = solution.profile
             break

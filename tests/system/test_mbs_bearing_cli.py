@@ -208,7 +208,11 @@ BAD = (
     ("NU308", ["--speed", "-1 rpm"], "--speed: got '-1 rpm'; allowed: 0 rpm to 1e+05 rpm"),
     ("NU308", ["--temperature", "-20 degC"], "--temperature: lubricant 'FVA3', temperature: got -20 degC"),
     ("NU308", ["--temperature", "400 degC"], "--temperature: got '400 degC'; allowed: -60 degC to 300 degC"),
-    ("NU308", ["--roughness", "0 um"], "--roughness: got '0 um'; allowed: 0.001 um to 10 um"),
+    (
+        "NU308",
+        ["--roughness", "0 um"],
+        "--roughness: got '0 um'; allowed: a combined rms roughness of 0.001 um",
+    ),
     ("NU308", ["--direction", "0", "0"], "--direction: got '0 0'; allowed: an angle from y towards z"),
     ("NU308", ["--direction", "1", "2", "3"], "--direction: got '1 2 3'; allowed: an angle"),
     ("NU308", ["--direction", "nan"], "--direction: got 'nan'; allowed: an angle"),

@@ -345,7 +345,7 @@ class TestModes:
         assert changed != scene
         path = tmp_path / "damped.toml"
         path.write_text(changed)
-        text, _ = modes_command.run(self.given(scene=str(path)))
+        text, _ = modes_command.run(self.given(scene=str(path), films="slow"))
         assert "overdamped (no oscillation): time to fall to 1/e" in text
         assert " ms " in text
 
