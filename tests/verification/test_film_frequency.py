@@ -220,7 +220,7 @@ TRANSIENT = Resolution(density=8.0, shape=GridShape(core=0.7), spike_steepness=1
 def test_linear_response_against_the_film_in_time(M: float, L: float, omega: float) -> None:
     """The load moves by 1e-4; more points and frequencies: `python -m tests.benchmarks.bench_frequency --transient`."""
     solution = solve_groups(roelands_problem(M, L), M, L, TRANSIENT)
-    (linear,) = _responses(solution, np.array([omega]), TRANSIENT)
+    (linear,) = _responses(solution, np.array([omega]))
     differences = [abs(oscillated(solution, omega, steps) - linear) / abs(SOLIDS + linear) for steps in (60, 120)]
     # backward differences: (omega dt)^2/3 = 9e-4 at 120 steps a period, and a quarter of what 60 steps give
     assert differences[1] < 1e-3
