@@ -304,7 +304,8 @@ def choice_attributes(models: Sequence[tuple[str, Model]]) -> dict[str, str]:
     """
     found: dict[str, list[str]] = {"oil_supply": [], "choices": []}
     for label, model in models:
-        chosen = ", ".join(f"{name} {text}" for name, text in model.chosen.items())
+        # a surface is called by its roughness already
+        chosen = ", ".join(text if text.startswith(name) else f"{name} {text}" for name, text in model.chosen.items())
         for name, words in (("oil_supply", supply_words(model.supplies)), ("choices", chosen)):
             if words:
                 found[name].append(f"{label}: {words}" if len(models) > 1 else words)

@@ -254,7 +254,7 @@ def test_the_band_of_a_level_is_the_largest_difference_of_its_runs(models, monke
         return SimpleNamespace(time=silent.time, speed=silent.speed, angle=silent.angle, signals=values[:, None])
 
     monkeypatch.setattr("mbs.analyses.campbell.recorded_run", run)
-    monkeypatch.setattr("mbs.analyses.campbell.step_check", lambda *given: None)  # of a run that is none
+    monkeypatch.setattr("mbs.analyses.campbell.step_check", lambda *given: None)  # made-up runs have no step
     found = campbell(model, bands=2)
     change = law_changes(model, [0.5 * found.course.speed.at(found.course.duration)[0]])["bearing_left"][0]
     assert len(told) == 3
