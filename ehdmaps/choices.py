@@ -212,7 +212,7 @@ def _with_supply(emap: EHDMap, supply: OilSupply) -> EHDMap:
 
 
 STRUCTURE: Choice[EHDMap] = Choice(
-    "structure",
+    "structural-law",
     "NAME",
     "law of the solids in approach, k and c: iso16281 | palmgren | half_space | fe",
     "that of the job",

@@ -1,5 +1,8 @@
 """Code that all programs of this distribution share: from the arguments of the process to its exit status.
 
+A `Program` is the parser of a program: commands in groups, and options that many commands take in the same words. These
+are declared once, explained once, by `PROGRAM --help`, and stand anywhere on the command line.
+
 Everything that a program prints goes through here: results on stdout (`deliver`), problems and progress on stderr
 (`tell`). Foreign text reaches a terminal without its control characters, and what the encoding of a stream lacks is
 written as an escape.
@@ -13,7 +16,7 @@ import errno
 import math
 import os
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, NoReturn, TextIO
 
 from ehdmaps.errors import EhdmapsError, InputError, WorkerError
@@ -82,6 +85,116 @@ class Parser(argparse.ArgumentParser):
     def add_version(self) -> None:
         """Add the option `--version`."""
         self.add_argument("--version", action=_Version, nargs=0, help="show the version and end")
+
+
+class Program(Parser):
+    """The parser of a program: commands in groups, and options that several commands share.
+
+    Parameters
+    ----------
+    prog : str
+        Name of the program.
+    description, epilog : str
+        What --help says before and after the commands.
+    renamed : mapping of str to str
+        Options that were called otherwise, and what to write now.
+
+    Attributes
+    ----------
+    shared : Parser
+        Takes the options that are shared; `add_command` says which of them a command has.
+    """
+
+    def __init__(self, prog: str, description: str, epilog: str, renamed: Mapping[str, str]) -> None:
+        super().__init__(prog=prog, description=description, epilog=epilog, add_help=False)
+        self.add_argument("-h", "--help", action="help", help="show this help message and end")
+        self.add_version()
+        self.shared = Parser(prog=prog, add_help=False, allow_abbrev=False)
+        self.shared.error = self.error  # type: ignore[method-assign]
+        self._commands = self.add_subparsers(dest="command", required=True, metavar="COMMAND", parser_class=Parser)
+        self._groups: dict[str, list[tuple[str, str]]] = {}
+        self._takes: dict[str, frozenset[str]] = {}
+        self._renamed = renamed
+
+    def add_command(
+        self, group: str, name: str, words: str, shared: Iterable[str] = (), more: str = "", epilog: str = ""
+    ) -> Parser:
+        """Add a command.
+
+        Parameters
+        ----------
+        group : str
+            Heading in --help under which it stands.
+        name, words : str
+            Name, and what it does.
+        shared : iterable of str
+            Keys of the shared options that it takes.
+        more : str
+            What its own help says of these.
+        epilog : str
+            What its own help says at the end.
+        """
+        takes = frozenset(shared)
+        options = ", ".join(option for key, option in self._shared_options().items() if key in takes)
+        also = f"Also, as `{self.prog} --help` explains: {options}{more}" if takes else ""
+        command = self._commands.add_parser(
+            name, description=words, epilog=". ".join(text for text in (also, epilog) if text) or None
+        )
+        self._groups.setdefault(group, []).append((name, words))
+        self._takes[name] = takes
+        return command
+
+    def _shared_options(self) -> dict[str, str]:
+        """The options that are shared, by their keys."""
+        return {action.dest: action.option_strings[-1] for action in self.shared._actions}
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """Parse the arguments; of the shared options a command gets those that it takes."""
+        given, rest = self.shared.parse_known_args(sys.argv[1:] if args is None else args)
+        arguments, unknown = super().parse_known_args(rest, namespace)
+        takes = self._takes[arguments.command]
+        for key, option in self._shared_options().items():
+            if key in takes:
+                setattr(arguments, key, getattr(given, key))
+            elif getattr(given, key) != self.shared.get_default(key):
+                others = ", ".join(name for name, taken in self._takes.items() if key in taken)
+                self.error(f"{self.prog} {arguments.command} has no {option}; allowed: with {others}")
+        return arguments, unknown
+
+    def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """Parse the arguments, all of which have to be known."""
+        arguments, unknown = self.parse_known_args(args, namespace)
+        if unknown:
+            options = (text.split("=")[0] for text in unknown)
+            advice = [f"; {option} is {self._renamed[option]} now" for option in options if option in self._renamed]
+            self.error(f"unrecognized arguments: {' '.join(unknown)}{''.join(advice)}")
+        return arguments
+
+    def format_usage(self) -> str:
+        """The first line of help and errors."""
+        return f"usage: {self.prog} [-h] [--version] COMMAND ...\n"
+
+    def format_help(self) -> str:
+        """Commands by groups, then the options that are shared."""
+        formatter = self._get_formatter()
+        formatter.add_text(self.description)
+        wide = max((len(name) for names in self._groups.values() for name, _ in names), default=0)
+        for group, names in self._groups.items():
+            formatter.start_section(group)
+            formatter.add_arguments([_line(name.ljust(wide), words) for name, words in names])
+            formatter.end_section()
+        for shared in self.shared._action_groups:
+            formatter.start_section(shared.title)
+            formatter.add_text(shared.description)
+            formatter.add_arguments(shared._group_actions)
+            formatter.end_section()
+        formatter.add_text(self.epilog)
+        return f"{self.format_usage()}\n{formatter.format_help()}"
+
+
+def _line(name: str, words: str) -> argparse.Action:
+    """A line of help on a command."""
+    return argparse.Action([], name.strip(), metavar=name, help=words.replace("%", "%%"))
 
 
 class _Version(argparse.Action):

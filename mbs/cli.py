@@ -5,96 +5,71 @@ from __future__ import annotations
 import argparse
 import importlib
 import sys
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
-from ehdmaps.choices import PHYSICS, SHEAR, Choice, add_choices
+from ehdmaps.choices import PHYSICS, SHEAR, add_choices
 from ehdmaps.errors import AnalysisError
-from ehdmaps.program import Parser, count, run
+from ehdmaps.program import Program, count, run
 from mbs.scene.choices import OPTIONS, VARIED
 
 _INSTRUMENTS = ("stability", "tradeoff", "variants")
 """Commands that measure the program and its choices."""
 
+_LOOK, _LINEAR, _TIME, _MEASURED = "look", "linear", "in time", "measured"
+_PREPARE, _LABORATORY = "maps and bodies", "laboratory"
+
+_CHOSEN = tuple(choice.key for choice in OPTIONS)
+_OWN_PHYSICS = ("auto", "maps", PHYSICS.key, SHEAR.key, "auto_tolerance")
+
+_RENAMED = {
+    "--speeds": "--speed FROM TO POINTS",
+    "--structure": "--structural-law",
+    "--tolerance": "--auto-tolerance, and --tolerance of runup and campbell,",
+}
+
+
+@dataclass(frozen=True)
+class _OnScene:
+    """A command on a scene: group in --help, what it does, options of its own, whether it compares several choices."""
+
+    group: str
+    words: str
+    options: tuple[Callable[[argparse.ArgumentParser], None], ...] = ()
+    compares: bool = False
+
 
 def parser() -> argparse.ArgumentParser:
     """Return the parser of all commands."""
-    top = Parser(
+    top = Program(
         prog="mbs",
         description="Statics, modes, linear analysis, speed sweeps and run-ups of systems with cylindrical roller "
         "bearings, and modal identification.",
         epilog="SCENE is a scene file or the name of a shipped system: n1014_rigid, n1014_testrig, nu308_rigid, "
         "nu308_flexible, gearbox, two_stage, nu2210_shaft, overhung_rotor. Exit status: 0 done; 1 done outside the "
         "map, or no result from valid input; 2 bad input, nothing written; 130 stopped with Ctrl-C, 143 by SIGTERM.",
+        renamed=_RENAMED,
     )
-    top.add_version()
-    commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for name, words in (
-        ("statics", "equilibrium, loads of the rollers, stiffness and damping of the bearings"),
-        ("modes", "frequencies, damping ratios and where the strain energy is"),
-        ("lsa", "linear system analysis: state space and frequency responses"),
-        ("runup", "integrate the nonlinear system in time over its speed profile; SCENE may be a recorded run"),
-    ):
-        # Laws stand side by side in lsa and runup.
-        several = name in ("lsa", "runup")
-        command = _scene_command(commands, name, words, compares=several)
-        if name == "modes":
-            _modes(command)
-            _shapes(command)
-        if name == "lsa":
-            command.add_argument(
-                "--state-space", metavar="SPACE.mat", help="A, B, C, D with names and units, for MATLAB and Octave"
-            )
-        if name == "lsa":
-            _cage_angles(command)
-        if name == "runup":
-            _runup(command)
-    sweep = _scene_command(commands, "sweep", "modes, bearings and frequency responses over speed", compares=True)
-    _sweep(sweep)
-    critical = _scene_command(
-        commands, "critical", "critical speeds, and the response to unbalances and orders over speed", compares=True
-    )
-    _speeds(critical)
-    campbell = _scene_command(
-        commands,
-        "campbell",
-        "run-up in time as levels over speed and frequency; SCENE may be a recorded run (.nc, .csv, .uff, .wav)",
-        compares=True,
-    )
-    _campbell(campbell)
-    variants = _scene_command(
-        commands,
-        "variants",
-        "a difference between two laws in a run-up under single changes, as a table",
-        compares=True,
-    )
-    _variants(variants)
-    hammer = _scene_command(commands, "hammer", "a simulated hammer test: records as a universal file", compares=True)
-    _parallel(hammer)
-    _hammer(hammer)
-    report = _scene_command(
-        commands, "report", "the scene as one page to send: no network needed, prints to PDF", compares=False
-    )
-    _speeds(report)
-    report.add_argument(
-        "--result",
-        metavar="RESULT.nc",
-        help="Campbell diagram of a result of `mbs sweep -o` or `mbs campbell -o` in place of a short sweep",
-    )
-    _tradeoff(commands)
-    _modal_fit(commands)
-    _bearing(commands)
-    _plan(commands)
-    _run(commands, top)
-    _reduce(commands)
-    _stability(commands)
+    add_choices(top.shared, OPTIONS, "scene", several=True)
+    _auto(top.shared)
+    for name, row in _ON_SCENES.items():
+        command = _scene_command(top, name, row)
+        for add in row.options:
+            add(command)
+    _bearing(top)
+    _modal_fit(top)
+    _plan(top)
+    _reduce(top)
+    _run(top)
+    _tradeoff(top)
+    _stability(top)
     return top
 
 
-def _stability(commands: Any) -> None:
+def _stability(top: Program) -> None:
     """Add the command `stability`."""
     words = "law, bearing element, integrator and readers at the extremes; takes an hour as it is"
-    command = commands.add_parser("stability", help=words, description=words)
+    command = top.add_command(_LABORATORY, "stability", words)
     command.add_argument("--runs", metavar="N", type=_count, default=1000, help="cases of each check; 1000")
     command.add_argument(
         "--mutations", metavar="N", type=_count, default=10_000, help="damaged files for each reader; 10000"
@@ -123,6 +98,25 @@ def _shapes(command: argparse.ArgumentParser) -> None:
     )
 
 
+def _state_space(command: argparse.ArgumentParser) -> None:
+    """Add the file of a state space."""
+    command.add_argument(
+        "--state-space", metavar="SPACE.mat", help="A, B, C, D with names and units, for MATLAB and Octave"
+    )
+
+
+def _report(command: argparse.ArgumentParser) -> None:
+    """Add the options of a report; its -o is a page."""
+    command.add_argument(
+        "-o", "--output", metavar="REPORT.html", help="default: the scene's name with .html, in this folder"
+    )
+    command.add_argument(
+        "--result",
+        metavar="RESULT.nc",
+        help="Campbell diagram of a result of `mbs sweep -o` or `mbs campbell -o` in place of a short sweep",
+    )
+
+
 def _runup(command: argparse.ArgumentParser) -> None:
     """Add the options of runs in time."""
     _parallel(command)
@@ -145,13 +139,6 @@ def _parallel(command: argparse.ArgumentParser) -> None:
     )
 
 
-def _sweep(command: argparse.ArgumentParser) -> None:
-    """Add the options of a sweep."""
-    _parallel(command)
-    _speeds(command)
-    _cage_angles(command)
-
-
 def _cage_angles(command: argparse.ArgumentParser) -> None:
     """Add the number of cage angles."""
     command.add_argument(
@@ -164,7 +151,7 @@ def _cage_angles(command: argparse.ArgumentParser) -> None:
 def _speeds(command: argparse.ArgumentParser) -> None:
     """Add the speeds of a sweep."""
     command.add_argument(
-        "--speeds",
+        "--speed",
         nargs=3,
         metavar=("FROM", "TO", "POINTS"),
         help='such as "500 rpm" "2500 rpm" 40, in place of [sweep] of the scene',
@@ -233,13 +220,13 @@ def _recorded(command: argparse.ArgumentParser) -> None:
     command.add_argument("--speed-table", metavar="FILE.csv", help="a table of time and speed instead")
 
 
-def _tradeoff(commands: Any) -> None:
+def _tradeoff(top: Program) -> None:
     """Add the command that measures speed against accuracy; the laws are its own."""
     words = "speed against accuracy of a scene, measured: laws, supplies, maps, slices, cut-off, step, cage angles"
-    command: argparse.ArgumentParser = commands.add_parser("tradeoff", help=words, description=words)
+    chosen = [key for key in _CHOSEN if key not in ("law", "films", "supply", "start_angle")]
+    more = "; the first map is the reference, more make rows; without one the film formula is the reference"
+    command = top.add_command(_LABORATORY, "tradeoff", words, chosen, more)
     command.add_argument("scene", metavar="SCENE")
-    choices = [choice for choice in OPTIONS if choice.name not in ("law", "films", "supply", "start-angle")]
-    add_choices(command, choices, "scene", several=True, more=_rows_of_maps)
     command.add_argument("--sensor", metavar="NAME", help="of the sum level; default: the first of an acceleration")
     command.add_argument("--highest", metavar="FREQUENCY", help='highest frequency, such as "5 kHz"')
     command.add_argument("--window", metavar="TIME", help='length of the windows, such as "50 ms"')
@@ -266,10 +253,11 @@ def _variants(command: argparse.ArgumentParser) -> None:
     command.add_argument("--window", metavar="TIME", help='length of the windows, such as "50 ms"')
 
 
-def _bearing(commands: Any) -> None:
+def _bearing(top: Program) -> None:
     """Add the command on one bearing, without a scene."""
     words = "one bearing without a scene: stiffness, damping, roller loads, pressures, films"
-    command: argparse.ArgumentParser = commands.add_parser("bearing", help=words, description=words)
+    chosen = [key for key in _CHOSEN if key not in ("films", "load_factor", "start_angle")]
+    command = top.add_command(_LOOK, "bearing", words, chosen)
     command.add_argument("bearing", metavar="BEARING", help="N1014, NU308, or a TOML file with [bearing] (a job)")
     for option, example, what in (
         ("--load", '"5 kN"', "on the inner ring"),
@@ -291,13 +279,11 @@ def _bearing(commands: Any) -> None:
     )
     for side in ("inner", "outer"):
         command.add_argument(
-            f"--{side}-ring",
+            f"--{side}-ring-temperature",
             metavar="TEMPERATURE",
             help=f"of the {side} ring alone, such as '60 degC'; it changes the clearance; the law takes the mean of "
             "both",
         )
-    of_machines = ("films", "load-factor", "start-angle")
-    add_choices(command, [choice for choice in OPTIONS if choice.name not in of_machines], "file", several=True)
     command.add_argument(
         "--oil", metavar="NAME", help="oil without a map: FVA3, Spirax MA 80W; default: the file's, else FVA3"
     )
@@ -316,13 +302,11 @@ def _bearing(commands: Any) -> None:
     command.add_argument("--plot", metavar="FIG.png", help="figure; also .pdf, .svg")
 
 
-def _plan(commands: Any) -> None:
+def _plan(top: Program) -> None:
     """Add the command that plans the contact map of a scene; its -o is a job."""
     words = "which ranges a scene needs of a contact map, and the job that covers just these"
-    command: argparse.ArgumentParser = commands.add_parser("plan", help=words, description=words)
+    command = top.add_command(_PREPARE, "plan", words, ("temperature", "clearance", "load_factor"))
     command.add_argument("scene", metavar="SCENE")
-    choices = [choice for choice in OPTIONS if choice.name in ("temperature", "clearance", "load-factor")]
-    add_choices(command, choices, "scene", several=True)
     command.add_argument(
         "--margin", metavar="FACTOR", help="highest load of the map over the largest one at rest, for what moves (3)"
     )
@@ -331,10 +315,10 @@ def _plan(commands: Any) -> None:
     )
 
 
-def _reduce(commands: Any) -> None:
+def _reduce(top: Program) -> None:
     """Add the command that reads a table of a body instead of a scene."""
     words = "reduce a finite-element body to its interfaces and modes, for [[flexible]] tables"
-    command: argparse.ArgumentParser = commands.add_parser("reduce", help=words, description=words)
+    command = top.add_command(_PREPARE, "reduce", words)
     command.add_argument("body", metavar="BODY.toml")
     command.add_argument("-o", "--output", metavar="OUT.nc", help="also .npz; BODY.nc if left out")
 
@@ -351,10 +335,10 @@ def _hammer(command: argparse.ArgumentParser) -> None:
     command.add_argument("--nonlinear", action="store_true", help="integrate the nonlinear system for each hit")
 
 
-def _modal_fit(commands: Any) -> None:
+def _modal_fit(top: Program) -> None:
     """Add the command that reads a universal file instead of a scene."""
     words = "frequencies and damping ratios from hammer hits or frequency responses"
-    command: argparse.ArgumentParser = commands.add_parser("modal-fit", help=words, description=words)
+    command = top.add_command(_MEASURED, "modal-fit", words)
     command.add_argument("file", metavar="FILE", help="universal file (UFF), measured or made by `mbs hammer`")
     command.add_argument("--band", nargs=2, metavar=("FROM", "TO"), help='such as "100 Hz" "5 kHz"')
     command.add_argument("--modes", type=int, metavar="N", help="how many to keep at most")
@@ -373,51 +357,73 @@ def _modal_fit(commands: Any) -> None:
     command.add_argument("--plot", metavar="FIG.png", help="figure; also .pdf, .svg")
 
 
-def _once(choice: Choice[Any]) -> str:
-    """Words on a choice that is made once: none."""
-    return ""
+_ON_SCENES = {
+    "statics": _OnScene(_LOOK, "equilibrium, loads of the rollers, stiffness and damping of the bearings"),
+    "report": _OnScene(_LOOK, "the scene as one page to send: no network needed, prints to PDF", (_report, _speeds)),
+    "modes": _OnScene(_LINEAR, "frequencies, damping ratios and where the strain energy is", (_modes, _shapes)),
+    "lsa": _OnScene(
+        _LINEAR,
+        "linear system analysis: state space and frequency responses",
+        (_state_space, _cage_angles),
+        compares=True,
+    ),
+    "sweep": _OnScene(
+        _LINEAR,
+        "modes, bearings and frequency responses over speed",
+        (_parallel, _speeds, _cage_angles),
+        compares=True,
+    ),
+    "critical": _OnScene(
+        _LINEAR, "critical speeds, and the response to unbalances and orders over speed", (_speeds,), compares=True
+    ),
+    "runup": _OnScene(
+        _TIME,
+        "integrate the nonlinear system in time over its speed profile; SCENE may be a recorded run",
+        (_runup,),
+        compares=True,
+    ),
+    "campbell": _OnScene(
+        _TIME,
+        "run-up in time as levels over speed and frequency; SCENE may be a recorded run (.nc, .csv, .uff, .wav)",
+        (_campbell,),
+        compares=True,
+    ),
+    "variants": _OnScene(
+        _TIME, "a difference between two laws in a run-up under single changes, as a table", (_variants,), compares=True
+    ),
+    "hammer": _OnScene(
+        _TIME, "a simulated hammer test: records as a universal file", (_parallel, _hammer), compares=True
+    ),
+}
+"""Commands that take a scene, its choices, and physics of their own."""
 
 
-def _compared(choice: Choice[Any]) -> str:
-    """Words on a choice that may be made more than once."""
-    return "; more than once to compare"
-
-
-def _rows_of_maps(choice: Choice[Any]) -> str:
-    """Words on the maps of a trade."""
-    more = ", the first is the reference, more make rows; without one the film formula is the reference"
-    return more if choice.name == "map" else ""
-
-
-def _scene_command(commands: Any, name: str, words: str, compares: bool) -> argparse.ArgumentParser:
+def _scene_command(top: Program, name: str, row: _OnScene) -> argparse.ArgumentParser:
     """Add a command on a scene; one that compares takes several values of a choice."""
-    command: argparse.ArgumentParser = commands.add_parser(name, help=words, description=words)
+    # Variants stand beside a base that is stated; --auto would choose another for each.
+    shared = _CHOSEN if name == "variants" else (*_CHOSEN, *_OWN_PHYSICS)
+    more = "; choices more than once to compare" if row.compares else ""
+    command = top.add_command(row.group, name, row.words, shared, more)
     command.add_argument("scene", metavar="SCENE")
-    # What comes twice is an error of the command, in words, where it does not compare.
-    add_choices(command, OPTIONS, "scene", several=True, more=_compared if compares else _once)
     if name == "report":
-        command.add_argument(
-            "-o", "--output", metavar="REPORT.html", help="default: the scene's name with .html, in this folder"
-        )
         command.set_defaults(plot=None)
     else:
         command.add_argument("-o", "--output", metavar="OUT.nc", help="result as netCDF")
         command.add_argument("--plot", metavar="FIG.png", help="figure; also .pdf, .svg")
-    if name != "variants":
-        # That of a run-up is one of levels, and stands without --auto, too.
-        _auto(command, tolerance=name not in ("campbell", "runup"))
     return command
 
 
-def _auto(command: argparse.ArgumentParser, tolerance: bool = True) -> None:
+def _auto(shared: argparse.ArgumentParser) -> None:
     """Add what chooses the physics."""
-    command.add_argument(
+    group = shared.add_argument_group("physics by the question")
+    group.add_argument(
         "--auto",
         action="store_true",
+        default=None,
         help="films of the film table, with film memory, oil supply and roughness where they matter; where heat or a "
         "limiting stress do, a map of its own, whose points are kept in a store beside it",
     )
-    command.add_argument(
+    group.add_argument(
         "--maps",
         metavar="FOLDER",
         help="for maps that --auto makes and keeps; made if missing; default: this one",
@@ -427,26 +433,21 @@ def _auto(command: argparse.ArgumentParser, tolerance: bool = True) -> None:
         (SHEAR, "limiting where that matters"),
     ):
         words = f"{choice.said}, of the map of --auto; default: {default}"
-        command.add_argument(f"--{choice.name}", metavar=choice.metavar, help=words)
-    if not tolerance:
-        return
-    command.add_argument(
-        "--tolerance",
+        group.add_argument(f"--{choice.name}", metavar=choice.metavar, help=words)
+    group.add_argument(
+        "--auto-tolerance",
         metavar="PART",
-        help="change of a stiffness or damping above which --auto switches physics on, such as '5 %%' (default), or of "
-        "a level, such as '1 dB'; of campbell a level, without --auto too, also chooses step, slices and cut-off by "
-        "short trials, so that the sum level at equal speed keeps it",
+        help="change of a stiffness or damping above which --auto switches physics on, such as '5 %%', or of "
+        "a level, such as '1 dB'; default: --tolerance of runup and campbell, else 5 %%",
     )
 
 
-def _run(commands: Any, top: argparse.ArgumentParser) -> None:
+def _run(top: Program) -> None:
     """Add the command that does every analysis for which the scene has a table."""
     words = "every analysis for which the scene has a table: statics, modes, lsa, sweep, and campbell or runup"
-    command: argparse.ArgumentParser = commands.add_parser("run", help=words, description=words)
+    command = top.add_command(_LOOK, "run", words, (*_CHOSEN, *_OWN_PHYSICS))
     command.add_argument("scene", metavar="SCENE")
-    add_choices(command, OPTIONS, "scene", several=True)
     command.add_argument("-o", "--output", metavar="FOLDER", help="results, figures and texts of all analyses")
-    _auto(command)
     # The command asks for the others by their own words.
     command.set_defaults(parse=top.parse_args)
 

@@ -120,7 +120,7 @@ class Target:
         Program by which the tests read the export back; empty where none does, so that only the format is checked.
     add_arguments : callable
         Adds the target's own options to the parser of `ehdmaps export MAP.nc --to NAME`, which has the map, `--to`,
-        `--list`, `-o`, `--structure` and `--roughness` itself.
+        `--list`, `-o`, `--structural-law` and `--roughness` itself.
     write : callable
         Takes the map, its path, that of `-o` (None where it was not given) and all arguments. It writes, and returns
         the line that is printed. It raises `InputError` or `MapError` before it writes anything.

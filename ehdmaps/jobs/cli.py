@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 from ehdmaps.choices import MAP_CHOICES, PHYSICS, SHEAR, add_choices
 from ehdmaps.errors import InputError
-from ehdmaps.program import Parser, count, run
+from ehdmaps.program import Program, count, run
 
 _KEEP = "openfoam: keep the case folders of all runs; default folder: ehdmaps-cases"
 _SOLVER = (
@@ -19,21 +19,32 @@ _SOLVER = (
 
 _TARGET = "csv"
 
+_MAKE, _LOOK, _GIVE, _MEASURE = "make a map", "look", "hand over", "laboratory"
+
+_OF_MAPS = tuple(choice.key for choice in MAP_CHOICES)
+
+_RENAMED = {
+    "--tolerance": "--law-tolerance of generate",
+    "--frequencies": "--frequency FROM TO POINTS",
+    "--eyring-stress": "--shear-stress",
+    "--structure": "--structural-law",
+}
+
 
 def parser() -> argparse.ArgumentParser:
     """Return the parser of all commands."""
-    top = Parser(
+    top = Program(
         prog="ehdmaps",
         description="Elastohydrodynamic contact maps for roller bearings.",
         epilog="JOB is a job file, a map (its job is repeated), or the name of a shipped job: nu308, n1014, "
         "nu308_openfoam; for generate, check and status also a batch file, of many maps. "
         "Exit status: 0 done; 1 done, with failed points or laws that miss their bars; 2 bad input, nothing "
         "written; 130 stopped with Ctrl-C, 143 by SIGTERM.",
+        renamed=_RENAMED,
     )
-    top.add_version()
-    commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    add_choices(top.shared, MAP_CHOICES, "job", several=False)
 
-    generate = commands.add_parser("generate", help="make a map; the same command goes on after an interruption")
+    generate = top.add_command(_MAKE, "generate", "make a map; the same command goes on after an interruption")
     generate.add_argument("jobs", metavar="JOB", nargs="+", help="of several, one map after the other")
     generate.add_argument(
         "-o",
@@ -50,14 +61,14 @@ def parser() -> argparse.ArgumentParser:
         help='reynolds: have all films solved, none read from the film table; as films = "solved" of [solver]',
     )
     generate.add_argument(
-        "--tolerance",
+        "--law-tolerance",
         metavar="SHARE",
         help='of k, c and film offset of the contact laws, "1 %%": fresh solves confirm it at 99 %% of random points '
         "(95 %% in the damping valley); solved lines are laid more closely until then; default: the usual bars",
     )
     generate.add_argument("--keep-cases", metavar="FOLDER", nargs="?", const="ehdmaps-cases", help=_KEEP)
 
-    status = commands.add_parser("status", help="how far a map is that is being made, or was interrupted")
+    status = top.add_command(_MAKE, "status", "how far a map is that is being made, or was interrupted")
     status.add_argument(
         "map",
         metavar="MAP.nc",
@@ -68,28 +79,27 @@ def parser() -> argparse.ArgumentParser:
         "-o", "--output", metavar="MAP.nc", help="of the job, or the folder of the batch, as for generate"
     )
 
-    check = commands.add_parser("check", help="list every problem of a job; estimate points, time, memory")
+    check = top.add_command(_MAKE, "check", "list every problem of a job; estimate points, time, memory")
     check.add_argument("job", metavar="JOB")
     check.add_argument("--solver", metavar="NAME", help=_SOLVER)
 
-    show = commands.add_parser("show", help="what a map holds")
+    show = top.add_command(_LOOK, "show", "what a map holds", _OF_MAPS)
     show.add_argument("map", metavar="MAP.nc")
-    add_choices(show, MAP_CHOICES, "job", several=False)
 
-    plot = commands.add_parser(
+    plot = top.add_command(
+        _LOOK,
         "plot",
-        help="stiffness, damping and films on one page; of rough surfaces Lambda and the share of the films instead",
+        "stiffness, damping and films on one page; of rough surfaces Lambda and the share of the films instead",
+        _OF_MAPS,
     )
     plot.add_argument("map", metavar="MAP.nc")
     plot.add_argument("-o", "--output", metavar="FIG.png", help="default: the map's name with .png; also .pdf, .svg")
-    add_choices(plot, MAP_CHOICES, "job", several=False)
 
-    report = commands.add_parser("report", help="a map as one page to send: no network needed, prints to PDF")
+    report = top.add_command(_LOOK, "report", "a map as one page to send: no network needed, prints to PDF", _OF_MAPS)
     report.add_argument("map", metavar="MAP.nc")
     report.add_argument("-o", "--output", metavar="REPORT.html", help="default: the map's name with .html")
-    add_choices(report, MAP_CHOICES, "job", several=False)
 
-    solve = commands.add_parser("solve", help="one operating point, as a table")
+    solve = top.add_command(_MAKE, "solve", "one operating point, as a table", ["supply"])
     solve.add_argument("job", metavar="JOB")
     solve.add_argument("--load", required=True, help='such as "62 N" (with --length) or "88 N/mm"')
     solve.add_argument("--length", help='that carries the load, such as "0.7 mm"')
@@ -97,15 +107,20 @@ def parser() -> argparse.ArgumentParser:
         "--speed", required=True, help='entrainment speed, such as "1.7 m/s", or of the inner ring, "500 rpm"'
     )
     solve.add_argument("--temperature", required=True, help='of the raceways, such as "40 degC"')
-    solve.add_argument("--frequency", help='of small oscillations, such as "1 kHz"; default: the low-frequency limit')
     solve.add_argument(
-        "--frequencies",
-        nargs=3,
-        metavar=("FROM", "TO", "POINTS"),
-        help='response at many frequencies, spaced logarithmically: "10 Hz" "20 kHz" 60; with --plot as a picture',
+        "--frequency",
+        nargs="+",
+        metavar="VALUE",
+        help='of small oscillations, such as "1 kHz"; default: the low-frequency limit. FROM TO POINTS: the response '
+        "over frequency, spaced logarithmically, such as 10Hz 20kHz 60; with --plot as a picture",
     )
     add_choices(solve, (PHYSICS, SHEAR), "job", several=False)
-    solve.add_argument("--shear-stress", metavar="STRESS", help='of --shear, such as "6 MPa"; default: of that law')
+    solve.add_argument(
+        "--shear-stress",
+        metavar="STRESS",
+        help='of --shear, such as "6 MPa"; default: of that law. Beside --slide-to-roll FROM TO POINTS: that of '
+        "Eyring's law",
+    )
     solve.add_argument(
         "--slide-to-roll",
         nargs="+",
@@ -113,17 +128,10 @@ def parser() -> argparse.ArgumentParser:
         help="one value: the film is solved with this sliding, (u2 - u1)/u from -2 to 2; FROM TO POINTS: reynolds, "
         "traction on the film of pure rolling over the ratio, spaced logarithmically: 0.001 1 7",
     )
-    solve.add_argument("--eyring-stress", metavar="STRESS", help='for --slide-to-roll FROM TO POINTS; default: "6 MPa"')
     solve.add_argument(
         "--limiting-ratio",
         metavar="RATIO",
         help="limiting stress over pressure, of --shear limiting or --slide-to-roll FROM TO POINTS; default: 0.05",
-    )
-    solve.add_argument(
-        "--supply",
-        metavar="SUPPLY",
-        help='reynolds: oil layer before each contact, such as "5 um", or flooded | oil bath | oil air | grease; '
-        "with the place of the meniscus; default: flooded",
     )
     solve.add_argument("--solver", metavar="NAME", help=_SOLVER)
     solve.add_argument("--json", action="store_true", help="one object a contact, SI, per unit length")
@@ -134,10 +142,11 @@ def parser() -> argparse.ArgumentParser:
     solve.add_argument(
         "--plot",
         metavar="FIG.png",
-        help="with --frequencies: complex stiffness; else openfoam: pressure, film and velocity; also .pdf, .svg",
+        help="with --frequency FROM TO POINTS: complex stiffness; else openfoam: pressure, film and velocity; also "
+        ".pdf, .svg",
     )
 
-    length = commands.add_parser("length", help="load and pressure over the length of a roller, and finite elements")
+    length = top.add_command(_LOOK, "length", "load and pressure over the length of a roller, and finite elements")
     length.add_argument("job", metavar="JOB", help="with [bearing]; finite elements are shipped for NU308 and N1014")
     length.add_argument("--plot", metavar="FIG.png", help="all cases on one page; also .pdf, .svg")
     length.add_argument("--reference", metavar="FILE.json", help="finite elements of another bearing, made by --solve")
@@ -145,34 +154,35 @@ def parser() -> argparse.ArgumentParser:
         "--solve", metavar="FILE.json", help="solve the finite elements anew and write them; needs CalculiX (ccx)"
     )
 
-    openfoam = commands.add_parser("openfoam", help="build ehlFoam, which the solver openfoam runs; see --install")
+    _add_export(top)
+    openfoam = top.add_command(_MEASURE, "openfoam", "build ehlFoam, which the solver openfoam runs; see --install")
     way = openfoam.add_mutually_exclusive_group()
     way.add_argument(
         "--install", action="store_true", help="Debian 12: install OpenFOAM and a compiler first, by apt-get"
     )
     way.add_argument("--check", action="store_true", help="say whether the executable is up to date; build nothing")
 
-    _add_export(commands)
-    _add_solids(commands)
-    _add_compare(commands)
-    _add_tradeoff(commands)
-    _add_stability(commands)
-    _add_table(commands)
+    _add_solids(top)
+    _add_compare(top)
+    _add_tradeoff(top)
+    _add_stability(top)
+    _add_table(top)
     return top
 
 
-def _add_export(commands: argparse._SubParsersAction[Parser]) -> None:
+def _add_export(top: Program) -> None:
     """Add the arguments of `ehdmaps export`: those of all targets, and, once the target is known, its own."""
-    export = commands.add_parser(
+    export = top.add_command(
+        _GIVE,
         "export",
-        help="a map in the format of another program",
+        "a map in the format of another program",
+        _OF_MAPS,
         epilog="`ehdmaps export --list` names the targets, `ehdmaps export --to TARGET --help` their options.",
     )
     export.add_argument("map", metavar="MAP.nc", nargs="?")
     export.add_argument("--list", action="store_true", help="list the targets")
     export.add_argument("--to", metavar="TARGET", default=_TARGET, help="default: csv, curves over load as a table")
     export.add_argument("-o", "--output", metavar="PATH", help="default: the map's name with the target's ending")
-    add_choices(export, MAP_CHOICES, "job", several=False)
 
     def add_arguments_of_target(argv: Sequence[str]) -> None:
         from ehdmaps.exports.target import find
@@ -189,9 +199,9 @@ def _add_export(commands: argparse._SubParsersAction[Parser]) -> None:
     export.complete = add_arguments_of_target
 
 
-def _add_solids(commands: argparse._SubParsersAction[Parser]) -> None:
+def _add_solids(top: Program) -> None:
     """Add the arguments of `ehdmaps solids`."""
-    solids = commands.add_parser("solids", help="the structural law of a bearing by finite elements, once per bearing")
+    solids = top.add_command(_MEASURE, "solids", "the structural law of a bearing by finite elements, once per bearing")
     solids.add_argument("job", metavar="JOB")
     solids.add_argument("-o", "--output", metavar="FILE.json", help="all that was found; default: none")
     solids.add_argument("--mesh-convergence", action="store_true", help="three meshes, and other seats of the rings")
@@ -205,17 +215,17 @@ def _add_solids(commands: argparse._SubParsersAction[Parser]) -> None:
     solids.add_argument("--json", action="store_true", help="the numbers as one object, SI")
 
 
-def _add_compare(commands: argparse._SubParsersAction[Parser]) -> None:
+def _add_compare(top: Program) -> None:
     """Add the arguments of `ehdmaps compare`."""
-    compare = commands.add_parser("compare", help="differences between two maps")
+    compare = top.add_command(_LOOK, "compare", "differences between two maps")
     compare.add_argument("first", metavar="A.nc")
     compare.add_argument("second", metavar="B.nc")
     compare.add_argument("--json", action="store_true", help="the differences as one object")
 
 
-def _add_tradeoff(commands: argparse._SubParsersAction[Parser]) -> None:
+def _add_tradeoff(top: Program) -> None:
     """Add the arguments of `ehdmaps tradeoff`."""
-    tradeoff = commands.add_parser("tradeoff", help="measured speed and accuracy of solvers, settings and physics")
+    tradeoff = top.add_command(_MEASURE, "tradeoff", "measured speed and accuracy of solvers, settings and physics")
     tradeoff.add_argument("job", metavar="JOB")
     tradeoff.add_argument("--points", metavar="N", type=count, default=60, help="random points; default: 60")
     tradeoff.add_argument("--seed", metavar="S", type=_count, default=1, help="seed of the points; default: 1")
@@ -232,10 +242,10 @@ def _add_tradeoff(commands: argparse._SubParsersAction[Parser]) -> None:
     tradeoff.add_argument("--plot", metavar="FIG.png", help="the error budget, and error over cost; also .pdf, .svg")
 
 
-def _add_stability(commands: argparse._SubParsersAction[Parser]) -> None:
+def _add_stability(top: Program) -> None:
     """Add the command `stability`."""
-    stability = commands.add_parser(
-        "stability", help="search the extremes of what contacts and readers may be given; takes an hour as it is"
+    stability = top.add_command(
+        _MEASURE, "stability", "search the extremes of what contacts and readers may be given; takes an hour as it is"
     )
     stability.add_argument("job", metavar="JOB", nargs="?", default="nu308", help="whose contacts are tried; nu308")
     stability.add_argument("--points", metavar="N", type=_count, default=100_000, help="by each quick solver; 100000")
@@ -247,9 +257,9 @@ def _add_stability(commands: argparse._SubParsersAction[Parser]) -> None:
     stability.add_argument("-o", "--output", metavar="FILE", help="the same into a file, .txt or .json")
 
 
-def _add_table(commands: argparse._SubParsersAction[Parser]) -> None:
+def _add_table(top: Program) -> None:
     """Add the command `table`."""
-    table = commands.add_parser("table", help="the film table, from which films are read without solving")
+    table = top.add_command(_MEASURE, "table", "the film table, from which films are read without solving")
     parts = table.add_subparsers(dest="part", required=True, metavar="PART")
     make = parts.add_parser("make", help="solve it anew; minutes of one core")
     make.add_argument("-o", "--output", metavar="FILE.nc", default="film_table.nc", help="default: film_table.nc")

@@ -140,7 +140,7 @@ def sweep_problems(scene: Scene) -> list[str]:
     if scene.sweep is not None:
         return []
     return [
-        f'{scene.name}: no speeds; allowed: --speeds "500 rpm" "2500 rpm" 40, or a table [sweep] in the scene with '
+        f'{scene.name}: no speeds; allowed: --speed "500 rpm" "2500 rpm" 40, or a table [sweep] in the scene with '
         "from, to and points"
     ]
 
@@ -290,7 +290,7 @@ def _swept(model: Model, settings: SweepSettings) -> _Swept:
     speeds = settings.speeds or model.scene.sweep
     if speeds is None:
         raise InputError(
-            f'{model.scene.name}: no speeds; allowed: --speeds "500 rpm" "2500 rpm" 40, or a table [sweep] in the '
+            f'{model.scene.name}: no speeds; allowed: --speed "500 rpm" "2500 rpm" 40, or a table [sweep] in the '
             "scene with from, to and points"
         )
     if not turning_places(model.system):

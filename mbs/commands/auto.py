@@ -18,7 +18,6 @@ def analysed(
     ask: Callable[[argparse.Namespace], A],
     analyse: Callable[[A], R],
     looks_at: Callable[[A], Looked],
-    own_tolerance: bool = False,
 ) -> Done[R]:
     """The analysis of a command, with a map of its own where `--auto` asks for one.
 
@@ -32,8 +31,6 @@ def analysed(
         The analysis.
     looks_at : callable
         What it looks at.
-    own_tolerance : bool
-        Whether `--tolerance` says something without `--auto`, too.
 
     Raises
     ------
@@ -41,7 +38,7 @@ def analysed(
         With every problem of the arguments; before a map is made.
     """
     if not getattr(arguments, "auto", False):
-        if problems := _only_with_auto(arguments, own_tolerance):
+        if problems := _only_with_auto(arguments):
             raise InputError(problems)
         return Done(analyse(ask(arguments)))
     from mbs.commands.auto_maps import with_own_maps  # with all that makes maps
@@ -49,8 +46,8 @@ def analysed(
     return with_own_maps(arguments, ask, analyse, looks_at)
 
 
-def _only_with_auto(arguments: argparse.Namespace, own_tolerance: bool) -> list[str]:
+def _only_with_auto(arguments: argparse.Namespace) -> list[str]:
     """List problems with options that belong to `--auto`."""
-    options = ("maps", "physics", "shear") if own_tolerance else ("maps", "physics", "shear", "tolerance")
-    given = [option for option in options if getattr(arguments, option, None) is not None]
+    options = ("maps", "physics", "shear", "auto_tolerance")
+    given = [option.replace("_", "-") for option in options if getattr(arguments, option, None) is not None]
     return [f"--{option}: stands without --auto; allowed: with it" for option in given]

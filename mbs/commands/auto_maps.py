@@ -25,7 +25,7 @@ from mbs.scene.scene import Scene
 A = TypeVar("A")
 R = TypeVar("R")
 
-_CONTRARY = ("map", "structure")
+_CONTRARY = ("map", "structural_law")
 """Options that stand for a map that is there."""
 
 _OF_FILMS = tuple(choice for choice in OPTIONS if choice.concerned == "films")
@@ -68,19 +68,23 @@ def with_own_maps(
     return Done(found.result, (*_lines(found),), 1 if warned else 0)
 
 
-def read_tolerance(text: str | None, problems: list[str]) -> float:
-    """Read --tolerance: a part of a stiffness or damping, such as "5 %", or of a level, such as "1 dB".
+def read_tolerance(arguments: argparse.Namespace, problems: list[str]) -> float:
+    """Read --auto-tolerance: a part of a stiffness or damping, such as "5 %", or of a level, such as "1 dB".
+
+    A run-up that has a --tolerance of its levels alone has that.
 
     A level at a resonance goes with 1/c, one held by stiffness with 1/k, so that a decibel is a change of k or c by
     12 %.
 
     Parameters
     ----------
-    text : str or None
-        What was given; None if it was left out.
+    arguments : argparse.Namespace
+        Arguments of a command.
     problems : list of str
         Appended to.
     """
+    own, of_levels = (getattr(arguments, key, None) for key in ("auto_tolerance", "tolerance"))
+    option, text = ("--tolerance", of_levels) if own is None else ("--auto-tolerance", own)
     if text is None:
         return TOLERANCE
     number, _, unit = text.strip().partition(" ")
@@ -90,9 +94,7 @@ def read_tolerance(text: str | None, problems: list[str]) -> float:
     except (KeyError, ValueError, OverflowError):
         part = math.nan
     if not 0.0 < part <= MOST_TOLERANCE * (1.0 + 1e-9):
-        problems.append(
-            f"--tolerance: got {text!r:.40}; allowed: above 0 up to 900 % or 20 dB, such as '5 %' or '1 dB'"
-        )
+        problems.append(f"{option}: got {text!r:.40}; allowed: above 0 up to 900 % or 20 dB, such as '5 %' or '1 dB'")
         return TOLERANCE
     return min(part, MOST_TOLERANCE)
 
@@ -102,11 +104,11 @@ def _asked(
 ) -> tuple[Scene, Looked, AutoSettings]:
     """Scene, what is looked at, and settings; all problems at once, before anything is made."""
     problems = [
-        f"--{option}: stands beside --auto, which has films of its own; leave one of them out"
+        f"--{option.replace('_', '-')}: stands beside --auto, which has films of its own; leave one of them out"
         for option in _CONTRARY
         if getattr(arguments, option, None)
     ]
-    tolerance = read_tolerance(getattr(arguments, "tolerance", None), problems)
+    tolerance = read_tolerance(arguments, problems)
     problems += [
         f"--{name}: got {len(texts)} of them; allowed with --auto: one, as each has a plan"
         for name in ("clearance", "temperature", "roughness")
@@ -162,7 +164,7 @@ def _settings(arguments: argparse.Namespace, tolerance: float, folder: Path, hig
         highest=highest,
         folder=folder,
         clearance=first("clearance"),
-        films=None if films == "dry" else films,
+        films=films,
         supply=first("supply"),
         physics=getattr(arguments, "physics", None),
         shear=getattr(arguments, "shear", None),

@@ -157,14 +157,22 @@ def read_request(arguments: argparse.Namespace) -> BearingRequest:
         )
     around = chosen.get("temperature", CELSIUS_40)
     inner, outer = (
-        _one(f"--{side}-ring", getattr(arguments, f"{side}_ring"), "K", OIL_TEMPERATURES, TEMPERATURE, around, problems)
+        _one(
+            f"--{side}-ring-temperature",
+            getattr(arguments, f"{side}_ring_temperature"),
+            "K",
+            OIL_TEMPERATURES,
+            TEMPERATURE,
+            around,
+            problems,
+        )
         for side in SIDES
     )
     temperature = 0.5 * (inner + outer)
-    if "temperature" in chosen and None not in (arguments.inner_ring, arguments.outer_ring):
+    if "temperature" in chosen and None not in (arguments.inner_ring_temperature, arguments.outer_ring_temperature):
         problems.append(
-            f"--temperature: got {TEMPERATURE.text(around)} with --inner-ring and --outer-ring; allowed: two of "
-            "the three; it is the temperature of a ring that has none of its own"
+            f"--temperature: got {TEMPERATURE.text(around)} with --inner-ring-temperature and "
+            "--outer-ring-temperature; allowed: two of the three; it is the temperature of a ring that has none of its own"
         )
     stated = _surface(given, emap)
     surface = dataclasses.replace(stated, roughness=chosen["roughness"].roughness) if "roughness" in chosen else stated
@@ -172,7 +180,7 @@ def read_request(arguments: argparse.Namespace) -> BearingRequest:
     direction = _direction(arguments.direction, problems)
     bearing = _sliced(given, chosen.get("clearance"), arguments, problems)
     state = None
-    if bearing is not None and (arguments.inner_ring, arguments.outer_ring) != (None, None):
+    if bearing is not None and (arguments.inner_ring_temperature, arguments.outer_ring_temperature) != (None, None):
         warm = operating_clearance(bearing.geometry, Mounting(), inner, outer, bearing.material)
         state = BearingState("bearing", inner, outer, warm)
         geometry = dataclasses.replace(bearing.geometry, diametral_clearance=warm.operating)
@@ -243,7 +251,7 @@ def _assumed(
 ) -> tuple[str, ...]:
     """Values that were not given, in words."""
     found = []
-    if "temperature" not in chosen and None in (arguments.inner_ring, arguments.outer_ring):
+    if "temperature" not in chosen and None in (arguments.inner_ring_temperature, arguments.outer_ring_temperature):
         found.append(f"temperature {TEMPERATURE.text(CELSIUS_40)}")
     if surface.smooth:
         found.append(f"combined rms roughness {MICROMETRE.text(ROUGHNESS)} (for Lambda only)")

@@ -63,9 +63,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     if is_time_data(arguments.scene):
         return recorded_runs(arguments)
     workers = arguments.workers or available_cores()
-    done = analysed(
-        arguments, _asked, lambda asked: _ran(asked, arguments.modes, workers), _looks_at, own_tolerance=True
-    )
+    done = analysed(arguments, _asked, lambda asked: _ran(asked, arguments.modes, workers), _looks_at)
     found, tolerated, beside = done.result.run, done.result.tolerated, done.result.measured
     settings, runs, course, bands = found.settings, found.runs, found.course, int(arguments.bands or "0")
     unsound = [

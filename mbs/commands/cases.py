@@ -139,7 +139,7 @@ def read_compared(
         Kind of file that -o writes.
     """
     scene = _read_scene(arguments, problems)
-    of_laws = (*LAWS, "structure", "films", "supply")
+    of_laws = (*LAWS, "structural-law", "films", "supply")
     problems += [
         f"--{choice.name}: got {len(texts)} of them; allowed: one, and others by --vary {choice.name}"
         for choice in OPTIONS

@@ -85,7 +85,7 @@ def _asked(arguments: argparse.Namespace) -> _Asked:
     problems: list[str] = []
     settings, cases = SweepSettings(), list[Case]()
     try:
-        settings = SweepSettings(read_speeds(arguments.speeds) if arguments.speeds else None)
+        settings = SweepSettings(read_speeds(arguments.speed) if arguments.speed else None)
     except InputError as error:
         problems += error.problems
     try:

@@ -28,7 +28,7 @@ from mbs.scene.choices import OPTIONS
 from mbs.scene.map_set import MapSet
 from mbs.settings import SweepRange
 
-_OPTIONS = (*(choice.name for choice in OPTIONS), "physics", "shear", "tolerance", "result")
+_OPTIONS = (*(choice.name for choice in OPTIONS), "physics", "shear", "auto-tolerance", "result")
 
 
 class _Asked(NamedTuple):
@@ -62,7 +62,7 @@ def _asked(arguments: argparse.Namespace) -> _Asked:
     problems: list[str] = []
     speeds, saved, cases = None, None, []
     try:
-        speeds = read_speeds(arguments.speeds) if arguments.speeds else None
+        speeds = read_speeds(arguments.speed) if arguments.speed else None
     except InputError as error:
         problems += error.problems
     if arguments.result is not None:
@@ -70,8 +70,8 @@ def _asked(arguments: argparse.Namespace) -> _Asked:
             saved = read_result(arguments.result)
         except InputError as error:
             problems += error.problems
-        if arguments.speeds:
-            problems.append("--speeds: stands beside --result, whose speeds are drawn; leave one of them out")
+        if arguments.speed:
+            problems.append("--speed: stands beside --result, whose speeds are drawn; leave one of them out")
     try:
         cases = load_cases(arguments, several=False, kind=REPORT)
     except InputError as error:
@@ -110,5 +110,5 @@ def _command(arguments: argparse.Namespace) -> str:
         for value in [given] if isinstance(given, str) else given or ():
             words += [f"--{option}", Path(value).name if option in ("map", "result") else value]
     words += ["--auto"] if arguments.auto else []
-    words += ["--speeds", *arguments.speeds] if arguments.speeds else []
+    words += ["--speed", *arguments.speed] if arguments.speed else []
     return shlex.join([*words, "-o", Path(arguments.output).name])

@@ -78,8 +78,8 @@ def _words(arguments: argparse.Namespace, name: str, folder: Path | None) -> lis
     for choice in OPTIONS:
         for text in texts_of(arguments, choice):
             words += [f"--{choice.name}", text]
-    for option in ("maps", "physics", "shear", "tolerance"):
-        if (value := getattr(arguments, option)) is not None:
+    for option in ("maps", "physics", "shear", "auto-tolerance"):
+        if (value := getattr(arguments, option.replace("-", "_"))) is not None:
             words += [f"--{option}", value]
     if arguments.auto:
         words.append("--auto")

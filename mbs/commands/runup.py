@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 _MOST_SPECTRA = 4
 _LARGEST_SPEED = 1e6 / RPM.factor
 _OF_A_SCENE = (
-    "law", "map", "structure", "films", "supply", "clearance", "auto", "maps", "physics", "tolerance",
+    "law", "map", "structural_law", "films", "supply", "clearance", "auto", "maps", "physics", "tolerance",
 )  # fmt: skip
 _OF_A_SPEED = ("speed_channel", "tacho", "pulses", "speed_table")
 
@@ -81,7 +81,6 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         _asked,
         lambda asked: _ran(asked, workers),
         lambda asked: _looks_at(asked.cases[0].model.scene),
-        own_tolerance=True,
     )
     found, asked, tolerated = done.result
     names = tuple(label if found.runs[1:] else entry.model.label for label, entry in _pairs(found))

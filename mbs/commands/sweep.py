@@ -141,7 +141,7 @@ def _read(arguments: argparse.Namespace) -> tuple[SweepSettings, list[Case]]:
     speeds: SweepRange | None = None
     cases: list[Case] = []
     try:
-        speeds = read_speeds(arguments.speeds) if arguments.speeds else None
+        speeds = read_speeds(arguments.speed) if arguments.speed else None
     except InputError as error:
         problems += error.problems
     angles = whole(arguments.cage_angles or "1")
@@ -150,7 +150,7 @@ def _read(arguments: argparse.Namespace) -> tuple[SweepSettings, list[Case]]:
             f"--cage-angles: got {arguments.cage_angles!r:.40}; allowed: a whole number from 1 to {MOST_ANGLES}"
         )
     try:
-        cases = load_cases(arguments, needs=None if arguments.speeds else sweep_problems, speeds=speeds)
+        cases = load_cases(arguments, needs=None if arguments.speed else sweep_problems, speeds=speeds)
     except InputError as error:
         problems += error.problems
     if problems:
@@ -159,7 +159,7 @@ def _read(arguments: argparse.Namespace) -> tuple[SweepSettings, list[Case]]:
 
 
 def read_speeds(texts: Sequence[str]) -> SweepRange:
-    """Read FROM TO POINTS of `--speeds`.
+    """Read FROM TO POINTS of `--speed`.
 
     Parameters
     ----------
@@ -177,12 +177,12 @@ def read_speeds(texts: Sequence[str]) -> SweepRange:
         try:
             ends.append(quantity(text, "rad/s"))
         except InputError as error:
-            problems.append(f"--speeds: {error.problems[0]}")
+            problems.append(f"--speed: {error.problems[0]}")
     points = whole(texts[2])
     if not 2 <= points <= MOST_SPEEDS:
-        problems.append(f"--speeds: got {texts[2]!r:.40} points; allowed: a whole number from 2 to {MOST_SPEEDS}")
+        problems.append(f"--speed: got {texts[2]!r:.40} points; allowed: a whole number from 2 to {MOST_SPEEDS}")
     if len(ends) == 2 and not 0.0 <= ends[0] < ends[1] <= 1e5:
-        problems.append(f"--speeds: got from {texts[0]!r:.40} to {texts[1]!r:.40}; allowed: rising, from 0 rpm on")
+        problems.append(f"--speed: got from {texts[0]!r:.40} to {texts[1]!r:.40}; allowed: rising, from 0 rpm on")
     if problems:
         raise InputError(problems)
     return SweepRange(ends[0], ends[1], points)

@@ -129,7 +129,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     point.add_argument("--direction", nargs="+", metavar="ANGLE", help="of the load from y towards z (0 deg)")
     point.add_argument("--temperature", metavar="TEMPERATURE", help='of the raceways, such as "60 degC" (40 degC)')
     point.add_argument("--clearance", metavar="LENGTH", help='diametral, such as "20 um"; default: the map\'s, none')
-    point.add_argument("--cage-angle", metavar="ANGLE", help='of the first roller from y, such as "5 deg" (0 deg)')
+    point.add_argument("--start-angle", metavar="ANGLE", help='of the first roller from y, such as "5 deg" (0 deg)')
     point.add_argument("--profile", metavar="PROFILE", default="iso", help="of the rollers, as of `mbs bearing` (iso)")
     point.add_argument("--slices", metavar="N", default="41", help="of a roller (41)")
 
@@ -199,11 +199,11 @@ def _read(path: Path, arguments: argparse.Namespace) -> tuple[BearingRequest, tu
     problems: list[str] = []
     frequencies = read_values("--frequency", arguments.frequency or [["0 Hz"]], "Hz", FREQUENCIES, HERTZ, problems)
     angle = 0.0
-    if arguments.cage_angle is not None:
+    if arguments.start_angle is not None:
         try:
-            angle = quantity(arguments.cage_angle, "rad")
+            angle = quantity(arguments.start_angle, "rad")
         except InputError as error:
-            problems += [f"--cage-angle: {problem}" for problem in error.problems]
+            problems += [f"--start-angle: {problem}" for problem in error.problems]
     if arguments.films not in _FILMS:
         problems.append(f"--films: got {arguments.films!r:.60}; allowed: {', '.join(_FILMS)}")
     problems += [
@@ -233,13 +233,13 @@ def _read(path: Path, arguments: argparse.Namespace) -> tuple[BearingRequest, tu
     return request, frequencies, angle
 
 
-_TAKEN = ("direction", "temperature", "clearance", "profile", "slices", "structure", "roughness")
+_TAKEN = ("direction", "temperature", "clearance", "profile", "slices", "structural_law", "roughness")
 _UNASKED = {
     "law": "map",
     "oil": None,
     "supply": None,
-    "inner_ring": None,
-    "outer_ring": None,
+    "inner_ring_temperature": None,
+    "outer_ring_temperature": None,
     "coupled": False,
     "output": None,
     "plot": None,

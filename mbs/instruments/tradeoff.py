@@ -234,7 +234,7 @@ def _unknown(base: Subject, model: Model) -> Iterable[_Tried]:
     if base.law.maps is not None:
         structure = base.law.maps.maps[0].structural_law
         other = "iso16281" if structure == "half_space" else "half_space"
-        stated.append(("structure", other, f"structural law {other} in place of {structure}"))
+        stated.append(("structural-law", other, f"structural law {other} in place of {structure}"))
     if model.surface is not None and model.surface.smooth:
         stated.append(("roughness", ROUGH, ROUGH.label))
     for key, value, label in stated:

@@ -295,7 +295,7 @@ def structure_verdict(ranges: Sequence[Range]) -> Verdict:
     size = max(sizes.values())
     words = ", ".join(f"by {up_to(part)} with {law}" for law, part in sizes.items())
     told = f"iso16281; k or c of a contact changes {words} ({beside(size, ranges[0].tolerance)})"
-    return Verdict("structural law", True, size, f"{told}; --structure beside --map has another")
+    return Verdict("structural law", True, size, f"{told}; --structural-law beside --map has another")
 
 
 def housing_verdict(rest: _AtRest, tolerance: float) -> Verdict:

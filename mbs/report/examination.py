@@ -97,7 +97,7 @@ def _sweep(model: Model, speeds: SweepRange | None) -> SweepResult:
     scene = model.scene
     speeds = speeds or speeds_of(scene)
     if speeds is None:
-        raise AnalysisError("the scene stands still and has no [sweep]; --speeds gives speeds")
+        raise AnalysisError("the scene stands still and has no [sweep]; --speed gives speeds")
     return sweep(dataclasses.replace(model, scene=dataclasses.replace(scene, frequencies=())), SweepSettings(speeds))
 
 

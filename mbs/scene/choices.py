@@ -31,8 +31,8 @@ if TYPE_CHECKING:
     from mbs.scene.map_set import MapSet
     from mbs.scene.scene import Scene
 
-FILMS = ("memory", "slow", "dry")
-"""What --films takes: films that relax, those of slow motion, and none."""
+FILMS = ("memory", "slow")
+"""What --films takes: films that relax, and those of slow motion."""
 
 WIDEST = 1e-2
 """Largest clearance, either way [m]."""
@@ -344,18 +344,16 @@ def _with_structure(subject: Subject, name: str) -> Subject:
 
 
 def _with_films(subject: Subject, kind: str) -> Subject:
-    """A subject with other films, or dry; a law without films stays as it is."""
+    """A subject with other films; a law without films stays as it is."""
     law = subject.law
     if not law.has_films:
         return subject
-    if kind == "dry":
-        return dataclasses.replace(subject, law=named_law("hertz", subject.scene))
     return dataclasses.replace(subject, law=dataclasses.replace(law, films="memory" if kind == "memory" else "slow"))
 
 
 def _films_words(kind: str) -> str:
-    """Tell films; those that are dry have the label of their law."""
-    return "" if kind == "dry" else FILM_WORDS["memory" if kind == "memory" else "slow"]
+    """Tell films."""
+    return FILM_WORDS["memory" if kind == "memory" else "slow"]
 
 
 def _with_supply(subject: Subject, supply: OilSupply) -> Subject:
@@ -434,7 +432,7 @@ _ROWS = (
         "films",
         "KIND",
         "memory: films follow oscillations at their own frequency; slow: stiffness and damping of slow motion at any "
-        "frequency; dry: --law hertz. Statics are the same for memory and slow",
+        "frequency. Statics are the same; without films: --law hertz",
         DEFAULT_FILMS,
         one_of(lambda: FILMS),
         _with_films,
@@ -625,7 +623,7 @@ def combinations(
             got = ", ".join(map(choice.text, several))
             problems.append(f"--{choice.name}: got {got} {LACKS[choice.concerned]}")
             continue
-        found = _told_apart(entry for one in found for entry in _each(one, choice, several, problems))
+        found = [entry for one in found for entry in _each(one, choice, several, problems)]
     return found
 
 
@@ -650,14 +648,6 @@ def _each(one: Combination, choice: SceneChoice, several: Sequence[Any], problem
             subject = dataclasses.replace(subject, law=law)
         found.append(Combination(subject, one.words, one.values))
     return found
-
-
-def _told_apart(found: Iterable[Combination]) -> list[Combination]:
-    """Each combination once: one dry law stands for all maps without films."""
-    kept: dict[tuple[LawChoice, tuple[str, ...]], Combination] = {}
-    for one in found:
-        kept.setdefault((one.subject.law, one.words), one)
-    return list(kept.values())
 
 
 def _with_stated_supply(subject: Subject) -> Subject:

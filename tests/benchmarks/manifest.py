@@ -118,7 +118,7 @@ BEARING = ("bearing", "NU308", "--clearance", "20 um")
 POINT = ("solve", "nu308", "--load", "88 N/mm", "--speed", "1.7 m/s", "--temperature", "40 degC", "--json")
 EXPORT = ("export", "read.nc", "--to")
 SPRING = ("--load", "5 kN", "--speed", "1500 rpm")
-OVER = ("--speeds", "500 rpm", "2000 rpm", "3")
+OVER = ("--speed", "500 rpm", "2000 rpm", "3")
 
 RUNS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     *(

@@ -30,7 +30,7 @@ def make(source: str, folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     assert ehdmaps(["export", source, "--to", "nastran", "-o", str(folder / NAME), *POINT]) == 0
     parser = ArgumentParser()
-    parser.add_argument("--structure")
+    parser.add_argument("--structural-law")
     parser.add_argument("--roughness")
     add_arguments(parser)
     table = linear_table(Path(source), parser.parse_args(POINT))

@@ -297,7 +297,7 @@ def test_solve_takes_a_load_per_length_and_a_frequency(capsys):
 
 def test_solve_over_frequency(capsys, here):
     point = ["--load", "62 N", "--length", "0.7 mm", "--speed", "1.7 m/s", "--temperature", "40 degC"]
-    asked = ["solve", "nu308", *point, "--frequencies", "10 Hz", "20 kHz", "5"]
+    asked = ["solve", "nu308", *point, "--frequency", "10 Hz", "20 kHz", "5"]
     status, out, err = run(capsys, *asked, "--plot", "z.png")
     assert (status, err.strip().splitlines()[-1]) == (0, "z.png: written")
     assert (here / "z.png").is_file()
@@ -321,7 +321,7 @@ def test_solve_over_the_slide_to_roll_ratio(capsys):
     status, out, _ = run(capsys, *asked)
     assert status == 0 and "eyring: 6 MPa; limiting: 2 MPa + 0.05 p" in out
     assert "  rolling force          N/m " in out and "  mass flow              g/(m s) " in out
-    status, out, _ = run(capsys, *asked, "--eyring-stress", "4 MPa", "--limiting-ratio", "0.04", "--json")
+    status, out, _ = run(capsys, *asked, "--shear-stress", "4 MPa", "--limiting-ratio", "0.04", "--json")
     inner, _ = json.loads(out)
     assert (inner["eyring_stress"], inner["limiting_ratio"]) == (4e6, 0.04)
     assert inner["slide_to_roll"] == pytest.approx([1e-3, 1e-2, 1e-1, 1.0])
@@ -355,7 +355,7 @@ def test_solve_behind_an_oil_layer(capsys):
 
 def test_solve_over_frequency_without_a_solution(capsys):
     point = ["--load", "10000 N/mm", "--speed", "1e-8 m/s", "--temperature", "40 degC"]
-    status, out, _ = run(capsys, "solve", "nu308", *point, "--frequencies", "10 Hz", "20 kHz", "5")
+    status, out, _ = run(capsys, "solve", "nu308", *point, "--frequency", "10 Hz", "20 kHz", "5")
     assert status == 1
     assert out.count("outside_validity") == 2
 

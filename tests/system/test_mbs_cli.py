@@ -55,7 +55,7 @@ def test_modes_by_map(here, capsys, formula_maps):
 def test_sweep_of_two_laws_and_clearances(here, capsys, formula_maps):
     status, out, err = run(
         capsys, "sweep", "nu308_rigid", "--map", formula_maps["NU308"], "--law", "hertz", "--clearance", "0 um",
-        "--clearance", "20 um", "--speeds", "200 rpm", "2000 rpm", "4", "-o", "s.nc", "--plot", "s.png",
+        "--clearance", "20 um", "--speed", "200 rpm", "2000 rpm", "4", "-o", "s.nc", "--plot", "s.png",
     )  # fmt: skip
     assert (status, err) == (0, "")
     assert "law map of NU308, FVA3, solver formula" in out
@@ -81,7 +81,7 @@ def test_sweep_of_films(here, capsys, formula_maps):
     """Slow films, films with memory and none stand side by side; films are told with their error."""
     status, out, err = run(
         capsys, "sweep", "nu308_rigid", "--map", formula_maps["NU308"], "--films", "slow", "--films", "memory",
-        "--films", "dry", "--law", "hertz", "--clearance", "20 um", "--speeds", "500 rpm", "2000 rpm", "4", "-o",
+        "--law", "hertz", "--clearance", "20 um", "--speed", "500 rpm", "2000 rpm", "4", "-o",
         "s.nc", "--plot", "s.png",
     )  # fmt: skip
     assert (status, err) == (0, "")
@@ -126,7 +126,7 @@ def test_films_with_memory_at_one_speed(here, capsys, formula_maps):
     kept = [line for line in slow.splitlines() if ": law " not in line]
     assert any("K and C are those of slow motion" in line for line in kept)
     assert [line for line in memory.splitlines() if ": law " not in line] == kept
-    dry = run(capsys, "statics", "nu308_rigid", *films[:2], "--films", "dry")[1]
+    dry = run(capsys, "statics", "nu308_rigid", *films[:2], "--law", "hertz")[1]
     assert "law dry Hertz, ISO 16281" in dry
 
 
@@ -227,14 +227,14 @@ def test_bad_input_lists_every_problem_and_writes_nothing(here, capsys, formula_
         (["statics", "nu308_rigid", "--clearance", "1 m"], "allowed: within 1e+04 um either way"),
         (["statics", "nu308_rigid", "--clearance", "1 um", "--clearance", "2 um"], "got 2 of them; allowed: one"),
         (["modes", "nu308_rigid", "--clearance", "1 um", "--clearance", "2 um"], "got 2 of them; allowed: one"),
-        (["sweep", "nu308_rigid", "--speeds", "9 rpm", "5 rpm", "x"], "allowed: a whole number from 2"),
-        (["sweep", "nu308_rigid", "--speeds", "9 rpm", "5 rpm", "3"], "allowed: rising"),
+        (["sweep", "nu308_rigid", "--speed", "9 rpm", "5 rpm", "x"], "allowed: a whole number from 2"),
+        (["sweep", "nu308_rigid", "--speed", "9 rpm", "5 rpm", "3"], "allowed: rising"),
         (["sweep", "nu308_rigid", "--load-factor", "none"], "--load-factor: got 'none'; allowed: above 0"),
         (["modes", "nu308_rigid", "--law", "hertz", "--films", "memory"], "--films: got memory without a law that has"),
         (["modes", "nu308_rigid", "--films", "fast"], "--films: got 'fast'; allowed: memory, slow, dry"),
         (["sweep", "nu308_rigid", "--films", "dry", "--films", "dry"], "--films: got 'dry' twice; allowed: each once"),
         (["modes", "nu308_rigid", "--films", "dry", "--films", "slow"], "--films: got 2 of them; allowed: one"),
-        (["sweep", "nu308_rigid"], "no speeds; allowed: --speeds"),
+        (["sweep", "nu308_rigid"], "no speeds; allowed: --speed"),
         (["statics", "nu308_rigid", "--plot", "a.xyz"], "--plot: got a.xyz; allowed: a file that ends in .png"),
     ):
         status, out, err = run(capsys, *arguments)
@@ -261,7 +261,7 @@ def test_what_a_scene_lacks_is_said_before_laws_are_made(here, capsys, monkeypat
     for *command, words in (
         ("lsa", "a.toml", "[[inputs]] missing"),
         ("runup", "a.toml", "[runup] missing"),
-        ("sweep", "a.toml", "no speeds; allowed: --speeds"),
+        ("sweep", "a.toml", "no speeds; allowed: --speed"),
         ("hammer", "a.toml", "-o", "h.uff", "[[sensors]] missing"),
         ("campbell", "b.toml", "has no sensor of an acceleration"),
     ):
@@ -297,7 +297,7 @@ def test_free_motions_have_no_frequency_and_no_damping_ratio(here, capsys):
     (here / "a.toml").write_text(text)
     options = ("a.toml", "--law", "hertz", "--clearance", "20 um")
     for command in (
-        ("sweep", *options, "--speeds", "500 rpm", "600 rpm", "2"),
+        ("sweep", *options, "--speed", "500 rpm", "600 rpm", "2"),
         ("hammer", *options, "--hits", "2", "-o", "hits.uff"),
     ):
         status, out, _ = run(capsys, *command)

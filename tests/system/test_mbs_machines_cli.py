@@ -187,7 +187,7 @@ class TestWithoutLoad:
             assert np.max(np.abs(data["displacement"])) < 1e-12
             assert data.attrs["residual"] < 1.0
         assert run(capsys, "modes", "unloaded.toml", "--map", formula_map)[0] == 0
-        assert run(capsys, "sweep", "unloaded.toml", "--map", formula_map, "--speeds", "0 rpm", "500 rpm", "2")[0] == 0
+        assert run(capsys, "sweep", "unloaded.toml", "--map", formula_map, "--speed", "0 rpm", "500 rpm", "2")[0] == 0
 
     def test_no_film_at_rest_is_said_in_words(self, here, capsys, formula_map):
         text = (here / "own.toml").read_text(encoding="utf-8").replace('speed = "500 rpm"', 'speed = "0 rpm"')

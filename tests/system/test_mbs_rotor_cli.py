@@ -18,7 +18,7 @@ def here(tmp_path, monkeypatch):
 
 
 def test_critical_speeds_of_the_shipped_rotor(here, capsys):
-    asked = ("--speeds", "8000 rpm", "15000 rpm", "8", "-o", "rotor.nc", "--plot", "rotor.png")
+    asked = ("--speed", "8000 rpm", "15000 rpm", "8", "-o", "rotor.nc", "--plot", "rotor.png")
     status, out, _ = run(capsys, "critical", "overhung_rotor", *DAMPED, *asked)
     assert status == 0
     assert "9539.5 rpm" in out
@@ -39,7 +39,7 @@ def test_critical_speeds_of_the_shipped_rotor(here, capsys):
 @pytest.mark.slow
 def test_critical_speeds_of_several_laws_in_one_table(here, capsys):
     """Each law has in the table, and in the file, what it has alone."""
-    speeds = ("--speeds", "9300 rpm", "9700 rpm", "2", "-o", "rotor.nc")
+    speeds = ("--speed", "9300 rpm", "9700 rpm", "2", "-o", "rotor.nc")
     laws = ("--law", "hertz", *DAMPED)
     status, out, _ = run(capsys, "critical", "overhung_rotor", *laws, *speeds, "--plot", "rotor.png")
     assert status == 0

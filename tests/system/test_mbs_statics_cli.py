@@ -71,13 +71,13 @@ def test_stiffness_damping_and_responses_have_the_units_of_engineers(here, capsy
     given = {
         "lsa": (command, path),
         "statics": (command, path, "--law", "constant:cfd"),
-        "sweep": (command, path, "--law", "hertz:100 N s/m", "--speeds", "500 rpm", "600 rpm", "2"),
+        "sweep": (command, path, "--law", "hertz:100 N s/m", "--speed", "500 rpm", "600 rpm", "2"),
         "report": (command, path, "--law", "constant:cfd", "-o", "page.html"),
         "bearing": (command, "nu308", "--load", "1 kN", "--speed", "900 rpm"),
     }
     if command in ("solve", "spectrum"):
         solve = ["solve", "nu308", "--load", "20 N", "--speed", "1 m/s", "--temperature", "40 degC"]
-        more = ["--solver", "formula"] if command == "solve" else ["--frequencies", "100 Hz", "1 kHz", "2"]
+        more = ["--solver", "formula"] if command == "solve" else ["--frequency", "100 Hz", "1 kHz", "2"]
         assert ehdmaps_cli.main([*solve, "--length", "0.5 mm", *more]) == 0
         told = capsys.readouterr().out
     else:
@@ -111,7 +111,7 @@ def test_heads_say_whether_weight_is_in_the_equilibrium(here, capsys, command):
     )
     heavy = ("[operation]\n", '[operation]\ngravity = ["0 m/s^2", "3 m/s^2", "-4 m/s^2"]\n')
     more = {
-        "sweep": ["--speeds", "500 rpm", "600 rpm", "2"],
+        "sweep": ["--speed", "500 rpm", "600 rpm", "2"],
         "report": ["-o", "page.html"],
         "variants": ["--law", "hertz", "--law", "hertz:1e-6 s", "--vary", "clearance", "1 um"],
     }
@@ -194,10 +194,10 @@ def test_a_load_on_what_is_free_is_no_equilibrium(here, capsys):
 
 
 def test_one_map_by_another_structural_law(here, capsys, formula_map):
-    """--structure gives what a map gives whose job had that law, in `mbs statics`, `sweep` and `bearing`."""
+    """--structural-law gives what a map gives whose job had that law, in `mbs statics`, `sweep` and `bearing`."""
     (here / "half.toml").write_text(WIDE.replace('"iso16281"', '"half_space"'))
     assert ehdmaps_cli.main(["generate", "half.toml", "-o", "half.nc", "--workers", "1"]) in (0, 1)
-    ways = {"iso": (formula_map,), "half": ("half.nc",), "chosen": (formula_map, "--structure", "half_space")}
+    ways = {"iso": (formula_map,), "half": ("half.nc",), "chosen": (formula_map, "--structural-law", "half_space")}
     for name, (path, *options) in ways.items():
         status, out, _ = run(capsys, "statics", "nu308_rigid", "--map", path, *options, "-o", f"{name}.statics.nc")
         assert (status, "structural law half_space" in out) == (0, name != "iso")
@@ -218,12 +218,12 @@ def test_one_map_by_another_structural_law(here, capsys, formula_map):
 @pytest.mark.parametrize("command", ["statics", "sweep", "bearing"])
 def test_structural_laws_that_do_not_suit_are_refused(here, capsys, formula_map, command):
     given = ("NU308", "--load", "1 kN", "--speed", "500 rpm") if command == "bearing" else ("nu308_rigid",)
-    status, _, err = run(capsys, command, *given, "--map", formula_map, "--structure", "half-space")
+    status, _, err = run(capsys, command, *given, "--map", formula_map, "--structural-law", "half-space")
     assert status == 2
-    assert "--structure: got 'half-space'" in err
+    assert "--structural-law: got 'half-space'" in err
     assert "allowed: iso16281, palmgren, half_space" in err
     # films of the film table take it; dry contacts are ISO 16281
-    speeds = ("--speeds", "500 rpm", "600 rpm", "2") if command == "sweep" else ()
-    status, _, err = run(capsys, command, *given, *speeds, "--law", "hertz", "--structure", "palmgren")
+    speeds = ("--speed", "500 rpm", "600 rpm", "2") if command == "sweep" else ()
+    status, _, err = run(capsys, command, *given, *speeds, "--law", "hertz", "--structural-law", "palmgren")
     assert status == 2
-    assert "--structure: got palmgren without a map; allowed: with --map MAP.nc" in err
+    assert "--structural-law: got palmgren without a map; allowed: with --map MAP.nc" in err

@@ -105,7 +105,7 @@ def test_foreign_text_is_shown_and_not_executed(page, tmp_path):
 
 def test_a_scene_is_legible_on_a_screen_and_on_paper(page, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    speeds = ("--speeds", "1000 rpm", "2000 rpm", "3")
+    speeds = ("--speed", "1000 rpm", "2000 rpm", "3")
     assert mbs(["report", "nu308_rigid", "--map", str(MAP), *speeds, "-o", "scene.html"]) in (0, 1)
     path = tmp_path / "scene.html"
     page.open(path)

@@ -52,7 +52,7 @@ def exported(path, out, target, *options):
 
 def table(path, *options):
     parser = ArgumentParser()
-    parser.add_argument("--structure")
+    parser.add_argument("--structural-law")
     parser.add_argument("--roughness")
     add_arguments(parser)
     return linear_table(path, parser.parse_args([*POINT, *options]))

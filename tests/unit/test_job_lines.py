@@ -124,7 +124,7 @@ def test_what_is_no_tolerance(tmp_path: Path, law_check: int, tolerance: float) 
 
 @pytest.mark.parametrize("text", ["0.01 %", "20 %", "one", "1 mm"])
 def test_shares_that_are_none(text: str) -> None:
-    with pytest.raises(InputError, match=r"--tolerance: got .*; allowed: a share of k, c and film offset .*\"0\.1 %\""):
+    with pytest.raises(InputError, match=r"--law-tolerance: got .*; allowed: a share of k, c and film .*\"0\.1 %\""):
         read_tolerance(text)
 
 

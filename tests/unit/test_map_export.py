@@ -122,7 +122,7 @@ def test_solve_tells_that_no_error_is_stated_and_extrapolation(capsys):
     assert main(["solve", "nu308", "--solver", "formula", *point]) == 0
     printed = capsys.readouterr().out
     assert "  error of damping                       none stated   none stated\n" in printed
-    assert main(["solve", "nu308", "--solver", "formula", *point, "--frequencies", "1 Hz", "10 Hz", "2"]) == 0
+    assert main(["solve", "nu308", "--solver", "formula", *point, "--frequency", "1 Hz", "10 Hz", "2"]) == 0
     over_frequency = capsys.readouterr().out
     assert over_frequency.count(" none stated") == 12 and "nan" not in over_frequency
     for name in ("inner", "outer"):

@@ -251,7 +251,7 @@ def test_contacts_of_a_bearing_have_the_lengths_of_every_law():
 
 
 def test_show_by_another_structural_law(paths, capsys):
-    assert main(["show", str(paths["iso16281"]), "--structure", "half_space"]) == 0
+    assert main(["show", str(paths["iso16281"]), "--structural-law", "half_space"]) == 0
     shown = capsys.readouterr().out
     assert main(["show", str(paths["half_space"])]) == 0
     made = capsys.readouterr().out
@@ -261,5 +261,5 @@ def test_show_by_another_structural_law(paths, capsys):
 
     assert part(shown) == part(made)
     assert "structural law       half_space" in shown
-    assert main(["show", str(paths["iso16281"]), "--structure", "hertz"]) == 2
-    assert "--structure: got 'hertz'; allowed: iso16281, palmgren, half_space" in capsys.readouterr().err
+    assert main(["show", str(paths["iso16281"]), "--structural-law", "hertz"]) == 2
+    assert "--structural-law: got 'hertz'; allowed: iso16281, palmgren, half_space" in capsys.readouterr().err

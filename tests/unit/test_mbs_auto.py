@@ -145,7 +145,7 @@ def test_bearings_of_two_types_have_films_each(folder):
 def test_options_that_do_not_go_together_are_refused_before_a_map_is_made(file, capsys, by_formula):
     status, _, err = run(
         capsys, "modes", file, "--auto", "--map", "a.nc", "--clearance", "1 um", "--clearance", "2 um",
-        "--maps", file, "--tolerance", "5", "--highest", "far", "--law", "hertz", "--films", "thick",
+        "--maps", file, "--auto-tolerance", "5", "--highest", "far", "--law", "hertz", "--films", "thick",
         "--supply", "much",
     )  # fmt: skip
     assert status == 2
@@ -153,7 +153,7 @@ def test_options_that_do_not_go_together_are_refused_before_a_map_is_made(file, 
         "--map: stands beside --auto",
         "--clearance: got 2 of them",
         f"--maps: got {file!r}, which is no folder and cannot be made",
-        "--tolerance: got '5'; allowed: above 0 up to 900 % or 20 dB",
+        "--auto-tolerance: got '5'; allowed: above 0 up to 900 % or 20 dB",
         "--highest: got 'far'",
         "--law: stands beside --auto",
         "--films: got 'thick'",

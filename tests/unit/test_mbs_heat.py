@@ -348,7 +348,7 @@ def test_commands_say_temperatures_clearance_and_where_heat_goes(tmp_path, capsy
     )
     with xr.open_dataset(result) as data:
         check_units(data)
-    status, out, err = run(capsys, "sweep", str(file), "--speeds", "100 rpm", "200 rpm", "2")
+    status, out, err = run(capsys, "sweep", str(file), "--speed", "100 rpm", "200 rpm", "2")
     assert "1000 rpm" not in out and "  at 200 rpm:\n    left: raceways" in out
     status, out, err = run(capsys, "runup", str(file))
     assert "temperatures and clearances are held at those of 1000 rpm, of [operation]" in out
@@ -365,16 +365,16 @@ def test_rings_of_one_bearing(capsys):
         "500 rpm",
         "--clearance",
         "20 um",
-        "--inner-ring",
+        "--inner-ring-temperature",
         "60 degC",
     )
-    status, out, err = run(capsys, *asked, "--outer-ring", "50 degC")
+    status, out, err = run(capsys, *asked, "--outer-ring-temperature", "50 degC")
     assert (status, err) == (0, "")
     assert (
         "55 degC, raceways 60 inner, 50 degC outer; operating clearance 12.28 um (20 um stated, temperature -7.72"
         in out
     )
-    status, out, err = run(capsys, *asked, "--outer-ring", "50 degC", "--temperature", "40 degC")
+    status, out, err = run(capsys, *asked, "--outer-ring-temperature", "50 degC", "--temperature", "40 degC")
     assert status == 2 and "allowed: two of the three" in err
     status, out, err = run(capsys, *asked)
     assert "50 degC, raceways 60 inner, 40 degC outer" in out and "assumed: temperature 40 degC" in out

@@ -163,7 +163,7 @@ class TestAsTheCommand:
             SweepSettings(SweepRange(quantity("1000 rpm", "rad/s"), quantity("2000 rpm", "rad/s"), 2), 2),
             progress,
         )
-        speeds = ("--speeds", "1000 rpm", "2000 rpm", "2")
+        speeds = ("--speed", "1000 rpm", "2000 rpm", "2")
         xr.testing.assert_identical(
             found.dataset, written("sweep", "--law", "hertz", "--law", "formula", *speeds, "--cage-angles", "2")
         )
@@ -252,7 +252,7 @@ def test_what_a_scene_lacks_is_said(model):
     for analysis, words in (
         (runup, r"\[runup\] missing; a run needs"),
         (campbell, r"\[runup\] missing; a run-up needs"),
-        (sweep, r"no speeds; allowed: --speeds"),
+        (sweep, r"no speeds; allowed: --speed"),
         (lsa, r"\[\[sensors\]\] missing; a linear analysis needs"),
         (hammer, r"\[\[inputs\]\] missing; a hammer test needs"),
     ):

@@ -175,7 +175,7 @@ def test_commands_take_several_maps_as_one_case_or_more(tmp_path, formula_maps):
     path.write_text(two_types(), encoding="utf-8")
 
     def given(*maps):
-        texts = {"output": None, "plot": None, "law": None, "clearance": "0 um", "films": "dry"}
+        texts = {"output": None, "plot": None, "law": None, "clearance": "0 um", "films": None}
         return argparse.Namespace(scene=str(path), map=list(maps), **texts)
 
     def labels(*maps):
@@ -190,4 +190,4 @@ def test_commands_take_several_maps_as_one_case_or_more(tmp_path, formula_maps):
     maps = formula_maps["NU308"], formula_maps["N1014"], str(again)
     assert labels(*maps) == ["formula map map", "formula map again"]
     with pytest.raises(InputError, match="got 3 of them, several for one type of bearing; allowed: one for each type"):
-        load_cases(given(*maps), several=False)  # dry films: no law is made of the maps
+        load_cases(given(*maps), several=False)

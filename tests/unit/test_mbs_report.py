@@ -122,7 +122,7 @@ def test_a_scene_with_dry_contacts(here, capsys):
     title = re.search(r'^title = "(.*)"$', text, re.MULTILINE)
     assert title
     (here / "mine.toml").write_text(text.replace(title[0], f'title = "{HOSTILE}"'))
-    assert main(["report", "mine.toml", *dry, "--speeds", "400 rpm", "600 rpm", "3"]) == 0
+    assert main(["report", "mine.toml", *dry, "--speed", "400 rpm", "600 rpm", "3"]) == 0
     assert capsys.readouterr().out == "mine.html: written\n"
     written = Path("mine.html").read_text()
     report = Report(written)
@@ -137,17 +137,17 @@ def test_a_scene_with_dry_contacts(here, capsys):
     assert main(["modes", "mine.toml", *dry]) == 0
     first = re.search(r"^ +1 +([0-9.]+) ", capsys.readouterr().out, re.MULTILINE)
     assert first and f"{float(first[1]):.5g}" in report.words
-    assert main(["report", "mine.toml", *dry, "--speeds", "400 rpm", "600 rpm", "3"]) == 0
+    assert main(["report", "mine.toml", *dry, "--speed", "400 rpm", "600 rpm", "3"]) == 0
     assert Path("mine.html").read_text() == written
 
 
 def test_all_problems_at_once(here, capsys):
     (here / "mine.html").write_text("<p>mine</p>")
-    words = ["--speeds", "1 rpm", "x", "3", "--result", "none.nc", "--law", "nothing", "-o", "mine.html"]
+    words = ["--speed", "1 rpm", "x", "3", "--result", "none.nc", "--law", "nothing", "-o", "mine.html"]
     assert main(["report", "nu308_rigid", *words]) == 2
     told = capsys.readouterr().err
     for part in (
-        "--speeds: got 'x'",
+        "--speed: got 'x'",
         "--result: none.nc",
         "leave one of them out",
         "nothing",

@@ -69,7 +69,7 @@ def test_the_first_line_says_it_and_the_status_is_1(tmp_path, capsys):
     path = tmp_path / "crushed.toml"
     crushed = TEXT.replace('"100 N", "100 N"', '"1e6 N", "0 N"')
     path.write_text(crushed.replace('duration = "0.2 s"', 'duration = "1 ms"'))
-    speeds = ["--speeds", "300 rpm", "600 rpm", "2"]
+    speeds = ["--speed", "300 rpm", "600 rpm", "2"]
     for command in (["statics"], ["modes"], ["lsa"], ["sweep", *speeds], ["critical", *speeds], ["runup"]):
         status, out, _ = run(capsys, command[0], str(path), *command[1:])
         assert status == 1, command

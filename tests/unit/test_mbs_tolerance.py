@@ -143,7 +143,7 @@ class TestCommand:
             "films",
             "supply",
             "clearance",
-            "structure",
+            "structural_law",
             "output",
             "plot",
             "highest",

@@ -87,7 +87,7 @@ def levels(monkeypatch):
 
 
 def run_command(scene, **values):
-    names = ("law", "map", "films", "clearance", "structure", "output", "plot", "highest", "window")
+    names = ("law", "map", "films", "clearance", "structural_law", "output", "plot", "highest", "window")
     given = argparse.Namespace(**{**dict.fromkeys(names), "vary": [], "workers": 1, "scene": str(scene), **values})
     return importlib.import_module("mbs.instruments.commands.variants").run(given)
 

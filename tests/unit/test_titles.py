@@ -71,9 +71,9 @@ def looked_at(figures):
         ("modes", "--plot", "a.png"),
         ("modes", "--shapes", "a.png"),
         ("lsa", "--law", "hertz", "--plot", "a.png"),
-        ("sweep", "--speeds", "500 rpm", "600 rpm", "2", "--plot", "a.png"),
+        ("sweep", "--speed", "500 rpm", "600 rpm", "2", "--plot", "a.png"),
         ("sweep", "--law", "hertz:1e-6 s", "--films", "slow", "--films", "memory", "--clearance", "0 um",
-         "--clearance", "20 um", "--speeds", "500 rpm", "600 rpm", "2", "--plot", "a.png"),
+         "--clearance", "20 um", "--speed", "500 rpm", "600 rpm", "2", "--plot", "a.png"),
     ],
     ids=lambda command: " ".join(command[:2]) + (" cases" if len(command) > 12 else ""),
 )  # fmt: skip

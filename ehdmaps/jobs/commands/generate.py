@@ -35,7 +35,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     batches = [source for source in arguments.jobs if is_batch(source)]
     if batches:
         return _batch(batches[0], arguments)
-    tolerance = None if arguments.tolerance is None else read_tolerance(arguments.tolerance)
+    tolerance = None if arguments.law_tolerance is None else read_tolerance(arguments.law_tolerance)
     texts, status = [], 0
     for job, output in _planned(arguments):
         text, map_status = _made(job, output, arguments, tolerance)
@@ -51,7 +51,7 @@ def _batch(source: str, arguments: argparse.Namespace) -> tuple[str, int]:
     beside = {
         "JOB": len(arguments.jobs) > 1,
         "--keep-cases": arguments.keep_cases is not None,
-        "--tolerance": arguments.tolerance is not None,
+        "--law-tolerance": arguments.law_tolerance is not None,
         '--fresh-films (say films = "solved" in [solver])': arguments.fresh_films,
     }
     problems = [
@@ -127,7 +127,7 @@ def read_tolerance(text: str) -> float:
     """
     low, high = TOLERANCES
     allowed = f'allowed: a share of k, c and film offset of the laws from "{100 * low:g} %" to "{100 * high:g} %"'
-    return quantity_within(text, "", low, high, f"--tolerance: got {text[:40]!r}; {allowed}")
+    return quantity_within(text, "", low, high, f"--law-tolerance: got {text[:40]!r}; {allowed}")
 
 
 def _made(job: Job, output: Path, arguments: argparse.Namespace, tolerance: float | None) -> tuple[str, int]:

@@ -62,7 +62,7 @@ class _Request:
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Solve the point for every contact; status 1 if one of them has no solution."""
     request = _read(arguments)
-    if arguments.frequencies is not None:
+    if len(arguments.frequency or ()) > 1:
         return _over_frequency(arguments, request)
     job, point = request.job, request.point
     outputs = film_outputs(job, arguments.fields, arguments.plot, arguments.job)
@@ -226,10 +226,12 @@ def _read(arguments: argparse.Namespace) -> _Request:
         )
     temperature = read("--temperature", arguments.temperature, "K", *OIL_TEMPERATURES, TEMPERATURE)
     frequencies: FloatArray | None = None
-    if arguments.frequencies is not None:
-        frequencies = _frequencies(arguments, read, problems)
-    elif arguments.frequency is not None:
-        frequencies = _one_frequency(arguments, read, problems)
+    if arguments.frequency is not None:
+        count = len(arguments.frequency)
+        if count not in (1, 3):
+            problems.append(f"--frequency: got {count} values; allowed: one, or FROM TO POINTS")
+        else:
+            frequencies = (_one_frequency if count == 1 else _frequencies)(arguments, read, problems)
     if job is not None:
         job = _with_stated(arguments, job, problems)
     traction = _traction(arguments, job, problems)
@@ -246,11 +248,11 @@ def _read(arguments: argparse.Namespace) -> _Request:
 
 def _with_stated(arguments: argparse.Namespace, job: Job, problems: list[str]) -> Job:
     """The job with physics, law of shear and sliding of the command line."""
-    given = {key: getattr(arguments, key) for key in ("physics", "shear", "shear_stress")}
+    given = {key: getattr(arguments, key) for key in ("physics", "shear")}
     if _slips(arguments) == 1:
         (given["slide_to_roll"],) = arguments.slide_to_roll
     if _slips(arguments) < 2:
-        given["limiting_ratio"] = arguments.limiting_ratio
+        given |= {key: getattr(arguments, key) for key in ("shear_stress", "limiting_ratio")}
     texts = {key: text for key, text in given.items() if text is not None}
     return replace(job, solver_options={**job.solver_options, **solvers.stated(job.solver, texts, problems)})
 
@@ -264,26 +266,25 @@ def _one_frequency(arguments: argparse.Namespace, read: _Reader, problems: list[
     """The one frequency of --frequency, as an array; None for 0, the limit of slow motion."""
     if arguments.fields is not None or arguments.plot is not None:
         problems.append("--frequency: stands beside --fields or --plot, whose film is at rest; leave it out")
-    value = read("--frequency", arguments.frequency, "Hz", 0.0, HIGHEST_FREQUENCY, _HERTZ)
+    (text,) = arguments.frequency
+    value = read("--frequency", text, "Hz", 0.0, HIGHEST_FREQUENCY, _HERTZ)
     if value is not None and 0.0 < value < LOWEST_FREQUENCY:
         problems.append(
-            f"--frequency: got {arguments.frequency!r}; allowed: 0 Hz, the limit of slow motion, and "
+            f"--frequency: got {text!r}; allowed: 0 Hz, the limit of slow motion, and "
             f"{_HERTZ.text(LOWEST_FREQUENCY)} to {_HERTZ.text(HIGHEST_FREQUENCY)}"
         )
     return np.array([value]) if value else None
 
 
 def _frequencies(arguments: argparse.Namespace, read: _Reader, problems: list[str]) -> FloatArray | None:
-    """The frequencies of --frequencies FROM TO POINTS; None where a problem was noted."""
-    option = "--frequencies"
-    if arguments.frequency is not None:
-        problems.append("--frequency: stands beside --frequencies; allowed: one of the two; delete one")
+    """The frequencies of --frequency FROM TO POINTS; None where a problem was noted."""
+    option = "--frequency"
     if arguments.fields is not None:
-        problems.append("--fields: stands beside --frequencies, but fields are at rest; delete one")
-    first, last, count = arguments.frequencies
+        problems.append("--fields: stands beside --frequency, but fields are at rest; delete one")
+    first, last, count = arguments.frequency
     low, high = (read(option, text, "Hz", LOWEST_FREQUENCY, HIGHEST_FREQUENCY, _HERTZ) for text in (first, last))
     if low is not None and high is not None and low >= high:
-        problems.append(f"{option}: got {first!r} to {last!r}; allowed: TO above FROM; for one of them --frequency")
+        problems.append(f"{option}: got {first!r} to {last!r}; allowed: TO above FROM; or one of them alone")
     points = int(count) if count.isascii() and count.isdigit() and len(count) <= 9 else -1
     if not 2 <= points <= MOST_FREQUENCIES:
         problems.append(f"{option}, POINTS: got {short(count)}; allowed: a whole number from 2 to {MOST_FREQUENCIES}")
@@ -299,11 +300,6 @@ def _traction(arguments: argparse.Namespace, job: Job | None, problems: list[str
         problems.append(f"{option}: got {_slips(arguments)} values; allowed: one ratio, or FROM TO POINTS")
         return None
     if _slips(arguments) < 3:
-        if arguments.eyring_stress is not None:
-            problems.append(
-                "--eyring-stress: stands without --slide-to-roll FROM TO POINTS, whose law it belongs to; add that, or "
-                "delete it; the stress of --shear is --shear-stress"
-            )
         return None
     if job is not None and (words := solvers.solver_words(job.solver_options)):
         problems.append(
@@ -312,7 +308,7 @@ def _traction(arguments: argparse.Namespace, job: Job | None, problems: list[str
         )
     if job is not None and job.solver != "reynolds":
         problems.append(f"{option}: the solver {job.solver!r} keeps no film for it; allowed: with --solver reynolds")
-    for other in ("frequency", "frequencies", "fields", "plot"):
+    for other in ("frequency", "fields", "plot"):
         if getattr(arguments, other) is not None:
             problems.append(f"{option}: stands beside --{other}; allowed: one of the two; delete one")
     first, last = (_plain_number(option, text, LEAST_SLIP, MOST_SLIP, problems) for text in arguments.slide_to_roll[:2])
@@ -323,13 +319,13 @@ def _traction(arguments: argparse.Namespace, job: Job | None, problems: list[str
     if first is not None and last is not None and first >= last:
         problems.append(f"{option}: got {first:g} to {last:g}; allowed: TO above FROM")
     eyring = EYRING_STRESS
-    if arguments.eyring_stress is not None:
+    if arguments.shear_stress is not None:
         try:
-            eyring = quantity(arguments.eyring_stress, "Pa")
+            eyring = quantity(arguments.shear_stress, "Pa")
             if not 1e5 <= eyring <= 1e9:
-                problems.append(f"--eyring-stress: got {arguments.eyring_stress!r}; allowed: 0.1 MPa to 1000 MPa")
+                problems.append(f"--shear-stress: got {arguments.shear_stress!r}; allowed: 0.1 MPa to 1000 MPa")
         except InputError as error:
-            problems.append(f"--eyring-stress: {error.problems[0]}")
+            problems.append(f"--shear-stress: {error.problems[0]}")
     ratio: float | None = LIMITING_RATIO
     if arguments.limiting_ratio is not None:
         ratio = _plain_number("--limiting-ratio", arguments.limiting_ratio, 1e-3, 1.0, problems)
@@ -348,7 +344,7 @@ def _supply(arguments: argparse.Namespace, job: Job | None, problems: list[str])
         problems.append(
             f"--supply: stands beside {words[2:]}; allowed: with isothermal, newtonian films of pure rolling"
         )
-    for other in ("frequency", "frequencies", "slide_to_roll", "fields", "plot"):
+    for other in ("frequency", "slide_to_roll", "fields", "plot"):
         if getattr(arguments, other) is not None:
             option = other.replace("_", "-")
             problems.append(f"--supply: stands beside --{option}; allowed: one of the two; delete one")

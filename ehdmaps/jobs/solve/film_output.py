@@ -103,7 +103,10 @@ def film_outputs(job: Job, fields: str | None, plot: str | None, read: str) -> F
     """
     problems = [
         f"{option}: the solver {job.solver!r} has no fields across the film; allowed: with --solver openfoam{also}"
-        for option, name, also in (("--fields", fields, ""), ("--plot", plot, ", or --frequencies beside it"))
+        for option, name, also in (
+            ("--fields", fields, ""),
+            ("--plot", plot, ", or --frequency FROM TO POINTS beside it"),
+        )
         if name is not None and not solvers.SOLVERS[job.solver].keeps_cases
     ]
     files = [Output("--plot", plot, FIGURE)]

@@ -25,8 +25,7 @@ def asked_tolerance(arguments: argparse.Namespace, problems: list[str]) -> float
         Appended to.
     """
     text = getattr(arguments, "tolerance", None)
-    # A part of a stiffness or damping is for --auto alone, which chooses physics by it.
-    if text is None or (getattr(arguments, "auto", False) and text.rstrip().endswith("%")):
+    if text is None:
         return None
     try:
         return read_tolerance(text)
