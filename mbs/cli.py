@@ -19,13 +19,12 @@ _INSTRUMENTS = ("stability", "tradeoff", "variants")
 _LOOK, _LINEAR, _TIME, _MEASURED = "look", "linear", "in time", "measured"
 _PREPARE, _LABORATORY = "maps and bodies", "laboratory"
 
-_CHOSEN = tuple(choice.key for choice in OPTIONS)
 _OWN_PHYSICS = ("auto", "maps", PHYSICS.key, SHEAR.key, "auto_tolerance")
 
 _RENAMED = {
     "--speeds": "--speed FROM TO POINTS",
     "--structure": "--structural-law",
-    "--tolerance": "--auto-tolerance, and --tolerance of runup and campbell,",
+    "--tolerance": "--auto-tolerance, or --tolerance of runup and campbell,",
 }
 
 
@@ -223,7 +222,7 @@ def _recorded(command: argparse.ArgumentParser) -> None:
 def _tradeoff(top: Program) -> None:
     """Add the command that measures speed against accuracy; the laws are its own."""
     words = "speed against accuracy of a scene, measured: laws, supplies, maps, slices, cut-off, step, cage angles"
-    chosen = [key for key in _CHOSEN if key not in ("law", "films", "supply", "start_angle")]
+    chosen = _choices("law", "films", "supply", "start-angle")
     more = "; the first map is the reference, more make rows; without one the film formula is the reference"
     command = top.add_command(_LABORATORY, "tradeoff", words, chosen, more)
     command.add_argument("scene", metavar="SCENE")
@@ -256,7 +255,7 @@ def _variants(command: argparse.ArgumentParser) -> None:
 def _bearing(top: Program) -> None:
     """Add the command on one bearing, without a scene."""
     words = "one bearing without a scene: stiffness, damping, roller loads, pressures, films"
-    chosen = [key for key in _CHOSEN if key not in ("films", "load_factor", "start_angle")]
+    chosen = _choices("films", "load-factor", "start-angle")
     command = top.add_command(_LOOK, "bearing", words, chosen)
     command.add_argument("bearing", metavar="BEARING", help="N1014, NU308, or a TOML file with [bearing] (a job)")
     for option, example, what in (
@@ -398,10 +397,15 @@ _ON_SCENES = {
 """Commands that take a scene, its choices, and physics of their own."""
 
 
+def _choices(*but: str) -> tuple[str, ...]:
+    """Keys of the choices of a scene, but for some."""
+    return tuple(choice.key for choice in OPTIONS if choice.name not in but)
+
+
 def _scene_command(top: Program, name: str, row: _OnScene) -> argparse.ArgumentParser:
     """Add a command on a scene; one that compares takes several values of a choice."""
     # Variants stand beside a base that is stated; --auto would choose another for each.
-    shared = _CHOSEN if name == "variants" else (*_CHOSEN, *_OWN_PHYSICS)
+    shared = _choices() if name == "variants" else (*_choices(), *_OWN_PHYSICS)
     more = "; choices more than once to compare" if row.compares else ""
     command = top.add_command(row.group, name, row.words, shared, more)
     command.add_argument("scene", metavar="SCENE")
@@ -445,7 +449,7 @@ def _auto(shared: argparse.ArgumentParser) -> None:
 def _run(top: Program) -> None:
     """Add the command that does every analysis for which the scene has a table."""
     words = "every analysis for which the scene has a table: statics, modes, lsa, sweep, and campbell or runup"
-    command = top.add_command(_LOOK, "run", words, (*_CHOSEN, *_OWN_PHYSICS))
+    command = top.add_command(_LOOK, "run", words, (*_choices(), *_OWN_PHYSICS))
     command.add_argument("scene", metavar="SCENE")
     command.add_argument("-o", "--output", metavar="FOLDER", help="results, figures and texts of all analyses")
     # The command asks for the others by their own words.

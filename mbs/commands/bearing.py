@@ -172,7 +172,7 @@ def read_request(arguments: argparse.Namespace) -> BearingRequest:
     if "temperature" in chosen and None not in (arguments.inner_ring_temperature, arguments.outer_ring_temperature):
         problems.append(
             f"--temperature: got {TEMPERATURE.text(around)} with --inner-ring-temperature and "
-            "--outer-ring-temperature; allowed: two of the three; it is the temperature of a ring that has none of its own"
+            "--outer-ring-temperature; allowed: two of the three; it is that of a ring that has none"
         )
     stated = _surface(given, emap)
     surface = dataclasses.replace(stated, roughness=chosen["roughness"].roughness) if "roughness" in chosen else stated

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -245,6 +245,13 @@ def _temperature(text: str) -> float:
     return _between("K", *OIL_TEMPERATURES, TEMPERATURE)(text)
 
 
+def _films(text: str) -> str:
+    """Read which films."""
+    if text == "dry":
+        raise InputError("got 'dry'; contacts without films are --law hertz")
+    return one_of(lambda: FILMS)(text)
+
+
 def _law_text(name: str) -> str:
     """Tell a law by its name."""
     from mbs.scene.contact_laws import law_label
@@ -434,7 +441,7 @@ _ROWS = (
         "memory: films follow oscillations at their own frequency; slow: stiffness and damping of slow motion at any "
         "frequency. Statics are the same; without films: --law hertz",
         DEFAULT_FILMS,
-        one_of(lambda: FILMS),
+        _films,
         _with_films,
         example="slow",
         concerned="films",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import dataclasses
 import re
 from importlib import resources
@@ -171,10 +172,14 @@ def test_tolerances_out_of_range_are_refused(tolerance):
 
 
 def test_a_decibel_is_twelve_per_cent():
-    assert read_tolerance("1 dB", []) == pytest.approx(0.1220, abs=5e-5)
-    assert read_tolerance("2 %", []) == 0.02
-    assert read_tolerance("20 dB", []) == auto.MOST_TOLERANCE
-    assert read_tolerance(None, []) == auto.TOLERANCE
+    def read(text=None, level=None):
+        return read_tolerance(argparse.Namespace(auto_tolerance=text, tolerance=level), [])
+
+    assert read("1 dB") == pytest.approx(0.1220, abs=5e-5)
+    assert read("2 %", "1 dB") == 0.02
+    assert read(level="1 dB") == read("1 dB")
+    assert read("20 dB") == auto.MOST_TOLERANCE
+    assert read() == auto.TOLERANCE
 
 
 def test_run_does_what_the_scene_has_tables_for(file, capsys, tmp_path):

@@ -116,11 +116,12 @@ class TestChoices:
         [
             ("temperature", "1000 degC", "--temperature: got '1000 degC'; allowed: -60 degC to 300 degC"),
             ("roughness", "1 m", "--roughness: got '1 m'; allowed: a combined rms roughness"),
+            ("films", "dry", "--films: got 'dry'; contacts without films are --law hertz"),
             ("films", "wet", "--films: got 'wet'; allowed: memory, slow"),
-            ("structural-law", "iso1628", "--structural-law: got 'iso1628' (did you mean 'iso16281'?)"),
+            ("structural_law", "iso1628", "--structural-law: got 'iso1628' (did you mean 'iso16281'?)"),
             ("load_factor", "nan", "--load-factor: got 'nan'; allowed: above 0"),
             ("roughness", "0.2 um", "--roughness: got roughness 0.2 um without a law that has films"),
-            ("structural-law", "palmgren", "--structural-law: got palmgren without a map"),
+            ("structural_law", "palmgren", "--structural-law: got palmgren without a map"),
         ],
     )
     def test_what_is_wrong_is_said(self, option, text, part):

@@ -255,7 +255,7 @@ class TestRefused:
             "--vary clearance: got no value; allowed: one or more, such as '15 um'",
             "--vary ramp: got '3' without a unit",
             "--vary slices: got '0'; allowed: a whole number from 1 to 10000",
-            "--vary films: got 'wet'; allowed: memory, slow, dry",
+            "--vary films: got 'wet'; allowed: memory, slow",
             "--highest: got the unit 'm'",
         )
         assert len(problems) == 6
