@@ -60,7 +60,7 @@ def table(path, *options):
 
 def test_stiffness_is_the_slope_of_the_force_and_the_ring_carries_the_load(path, force):
     """Signs and axes by the force itself: 2e-6 bounds the curvature over the steps, the other term rounding."""
-    found = table(path, "--speed", "400 rpm", "--cage-angle", "5 deg")
+    found = table(path, "--speed", "400 rpm", "--start-angle", "5 deg")
     at = dict(
         cage_angle=np.radians(5.0),
         entrainment_speed=force.bearing.geometry.entrainment_speed(SPEED),
@@ -265,7 +265,7 @@ def test_ansys_has_its_columns(path, tmp_path):
         ("ross", ["--speed", "400 rpm", "--frequency", "1 Hz", "2 Hz", "2"], "ROSS 2 takes one"),
         ("ross", ["--speed", "60000 rpm"], "outside of the map"),
         ("ross", ["--speed", "400 rpm", "--films", "none"], "--films: got 'none'"),
-        ("ross", ["--speed", "400 rpm", "--cage-angle", "5 mm"], "--cage-angle"),
+        ("ross", ["--speed", "400 rpm", "--start-angle", "5 mm"], "--start-angle"),
         ("ross", ["--speed", "400 rpm", "--frequency", "-1 Hz"], "--frequency: got"),
         ("calculix", ["--speed", "300 rpm", "600 rpm", "2"], "--speed: got 2 values"),
         ("calculix", ["--speed", "400 rpm", "--at", "0,nan,0"], "--at: got"),

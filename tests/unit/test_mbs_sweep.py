@@ -270,7 +270,7 @@ class TestRange:
 
 
 def given(**options):
-    plain = {"scene": "nu308_rigid", "output": None, "plot": None, "speeds": None, "cage_angles": None}
+    plain = {"scene": "nu308_rigid", "output": None, "plot": None, "speed": None, "cage_angles": None}
     return argparse.Namespace(
         **{**plain, "law": None, "map": None, "clearance": None, "load_factor": None, "workers": 1, **options}
     )
@@ -336,7 +336,7 @@ class TestCases:
                     clearance=["2 kg"],
                     load_factor=["x"],
                     plot="no/where.png",
-                    speeds=["9 rpm", "5 kg", "x"],
+                    speed=["9 rpm", "5 kg", "x"],
                     cage_angles="many",
                 )
             )
@@ -357,7 +357,7 @@ class TestCommand:
     def test_table_of_two_cases(self, tmp_path):
         arguments = given(
             clearance=["0 um", "20 um"],
-            speeds=["500 rpm", "2500 rpm", "3"],
+            speed=["500 rpm", "2500 rpm", "3"],
             cage_angles="2",
             output=str(tmp_path / "s.nc"),
             plot=str(tmp_path / "s.png"),
@@ -377,7 +377,7 @@ class TestCommand:
         path = tmp_path / "free.toml"
         path.write_text(text)
         with pytest.raises(AnalysisError, match=r"dry Hertz: at 10\.472 rad/s: no equilibrium"):
-            command.run(given(scene=str(path), law="hertz", speeds=["100 rpm", "200 rpm", "2"]))
+            command.run(given(scene=str(path), law="hertz", speed=["100 rpm", "200 rpm", "2"]))
 
 
 @pytest.fixture(scope="module")
