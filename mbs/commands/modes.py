@@ -20,6 +20,7 @@ from mbs.commands.cases import load_model
 from mbs.commands.common import Looked, read_option, unsound_lines, write, write_plot
 from mbs.linearised.modes import Modes
 from mbs.linearised.shapes import skeleton
+from mbs.model.system import System
 from mbs.output.files import RESULT
 from mbs.output.model_text import band_lines, clean, film_law_line, film_lines, free_words, heading
 from mbs.output.result_text import kinds, share_words
@@ -50,7 +51,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     free, overdamped, swinging = kinds(found)
     shown = swinging[found.frequency[swinging] <= highest]
     above = swinging[found.frequency[swinging] > highest]
-    notes = [*_free(free), *_above(found, above, highest)]
+    notes = [*_free(free, model.system), *_above(found, above, highest)]
     figure = None
     if arguments.plot:
         from mbs.output.modes_plot import modes_figure
@@ -194,9 +195,9 @@ def _overdamped_count(which: IntArray) -> list[str]:
     return [f"{which.size} overdamped motions not drawn"] if which.size else []
 
 
-def _free(which: IntArray) -> list[str]:
+def _free(which: IntArray, system: System) -> list[str]:
     """A line for all free motions."""
-    return [free_words(which.size)] if which.size else []
+    return [free_words(which.size, system)] if which.size else []
 
 
 def _lost(found: Modes) -> list[str]:

@@ -244,7 +244,8 @@ SINGULAR = 1e-10
 """Eigenvalue of the stiffness, scaled to a unit diagonal, up to which a motion of several coordinates is free."""
 
 _ROUND_OFF = 1e-12
-_ROLLER = ".roller_"
+ROLLER = ".roller_"
+"""Mark of a coordinate of a roller that is a body: it follows the name of the body, and its number follows it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -310,8 +311,8 @@ def free_lines(motions: tuple[FreeMotion, ...]) -> list[str]:
     rollers: dict[str, int] = {}
     lines = []
     for motion in motions:
-        if len(motion.coordinates) == 1 and _ROLLER in motion.coordinates[0]:
-            body = motion.coordinates[0].partition(_ROLLER)[0]
+        if len(motion.coordinates) == 1 and ROLLER in motion.coordinates[0]:
+            body = motion.coordinates[0].partition(ROLLER)[0]
             rollers[body] = rollers.get(body, 0) + 1
         else:
             together = len(motion.coordinates) > 1
