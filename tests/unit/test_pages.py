@@ -161,3 +161,32 @@ def test_sweeps_are_read():
 def test_whole_outputs_name_lines_that_only_one_has():
     found = whole_outputs("a 1\nb 2\n", "a 1\nb 3\nc 4\n")
     assert [(each.shown, each.found) for each in found.different] == [("2", "3"), ("(no such line)", "c 4")]
+
+
+FENCE = re.compile(r"(?ms)^```.*?^```")
+ALL_PAGES = sorted(
+    path
+    for folder in (".", "docs", "ehdmaps", "mbs", "examples", "openfoam_cases")
+    for path in (ROOT / folder).glob("*.md")
+)
+
+
+def anchors(page):
+    """Names by which headings of a page are linked, as repositories make them."""
+    found = []
+    for heading in re.findall(r"(?m)^#+ (.*)$", FENCE.sub("", page.read_text(encoding="utf-8"))):
+        words = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", heading.strip().lower())
+        name = re.sub(r"[^\w\- ]", "", words).replace(" ", "-")
+        found.append(f"{name}-{found.count(name)}" if name in found else name)
+    return found
+
+
+@pytest.mark.parametrize("page", ALL_PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_links_lead_to_files_and_headings(page):
+    for target in re.findall(r"\]\(([^)\s]+)\)", FENCE.sub("", page.read_text(encoding="utf-8"))):
+        path, _, heading = target.partition("#")
+        if "://" in target or "gallery_pages" in target:
+            continue
+        linked = (page.parent / path).resolve() if path else page
+        assert linked.exists(), target
+        assert not heading or linked.suffix != ".md" or heading in anchors(linked), target
