@@ -218,15 +218,14 @@ name = "S1"
 on = "disc"
 direction = "y"
 quantity = "acceleration"
-[drive]
-inertia = "1 kg m^2"
-motor = "3 N m"
 [runup]
 from = "0 rpm"
+to = "900 rpm"
 duration = "1 s"
 step = "0.1 ms"
 [campbell]
 """
+DRIVEN = SCENE.replace('to = "900 rpm"\n', "") + '[drive]\ninertia = "1 kg m^2"\nmotor = "3 N m"\n'
 PLACES = {
     "[bearing]": ("bearing",),
     "[[bearings]] thermal": ("bearings", 1, "thermal"),
@@ -324,7 +323,8 @@ def test_the_defaults_of_correction_points_and_checked_maps():
 def test_a_default_of_a_scene_changes_nothing_where_it_is_stated(table, key, value, tmp_path):
     for name in ("body.nc", "k.mtx", "m.mtx", "mesh.inp"):
         (tmp_path / name).write_bytes(b"")
-    without, stated = with_and_without(SCENE, place_of(table, key), key, value)
+    text = DRIVEN if table == "[drive]" else SCENE
+    without, stated = with_and_without(text, place_of(table, key), key, value)
     assert without != stated
     scenes = [dataclasses.replace(parse_scene(text, "own", "own", tmp_path), text="") for text in (without, stated)]
     with np.printoptions(threshold=10**6, floatmode="unique"):
