@@ -29,7 +29,7 @@ from tests.manual.recording import recording, shortest
 ROOT = Path(__file__).parents[2]
 READERS = [
     *(ROOT / "ehdmaps" / "jobs" / f"{name}.py" for name in ("reader", "problem", "solids", "supply", "make/batch")),
-    *sorted((ROOT / "mbs" / "scene").glob("*.py")),
+    *sorted((ROOT / "mbs" / "scene").rglob("*.py")),
 ]
 READING = {"get", "table", "optional", "quantity", "number", "integer", "choice", "place", "text", "vector", "words"}
 """Methods of tables, whose first argument is a key, and functions of `mbs.scene.fields`, whose second one is."""
@@ -187,7 +187,7 @@ name = "right"
 inner = "disc"
 outer = "ground"
 geometry = { name = "NU308" }
-thermal = { inner_ring = "60 degC", outer_ring = "50 degC" }
+thermal = { shaft = "1 W/K", housing = "1 W/K" }
 [bearings.fit]
 inner = { interference = "10 um", seat = "40 mm" }
 outer = { interference = "10 um", seat = "90 mm", diameter = "120 mm" }
