@@ -70,8 +70,9 @@ def _of_solvers(words: Words) -> Words:
         known = dict(words.get(table, {}))
         for option in entry.options:
             found = {"words": option.meaning, **known.get(option.key, {})}
-            if "otherwise" not in found and "default" not in found:
-                found["default"] = getattr(made, option.key)
+            default = getattr(made, option.key, None)
+            if "otherwise" not in found and "default" not in found and default is not None:
+                found["default"] = default
             known[option.key] = found
         if entry.options:
             joined[table] = known
@@ -84,7 +85,8 @@ def _joined(readings: Readings) -> Readings:
     for table, keys in readings.items():
         if table not in _AS_ELSEWHERE and _plain(table) not in _AS_ELSEWHERE:
             into = joined.setdefault(_plain(table), {})
-            into |= {_plain(f" {key}").strip(): reading for key, reading in keys.items()}
+            for key, reading in keys.items():
+                into.setdefault(_plain(f" {key}").strip(), reading)
     of_jobs = joined.get("job file", {})
     for key in of_jobs.keys() & joined.get("batch file", {}).keys():
         del joined["batch file"][key]

@@ -71,6 +71,7 @@ frames = { PLACE = ["0 mm", "0 mm", "0 mm"] }
 position = ["0 mm", "0 mm", "0 mm"]
 [[shafts]]
 name = "NAME"
+freedoms = ["y"]
 position = ["0 mm", "0 mm", "0 mm"]
 sections = [{}]
 discs = [{}, { at = "0 mm" }]
