@@ -113,6 +113,7 @@ PAGES = (
     "TRADE.md",
     "docs/measured.md",
     "docs/accuracy.md",
+    "docs/evidence.md",
     "docs/solids.md",
     "ehdmaps/REFERENCE.md",
     "mbs/REFERENCE.md",
