@@ -12,6 +12,7 @@ from scipy.integrate import solve_ivp
 from ehdmaps.errors import InputError
 from mbs import assemble, parse_scene, read_scene
 from mbs.analyses.sensors import excited_orders
+from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import SpeedProfile
 from mbs.model.system import load_by_gravity
@@ -132,7 +133,7 @@ stiffness = { y = "1e12 N/m", z = "1e12 N/m" }
             '"40 degC"', '"40 degC"\ngravity = ["0 m/s^2", "-10 m/s^2", "0 m/s^2"]'
         )
         system = assemble(parse_scene(text, "beam", "beam")).system
-        q = equilibrium(system).displacement
+        q = equilibrium(system, Operation()).displacement
         area, second = math.pi * 0.02**2, math.pi * 0.02**4 / 4.0
         line = 7850.0 * area * 10.0
         poisson = 0.3
