@@ -41,7 +41,7 @@ def test_a_coordinate_without_stiffness_is_named():
 
 
 def test_bodies_that_move_together_are_named_together():
-    found = free_motions(equilibrium(two_bodies([("a", force(y=5.0), "b")], z=1e5)))
+    found = free_motions(equilibrium(two_bodies([("a", force(y=5.0), "b")], z=1e5), Operation()))
     assert [motion.coordinates for motion in found] == [("a.y", "b.y")]
     np.testing.assert_allclose(found[0].shape, [1.0, 0.0, 1.0, 0.0], atol=1e-6)  # of the eigenvalue solver
     assert free_lines(found) == ["a.y, b.y move freely together: their positions are arbitrary"]
@@ -67,7 +67,7 @@ def test_a_small_load_along_it_is_no_equilibrium():
 
 def test_a_large_load_along_it_is_no_equilibrium():
     with pytest.raises(AnalysisError, match="no equilibrium after"):
-        equilibrium(two_bodies([("a", force(y=5.0))], z=1e5))
+        equilibrium(two_bodies([("a", force(y=5.0))], z=1e5), Operation())
 
 
 @pytest.mark.parametrize("name", shipped_systems())

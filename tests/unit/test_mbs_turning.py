@@ -108,7 +108,7 @@ class TestWeight:
         text = JEFFCOTT.format(more=UNBALANCE, spin=1).replace(
             '"40 degC"', '"40 degC"\ngravity = ["0 m/s^2", "-9.81 m/s^2", "3 m/s^2"]'
         )
-        found = equilibrium(assemble(parse_scene(text, "sag", "sag")).system)
+        found = equilibrium(assemble(parse_scene(text, "sag", "sag")).system, Operation())
         np.testing.assert_allclose(found.displacement, np.array([-9.81, 3.0]) * MASS / STIFFNESS, rtol=1e-9)
 
     def test_beam_sags_as_a_closed_form(self):

@@ -118,7 +118,9 @@ class TestStatics:
     def test_stiffness_of_the_mesh_in_turning(self):
         """With stiff mounts a torque turns the first gear by T/(rb^2 k); TOUCH/2 is the stated offset of contact."""
         even = dataclasses.replace(PAIR, harmonics=0)
-        turns = [equilibrium(gear_stage(torque, 0.7, even, 1e13)[0]).displacement[2] for torque in (82.0, 164.0)]
+        turns = [
+            equilibrium(gear_stage(torque, 0.7, even, 1e13)[0], Operation()).displacement[2] for torque in (82.0, 164.0)
+        ]
         rb1, rb2 = PAIR.base_radii
         compliance = 1.0 / (14e9 * 25e-3 * rb1**2) + (rb2 / rb1) ** 2 / 1e6
         # 2e-4: mounts of 1e13 N/m against the mesh of 3.5e8 N/m.

@@ -99,7 +99,7 @@ class TestNU308:
             np.testing.assert_allclose(forces[1:3], -100.0, rtol=1e-8)
 
     def test_place_and_stiffness_agree_with_the_independent_sum(self):
-        balance = equilibrium(assemble(NU308).system)
+        balance = equilibrium(assemble(NU308).system, Operation())
         iso = IsoBearing(12, 14e-3, 15e-3, 41)
         motion = balance.system.relative("shaft:left", "ring_left") @ balance.displacement
         assert iso.radial_force(float(np.hypot(motion[1], motion[2])), math.pi / 4.0) == pytest.approx(
@@ -117,7 +117,7 @@ class TestNU308:
                 dataclasses.replace(entry, force=np.array([0.0, load, load, 0.0, 0.0, 0.0])) for entry in NU308.loads
             )
             scene = with_slices(dataclasses.replace(NU308, loads=loads), 401)
-            K = equilibrium(assemble(scene).system).element_stiffness[0]
+            K = equilibrium(assemble(scene).system, Operation()).element_stiffness[0]
             found.append(RADIAL @ K @ RADIAL)
         # 16.0 % and 28.8 % with very many slices; the slices of 401 leave some tenths of a per cent
         assert found[1] / found[0] - 1.0 == pytest.approx(0.16, abs=0.006)
@@ -195,7 +195,9 @@ class TestNU308:
             ),
             loads=tuple(dataclasses.replace(entry, force=rotation @ entry.force) for entry in NU308.loads),
         ).with_bearings(dataclasses.replace(entry, start_angle=turn) for entry in NU308.bearings)
-        first, second = (equilibrium(assemble(scene, clearance=10e-6).system) for scene in (straight, turned))
+        first, second = (
+            equilibrium(assemble(scene, clearance=10e-6).system, Operation()) for scene in (straight, turned)
+        )
         at_left = [
             balance.system.relative("shaft:left", "ring_left") @ balance.displacement for balance in (first, second)
         ]
