@@ -154,9 +154,11 @@ on = "disc"
 stiffness = { y = "-5e4 N/m" }
 """
     )
-    q = equilibrium(assemble(parse_scene(text, "pull", "pull")).system).displacement
+    q = equilibrium(assemble(parse_scene(text, "pull", "pull")).system, Operation()).displacement
     assert q[0] == pytest.approx(30.0 / 1.5e5, rel=1e-9)
-    q = equilibrium(assemble(parse_scene(text.replace('"-5e4', '"-5e5'), "pull", "pull")).system).displacement
+    q = equilibrium(
+        assemble(parse_scene(text.replace('"-5e4', '"-5e5'), "pull", "pull")).system, Operation()
+    ).displacement
     assert q[0] == pytest.approx(-30.0 / 3e5, rel=1e-9)
     found = equilibrium(assemble(parse_scene(text + SEAL, "seal", "seal")).system, Operation(3000.0))
     assert found.outside == {"seal": True}

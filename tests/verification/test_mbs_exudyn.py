@@ -135,7 +135,7 @@ def model():
 
 def test_statics_and_modes(model):
     """Rest, and the frequencies about it."""
-    balance = equilibrium(model.system)
+    balance = equilibrium(model.system, Operation())
     there = Exudyn(model, start=(6e-6, 6e-6))
     there.mbs.SolveStatic(there.settings, updateInitialValues=True)
     found = there.state()
