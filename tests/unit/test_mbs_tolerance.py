@@ -174,20 +174,20 @@ class TestChoosing:
         assert "could not: the sum level still changes too much by step 20 us" in "\n".join(found.lines)
 
     def test_runs_that_drift_apart_have_no_level(self, swinging, monkeypatch):
-        # A sixteenth of the time, in which two runs drift apart by e^4: rounding grows by e^64 in the whole.
+        # A quarter of the time, in which two runs drift apart by e^16: rounding grows by e^64 in the whole.
         subject = Subject(changes.with_step(swinging, 80e-6), DRY)
-        monkeypatch.setattr("mbs.instruments.tolerance.drift", lambda *_: 4.0)
+        monkeypatch.setattr("mbs.instruments.tolerance.drift", lambda *_: 16.0)
         found = within(subject, 0.5)
         assert not found.met and found.numerics.step == 80e-6
         assert "does not forget its start" in "\n".join(found.lines)
-        monkeypatch.setattr("mbs.instruments.tolerance.drift", lambda *_: 0.5)
+        monkeypatch.setattr("mbs.instruments.tolerance.drift", lambda *_: 1.0)
         assert within(subject, 0.5).met
 
     @pytest.mark.slow
     def test_few_slices_are_doubled(self):
-        scene = changes.with_slices(changes.with_duration(read_scene("nu308_rigid"), 0.1), 3)
-        found = within(Subject(scene, LawChoice("damped", "hertz:1.25e-5 s")), 1.0)
-        assert found.numerics.slices in (5, 9, 17)
+        scene = changes.with_slices(changes.with_duration(read_scene("nu308_rigid"), 0.2), 3)
+        found = within(Subject(scene, LawChoice("damped", "hertz:1.25e-5 s")), 5.0)
+        assert found.numerics.slices > 3
         assert "  3 slices: " in "\n".join(found.lines)
 
     def test_a_part_of_a_drift_counts(self):
