@@ -12,8 +12,9 @@ stay as they are: those that a scene has cost less than a trial would.
 
 A run that does not forget its start, such as one of rollers that lift off without damping, has no level at a speed that
 a shorter step would come closer to: what rounding changes grows to the size of the signal. So where the step of the
-scene does not keep the tolerance a trial is made that begins 1 pm beside another. Where they come together all is well.
-Where they drift apart between any two times, they do so the longer the slower the ramp is, and rounding with them.
+scene does not keep the tolerance two longer trials are made that begin 1 pm apart. Where they come together all is
+well. Where they drift apart between any two times, they do so the longer the slower the ramp is, and rounding with
+them.
 """
 
 from __future__ import annotations
@@ -63,6 +64,9 @@ TRIAL = 1.0 / 16.0
 
 LEAST_PERIODS = 2.5
 """Fewest periods of the highest frequency in a window of a trial: a short ramp is hurried less, or not at all."""
+
+DRIFT, LEAST_DRIFT = 1.0 / 8.0, 0.25
+"""Time of a trial that looks whether runs forget their start, as a part of that of the run-up, and at least [s]."""
 
 NUDGE = 1e-12
 """How far two trials begin apart to see whether they forget it [m or rad]."""
@@ -292,7 +296,7 @@ class _Trials:
     steps: int = 0
     seconds: float = 0.0
     told: list[str] = field(default_factory=list)
-    made: dict[tuple[Numerics, float], FloatArray | None] = field(default_factory=dict)
+    made: dict[tuple[Numerics, float, float], FloatArray | None] = field(default_factory=dict)
 
     most: int = 12
     """Trials at most, for the progress."""
@@ -312,26 +316,25 @@ class _Trials:
             f"{100.0 * QUANTILE:g} % of windows of {window}"
         )
 
-    @property
-    def factor(self) -> float:
-        """Time of a trial, as a part of that of the run."""
+    def factor(self, part: float, least: float) -> float:
+        """A part of the time of the run; more of a short one, so that a trial has at least a length [s]."""
         assert self.scene.run_up is not None
-        return min(max(TRIAL, WINDOWS * LEAST_PERIODS / (self.highest * self.scene.run_up.duration)), 1.0)
+        return min(max(part, least / self.scene.run_up.duration), 1.0)
 
-    def run(self, numerics: Numerics, nudge: float = 0.0) -> FloatArray | None:
-        """The signal of a trial with some settings; None where it finds no solution."""
-        key = (numerics, nudge)
+    def run(self, numerics: Numerics, factor: float, nudge: float = 0.0) -> FloatArray | None:
+        """The signal of a trial with some settings in a part of the time; None where it finds no solution."""
+        key = (numerics, factor, nudge)
         if key not in self.made:
             begin = time.process_time()
-            self.made[key] = self._signal(numerics, nudge)
+            self.made[key] = self._signal(numerics, factor, nudge)
             self.count += 1
             self.seconds += time.process_time() - begin
             self.tell(min(self.count, self.most - 1), self.most)
         return self.made[key]
 
-    def _signal(self, numerics: Numerics, nudge: float) -> FloatArray | None:
+    def _signal(self, numerics: Numerics, factor: float, nudge: float) -> FloatArray | None:
         subject = numerics.applied(self.subject)
-        scene = hurried(subject.scene, self.factor)
+        scene = hurried(subject.scene, factor)
         assert scene.run_up is not None
         try:
             model = held(Subject(scene, subject.law, subject.clearance).model())
@@ -344,9 +347,10 @@ class _Trials:
     def difference(self, one: Numerics, other: Numerics) -> float:
         """Difference of the levels of two trials that most windows keep [dB]; infinite where one has no solution."""
         longest = max(one.step, other.step)
+        factor = self.factor(TRIAL, WINDOWS * LEAST_PERIODS / self.highest)
         sizes = []
         for numerics in (one, other):
-            signal = self.run(numerics)
+            signal = self.run(numerics, factor)
             if signal is None:
                 return math.inf
             seen = up_to(signal[:, None], numerics.step, min(self.highest, 0.25 / longest))
@@ -391,18 +395,19 @@ def _chosen(trials: _Trials, tolerance: float, given: Numerics) -> tuple[Numeric
 def _forgetful(trials: _Trials, tolerance: float, given: Numerics) -> str:
     """Say that runs do not forget their start; empty where they do, and where that is not known."""
     tried = given.but(step=2.0 * given.step)
-    signal, nudged = trials.run(tried), trials.run(tried, NUDGE)
+    factor = trials.factor(DRIFT, LEAST_DRIFT)
+    signal, nudged = trials.run(tried, factor), trials.run(tried, factor, NUDGE)
     if signal is None or nudged is None:
         return ""
     apart = drift(signal, nudged)
     # A level changes by 8.7 dB times a small relative change of the signal.
-    scatter = 20.0 / math.log(10.0) * ROUNDING * math.exp(min(apart / trials.factor, 100.0))
+    scatter = 20.0 / math.log(10.0) * ROUNDING * math.exp(min(apart / factor, 100.0))
     if scatter <= tolerance:
         return ""
     assert trials.scene.run_up is not None
     return (
         f"two runs that begin 1 pm apart drift {math.exp(apart):.2g} times farther apart in a run of "
-        f"{trials.factor * trials.scene.run_up.duration:.3g} s, so that in the whole one rounding grows to the "
+        f"{factor * trials.scene.run_up.duration:.3g} s, so that in the whole one rounding grows to the "
         "size of the signal and no step gives the level at a speed: the run does not forget its start, as rollers "
         f"that lift off without damping do not; taken: {given.text}; compare medians over the ramp, or take a law "
         "with damping"

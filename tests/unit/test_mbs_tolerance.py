@@ -149,6 +149,7 @@ class TestChoosing:
         steps = int(line.split("trials of ")[1].split()[0])
         assert steps <= 0.2 * 1.0 / 20e-6
 
+    @pytest.mark.slow
     def test_a_run_that_does_not_confirm_is_made_again(self, swinging):
         subject, steps = Subject(swinging, DRY), []
 
