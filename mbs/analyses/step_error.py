@@ -243,7 +243,7 @@ def window_sizes(signals: FloatArray, count: int) -> FloatArray:
     Returns
     -------
     array, shape (windows, sensors)
-        In the units of the signals.
+        Sizes in the units of the signals.
     """
     return np.array([np.std(window, axis=0) for window in np.array_split(signals, count)])
 
