@@ -1,15 +1,16 @@
-"""Error of the signals of a run by its step, estimated by parts of it that are made again with half the step.
+"""Error of the signals of a run by its step, estimated by parts of it that are made again with twice the step.
 
-What steps resolve cannot be told from frequencies alone: contacts lift off, films fade, speeds rise. So two parts of a
-run are made again, from the state that it had there, films included, with half of its step: the one where it is
-loudest, and the fastest one. The first quarter of a part is left out, in which films take another step; not so where
-the run itself begins. The larger error of both parts is stated, for each sensor.
+What steps resolve cannot be told from frequencies alone: contacts lift off, films fade, speeds rise. So eight parts of
+a run are made again, from the state that it had there, films included, with twice its step: the loudest one of each
+eighth of the run. Twice the step costs half, so that a fifth of the run is seen for a tenth of its steps: errors are
+large where a resonance is passed, and change their sign there, which two parts alone miss. The first quarter of a part
+is left out, in which films take another step. The largest error of all parts is stated, for each sensor.
 
-Where both signals have come apart as far as they will, their levels tell the error: a method of second order that
-changes by d is 4/3 d away from its limit. Where they still come apart at the end of the part, as with little damping,
-their levels are yet those of their common start, and the distance of the signals themselves in the last quarter says by
-how much levels may differ; such errors are told as "up to". A run that does not forget its start may be farther off.
-Levels that are more than 20 dB below the loudest ones count as these 20 dB.
+A method of second order whose levels change by d with twice the step is d/3 away from its limit. Where signals are half
+as far apart as they are large, there is no order, and all of d counts. Where they still come apart at the end of the
+part, as with little damping, their levels are yet those of their common start, and a third of the distance of the
+signals themselves in the last quarter says by how much levels may differ; such errors are told as "up to". Levels that
+are more than 20 dB below the loudest ones count as these 20 dB.
 """
 
 from __future__ import annotations
@@ -29,12 +30,15 @@ from mbs.scene.assembly import Model
 from mbs.scene.fields import MICROSECOND, MILLISECOND
 from mbs.settings import RunUp
 from mbs.spectral.levels import Reference
-from mbs.transient.run import Options, Recording
+from mbs.transient.run import Recording
 from mbs.transient.run import run as run_system
 from mbs.transient.stepping import Mark
 
 PART = 0.025
-"""Part of a run that each of the parts is: with half the step both cost a tenth of it."""
+"""Part of a run that each of the parts is: with twice the step all of them cost a tenth of it."""
+
+PARTS = 8
+"""Parts that are made again, at most."""
 
 FEWEST = 200
 """Fewest steps of a part, for short runs."""
@@ -48,13 +52,18 @@ QUIET = 0.1
 GROWING = 1.2
 """Distance of both signals in the last quarter beside that in the second one, from which on it still grows."""
 
-_LIMIT = 4.0 / 3.0
+APART = 0.5
+"""Distance of both signals beside their size from which on their change has no order."""
+
+_LIMIT = 3.0
+"""Change of a level by twice the step beside its distance from the limit, of a method of second order."""
+
 _QUARTERS = 4
 
 
 @dataclass(frozen=True, eq=False)
 class StepCheck:
-    """Signals of parts of a run with its step and with half of it.
+    """Signals of parts of a run with its step and with twice that.
 
     Attributes
     ----------
@@ -66,10 +75,12 @@ class StepCheck:
         Speeds of each part, at its beginning and its end [rad/s].
     names, units : tuple of str
         Sensors, and units of their signals.
-    with_step, with_half : array, shape (parts, sensors)
+    with_step, with_twice : array, shape (parts, sensors)
         Root mean square of each signal about its mean.
+    by_level : array, shape (parts, sensors)
+        Error of each level as its change in the part tells it [dB].
     errors : array, shape (parts, sensors)
-        Estimated error of each level [dB].
+        Estimated error of each level, where signals still come apart that of their distance [dB].
     growing : array of bool, shape (parts, sensors)
         Whether the signals still come apart at the end of the part, so that the error is that of their distance.
     """
@@ -80,7 +91,8 @@ class StepCheck:
     names: tuple[str, ...]
     units: tuple[str, ...]
     with_step: FloatArray
-    with_half: FloatArray
+    with_twice: FloatArray
+    by_level: FloatArray
     errors: FloatArray
     growing: BoolArray
 
@@ -107,10 +119,7 @@ class StepCheck:
     @property
     def lines(self) -> list[str]:
         """One line of words on the estimate; a warning where steps are too long."""
-        parts = " and ".join(
-            f"{RPM.value(abs(first)):.4g} to {RPM.text(abs(last))}" for first, last in dict.fromkeys(self.speeds)
-        )
-        how = f"by half of it over {MILLISECOND.text(self.duration)} at {parts}"
+        how = f"by twice the step in {len(self.speeds)} parts of {MILLISECOND.text(self.duration)}"
         step = MICROSECOND.text(self.step)
         if self.converged:
             each = ", ".join(f"{name} {self._size(k)}" for k, name in enumerate(self.names))
@@ -119,9 +128,10 @@ class StepCheck:
         for k in np.flatnonzero(self.largest > NOTABLE).tolist():
             at = int(np.argmax(self.errors[:, k]))
             sure = sure or not self.growing[at, k]
+            first, last = (abs(speed) for speed in self.speeds[at])
             wrong.append(
-                f"{self.names[k]} {self._size(k)} off, {self.with_step[at, k]:.3g} {self.units[k]} rms and "
-                f"{self.with_half[at, k]:.3g} with half the step"
+                f"{self.names[k]} {self._size(k)} off at {RPM.value(first):.4g} to {RPM.text(last)}, "
+                f"{self.with_step[at, k]:.3g} {self.units[k]} rms and {self.with_twice[at, k]:.3g} with twice the step"
             )
         is_not = "is not" if sure else "may not be"
         return [
@@ -158,45 +168,40 @@ def step_check(model: Model, course: RunUp, record: Recording, highest: float = 
     Returns
     -------
     StepCheck or None
-        None without sensors and without marks, with steps that adapt to a tolerance, and where half the step finds no
+        None without sensors and without marks, with steps that adapt to a tolerance, and where twice the step finds no
         solution.
     """
     sensors, settings = model.scene.sensors, course.settings
     if not sensors or not record.marks or math.isfinite(settings.tolerance):
         return None
     step, total = settings.step, record.signal_time.size - 1
-    rows = min(max(round(PART * total), FEWEST), total)
+    rows = min(max(round(PART * total), FEWEST), total) // 2 * 2
+    if rows == 0:
+        return None
+    # What twice the step has no samples for cannot be compared.
+    highest = min(highest, 0.25 / step)
     speed = course.speed
     if isinstance(speed, DrivenSpeed):
         # As it was: a drive would have to be started anew.
         speed = SpeedProfile(Course(tuple(record.time.tolist()), tuple(record.speed.tolist())))
-    finer = dataclasses.replace(settings, step=0.5 * step, sample=step)
+    coarser = dataclasses.replace(settings, step=2.0 * step, sample=2.0 * step)
     speeds, found = [], []
     chosen, largest = _chosen(record, step, rows, highest)
     for mark, seen in chosen:
+        begin = mark.stepped(2.0)
         try:
-            half = run_system(
-                model.system,
-                speed,
-                rows * step,
-                finer,
-                sensors=sensors,
-                options=Options(every_step=True),
-                begin=mark.stepped(0.5),
-            ).signals
+            again = run_system(model.system, speed, rows * step, coarser, sensors=sensors, begin=begin).signals
         except EhdmapsError:
             return None
-        begins = mark is record.marks[0]
-        found.append(_compared(seen, up_to(half, 0.5 * step, highest)[::2], QUIET * largest, begins))
+        found.append(_compared(seen[::2], up_to(again, 2.0 * step, highest), QUIET * largest))
         first = round(mark.time / step)
         speeds.append((float(record.signal_speed[first]), float(record.signal_speed[first + rows])))
     names, units = tuple(sensor.name for sensor in sensors), tuple(Reference.of(sensor).unit for sensor in sensors)
-    with_step, with_half, errors, growing = (np.array(values) for values in zip(*found, strict=True))
-    return StepCheck(rows * step, step, tuple(speeds), names, units, with_step, with_half, errors, growing)
+    return StepCheck(rows * step, step, tuple(speeds), names, units, *map(np.array, zip(*found, strict=True)))
 
 
 def up_to(signals: FloatArray, step: float, highest: float) -> FloatArray:
-    """Signals without what lies above a frequency.
+    """Signals without what lies above a frequency; a line from their first to their last value stays as it is.
 
     Parameters
     ----------
@@ -218,37 +223,86 @@ def up_to(signals: FloatArray, step: float, highest: float) -> FloatArray:
     count = signals.shape[0]
     if highest >= 0.5 / step:
         return signals
-    lines = np.fft.rfft(signals, axis=0)
+    # A jump from the end to the beginning would ring at both.
+    line = np.linspace(signals[0], signals[-1], count)
+    lines = np.fft.rfft(signals - line, axis=0)
     lines[np.fft.rfftfreq(count, step) > highest] = 0.0
-    return np.asarray(np.fft.irfft(lines, count, axis=0))
+    return np.asarray(np.fft.irfft(lines, count, axis=0) + line)
+
+
+def window_sizes(signals: FloatArray, count: int) -> FloatArray:
+    """Root mean squares of signals about their mean in windows of equal length.
+
+    Parameters
+    ----------
+    signals : array, shape (rows, sensors)
+        Signals at equal times.
+    count : int
+        Number of windows.
+
+    Returns
+    -------
+    array, shape (windows, sensors)
+        Sizes in the units of the signals.
+    """
+    return np.array([np.std(window, axis=0) for window in np.array_split(signals, count)])
+
+
+def level_change(one: FloatArray, other: FloatArray, floor: FloatArray | None = None) -> FloatArray:
+    """Difference of the levels of two sizes, where what is quiet counts as the floor.
+
+    Parameters
+    ----------
+    one, other : array, shape (..., sensors)
+        Root mean squares.
+    floor : array, shape (sensors,), optional
+        Size below which levels are not judged; `QUIET` times the largest of `one` if left out.
+
+    Returns
+    -------
+    array, shape (..., sensors)
+        Either way [dB].
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> level_change(np.array([[10.0], [0.1]]), np.array([[5.0], [0.2]])).round(2).tolist()
+    [[6.02], [0.0]]
+    """
+    floor = np.maximum(QUIET * one.max(axis=0) if floor is None else floor, np.finfo(np.float64).tiny)
+    return np.asarray(np.abs(20.0 * np.log10(np.maximum(one, floor) / np.maximum(other, floor))))
 
 
 def _compared(
-    one: FloatArray, half: FloatArray, floor: FloatArray, begins: bool
-) -> tuple[FloatArray, FloatArray, FloatArray, BoolArray]:
-    """Sizes of two signals, error of the level of the first one [dB], whether it grows; shape (sensors,) each."""
-    late = slice(0 if begins else one.shape[0] // _QUARTERS, None)
-    sizes = [np.std(signal[late], axis=0) for signal in (one, half)]
+    one: FloatArray, twice: FloatArray, floor: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, BoolArray]:
+    """Columns of `StepCheck` for a part, from `with_step` to `growing`, shape (sensors,) each."""
+    late = slice(one.shape[0] // _QUARTERS, None)
+    sizes = [np.std(signal[late], axis=0) for signal in (one, twice)]
     floor = np.maximum(floor, np.finfo(np.float64).tiny)
-    by_level = _LIMIT * np.abs(20.0 * np.log10(np.maximum(sizes[0], floor) / np.maximum(sizes[1], floor)))
-    pairs = zip(np.array_split(one, _QUARTERS), np.array_split(one - half, _QUARTERS), strict=True)
+    change = level_change(sizes[0], sizes[1], floor)
+    pairs = zip(np.array_split(one, _QUARTERS), np.array_split(one - twice, _QUARTERS), strict=True)
     apart = [np.std(d, axis=0) / np.maximum(np.std(signal, axis=0), floor) for signal, d in pairs]
+    by_level = np.where(np.max(apart[1:], axis=0) > APART, change, change / _LIMIT)
     growing = apart[-1] > GROWING * apart[1]
-    by_distance = 20.0 * np.log10(1.0 + _LIMIT * apart[-1])
-    return sizes[0], sizes[1], np.where(growing, np.maximum(by_level, by_distance), by_level), growing
+    by_distance = 20.0 * np.log10(1.0 + apart[-1] / _LIMIT)
+    return *sizes, by_level, np.where(growing, np.maximum(by_level, by_distance), by_level), growing
 
 
 def _chosen(
     record: Recording, step: float, rows: int, highest: float
 ) -> tuple[list[tuple[Mark, FloatArray]], FloatArray]:
-    """Marks from which the loudest and the fastest part are made again, with the signals there; the largest sizes."""
+    """Marks from which the loudest part of each stretch is made again, with the signals there; the largest sizes."""
     begins = {round(mark.time / step): mark for mark in record.marks}
     fitting = [first for first in begins if first + rows < record.signal_time.size]
+    # A run swings in at its start, which is one window of many.
+    fitting = [first for first in fitting if first >= rows] or fitting
     seen = [up_to(record.signals[first : first + rows + 1], step, highest) for first in fitting]
     sizes = np.array([np.std(part, axis=0) for part in seen])
     largest = sizes.max(axis=0)
     # Each sensor counts alike.
     loudness = (sizes / np.maximum(largest, np.finfo(np.float64).tiny)).sum(axis=1)
-    speeds = np.abs([record.signal_speed[first + rows] for first in fitting])
-    places = dict.fromkeys((int(np.argmax(loudness)), int(np.argmax(speeds))))
+    count = min(PARTS, len(fitting), max(record.signal_time.size // (5 * rows), 1))
+    stretches = np.array_split(np.arange(len(fitting)), count)
+    places = [int(stretch[np.argmax(loudness[stretch])]) for stretch in stretches]
     return [(begins[fitting[place]], seen[place]) for place in places], largest

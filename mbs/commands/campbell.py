@@ -20,11 +20,12 @@ from mbs.analyses.ramp import resolution, step_lines
 from mbs.analyses.reach import axes_outside, fade_lines, fade_of, outside_lines, sources_of
 from mbs.analyses.recorded import RecordedRun, simulated_campbell
 from mbs.analyses.soundness import unsound_run
+from mbs.analyses.step_error import StepCheck
 from mbs.commands.auto import analysed
 from mbs.commands.campbell_recorded import measured_lines, measured_run, read_look, recorded_runs, signal_problems
 from mbs.commands.cases import load_cases
 from mbs.commands.common import Looked, Told, marked, unsound_lines, write
-from mbs.instruments.commands.tolerance import asked_tolerance, several_problems, tolerated_case
+from mbs.instruments.commands.tolerance import asked_tolerance, several_problems, tolerated_run
 from mbs.instruments.tolerance import Tolerated
 from mbs.linearised.sweep_result import ComplexSweep, Sweep
 from mbs.model.elements import Sensor
@@ -114,19 +115,22 @@ class _Ran(NamedTuple):
 
 
 def _ran(asked: _Asked, with_modes: bool, workers: int) -> _Ran:
-    """Choose the numerical settings where a tolerance is given, and run up."""
-    cases, tolerated = tolerated_case(asked.cases, asked.tolerance, asked.settings)
-    found = campbell(
-        cases,
-        asked.settings,
-        Told("step"),
-        sensors=asked.sensors,
-        with_modes=with_modes,
-        keep_partial=True,
-        bands=asked.bands,
-        workers=workers,
-    )
-    return _Ran(found, tolerated, asked.measured)
+    """Run up, with step and slices that are chosen where a tolerance is given."""
+
+    def run(cases: list[Case]) -> tuple[CampbellResult, StepCheck | None]:
+        found = campbell(
+            cases,
+            asked.settings,
+            Told("step"),
+            sensors=asked.sensors,
+            with_modes=with_modes,
+            keep_partial=True,
+            bands=asked.bands,
+            workers=workers,
+        )
+        return found, found.runs[0].steps
+
+    return _Ran(*tolerated_run(asked.cases, asked.tolerance, run, asked.settings), asked.measured)
 
 
 def _looks_at(asked: _Asked) -> Looked:

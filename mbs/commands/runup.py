@@ -21,11 +21,12 @@ from mbs.analyses.ramp import resolution, silent_run, step_lines
 from mbs.analyses.reach import POINTS, Fade, axes_outside, fade_lines, fade_of, outside_lines, source_of, sources_of
 from mbs.analyses.recorded import amplitudes_at, simulated
 from mbs.analyses.runup import RunUpResult, RunUps, runup_problems, runups
+from mbs.analyses.step_error import StepCheck
 from mbs.commands.auto import analysed
 from mbs.commands.campbell_recorded import read_source, signal_problems
 from mbs.commands.cases import load_cases
 from mbs.commands.common import Looked, Told, read_option, unsound_lines, write
-from mbs.instruments.commands.tolerance import asked_tolerance, several_problems, tolerated_case
+from mbs.instruments.commands.tolerance import asked_tolerance, several_problems, tolerated_run
 from mbs.instruments.tolerance import Tolerated
 from mbs.output.files import described
 from mbs.output.model_text import heading, held_lines
@@ -107,9 +108,14 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
 
 
 def _ran(asked: _Asked, workers: int) -> tuple[RunUps, _Asked, Tolerated | None]:
-    """Choose the numerical settings where a tolerance is given, and run."""
-    cases, tolerated = tolerated_case(asked.cases, asked.tolerance)
-    return runups(cases, Told("step"), keep_partial=True, workers=workers), asked, tolerated
+    """Run, with step and slices that are chosen where a tolerance is given."""
+
+    def run(cases: list[Case]) -> tuple[RunUps, StepCheck | None]:
+        found = runups(cases, Told("step"), keep_partial=True, workers=workers)
+        return found, found.runs[0].steps
+
+    found, tolerated = tolerated_run(asked.cases, asked.tolerance, run)
+    return found, asked, tolerated
 
 
 def _asked(arguments: argparse.Namespace) -> _Asked:

@@ -25,8 +25,9 @@ from ehdmaps.maps.emap import EHDMap
 from ehdmaps.outputs import cache_folder
 from ehdmaps.provenance import code_hash
 from mbs.analyses.case import Progress
+from mbs.analyses.step_error import StepCheck
 from mbs.flexible.carry_out import file_digest
-from mbs.instruments.tolerance import Numerics, Tolerated, within
+from mbs.instruments.tolerance import Found, Numerics, Tolerated, within
 from mbs.scene.choices import Subject
 from mbs.settings import CampbellSettings
 
@@ -39,14 +40,15 @@ _DEEPEST = 20
 def kept_within(
     subject: Subject,
     tolerance: float,
+    run: Callable[[Subject], tuple[Found, StepCheck | None]],
     settings: CampbellSettings | None = None,
     progress: Progress | None = None,
-) -> Tolerated:
-    """Choose step, slices and cut-off as `within` does, or take what was chosen before for the same question.
+) -> tuple[Tolerated, Found]:
+    """Choose step and slices as `within` does, or take what was chosen before for the same question; and make the run.
 
     Parameters
     ----------
-    subject, tolerance, settings, progress
+    subject, tolerance, run, settings, progress
         The same as for `mbs.instruments.tolerance.within`.
 
     Raises
@@ -57,11 +59,11 @@ def kept_within(
     settings = settings or subject.scene.campbell
     place = _place(subject, tolerance, settings)
     if place is not None and (found := _read(place, subject)) is not None:
-        return found
-    made = within(subject, tolerance, settings, progress)
+        return found, run(found.subject)[0]
+    made, result = within(subject, tolerance, run, settings, progress)
     if place is not None:
         _write(place, made)
-    return made
+    return made, result
 
 
 def choice_key(subject: Subject, tolerance: float, settings: CampbellSettings) -> str:

@@ -22,7 +22,6 @@ from mbs.model.elements import Sensor
 from mbs.scene import changes
 from mbs.scene.assembly import Model
 from mbs.scene.choices import Subject
-from mbs.scene.scene import Scene
 from mbs.settings import CampbellSettings, RunUp
 from mbs.spectral.campbell import campbell
 from mbs.spectral.levels import Reference
@@ -164,23 +163,6 @@ def ramp_of(model: Model, settings: CampbellSettings, sensors: tuple[Sensor, ...
         speeds = tuple(course.speed.at(at)[0] for at in (begin, begin + length))
         parts.append(RampPart(start, begin, begin + length, (speeds[0], speeds[1])))
     return Ramp(sensors, settings.highest, window, coarsest, tuple(parts))
-
-
-def compressed(scene: Scene, factor: float, step: float) -> Scene:
-    """The scene with the whole ramp in a part of its time: a look at where it is loud.
-
-    Parameters
-    ----------
-    scene : Scene
-        The scene.
-    factor : float
-        Part of the time, below 1.
-    step : float
-        Time step [s].
-    """
-    assert scene.run_up is not None
-    steps = max(round(factor * scene.run_up.duration / step), 1)
-    return changes.with_step(changes.with_duration(scene, steps * step), step)
 
 
 def run_part(subject: Subject, ramp: Ramp, part: RampPart) -> PartRun:

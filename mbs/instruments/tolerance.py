@@ -1,20 +1,20 @@
-"""Step, slices and cut-off of a run-up that keep its sum level within a tolerance, found by short trials.
+"""Step and slices of a run-up that keep its sum level within a tolerance: short trials propose, the run confirms.
 
-Two parts of the ramp are run again and again: the loudest one, as a run through the whole ramp in an eighth of its
-time shows it, and the fastest one. First with the settings of the scene, and with half its step, twice its slices and
-all modes. Where that changes the level by less than the tolerance, the settings stay: no part has helped to choose
-them, and both confirm them. Else the step is halved from the longest one that the highest frequency allows on, until
-the sum level at equal speed hardly changes; then slices are doubled from a few on, and modes are added, by twice that
-step. What was chosen has to prove itself on the loudest part of the ramp that was not used to choose, beside half the
-step, twice the slices and all modes. Where it fails, that part helps to choose, and another one is asked.
+A trial is the whole ramp in a sixteenth of its time, so that all resonances are passed. One with the step of the scene
+is held beside one with twice that, and one with its slices beside one with about twice as many. Where that keeps the
+tolerance the settings stay; else the step is halved, and slices are doubled. Then the run is made. It states the error
+of its step itself, from parts of it (`mbs.analyses.step_error`), and that is what confirms the choice, at no cost but
+that of any run. Where it does not, the run is made again with a shorter step.
 
-A method of second order that changes by d from one step to its half is 4/3 d away from the limit. The step may take
-three quarters of the tolerance, slices half of what it leaves, the cut-off the rest.
+A method of second order whose levels change by d with twice the step is d/3 away from its limit, and 4/3 d where d is
+the change by half of it. The step may take three quarters of the tolerance, slices the rest. Modes of flexible bodies
+stay as they are: those that a scene has cost less than a trial would.
 
 A run that does not forget its start, such as one of rollers that lift off without damping, has no level at a speed that
-a shorter step would come closer to: what rounding changes grows to the size of the signal. So that is tried first: two
-runs through the whole shortened ramp begin 1 pm apart. Where they come together all is well. Where they drift apart
-between any two times, they do so the longer the slower the ramp is, and rounding with them.
+a shorter step would come closer to: what rounding changes grows to the size of the signal. So where the step of the
+scene does not keep the tolerance two longer trials are made that begin 1 pm apart. Where they come together all is
+well. Where they drift apart between any two times, they do so the longer the slower the ramp is, and rounding with
+them.
 """
 
 from __future__ import annotations
@@ -22,32 +22,33 @@ from __future__ import annotations
 import dataclasses
 import math
 import time
-from collections.abc import Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from itertools import pairwise
+from typing import TypeVar
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
-from ehdmaps.units import RPM
 from mbs.analyses.case import Progress, silent
 from mbs.analyses.operating import held
-from mbs.analyses.ramp import recorded_run, run_course
+from mbs.analyses.ramp import recorded_run
 from mbs.analyses.sensors import looked_at
-from mbs.instruments.ramp_parts import WINDOWS, PartRun, Ramp, RampPart, compressed, ramp_of, run_part
-from mbs.scene.changes import cutoff_of
+from mbs.analyses.step_error import StepCheck, level_change, up_to, window_sizes
+from mbs.model.elements import Sensor
+from mbs.scene.changes import cutoff_of, hurried
 from mbs.scene.choices import CHOICES, Subject
-from mbs.scene.fields import MILLISECOND
+from mbs.scene.fields import HERTZ, MILLISECOND
 from mbs.scene.scene import Scene
 from mbs.settings import CampbellSettings
-from mbs.spectral.campbell import campbell
-from mbs.spectral.run_signal import RunSignal
 
 LEAST, MOST = 0.01, 20.0
 """Limits of a tolerance [dB]: less is the rounding of the tables of a law over speed, more is no accuracy."""
 
 ALLOWED = f"above 0 dB, from {LEAST:g} dB up to {MOST:g} dB, such as '1 dB'"
+
+WINDOWS = 40
+"""Windows of a run, and of a trial, one beside the other, whose levels are looked at."""
 
 QUANTILE = 0.95
 """Part of the windows that have to keep the tolerance."""
@@ -55,37 +56,34 @@ QUANTILE = 0.95
 HALVINGS = 3
 """How often the step of the scene is halved at most."""
 
-SLICES = (6, 11, 21, 41, 81, 161)
-"""Slices that are tried: each has twice the intervals of the one before."""
+MOST_SLICES = 161
+"""Most slices that are tried."""
 
-FRESH = 3
-"""Parts that are asked to confirm, one after the other."""
+TRIAL = 1.0 / 16.0
+"""Time of a trial, as a part of that of the run-up."""
+
+LEAST_PERIODS = 2.5
+"""Fewest periods of the highest frequency in a window of a trial: a short ramp is hurried less, or not at all."""
+
+DRIFT, LEAST_DRIFT = 1.0 / 8.0, 0.25
+"""Time of a trial that looks whether runs forget their start, as a part of that of the run-up, and at least [s]."""
 
 NUDGE = 1e-12
-"""How far two runs begin apart to see whether they forget it [m or rad]."""
+"""How far two trials begin apart to see whether they forget it [m or rad]."""
 
 ROUNDING = 1e-13
 """By which part of the signal two runs that have forgotten their start differ: rounding."""
 
 _STRETCHES = 24
-"""Into which the shortened ramp is cut to see how its two runs drift apart."""
-
-SCOUT = 1.0 / 8.0
-"""Time of the run that looks for the loudest part, as a part of that of the run-up."""
-
-LEAST_SCOUT = 0.25
-"""Shortest such run [s], as long as bodies ring; a ramp that is shorter is run as it is."""
-
-LEAST_PARTS = 6
-"""Parts of a ramp: two to choose by, one to confirm, and none of them neighbours."""
+"""Into which a trial is cut to see how two of them drift apart."""
 
 _ORDER = 4.0
-_LIMIT = _ORDER / (_ORDER - 1.0)
-_SHARES = {"step": 0.75, "slices": 0.5, "cutoff": 1.0}
-"""What each may take of the tolerance that those before it leave."""
+_STEP_SHARE = 0.75
 
 KEYS = ("step", "slices", "cutoff")
 """The fields of `Numerics`, which are names of `mbs.scene.choices.CHOICES`."""
+
+Found = TypeVar("Found")
 
 
 @dataclass(frozen=True)
@@ -172,9 +170,10 @@ class Tolerated:
     lines : tuple of str
         What was chosen, by which trials, at which cost, and where it could not.
     met : bool
-        Whether a part of the ramp that was not used to choose has confirmed them.
+        Whether the run has confirmed them.
     confirmed : float
-        Difference there beside finer settings, with what that leaves [dB]; NaN where none was measured.
+        Error of the level that the run states for its step, with that of the slices by trials [dB]; NaN where none was
+        measured.
     seconds : float
         Processor time of all trials [s].
     """
@@ -220,10 +219,11 @@ def read_tolerance(text: str) -> float:
 def within(
     subject: Subject,
     tolerance: float,
+    run: Callable[[Subject], tuple[Found, StepCheck | None]],
     settings: CampbellSettings | None = None,
     progress: Progress | None = None,
-) -> Tolerated:
-    """Choose step, slices and cut-off so that the sum level of a run-up keeps a tolerance.
+) -> tuple[Tolerated, Found]:
+    """Choose step and slices so that the sum level of a run-up keeps a tolerance, and make the run.
 
     Parameters
     ----------
@@ -232,205 +232,191 @@ def within(
     tolerance : float
         Difference of the sum level at equal speed from that of finer settings that is allowed, in 95 % of the
         windows [dB].
+    run : callable
+        Makes the run-up of a subject; its result, and the errors of the step that it states.
     settings : CampbellSettings, optional
-        Sensor, highest frequency and window; [campbell] of the scene if left out.
+        Sensor and highest frequency; [campbell] of the scene if left out.
     progress : callable, optional
         Told how many trials are done, and of how many at most.
 
     Returns
     -------
-    Tolerated
-        The choice, with `met` False where it could not be met or not be confirmed; `lines` say why.
+    Tolerated, Found
+        The choice, with `met` False where it could not be met or not be confirmed; `lines` say why. And the run.
 
     Raises
     ------
     InputError
         If the tolerance is none, or run, sensor or settings are not possible.
     AnalysisError
-        If the bearings find no temperatures at the operating speed.
-
-    Notes
-    -----
-    The cut-off is only lowered: modes that the bodies of the scene do not have cannot be judged.
+        If the bearings find no temperatures at the operating speed, or the run finds no solution.
     """
     if not LEAST <= tolerance <= MOST:
         raise InputError(f"tolerance: got {tolerance!r} dB; allowed: {ALLOWED}")
     settings = settings or subject.scene.campbell
-    numerics = Numerics.of(subject.scene)
-    ramp = ramp_of(subject.model(), settings, looked_at(subject.scene, settings))
-    head = (
-        f"tolerance {tolerance:g} dB of the sum level of {ramp.sensors[0].name} at equal speed, in "
-        f"{100.0 * QUANTILE:g} % of windows of {MILLISECOND.text(ramp.window)}"
-    )
-    trials = _Trials(subject, ramp, progress or silent)
-    try:
-        numerics, found, difference = _chosen(trials, tolerance, numerics)
-        met = True
-    except _CouldNotError as reason:
-        found, difference, met = [f"warning: could not: {reason}"], reason.difference, False
-        numerics = reason.numerics or numerics
+    given = Numerics.of(subject.scene)
+    trials = _Trials(subject, looked_at(subject.scene, settings)[0], settings.highest, progress or silent)
+    numerics, change, could_not = _chosen(trials, tolerance, given)
     trials.finish()
-    cost = f"  {trials.count} trials of {trials.steps} steps in all took {trials.seconds:.3g} s of processor time"
-    return Tolerated(
-        numerics.applied(subject), numerics, (head, *trials.told, *found, cost), met, difference, trials.seconds
+    lines = trials.told
+    while True:
+        chosen = numerics.applied(subject)
+        found, check = run(chosen)
+        error = math.nan if check is None else float(check.by_level.max(axis=0)[check.names.index(trials.sensor.name)])
+        met = not could_not and error + change <= tolerance
+        if met or could_not or not error + change > tolerance or numerics.step < 1.5 * _finest(given):
+            break
+        lines.append(f"  {numerics.words('step')}: {error:.2g} dB by the run, so that it is made again with half of it")
+        numerics = numerics.but(step=0.5 * numerics.step)
+    same = ", as the scene has it" if numerics == given else ""
+    lines.append(f"  chosen: {numerics.text}{same}")
+    of_slices = "" if numerics.slices is None else f", slices {change:.2g} dB by trials"
+    parts = f"step {error:.2g} dB by parts that it made again{of_slices}"
+    if met:
+        lines.append(f"  confirmed by the run, its {trials.of_what} within {error + change:.2g} dB: {parts}")
+    else:
+        reason = could_not or f"the run does not confirm it: {parts}"
+        lines.append(f"warning: could not: {reason}")
+    lines.append(
+        f"  {trials.count} trials of {trials.steps} steps in all took {trials.seconds:.3g} s of processor time"
     )
-
-
-class _CouldNotError(Exception):
-    """Reason why a tolerance is not met, with the settings that are best nevertheless."""
-
-    def __init__(self, reason: str, numerics: Numerics | None = None, difference: float = math.nan) -> None:
-        super().__init__(reason)
-        self.numerics = numerics
-        self.difference = difference
+    head = f"tolerance {tolerance:g} dB of the {trials.of_what}"
+    return Tolerated(chosen, numerics, (head, *lines), met, error + change, trials.seconds), found
 
 
 @dataclass
 class _Trials:
-    """Runs of parts that were made, none of them twice, and what they cost."""
+    """Trials that were made, none of them twice, and what they cost."""
 
     subject: Subject
-    ramp: Ramp
+    sensor: Sensor
+    highest: float
     tell: Progress
     count: int = 0
     steps: int = 0
     seconds: float = 0.0
     told: list[str] = field(default_factory=list)
-    made: dict[tuple[Numerics, RampPart], PartRun | None] = field(default_factory=dict)
+    made: dict[tuple[Numerics, float, float], FloatArray | None] = field(default_factory=dict)
 
-    most: int = 2 * (len(SLICES) + 4 + HALVINGS) * (FRESH + 1)
+    most: int = 12
     """Trials at most, for the progress."""
 
-    def run(self, numerics: Numerics, part: RampPart) -> PartRun | None:
-        """The run of a part with some settings; None where it finds no solution."""
-        key = (numerics, part)
+    @property
+    def scene(self) -> Scene:
+        """The scene that is tried."""
+        return self.subject.scene
+
+    @property
+    def of_what(self) -> str:
+        """Level that is looked at, in words."""
+        assert self.scene.run_up is not None
+        window = MILLISECOND.text(self.scene.run_up.duration / WINDOWS)
+        return (
+            f"sum level of {self.sensor.name} up to {HERTZ.text(self.highest)}, at equal speed in "
+            f"{100.0 * QUANTILE:g} % of windows of {window}"
+        )
+
+    def factor(self, part: float, least: float) -> float:
+        """A part of the time of the run; more of a short one, so that a trial has at least a length [s]."""
+        assert self.scene.run_up is not None
+        return min(max(part, least / self.scene.run_up.duration), 1.0)
+
+    def run(self, numerics: Numerics, factor: float, nudge: float = 0.0) -> FloatArray | None:
+        """The signal of a trial with some settings in a part of the time; None where it finds no solution."""
+        key = (numerics, factor, nudge)
         if key not in self.made:
             begin = time.process_time()
-            try:
-                found = run_part(numerics.applied(self.subject), self.ramp, part)
-                self.steps += found.steps
-            except AnalysisError:
-                found = None
-            self.made[key] = found
-            self._counted(time.process_time() - begin)
+            self.made[key] = self._signal(numerics, factor, nudge)
+            self.count += 1
+            self.seconds += time.process_time() - begin
+            self.tell(min(self.count, self.most - 1), self.most)
         return self.made[key]
 
-    def scout(self, factor: float, step: float, nudge: float = 0.0) -> RunSignal | None:
-        """The signal of the whole ramp in a part of its time; None where there is no solution."""
-        begin = time.process_time()
-        scene = compressed(self.subject.scene, factor, step)
-        sensor = self.ramp.sensors[0]
-        found = None
-        course = run_course(scene, self.ramp.highest, [])
-        if course is not None:
-            model = held(Subject(scene, self.subject.law, self.subject.clearance).model())
-            try:
-                record = recorded_run(model, course, (sensor,), nudge=nudge)
-                self.steps += record.steps
-                found = RunSignal(record.time, record.speed, record.angle, record.signals[:, 0])
-            except AnalysisError:
-                # Such a step is too long for it, and says nothing about shorter ones.
-                found = None
-        self._counted(time.process_time() - begin)
-        return found
+    def _signal(self, numerics: Numerics, factor: float, nudge: float) -> FloatArray | None:
+        subject = numerics.applied(self.subject)
+        scene = hurried(subject.scene, factor)
+        assert scene.run_up is not None
+        try:
+            model = held(Subject(scene, subject.law, subject.clearance).model())
+            record = recorded_run(model, scene.run_up, (self.sensor,), nudge=nudge)
+        except AnalysisError:
+            return None  # such a step is too long for it, and says nothing about shorter ones
+        self.steps += record.steps
+        return record.signals[:, 0] if np.all(np.isfinite(record.signals)) else None
 
-    def difference(self, one: Numerics, other: Numerics, parts: Sequence[RampPart]) -> tuple[float, float]:
-        """Difference of the sum levels in most windows of some parts: of the sensor, and the largest of all [dB]."""
-        found = []
-        for part in parts:
-            # The cheaper one first: where it finds no solution the other one is not asked for.
-            first = self.run(one, part)
-            second = self.run(other, part) if first is not None else None
-            if first is None or second is None:
-                return math.inf, math.inf
-            found.append(np.abs(second.differences(first)))
-        sizes = np.quantile(np.concatenate(found, axis=1), QUANTILE, axis=1)
-        return float(sizes[0]), float(sizes.max())
+    def difference(self, one: Numerics, other: Numerics) -> float:
+        """Difference of the levels of two trials that most windows keep [dB]; infinite where one has no solution."""
+        longest = max(one.step, other.step)
+        factor = self.factor(TRIAL, WINDOWS * LEAST_PERIODS / self.highest)
+        sizes = []
+        for numerics in (one, other):
+            signal = self.run(numerics, factor)
+            if signal is None:
+                return math.inf
+            seen = up_to(signal[:, None], numerics.step, min(self.highest, 0.25 / longest))
+            sizes.append(window_sizes(seen, WINDOWS))
+        return float(np.quantile(level_change(*sizes), QUANTILE))
 
     def finish(self) -> None:
         """Say that no trial will follow."""
         self.tell(self.most, self.most)
 
-    def _counted(self, seconds: float) -> None:
-        self.count += 1
-        self.seconds += seconds
-        self.tell(min(self.count, self.most - 1), self.most)
+
+def _chosen(trials: _Trials, tolerance: float, given: Numerics) -> tuple[Numerics, float, str]:
+    """The settings that keep the tolerance in trials, the error left by their slices [dB], and why they could not."""
+    numerics, could_not = given, ""
+    while True:
+        error = trials.difference(numerics.but(step=2.0 * numerics.step), numerics) / (_ORDER - 1.0)
+        trials.told.append(f"  {numerics.words('step')}: {_decibel(error)}")
+        if error <= _STEP_SHARE * tolerance:
+            break
+        if numerics == given and (could_not := _forgetful(trials, tolerance, given)):
+            return given, math.nan, could_not
+        if numerics.step < 1.5 * _finest(given):
+            could_not = (
+                f"the sum level still changes too much by {numerics.words('step')}, the shortest that is tried: "
+                f"{_decibel(error)}, allowed {_STEP_SHARE * tolerance:.2g} dB"
+            )
+            return numerics, math.nan, could_not
+        numerics = numerics.but(step=0.5 * numerics.step)
+    change = 0.0
+    while numerics.slices is not None and 2 * numerics.slices - 1 <= MOST_SLICES:
+        # What slices do hardly depends on the step, and twice the step costs half.
+        tried = numerics.but(step=2.0 * numerics.step)
+        more = tried.but(slices=2 * numerics.slices - 1)
+        change = trials.difference(tried, more) * _ORDER / (_ORDER - 1.0)
+        trials.told.append(f"  {numerics.words('slices')}: {_decibel(change)}")
+        if error + change <= tolerance:
+            break
+        numerics = numerics.but(slices=more.slices)
+    return numerics, change, could_not
 
 
-def _chosen(trials: _Trials, tolerance: float, given: Numerics) -> tuple[Numerics, list[str], float]:
-    """The settings that keep the tolerance, how they were found, and the difference that confirms them."""
-    parts = trials.ramp.parts
-    if len(parts) < LEAST_PARTS:
-        raise _CouldNotError(
-            f"the ramp has {len(parts)} parts of {MILLISECOND.text(WINDOWS * trials.ramp.window)}, too few to choose "
-            f"by and to confirm; taken: {given.text}; take a slower ramp, or a higher --highest"
-        )
-    by_level = _by_level(trials.ramp, _scouted(trials, tolerance, given))
-    fastest = max(parts, key=lambda part: abs(sum(part.speeds)))
-    loudest = next(part for part in by_level if part is not fastest)
-    used = [loudest, fastest]
-    trials.told.append(f"  tried on {_rpm(loudest)} (loudest), {_rpm(fastest)} (fastest)")
-    for asked in ([loudest], used):
-        difference = _LIMIT * trials.difference(given, _finer(given, given), asked)[0]
-        if difference > tolerance:
-            break
-    words = f"{_decibel(difference)} beside {_finer(given, given).text}"
-    if difference <= tolerance:
-        return given, [f"  chosen: {given.text}, as the scene has it; confirmed on both parts: {words}"], difference
-    trials.told.append(f"  {given.text}, as the scene has it: {words}")
-    share, before = 1.0, None
-    failed: list[str] = []
-    difference = math.nan
-    for _ in range(FRESH):
-        numerics, lines = _searched(trials, share * tolerance, given, used)
-        if numerics == before:
-            # Each of them keeps its share, and yet all together do not keep the whole.
-            share *= 0.5
-            numerics, lines = _searched(trials, share * tolerance, given, used)
-        fresh = next((part for part in by_level if not any(_near(part, other) for other in used)), None)
-        if fresh is None:
-            break
-        difference, others = trials.difference(numerics, _finer(numerics, given), [fresh])
-        difference, others = _LIMIT * difference, _LIMIT * others
-        words = f"{_rpm(fresh)}, not used to choose: {difference:.2g} dB beside {_finer(numerics, given).text}" + (
-            f", up to {others:.2g} dB at other sensors" if len(trials.ramp.sensors) > 1 else ""
-        )
-        if difference <= tolerance:
-            return numerics, [*failed, *lines, f"  chosen: {numerics.text}; confirmed on {words}"], difference
-        failed.append(f"  {numerics.text} not confirmed on {words}; that part helps to choose now")
-        used.append(fresh)
-        before = numerics
-    trials.told += failed
-    raise _CouldNotError(
-        f"no settings were confirmed on {len(failed)} parts of the ramp; the last ones that were chosen are taken, "
-        f"{numerics.text}",
-        numerics,
-        difference,
+def _forgetful(trials: _Trials, tolerance: float, given: Numerics) -> str:
+    """Say that runs do not forget their start; empty where they do, and where that is not known."""
+    tried = given.but(step=2.0 * given.step)
+    factor = trials.factor(DRIFT, LEAST_DRIFT)
+    signal, nudged = trials.run(tried, factor), trials.run(tried, factor, NUDGE)
+    if signal is None or nudged is None:
+        return ""
+    apart = drift(signal, nudged)
+    # A level changes by 8.7 dB times a small relative change of the signal.
+    scatter = 20.0 / math.log(10.0) * ROUNDING * math.exp(min(apart / factor, 100.0))
+    if scatter <= tolerance:
+        return ""
+    assert trials.scene.run_up is not None
+    return (
+        f"two runs that begin 1 pm apart drift {math.exp(apart):.2g} times farther apart in a run of "
+        f"{factor * trials.scene.run_up.duration:.3g} s, so that in the whole one rounding grows to the "
+        "size of the signal and no step gives the level at a speed: the run does not forget its start, as rollers "
+        f"that lift off without damping do not; taken: {given.text}; compare medians over the ramp, or take a law "
+        "with damping"
     )
 
 
-def _scouted(trials: _Trials, tolerance: float, given: Numerics) -> RunSignal | None:
-    """The signal of the shortened ramp, made sure that it forgets its start; None where there is no such run."""
-    assert trials.subject.scene.run_up is not None
-    factor = min(max(SCOUT, LEAST_SCOUT / trials.subject.scene.run_up.duration), 1.0)
-    step = min(trials.ramp.coarsest, 4.0 * given.step)
-    signal = trials.scout(factor, step)
-    nudged = trials.scout(factor, step, NUDGE) if signal is not None else None
-    if signal is None or nudged is None:
-        return signal
-    apart = drift(signal.signal, nudged.signal)
-    # A level changes by 8.7 dB times a small relative change of the signal.
-    scatter = 20.0 / math.log(10.0) * ROUNDING * math.exp(min(apart / factor, 100.0))
-    if scatter > tolerance:
-        raise _CouldNotError(
-            f"two runs that begin 1 pm apart drift {math.exp(apart):.2g} times farther apart in a run of "
-            f"{factor * trials.subject.scene.run_up.duration:.3g} s, so that in the whole one rounding grows to the "
-            "size of the signal and no step gives the level at a speed: the run does not forget its start, as rollers "
-            f"that lift off without damping do not; taken: {given.text}; compare medians over the ramp, or take a law "
-            "with damping",
-            given,
-        )
-    return signal
+def _finest(given: Numerics) -> float:
+    """Shortest step that is tried [s]."""
+    return given.step * 0.5**HALVINGS
 
 
 def drift(signal: FloatArray, other: FloatArray) -> float:
@@ -454,94 +440,6 @@ def drift(signal: FloatArray, other: FloatArray) -> float:
     apart = (other - signal)[: length * _STRETCHES].reshape(_STRETCHES, length)
     sizes = np.log(np.maximum(np.sqrt(np.mean(apart**2, axis=1)), np.finfo(np.float64).tiny))
     return float(np.max(sizes - np.minimum.accumulate(sizes)))
-
-
-def _by_level(ramp: Ramp, signal: RunSignal | None) -> list[RampPart]:
-    """All parts, the loudest first; from the fastest one on where that is not known."""
-    try:
-        found = None if signal is None else campbell(signal, 1.0, ramp.highest)
-    except InputError:
-        found = None  # too short for its spectra
-    if found is None:
-        return sorted(ramp.parts, key=lambda part: -abs(sum(part.speeds)))
-    order = np.argsort(found.speeds)
-    speeds, levels = found.speeds[order], found.sum_level[order]
-
-    def highest(part: RampPart) -> float:
-        first, last = (abs(speed) for speed in part.speeds)
-        return float(np.max(np.interp(np.linspace(first, last, 9), speeds, levels)))
-
-    return sorted(ramp.parts, key=highest, reverse=True)
-
-
-def _near(part: RampPart, other: RampPart) -> bool:
-    """Tell whether two parts are one, or neighbours, whose windows are about the same resonances."""
-    return abs(part.begin - other.begin) < 1.5 * (part.end - part.begin)
-
-
-def _searched(
-    trials: _Trials, tolerance: float, given: Numerics, parts: Sequence[RampPart]
-) -> tuple[Numerics, list[str]]:
-    """The coarsest settings whose differences together keep the tolerance on some parts."""
-    lines = []
-    numerics, left = given, tolerance
-    for key, ladder in _ladders(trials.ramp, given).items():
-        share = _SHARES[key] * left
-        seen = []
-        for value, finer in ladder:
-            # What slices and modes do hardly depends on the step, and twice the step costs half.
-            tried = numerics if key == "step" else numerics.but(step=min(2.0 * numerics.step, trials.ramp.coarsest))
-            one, other = tried.but(**{key: value}), tried.but(**{key: finer})
-            difference = trials.difference(one, other, parts)[0] * (1.0 if key == "cutoff" else _LIMIT)
-            if difference <= share:
-                break
-            seen.append(f"{one.words(key)} {_decibel(difference)}")
-        else:
-            if key == "step":
-                raise _CouldNotError(
-                    f"the sum level still changes too much by {one.words(key)}, the shortest that is tried: "
-                    f"{', '.join(seen)}, allowed {share:.2g} dB",
-                    one,
-                    difference,
-                )
-            # All modes there are; or the most slices that are tried, and what they still change.
-            one, difference = other, 0.0 if key == "cutoff" else difference / _ORDER
-        numerics = numerics.but(**{key: getattr(one, key)})
-        left -= difference
-        words = _decibel(difference) if difference else "all there are"
-        lines.append(f"  {numerics.words(key)}: {words}" + (f" (before: {', '.join(seen)})" if seen else ""))
-    return numerics, lines
-
-
-def _ladders(ramp: Ramp, given: Numerics) -> dict[str, list[tuple[float | int, float | int]]]:
-    """Values tried for each setting, from coarse to fine, each with the one that it is compared with."""
-    steps = [ramp.coarsest]
-    while steps[-1] > given.step * 0.5**HALVINGS * 1.5:
-        steps.append(0.5 * steps[-1])
-    found: dict[str, list[tuple[float | int, float | int]]] = {"step": _pairs(steps)}
-    if given.slices is not None:
-        found["slices"] = _pairs(SLICES)
-    if given.cutoff is not None:
-        cutoffs = [ramp.highest * 2.0 ** (0.5 * k) for k in range(20)]
-        found["cutoff"] = [(cutoff, given.cutoff) for cutoff in cutoffs if cutoff < 0.95 * given.cutoff]
-    return {key: ladder for key, ladder in found.items() if ladder}
-
-
-def _pairs(values: Sequence[float | int]) -> list[tuple[float | int, float | int]]:
-    """Each value with the next one."""
-    return list(pairwise(values))
-
-
-def _finer(numerics: Numerics, given: Numerics) -> Numerics:
-    """Settings that are finer in everything."""
-    more = None if numerics.slices is None else 2 * numerics.slices - 1
-    return Numerics(0.5 * numerics.step, more, given.cutoff)
-
-
-def _rpm(part: RampPart) -> str:
-    """The speeds of a part in words."""
-    first, last = (abs(speed) for speed in part.speeds)
-    return f"{RPM.value(first):.4g} to {RPM.text(last)}"
 
 
 def _decibel(value: float) -> str:

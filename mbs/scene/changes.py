@@ -90,6 +90,28 @@ def with_duration(scene: Scene, duration: float) -> Scene:
     return dataclasses.replace(scene, run_up=dataclasses.replace(course, speed=speed, duration=duration))
 
 
+def hurried(scene: Scene, factor: float) -> Scene:
+    """The scene with its whole run-up in a part of its time, to a whole step; a drive's by motor and load alone.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    factor : float
+        Part of the time, up to 1.
+
+    Raises
+    ------
+    InputError
+        If the scene has no run-up.
+    """
+    course = _run_up(scene)
+    step = course.settings.step
+    prescribed = dataclasses.replace(course, speed=SpeedProfile(course.speed.course))
+    scene = dataclasses.replace(scene, run_up=prescribed)
+    return with_step(with_duration(scene, max(round(factor * course.duration / step), 1) * step), step)
+
+
 def with_step(scene: Scene, step: float) -> Scene:
     """The scene with another time step of its run-up [s], and a sample a step.
 

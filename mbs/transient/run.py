@@ -393,6 +393,8 @@ def _drive(
     row = sample // plan.stride
     ticks, end = 0, plan.samples * sample
     apart = end // MARKS
+    if marks is not None:
+        chunk = min(chunk, max(apart // sample, 1) * settings.steps_per_sample)
     level = steps = halved = samples = 0
     while ticks < end:
         stride = finest >> level
@@ -405,7 +407,7 @@ def _drive(
         if shaft is not None and done:
             shaft.settle(ticks * tick)
         # At rows, where the run has signals to compare with.
-        if marks is not None and ticks % row == 0 and first + ticks * tick - marks[-1].time >= apart * tick:
+        if marks is not None and ticks % row == 0 and first + ticks * tick - marks[-1].time > (apart - 0.5) * tick:
             marks.append(engine.mark(first + ticks * tick))
         if done < count:
             halved += 1

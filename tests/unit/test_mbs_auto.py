@@ -198,7 +198,7 @@ def test_numerical_settings_are_chosen_for_the_map_and_its_physics(file, capsys,
     Path(file).write_text(TEXT.replace("slices = 41", "slices = 3"))
     chosen = []
 
-    def within(subject, tolerance, settings, tell):
+    def within(subject, tolerance, made, settings, tell):
         chosen.append((subject.law.name, subject.law.films, tolerance))
         raise AnalysisError("enough")
 

@@ -14,13 +14,22 @@ from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.maps.schema import CHECKSUM
 from mbs import parse_scene
 from mbs.instruments import kept_choice
-from mbs.instruments.kept_choice import choice_key, kept_within
+from mbs.instruments.kept_choice import choice_key
 from mbs.instruments.tolerance import Numerics, Tolerated
 from mbs.scene.changes import with_step
 from mbs.scene.choices import LawChoice, Subject
 from tests.cases.swinging import SWINGING
 
 DRY = LawChoice("dry", "hertz")
+
+
+def kept_within(subject, tolerance):
+    """What is chosen, with a run that tells its step."""
+    tolerated, step = kept_choice.kept_within(
+        subject, tolerance, lambda changed: (changed.scene.run_up.settings.step, None)
+    )
+    assert step == tolerated.numerics.step
+    return tolerated
 
 
 @pytest.fixture
@@ -33,10 +42,11 @@ def trials(monkeypatch, tmp_path):
     """Questions that were asked, each answered by a step of 10 us; choices are kept in a folder of the test."""
     asked = []
 
-    def answer(subject, tolerance, settings=None, progress=None):
+    def answer(subject, tolerance, run, settings=None, progress=None):
         asked.append(tolerance)
         numerics = Numerics(1e-5, None, None)
-        return Tolerated(numerics.applied(subject), numerics, ("chosen",), True, 0.3, 5.0)
+        chosen = numerics.applied(subject)
+        return Tolerated(chosen, numerics, ("chosen",), True, 0.3, 5.0), run(chosen)[0]
 
     monkeypatch.setattr(kept_choice, "within", answer)
     monkeypatch.setenv("EHDMAPS_CHOICES", str(tmp_path / "choices"))
@@ -83,8 +93,8 @@ def test_what_cannot_be_read_or_written_is_chosen_again(subject, trials, tmp_pat
 
 def test_a_choice_without_confirmation_is_kept_too(subject, trials, monkeypatch):
     numerics = Numerics(2e-5, None, None)
-    unmet = Tolerated(subject, numerics, ("could not",), False, math.nan, 1.0)
-    monkeypatch.setattr(kept_choice, "within", lambda *_: unmet)
+    unmet = Tolerated(numerics.applied(subject), numerics, ("could not",), False, math.nan, 1.0)
+    monkeypatch.setattr(kept_choice, "within", lambda *_: (unmet, 2e-5))
     kept_within(subject, 1.0)
     found = kept_within(subject, 1.0)
     assert found.seconds == 0.0 and not found.met and math.isnan(found.confirmed)

@@ -13,14 +13,26 @@ from ehdmaps.errors import InputError
 from mbs import parse_scene, read_scene
 from mbs.analyses.campbell import campbell
 from mbs.analyses.sensors import looked_at
+from mbs.instruments import tolerance as tolerance_module
 from mbs.instruments.ramp_parts import WINDOWS, ramp_of
-from mbs.instruments.tolerance import Numerics, drift, read_tolerance, within
+from mbs.instruments.tolerance import Numerics, drift, read_tolerance
 from mbs.model.profiles import Advanced, Course, Harmonic, SpeedProfile
 from mbs.scene import changes
 from mbs.scene.choices import LawChoice, Subject
 from tests.cases.swinging import SWINGING
 
 DRY = LawChoice("dry", "hertz")
+
+
+def run(subject):
+    """The run-up of a subject, and the errors that it states."""
+    found = campbell(subject.model())
+    return found, found.runs[0].steps
+
+
+def within(subject, tolerance):
+    """What is chosen; the run is passed over."""
+    return tolerance_module.within(subject, tolerance, run)[0]
 
 
 @pytest.fixture(scope="module")
@@ -88,44 +100,96 @@ class TestCutoff:
             changes.with_cutoff(read_scene("nu308_rigid"), 9000.0)
 
 
+class TestHurried:
+    def test_a_hurried_run_has_all_speeds_in_a_part_of_the_time(self, swinging):
+        trial = changes.hurried(swinging, 1.0 / 16.0)
+        assert trial.run_up.duration == pytest.approx(0.0625)
+        assert trial.run_up.speed.at(0.03125)[0] == pytest.approx(swinging.run_up.speed.at(0.5)[0], rel=1e-9)
+        assert trial.run_up.settings.sample == swinging.run_up.settings.step
+
+    def test_a_drive_is_followed_by_its_torques_alone(self):
+        rotor = read_scene("overhung_rotor")
+        trial = changes.hurried(rotor, 0.5)
+        assert type(trial.run_up.speed) is SpeedProfile
+        at = 0.4 * rotor.run_up.duration
+        # Between points of the course.
+        assert trial.run_up.speed.at(0.5 * at)[0] == pytest.approx(rotor.run_up.speed.at(at)[0], rel=1e-6)
+
+
 class TestChoosing:
     @pytest.mark.slow
-    def test_what_is_chosen_keeps_the_tolerance_on_the_whole_ramp(self, swinging):
-        found = within(Subject(swinging, DRY), 0.5)
+    @pytest.mark.parametrize("step", [20e-6, 80e-6])
+    def test_what_is_chosen_keeps_the_tolerance_on_the_whole_ramp(self, swinging, step):
+        subject = Subject(changes.with_step(swinging, step), DRY)
+        found, result = tolerance_module.within(subject, 0.5, run)
         assert found.met
         assert found.confirmed <= 0.5
         assert found.numerics.slices is found.numerics.cutoff is None
         assert "chosen: step" in "\n".join(found.lines)
-        finest = Numerics(10e-6, None, None).applied(Subject(swinging, DRY))
-        coarse, fine = (campbell(one.model()).runs[0].spectra[0].campbell for one in (found.subject, finest))
+        finest = Numerics(5e-6, None, None).applied(subject)
+        coarse, fine = result.runs[0].spectra[0].campbell, run(finest)[0].runs[0].spectra[0].campbell
         levels = np.interp(coarse.speeds, fine.speeds, fine.sum_level)
         # The tolerance itself, which is of 95 % of the windows.
         assert np.quantile(np.abs(levels - coarse.sum_level), 0.95) <= 0.5
-        # A looser tolerance takes no shorter step, and a tight one no longer one.
-        assert within(Subject(swinging, DRY), 10.0).numerics.step >= found.numerics.step
+
+    def test_the_settings_of_the_scene_stay_where_they_do(self, swinging):
+        found = within(Subject(swinging, DRY), 10.0)
+        assert found.met and found.numerics.step == 20e-6
+        text = "\n".join(found.lines)
+        assert "chosen: step 20 us, as the scene has it" in text
+        assert (
+            "confirmed by the run, its sum level of S1 up to 2000 Hz, at equal speed in 95 % of windows of 25 ms"
+            in text
+        )
+        assert "  2 trials of " in text
+
+    def test_trials_cost_a_fifth_of_the_run_at_most(self, swinging):
+        found = within(Subject(swinging, DRY), 10.0)
+        (line,) = (line for line in found.lines if "trials of" in line)
+        steps = int(line.split("trials of ")[1].split()[0])
+        assert steps <= 0.2 * 1.0 / 20e-6
+
+    @pytest.mark.slow
+    def test_a_run_that_does_not_confirm_is_made_again(self, swinging):
+        subject, steps = Subject(swinging, DRY), []
+
+        def doubtful(changed):
+            found, check = run(changed)
+            steps.append(changed.scene.run_up.settings.step)
+            return found, dataclasses.replace(check, by_level=check.by_level * 0.0 + (3.0 if len(steps) < 3 else 0.3))
+
+        found, _ = tolerance_module.within(subject, 2.0, doubtful)
+        assert found.met and steps == [20e-6, 10e-6, 5e-6] and found.numerics.step == 5e-6
+        assert found.confirmed == pytest.approx(0.3)
+        assert "step 20 us: 3 dB by the run, so that it is made again" in "\n".join(found.lines)
+
+    def test_a_run_without_an_error_confirms_nothing(self, swinging):
+        found, _ = tolerance_module.within(Subject(swinging, DRY), 10.0, lambda changed: (run(changed)[0], None))
+        assert not found.met and np.isnan(found.confirmed)
+        assert "could not: the run does not confirm it" in "\n".join(found.lines)
 
     def test_where_no_step_is_short_enough_it_says_so(self, swinging):
         coarse = changes.with_step(swinging, 160e-6)
         found = within(Subject(coarse, DRY), 0.01)
         assert not found.met
-        assert "could not: the sum level still changes too much by step 40 us" in "\n".join(found.lines)
-
-    def test_a_ramp_of_few_parts_is_not_enough(self, swinging):
-        short = changes.with_step(changes.with_duration(swinging, 0.06), 20e-6)
-        found = within(Subject(short, DRY), 1.0)
-        assert not found.met
-        assert "too few to choose by and to confirm" in "\n".join(found.lines)
-        assert found.numerics == Numerics(20e-6, None, None)
+        assert "could not: the sum level still changes too much by step 20 us" in "\n".join(found.lines)
 
     def test_runs_that_drift_apart_have_no_level(self, swinging, monkeypatch):
-        # An eighth of the time, in which two runs drift apart by e^8: rounding grows by e^64 in the whole.
-        monkeypatch.setattr("mbs.instruments.tolerance.LEAST_SCOUT", 0.0)
-        monkeypatch.setattr("mbs.instruments.tolerance.drift", lambda *_: 8.0)
-        found = within(Subject(swinging, DRY), 1.0)
-        assert not found.met
+        # A quarter of the time, in which two runs drift apart by e^16: rounding grows by e^64 in the whole.
+        subject = Subject(changes.with_step(swinging, 80e-6), DRY)
+        monkeypatch.setattr("mbs.instruments.tolerance.drift", lambda *_: 16.0)
+        found = within(subject, 0.5)
+        assert not found.met and found.numerics.step == 80e-6
         assert "does not forget its start" in "\n".join(found.lines)
         monkeypatch.setattr("mbs.instruments.tolerance.drift", lambda *_: 1.0)
-        assert within(Subject(swinging, DRY), 10.0).met
+        assert within(subject, 0.5).met
+
+    @pytest.mark.slow
+    def test_few_slices_are_doubled(self):
+        scene = changes.with_slices(changes.with_duration(read_scene("nu308_rigid"), 0.2), 3)
+        found = within(Subject(scene, LawChoice("damped", "hertz:1.25e-5 s")), 5.0)
+        assert found.numerics.slices > 3
+        assert "  3 slices: " in "\n".join(found.lines)
 
     def test_a_part_of_a_drift_counts(self):
         sizes = np.repeat(np.exp([0.0, -5.0, -8.0, *[-8.0] * 9, *[-6.0] * 12]), 10)

@@ -1,16 +1,18 @@
-"""`--tolerance` of `campbell` and `runup`: a level whose step, slices and cut-off are chosen by short trials."""
+"""`--tolerance` of `campbell` and `runup`: a level for which step and slices are chosen by short trials."""
 
 from __future__ import annotations
 
 import argparse
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from ehdmaps.errors import InputError
 from mbs.analyses.case import Case
+from mbs.analyses.step_error import StepCheck
 from mbs.commands.common import Told
 from mbs.instruments.kept_choice import kept_within
-from mbs.instruments.tolerance import Tolerated, read_tolerance
+from mbs.instruments.tolerance import Found, Tolerated, read_tolerance
+from mbs.scene.choices import Subject
 from mbs.settings import CampbellSettings
 
 
@@ -47,15 +49,18 @@ def several_problems(tolerance: float | None, cases: Sequence[Case]) -> list[str
     if tolerance is None or len(cases) == 1:
         return []
     return [
-        f"--tolerance: got {len(cases)} combinations of laws, films and the like; allowed: one, for which step, "
-        "slices and cut-off are chosen"
+        f"--tolerance: got {len(cases)} combinations of laws, films and the like; allowed: one, for which step "
+        "and slices are chosen"
     ]
 
 
-def tolerated_case(
-    cases: Sequence[Case], tolerance: float | None, settings: CampbellSettings | None = None
-) -> tuple[list[Case], Tolerated | None]:
-    """Cases with the settings that are chosen for a tolerance, or were chosen before; as they came without one.
+def tolerated_run(
+    cases: Sequence[Case],
+    tolerance: float | None,
+    run: Callable[[list[Case]], tuple[Found, StepCheck | None]],
+    settings: CampbellSettings | None = None,
+) -> tuple[Found, Tolerated | None]:
+    """Make a run, with the settings that are chosen for a tolerance, or were chosen before; as cases came without one.
 
     Parameters
     ----------
@@ -63,24 +68,35 @@ def tolerated_case(
         The cases; one alone beside a tolerance.
     tolerance : float or None
         The tolerance [dB].
+    run : callable
+        Runs cases; the result, and the errors of its step.
     settings : CampbellSettings, optional
-        What is looked at; [campbell] of the scene if left out. Then the states of the run are recorded as seldom as
-        the scene says, to a whole step.
+        What is looked at; if left out the sensor of [campbell] and all frequencies. Then the states of the run are
+        recorded as seldom as the scene says, to a whole step.
 
     Raises
     ------
     InputError, AnalysisError
         As `mbs.instruments.tolerance.within` does.
     """
-    if tolerance is None or cases[0].subject is None:
-        return list(cases), None
     subject = cases[0].subject
-    tolerated = kept_within(subject, tolerance, settings, Told("trial"))
-    changed = tolerated.subject
-    given, course = subject.scene.run_up, changed.scene.run_up
-    if settings is None and given is not None and course is not None:
-        step = course.settings.step
-        sample = step * max(round(given.settings.sample / step), 1)
-        course = dataclasses.replace(course, settings=dataclasses.replace(course.settings, sample=sample))
-        changed = dataclasses.replace(changed, scene=dataclasses.replace(changed.scene, run_up=course))
-    return [dataclasses.replace(cases[0], model=changed.model(), subject=changed)], tolerated
+    if tolerance is None or subject is None:
+        return run(list(cases))[0], None
+    given = subject.scene.run_up
+    seldom = settings is None
+    if settings is None:
+        # What twice the step has samples for.
+        highest = 0.25 / given.settings.step if given is not None else subject.scene.campbell.highest
+        settings = dataclasses.replace(subject.scene.campbell, highest=highest)
+
+    def made(changed: Subject) -> tuple[Found, StepCheck | None]:
+        course = changed.scene.run_up
+        if seldom and given is not None and course is not None:
+            step = course.settings.step
+            sample = step * max(round(given.settings.sample / step), 1)
+            course = dataclasses.replace(course, settings=dataclasses.replace(course.settings, sample=sample))
+            changed = dataclasses.replace(changed, scene=dataclasses.replace(changed.scene, run_up=course))
+        return run([dataclasses.replace(cases[0], model=changed.model(), subject=changed)])
+
+    tolerated, found = kept_within(subject, tolerance, made, settings, Told("trial"))
+    return found, tolerated
