@@ -106,6 +106,28 @@ def csv_rows(path: Path) -> list[tuple[str, dict[str, object]]]:
     return rows
 
 
+def csv_sections(path: Path) -> list[Section]:
+    """Sections of a file, in the order of its rows.
+
+    Parameters
+    ----------
+    path : Path
+        The file, see `csv_rows`.
+
+    Raises
+    ------
+    InputError
+        With every problem.
+    """
+    problems: list[str] = []
+    found = _chained(csv_rows(path), problems)
+    if not found and not problems:
+        problems.append(f"{path}: got no rows; allowed: 1 to {MOST_PARTS}")
+    if problems:
+        raise InputError(problems)
+    return found
+
+
 def _columns(path: Path, titles: Sequence[str]) -> list[tuple[str, str]]:
     """Key and unit of each column."""
     found: list[tuple[str, str]] = []
