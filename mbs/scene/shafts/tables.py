@@ -52,7 +52,10 @@ def read_shaft(
     spin = section.number("spin", -1e3, 1e3)
     sections, files = read_sections(section, folder)
     discs, named = _discs(section)
-    frames = _frames(section, {**named, **(mounted or {})})
+    mounted = mounted or {}
+    for key in sorted({*named} & {*mounted}):
+        section.note("discs", f"got the name {short(key)}, which a bearing on the shaft has; allowed: another name")
+    frames = _frames(section, {**named, **mounted})
     cutoff = section.quantity("cutoff", "Hz", 1.0, 1e6, HERTZ)
     largest = section.quantity("largest_element", "m", 1e-6, 100.0, LENGTH)
     ratio = section.number("damping_ratio", 0.0, 0.5)
