@@ -14,6 +14,7 @@ import mbs
 from ehdmaps.errors import InputError
 from mbs import HammerSettings, SweepRange, SweepSettings, assemble, read_scene
 from mbs.analyses.hammer import hammer
+from mbs.modal.uff import Measurement
 
 
 @pytest.fixture(scope="module")
@@ -95,6 +96,12 @@ def test_one_bearing_is_a_function():
 def test_a_file_without_hits_and_responses_is_refused(tmp_path):
     with pytest.raises(InputError, match=r"no\.uff"):
         mbs.modal_fit(tmp_path / "no.uff")
+
+
+def test_a_file_with_coherences_only_is_refused(monkeypatch):
+    monkeypatch.setattr("mbs.modal.uff.read_uff", lambda path: Measurement("", (), None))
+    with pytest.raises(InputError, match=r"own\.uff: has coherences only; allowed: frequency responses, or hits"):
+        mbs.modal_fit("own.uff")
 
 
 def test_a_body_that_is_not_there_is_refused(tmp_path):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 from importlib import resources
+from itertools import accumulate, pairwise
 from pathlib import Path
 from string import Template
 
@@ -12,8 +13,8 @@ from ehdmaps.errors import InputError
 from mbs.flexible.shaft_parts import Section
 from mbs.scene.shafts.rows import csv_sections
 
-_ROWS = (("60 mm", "50 mm"), ("120 mm", "60 mm"), ("160 mm", "55 mm"), ("60 mm", "50 mm"))
-"""Length and diameter of the sections of a new shaft."""
+_ROWS = ((60, 50), (120, 60), (160, 55), (60, 50))
+"""Length and diameter of the sections of a new shaft [mm]."""
 
 _SMALLEST, _LARGEST = 20, 100
 """Bores of the bearings of series 2 that the catalogue has [mm]."""
@@ -35,11 +36,11 @@ def new_shaft(target: Path, sections: Path | None = None) -> str:
         If the file is no table of sections.
     """
     if sections is None:
-        rows = ",\n".join(f'    {{ length = "{length}", diameter = "{diameter}" }}' for length, diameter in _ROWS)
-        ends = [0.0, *_sums([float(length.removesuffix(" mm")) * 1e-3 for length, _ in _ROWS])]
+        rows = ",\n".join(f'    {{ length = "{length} mm", diameter = "{diameter} mm" }}' for length, diameter in _ROWS)
+        ends = [0, *accumulate(length for length, _ in _ROWS)]
         shaft = [
-            Section(begin, end, float(diameter.removesuffix(" mm")) * 1e-3)
-            for begin, end, (_, diameter) in zip(ends[:-1], ends[1:], _ROWS, strict=True)
+            Section(1e-3 * begin, 1e-3 * end, 1e-3 * diameter)
+            for (begin, end), (_, diameter) in zip(pairwise(ends), _ROWS, strict=True)
         ]
         words = f"sections = [                            # one after the other; a hollow one has a bore\n{rows},\n]"
     else:
@@ -57,7 +58,7 @@ def _filled(target: Path, shaft: list[Section], sections: str) -> str:
     template = Template((resources.files("mbs.scene.shafts") / "new.toml").read_text(encoding="utf-8"))
     return template.substitute(
         file=target.name,
-        title=_quoted(f"Shaft {target.stem}"),
+        title=_quoted(f"{target.stem}: shaft on two bearings"),
         sections=sections,
         left=_millimetres(places[0]),
         right=_millimetres(places[1]),
@@ -68,11 +69,6 @@ def _filled(target: Path, shaft: list[Section], sections: str) -> str:
         wheel_width=_millimetres(0.5 * seat),
         wheel_bore=_millimetres(seat),
     )
-
-
-def _sums(lengths: list[float]) -> list[float]:
-    """Where each of some lengths ends."""
-    return [sum(lengths[: index + 1]) for index in range(len(lengths))]
 
 
 def _designation(diameter: float) -> str:
