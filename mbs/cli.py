@@ -109,6 +109,11 @@ def _state_space(command: argparse.ArgumentParser) -> None:
     )
 
 
+def _at_speed(command: argparse.ArgumentParser) -> None:
+    """Add the speed of an analysis at one speed."""
+    command.add_argument("--speed", metavar="SPEED", help='such as "1500 rpm"; default: that of [operation]')
+
+
 def _report(command: argparse.ArgumentParser) -> None:
     """Add the options of a report; its -o is a page."""
     command.add_argument(
@@ -382,13 +387,17 @@ def _modal_fit(top: Program) -> None:
 
 
 _ON_SCENES = {
-    "statics": _OnScene(_LOOK, "equilibrium, loads of the rollers, stiffness and damping of the bearings"),
+    "statics": _OnScene(
+        _LOOK, "equilibrium, loads of the rollers, stiffness and damping of the bearings", (_at_speed,)
+    ),
     "report": _OnScene(_LOOK, "the scene as one page to send: no network needed, prints to PDF", (_report, _speeds)),
-    "modes": _OnScene(_LINEAR, "frequencies, damping ratios and where the strain energy is", (_modes, _shapes)),
+    "modes": _OnScene(
+        _LINEAR, "frequencies, damping ratios and where the strain energy is", (_modes, _shapes, _at_speed)
+    ),
     "lsa": _OnScene(
         _LINEAR,
         "linear system analysis: state space and frequency responses",
-        (_state_space, _cage_angles),
+        (_state_space, _cage_angles, _at_speed),
         compares=True,
     ),
     "sweep": _OnScene(
@@ -416,7 +425,7 @@ _ON_SCENES = {
         _TIME, "a difference between two laws in a run-up under single changes, as a table", (_variants,), compares=True
     ),
     "hammer": _OnScene(
-        _TIME, "a simulated hammer test: records as a universal file", (_parallel, _hammer), compares=True
+        _TIME, "a simulated hammer test: records as a universal file", (_parallel, _hammer, _at_speed), compares=True
     ),
 }
 """Commands that take a scene, its choices, and physics of their own."""

@@ -87,17 +87,27 @@ class Quantity:
 
 
 SHEAR_OPTIONS = (
-    Word("shear", tuple(SHEARS), "law of the shear stress, see ehdmaps.physics.rheology"),
+    Word("shear", tuple(SHEARS), "law of the shear stress, by the formulas of `ehdmaps.physics.rheology`"),
     Quantity(
         "shear_stress",
         "Pa",
         *SHEAR_LIMITS["shear_stress"],
         Display("MPa", 1e-6),
-        "stress of that law, or its bound without pressure",
+        "stress tau0 of that law, or its bound without pressure; the default is an assumption",
     ),
-    Number("limiting_ratio", *SHEAR_LIMITS["limiting_ratio"], "rise of the limiting stress with pressure"),
-    Number("carreau_exponent", *SHEAR_LIMITS["carreau_exponent"], "n of Carreau's law"),
-    Number("slide_to_roll", -2.0, 2.0, "difference of the surface speeds over the entrainment speed"),
+    Number(
+        "limiting_ratio",
+        *SHEAR_LIMITS["limiting_ratio"],
+        "rise of the limiting stress with pressure; the default is an assumption",
+    ),
+    Number(
+        "carreau_exponent",
+        *SHEAR_LIMITS["carreau_exponent"],
+        "exponent n of Carreau's law; the default is an assumption",
+    ),
+    Number(
+        "slide_to_roll", -2.0, 2.0, "(u_upper - u_lower)/u, difference of the surface speeds over the entrainment speed"
+    ),
 )
 """Keys of the solvers that know laws of shear: the same words, limits and meanings for each."""
 
@@ -110,7 +120,7 @@ def physics_option(*words: str) -> Word:
     *words : str
         What it may know, of `ehdmaps.physics.heat.PHYSICS`.
     """
-    return Word("physics", words, "what the films know of heat")
+    return Word("physics", words, "heat in the films, see the sections on heat of the reference page")
 
 
 def _nothing() -> tuple[str, ...]:
@@ -183,35 +193,51 @@ def _openfoam_missing() -> tuple[str, ...]:
 SOLVERS: Mapping[str, SolverEntry] = {
     "hertz": SolverEntry((), _hertz),
     "formula": SolverEntry(
-        (Word("film_formula", ("moes", "dowson-toyoda", "pan-hamrock"), "central-film formula"),), _formula
+        (Word("film_formula", ("moes", "dowson-toyoda", "pan-hamrock"), "formula of the central film"),), _formula
     ),
     "reynolds": SolverEntry(
         (
             Number(
-                "density", *SETTING_LIMITS["density"], "grid cells per e-fold of distance from inlet, exit and spike"
+                "density",
+                *SETTING_LIMITS["density"],
+                "cells per e-fold of distance from inlet, exit and spike; 6.5: about 100 a contact",
             ),
             Number("inlet_length", *SETTING_LIMITS["inlet_length"], "length of the inlet over sqrt(2 h R)"),
-            Number("tolerance", *SETTING_LIMITS["tolerance"], "Newton tolerance on the last step"),
+            Number(
+                "tolerance",
+                *SETTING_LIMITS["tolerance"],
+                "tolerance of Newton's last step, whose convergence is quadratic",
+            ),
             physics_option(*PHYSICS),
             *SHEAR_OPTIONS,
             Word(
                 "films",
                 (SOLVED, TABLE),
-                "whether films are solved, or read from the film table where it serves",
+                "films are solved, or read from the film table where it serves",
             ),
         ),
         _reynolds,
     ),
     "openfoam": SolverEntry(
         (
-            Word("flow", ("thin_film", "full_stress"), "stress of thin films, or all of it"),
-            Whole("columns", 40, 4000, "cells along the film"),
-            Whole("rows", 4, 64, "cells across the film"),
+            Word(
+                "flow",
+                ("thin_film", "full_stress"),
+                "stress of thin films, or all of it with the pressure across the film",
+            ),
+            Whole(
+                "columns", 40, 4000, "cells along the film; even, as half of them are the grid of the error estimate"
+            ),
+            Whole("rows", 4, 64, "cells across the film; even"),
             physics_option(ISOTHERMAL, THERMAL),
             *SHEAR_OPTIONS,
             Number("inlet_length", 5.0, 1e5, "length of the inlet over sqrt(2 h R)"),
-            Word("start", ("reynolds", "hertz"), "what a point starts from"),
-            Number("timeout", 1.0, 1e6, "seconds after which a point is stopped"),
+            Word(
+                "start",
+                ("reynolds", "hertz"),
+                "start of a point: its Reynolds solution, which also places the cells, or the dry contact",
+            ),
+            Number("timeout", 1.0, 1e6, "seconds after which a point, both grids together, is stopped and failed"),
         ),
         _openfoam,
         missing=_openfoam_missing,

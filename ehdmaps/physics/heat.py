@@ -317,7 +317,7 @@ def inlet_heat_factor(load_number: float, loading: float) -> float:
 
     Notes
     -----
-    A fit to films with temperatures, FVA 3 between steel, nu308: see `ehdmaps/REFERENCE.md` for what it is worth on
+    A fit to films with temperatures, FVA 3 between steel, nu308: see `docs/evidence.md` for what it is worth on
     contacts that it was not made for.
 
     Examples

@@ -12,7 +12,7 @@ from ehdmaps.units import RPM
 from mbs.analyses.operating import operating
 from mbs.bearings.bearing_element import RingElement, ring_following
 from mbs.linearised.validity import FilmError, LoadedContacts
-from mbs.model.elements import Operation
+from mbs.model.elements import Element, Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.model.relaxation import FILM_WORDS, NOTABLE, Films, Relaxation
 from mbs.scene.assembly import Model
@@ -40,31 +40,51 @@ def film_errors(
     for index in system.select(RingElement):
         connected = system.elements[index]
         element, ports = connected.element, connected.transform @ displacement
-        assert isinstance(element, RingElement)
-        relaxation = element.film_relaxation(ports, operation)
-        if relaxation is None:
-            continue
-        forces = element.evaluate(ports, np.zeros_like(ports), operation)
-        load = float(np.linalg.norm(forces.force[1:3]))
-        if load == 0.0:
-            continue
-        along = np.array([0.0, *(forces.force[1:3] / load), 0.0, 0.0, 0.0])
-        motion = ring_following(forces.stiffness) @ along
-        stiffness, damping = (float(motion @ matrix @ motion) for matrix in (forces.stiffness, forces.damping))
-        found.append(
-            FilmError(
-                bearing=element.name,
-                films=films or model.memory,
-                at_rest=speeds[element.name] == 0.0,
-                stiffness=stiffness,
-                damping=damping,
-                springs=(relaxation.rows @ motion) ** 2,
-                times=relaxation.times,
-                natural=element.natural_times(ports, operation),
-                contacts=_contacts(element, ports, operation, relaxation, motion),
-            )
-        )
+        error = film_error(element, ports, operation, films or model.memory, speeds[element.name] == 0.0)
+        found += [] if error is None else [error]
     return found
+
+
+def film_error(
+    element: Element, ports: FloatArray, operation: Operation, films: Films, at_rest: bool
+) -> FilmError | None:
+    """Estimated error of the films of a bearing; None without films, and without a load.
+
+    Parameters
+    ----------
+    element : Element
+        The bearing, a `RingElement`.
+    ports : array, shape (m,)
+        Displacements of its ports at the equilibrium.
+    operation : Operation
+        Speed and angle.
+    films : {"slow", "memory"}
+        Films whose error is estimated.
+    at_rest : bool
+        Whether its surfaces stand still, so that there is no film.
+    """
+    assert isinstance(element, RingElement)
+    relaxation = element.film_relaxation(ports, operation)
+    if relaxation is None:
+        return None
+    forces = element.evaluate(ports, np.zeros_like(ports), operation)
+    load = float(np.linalg.norm(forces.force[1:3]))
+    if load == 0.0:
+        return None
+    along = np.array([0.0, *(forces.force[1:3] / load), 0.0, 0.0, 0.0])
+    motion = ring_following(forces.stiffness) @ along
+    stiffness, damping = (float(motion @ matrix @ motion) for matrix in (forces.stiffness, forces.damping))
+    return FilmError(
+        bearing=element.name,
+        films=films,
+        at_rest=at_rest,
+        stiffness=stiffness,
+        damping=damping,
+        springs=(relaxation.rows @ motion) ** 2,
+        times=relaxation.times,
+        natural=element.natural_times(ports, operation),
+        contacts=_contacts(element, ports, operation, relaxation, motion),
+    )
 
 
 def _contacts(

@@ -67,7 +67,7 @@ class ModesResult:
         highest = max(self.model.scene.frequencies, default=HIGHEST) if highest is None else highest
         free, overdamped, swinging = kinds(self.modes)
         inside = self.modes.frequency[swinging] <= highest
-        notes = [*free_lines(free), *above_lines(self.modes, swinging[~inside], highest)]
+        notes = [*free_lines(free, self.model.system), *above_lines(self.modes, swinging[~inside], highest)]
         notes += [f"{overdamped.size} overdamped motions not drawn"] if overdamped.size else []
         limit = min((entry.frequency for entry in self.errors), default=math.inf)
         return modes_figure(self.model, self.modes, swinging[inside], limit, "; ".join(notes))

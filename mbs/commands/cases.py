@@ -165,7 +165,7 @@ def read_dry(arguments: argparse.Namespace, problems: list[str]) -> tuple[Scene 
     """
     scene = _read_scene(arguments, problems)
     problems += _one_each(arguments)
-    values = {choice.name: choice.values(texts_of(arguments, choice), problems) for choice in OPTIONS}
+    values = _values(arguments, problems)
     if scene is None:
         return None, None
     subject = combinations([Subject(scene, named_law("hertz", scene))], values, problems)[0].subject
@@ -191,9 +191,7 @@ def _combined(
 
     Where laws do not stand side by side, a law goes before a map.
     """
-    values: dict[str, list[Any]] = {
-        choice.name: choice.values(texts_of(arguments, choice), problems) for choice in OPTIONS
-    }
+    values = _values(arguments, problems)
     if scene is None:
         return []
     laws = _laws(arguments, scene, values, problems)
@@ -207,6 +205,15 @@ def _combined(
     ready = _ready(arguments)
     clearance = None if ready is None else ready.clearance
     return combinations([Subject(scene, law, clearance) for law in laws], values, problems)
+
+
+def _values(arguments: argparse.Namespace, problems: list[str]) -> dict[str, list[Any]]:
+    """Values that are given for the choices, by their names."""
+    speed = CHOICES["speed"]
+    # Commands that look at several speeds have an option of the same name, FROM TO POINTS.
+    one_speed = isinstance(getattr(arguments, speed.key, None), str)
+    taken = (*OPTIONS, speed) if one_speed else OPTIONS
+    return {choice.name: choice.values(texts_of(arguments, choice), problems) for choice in taken}
 
 
 def _laws(

@@ -22,7 +22,7 @@ from mbs.commands.lsa import MOST_COMPARED_CASES
 from mbs.commands.sweep import read_speeds
 from mbs.linearised.critical import CriticalSpeed
 from mbs.linearised.linear import sensor_unit
-from mbs.output.model_text import heading
+from mbs.output.model_text import clean, heading
 from mbs.output.sweep_data import orbits, sensed
 from mbs.planning.question import over_speeds
 
@@ -152,9 +152,10 @@ def _critical(result: CriticalResult) -> list[str]:
 
 def _row(entry: CriticalSpeed) -> str:
     """Line of a critical speed."""
+    frequency, damping_ratio = entry.eigenvalue.imag / (2.0 * math.pi), clean(entry.damping_ratio)
     return (
-        f"  mode {entry.mode + 1:4d} {entry.order:14.4g} {_rpm(entry.speed):>13} "
-        f"{entry.eigenvalue.imag / (2.0 * math.pi):12.5g} {entry.damping_ratio:15.3g}   {_whirl_words(entry.whirl)}"
+        f"  mode {entry.mode + 1:4d} {entry.order:14.4g} {_rpm(entry.speed):>13} {frequency:12.5g} "
+        f"{damping_ratio:15.3g}   {_whirl_words(entry.whirl)}"
     )
 
 

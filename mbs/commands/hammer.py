@@ -22,6 +22,7 @@ from mbs.commands.common import Looked, Told, unsound_lines
 from mbs.linearised.modes import Modes
 from mbs.modal.uff import UFF, Measurement, write_uff
 from mbs.model.relaxation import FILM_WORDS
+from mbs.model.system import System
 from mbs.output.model_text import clean, film_lines, free_words, heading
 from mbs.planning.question import at_one_speed
 from mbs.scene.fields import MILLISECOND
@@ -109,7 +110,7 @@ def _report(found: HammerResult, label: str, nonlinear: bool) -> tuple[list[str]
         f"  records of {test.samples * test.step:.4g} s, {test.samples} samples at {1.0 / test.step:.6g} Hz; "
         f"half-sines of {MILLISECOND.text(test.pulse)}, up to {test.highest:.6g} Hz; seed {test.seed}",
         f"  noise: standard deviation {100.0 * test.noise:.3g} % of the peak of each channel",
-        *_expected(found.modes, test),
+        *_expected(found.modes, test, model.system),
         *film_lines(found.errors, [test.highest]),
         *outside,
     ]
@@ -140,7 +141,7 @@ def _options(arguments: argparse.Namespace) -> tuple[float | None, float | None]
     return found[0], found[1]
 
 
-def _expected(found: Modes, test: HammerTest) -> list[str]:
+def _expected(found: Modes, test: HammerTest, system: System) -> list[str]:
     """Lines of the eigenvalues that the test should find."""
     lines = ["  eigenvalues of the same linearised system up to there (a test shows those that are hit and sensed):"]
     seen = np.nonzero((found.eigenvalues.imag > 0.0) & ~found.free & (found.frequency <= test.highest))[0]
@@ -148,4 +149,4 @@ def _expected(found: Modes, test: HammerTest) -> list[str]:
         f"  {k + 1:4d} {found.frequency[k]:14.6g} Hz   damping ratio {clean(found.damping_ratio[k]):.4g}" for k in seen
     ]
     free = int(np.count_nonzero(found.free))
-    return [*lines, f"  {free_words(free)}"] if free else lines
+    return [*lines, f"  {free_words(free, system)}"] if free else lines

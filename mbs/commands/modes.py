@@ -50,7 +50,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     free, overdamped, swinging = kinds(found)
     shown = swinging[found.frequency[swinging] <= highest]
     above = swinging[found.frequency[swinging] > highest]
-    notes = [*free_lines(free), *above_lines(found, above, highest)]
+    notes = [*free_lines(free, model.system), *above_lines(found, above, highest)]
     figure = result.plot(highest) if arguments.plot else None
     outside = outside_at(model, result.balance)
     lines = [

@@ -25,7 +25,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Do all of them; what has no result does not stop the others."""
     scene = read_scene(arguments.scene)
     folder = _folder(arguments.output)
-    planned = {name: arguments.parse(_words(arguments, name, folder)) for name in _analyses(scene)}
+    planned = {name: arguments.parse(_words(arguments, scene, name, folder)) for name in _analyses(scene)}
     lines, status = [f"{scene.title}: {', '.join(planned)}"], 0
     refused, told = 0, set[str]()
     for name, one in planned.items():
@@ -72,7 +72,7 @@ def _folder(given: str | None) -> Path | None:
     return folder
 
 
-def _words(arguments: argparse.Namespace, name: str, folder: Path | None) -> list[str]:
+def _words(arguments: argparse.Namespace, scene: Scene, name: str, folder: Path | None) -> list[str]:
     """The command line of one analysis."""
     words = [name, arguments.scene]
     for choice in OPTIONS:
@@ -85,5 +85,7 @@ def _words(arguments: argparse.Namespace, name: str, folder: Path | None) -> lis
         words.append("--auto")
     if folder is not None:
         check_outputs([Output("-o", folder / f"{name}.txt", TEXT)])
-        words += ["-o", str(folder / f"{name}.nc"), "--plot", str(folder / f"{name}.png")]
+        words += ["-o", str(folder / f"{name}.nc")]
+        # The figure of statics is one of rollers.
+        words += ["--plot", str(folder / f"{name}.png")] if name != "statics" or scene.bearings else []
     return words

@@ -26,6 +26,7 @@ from mbs.linearised.modes import free_motions
 from mbs.linearised.sweep import MOST_ANGLES
 from mbs.linearised.sweep_result import Sweep, exchanged
 from mbs.model.elements import Operation
+from mbs.model.system import System
 from mbs.output.model_text import (
     ROUND_OFF,
     band_lines,
@@ -76,7 +77,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             *_films(case.model),
             *_bearings(entry, torque),
             *(f"  {line}" for line in flooded_note(_largest(torque), case.model.supplies.values())),
-            *_undamped(entry),
+            *_undamped(entry, case.model.system),
             *_complex(entry),
             *_responses(entry),
             *band_lines(case.model),
@@ -226,7 +227,7 @@ def _largest(torque: FloatArray) -> float:
     return float(np.nan_to_num(torque).max(initial=0.0))
 
 
-def _undamped(result: Sweep) -> list[str]:
+def _undamped(result: Sweep, system: System) -> list[str]:
     """Lines on how the undamped modes with strain energy in the bearings change."""
     found = result.undamped
     free = free_motions(found.frequency.max(axis=0))
@@ -246,7 +247,7 @@ def _undamped(result: Sweep) -> list[str]:
             + _band("; frequency", found.frequency_error[:, k], found.frequency[:, k])
             + _over_pitch(result, found.frequency_spread[:, k], found.frequency[:, k], "frequency")
         )
-    return [*lines, f"  {free_words(int(np.count_nonzero(free)))}"] if free.any() else lines
+    return [*lines, f"  {free_words(int(np.count_nonzero(free)), system)}"] if free.any() else lines
 
 
 def _complex(result: Sweep) -> list[str]:

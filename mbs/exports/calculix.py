@@ -1,12 +1,13 @@
-"""Target `calculix`: a bearing as springs and dashpots, to be included in a deck of CalculiX.
+"""Targets `calculix` and `abaqus`: a bearing as springs and dashpots, to be included in a deck of CalculiX or Abaqus.
 
-CalculiX has springs and dashpots along lines between nodes. Three lines in the radial plane, along y, along z and
+Both have springs and dashpots along lines between nodes. Three lines in the radial plane, along y, along z and
 between them, carry any symmetric stiffness and damping of the plane:
 
     K = (Kyy - Kyz) y y' + (Kzz - Kyz) z z' + 2 Kyz d d',    d = (y + z)/sqrt(2),
 
-and the same for C. Nodes of CalculiX's solids do not turn, so that tilting has no place here. Its dashpots may depend
-on frequency, its springs may not. Source: CalculiX CrunchiX USER'S MANUAL 2.20, *SPRING, *DASHPOT.
+and the same for C. Nodes of solids do not turn, so that tilting has no place here. Dashpots may depend on frequency in
+both programs; springs may in Abaqus, in steady-state dynamics by direct solution or subspace projection, and may not in
+CalculiX. Sources: CalculiX CrunchiX USER'S MANUAL 2.20, and Abaqus Keywords Reference, *SPRING, *DASHPOT.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from ehdmaps.outputs import Kind, has_mark
 from mbs.exports.linear_table import LinearTable, one_speed, target, whole
 
 KIND = Kind("a bearing for CalculiX made by ehdmaps", (".inp",), has_mark)
+ABAQUS_KIND = Kind("a bearing for Abaqus made by ehdmaps", (".inp",), has_mark)
 
 _LINES = ("Y", "Z", "D")
 _DIRECTIONS = ((0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (0.0, math.sqrt(0.5), math.sqrt(0.5)))
@@ -31,7 +33,7 @@ _LENGTH = 0.1
 
 
 def _add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options that only CalculiX has."""
+    """Add the options of decks."""
     parser.add_argument("--node", metavar="N", default="1", help="node of the inner ring (1)")
     parser.add_argument(
         "--at", metavar="X,Y,Z", default="0,0,0", help="coordinates of that node in metres, such as 0.1,0,0 (0,0,0)"
@@ -41,8 +43,31 @@ def _add_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def _text(table: LinearTable, header: tuple[str, ...], arguments: argparse.Namespace) -> str:
-    """Write the deck."""
+def _calculix(table: LinearTable, header: tuple[str, ...], arguments: argparse.Namespace) -> str:
+    """Write the deck for CalculiX."""
+    k = table.stiffness[0]
+    spread = float(np.ptp(np.diagonal(k, axis1=1, axis2=2)[:, 1:3], axis=0).max() / np.max(np.abs(k[0])))
+    notes = (
+        f"springs: at {table.frequencies[0]:.6g} Hz, the first frequency; over the frequencies K changes by "
+        f"{spread:.2%}; dashpots: over frequency",
+        "CalculiX holds the dashpots at their ends beyond the frequencies above: stay within",
+        "beams beside these springs: *STEADY STATE DYNAMICS of CalculiX 2.20 gave zeros with B31 and wrong values with "
+        "B32R, where *STATIC was right; make the shaft of solids",
+    )
+    return _deck(table, (*header, *notes), arguments, table.frequencies[:1])
+
+
+def _abaqus(table: LinearTable, header: tuple[str, ...], arguments: argparse.Namespace) -> str:
+    """Write the deck for Abaqus."""
+    notes = (
+        "springs and dashpots over frequency: for *STEADY STATE DYNAMICS, DIRECT or SUBSPACE PROJECTION",
+        "Abaqus holds them at their ends beyond the frequencies above: stay within",
+    )
+    return _deck(table, (*header, *notes), arguments, table.frequencies)
+
+
+def _deck(table: LinearTable, header: tuple[str, ...], arguments: argparse.Namespace, of_springs: FloatArray) -> str:
+    """Write nodes, springs at some of the frequencies, dashpots at all."""
     problems: list[str] = []
     one_speed(table, problems)
     node = whole("--node", arguments.node, problems)
@@ -52,13 +77,9 @@ def _text(table: LinearTable, header: tuple[str, ...], arguments: argparse.Names
         raise InputError(problems)
     k, c = table.stiffness[0], table.damping[0]
     unsymmetric = max(abs(float(m[1, 2] - m[2, 1])) for m in (*k, *c)) / float(np.max(np.abs(c)))
-    spread = float(np.ptp(np.diagonal(k, axis1=1, axis2=2)[:, 1:3], axis=0).max() / np.max(np.abs(k[0])))
     name = re.sub(r"[^A-Z0-9]+", "_", table.request.bearing.geometry.name.upper()).strip("_")[:20] or "BEARING"
     notes = (
-        f"springs: at {table.frequencies[0]:.6g} Hz, the first frequency; over the frequencies K changes by "
-        f"{spread:.2%}; dashpots: over frequency",
         f"left out: tilting of the ring, and the unsymmetric part of K and C ({unsymmetric:.1e})",
-        "CalculiX holds the dashpots at their ends beyond the frequencies above: stay within",
         "a housing: take the *BOUNDARY away and tie the nodes of the set to it",
     )
     lines = [f"** {line}" for line in (*header, *notes)]
@@ -66,21 +87,11 @@ def _text(table: LinearTable, header: tuple[str, ...], arguments: argparse.Names
     for index, direction in enumerate(_DIRECTIONS):
         x, y, z = (p - _LENGTH * d for p, d in zip(place, direction, strict=True))
         lines.append(f"{first + index}, {_decimal(x)}, {_decimal(y)}, {_decimal(z)}")
-    for kind, offset, card, rows in (
-        ("SPRINGA", 0, "SPRING", [[f"{_decimal(value)}"] for value in _along_lines(k[0])]),
-        (
-            "DASHPOTA",
-            len(_LINES),
-            "DASHPOT",
-            [
-                [
-                    f"{_decimal(value)}, {_decimal(frequency)}"
-                    for value, frequency in zip(v, table.frequencies, strict=True)
-                ]
-                for v in np.array([_along_lines(one) for one in c]).T
-            ],
-        ),
+    for kind, offset, card, matrices, frequencies in (
+        ("SPRINGA", 0, "SPRING", k, of_springs),
+        ("DASHPOTA", len(_LINES), "DASHPOT", c, table.frequencies),
     ):
+        rows = _rows(matrices, frequencies, always=card == "DASHPOT")
         for index, (line, numbers) in enumerate(zip(_LINES, rows, strict=True)):
             group = f"EHD_{name}_{card[0]}{line}"
             lines += [
@@ -92,6 +103,16 @@ def _text(table: LinearTable, header: tuple[str, ...], arguments: argparse.Names
             ]
     lines += ["*BOUNDARY", f"EHD_{name}_GROUND, 1, 3"]
     return "\n".join(lines) + "\n"
+
+
+def _rows(matrices: FloatArray, frequencies: FloatArray, always: bool) -> list[list[str]]:
+    """Lines of data of each of the three lines between nodes: value and frequency, which a single value may lack."""
+    values = np.array([_along_lines(matrix) for matrix in matrices[: frequencies.size]]).T
+    if frequencies.size == 1 and not always:
+        return [[_decimal(value)] for (value,) in values]
+    return [
+        [f"{_decimal(value)}, {_decimal(at)}" for value, at in zip(one, frequencies, strict=True)] for one in values
+    ]
 
 
 def _along_lines(matrix: FloatArray) -> tuple[float, float, float]:
@@ -121,6 +142,9 @@ TARGET = target(
     KIND,
     "springs and dashpots over frequency, to be included in a deck",
     "CalculiX",
-    _text,
+    _calculix,
     _add_arguments,
+)
+ABAQUS = target(
+    ABAQUS_KIND, "springs and dashpots, both over frequency, to be included in a deck", "", _abaqus, _add_arguments
 )

@@ -8,6 +8,7 @@ films that relax where `films` is "memory"; at zero it is K and C of slow motion
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -22,12 +23,16 @@ from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.outputs import Kind, Output, check_outputs, write_text
 from ehdmaps.units import RPM, TEMPERATURE, Display, quantity
 from mbs.analyses.bearing_point import RING, ring_at_rest
+from mbs.analyses.film_errors import film_error
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.contact_report import axes_left
 from mbs.commands.bearing import BearingRequest, read_request, read_values
+from mbs.linearised.bands import law_bands
 from mbs.linearised.dynamic import element_dynamic_stiffness
+from mbs.linearised.validity import FilmError
 from mbs.model.elements import Operation
+from mbs.model.equilibrium import Equilibrium
 from mbs.model.relaxation import DEFAULT_FILMS, Films
 from mbs.scene.fields import FORCE, MICROMETRE
 
@@ -35,6 +40,9 @@ HERTZ = Display("Hz")
 
 FREQUENCIES = (0.0, 1e5)
 """Frequencies that may be asked for [Hz]."""
+
+SHOWN = np.array([100.0, 1e3, 2e3, 4e3])
+"""Frequencies at which a table of slow motion says how films answer [Hz]."""
 
 _FILMS: tuple[Films, ...] = ("slow", "memory")
 
@@ -62,6 +70,11 @@ class LinearTable:
         Place of the inner ring at rest, y and z [m].
     stiffness, damping : array, shape (n, m, 6, 6)
         K and C of the inner ring against the outer one: x (axial), y, z [m], rotations about them [rad].
+    bands : array, shape (n, 2)
+        Errors of k and c of slow motion along the load that the map states, as parts of k and c; NaN where it states
+        none.
+    film_errors : tuple of FilmError
+        For each speed how films answer over frequency along the load, and the error of that; empty at rest.
     """
 
     request: BearingRequest
@@ -72,6 +85,8 @@ class LinearTable:
     displacement: FloatArray
     stiffness: FloatArray
     damping: FloatArray
+    bands: FloatArray
+    film_errors: tuple[FilmError, ...]
 
     def header(self, path: Path) -> tuple[str, ...]:
         """Lines that tell map, axes, signs and the point at which the bearing is linear.
@@ -93,7 +108,35 @@ class LinearTable:
             f"speeds of the inner ring: {', '.join(RPM.text(speed) for speed in self.speeds)}; the outer ring stands",
             f"frequencies: {', '.join(HERTZ.text(value) for value in self.frequencies)}; {self._motion}",
         )
-        return (*(() if emap is None else origin(emap, path.name, _BEYOND)), *BEARING_AXES, *point)
+        return (*(() if emap is None else origin(emap, path.name, _BEYOND)), *BEARING_AXES, *point, *self._accuracy)
+
+    def dynamic_error(self) -> FloatArray:
+        """Estimated |dZ/Z| along the load at each frequency, shape (n, m); 0 where no film is."""
+        if not self.film_errors:
+            return np.zeros((self.speeds.size, self.frequencies.size))
+        return np.array([error.error(self.frequencies) for error in self.film_errors])
+
+    @property
+    def _accuracy(self) -> tuple[str, ...]:
+        """Lines on errors, and on the frequencies that the table does not have."""
+        known = self.bands[np.all(np.isfinite(self.bands), axis=1)]
+        stated = "not stated by the map"
+        if known.size:
+            stiffness, damping = 100.0 * known.max(axis=0)
+            stated = f"up to {stiffness:.2g} % of K and {damping:.2g} % of C"
+        lines = [f"estimated error along the load, of the law in slow motion: {stated}"]
+        if not self.film_errors:
+            return (*lines, "at rest: no film, no damping")
+        if self.frequencies.any():
+            return (*lines, f"and of the films over frequency: |dZ/Z| up to {100.0 * self.dynamic_error().max():.2g} %")
+        shown = ", ".join(HERTZ.text(value) for value in SHOWN)
+        ends = {0: self.film_errors[0], self.speeds.size - 1: self.film_errors[-1]}
+        return (
+            *lines,
+            f"slow motion is not all: at {shown} films are stiffer and damp less; --frequency asks for that. Along the "
+            "load:",
+            *(f"  {RPM.text(self.speeds[index])}: {_over_frequency(error)}" for index, error in ends.items()),
+        )
 
     @property
     def _motion(self) -> str:
@@ -103,6 +146,15 @@ class LinearTable:
             return relax
         slow = "slow motion, K and C of films that follow at once"
         return f"0 Hz: {slow}; above: {relax}" if self.frequencies.any() else slow
+
+
+def _over_frequency(error: FilmError) -> str:
+    """K and C along the load as multiples of those of slow motion, and what these are wrong by, in words."""
+    dynamic = error.dynamic_stiffness(SHOWN)
+    stiffness, damping = dynamic.real / error.stiffness, dynamic.imag / (2.0 * np.pi * SHOWN) / error.damping
+    wrong = 100.0 * dataclasses.replace(error, films="slow").error(SHOWN)
+    k, c, off = (", ".join(f"{value:.3g}" for value in values) for values in (stiffness, damping, wrong))
+    return f"K {k} times, C {c} times that of slow motion, which is off by |dZ/Z| = {off} %"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -162,7 +214,8 @@ def linear_table(path: Path, arguments: argparse.Namespace) -> LinearTable:
     )
     omega = 2.0 * np.pi * np.array(frequencies)
     s = np.asarray(1j * omega, dtype=np.complex128)
-    displacement, stiffness, damping, outside = [], [], [], []
+    displacement, stiffness, damping, outside, bands = [], [], [], [], []
+    film_errors: list[FilmError] = []
     for speed in request.speeds:
         operation = Operation(speed)
         balance = ring_at_rest(element, request.load_vectors[0], operation)
@@ -175,6 +228,9 @@ def linear_table(path: Path, arguments: argparse.Namespace) -> LinearTable:
         displacement.append(balance.displacement)
         stiffness.append(dynamic.real)
         damping.append(np.where(slow[:, None, None], balance.element_damping[0], rate))
+        error = film_error(element, place, operation, films, speed == 0.0) if speed else None
+        film_errors += [] if error is None else [error]
+        bands.append(_relative_bands(balance, error))
     if outside:
         raise InputError(
             [
@@ -191,7 +247,17 @@ def linear_table(path: Path, arguments: argparse.Namespace) -> LinearTable:
         displacement=np.array(displacement),
         stiffness=np.array(stiffness),
         damping=np.array(damping),
+        bands=np.array(bands),
+        film_errors=tuple(film_errors) if len(film_errors) == len(request.speeds) else (),
     )
+
+
+def _relative_bands(balance: Equilibrium, error: FilmError | None) -> FloatArray:
+    """Errors of k and c along the load that the map states, as parts of them, shape (2,); NaN where it states none."""
+    bands = law_bands(balance) if error is not None else None
+    if error is None or bands is None:
+        return np.full(2, np.nan)
+    return np.asarray(bands.of_bearings()[:, 0] / np.array([error.stiffness, error.damping]))
 
 
 def _read(path: Path, arguments: argparse.Namespace) -> tuple[BearingRequest, tuple[float, ...], float]:

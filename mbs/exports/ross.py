@@ -50,7 +50,7 @@ def _text(table: LinearTable, header: tuple[str, ...], arguments: argparse.Names
     name = re.sub(r"[^A-Za-z0-9]+", "_", table.request.bearing.geometry.name).strip("_") or "bearing"
     axes = _axes(table, arguments.ross)
     lines = [f"# {line}" for line in (*header, *_NOTES)]
-    lines += ["", f"[BearingElement_{name}]", f"n = {int(node)}", f'tag = "{name}"', "scale_factor = 1"]
+    lines += ["", f"[BearingElement_{name}]", f"n = {int(node)}", f'tag = "{name} at {int(node)}"', "scale_factor = 1"]
     lines += [f"{key} = {_array(values)}" for key, values in axes.items()]
     shape = [axis.size for axis in axes.values()]
     for letter, matrices in (("k", table.stiffness), ("c", table.damping)):

@@ -1,7 +1,8 @@
 """Critical speeds, and the response to loads that turn, over speed.
 
 A speed is critical for an order where the frequency of a damped mode is that order times the speed: there an unbalance
-(order: spin of its body), or an excitation by that order, meets a resonance. The response to such loads is solved at
+(order: spin of its body), or an excitation by that order, meets a resonance. A mode with a damping ratio above
+1/sqrt(2) has no resonance, and no critical speed. The response to such loads is solved at
 their own frequency at each speed, with all of stiffness, damping, gyroscopic terms and films that relax.
 """
 
@@ -27,6 +28,9 @@ CLOSE = 1e-7
 
 AROUND = (-4.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 4.0)
 """Speeds around a critical one at which responses are found besides, in damping ratios of it."""
+
+HIGHEST_DAMPING_RATIO = math.sqrt(0.5)
+"""Damping ratio above which the response of an oscillator has no peak over frequency."""
 
 _ACROSS = 1e-6
 """Square of the motion across the axis over that along it, up to which it is none."""
@@ -67,6 +71,11 @@ class CriticalSpeed:
     def damping_ratio(self) -> float:
         """-real part over magnitude."""
         return -self.eigenvalue.real / abs(self.eigenvalue)
+
+    @property
+    def resonates(self) -> bool:
+        """Tell whether the response to the order has a peak there."""
+        return self.damping_ratio <= HIGHEST_DAMPING_RATIO
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,7 +120,7 @@ def critical_speeds(
     -------
     tuple of CriticalSpeed
         Critical speeds in rising order, for each order in turn. A mode that is overdamped at an end of a step of the
-        sweep has none in it.
+        sweep has none in it, and one whose damping ratio is above `HIGHEST_DAMPING_RATIO` has none at all.
 
     Raises
     ------
@@ -130,7 +139,7 @@ def critical_speeds(
                 values = damped.eigenvalues[index : index + 2, mode].tolist()
                 number = int(damped.number[mode])
                 here.append(_refined(system_at, (speeds[index], speeds[index + 1]), values, order, number))
-        critical += sorted(here, key=lambda entry: entry.speed)
+        critical += sorted((one for one in here if one.resonates), key=lambda entry: entry.speed)
     return tuple(critical)
 
 

@@ -130,6 +130,12 @@ class FilmError:
         wrong = left_out if self.films == "memory" else more + left_out
         return np.asarray((np.abs(wrong) + doubt) / np.abs(true), dtype=np.float64)
 
+    def dynamic_stiffness(self, frequencies: FloatArray) -> ComplexArray:
+        """Dynamic stiffness of films with memory along the load at frequencies (k,) [N/m]."""
+        s = np.asarray(2j * np.pi * np.asarray(frequencies, dtype=np.float64))
+        place = np.multiply.outer(s, self.times)
+        return np.asarray(self.stiffness + s * self.damping - (place**2 / (1.0 + place)) @ self.springs)
+
     def at(self, frequency: float) -> float:
         """The error at one frequency [Hz]."""
         return float(self.error(np.array([frequency]))[0])

@@ -92,7 +92,7 @@ class Equilibrium:
 
 
 def equilibrium(
-    system: System, operation: Operation | None = None, start: FloatArray | None = None, tolerance: float = 1e-10
+    system: System, operation: Operation, start: FloatArray | None = None, tolerance: float = 1e-10
 ) -> Equilibrium:
     """Static equilibrium of a system.
 
@@ -100,8 +100,8 @@ def equilibrium(
     ----------
     system : System
         Bodies, springs, loads, elements.
-    operation : Operation, optional
-        Speed, angle, and the time of the loads; at rest, angle and time zero, if left out.
+    operation : Operation
+        Speed, angle, and the time of the loads; ``Operation()`` is at rest, with angle and time zero.
     start : array, shape (n,), optional
         Displacement to begin with; zero if left out.
     tolerance : float
@@ -113,7 +113,7 @@ def equilibrium(
         If there is no equilibrium: a load on something that moves freely, or one that an element cannot hold.
     """
     try:
-        return _found(system, operation or Operation(), start, tolerance)
+        return _found(system, operation, start, tolerance)
     except InputError as error:
         raise AnalysisError(
             f"no equilibrium: on the way to it an element is moved farther than it can be ({error}); check units and "
@@ -244,7 +244,8 @@ SINGULAR = 1e-10
 """Eigenvalue of the stiffness, scaled to a unit diagonal, up to which a motion of several coordinates is free."""
 
 _ROUND_OFF = 1e-12
-_ROLLER = ".roller_"
+ROLLER = ".roller_"
+"""Mark of a coordinate of a roller that is a body: it follows the name of the body, and its number follows it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -310,8 +311,8 @@ def free_lines(motions: tuple[FreeMotion, ...]) -> list[str]:
     rollers: dict[str, int] = {}
     lines = []
     for motion in motions:
-        if len(motion.coordinates) == 1 and _ROLLER in motion.coordinates[0]:
-            body = motion.coordinates[0].partition(_ROLLER)[0]
+        if len(motion.coordinates) == 1 and ROLLER in motion.coordinates[0]:
+            body = motion.coordinates[0].partition(ROLLER)[0]
             rollers[body] = rollers.get(body, 0) + 1
         else:
             together = len(motion.coordinates) > 1

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from ehdmaps.units import RPM, TEMPERATURE
 from mbs.bearings.bearing_element import error_words
 from mbs.bearings.thermal import HeatPaths
+from mbs.model.equilibrium import ROLLER
 from mbs.model.relaxation import FILM_WORDS, NOTABLE
 from mbs.output.state_text import state_lines
 from mbs.scene.assembly import Model
@@ -19,6 +20,7 @@ from mbs.scene.fields import MICROMETRE
 
 if TYPE_CHECKING:
     from mbs.linearised.validity import FilmError
+    from mbs.model.system import System
 
 ROUND_OFF = 1e-12
 """Size below which a part or a ratio is shown as zero: round-off."""
@@ -160,16 +162,19 @@ def clean(value: float) -> float:
     return float(value) if abs(value) > ROUND_OFF else 0.0
 
 
-def free_words(count: int) -> str:
+def free_words(count: int, system: System) -> str:
     """Words for free motions, which have no frequency and no damping ratio.
 
     Parameters
     ----------
     count : int
         How many there are.
+    system : System
+        System with the motions; one with rollers as bodies may have unloaded ones.
     """
     what = "1 free motion" if count == 1 else f"{count} free motions"
-    return f"{what} at 0 Hz without strain energy, such as unloaded rollers"
+    rollers = ", such as unloaded rollers" if any(ROLLER in name for name in system.coordinates) else ""
+    return f"{what} at 0 Hz without strain energy{rollers}"
 
 
 def film_lines(errors: Sequence[FilmError], frequencies: Iterable[float], words: str = "") -> list[str]:

@@ -10,6 +10,7 @@ from ehdmaps.arrays import IntArray
 from ehdmaps.units import MOTIONS, RPM, Display
 from mbs.linearised.modes import Modes
 from mbs.model.drive import DriveAccount
+from mbs.model.system import System
 from mbs.output.model_text import free_words
 from mbs.scene.fields import HERTZ
 from mbs.timedata.records import TimeRecord
@@ -157,15 +158,17 @@ def signal_lines(records: Sequence[TimeRecord]) -> list[str]:
     return lines
 
 
-def free_lines(which: IntArray) -> list[str]:
+def free_lines(which: IntArray, system: System) -> list[str]:
     """A line for all free motions; none without.
 
     Parameters
     ----------
     which : array of int
         Which modes are free.
+    system : System
+        Whose modes they are.
     """
-    return [free_words(which.size)] if which.size else []
+    return [free_words(which.size, system)] if which.size else []
 
 
 def above_lines(found: Modes, which: IntArray, highest: float) -> list[str]:

@@ -449,7 +449,7 @@ def critical_dataset(
     if responses:
         amplitudes = np.array([sensed(system, sensors, speeds, entry) for entry in responses])
         dims = ("order", "speed", "sensor")
-        for name, part in (("real", amplitudes.real), ("imag", amplitudes.imag)):
+        for name, part in (("real", amplitudes.real), ("imaginary", amplitudes.imag)):
             words = f"{name} part of the amplitude: the signal is Re[amplitude exp(i order angle)]"
             variables[f"response_{name}"] = (dims, part, {"units": _RESPONSE_UNITS, "long_name": words})
         ellipses = [orbits(system, entry) for entry in responses]

@@ -64,7 +64,7 @@ def mode_table(found: ModesResult, highest: float) -> Markup:
         if swinging.size > listed.size
         else "",
         f"{creeping.size} motions creep back without oscillating." if creeping.size else "",
-        f"{free_words(int(free.size))}." if free.size else "",
+        f"{free_words(int(free.size), found.model.system)}." if free.size else "",
         f"{len(all_modes.lost)} modes could not be brought to the films of their own frequency and are not listed."
         if all_modes.lost
         else "",

@@ -195,7 +195,7 @@ def _geometry(section: Table) -> BearingGeometry | None:
         )
         return None
     problems: list[str] = []
-    geometry, _ = read_contacts(Table({"bearing": given}, key, problems), None)
+    geometry, _ = read_contacts(Table({"bearing": given}, "geometry", problems), None)
     for problem in problems:
         section.note(key, problem.removeprefix("[bearing] ").removeprefix("[bearing]: "))
     return geometry

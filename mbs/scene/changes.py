@@ -37,6 +37,11 @@ def with_temperature(scene: Scene, temperature: float) -> Scene:
     return dataclasses.replace(scene, temperature=temperature)
 
 
+def with_speed(scene: Scene, speed: float) -> Scene:
+    """The scene at another operating speed [rad/s]."""
+    return dataclasses.replace(scene, speed=speed)
+
+
 def with_housing_damping(scene: Scene, factor: float) -> Scene:
     """The scene with the damping ratios of its bodies of finite elements multiplied.
 

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from ehdmaps.choices import ROUGHNESS, STRUCTURE, SUPPLY, Choice, one_of
 from ehdmaps.errors import EhdmapsError, InputError
-from ehdmaps.units import TEMPERATURE, Display, quantity
+from ehdmaps.units import RPM, TEMPERATURE, Display, quantity
 from mbs.model.relaxation import DEFAULT_FILMS, FILM_WORDS, Films
 from mbs.scene.fields import DEGREE, HERTZ, MICROMETRE
 
@@ -36,6 +36,9 @@ FILMS = ("memory", "slow")
 
 WIDEST = 1e-2
 """Largest clearance, either way [m]."""
+
+FASTEST = 1e5
+"""Highest speed [rad/s]."""
 
 MOST_FACTOR = 1e3
 MOST_SLICES = 10_000
@@ -274,11 +277,11 @@ def named_law(name: str, scene: Scene) -> LawChoice:
     InputError
         If the film table does not serve the scene. What else is wrong about a law is said by `assemble`.
     """
-    from mbs.scene.contact_laws import law_label
+    from mbs.scene.contact_laws import NO_BEARING, law_label
     from mbs.scene.map_set import TABLE_LAW, table_maps
 
     if name != TABLE_LAW:
-        return LawChoice(law_label(name), name)
+        return LawChoice(law_label(name) if scene.bearings else NO_BEARING, name)
     return map_law(table_maps(scene))
 
 
@@ -515,6 +518,16 @@ _ROWS = (
         called=lambda angle: f"cage at {DEGREE.text(angle)}",
     ),
     SceneChoice(
+        "speed",
+        "SPEED",
+        'operating speed, such as "1500 rpm"',
+        "that of [operation]",
+        _between("rad/s", 0.0, FASTEST, RPM),
+        _of_scene("with_speed"),
+        RPM.text,
+        option=False,
+    ),
+    SceneChoice(
         "housing-damping",
         "FACTOR",
         "multiplies the damping ratios of bodies of finite elements",
@@ -615,12 +628,12 @@ def combinations(
     subjects : sequence of Subject
         Scene with each of the laws.
     values : mapping of str to sequence
-        Values of the other choices, by their names.
+        Values of the other choices, by their names; left out: nothing was chosen.
     problems : list of str
         What is wrong is appended.
     """
     found = [Combination(subject) for subject in subjects]
-    for choice in OPTIONS:
+    for choice in CHOICES.values():
         several = values.get(choice.name, ()) if choice.name not in LAWS else ()
         if choice.name == SUPPLY.name and not several:
             found = [dataclasses.replace(one, subject=_with_stated_supply(one.subject)) for one in found]

@@ -1,26 +1,28 @@
 """Marked blocks of the pages: where figures stand, the commands they come from, and number for number comparison.
 
-A marker is a comment on a line of its own, <!-- figures RECIPE, WEIGHT: `COMMAND`; `COMMAND` -->. It opens a block that
-ends at <!-- end of figures -->. Rows of a table have a tag within the line, <!-- row NAME -->, and their block is the
-rest of that line; one comment of the page says what they come from, a row a line: <!-- figures of rows, and below it
-NAME, WEIGHT: `COMMAND`. (Comments within a line must not hold two hyphens, which options of commands begin with.) The
-recipe of a row is its name up to a slash. WEIGHT is quick (seconds), long (a minute and more) or openfoam (needs the
-built ehlFoam).
+A marker is a comment on a line of its own, <!-- figures NAME -->. It opens a block that ends at
+<!-- end of figures -->. Rows of a table have a tag within the line, <!-- row NAME -->, and their block is the rest of
+that line. `figures.toml` has a table for each name: the recipe (left out: the name, up to a slash), the weight and the
+commands. The weight is quick (seconds), long (a minute and more) or openfoam (needs the built ehlFoam).
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+import tomllib
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
-MARKER = re.compile(r"(?m)^<!-- figures ([\w-]+(?:\[[-\d:]*\])?), (quick|long|openfoam): (.*?) -->\n", re.DOTALL)
-ROWS = re.compile(r"(?m)^<!-- figures of rows\n(.*?)^-->$", re.DOTALL)
-ORIGIN = re.compile(r"([\w/-]+), (quick|long|openfoam): (.*)")
+MARKER = re.compile(r"(?m)^<!-- figures ([\w-]+) -->\n")
 TAG = re.compile(r"<!-- row ([\w/-]+) -->")
 END = "<!-- end of figures -->"
 WEIGHTS = ("quick", "long", "openfoam")
 NUMBER = re.compile(r"(?:(?<![\w.\])])[-+])?(?<![\w.])\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w.]*_)")
+FIGURES = tomllib.loads((Path(__file__).parent / "figures.toml").read_text(encoding="utf-8"))
+"""Recipe, weight and commands of each name."""
+
 SPAN = re.compile(r"`[^`\n]*`|\]\([^)]*\)|\*\*")
 
 
@@ -56,6 +58,7 @@ class Block:
     """A marked block of a page; `begin` and `end` are offsets of its text in that of the page."""
 
     page: str
+    name: str
     recipe: str
     weight: str
     commands: tuple[str, ...]
@@ -65,9 +68,9 @@ class Block:
     line: int
 
     @property
-    def name(self) -> str:
-        """Page, line and recipe."""
-        return f"{self.page}:{self.line} {self.recipe}"
+    def place(self) -> str:
+        """Page, line and name."""
+        return f"{self.page}:{self.line} {self.name}"
 
 
 @dataclass(frozen=True)
@@ -93,31 +96,25 @@ class Compared:
         return self.figures - len(self.different)
 
 
-def blocks(page: str, text: str) -> list[Block]:
+def blocks(page: str, text: str, origins: Mapping[str, Mapping[str, Any]] = FIGURES) -> list[Block]:
     """Find the marked blocks of a page, in its order.
 
     Raises
     ------
     ValueError
-        A marker is not closed, or names no command; a row has no line that says what it comes from, or a line no row;
-        a comment looks like a marker and is none.
+        A marker is not closed, or its name has no table of recipe, weight and commands; a comment looks like a marker
+        and is none.
     """
     found = []
     for mark in MARKER.finditer(text):
         end = text.find(END, mark.end())
-        if end < 0 or "<!-- figures " in text[mark.end() : end]:
+        if end < 0 or "<!-- figures" in text[mark.end() : end]:
             raise ValueError(f"{page}:{line_of(text, mark.start())}: the marker has no '{END}'")
-        found.append(_block(page, text, (mark[1], mark[2], mark[3]), mark.end(), end))
-    lists = list(ROWS.finditer(text))
-    origins = {match[1]: match for rows in lists for match in map(ORIGIN.fullmatch, rows[1].splitlines()) if match}
-    tags = {tag[1]: tag for tag in TAG.finditer(text)}
-    if sorted(tags) != sorted(origins):
-        raise ValueError(f"{page}: rows {sorted(tags)}, but the list of their commands has {sorted(origins)}")
-    for name, tag in tags.items():
-        origin = origins[name]
-        found.append(_block(page, text, (name, origin[2], origin[3]), tag.end(), text.find("\n", tag.end())))
-    if text.count("<!-- figures ") != len(found) - len(tags) + len(lists):
-        raise ValueError(f"{page}: {text.count('<!-- figures ')} comments '<!-- figures', not all of them markers")
+        found.append(_block(page, text, mark[1], origins, (mark.end(), end)))
+    if text.count("<!-- figures") != len(found):
+        raise ValueError(f"{page}: {text.count('<!-- figures')} comments '<!-- figures', not all of them markers")
+    for tag in TAG.finditer(text):
+        found.append(_block(page, text, tag[1], origins, (tag.end(), text.find("\n", tag.end()))))
     return sorted(found, key=lambda block: block.begin)
 
 
@@ -126,12 +123,15 @@ def line_of(text: str, at: int) -> int:
     return text.count("\n", 0, at) + 1
 
 
-def _block(page: str, text: str, origin: tuple[str, str, str], begin: int, end: int) -> Block:
-    """A block of a marker's words: recipe, weight and commands in backticks."""
-    commands = tuple(" ".join(command.split()) for command in re.findall(r"`([^`]+)`", origin[2]))
-    if not commands:
-        raise ValueError(f"{page}: the marker '{origin[0]}' names no command in backticks")
-    return Block(page, origin[0], origin[1], commands, text[begin:end], begin, end, line_of(text, begin))
+def _block(page: str, text: str, name: str, origins: Mapping[str, Mapping[str, Any]], span: tuple[int, int]) -> Block:
+    """The block of a marker."""
+    begin, end = span
+    line = line_of(text, begin)
+    origin = origins.get(name)
+    if origin is None:
+        raise ValueError(f"{page}:{line}: figures.toml has no table '{name}'")
+    recipe = str(origin.get("recipe", name.partition("/")[0]))
+    return Block(page, name, recipe, origin["weight"], tuple(origin["commands"]), text[begin:end], begin, end, line)
 
 
 def numbers(text: str) -> list[re.Match[str]]:

@@ -113,7 +113,7 @@ RECIPES: dict[str, Callable[[Sequence[Output]], list[Figure]]] = {
 
 
 def printed(block: Block, outputs: Sequence[Output]) -> str:
-    """Lines of what a command prints, in a fence; which ones says the marker, as a slice.
+    """Lines of what a command prints, in a fence; which ones says its recipe, as a slice.
 
     Raises
     ------
@@ -121,7 +121,7 @@ def printed(block: Block, outputs: Sequence[Output]) -> str:
         The block has several commands.
     """
     if len(outputs) != 1:
-        raise ValueError(f"{block.name}: got {len(outputs)} commands; allowed: one for printed lines")
+        raise ValueError(f"{block.place}: got {len(outputs)} commands; allowed: one for printed lines")
     first, _, last = block.recipe.partition("[")[2].rstrip("]").partition(":")
     lines = outputs[0].text.rstrip("\n").splitlines()[int(first) if first else None : int(last) if last else None]
     text = "\n".join(line.rstrip() for line in lines).strip("\n")
@@ -133,11 +133,11 @@ def rewritten(block: Block, outputs: Sequence[Output]) -> str:
     """The text of a block with the figures that its commands give now."""
     if block.recipe.startswith("printed"):
         return printed(block, outputs)
-    return with_figures(block.text, RECIPES[block.recipe.partition("/")[0]](outputs))
+    return with_figures(block.text, RECIPES[block.recipe](outputs))
 
 
 def compared(block: Block, outputs: Sequence[Output]) -> Compared:
     """Compare a block as it stands with the figures that its commands give now."""
     if block.recipe.startswith("printed"):
         return compared_texts(block.text, printed(block, outputs), TIMES)
-    return compared_in_order(block.text, RECIPES[block.recipe.partition("/")[0]](outputs))
+    return compared_in_order(block.text, RECIPES[block.recipe](outputs))

@@ -1,12 +1,12 @@
-"""Figures of the pages: runs the commands that the pages name, and compares or rewrites what is shown.
+"""Figures of the pages: runs the commands that they come from, and compares or rewrites what is shown.
 
 Run: python -m tests.benchmarks.pages [--write] [--long] [--openfoam] [--only TEXT] [--maps FOLDER] [--folder FOLDER]
                                       [--reuse] [--against TREE] [PAGE ...]
 
 Compares every figure of the marked blocks with what its commands print now, by the digits that are shown, and prints a
 table. Exit status 1: a figure differs or a command fails. Times and ratios of times are exempt from the comparison;
-they are counted apart. With --write the blocks are replaced in place, times too. `tests.benchmarks.page_block` has the
-form of the markers.
+they are counted apart. With --write the blocks are replaced in place, times too. `figures.toml` has
+the commands, `tests.benchmarks.page_block` the form of the markers.
 
 --against TREE runs the same commands with another checkout (a folder with `ehdmaps`, `mbs` and `tests`) and compares
 with what that one prints: the figures of the blocks by each tree, and everything that the commands print.
@@ -187,7 +187,7 @@ def chosen(given: argparse.Namespace) -> list[tuple[int, Block]]:
         found += [
             (number, block)
             for number, block in enumerate(blocks(page, (ROOT / page).read_text(encoding="utf-8")))
-            if block.weight in weights and given.only in f"{block.name} {' '.join(block.commands)}"
+            if block.weight in weights and given.only in f"{block.place} {block.recipe} {' '.join(block.commands)}"
         ]
     return found
 
@@ -233,14 +233,14 @@ def main() -> int:
             made = outputs(here, block)
             other = outputs(there, block) if there is not None else []
         except CommandError as error:
-            print(f"{block.name:58} failed\n    {error}")
+            print(f"{block.place:58} failed\n    {error}")
             failed += 1
             continue
         if there is not None:
             found = compared_texts(rewritten(block, other), rewritten(block, made), TIMES)
         else:
             found = compared(block, made)
-        report(block.name, found)
+        report(block.place, found)
         wrong += len(found.different) + bool(found.problem)
         if given.write:
             write(number, block, made)

@@ -10,7 +10,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 
-STRICT = ["-std=c99", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Werror"]
+STRICT = ["-std=c99", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Werror"]
 
 _D, _P = ctypes.c_double, ctypes.c_void_p
 _ARGUMENTS = {

@@ -14,6 +14,7 @@ import pytest
 from ehdmaps.jobs import cli as ehdmaps_cli
 from mbs import cli
 from mbs.scene.reader import shipped_systems
+from tests.benchmarks.page_block import FIGURES
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -112,6 +113,7 @@ PAGES = (
     "TRADE.md",
     "docs/measured.md",
     "docs/accuracy.md",
+    "docs/evidence.md",
     "docs/solids.md",
     "ehdmaps/REFERENCE.md",
     "mbs/REFERENCE.md",
@@ -147,7 +149,17 @@ def words_of(command):
     return program, [name, *words]
 
 
-@pytest.mark.parametrize(("page", "command"), [(page, command) for page in PAGES for command in commands_of(page)])
+FIGURES_FROM = sorted(
+    {command for origin in FIGURES.values() for command in origin["commands"] if not command.startswith("python")}
+)
+"""What the figures of the pages come from."""
+
+
+@pytest.mark.parametrize(
+    ("page", "command"),
+    [(page, command) for page in PAGES for command in commands_of(page)]
+    + [("figures.toml", command) for command in FIGURES_FROM],
+)
 def test_commands_are_understood(page, command):
     program, words = words_of(command)
     scene = getattr(PARSERS[program]().parse_args(words), "scene", None)

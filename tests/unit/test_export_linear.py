@@ -1,5 +1,6 @@
 """Bearings at rest under a load for ROSS, CalculiX, Nastran and Ansys: the numbers in files, and what is refused."""
 
+import re
 import subprocess
 import tomllib
 from argparse import ArgumentParser
@@ -27,7 +28,14 @@ from tests.cases.calculix import needed_calculix
 from tests.cases.jobs import SMALL
 
 RPM = np.pi / 30.0
-ENDINGS = {"ross": ".toml", "calculix": ".inp", "nastran": ".bdf", "ansys": ".txt"}
+ENDINGS = {
+    "ross": ".toml",
+    "calculix": ".inp",
+    "abaqus": ".inp",
+    "nastran": ".bdf",
+    "ansys": ".txt",
+    "matrices": ".csv",
+}
 POINT = ["--load", "2 kN", "--direction", "20 deg", "--clearance", "20 um", "--temperature", "40 degC"]
 SPEED, MASS = 400.0 * RPM, 10.0
 
@@ -90,7 +98,8 @@ def test_ross_has_both_radial_axes_as_x_and_y_over_speed(path, tmp_path):
     assert "diametral clearance 20 um; cage angle 0 deg; raceways at 40 degC" in text
     element = tomllib.loads(text)["BearingElement_NU308"]
     found = table(path, *speeds)
-    assert element["n"] == 7
+    # ROSS wants tags that differ: two exports for two nodes have them.
+    assert (element["n"], element["tag"]) == (7, "NU308 at 7")
     np.testing.assert_array_equal(element["frequency"], found.speeds)
     for key, i, j in (("xx", 1, 1), ("xy", 1, 2), ("yx", 2, 1), ("yy", 2, 2), ("zz", 0, 0)):
         np.testing.assert_array_equal(element[f"k{key}"], found.stiffness[:, 0, i, j])
@@ -122,6 +131,57 @@ def test_header_says_which_films_the_values_are_of(path, tmp_path, target, optio
         slow, memory = (table(path, "--speed", "400 rpm", "--films", films) for films in ("slow", "memory"))
         np.testing.assert_array_equal(slow.stiffness, memory.stiffness)
         np.testing.assert_array_equal(slow.damping, memory.damping)
+
+
+@pytest.mark.parametrize("target", ENDINGS)
+def test_a_table_of_slow_motion_says_how_films_answer_at_frequencies(path, tmp_path, target):
+    """Beside the very table at these frequencies: three digits are printed."""
+    text = exported(path, tmp_path / f"b{ENDINGS[target]}", target, "--speed", "400 rpm")
+    (line,) = (line for line in text.splitlines() if "times that of slow motion" in line)
+    told = [[float(v) for v in re.search(rf"{name} ([\d., e-]+)", line)[1].split(",")] for name in ("K", "C", "=")]
+    slow = table(path, "--speed", "400 rpm")
+    for index, frequency in enumerate(("100 Hz", "1 kHz", "2 kHz", "4 kHz")):
+        there = table(path, "--speed", "400 rpm", "--frequency", frequency)
+        ratio = along(there.stiffness) / along(slow.stiffness), along(there.damping) / along(slow.damping)
+        omega = 2.0 * np.pi * there.frequencies[0]
+        apart = along(there.stiffness - slow.stiffness) + 1j * omega * along(there.damping - slow.damping)
+        wrong = 100.0 * abs(apart / (along(there.stiffness) + 1j * omega * along(there.damping)))
+        np.testing.assert_allclose([row[index] for row in told], [*ratio, wrong], rtol=6e-3)
+
+
+def along(matrices):
+    """A term along the load, which is 20 deg from y."""
+    direction = np.array([np.cos(np.radians(20.0)), np.sin(np.radians(20.0))])
+    return direction @ matrices[0, 0, 1:3, 1:3] @ direction
+
+
+def test_columns_have_the_matrices_and_the_error(path, tmp_path):
+    options = ["--speed", "300 rpm", "600 rpm", "2", "--frequency", "500 Hz", "2 kHz", "2"]
+    text = exported(path, tmp_path / "b.csv", "matrices", *options)
+    rows = np.array([line.split(",") for line in text.splitlines() if line[0].isdigit()], dtype=float)
+    found = table(path, *options)
+    np.testing.assert_allclose(rows[:, 0], [300.0, 300.0, 600.0, 600.0], rtol=1e-11)
+    np.testing.assert_allclose(rows[:, 9], [500.0, 2000.0] * 2)
+    # 1e-11: twelve digits are written.
+    np.testing.assert_allclose(rows[:, 1:5], found.stiffness[:, :, 1:3, 1:3].reshape(4, 4), rtol=1e-11)
+    np.testing.assert_allclose(rows[:, 5:9], found.damping[:, :, 1:3, 1:3].reshape(4, 4), rtol=1e-11)
+    np.testing.assert_allclose(rows[:, 10], found.dynamic_error().ravel(), rtol=1e-11)
+    assert np.all(rows[:, 10] > 0.0)
+
+
+def test_abaqus_has_springs_over_frequency(path, tmp_path):
+    """Three springs along lines make K again at each frequency: 1e-11, the digits that are written."""
+    options = ["--speed", "400 rpm", "--frequency", "500 Hz", "2 kHz", "2"]
+    lines = exported(path, tmp_path / "b.inp", "abaqus", *options).splitlines()
+    found = table(path, *options)
+    for card, matrices in (("SPRING", found.stiffness), ("DASHPOT", found.damping)):
+        begins = [i for i, line in enumerate(lines) if line.startswith(f"*{card},")]
+        y, z, d = (np.array([lines[i + 2 + n].split(",") for n in (0, 1)], dtype=float) for i in begins)
+        np.testing.assert_array_equal(y[:, 1], [500.0, 2000.0])
+        k = matrices[0, :, 1:3, 1:3]
+        np.testing.assert_allclose(y[:, 0] + 0.5 * d[:, 0], k[:, 0, 0], rtol=1e-10)
+        np.testing.assert_allclose(z[:, 0] + 0.5 * d[:, 0], k[:, 1, 1], rtol=1e-10)
+        np.testing.assert_allclose(0.5 * d[:, 0], 0.5 * (k[:, 0, 1] + k[:, 1, 0]), rtol=1e-8)
 
 
 def test_header_of_slow_motion_beside_other_frequencies(path, tmp_path):

@@ -224,3 +224,48 @@ def test_a_map_with_another_supply_is_a_map(emap, tmp_path):
 
 def test_structural_laws_are_named_at_once():
     refused(lambda: STRUCTURE.read("rigid"), "allowed: iso16281")
+
+
+class TestSpeed:
+    """Operating speed: of analyses at one speed; sweeps have an option of that name with three values."""
+
+    def test_it_is_that_of_the_analysis_and_told(self, tmp_path):
+        path = tmp_path / "there.nc"
+        assert main(["statics", "nu308_rigid", "--law", "hertz", "--speed", "4321 rpm", "-o", str(path)]) == 0
+        with xr.open_dataset(path) as found:
+            assert found.attrs["choices"] == "speed 4321 rpm"
+        (case,) = load_cases(given(speed="4321 rpm", law="hertz"))
+        # Closed form: rpm in rad/s, to rounding.
+        assert case.model.scene.speed == pytest.approx(4321.0 * np.pi / 30.0, rel=1e-14)
+        assert case.model.operation.speed == case.model.scene.speed
+
+    def test_speeds_of_a_sweep_are_not_one(self):
+        (case,) = load_cases(given(speed=["500 rpm", "900 rpm", "3"], law="hertz"))
+        assert case.model.scene.speed == read_scene("nu308_rigid").speed
+
+    @pytest.mark.parametrize("text", ["-1 rpm", "1e9 rpm", "nan rpm", "5 m", "fast"])
+    def test_what_is_no_speed_is_refused(self, text):
+        refused(lambda: load_cases(given(speed=text, law="hertz")), "--speed: got")
+
+
+def test_a_scene_without_roller_bearings_names_no_law():
+    text = """
+schema = 1
+[operation]
+speed = "3000 rpm"
+temperature = "40 degC"
+[[bodies]]
+name = "disc"
+freedoms = ["y", "z"]
+mass = "10 kg"
+polar_inertia = "0.2 kg m^2"
+transverse_inertia = "0.1 kg m^2"
+[[springs]]
+name = "bush"
+on = "disc"
+against = "ground"
+stiffness = { y = "1e6 N/m", z = "2e6 N/m" }
+"""
+    scene = parse_scene(text, "disc", "disc.toml")
+    model = Subject(scene, named_law("hertz", scene)).model()
+    assert (model.law, model.label) == ("none", "no roller bearing")

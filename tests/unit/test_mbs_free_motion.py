@@ -7,7 +7,7 @@ import pytest
 
 from ehdmaps.errors import AnalysisError
 from mbs.model.body import rigid_body
-from mbs.model.elements import Load, Spring
+from mbs.model.elements import Load, Operation, Spring
 from mbs.model.equilibrium import equilibrium, free_lines, free_motions
 from mbs.model.system import System
 from mbs.scene.assembly import assemble
@@ -24,7 +24,7 @@ def two_bodies(loads=(), **ground):
 
 
 def lines(system):
-    return free_lines(free_motions(equilibrium(system)))
+    return free_lines(free_motions(equilibrium(system, Operation())))
 
 
 def test_what_is_held_is_not_free():
@@ -41,7 +41,7 @@ def test_a_coordinate_without_stiffness_is_named():
 
 
 def test_bodies_that_move_together_are_named_together():
-    found = free_motions(equilibrium(two_bodies([("a", force(y=5.0), "b")], z=1e5)))
+    found = free_motions(equilibrium(two_bodies([("a", force(y=5.0), "b")], z=1e5), Operation()))
     assert [motion.coordinates for motion in found] == [("a.y", "b.y")]
     np.testing.assert_allclose(found[0].shape, [1.0, 0.0, 1.0, 0.0], atol=1e-6)  # of the eigenvalue solver
     assert free_lines(found) == ["a.y, b.y move freely together: their positions are arbitrary"]
@@ -57,17 +57,17 @@ def test_a_small_load_along_it_is_no_equilibrium():
     # Beside 1 MN the residual of a nanonewton is nothing, and was taken for an equilibrium.
     system = System([rigid_body("a", [MASS], ["y", "z"])], [Spring("s", "a", "ground", stiff(z=1e9))],
                     [Load("w", "a", force(z=1e4, y=1e-7))])  # fmt: skip
-    balance = equilibrium(system)
+    balance = equilibrium(system, Operation())
     with pytest.raises(AnalysisError, match="no equilibrium: a moves freely along y, and a load of 1e-07 N acts that"):
         free_motions(balance)
     together = two_bodies([("a", force(y=1e-7, z=1e4))], z=1e5)
     with pytest.raises(AnalysisError, match=r"a\.y, b\.y move freely together, and a load of 1e-07 N acts that way"):
-        free_motions(equilibrium(together))
+        free_motions(equilibrium(together, Operation()))
 
 
 def test_a_large_load_along_it_is_no_equilibrium():
     with pytest.raises(AnalysisError, match="no equilibrium after"):
-        equilibrium(two_bodies([("a", force(y=5.0))], z=1e5))
+        equilibrium(two_bodies([("a", force(y=5.0))], z=1e5), Operation())
 
 
 @pytest.mark.parametrize("name", shipped_systems())

@@ -120,7 +120,7 @@ def test_a_slender_wave_is_eulers_and_needs_longer_elements_than_a_thick_one():
 
 def test_modal_damping_gives_every_elastic_mode_its_ratio_and_leaves_rigid_motion_alone():
     body = shaft(discs=[DISC], freedoms=FREEDOMS, cutoff=9e3, damping_ratio=0.02)
-    found = modes(equilibrium(System([body])))
+    found = modes(equilibrium(System([body]), Operation()))
     elastic = found.frequency > 100.0
     assert np.sum(elastic) == len(body.coordinates) - 6
     # Round-off of the eigenvalues.
@@ -333,7 +333,7 @@ def test_a_shaft_works_in_a_system_under_the_name_of_its_frames():
     # The disc sits in the middle, but the shaft is long to both sides: the pair splits, by little.
     assert at_rest[1] - at_rest[0] < 1e-6 * at_rest[0]
     assert turning[0] < turning[1]
-    assert "rotor" in equilibrium(system).parts
+    assert "rotor" in equilibrium(system, Operation()).parts
 
 
 def test_a_stiff_shaft_is_a_rigid_body():

@@ -145,7 +145,7 @@ class TestStatics:
     def test_a_contact_is_found_from_anywhere(self, start, gap):
         body = rigid_body("a", [MASS], ["y"])
         system = System([body], (), [Load("l", "a", force(y=100.0))], [OneSided("c", "a", gap=gap)])
-        balance = equilibrium(system, start=np.array([start]))
+        balance = equilibrium(system, Operation(), start=np.array([start]))
         assert balance.displacement[0] == pytest.approx(gap + (100.0 / 1e12) ** (2.0 / 3.0), rel=1e-9)
         assert balance.residual < 1e-9
         assert balance.parts["c"][0, 0] == pytest.approx(1.5e12 * (100.0 / 1e12) ** (1.0 / 3.0), rel=1e-9)
@@ -154,19 +154,19 @@ class TestStatics:
         body = rigid_body("a", [MASS], ["y", "z"])
         system = System([body], self.SPRING, [Load("l", "a", force(z=1.0))])
         with pytest.raises(AnalysisError, match=r"1 N remain on a\.z .*something moves freely under its load"):
-            equilibrium(system)
+            equilibrium(system, Operation())
 
     def test_a_load_that_varies_counts_at_its_time(self):
         body = rigid_body("a", [MASS], ["y"])
         system = System([body], self.SPRING, [Load("l", "a", force(y=1.0), profile=Course((0.0, 1.0), (0.0, 1e-4)))])
-        assert equilibrium(system).displacement[0] == 0.0
+        assert equilibrium(system, Operation()).displacement[0] == 0.0
         assert equilibrium(system, Operation(time=0.5)).displacement[0] == pytest.approx(5e-6)
 
 
 class TestLinear:
     def oscillator(self, c=3.0):
         body = rigid_body("a", [MASS], ["y"])
-        return equilibrium(System([body], [Spring("s", "a", "ground", stiff(y=5e4), stiff(y=c))]))
+        return equilibrium(System([body], [Spring("s", "a", "ground", stiff(y=5e4), stiff(y=c))]), Operation())
 
     def test_one_mass(self):
         found = modes(self.oscillator())
@@ -201,7 +201,7 @@ class TestLinear:
     def test_sensors_subtract(self):
         bodies = [rigid_body(name, [MASS], ["y"]) for name in ("a", "b")]
         springs = [Spring("s", "a", "b", stiff(y=1e4)), Spring("g", "b", "ground", stiff(y=2e4))]
-        balance = equilibrium(System(bodies, springs))
+        balance = equilibrium(System(bodies, springs), Operation())
         sensors = [
             Sensor("d", "a", force(y=1.0), against="b"),
             Sensor("a", "a", force(y=1.0)),

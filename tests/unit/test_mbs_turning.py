@@ -12,6 +12,7 @@ from scipy.integrate import solve_ivp
 from ehdmaps.errors import InputError
 from mbs import assemble, parse_scene, read_scene
 from mbs.analyses.sensors import excited_orders
+from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import SpeedProfile
 from mbs.model.system import load_by_gravity
@@ -107,7 +108,7 @@ class TestWeight:
         text = JEFFCOTT.format(more=UNBALANCE, spin=1).replace(
             '"40 degC"', '"40 degC"\ngravity = ["0 m/s^2", "-9.81 m/s^2", "3 m/s^2"]'
         )
-        found = equilibrium(assemble(parse_scene(text, "sag", "sag")).system)
+        found = equilibrium(assemble(parse_scene(text, "sag", "sag")).system, Operation())
         np.testing.assert_allclose(found.displacement, np.array([-9.81, 3.0]) * MASS / STIFFNESS, rtol=1e-9)
 
     def test_beam_sags_as_a_closed_form(self):
@@ -132,7 +133,7 @@ stiffness = { y = "1e12 N/m", z = "1e12 N/m" }
             '"40 degC"', '"40 degC"\ngravity = ["0 m/s^2", "-10 m/s^2", "0 m/s^2"]'
         )
         system = assemble(parse_scene(text, "beam", "beam")).system
-        q = equilibrium(system).displacement
+        q = equilibrium(system, Operation()).displacement
         area, second = math.pi * 0.02**2, math.pi * 0.02**4 / 4.0
         line = 7850.0 * area * 10.0
         poisson = 0.3

@@ -8,6 +8,8 @@ import shlex
 import pytest
 
 from tests.benchmarks.page_block import (
+    FIGURES,
+    WEIGHTS,
     Block,
     Given,
     Time,
@@ -37,8 +39,14 @@ SWEEP = """Gearbox: law map of NU308
 def test_every_block_has_a_recipe_and_commands_that_can_be_run():
     assert len(ALL) >= 35
     for block in ALL:
-        assert block.recipe.startswith("printed") or block.recipe.partition("/")[0] in RECIPES, block.name
-        assert {shlex.split(command)[0] for command in block.commands} <= set(PROGRAMS), block.name
+        assert re.fullmatch(r"printed(\[-?\d*:-?\d*\])?", block.recipe) or block.recipe in RECIPES, block.place
+        assert block.weight in WEIGHTS, block.place
+        assert block.commands, block.place
+        assert {shlex.split(command)[0] for command in block.commands} <= set(PROGRAMS), block.place
+
+
+def test_every_name_stands_on_one_page():
+    assert sorted(block.name for block in ALL) == sorted(FIGURES)
 
 
 def test_printed_output_on_pages_has_a_marker():
@@ -49,7 +57,7 @@ def test_printed_output_on_pages_has_a_marker():
         assert sum(block.page == page and "```" in block.text for block in ALL) == len(bare), page
 
 
-@pytest.mark.parametrize("block", ALL, ids=lambda block: block.name)
+@pytest.mark.parametrize("block", ALL, ids=lambda block: block.place)
 def test_a_block_is_equal_to_itself(block):
     if block.recipe.startswith("printed"):
         same = compared_texts(block.text, block.text, TIMES)
@@ -106,34 +114,39 @@ def test_figures_are_compared_and_replaced_in_their_order():
     assert compared_in_order(text, [Given("20"), -2.84, Time(9.9)]).different
 
 
+ORIGINS = {
+    "statics-of-a": {"recipe": "printed[1:-1]", "weight": "quick", "commands": ["mbs modes a"]},
+    "solvers/a": {"weight": "long", "commands": ["mbs modes a", "mbs modes b"]},
+}
+
+
 def test_a_printed_block_is_made_of_lines_of_the_output():
-    page = "x\n<!-- figures printed[1:-1], quick: `mbs modes a` -->\n```\nk 1\n```\n<!-- end of figures -->\n"
-    (block,) = blocks("page.md", page)
+    page = "x\n<!-- figures statics-of-a -->\n```\nk 1\n```\n<!-- end of figures -->\n"
+    (block,) = blocks("page.md", page, ORIGINS)
     made = [Output("mbs modes a", "title\nk 2\nend\n")]
     assert printed(block, made) == rewritten(block, made) == "```\nk 2\n```\n"
     assert [each.found for each in compared(block, made).different] == ["2"]
 
 
-def test_rows_take_their_commands_from_the_list():
-    page = "<!-- figures of rows\nname/a, long: `mbs modes a`; `mbs modes b`\n-->\n| <!-- row name/a --> 1 | 2 |\n"
-    (block,) = blocks("page.md", page)
-    assert block == Block(
-        "page.md", "name/a", "long", ("mbs modes a", "mbs modes b"), " 1 | 2 |", block.begin, block.end, 4
-    )
+def test_a_row_is_the_rest_of_its_line():
+    page = "| a | <!-- row solvers/a --> 1 | 2 |\nnext\n"
+    (block,) = blocks("page.md", page, ORIGINS)
+    commands = ("mbs modes a", "mbs modes b")
+    assert block == Block("page.md", "solvers/a", "solvers", "long", commands, " 1 | 2 |", block.begin, block.end, 1)
 
 
 @pytest.mark.parametrize(
     ("page", "message"),
     [
-        ("<!-- figures printed, quick: `mbs modes a` -->\nk 1\n", "has no '<!-- end of figures -->'"),
-        ("<!-- figures printed, quick: mbs -->\nk 1\n<!-- end of figures -->\n", "names no command in backticks"),
-        ("<!-- figures printed, slow: `mbs modes a` -->\nk 1\n<!-- end of figures -->\n", "not all of them markers"),
-        ("| <!-- row name --> 1 |\n", r"rows \['name'\], but the list of their commands has \[\]"),
+        ("<!-- figures statics-of-a -->\nk 1\n", "has no '<!-- end of figures -->'"),
+        ("<!-- figures other -->\nk 1\n<!-- end of figures -->\n", "figures.toml has no table 'other'"),
+        ("<!-- figures printed, slow -->\nk 1\n<!-- end of figures -->\n", "not all of them markers"),
+        ("| <!-- row other --> 1 |\n", "page.md:1: figures.toml has no table 'other'"),
     ],
 )
 def test_wrong_markers_are_named(page, message):
     with pytest.raises(ValueError, match=message):
-        blocks("page.md", page)
+        blocks("page.md", page, ORIGINS)
 
 
 def test_sweeps_are_read():
@@ -148,3 +161,32 @@ def test_sweeps_are_read():
 def test_whole_outputs_name_lines_that_only_one_has():
     found = whole_outputs("a 1\nb 2\n", "a 1\nb 3\nc 4\n")
     assert [(each.shown, each.found) for each in found.different] == [("2", "3"), ("(no such line)", "c 4")]
+
+
+FENCE = re.compile(r"(?ms)^```.*?^```")
+ALL_PAGES = sorted(
+    path
+    for folder in (".", "docs", "ehdmaps", "mbs", "examples", "openfoam_cases")
+    for path in (ROOT / folder).glob("*.md")
+)
+
+
+def anchors(page):
+    """Names by which headings of a page are linked, as repositories make them."""
+    found = []
+    for heading in re.findall(r"(?m)^#+ (.*)$", FENCE.sub("", page.read_text(encoding="utf-8"))):
+        words = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", heading.strip().lower())
+        name = re.sub(r"[^\w\- ]", "", words).replace(" ", "-")
+        found.append(f"{name}-{found.count(name)}" if name in found else name)
+    return found
+
+
+@pytest.mark.parametrize("page", ALL_PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_links_lead_to_files_and_headings(page):
+    for target in re.findall(r"\]\(([^)\s]+)\)", FENCE.sub("", page.read_text(encoding="utf-8"))):
+        path, _, heading = target.partition("#")
+        if "://" in target or "gallery_pages" in target:
+            continue
+        linked = (page.parent / path).resolve() if path else page
+        assert linked.exists(), target
+        assert not heading or linked.suffix != ".md" or heading in anchors(linked), target

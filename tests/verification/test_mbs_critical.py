@@ -79,6 +79,16 @@ class TestJeffcott:
         np.testing.assert_allclose(found.dataset["orbit_minor"].values.ravel(), wanted, rtol=1e-9)
         assert [c.speed for c in found.found] == pytest.approx([NATURAL * math.sqrt(1.0 - zeta**2)] * 2, rel=1e-7)
 
+    @pytest.mark.parametrize(("zeta", "peak"), [(0.69, True), (0.72, False)])
+    def test_a_mode_without_a_peak_has_no_critical_speed(self, zeta, peak):
+        # Closed form: r^2/|1 - r^2 + 2 i zeta r| has a largest value at finite r for zeta below 1/sqrt(2) only.
+        damping = f"{2.0 * zeta * MASS * NATURAL:.17g} N s/m"
+        text = DISC.replace("40 N s/m", damping) + '[[unbalances]]\nname = "u"\non = "disc"\nmoment = "200 g mm"\n'
+        found = critical(assemble(parse_scene(text, "damped", "damped")), SweepSettings(SweepRange(20.0, 4000.0, 40)))
+        assert bool(found.found) is peak
+        largest = int(np.argmax(found.dataset["orbit_major"].sel(order=1.0, place="disc:centre").values))
+        assert (largest < found.speeds.size - 1) is peak
+
     @pytest.mark.parametrize(("part", "grows"), [(0.98, False), (1.02, True)])
     def test_whirl_sets_in_where_cross_coupling_beats_damping(self, part, grows):
         # m s^2 + c s + k - i kc = 0 has a root on the imaginary axis at kc = c sqrt(k/m).
@@ -144,9 +154,11 @@ on = "disc"
 stiffness = { y = "-5e4 N/m" }
 """
     )
-    q = equilibrium(assemble(parse_scene(text, "pull", "pull")).system).displacement
+    q = equilibrium(assemble(parse_scene(text, "pull", "pull")).system, Operation()).displacement
     assert q[0] == pytest.approx(30.0 / 1.5e5, rel=1e-9)
-    q = equilibrium(assemble(parse_scene(text.replace('"-5e4', '"-5e5'), "pull", "pull")).system).displacement
+    q = equilibrium(
+        assemble(parse_scene(text.replace('"-5e4', '"-5e5'), "pull", "pull")).system, Operation()
+    ).displacement
     assert q[0] == pytest.approx(-30.0 / 3e5, rel=1e-9)
     found = equilibrium(assemble(parse_scene(text + SEAL, "seal", "seal")).system, Operation(3000.0))
     assert found.outside == {"seal": True}

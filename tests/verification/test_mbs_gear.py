@@ -90,7 +90,7 @@ class TestStatics:
     @pytest.mark.parametrize("torque", [82.0, -82.0, 1e-3, 1e4])
     def test_force_is_torque_over_base_radius(self, torque):
         system, place = gear_stage(torque)
-        balance = equilibrium(system)
+        balance = equilibrium(system, Operation())
         rb1, rb2 = 0.5 * 21 * 4.5e-3 * math.cos(ALPHA), 0.5 * 23 * 4.5e-3 * math.cos(ALPHA)
         force = balance.forces[0]
         wanted = abs(torque) / rb1
@@ -106,7 +106,7 @@ class TestStatics:
     def test_forces_and_moments_balance(self):
         """Reactions of the mounts, with the torque, about the first centre."""
         system, place = gear_stage(82.0)
-        balance = equilibrium(system)
+        balance = equilibrium(system, Operation())
         reactions = [
             -np.diag([0.0, 2e8, 2e8, about, 1e5, 1e5]) @ system.relative(name) @ balance.displacement
             for name, about in (("one", 0.0), ("two", 1e6))
@@ -118,7 +118,9 @@ class TestStatics:
     def test_stiffness_of_the_mesh_in_turning(self):
         """With stiff mounts a torque turns the first gear by T/(rb^2 k); TOUCH/2 is the stated offset of contact."""
         even = dataclasses.replace(PAIR, harmonics=0)
-        turns = [equilibrium(gear_stage(torque, 0.7, even, 1e13)[0]).displacement[2] for torque in (82.0, 164.0)]
+        turns = [
+            equilibrium(gear_stage(torque, 0.7, even, 1e13)[0], Operation()).displacement[2] for torque in (82.0, 164.0)
+        ]
         rb1, rb2 = PAIR.base_radii
         compliance = 1.0 / (14e9 * 25e-3 * rb1**2) + (rb2 / rb1) ** 2 / 1e6
         # 2e-4: mounts of 1e13 N/m against the mesh of 3.5e8 N/m.

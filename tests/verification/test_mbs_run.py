@@ -130,7 +130,7 @@ class TestAgainstTheReference:
     def test_standstill(self, law):
         """Where the law of a map is the dry one."""
         system = gearbox(law and map_law())
-        start = equilibrium(system).displacement + 1e-7
+        start = equilibrium(system, Operation()).displacement + 1e-7
         settings = self.SETTINGS
         rest = SpeedProfile.constant(0.0)
         found = [run(system, rest, 4e-3, settings, SENSORS, start, options=how) for how in BOTH]
@@ -164,7 +164,7 @@ class TestAgainstTheReference:
         still = gearbox()
         still.gyroscopic[:] = 0.0
         speed = SpeedProfile.ramp(0.0, 2000.0 * RPM, 0.02)
-        start = equilibrium(spinning).displacement
+        start = equilibrium(spinning, Operation()).displacement
         with_them, without = (run(system, speed, 0.02, self.SETTINGS, SENSORS, start) for system in (spinning, still))
         moved = np.abs(with_them.signals - without.signals).max(axis=0) / np.abs(with_them.signals).max(axis=0)
         assert moved.min() > 1e-4
@@ -173,7 +173,7 @@ class TestAgainstTheReference:
         """The same steps are halved; those in compiled code begin with other guesses, so Newton leaves other rests."""
         system = gearbox()
         settings = Settings(4e-5, 4e-4, tolerance=2e-10, residual=1e-13)
-        start = equilibrium(system).displacement.copy()
+        start = equilibrium(system, Operation()).displacement.copy()
         start[0] += 2e-6
         speed = SpeedProfile.constant(1000.0 * RPM)
         found = [run(system, speed, 4e-3, settings, SENSORS, start, options=how) for how in BOTH]

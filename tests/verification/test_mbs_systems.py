@@ -99,7 +99,7 @@ class TestNU308:
             np.testing.assert_allclose(forces[1:3], -100.0, rtol=1e-8)
 
     def test_place_and_stiffness_agree_with_the_independent_sum(self):
-        balance = equilibrium(assemble(NU308).system)
+        balance = equilibrium(assemble(NU308).system, Operation())
         iso = IsoBearing(12, 14e-3, 15e-3, 41)
         motion = balance.system.relative("shaft:left", "ring_left") @ balance.displacement
         assert iso.radial_force(float(np.hypot(motion[1], motion[2])), math.pi / 4.0) == pytest.approx(
@@ -117,7 +117,7 @@ class TestNU308:
                 dataclasses.replace(entry, force=np.array([0.0, load, load, 0.0, 0.0, 0.0])) for entry in NU308.loads
             )
             scene = with_slices(dataclasses.replace(NU308, loads=loads), 401)
-            K = equilibrium(assemble(scene).system).element_stiffness[0]
+            K = equilibrium(assemble(scene).system, Operation()).element_stiffness[0]
             found.append(RADIAL @ K @ RADIAL)
         # 16.0 % and 28.8 % with very many slices; the slices of 401 leave some tenths of a per cent
         assert found[1] / found[0] - 1.0 == pytest.approx(0.16, abs=0.006)
@@ -144,7 +144,7 @@ class TestNU308:
     def test_frequencies_agree_with_the_independent_sum(self):
         """200 slices in both; what is left is the error of the stiffness there."""
         model = assemble(with_slices(NU308, 200))
-        balance = equilibrium(model.system)
+        balance = equilibrium(model.system, Operation())
         iso = IsoBearing(12, 14e-3, 15e-3, 200)
         pose = (model.system.relative("shaft:left", "ring_left") @ balance.displacement)[[1, 2, 4, 5]]
         K = iso.stiffness(pose)
@@ -195,7 +195,9 @@ class TestNU308:
             ),
             loads=tuple(dataclasses.replace(entry, force=rotation @ entry.force) for entry in NU308.loads),
         ).with_bearings(dataclasses.replace(entry, start_angle=turn) for entry in NU308.bearings)
-        first, second = (equilibrium(assemble(scene, clearance=10e-6).system) for scene in (straight, turned))
+        first, second = (
+            equilibrium(assemble(scene, clearance=10e-6).system, Operation()) for scene in (straight, turned)
+        )
         at_left = [
             balance.system.relative("shaft:left", "ring_left") @ balance.displacement for balance in (first, second)
         ]
@@ -220,7 +222,7 @@ class TestNU308:
     def test_forces_and_moments_balance(self):
         """What the springs to the ground take is what is not inside the system: nothing, for preloads between rings."""
         model = assemble(NU308, clearance=20e-6)
-        balance = equilibrium(model.system)
+        balance = equilibrium(model.system, Operation())
         # Rigid translations y and z, and tilts of the whole machine about its middle.
         rows = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
         rigid = np.array(
@@ -302,7 +304,7 @@ class TestEnergy:
     def test_undamped_run_keeps_its_energy(self):
         """1e5 steps of 0.1 us, spectral radius 1: 1e-6 of the peak kinetic energy, with the energy of the ISO sum."""
         model = assemble(NU308)
-        balance = equilibrium(model.system)
+        balance = equilibrium(model.system, Operation())
         start = balance.displacement.copy()
         start[:2] += 5e-8
         run = integrate(

@@ -98,7 +98,7 @@ static void fill_film_nodes(ehd_film *film, const double factors[FACTOR_LOADS]) 
     for (int i = 0; i < EHD_NODES; i++) {
         z[i] = node_place(i);
         const double approach = film->centre + z[i] / film->inverse_scale;
-        const state rest = held_state(point, approach);
+        const contact_state rest = held_state(point, approach);
         p[i] = rest.w;
         k[i] = rest.dw;
         y[i] = approach;

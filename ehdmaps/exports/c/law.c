@@ -13,9 +13,9 @@
 #define MOST_STEPS 100
 
 /* State of a contact at rest: w, dw/dapproach, c/w, dc/dapproach. */
-typedef struct state {
+typedef struct contact_state {
     double w, dw, ratio, dc;
-} state;
+} contact_state;
 
 /* Number of the nearest node of an axis, and the weights of the quadratic B-splines around it. */
 typedef struct node {
@@ -23,7 +23,7 @@ typedef struct node {
     double weight[3];
 } node;
 
-static const state NO_LOAD = {0.0, 0.0, 0.0, 0.0};
+static const contact_state NO_LOAD = {0.0, 0.0, 0.0, 0.0};
 
 static double least(double a, double b) { return a < b ? a : b; }
 
@@ -89,8 +89,8 @@ static void unilateral(double w, double dw, double c, double dc, double rate, eh
 }
 
 /* State from g, ln(c/w) and their derivatives by the approach. */
-static state state_of(double g, double dg, double log_ratio, double dlog_ratio) {
-    state found;
+static contact_state state_of(double g, double dg, double log_ratio, double dlog_ratio) {
+    contact_state found;
     g = most(g, 0.0);
     found.w = g * g * g;
     found.dw = 3.0 * g * g * dg;
@@ -168,7 +168,7 @@ static double cubic_at(const double a[4], double t, double *slope) {
 }
 
 /* State of a line at an approach. */
-static state line_state(const ehd_line *line, double approach) {
+static contact_state line_state(const ehd_line *line, double approach) {
     double ds, dg, dlog_ratio;
     const double s = stretched((approach - line->offset) * line->inverse_scale, &ds);
     const double x = place_within((s - line->start) * line->step, line->cells);
@@ -180,7 +180,7 @@ static state line_state(const ehd_line *line, double approach) {
 }
 
 /* State of a table at one place, without making a line of it. */
-static state table_state(const axes *table, double approach, double log_speed, double T) {
+static contact_state table_state(const axes *table, double approach, double log_speed, double T) {
     node i, j;
     double ds, value[2] = {0.0, 0.0}, slope[2] = {0.0, 0.0};
     const int cells = table->places - 3;
@@ -253,12 +253,12 @@ static double line_curvature(const ehd_line *line, double approach, double dw) {
  *
  * The approach divides into a and approach - a so that W_inner(a) + q = W_outer(approach - a): Newton's method in the
  * logarithm of the loads, within a closing bracket. */
-static state balanced_state(const ehd_point *point, double approach) {
+static contact_state balanced_state(const ehd_point *point, double approach) {
     const ehd_line *inner = &point->inner, *outer = &point->outer;
     const double q = point->centrifugal_load, scale = 1.0 / inner->inverse_scale;
     if (approach <= point->lift_off) return NO_LOAD;
     double low = line_approach(inner, 0.0), high = approach - line_approach(outer, q), a;
-    state i = line_state(inner, high), o = line_state(outer, point->outer_start);
+    contact_state i = line_state(inner, high), o = line_state(outer, point->outer_start);
     int last = 0;
     if (i.w < 0.3 * q) { /* the outer contact hardly moves */
         a = high - i.w / (i.dw + o.dw);
@@ -290,7 +290,7 @@ static state balanced_state(const ehd_point *point, double approach) {
     const double bend_i = line_curvature(inner, a, i.dw) * part_i;
     const double bend_o = line_curvature(outer, approach - a, o.dw) * part_o;
     const double change = (bend_o * i.dw - o.dw * bend_i) / (sum * sum);
-    state found;
+    contact_state found;
     found.w = i.w;
     found.dw = i.dw * part_i;
     found.ratio = i.ratio * part_i * part_i + o.w / i.w * o.ratio * part_o * part_o;
@@ -301,7 +301,7 @@ static state balanced_state(const ehd_point *point, double approach) {
 #endif
 
 /* State with the whole film. */
-static state full_state(const ehd_point *point, double approach) {
+static contact_state full_state(const ehd_point *point, double approach) {
 #if EHD_HAS_CENTRIFUGAL
     if (point->centrifugal_load > 0.0) return balanced_state(point, approach);
 #endif
@@ -310,12 +310,12 @@ static state full_state(const ehd_point *point, double approach) {
 
 /* State with a part of the film, below the lowest mapped speed: film offset and c at equal load are that part of the
  * whole ones. With the approach y of the whole film, (1 - part) E(w(y)) + part y = approach, E that of the structure. */
-static state faded_state(const ehd_point *point, double approach) {
+static contact_state faded_state(const ehd_point *point, double approach) {
     const double part = point->film, q = point->centrifugal_load;
     const double offset = point->own.offset, scale = 1.0 / point->own.inverse_scale;
     double compliance, ds, slope = 1.0;
     int last = 0;
-    state found = NO_LOAD;
+    contact_state found = NO_LOAD;
     if (approach <= (1.0 - part) * structural_approach(q, 0.0, &compliance) + part * point->lift_off) return NO_LOAD;
     double low = stretched((point->lift_off - offset) * point->own.inverse_scale, &ds);
     double high = most(stretched((approach - offset) * point->own.inverse_scale, &ds), low), place = high;
@@ -348,13 +348,13 @@ static state faded_state(const ehd_point *point, double approach) {
 }
 
 /* State at rest, as if the law went on above the highest load. */
-static state rest_state(const ehd_point *point, double approach) {
+static contact_state rest_state(const ehd_point *point, double approach) {
     return point->film < 1.0 ? faded_state(point, approach) : full_state(point, approach);
 }
 
 /* State at rest: above the held load the law is its tangent. */
-static state held_state(const ehd_point *point, double approach) {
-    state found;
+static contact_state held_state(const ehd_point *point, double approach) {
+    contact_state found;
     if (approach <= point->held_approach) return rest_state(point, approach);
     found.w = point->held_load + point->held_stiffness * (approach - point->held_approach);
     found.dw = point->held_stiffness;
@@ -425,7 +425,7 @@ static int settled(int status, ehd_force *force) {
 }
 
 int ehd_law_at(const ehd_point *point, double approach, double rate, ehd_force *force) {
-    state found;
+    contact_state found;
     if (!point || !force) return EHD_BAD_ARGUMENT;
     int status = point->status;
     no_force(force);
@@ -449,7 +449,7 @@ int ehd_law(double approach, double rate, double u, double T, double q, ehd_forc
     if (!(is_finite(approach) && is_finite(rate) && is_finite(u) && is_finite(T) && is_finite(q))) return EHD_NOT_FINITE;
     if (FILM_SPEED <= speed && LOWEST_SPEED <= speed && speed <= EHD_HIGHEST_SPEED && EHD_LOWEST_TEMPERATURE <= T &&
         T <= EHD_HIGHEST_TEMPERATURE && q == 0.0) {
-        const state found = table_state(&OWN, approach, log(speed), T);
+        const contact_state found = table_state(&OWN, approach, log(speed), T);
         if (found.w <= EHD_HIGHEST_LOAD) {
             unilateral(found.w, found.dw, found.w * found.ratio, found.dc, rate, force);
             return settled(EHD_OK, force);

@@ -47,7 +47,7 @@ static int fill_nodes(ehd_prepared *law, double *held_damping) {
         if (i > 0 && delta[i - 1] <= held) end = i + 1;
     }
     for (int i = first; i < end; i++) {
-        const state found = full_state(point, delta[i]);
+        const contact_state found = full_state(point, delta[i]);
         w[i] = found.w;
         dw[i] = found.dw;
         c[i] = found.w * found.ratio;

@@ -52,7 +52,7 @@ def mounts(shafts: object, bearings: object) -> dict[str, dict[str, float]]:
     for entry in _tables(bearings):
         name, shaft = entry.get("name"), entry.get("shaft")
         if isinstance(name, str) and isinstance(shaft, str) and shaft in found:
-            position = _position(Table(entry, "", []))
+            position = _position(Table(entry, f"[[bearings]] {name}", []))
             if position is not None:
                 found[shaft][name] = position
     return found
