@@ -12,7 +12,8 @@ and of a whole scene::
     from mbs import assemble, read_scene, statics
 
     model = assemble(read_scene("nu308_rigid"), emap="nu308.nc", clearance=20e-6)
-    statics(model).dataset
+    found = statics(model)
+    found.dataset, found.plot()
 
 What is where, in the order of the data:
 
@@ -23,7 +24,8 @@ what bodies are     `flexible` (beams, finite elements, reduction)
 what connects them  `bearings` (the bearing force), `gears`
 linear              `linearised` (modes, responses, over speed); `modal` (identified from hammer hits)
 in time             `transient` (method, compiled runs); `spectral` (levels over speed and order); `timedata` (files)
-analyses            `analyses`: statics, modes, lsa, sweep, runup, campbell, hammer; `planning`: what a scene requires
+analyses            `analyses`: statics, modes, lsa, sweep, runup, campbell, hammer; `planning`: what a scene requires;
+                    `library`: what needs no model
 laboratory          `instruments`: tradeoff, variants, tolerance, stability
 for people          `output` (datasets, figures), `report` (a page to send), `commands`, `cli`; `systems`: scenes
 ==================  ====================================================================================
@@ -56,6 +58,7 @@ if TYPE_CHECKING:
     from mbs.flexible.shaft_parts import Disc, Section
     from mbs.gears.pair import GearPair
     from mbs.instruments.variants import Variation, variants
+    from mbs.library import bearing, modal_fit, reduce, write_report
     from mbs.model.body import Inertia
     from mbs.model.elements import Input, Load, Operation, Sensor, Spring
     from mbs.model.profiles import SpeedProfile
@@ -107,19 +110,23 @@ __all__ = [
     "Variation",
     "assemble",
     "automatic",
+    "bearing",
     "campbell",
     "critical",
     "hammer",
     "lsa",
+    "modal_fit",
     "modes",
     "parse_scene",
     "plan",
     "read_scene",
+    "reduce",
     "runup",
     "shipped_systems",
     "statics",
     "sweep",
     "variants",
+    "write_report",
 ]
 
 _HOMES = {
@@ -161,19 +168,23 @@ _HOMES = {
     "Variation": "instruments.variants",
     "assemble": "scene.assembly",
     "automatic": "planning.auto",
+    "bearing": "library",
     "campbell": "analyses.campbell",
     "critical": "analyses.sweep",
     "hammer": "analyses.hammer",
     "lsa": "analyses.lsa",
+    "modal_fit": "library",
     "modes": "analyses.modes",
     "parse_scene": "scene.reader",
     "plan": "planning.plan",
     "read_scene": "scene.reader",
+    "reduce": "library",
     "runup": "analyses.runup",
     "shipped_systems": "scene.reader",
     "statics": "analyses.statics",
     "sweep": "analyses.sweep",
     "variants": "instruments.variants",
+    "write_report": "library",
 }
 
 

@@ -19,6 +19,9 @@ _INSTRUMENTS = ("stability", "tradeoff", "variants")
 _LOOK, _LINEAR, _TIME, _MEASURED = "look", "linear", "in time", "measured"
 _PREPARE, _LABORATORY = "maps and bodies", "laboratory"
 
+_SCENES = ("check", "new")
+"""Commands on scene files themselves."""
+
 _OWN_PHYSICS = ("auto", "maps", PHYSICS.key, SHEAR.key, "auto_tolerance")
 
 _RENAMED = {
@@ -56,7 +59,9 @@ def parser() -> argparse.ArgumentParser:
         for add in row.options:
             add(command)
     _bearing(top)
+    _check(top)
     _modal_fit(top)
+    _new(top)
     _plan(top)
     _reduce(top)
     _run(top)
@@ -306,6 +311,26 @@ def _bearing(top: Program) -> None:
     command.add_argument("--plot", metavar="FIG.png", help="figure; also .pdf, .svg")
 
 
+def _check(top: Program) -> None:
+    """Add the command that solves nothing."""
+    words = "every problem of a scene at once, and what will be solved: bodies, bearings, analyses"
+    command = top.add_command(_LOOK, "check", words, _choices())
+    command.add_argument("scene", metavar="SCENE")
+
+
+def _new(top: Program) -> None:
+    """Add the command that writes a scene."""
+    words = "a commented scene of a shaft on two bearings, to begin your own machine with"
+    command = top.add_command(_PREPARE, "new", words)
+    command.add_argument("what", choices=("shaft",), help="what the scene is of")
+    command.add_argument(
+        "--csv",
+        metavar="SECTIONS.csv",
+        help="sections of the shaft: length [mm], outer diameter [mm], inner diameter [mm]",
+    )
+    command.add_argument("-o", "--output", metavar="SCENE.toml", help="default: shaft.toml in this folder")
+
+
 def _plan(top: Program) -> None:
     """Add the command that plans the contact map of a scene; its -o is a job."""
     words = "which ranges a scene needs of a contact map, and the job that covers just these"
@@ -484,7 +509,8 @@ def main(argv: Sequence[str] | None = None) -> int:
 def _command(arguments: argparse.Namespace) -> tuple[str, int]:
     """Load the command that is asked for, and do it."""
     name = arguments.command.replace("-", "_")
-    room = "mbs.instruments.commands" if name in _INSTRUMENTS else "mbs.commands"
+    rooms = {**dict.fromkeys(_INSTRUMENTS, "mbs.instruments.commands"), **dict.fromkeys(_SCENES, "mbs.commands.scenes")}
+    room = rooms.get(name, "mbs.commands")
     result: tuple[str, int] = importlib.import_module(f"{room}.{name}").run(arguments)
     return result
 

@@ -10,18 +10,21 @@ import dataclasses
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from ehdmaps.arrays import FloatArray
+from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.figures import typeset
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.law_errors import LawChange
 from mbs.analyses.case import Case, Failed, Progress, as_cases, side_by_side, silent
+from mbs.analyses.film_errors import notable_from
 from mbs.analyses.operating import held, operating, states_of
 from mbs.analyses.ramp import recorded_run, rehearsed, run_course
+from mbs.analyses.reach import fade_of
 from mbs.analyses.sensors import chosen_sensors, followed_orders
 from mbs.analyses.step_error import StepCheck, step_check
 from mbs.bearings.bearing_element import BearingElement, RingElement, RollerElement
@@ -35,6 +38,7 @@ from mbs.model.elements import Element, Operation, Sensor
 from mbs.model.equilibrium import equilibrium
 from mbs.output.campbell_table import campbell_dataset, of_sensors
 from mbs.output.files import described
+from mbs.output.model_text import clearance_text, common_supply, temperature_text
 from mbs.output.results import BAND, STEP_ERROR, with_states
 from mbs.scene.assembly import Model, choice_attributes, law_attributes
 from mbs.scene.scene import Scene
@@ -154,6 +158,16 @@ def with_changed_laws(model: Model, changes: Changes, signs: tuple[float, float,
 MOST_BANDS = len(SIGNS)
 """Runs of a law for its band, at most."""
 
+if TYPE_CHECKING:
+    from mbs.output.campbell_plot import Overlay, Reach
+    from mbs.output.files import Figure
+
+_LEAST_SHARE = 0.05
+"""Of the strain energy in bearings, of a mode that is drawn in."""
+
+MOST_DAMPED = 0.5
+"""Damping ratio up to which a mode is drawn in: above, a response has no peak by it, or hardly one (1/sqrt 2)."""
+
 MODE_SPEEDS = 9
 """Speeds of the run at which modes are computed."""
 
@@ -219,6 +233,37 @@ class CampbellResult:
     runs: tuple[LawRun, ...]
     failed: tuple[str, ...]
     dataset: xr.Dataset
+
+    def plot(self, measured: tuple[str, tuple[RunUpSpectra, ...]] | None = None) -> Figure:
+        """Figure that `mbs campbell --plot` writes, with modes and what is not valid; of several sensors the levels.
+
+        Parameters
+        ----------
+        measured : (str, tuple of RunUpSpectra), optional
+            Label and levels of a run that is drawn first, as what the others are compared with.
+        """
+        from mbs.output.campbell_plot import campbell_figure, sensors_figure
+
+        labels = [entry.case.label for entry in self.runs]
+        results = [entry.spectra for entry in self.runs]
+        if measured is not None:
+            labels, results = [f"measured: {measured[0]}", *labels], [measured[1], *results]
+        title = _title([entry.case.model for entry in self.runs], self.sensors)
+        if self.sensors[1:]:
+            sensors = [(sensor.name, Reference.of(sensor)) for sensor in self.sensors]
+            return sensors_figure(title, labels, results, sensors, self.orders)
+        # The measured run stands first, as what the others are compared with; it has no films and no modes.
+        first: list[None] = [None] * (measured is not None)
+        return campbell_figure(
+            title,
+            labels,
+            [spectra[0] for spectra in results],
+            Reference.of(self.sensors[0]),
+            self.orders,
+            [*first, *(_overlay(entry) for entry in self.runs)],
+            [*first, *(_reach(entry) for entry in self.runs)],
+            [*first, *(entry.level_error[0] if entry.level_error else None for entry in self.runs)],
+        )
 
 
 def campbell(
@@ -431,3 +476,44 @@ def _modes(model: Model, spectra: RunUpSpectra) -> Sweep:
     """Modes of the linear system at some speeds of the run, rising."""
     speeds = spectra.campbell.speeds
     return sweep(model.system, np.linspace(speeds.min(), speeds.max(), MODE_SPEEDS))
+
+
+def _overlay(entry: LawRun) -> Overlay | None:
+    """Natural frequencies to draw: of modes with strain energy in the bearings that are no mere decay."""
+    from mbs.output.campbell_plot import Overlay
+
+    if entry.modes is None:
+        return None
+    found = entry.modes.damped
+    shown = (np.nan_to_num(found.bearing_share) >= _LEAST_SHARE).any(axis=0)
+    swinging = found.damping_ratio <= MOST_DAMPED
+    return Overlay(entry.modes.speeds, np.where(swinging, found.frequency, np.nan)[:, shown])
+
+
+def _reach(entry: LawRun) -> Reach:
+    """Range where the films of a law are not valid, over the speeds of the run."""
+    from mbs.output.campbell_plot import Reach
+
+    speeds = entry.spectra[0].campbell.speeds
+    at = np.linspace(float(speeds.min()), float(speeds.max()), MODE_SPEEDS)
+    return Reach(at, notable_from(entry.case.model, at), float(speeds[fading(entry)].max(initial=0.0)))
+
+
+def fading(entry: LawRun) -> BoolArray:
+    """True for windows that reach below the map, where the film fades to the dry contact, shape (windows,)."""
+    found, record = entry.spectra[0].campbell, entry.record
+    fade = fade_of(entry.case.model)
+    if fade is None:
+        return np.zeros(found.time.size, dtype=np.bool_)
+    ends = [np.interp(found.time + part * found.window, record.time, np.abs(record.speed)) for part in (-0.5, 0.5)]
+    return fade.below(np.minimum(*ends))
+
+
+def _title(models: Sequence[Model], sensors: Sequence[Sensor]) -> str:
+    """Heading of the figure."""
+    model = models[0]
+    clearance, supply = clearance_text(model), common_supply(models)
+    parts = [temperature_text(model), f"clearance {clearance}" if clearance else "", supply]
+    at = ", ".join(part for part in parts if part)
+    names = f"sensor {sensors[0].name}; " if not sensors[1:] else ""
+    return f"{model.scene.title}\n{names}{typeset(at)}"

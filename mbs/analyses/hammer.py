@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
 
 from ehdmaps.errors import AnalysisError, InputError
 from mbs.analyses.case import Case, Failed, Progress, side_by_side, silent
@@ -15,9 +18,15 @@ from mbs.linearised.modes import Modes, modes
 from mbs.linearised.validity import FilmError
 from mbs.modal.records import Hits
 from mbs.model.equilibrium import Equilibrium, equilibrium
-from mbs.scene.assembly import Model
+from mbs.output.files import described
+from mbs.scene.assembly import Model, law_attributes
 from mbs.scene.scene import Scene
 from mbs.transient.hammer import HammerTest, linear_hits, nonlinear_hits, suggested_duration
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from mbs.output.files import Figure
 
 HIGHEST = 5000.0
 """Highest frequency of a scene that names none [Hz]."""
@@ -80,6 +89,47 @@ class HammerResult:
     hits: tuple[Hits, ...]
     errors: tuple[FilmError, ...]
     outside_hits: Mapping[str, int]
+
+    @cached_property
+    def dataset(self) -> xr.Dataset:
+        """Records of force and responses over time, for each input of the scene and each hit."""
+        import xarray as xr
+
+        sensors = self.model.scene.sensors
+        found = xr.Dataset(
+            {
+                "force": (
+                    ("input", "hit", "time"),
+                    np.stack([entry.force for entry in self.hits]),
+                    {"units": "N", "long_name": "force of the hammer, or its moment in N m"},
+                ),
+                "response": (
+                    ("input", "hit", "sensor", "time"),
+                    np.stack([entry.response for entry in self.hits]),
+                    {"units": "SI", "long_name": "response, in the unit of the quantity of its sensor"},
+                ),
+                "quantity": ("sensor", [sensor.quantity for sensor in sensors]),
+            },
+            {
+                "input": [entry.name for entry in self.model.scene.inputs],
+                "sensor": [sensor.name for sensor in sensors],
+                "time": ("time", self.hits[0].step * np.arange(self.hits[0].force.shape[1]), {"units": "s"}),
+            },
+        )
+        return described(found, **law_attributes(self.model))
+
+    def plot(self) -> Figure:
+        """Figure of the frequency responses that the hits give, by H1 up to the highest frequency of interest."""
+        from mbs.modal.estimation import estimate, needed_decay
+        from mbs.output.response_plot import Curves, response_figure
+
+        decay = max(needed_decay(entry.response, entry.step) for entry in self.hits)
+        found = estimate(self.hits, "h1", decay).responses
+        inside = (found.frequency > 0.0) & (found.frequency <= self.test.highest)
+        scene = self.model.scene
+        rows = found.response[:, inside].reshape(len(scene.inputs), len(scene.sensors), -1)
+        curves = Curves("hits", found.frequency[inside], np.moveaxis(rows, 2, 0).swapaxes(1, 2))
+        return response_figure(self.model, curves, ["responses of simulated hits, with their noise"])
 
 
 def hammer(model: Model, settings: HammerSettings | None = None, progress: Progress | None = None) -> HammerResult:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -27,6 +28,9 @@ from mbs.output.files import described
 from mbs.output.results import linear_dataset, with_states
 from mbs.scene.assembly import Model, law_attributes, laws_attributes
 from mbs.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from mbs.output.files import Figure
 
 
 @dataclass(frozen=True)
@@ -94,6 +98,10 @@ class LsaResult:
     lifting: tuple[DynamicLoad, ...]
     dataset: xr.Dataset
     unsound: tuple[Unsound, ...] = ()
+
+    def plot(self) -> Figure:
+        """Figure that `mbs lsa --plot` writes: magnitude and phase of the responses."""
+        return lsa_figure([self.model.label], [self])
 
 
 def lsa_problems(scene: Scene) -> list[str]:
@@ -271,3 +279,49 @@ def lsa_dataset(labels: Sequence[str], results: Sequence[LsaResult]) -> xr.Datas
     kept = {key: value for key, value in joined.attrs.items() if key not in ("residual", "newton_steps")}
     joined.attrs = {**kept, "bands": bands, **laws_attributes(labels, [result.model for result in results])}
     return joined
+
+
+def lsa_figure(labels: Sequence[str], results: Sequence[LsaResult]) -> Figure:
+    """Figure of the responses of one case, or of several side by side.
+
+    Parameters
+    ----------
+    labels : sequence of str
+        What each case is called.
+    results : sequence of LsaResult
+        One a case.
+    """
+    from mbs.output.response_plot import Curves, comparison_figure, response_figure
+
+    curves = [
+        Curves(
+            label,
+            entry.frequencies,
+            entry.responses,
+            min((error.frequency for error in entry.errors), default=math.inf),
+            entry.level_error,
+            entry.pitch_range,
+        )
+        for label, entry in zip(labels, results, strict=True)
+    ]
+    several = len(results) > 1
+    notes = [
+        note
+        for label, entry in zip(labels, results, strict=True)
+        for note in _lifting_notes(entry.lifting, label if several else "")
+    ]
+    first = results[0].model
+    return comparison_figure(first, curves, notes) if several else response_figure(first, curves[0], notes)
+
+
+def _lifting_notes(loads: Sequence[DynamicLoad], label: str) -> list[str]:
+    """Notes below the figure on loads that lift off, a line for each frequency and input."""
+    names: dict[tuple[str, str], list[str]] = {}
+    for load in loads:
+        names.setdefault((f"{load.frequency:.4g} Hz", load.input), []).append(load.element)
+    begin = f"{label}: " if label else ""
+    return [
+        f"{begin}contacts lift off near {at} with the amplitude of {entry}, a linear analysis is not valid there: "
+        + ", ".join(elements)
+        for (at, entry), elements in names.items()
+    ]

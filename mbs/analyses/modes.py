@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import xarray as xr
 
@@ -18,6 +20,10 @@ from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.output.files import described
 from mbs.output.results import modes_dataset, with_states
 from mbs.scene.assembly import Model, law_attributes
+from mbs.settings import HIGHEST
+
+if TYPE_CHECKING:
+    from mbs.output.files import Figure
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,6 +52,25 @@ class ModesResult:
     errors: tuple[FilmError, ...]
     dataset: xr.Dataset
     unsound: tuple[Unsound, ...] = ()
+
+    def plot(self, highest: float | None = None) -> Figure:
+        """Figure that `mbs modes --plot` writes: frequencies, damping ratios and strain energy of the modes.
+
+        Parameters
+        ----------
+        highest : float, optional
+            Highest frequency that is drawn [Hz]; that of [linear] of the scene, else 10 kHz, if left out.
+        """
+        from mbs.output.modes_plot import modes_figure
+        from mbs.output.result_text import above_lines, free_lines, kinds
+
+        highest = max(self.model.scene.frequencies, default=HIGHEST) if highest is None else highest
+        free, overdamped, swinging = kinds(self.modes)
+        inside = self.modes.frequency[swinging] <= highest
+        notes = [*free_lines(free, self.model.system), *above_lines(self.modes, swinging[~inside], highest)]
+        notes += [f"{overdamped.size} overdamped motions not drawn"] if overdamped.size else []
+        limit = min((entry.frequency for entry in self.errors), default=math.inf)
+        return modes_figure(self.model, self.modes, swinging[inside], limit, "; ".join(notes))
 
 
 def modes(model: Model, operation: Operation | None = None) -> ModesResult:

@@ -6,15 +6,17 @@ import math
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import xarray as xr
 
 from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.units import RPM
 from mbs.analyses.case import Case, Failed, Progress, side_by_side, silent
 from mbs.analyses.operating import held, states_of
 from mbs.analyses.ramp import course_of
+from mbs.analyses.reach import fade_of
 from mbs.analyses.recorded import simulated
 from mbs.analyses.soundness import Unsound, unsound_run, with_unsound
 from mbs.analyses.step_error import StepCheck, step_check
@@ -28,6 +30,11 @@ from mbs.settings import RunUp
 from mbs.timedata.netcdf_file import signal_variables
 from mbs.transient.run import Options, Recording
 from mbs.transient.run import run as run_system
+
+if TYPE_CHECKING:
+    from mbs.output.files import Figure
+    from mbs.spectral.spectra import AmplitudeSpectrum
+    from mbs.timedata.records import TimeRecord
 
 _KEPT = Options(states=True, every_step=True, marks=True)
 """States at the samples, and sensors at every step: fewer would fold what lies above their band into it."""
@@ -62,6 +69,11 @@ class RunUpResult:
     dataset: xr.Dataset
     unsound: tuple[Unsound, ...] = ()
     steps: StepCheck | None = None
+
+    def plot(self) -> Figure:
+        """Figure that `mbs runup --plot` writes: bearing forces and displacements, speed, signals of the sensors."""
+        sensed = self.model.scene.sensors
+        return runup_figure([self], simulated([(self.model.label, self.model, self.record)]).records if sensed else ())
 
 
 def runup_problems(scene: Scene) -> list[str]:
@@ -272,3 +284,32 @@ def _of_laws(found: RunUps) -> xr.Dataset:
     words = "; ".join(f"{label}: {run.model.law}" for label, run in zip(found.labels, found.runs, strict=True))
     supplies = choice_attributes([(label, run.model) for label, run in zip(found.labels, found.runs, strict=True)])
     return joined.assign_attrs({**parts[0].attrs, **counts, "law": words, **supplies})
+
+
+def runup_figure(
+    runs: Sequence[RunUpResult],
+    records: Sequence[TimeRecord] = (),
+    spectra: Sequence[Sequence[Sequence[AmplitudeSpectrum]]] = (),
+) -> Figure:
+    """Figure of runs of one scene, with the fade of the first law shaded.
+
+    Parameters
+    ----------
+    runs : sequence of RunUpResult
+        One a law.
+    records : sequence of TimeRecord
+        Signals of the sensors, one a run; none are drawn without.
+    spectra : sequence
+        Amplitude spectra, by run, speed and sensor.
+    """
+    from mbs.output.run_plot import run_figure
+
+    first, *others = [(entry.model, entry.record) for entry in runs]
+    fade = fade_of(first[0])
+    words = ""
+    if fade is not None:
+        words = (
+            f"below {fade.source} (below {RPM.text(fade.speed)}, entrainment speed {fade.entrainment_speed:.4g} m/s): "
+            "the film fades to the dry contact"
+        )
+    return run_figure(*first, fade.speed if fade else 0.0, words, others, records, spectra)

@@ -18,6 +18,8 @@ from mbs.scene.assembly import Model, law_attributes
 if TYPE_CHECKING:
     import xarray as xr
 
+    from mbs.output.files import Figure
+
 
 @dataclass(frozen=True, eq=False)
 class StaticsResult:
@@ -62,6 +64,12 @@ class StaticsResult:
 
             dataset = with_gears(dataset, model, self.balance)
         return with_unsound(described(dataset, **law_attributes(model)), self.unsound)
+
+    def plot(self) -> Figure:
+        """Figure that `mbs statics --plot` writes: loads of the rollers and slices of each bearing."""
+        from mbs.output.bearing_plot import statics_figure
+
+        return statics_figure(self.model, self.balance, self.contacts, self.overloads)
 
 
 def statics(model: Model, operation: Operation | None = None) -> StaticsResult:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -13,8 +13,10 @@ import xarray as xr
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
 from mbs.analyses.case import Case, Failed, Progress, as_cases, side_by_side, silent
+from mbs.analyses.film_errors import notable_from
 from mbs.analyses.losses import losses_over_speed
 from mbs.analyses.operating import operating, states_of
+from mbs.analyses.reach import fade_of
 from mbs.linearised.critical import (
     CriticalSpeed,
     OrderResponse,
@@ -27,11 +29,15 @@ from mbs.linearised.sweep import sweep as sweep_system
 from mbs.linearised.sweep_result import Sweep
 from mbs.model.system import System
 from mbs.output.files import described
+from mbs.output.model_text import clearance_text, common_supply, temperature_text
 from mbs.output.results import with_states
 from mbs.output.sweep_data import critical_dataset, sweep_dataset
 from mbs.scene.assembly import Model, choice_attributes, law_attributes, laws_attributes
 from mbs.scene.scene import Scene
 from mbs.settings import SweepRange
+
+if TYPE_CHECKING:
+    from mbs.output.files import Figure
 
 
 @dataclass(frozen=True)
@@ -71,6 +77,36 @@ class SweepResult:
     sweeps: tuple[Sweep, ...]
     outside: tuple[Mapping[str, int], ...]
     dataset: xr.Dataset
+
+    def plot(self) -> Figure:
+        """Figure that `mbs sweep --plot` writes: modes, bearings and responses over speed, what is not valid marked."""
+        from mbs.output.sweep_plot import sweep_figure
+
+        cases, found = self.cases, self.sweeps
+        scene = cases[0].model.scene
+        one_law = len({case.model.law for case in cases}) == 1
+        clearances = {entry.geometry.diametral_clearance for case in cases for entry in case.model.scene.bearings}
+        words = [
+            f"law {cases[0].model.law}" if one_law else "laws side by side",
+            *([supply] if not one_law and (supply := common_supply(case.model for case in cases)) else []),
+            temperature_text(cases[0].model),
+            *([f"clearance {clearance_text(cases[0].model)}"] if len(clearances) == 1 else []),
+            *([f"{cases[0].load_factor:g} x load"] if len(cases) == 1 and cases[0].load_factor != 1.0 else []),
+            f"mean of {found[0].bearings.angles} cage angles" if found[0].bearings.angles > 1 else "cages held",
+        ]
+        fades = [fade for case in cases if (fade := fade_of(case.model)) is not None]
+        return sweep_figure(
+            scene.title,
+            "; ".join(words),
+            found,
+            [case.label for case in cases],
+            [
+                notable_from(case.model, entry.speeds, entry.displacement)
+                for case, entry in zip(cases, found, strict=True)
+            ],
+            max((fade.speed for fade in fades), default=0.0),
+            [case.model.memory == "memory" for case in cases],
+        )
 
 
 def sweep(
@@ -215,6 +251,10 @@ class CriticalResult:
     responses: tuple[OrderResponse, ...]
     dataset: xr.Dataset
 
+    def plot(self) -> Figure:
+        """Figure that `mbs critical --plot` writes: modes with the orders, and the responses over speed."""
+        return critical_plot([self.model.label], [self])
+
     @property
     def outside(self) -> Mapping[str, int]:
         """Number of speeds of the sweep at which each bearing lies outside its map."""
@@ -344,6 +384,28 @@ def dataset_of_laws(labels: Sequence[str], results: Sequence[CriticalResult]) ->
     law = xr.DataArray(np.array(labels, dtype=np.str_), dims="law", name="law")
     joined = xr.concat(numbered, law, data_vars="all", join="outer", combine_attrs="override").drop_vars(list(bare))
     return joined.assign_attrs({**parts[0].attrs, **laws_attributes(labels, [result.model for result in results])})
+
+
+def critical_plot(labels: Sequence[str], results: Sequence[CriticalResult]) -> Figure:
+    """Figure of critical speeds and responses, of one law or several.
+
+    Parameters
+    ----------
+    labels : sequence of str
+        What each law is called.
+    results : sequence of CriticalResult
+        One a law.
+    """
+    from mbs.output.sweep_plot import CriticalCurves, critical_figure
+
+    return critical_figure(
+        [
+            CriticalCurves(
+                label, entry.model, entry.sweep, entry.found, entry.speeds, entry.responses, orders(entry.model.system)
+            )
+            for label, entry in zip(labels, results, strict=True)
+        ]
+    )
 
 
 def orders(system: System) -> tuple[float, ...]:

@@ -596,7 +596,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Compute all points, describe and write them; status 1 where one is outside of what the laws hold for."""
     request = read_request(arguments)
     points = bearing_points(
-        request.bearing, _law_of(request), request.films, request.load_vectors, request.speeds, request.temperature
+        request.bearing, law_of(request), request.films, request.load_vectors, request.speeds, request.temperature
     )
     lines = bearing_text(request.description, points)
     if arguments.output:
@@ -615,7 +615,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     return "\n".join(lines), 1 if problems else 0
 
 
-def _law_of(request: BearingRequest) -> Law:
+def law_of(request: BearingRequest) -> Law:
     """The law of a roller between both raceways, over what is asked of it."""
     if request.law == "map" and request.emap is not None:
         return request.emap.law("series", outside="clamp", supply=request.supply, surface=request.surface)

@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from ehdmaps.arrays import BoolArray, FloatArray
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.figures import typeset
 from ehdmaps.units import RPM
 from ehdmaps.workers import available_cores
-from mbs.analyses.campbell import MODE_SPEEDS, MOST_BANDS, CampbellResult, LawRun, campbell, campbell_problems
+from mbs.analyses.campbell import MOST_BANDS, MOST_DAMPED, CampbellResult, LawRun, campbell, campbell_problems, fading
 from mbs.analyses.case import Case
-from mbs.analyses.film_errors import film_course, notable_from
+from mbs.analyses.film_errors import film_course
 from mbs.analyses.ramp import resolution, step_lines
-from mbs.analyses.reach import axes_outside, fade_lines, fade_of, outside_lines, sources_of
+from mbs.analyses.reach import axes_outside, fade_lines, outside_lines, sources_of
 from mbs.analyses.recorded import RecordedRun, simulated_campbell
 from mbs.analyses.soundness import unsound_run
 from mbs.analyses.step_error import StepCheck
@@ -38,25 +37,13 @@ from mbs.output.campbell_table import (
     sensor_line,
     with_measured,
 )
-from mbs.output.model_text import band_lines, clearance_text, common_supply, heading, held_lines, temperature_text
+from mbs.output.model_text import band_lines, heading, held_lines
 from mbs.output.result_text import drive_lines, energy_lines
 from mbs.output.time_files import is_time_data, write_time_data
 from mbs.planning.question import in_time
-from mbs.scene.assembly import Model
 from mbs.settings import CampbellSettings
 from mbs.spectral.levels import Reference, difference_text
 from mbs.spectral.orders import OrderPeak
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from mbs.output.campbell_plot import Overlay, Reach
-
-_LEAST_SHARE = 0.05
-"""Of the strain energy in bearings, of a mode that is drawn in."""
-
-_MOST_DAMPED = 0.5
-"""Damping ratio up to which a mode is drawn in: above, a response has no peak by it, or hardly one (1/sqrt 2)."""
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
@@ -87,7 +74,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     lines += [*_differences(runs, found.sensors), *(f"warning: {line}" for line in found.failed)]
     dataset = found.dataset.assign_attrs(tolerance="\n".join(tolerated.lines)) if tolerated else found.dataset
     dataset = with_measured(dataset, beside.dataset) if beside else dataset
-    lines += write(arguments, marked(dataset, unsound), _figure(found, beside) if arguments.plot else None)
+    measured = None if beside is None else (beside.record.label, beside.spectra)
+    lines += write(arguments, marked(dataset, unsound), found.plot(measured) if arguments.plot else None)
     if getattr(arguments, "signals", None):
         lines += write_time_data(arguments.signals, simulated_campbell(runs))
     outside = any(any(entry.record.outside.values()) for entry in runs)
@@ -178,63 +166,6 @@ def _asked(arguments: argparse.Namespace) -> _Asked:
     return _Asked(cases, settings, looked.sensors, bands, tolerance, measured)
 
 
-def _figure(found: CampbellResult, measured: RecordedRun | None) -> Figure:
-    """The figure, with modes and with what is not valid marked; of several sensors the levels alone."""
-    from mbs.output.campbell_plot import campbell_figure, sensors_figure
-
-    labels = [entry.case.label for entry in found.runs]
-    results = [entry.spectra for entry in found.runs]
-    if measured is not None:
-        labels, results = [f"measured: {measured.record.label}", *labels], [measured.spectra, *results]
-    title = _title([entry.case.model for entry in found.runs], found.sensors)
-    if found.sensors[1:]:
-        sensors = [(sensor.name, Reference.of(sensor)) for sensor in found.sensors]
-        return sensors_figure(title, labels, results, sensors, found.orders)
-    # The measured run stands first, as what the others are compared with; it has no films and no modes.
-    first: list[None] = [None] * (measured is not None)
-    return campbell_figure(
-        title,
-        labels,
-        [spectra[0] for spectra in results],
-        Reference.of(found.sensors[0]),
-        found.orders,
-        [*first, *(_overlay(entry) for entry in found.runs)],
-        [*first, *(_reach(entry) for entry in found.runs)],
-        [*first, *(entry.level_error[0] if entry.level_error else None for entry in found.runs)],
-    )
-
-
-def _overlay(entry: LawRun) -> Overlay | None:
-    """Natural frequencies to draw: of modes with strain energy in the bearings that are no mere decay."""
-    from mbs.output.campbell_plot import Overlay
-
-    if entry.modes is None:
-        return None
-    found = entry.modes.damped
-    shown = (np.nan_to_num(found.bearing_share) >= _LEAST_SHARE).any(axis=0)
-    swinging = found.damping_ratio <= _MOST_DAMPED
-    return Overlay(entry.modes.speeds, np.where(swinging, found.frequency, np.nan)[:, shown])
-
-
-def _reach(entry: LawRun) -> Reach:
-    """Range where the films of a law are not valid, over the speeds of the run."""
-    from mbs.output.campbell_plot import Reach
-
-    speeds = entry.spectra[0].campbell.speeds
-    at = np.linspace(float(speeds.min()), float(speeds.max()), MODE_SPEEDS)
-    return Reach(at, notable_from(entry.case.model, at), float(speeds[_fading(entry)].max(initial=0.0)))
-
-
-def _fading(entry: LawRun) -> BoolArray:
-    """True for windows that reach below the map, where the film fades to the dry contact, shape (windows,)."""
-    found, record = entry.spectra[0].campbell, entry.record
-    fade = fade_of(entry.case.model)
-    if fade is None:
-        return np.zeros(found.time.size, dtype=np.bool_)
-    ends = [np.interp(found.time + part * found.window, record.time, np.abs(record.speed)) for part in (-0.5, 0.5)]
-    return fade.below(np.minimum(*ends))
-
-
 def _report(entry: LawRun, sensors: Sequence[Sensor]) -> list[str]:
     """Lines of one law: cost, highest sum level, peaks along the orders."""
     found, record = entry.spectra[0].campbell, entry.record
@@ -305,13 +236,13 @@ def _differences(found: Sequence[LawRun], sensors: Sequence[Sensor]) -> list[str
 
 def _elsewhere(entry: LawRun, place: int = 0) -> str:
     """Highest level above the fade, where the window of the highest sum level of a sensor lies in it."""
-    found, fading = entry.spectra[place].campbell, _fading(entry)
+    found, faded = entry.spectra[place].campbell, fading(entry)
     at = int(np.argmax(found.sum_level))
-    if not fading[at]:
+    if not faded[at]:
         return ""
-    if fading.all():
+    if faded.all():
         return ", as all windows with the film fading below the map"
-    best = int(np.argmax(np.where(fading, -np.inf, found.sum_level)))
+    best = int(np.argmax(np.where(faded, -np.inf, found.sum_level)))
     return (
         f", where the film fades below the map; in windows that do not reach there {found.sum_level[best]:.1f} dB at "
         f"{RPM.text(float(found.speeds[best]))}"
@@ -330,7 +261,7 @@ def _nearest(found: ComplexSweep, speeds: FloatArray, peak: OrderPeak) -> tuple[
     values = [np.interp(peak.speed, speeds, column) for column in (*found.frequency.T, *found.damping_ratio.T)]
     frequency, ratio = np.reshape(values, (2, -1))
     # A mode that begins or ends between two of the speeds has no number there.
-    there = np.isfinite(frequency) & (ratio <= _MOST_DAMPED)
+    there = np.isfinite(frequency) & (ratio <= MOST_DAMPED)
     if not there.any():
         return None
     best = int(np.argmin(np.where(there, np.abs(frequency - peak.frequency), np.inf)))
@@ -342,13 +273,3 @@ def _sensor_words(sensors: Sequence[Sensor]) -> str:
     if sensors[1:]:
         return f"sensors {', '.join(sensor.name for sensor in sensors)}"
     return f"sensor {sensors[0].name}, {Reference.of(sensors[0]).text}"
-
-
-def _title(models: Sequence[Model], sensors: Sequence[Sensor]) -> str:
-    """Heading of the figure."""
-    model = models[0]
-    clearance, supply = clearance_text(model), common_supply(models)
-    parts = [temperature_text(model), f"clearance {clearance}" if clearance else "", supply]
-    at = ", ".join(part for part in parts if part)
-    names = f"sensor {sensors[0].name}; " if not sensors[1:] else ""
-    return f"{model.scene.title}\n{names}{typeset(at)}"

@@ -14,7 +14,7 @@ from mbs.analyses.case import Case
 from mbs.analyses.operating import operating
 from mbs.analyses.reach import axes_outside, fade_lines, outside_lines, sources_of
 from mbs.analyses.soundness import unsound_over_speed
-from mbs.analyses.sweep import CriticalResult, SweepSettings, critical_of, dataset_of_laws, orders
+from mbs.analyses.sweep import CriticalResult, SweepSettings, critical_of, critical_plot, dataset_of_laws, orders
 from mbs.commands.auto import analysed
 from mbs.commands.cases import load_cases
 from mbs.commands.common import Looked, marked, unsound_lines, write
@@ -27,7 +27,7 @@ from mbs.output.sweep_data import orbits, sensed
 from mbs.planning.question import over_speeds
 
 if TYPE_CHECKING:
-    from mbs.output.sweep_plot import CriticalCurves
+    pass
 
 _HEAD = "critical speeds      order       speed   frequency/Hz   damping ratio   whirl"
 _WIDTH = 102
@@ -63,12 +63,9 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         lines += _report(entry, label if found[1:] else "")
     if found[1:]:
         lines += _beside(found)
-    figure = None
-    if arguments.plot:
-        from mbs.output.sweep_plot import critical_figure
-
-        figure = critical_figure([_curves(label, entry) for label, entry in found])
-    dataset = dataset_of_laws([label for label, _ in found], [entry for _, entry in found])
+    labels, results = [label for label, _ in found], [entry for _, entry in found]
+    figure = critical_plot(labels, results) if arguments.plot else None
+    dataset = dataset_of_laws(labels, results)
     lines += outside + write(arguments, marked(dataset, unsound), figure)
     return "\n".join(lines), 1 if outside or unsound else done.status
 
@@ -109,15 +106,6 @@ def _outside(found: CriticalResult) -> list[str]:
     words = f"lies outside the map at {{}} of {found.sweep.speeds.size} speeds"
     axes = axes_outside(operating(model, fastest), fastest)
     return outside_lines(found.outside, words, axes, sources=sources_of(model))
-
-
-def _curves(label: str, found: CriticalResult) -> CriticalCurves:
-    """Curves that are drawn of a law."""
-    from mbs.output.sweep_plot import CriticalCurves
-
-    return CriticalCurves(
-        label, found.model, found.sweep, found.found, found.speeds, found.responses, orders(found.model.system)
-    )
 
 
 def _report(found: CriticalResult, label: str) -> list[str]:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import math
-from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +11,7 @@ from ehdmaps.errors import InputError
 from ehdmaps.exports.mat import KIND
 from ehdmaps.outputs import FIGURE, Output, output_problems
 from mbs.analyses.case import Case
-from mbs.analyses.lsa import LsaResult, LsaSettings, lsa_dataset, lsa_of, lsa_problems
+from mbs.analyses.lsa import LsaResult, LsaSettings, lsa_dataset, lsa_figure, lsa_of, lsa_problems
 from mbs.analyses.reach import fade_lines, outside_at
 from mbs.commands.auto import analysed
 from mbs.commands.cases import load_cases
@@ -21,7 +19,6 @@ from mbs.commands.common import Looked, unsound_lines, write
 from mbs.commands.sweep import whole
 from mbs.linearised.linear import peak_places, response_display
 from mbs.linearised.sweep import MOST_ANGLES
-from mbs.linearised.validity import DynamicLoad
 from mbs.output.files import RESULT
 from mbs.output.model_text import band_lines, film_lines, heading
 from mbs.output.state_space_file import write_spaces
@@ -47,31 +44,15 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         _looks_at,
     )
     found = done.result
-    figure = None
-    if arguments.plot:
-        from mbs.output.response_plot import Curves, comparison_figure, response_figure
-
-        curves = [
-            Curves(
-                label,
-                entry.frequencies,
-                entry.responses,
-                min((error.frequency for error in entry.errors), default=math.inf),
-                entry.level_error,
-                entry.pitch_range,
-            )
-            for label, entry in found
-        ]
-        notes = [note for label, entry in found for note in _lifting_notes(entry.lifting, label if found[1:] else "")]
-        first = found[0][1].model
-        figure = comparison_figure(first, curves, notes) if found[1:] else response_figure(first, curves[0], notes)
+    labels, results = [label for label, _ in found], [entry for _, entry in found]
+    figure = lsa_figure(labels, results) if arguments.plot else None
     unsound = [line for label, entry in found for line in unsound_lines(entry.unsound, label if found[1:] else "")]
     lines = [*unsound, *done.lines]
     outside: list[str] = []
     for label, entry in found:
         outside += [line for line in outside_at(entry.model, entry.balance) if line not in outside]
         lines += _report(entry, label if found[1:] else "")
-    dataset = lsa_dataset([label for label, _ in found], [entry for _, entry in found])
+    dataset = lsa_dataset(labels, results)
     lines += [*outside, *write(arguments, dataset, figure)]
     if file := getattr(arguments, "state_space", None):
         write_spaces(Path(file), found)
@@ -134,19 +115,6 @@ def _report(found: LsaResult, label: str) -> list[str]:
             for load in found.lifting
         ),
         *(fade_lines(model, np.array([scene.speed])) if scene.speed else []),
-    ]
-
-
-def _lifting_notes(loads: Sequence[DynamicLoad], label: str) -> list[str]:
-    """Notes below the figure on loads that lift off, a line for each frequency and input."""
-    names: dict[tuple[str, str], list[str]] = {}
-    for load in loads:
-        names.setdefault((f"{load.frequency:.4g} Hz", load.input), []).append(load.element)
-    begin = f"{label}: " if label else ""
-    return [
-        f"{begin}contacts lift off near {at} with the amplitude of {entry}, a linear analysis is not valid there: "
-        + ", ".join(elements)
-        for (at, entry), elements in names.items()
     ]
 
 

@@ -20,10 +20,9 @@ from mbs.commands.cases import load_model
 from mbs.commands.common import Looked, read_option, unsound_lines, write, write_plot
 from mbs.linearised.modes import Modes
 from mbs.linearised.shapes import skeleton
-from mbs.model.system import System
 from mbs.output.files import RESULT
-from mbs.output.model_text import band_lines, clean, film_law_line, film_lines, free_words, heading
-from mbs.output.result_text import kinds, share_words
+from mbs.output.model_text import band_lines, clean, film_law_line, film_lines, heading
+from mbs.output.result_text import above_lines, free_lines, kinds, share_words
 from mbs.output.shapes_file import MOST_SHAPES as MOST_WRITTEN
 from mbs.output.shapes_file import SHAPES, write_shapes
 from mbs.planning.question import at_one_speed
@@ -51,13 +50,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     free, overdamped, swinging = kinds(found)
     shown = swinging[found.frequency[swinging] <= highest]
     above = swinging[found.frequency[swinging] > highest]
-    notes = [*_free(free, model.system), *_above(found, above, highest)]
-    figure = None
-    if arguments.plot:
-        from mbs.output.modes_plot import modes_figure
-
-        limit = min((entry.frequency for entry in result.errors), default=math.inf)
-        figure = modes_figure(model, found, shown, limit, "; ".join([*notes, *_overdamped_count(overdamped)]))
+    notes = [*free_lines(free, model.system), *above_lines(found, above, highest)]
+    figure = result.plot(highest) if arguments.plot else None
     outside = outside_at(model, result.balance)
     lines = [
         *unsound_lines(result.unsound),
@@ -190,16 +184,6 @@ def _overdamped(found: Modes, which: IntArray) -> list[str]:
     return lines
 
 
-def _overdamped_count(which: IntArray) -> list[str]:
-    """Count the motions that creep back."""
-    return [f"{which.size} overdamped motions not drawn"] if which.size else []
-
-
-def _free(which: IntArray, system: System) -> list[str]:
-    """A line for all free motions."""
-    return [free_words(which.size, system)] if which.size else []
-
-
 def _lost(found: Modes) -> list[str]:
     """Lines on what films that relax leave without a mode."""
     lines = []
@@ -213,11 +197,3 @@ def _lost(found: Modes) -> list[str]:
         for entry in found.lost
     ]
     return lines
-
-
-def _above(found: Modes, which: IntArray, highest: float) -> list[str]:
-    """A line on modes that are not shown."""
-    if not which.size:
-        return []
-    last = HERTZ.text(float(found.frequency[which].max()), 5)
-    return [f"{which.size} more modes above {HERTZ.text(highest, 5)}, up to {last}, not shown (--highest)"]

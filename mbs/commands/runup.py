@@ -20,7 +20,7 @@ from mbs.analyses.film_errors import film_course
 from mbs.analyses.ramp import resolution, silent_run, step_lines
 from mbs.analyses.reach import POINTS, Fade, axes_outside, fade_lines, fade_of, outside_lines, source_of, sources_of
 from mbs.analyses.recorded import amplitudes_at, simulated
-from mbs.analyses.runup import RunUpResult, RunUps, runup_problems, runups
+from mbs.analyses.runup import RunUpResult, RunUps, runup_figure, runup_problems, runups
 from mbs.analyses.step_error import StepCheck
 from mbs.commands.auto import analysed
 from mbs.commands.campbell_recorded import read_source, signal_problems
@@ -44,7 +44,7 @@ from mbs.timedata.records import TimeChannel, TimeData, TimeRecord
 from mbs.timedata.speed import SpeedSource, with_speed
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    pass
 
 _MOST_SPECTRA = 4
 _LARGEST_SPEED = 1e6 / RPM.factor
@@ -87,8 +87,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     names = tuple(label if found.runs[1:] else entry.model.label for label, entry in _pairs(found))
     data = _signals(found, names)
     spectra = _spectra_of(data, asked.spectra, found.runs[0].model.scene) if data else []
-    fade = fade_of(found.runs[0].model)
-    figure = _figure(found, data, spectra, fade) if arguments.plot else None
+    figure = runup_figure(found.runs, data.records if data else (), spectra) if arguments.plot else None
     unsound = [
         line for label, entry in _pairs(found) for line in unsound_lines(entry.unsound, label if found.runs[1:] else "")
     ]
@@ -290,23 +289,3 @@ def _changes(size: FloatArray, speed: FloatArray, fade: Fade | None) -> str:
         return words
     worst = int(np.argmax(np.where(inside, -1.0, change)))
     return f"{words}, and {change[worst]:.3g} N above, at {RPM.text(float(abs(speed[worst])))}"
-
-
-def _figure(
-    found: RunUps,
-    data: TimeData | None,
-    spectra: list[list[tuple[AmplitudeSpectrum, ...]]],
-    fade: Fade | None,
-) -> Figure:
-    """The figure, with the fade of the first law shaded."""
-    from mbs.output.run_plot import run_figure
-
-    first, *others = [(entry.model, entry.record) for entry in found.runs]
-    words = ""
-    if fade is not None:
-        words = (
-            f"below {fade.source} (below {RPM.text(fade.speed)}, entrainment speed {fade.entrainment_speed:.4g} m/s): "
-            "the film fades to the dry contact"
-        )
-    records = data.records if data else ()
-    return run_figure(*first, fade.speed if fade else 0.0, words, others, records, spectra)

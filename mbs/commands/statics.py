@@ -37,11 +37,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     found = done.result
     model = found.model
     balance, contacts = found.balance, found.contacts
-    figure = None
-    if arguments.plot:
-        from mbs.output.bearing_plot import statics_figure
-
-        figure = statics_figure(model, balance, contacts, found.overloads)
+    figure = found.plot() if arguments.plot else None
     lines = [
         *unsound_lines(found.unsound),
         *done.lines,

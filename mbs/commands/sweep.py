@@ -13,9 +13,9 @@ from ehdmaps.errors import InputError
 from ehdmaps.units import DAMPER, RPM, SPRING, quantity
 from ehdmaps.workers import available_cores
 from mbs.analyses.case import Case
-from mbs.analyses.film_errors import film_errors, notable_from
+from mbs.analyses.film_errors import film_errors
 from mbs.analyses.operating import operating
-from mbs.analyses.reach import axes_outside, fade_lines, fade_of, outside_lines, sources_of
+from mbs.analyses.reach import axes_outside, fade_lines, outside_lines, sources_of
 from mbs.analyses.soundness import unsound_over_speed
 from mbs.analyses.sweep import SweepSettings, sweep, sweep_problems
 from mbs.commands.auto import analysed
@@ -31,12 +31,9 @@ from mbs.output.model_text import (
     ROUND_OFF,
     band_lines,
     clean,
-    clearance_text,
-    common_supply,
     film_lines,
     free_words,
     heading,
-    temperature_text,
 )
 from mbs.output.state_text import flooded_note, state_lines
 from mbs.planning.question import over_speeds
@@ -44,7 +41,7 @@ from mbs.scene.assembly import Model
 from mbs.settings import MOST_SPEEDS, SweepRange
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    pass
 
 _LEAST_SHARE = 0.05
 _PEAKS = 5
@@ -90,7 +87,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             *_film_errors(case.model, entry),
             *fade_lines(case.model, entry.speeds),
         ]
-    figure = _figure(cases, found) if arguments.plot else None
+    figure = result.plot() if arguments.plot else None
     lines += outside + write(arguments, marked(result.dataset, unsound), figure)
     return "\n".join(lines), 1 if outside or unsound else done.status
 
@@ -107,33 +104,6 @@ def _looks_at(asked: _Asked) -> Looked:
     scene = max(asked.cases, key=lambda case: case.load_factor).model.scene
     speeds = over_speeds(scene, asked.settings.speeds)
     return Looked(speeds, max(scene.frequencies, default=scene.campbell.highest))
-
-
-def _figure(cases: Sequence[Case], found: Sequence[Sweep]) -> Figure:
-    """The figure, with what is not valid marked."""
-    from mbs.output.sweep_plot import sweep_figure
-
-    scene = cases[0].model.scene
-    one_law = len({case.model.law for case in cases}) == 1
-    clearances = {entry.geometry.diametral_clearance for case in cases for entry in case.model.scene.bearings}
-    words = [
-        f"law {cases[0].model.law}" if one_law else "laws side by side",
-        *([supply] if not one_law and (supply := common_supply(case.model for case in cases)) else []),
-        temperature_text(cases[0].model),
-        *([f"clearance {clearance_text(cases[0].model)}"] if len(clearances) == 1 else []),
-        *([f"{cases[0].load_factor:g} x load"] if len(cases) == 1 and cases[0].load_factor != 1.0 else []),
-        f"mean of {found[0].bearings.angles} cage angles" if found[0].bearings.angles > 1 else "cages held",
-    ]
-    fades = [fade for case in cases if (fade := fade_of(case.model)) is not None]
-    return sweep_figure(
-        scene.title,
-        "; ".join(words),
-        found,
-        [case.label for case in cases],
-        [notable_from(case.model, entry.speeds, entry.displacement) for case, entry in zip(cases, found, strict=True)],
-        max((fade.speed for fade in fades), default=0.0),
-        [case.model.memory == "memory" for case in cases],
-    )
 
 
 def _read(arguments: argparse.Namespace) -> tuple[SweepSettings, list[Case]]:

@@ -10,7 +10,11 @@ from ehdmaps.provenance import code_hash
 from ehdmaps.version import version
 
 if TYPE_CHECKING:
+    import matplotlib.figure
     import xarray as xr
+
+    Figure = matplotlib.figure.Figure
+    """What results draw themselves as: they name it here, and load the library when they are asked to."""
 
 SCHEMA_VERSION = 1
 

@@ -8,8 +8,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from ehdmaps.units import RPM, TEMPERATURE
 from mbs.bearings.bearing_element import error_words
 from mbs.bearings.thermal import HeatPaths
@@ -66,12 +64,7 @@ def weight_text(model: Model) -> str:
     model : Model
         Scene with its law.
     """
-    along = np.array(model.scene.gravity)
-    if not along.any():
-        return "without weight (no gravity in [operation])"
-    axes = [f"{'-' if value < 0.0 else ''}{name}" for name, value in zip("xyz", along, strict=True) if value]
-    words = f"along {axes[0]}" if len(axes) == 1 else f"in {', '.join(axes)}"
-    return f"with weight ({np.linalg.norm(along):.4g} m/s2 {words})"
+    return model.scene.weight
 
 
 def span(values: Sequence[float], unit: str) -> str:

@@ -10,6 +10,9 @@ from ehdmaps.arrays import IntArray
 from ehdmaps.units import MOTIONS, RPM, Display
 from mbs.linearised.modes import Modes
 from mbs.model.drive import DriveAccount
+from mbs.model.system import System
+from mbs.output.model_text import free_words
+from mbs.scene.fields import HERTZ
 from mbs.timedata.records import TimeRecord
 from mbs.transient.energy import ElementEnergy, EnergyBalance
 
@@ -153,3 +156,34 @@ def signal_lines(records: Sequence[TimeRecord]) -> list[str]:
                 f"{values[at]:10.4g}, {where:<18} {shown.unit}"
             )
     return lines
+
+
+def free_lines(which: IntArray, system: System) -> list[str]:
+    """A line for all free motions; none without.
+
+    Parameters
+    ----------
+    which : array of int
+        Which modes are free.
+    system : System
+        Whose modes they are.
+    """
+    return [free_words(which.size, system)] if which.size else []
+
+
+def above_lines(found: Modes, which: IntArray, highest: float) -> list[str]:
+    """A line on modes that are not shown; none without.
+
+    Parameters
+    ----------
+    found : Modes
+        All modes.
+    which : array of int
+        Those that are not shown.
+    highest : float
+        Highest frequency that is shown [Hz].
+    """
+    if not which.size:
+        return []
+    last = HERTZ.text(float(found.frequency[which].max()), 5)
+    return [f"{which.size} more modes above {HERTZ.text(highest, 5)}, up to {last}, not shown (--highest)"]

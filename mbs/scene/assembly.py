@@ -277,7 +277,8 @@ def law_attributes(model: Model) -> Mapping[str, str]:
     named = {"scene": model.scene.name, "scene_toml": model.scene.text, "law": model.law}
     surface = {} if model.surface is None else {"surface": surface_label(model.surface)}
     warned = {"warnings": "; ".join(model.warnings)} if model.warnings else {}
-    return {**named, **choice_attributes([(model.label, model)]), **surface, **warned}
+    weight = {"weight": model.scene.weight}
+    return {**named, **weight, **choice_attributes([(model.label, model)]), **surface, **warned}
 
 
 def laws_attributes(labels: Sequence[str], models: Sequence[Model]) -> dict[str, str]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from ehdmaps.jobs.problem import read_contacts
 from ehdmaps.jobs.supply import read_supply
 from ehdmaps.jobs.table import Table
+from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
 from ehdmaps.physics.contact import OIL_TEMPERATURES
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.units import LENGTH, PRESSURE, TEMPERATURE, Display, short
@@ -16,6 +17,7 @@ from mbs.scene import fields
 from mbs.scene.fields import DEGREE, MICROMETRE
 from mbs.scene.matrices import MatrixSpec, read_table_bearing
 from mbs.scene.profiles import read_profile
+from mbs.scene.shafts.standing import read_rings
 from mbs.scene.specs import BearingSpec
 
 if TYPE_CHECKING:
@@ -136,14 +138,8 @@ def read_bearing(section: Table, name: str) -> BearingSpec | MatrixSpec | None:
     """
     if section.choice("kind", ("rollers", "table")) == "table":
         return read_table_bearing(section, name)
-    inner, outer = fields.place(section, "inner"), fields.place(section, "outer")
-    given = section.get("geometry", required='{ name = "NU308" } or dimensions, as [bearing] of a job file')
-    problems: list[str] = []
-    geometry = None
-    if "geometry" in section:
-        geometry, _ = read_contacts(Table({"bearing": given}, "geometry", problems), None)
-    for problem in problems:
-        section.note("geometry", problem.removeprefix("[bearing] ").removeprefix("[bearing]: "))
+    inner, outer = read_rings(section, name)
+    geometry = _geometry(section)
     profile = read_profile(section, geometry)
     slices = section.integer("slices", 1, 10000) or 41
     angle = section.quantity("start_angle", "rad", -7.0, 7.0, DEGREE) or 0.0
@@ -177,6 +173,32 @@ def read_bearing(section: Table, name: str) -> BearingSpec | MatrixSpec | None:
         supply,
         coupled is True,
     )
+
+
+def _geometry(section: Table) -> BearingGeometry | None:
+    """Read `bearing`, a designation with its clearance, or `geometry`; None where a problem was noted."""
+    key, given = "geometry", section.get("geometry")
+    if "bearing" in section:
+        designation = section.get("bearing")
+        if "geometry" in section:
+            section.note("geometry", "stands beside bearing; allowed: one of the two; delete one")
+        if not isinstance(designation, str):
+            section.note("bearing", f'got {short(designation)}; allowed: a designation such as "NU210"')
+            return None
+        # Those whose inner geometry is known have a name; that of others is estimated, and results say so.
+        key, given = "bearing", {"name" if designation in BEARINGS else "estimate": designation}
+        if "diametral_clearance" in section:
+            given["diametral_clearance"] = section.get("diametral_clearance")
+    elif "geometry" not in section:
+        section.note(
+            "bearing", 'missing; allowed: a designation such as "NU210"; or geometry, as [bearing] of a job file'
+        )
+        return None
+    problems: list[str] = []
+    geometry, _ = read_contacts(Table({"bearing": given}, "geometry", problems), None)
+    for problem in problems:
+        section.note(key, problem.removeprefix("[bearing] ").removeprefix("[bearing]: "))
+    return geometry
 
 
 def bearing_problems(spec: BearingSpec, surroundings: Surroundings) -> list[str]:

@@ -93,7 +93,7 @@ def _built(given: _ByContent) -> Body:
     if isinstance(spec, RigidSpec):
         body = rigid_body(spec.name, spec.parts, spec.freedoms, spec.position, spec.frames, spec.spin)
     elif isinstance(spec, ShaftSpec):
-        from mbs.scene.flexible import build_shaft
+        from mbs.scene.shafts.tables import build_shaft
 
         body = build_shaft(spec)
     else:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from importlib import resources
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
@@ -47,6 +49,23 @@ def cylinder(table: Table) -> Inertia | None:
     table.close()
     if begin is None or end is None or diameter is None:
         return None
+    return solid_cylinder(table, begin, end, diameter, bore, density)
+
+
+def solid_cylinder(
+    table: Table, begin: float, end: float, diameter: float, bore: float | None, density: float | None
+) -> Inertia | None:
+    """Inertia of a cylinder from its ends and diameters [m] and density [kg/m3]; steel without holes if left out.
+
+    Parameters
+    ----------
+    table : Table
+        Takes what is wrong.
+    begin, end, diameter : float
+        Dimensions [m].
+    bore, density : float or None
+        [m], [kg/m3].
+    """
     return built(
         table,
         lambda: Inertia.cylinder(begin, end, diameter, bore or 0.0, STEEL.density if density is None else density),
@@ -113,6 +132,28 @@ def place(section: Table, key: str) -> str | None:
         section.note(key, f'got {short(value)}; allowed: a place such as "shaft" or "shaft:left"')
         return None
     return value
+
+
+def file_path(section: Table, key: str, folder: Path | None) -> Path | None:
+    """Read the path of a file, which is not opened; None if absent or wrong.
+
+    Parameters
+    ----------
+    section : Table
+        The table of the scene file.
+    key : str
+        Key in the table.
+    folder : Path or None
+        Folder in which relative paths begin; None for that of the shipped systems.
+    """
+    value = section.get(key, "the path of a file")
+    if key not in section:
+        return None
+    if not isinstance(value, str) or not 1 <= len(value) <= 1000 or "\0" in value:
+        section.note(key, f"got {short(value)}; allowed: the path of a file, beside this one or absolute")
+        return None
+    beside = Path(str(resources.files("mbs") / "systems")) if folder is None else folder
+    return beside / value
 
 
 def places(section: Table) -> tuple[str | None, str]:

@@ -1,4 +1,4 @@
-"""Bodies of a scene that bend: tables [[shafts]] and [[flexible]] are read, and become bodies.
+"""Bodies of finite elements of a scene: a table [[flexible]] is read, and becomes a body.
 
 The table names a reduced file, or matrices, mesh and interfaces; no file of it is read before the body is built.
 """
@@ -7,8 +7,6 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable
-from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,8 +14,7 @@ from ehdmaps.errors import InputError
 from ehdmaps.inputs import read_text
 from ehdmaps.jobs import table
 from ehdmaps.jobs.table import Table
-from ehdmaps.physics.solids import STEEL
-from ehdmaps.units import LENGTH, PRESSURE, Display, short
+from ehdmaps.units import LENGTH, Display, short
 from mbs.flexible.plan import (
     AXES,
     FORMATS,
@@ -38,11 +35,10 @@ from mbs.flexible.plan import (
     check_reduced,
     rotation_of,
 )
-from mbs.flexible.shaft_parts import Disc, Section
-from mbs.model.body import FREEDOMS, Body, Inertia
+from mbs.model.body import FREEDOMS, Body
 from mbs.scene import fields
-from mbs.scene.fields import DEGREE, HERTZ, LONGEST_FILE, Built
-from mbs.scene.specs import HIGHEST_DAMPING_RATIO, ORIGIN, FlexibleSpec, ShaftSpec
+from mbs.scene.fields import DEGREE, HERTZ, LONGEST_FILE
+from mbs.scene.specs import HIGHEST_DAMPING_RATIO, ORIGIN, FlexibleSpec
 
 if TYPE_CHECKING:
     from mbs.flexible.reduced_body import ReducedBody
@@ -50,144 +46,6 @@ if TYPE_CHECKING:
 
 _DENSITY = Display("kg/m^3")
 _INERTIA = Display("kg m^2")
-
-
-def read_shaft(section: Table, name: str) -> ShaftSpec | None:
-    """Read a flexible shaft.
-
-    Parameters
-    ----------
-    section : Table
-        One table of [[shafts]]; it is not closed here.
-    name : str
-        Name of the shaft, read before.
-
-    Returns
-    -------
-    ShaftSpec or None
-        None where a problem was noted.
-    """
-    before = len(section.problems)
-    freedoms = fields.words(section, "freedoms", FREEDOMS)
-    position = fields.lengths(section, "position", section.get("position"))
-    spin = section.number("spin", -1e3, 1e3)
-    sections = _each(section, "sections", "from, to, diameter", _section, required=True)
-    discs = _each(section, "discs", "at, mass, polar_inertia, transverse_inertia, or from, to, diameter", _disc)
-    frames = {}
-    given = section.table("frames", f"{section.where} frames", '{ left = "40 mm", right = "200 mm" }, along the axis')
-    if given:
-        for key in given.entries():
-            fields.named(given, key)
-            frames[key] = given.quantity(key, "m", -100.0, 100.0, LENGTH) or 0.0
-    cutoff = section.quantity("cutoff", "Hz", 1.0, 1e6, HERTZ, required=True)
-    largest = section.quantity("largest_element", "m", 1e-6, 100.0, LENGTH)
-    ratio = section.number("damping_ratio", 0.0, 0.5)
-    if len(section.problems) > before or freedoms is None:
-        return None
-    return fields.built(
-        section,
-        lambda: ShaftSpec(
-            name=name,
-            sections=sections,
-            freedoms=freedoms,
-            frames=frames,
-            cutoff=cutoff,
-            discs=discs,
-            position=position or ORIGIN,
-            spin=spin or 0.0,
-            largest_element=largest,
-            damping_ratio=ratio or 0.0,
-        ),
-    )
-
-
-def build_shaft(spec: ShaftSpec) -> Body:
-    """The body of a flexible shaft.
-
-    Parameters
-    ----------
-    spec : ShaftSpec
-        The shaft.
-
-    Raises
-    ------
-    InputError
-        With everything that does not fit together.
-    """
-    from mbs.flexible.shaft import flexible_shaft  # with its finite elements; reading stays quick
-
-    return flexible_shaft(
-        spec.name,
-        spec.sections,
-        spec.discs,
-        spec.freedoms,
-        spec.position,
-        spec.frames,
-        spec.spin,
-        spec.largest_element,
-        spec.cutoff,
-        spec.damping_ratio,
-    )
-
-
-def _each(
-    section: Table, key: str, keys: str, read: Callable[[Table], Built | None], *, required: bool = False
-) -> list[Built]:
-    """Read each table of a list."""
-    allowed = f"a list of tables with {keys}"
-    given = section.get(key, allowed if required else "")
-    if key not in section:
-        return []
-    if not isinstance(given, list):
-        section.note(key, f"got {short(given)}; allowed: {allowed}")
-        return []
-    found = [
-        read(Table(values, f"{section.where} {key}[{index}]", section.problems)) for index, values in enumerate(given)
-    ]
-    return [part for part in found if part is not None]
-
-
-def _section(table: Table) -> Section | None:
-    """Read a cylinder that bends."""
-    begin = table.quantity("from", "m", -100.0, 100.0, LENGTH, required=True)
-    end = table.quantity("to", "m", -100.0, 100.0, LENGTH, required=True)
-    diameter = table.quantity("diameter", "m", 1e-5, 100.0, LENGTH, required=True)
-    bore = table.quantity("bore", "m", 0.0, 100.0, LENGTH)
-    modulus = table.quantity("youngs_modulus", "Pa", 1e8, 2e12, PRESSURE)
-    ratio = table.number("poisson_ratio", 0.0, 0.499)
-    density = table.quantity("density", "kg/m^3", 100.0, 25000.0, _DENSITY)
-    table.close()
-    if begin is None or end is None or diameter is None:
-        return None
-    return fields.built(
-        table,
-        lambda: Section(
-            begin,
-            end,
-            diameter,
-            bore or 0.0,
-            STEEL.youngs_modulus if modulus is None else modulus,
-            STEEL.poisson_ratio if ratio is None else ratio,
-            STEEL.density if density is None else density,
-        ),
-    )
-
-
-def _disc(table: Table) -> Disc | None:
-    """Read a rigid part: mass and moments of inertia at a place, or a cylinder."""
-    if "at" not in table and "mass" not in table:
-        cylinder = fields.cylinder(table)
-        return None if cylinder is None else Disc(cylinder.offset, dataclasses.replace(cylinder, offset=0.0))
-    place = table.quantity("at", "m", -100.0, 100.0, LENGTH, required=True)
-    mass = table.quantity("mass", "kg", 1e-6, 1e6, Display("kg"), required=True)
-    polar = table.quantity("polar_inertia", "kg m^2", 1e-12, 1e6, _INERTIA, required=True)
-    transverse = table.quantity("transverse_inertia", "kg m^2", 1e-12, 1e6, _INERTIA, required=True)
-    table.close()
-    if place is None or mass is None or polar is None or transverse is None:
-        return None
-    inertia = fields.built(table, lambda: Inertia(mass, polar, transverse))
-    return None if inertia is None else Disc(place, inertia)
-
 
 _SURFACES = ("nodes", "cylinder", "plane")
 _AXES: dict[str, Triple] = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
@@ -217,7 +75,7 @@ def read_flexible(section: Table, name: str, folder: Path | None) -> FlexibleSpe
     ratio = section.number("damping_ratio", 0.0, HIGHEST_DAMPING_RATIO) if "damping_ratio" in section else 0.0
     source: Path | ReductionPlan | None
     if "reduced" in section:
-        source = _path(section, "reduced", folder)
+        source = fields.file_path(section, "reduced", folder)
         for key in _MATRIX_KEYS:
             if key in section:
                 section.get(key)
@@ -285,11 +143,11 @@ def read_reduction(
         form = matrices.choice("format", FORMATS, required=True)
         # Only Abaqus may name the degrees of freedom in the matrix itself.
         needed = ("stiffness", "mass") if form == "abaqus" else ("stiffness", "mass", "dofs")
-        files = {key: _path(matrices, key, folder) for key in needed}
+        files = {key: fields.file_path(matrices, key, folder) for key in needed}
         if form == "abaqus":
-            files["dofs"] = _path(matrices, "dofs", folder) if "dofs" in matrices else None
+            files["dofs"] = fields.file_path(matrices, "dofs", folder) if "dofs" in matrices else None
         matrices.close(("dofs",))
-    mesh = _path(section, "mesh", folder)
+    mesh = fields.file_path(section, "mesh", folder)
     units = section.choice("units", UNIT_SYSTEMS) if "units" in section else "SI"
     cutoff = section.quantity("cutoff", "Hz", 1.0, 1e6, HERTZ, required=True)
     interfaces: dict[str, PlannedInterface] = {}
@@ -315,18 +173,6 @@ def read_reduction(
     if stiffness is None or mass is None or mesh is None:
         return None
     return ReductionPlan(form, stiffness, mass, mesh, files.get("dofs"), units, cutoff, interfaces, points)
-
-
-def _path(section: Table, key: str, folder: Path | None) -> Path | None:
-    """Read the path of a file."""
-    value = section.get(key, "the path of a file")
-    if key not in section:
-        return None
-    if not isinstance(value, str) or not 1 <= len(value) <= 1000 or "\0" in value:
-        section.note(key, f"got {short(value)}; allowed: the path of a file, beside this one or absolute")
-        return None
-    beside = Path(str(resources.files("mbs") / "systems")) if folder is None else folder
-    return beside / value
 
 
 def _interface(section: Table) -> PlannedInterface | None:

@@ -13,6 +13,7 @@ from ehdmaps.units import RPM, short
 from mbs.model.elements import GROUND, Spring
 from mbs.model.matrices import MOST_SPEEDS, MatrixElement
 from mbs.scene import fields
+from mbs.scene.shafts.standing import read_rings
 
 if TYPE_CHECKING:
     from mbs.scene.surroundings import Built, Surroundings
@@ -77,7 +78,7 @@ def read_table_bearing(section: Table, name: str) -> MatrixSpec | None:
     name : str
         Name of the bearing.
     """
-    inner, outer = fields.place(section, "inner"), fields.place(section, "outer")
+    inner, outer = read_rings(section, name)
     found = _read(section)
     if inner is None or outer is None or found is None:
         return None

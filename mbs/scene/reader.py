@@ -26,6 +26,7 @@ from mbs.scene import fields, kinds
 from mbs.scene.fields import DEGREE, FORCE, HERTZ, LONGEST_FILE, MICROMETRE, MILLISECOND, MOMENT, Built
 from mbs.scene.matrices import MatrixSpec, read_spring
 from mbs.scene.scene import Scene
+from mbs.scene.shafts.standing import mounts, read_gravity
 from mbs.scene.specs import ORIGIN, BodySpec, FlexibleSpec, RigidSpec, ShaftSpec
 from mbs.scene.turning import read_excitation, read_unbalance
 from mbs.settings import HIGHEST, MOST_SPEEDS, CampbellSettings, RunUp, Settings, SweepRange
@@ -204,6 +205,7 @@ class _Reader:
         self._top = top
         self._folder = folder
         self._assumed: list[str] = []
+        self._mounted = mounts(top.get("shafts"), top.get("bearings"))
 
     def scene(self, text: str, name: str) -> Scene | None:
         """Read everything; None where a problem was noted."""
@@ -217,7 +219,7 @@ class _Reader:
         if operation:
             speed = operation.quantity("speed", "rad/s", 0.0, 1e5, RPM, required=True)
             temperature = operation.quantity("temperature", "K", *OIL_TEMPERATURES, TEMPERATURE, required=True)
-            gravity = fields.vector(operation, "gravity", "m/s^2", fields.ACCELERATION, 1e4)
+            gravity = read_gravity(operation, top.get("shafts"))
             self._close(operation)
         section = top.table("lubricant", "[lubricant]")
         lubricant = read_lubricant(section) if section else None
@@ -330,9 +332,9 @@ class _Reader:
 
     def _shaft(self, section: Table, name: str) -> ShaftSpec | None:
         """Read a flexible shaft."""
-        from mbs.scene.flexible import read_shaft
+        from mbs.scene.shafts.tables import read_shaft
 
-        return read_shaft(section, name)
+        return read_shaft(section, name, self._folder, self._mounted.get(name))
 
     def _flexible(self, section: Table, name: str) -> FlexibleSpec | None:
         """Read a body of finite elements, and what is fixed to it."""

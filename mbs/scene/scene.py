@@ -15,7 +15,7 @@ from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.surface import Surface
 from mbs.gears.pair import GearPair
 from mbs.model.elements import Input, Load, Sensor, Spring
-from mbs.scene.specs import ORIGIN, BearingSpec, BodySpec, ElementSpec, FlexibleSpec, Triple
+from mbs.scene.specs import ORIGIN, BearingSpec, BodySpec, ElementSpec, FlexibleSpec, ShaftSpec, Triple
 from mbs.scene.turning import OrderLoad, Unbalance
 from mbs.settings import CampbellSettings, RunUp, SweepRange
 
@@ -153,10 +153,19 @@ class Scene:
         return max(abs(float(speed)) for speed in (self.speed, *swept, *run))
 
     @property
+    def weight(self) -> str:
+        """Words on whether the weight of the bodies is in what an analysis finds."""
+        if not any(self.gravity):
+            return "without weight (no gravity in [operation])"
+        axes = [f"{'-' if value < 0.0 else ''}{name}" for name, value in zip("xyz", self.gravity, strict=True) if value]
+        words = f"along {axes[0]}" if len(axes) == 1 else f"in {', '.join(axes)}"
+        return f"with weight ({math.hypot(*self.gravity):.4g} m/s2 {words})"
+
+    @property
     def files(self) -> tuple[Path, ...]:
-        """All files that are read for it: the scene file where there is one, reduced bodies, matrices, meshes."""
+        """All files that are read for it: the scene file where there is one, sections, reduced bodies, meshes."""
         own = () if self.file is None else (self.file,)
-        bodies = (path for body in self.bodies if isinstance(body, FlexibleSpec) for path in body.files)
+        bodies = (path for body in self.bodies if isinstance(body, (FlexibleSpec, ShaftSpec)) for path in body.files)
         return tuple(dict.fromkeys((*own, *bodies)))
 
     def with_bearings(self, bearings: Iterable[BearingSpec]) -> Scene:

@@ -95,6 +95,8 @@ class ShaftSpec:
         Length of an element [m]; None: as the cut-off needs it.
     damping_ratio : float
         Damping ratio of the modes of the free shaft at rest.
+    files : tuple of Path
+        Files that were read for it; they are no part of what it is.
 
     Raises
     ------
@@ -112,11 +114,12 @@ class ShaftSpec:
     spin: float = 0.0
     largest_element: float | None = None
     damping_ratio: float = 0.0
+    files: Sequence[Path] = field(default=(), compare=False)
 
     def __post_init__(self) -> None:
         from mbs.flexible.shaft_parts import shaft_problems
 
-        _freeze(self, "sections", "freedoms", "discs")
+        _freeze(self, "sections", "freedoms", "discs", "files")
         problems = shaft_problems(
             self.sections,
             self.discs,

@@ -73,8 +73,8 @@ position = ["0 mm", "0 mm", "0 mm"]
 name = "NAME"
 freedoms = ["y"]
 position = ["0 mm", "0 mm", "0 mm"]
-sections = [{}]
-discs = [{}, { at = "0 mm" }]
+sections = [{}, { length = "1 mm" }]
+discs = [{}, { at = "0 mm" }, { at = "0 mm", width = "1 mm" }]
 frames = { PLACE = "0 mm" }
 [[flexible]]
 name = "NAME"
@@ -133,6 +133,12 @@ profile = { crown_radius = "10 m" }
 [[bearings]]
 name = "NAME"
 profile = { positions = ["0 mm"], depths = ["0 mm"] }
+[[bearings]]
+name = "NAME"
+bearing = "NU308"
+shaft = "NAME"
+position = "0 mm"
+diametral_clearance = "0 mm"
 [[bearings]]
 name = "TABLE"
 kind = "table"

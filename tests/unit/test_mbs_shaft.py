@@ -28,7 +28,7 @@ from mbs.model.elements import Operation, Spring
 from mbs.model.equilibrium import equilibrium
 from mbs.model.system import System
 from mbs.scene.bodies import build_body
-from mbs.scene.flexible import read_shaft
+from mbs.scene.shafts.tables import read_shaft
 
 BENDING = ("y", "z", "theta_y", "theta_z")
 STEEL_BAR = CrossSection.annulus(0.04, 0.01, 210e9, 0.3, 7850.0)
@@ -418,7 +418,13 @@ def test_what_may_be_left_out_may_be_left_out():
     assert len(coarse.coordinates) <= len(read()[0].coordinates)
 
 
-@pytest.mark.parametrize("key", ["freedoms", "sections", "frames", "cutoff"])
+def test_a_shaft_without_freedoms_and_cutoff_bends_up_to_5_khz():
+    body, _ = read(without=("freedoms", "cutoff"))
+    same, _ = read({"freedoms": ["y", "z", "theta_y", "theta_z"], "cutoff": "5 kHz"})
+    assert body.coordinates == same.coordinates
+
+
+@pytest.mark.parametrize("key", ["sections", "frames"])
 def test_what_may_not_be_left_out_is_missed(key):
     assert f"{key}: missing; allowed: " in read(without=(key,))[1]
 
@@ -430,7 +436,7 @@ def test_what_may_not_be_left_out_is_missed(key):
         ({"freedoms": ["y"]}, ["shaft 'shaft', freedoms: got y alone"]),
         ({"position": ["1 mm"]}, ["position: got a list of 1 entries"]),
         ({"spin": "1"}, ["spin: got '1'; allowed: a bare number"]),
-        ({"sections": {}}, ["sections: got a table of 0 entries; allowed: a list of tables with from, to, diameter"]),
+        ({"sections": {}}, ["sections: got a table of 0 entries; allowed: a list of tables with length, diameter, or"]),
         ({"sections": []}, ["sections: got 0; allowed: 1 to 400"]),
         ({"sections": [1]}, ["sections[0]: got 1; allowed: a table", "sections[0] from: missing"]),
         (
@@ -450,7 +456,7 @@ def test_what_may_not_be_left_out_is_missed(key):
             {"sections": [{**TABLE["sections"][0], "poisson_ratio": 0.6}]},
             ["poisson_ratio: got 0.6; allowed: 0 to 0.499"],
         ),
-        ({"discs": "none"}, ["discs: got 'none'; allowed: a list of tables with at, mass"]),
+        ({"discs": "none"}, ["discs: got 'none'; allowed: a list of tables with at, diameter, width, or at, mass"]),
         ({"discs": [{"at": "1 mm", "mass": "1 kg"}]}, ["polar_inertia: missing", "transverse_inertia: missing"]),
         (
             {

@@ -1,0 +1,1 @@
+"""Commands on scene files themselves: a new one, and a check of one."""

@@ -1,0 +1,99 @@
+"""`mbs check`: every problem of a scene at once, and what will be solved; nothing is solved."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Iterator
+
+from ehdmaps.units import LENGTH, RPM
+from mbs.analyses.campbell import campbell_problems
+from mbs.analyses.hammer import hammer_problems
+from mbs.analyses.lsa import lsa_problems
+from mbs.analyses.runup import runup_problems
+from mbs.analyses.sweep import sweep_problems
+from mbs.commands.cases import load_model
+from mbs.model.body import Body
+from mbs.output.model_text import heading
+from mbs.scene.assembly import Model
+from mbs.scene.fields import HERTZ, MICROMETRE
+from mbs.scene.scene import Scene
+from mbs.scene.specs import BearingSpec, RigidSpec, ShaftSpec
+
+
+def run(arguments: argparse.Namespace) -> tuple[str, int]:
+    """Put the scene together, and tell what it is."""
+    arguments.output = arguments.plot = None
+    model = load_model(arguments)
+    scene = model.scene
+    lines = [*heading(model, scene.speed), "", *_bodies(model), *_bearings(model)]
+    lines += [f"  gear pair {entry.name}: {entry.on} against {entry.against}" for entry in scene.gears]
+    lines += [f"  load {load.name}: on {load.on}" for load in scene.loads]
+    return "\n".join([*lines, "", *_analyses(scene), "no problem found"]), 0
+
+
+def _bodies(model: Model) -> Iterator[str]:
+    """Lines of the bodies, and of the coordinates of all of them."""
+    sizes = {body.name: len(body.coordinates) for body in model.system.bodies}
+    for spec in model.scene.bodies:
+        spin = f", turns {spec.spin:g} x the speed" if spec.spin else ""
+        yield f"  {_kind(spec)} {spec.name}: {_words(spec)}{sizes[spec.name]} coordinates{spin}"
+    yield f"  {model.system.size} coordinates in all, {len(model.scene.springs)} springs"
+
+
+def _kind(spec: object) -> str:
+    """Kind of a body."""
+    return {ShaftSpec: "shaft", RigidSpec: "rigid body", Body: "body of matrices"}.get(type(spec), "flexible body")
+
+
+def _words(spec: object) -> str:
+    """Size and mass of a body where its table says them; a comma follows."""
+    if isinstance(spec, RigidSpec):
+        return f"{sum(part.mass for part in spec.parts):.4g} kg, "
+    if not isinstance(spec, ShaftSpec):
+        return ""
+    begin, end = min(part.begin for part in spec.sections), max(part.end for part in spec.sections)
+    mass = sum(
+        part.density * 0.25 * math.pi * (part.diameter**2 - part.bore**2) * (part.end - part.begin)
+        for part in spec.sections
+    )
+    discs = sum(disc.inertia.mass for disc in spec.discs)
+    cutoff = "no reduction" if spec.cutoff is None else f"modes up to {HERTZ.text(spec.cutoff)} with held places"
+    return f"{LENGTH.text(end - begin, 5)}, {mass:.4g} kg and discs of {discs:.4g} kg, {cutoff}, "
+
+
+def _bearings(model: Model) -> Iterator[str]:
+    """Lines of the roller bearings with their oil and films."""
+    for spec in model.scene.bearings:
+        yield (
+            f"  bearing {spec.name}: {spec.geometry.title}{' (estimated)' if spec.geometry.estimated else ''}, "
+            f"{spec.geometry.rollers} rollers, clearance {MICROMETRE.text(spec.geometry.diametral_clearance)}, "
+            f"{_where(model.scene, spec)}; {model.films[spec.name].words}"
+        )
+
+
+def _where(scene: Scene, spec: BearingSpec) -> str:
+    """Places of a bearing; on a shaft with the position along it."""
+    body, _, frame = spec.inner.partition(":")
+    shaft = next((entry for entry in scene.bodies if isinstance(entry, ShaftSpec) and entry.name == body), None)
+    along = "" if shaft is None or frame not in shaft.frames else f" at {LENGTH.text(shaft.frames[frame], 5)}"
+    return f"{spec.inner}{along} in {spec.outer}"
+
+
+def _analyses(scene: Scene) -> Iterator[str]:
+    """Lines of the analyses that the tables of the scene allow, with their size, or of what they lack."""
+    swept = "" if scene.sweep is None else f"{scene.sweep.points} speeds up to {RPM.text(scene.sweep.end)}"
+    turning = any(spec.spin for spec in scene.bodies)
+    idle = [] if turning else [f"{scene.name}: no body spins"]
+    course = "" if scene.run_up is None else f"{math.ceil(scene.run_up.duration / scene.run_up.settings.step)} steps"
+    for name, size, lacking in (
+        ("statics, modes, report", "one speed", []),
+        ("lsa", f"{len(scene.frequencies)} frequencies", lsa_problems(scene)),
+        ("sweep", swept, sweep_problems(scene)),
+        ("critical", swept, [*sweep_problems(scene), *idle]),
+        ("runup", course, runup_problems(scene)),
+        ("campbell", course, runup_problems(scene) or campbell_problems(scene, scene.campbell)),
+        ("hammer", f"{len(scene.inputs)} inputs", hammer_problems(scene)),
+    ):
+        told = "; ".join(problem.removeprefix(f"{scene.name}: ") for problem in lacking)
+        yield f"  mbs {name}: {f'not yet: {told}' if lacking else size}"
