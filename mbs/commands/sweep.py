@@ -82,7 +82,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             *_undamped(entry),
             *_complex(entry),
             *_responses(entry),
-            *band_lines(case.model),
+            *band_lines(case.model, entry.film_share),
             *_exchanged(entry),
             *_unsure(entry),
             *_lost(entry),
