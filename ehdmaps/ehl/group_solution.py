@@ -51,9 +51,9 @@ def linearised_profile(profile: Profile, follows: bool = True) -> Linearisation 
     return linearised(profile.problem, profile.grid, profile.kernel, profile.unknowns, LOAD, neighbour, longer)
 
 
-FOURTH, SECOND = 1.5 / 15.0, 1.5 / 3.0
-"""Share of the difference between both grids that is left where the order is four or two: 1/(2^p - 1), and half as much
-again for safety."""
+FOURTH, THIRD, SECOND = 1.5 / 15.0, 1.5 / 7.0, 1.5 / 3.0
+"""Share of the difference between both grids that is left where the order p is four, three or two: 1/(2^p - 1), and
+half as much again for safety."""
 
 FIRST_ORDER = 1.5
 """Share of the difference between both grids that is left where the order is one, half as much again for safety."""
@@ -65,6 +65,10 @@ rolling force, in 1/X^2. Of a rigid film, of which it takes most, it is 2.47, 4.
 STEEP = 0.2
 """Fall of pressure at the exit, in p_H per width of its zone, above which an oil that is not Newtonian has kinks there:
 a third of what gives a spike cells of its own, see `Resolution.spike_steepness`."""
+
+YIELDS, PLUG = 0.99, 0.8
+"""Part of its limiting stress from which on oil counts as yielding by sliding, and part of the load carried by such oil
+from which on a film counts as a plug. Film offsets of plugs have orders of 2.3 to 4, others of thin films four."""
 
 MOST_TIP = 5.0
 """Pressure of a tip over that of its cell to which an estimate goes: an oil with a largest viscosity has no limit."""
@@ -134,7 +138,7 @@ def assembled(
     response, rough = linear.slow_response(), rough_linear.slow_response()
     starved = fine.layout.starved
     # the pressure rises from a meniscus with a kink, where sums are of second order
-    by_offset = SECOND if starved else _offset_share(M, fine.spike is not None)
+    by_offset = SECOND if starved else THIRD if _plug(fine) else _offset_share(M, fine.spike is not None)
     by_response = SECOND if starved else response_share(M, L, fine.spike is not None)
     inlet = 0.0 if starved else 1.0 / resolution.inlet**2
     central, minimum = fine.central_and_minimum_film
@@ -210,6 +214,21 @@ def _unresolved(profile: Profile) -> bool:
     if profile.spike is not None or profile.problem.shear.form == NEWTONIAN:
         return False
     return front(profile)[1] * zone_width(profile.layout.film) > STEEP
+
+
+def _plug(profile: Profile) -> bool:
+    """True where sliding makes a plug of most of a film without cells of its own at the ends of that.
+
+    There the oil begins and ceases to yield within a cell, at the inlet too, which makes the film. Both grids agree by
+    chance then.
+    """
+    law = profile.problem.shear
+    if profile.spike is not None or law.form != LIMITING or profile.problem.slide == 0.0:
+        return False
+    middle = 0.5 * (profile.pressure[1:] + profile.pressure[:-1])
+    carried = np.maximum(middle, 0.0) * profile.grid.face_step
+    yielding = np.abs(profile.stresses[0]) >= YIELDS * (law.stress + law.ratio * middle)
+    return float(carried[yielding].sum()) > PLUG * float(carried.sum())
 
 
 def _with_inlet(grid: float, lost: float) -> float:

@@ -14,8 +14,9 @@ loads, in both contacts of a roller, and in all bearings that share the map. So 
 contacts of a roller. Where signs alternate, as those of an interpolation do, that is more than need be.
 
 What a map does not state is in no bound: physics that its solver leaves out (heat, starvation, roughness, shear
-thinning, slip), the structural law, geometry, and the relaxation of the film beyond slow motion. A bound of 0.1 % of a
-map without model errors says that the equations are solved that well, and nothing of how well they are chosen.
+thinning, slip), the structural law, geometry, and the relaxation of the film beyond slow motion, which linear analyses
+add. A bound of 0.1 % of a map without model errors says that the equations are solved that well, and nothing of how
+well they are chosen.
 """
 
 from __future__ import annotations
@@ -86,9 +87,7 @@ LEFT_OUT = ("left_out_stiffness_error", "left_out_damping_error")
 TAKEN = "95 %"
 """Quantile of the errors of a law that a bound takes."""
 
-NOT_IN = (
-    "physics that the solver leaves out, how films relax, the structure of the solids and the geometry are not in it"
-)
+NOT_IN = "physics that the solver leaves out, the structure of the solids and the geometry are not in it"
 """What no bound has, for people."""
 
 _NUMBER = r"([0-9.eE+-]+)"

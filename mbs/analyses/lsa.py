@@ -72,8 +72,9 @@ class LsaResult:
     responses : array of complex, shape (frequencies, sensors, inputs)
         Responses in the unit of the sensor's quantity, per N or N m.
     level_error : array, shape (frequencies, sensors, inputs), or None
-        Bands of the levels of the responses, either way [dB], from the errors that the map states; None for laws that
-        state none.
+        Bands of the levels of the responses, either way [dB], from errors of known size; None for laws that state none.
+    film_share : float
+        Median part of these bands that is what films with memory leave out.
     pitch_range : array, shape (2, frequencies, sensors, inputs), or None
         Least and largest size of the responses at each single angle of the cage; None for one angle.
     errors : tuple of FilmError
@@ -93,6 +94,7 @@ class LsaResult:
     frequencies: FloatArray
     responses: ComplexArray
     level_error: FloatArray | None
+    film_share: float
     pitch_range: FloatArray | None
     errors: tuple[FilmError, ...]
     lifting: tuple[DynamicLoad, ...]
@@ -207,11 +209,13 @@ def _responded(found: _Linearised, frequencies: FloatArray) -> LsaResult:
     scene = model.scene
     motion = responses_of(balance, scene.inputs, frequencies)
     responses = sensed(balance, scene.sensors, frequencies, motion)
-    level_error = level_bands(balance, states, scene.sensors, frequencies, motion, responses)
+    level_error, film_share = level_bands(balance, states, scene.sensors, frequencies, motion, responses)
     space = state_space(balance, scene.inputs, scene.sensors)
     lifting = tuple(load for load in dynamic_loads(balance, scene.inputs, frequencies, motion) if load.exceeds)
     pitch_range = _pitch_range(balance, scene, frequencies)
-    dataset = linear_dataset(balance, space, responses, frequencies, scene.inputs, scene.sensors, level_error)
+    dataset = linear_dataset(
+        balance, space, responses, frequencies, scene.inputs, scene.sensors, level_error, film_share
+    )
     if pitch_range is not None:
         for name, words, values in zip(("least", "most"), ("least", "largest"), pitch_range, strict=True):
             attributes = {
@@ -228,6 +232,7 @@ def _responded(found: _Linearised, frequencies: FloatArray) -> LsaResult:
         frequencies=frequencies,
         responses=responses,
         level_error=level_error,
+        film_share=film_share,
         pitch_range=pitch_range,
         errors=tuple(film_errors(model, balance.displacement, balance.operation)),
         lifting=lifting,

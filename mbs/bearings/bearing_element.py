@@ -461,13 +461,27 @@ class RollerElement(RingElement):
         return self.plain.centrifugal_load(operation) * self.plain.bearing.geometry.roller_length
 
 
-def error_words(system: System) -> str:
-    """Name the errors in the bands of a system, for people; empty without bearings."""
+def error_words(system: System, film_share: float = 0.0) -> str:
+    """Name the errors in the bands of a system, for people, the largest first; empty without bearings.
+
+    Parameters
+    ----------
+    system : System
+        The system.
+    film_share : float
+        Part of the bands that is what films with memory leave out; 0 if that is not in them.
+    """
     bearings = [system.elements[index].element for index in system.select(RingElement)]
     if not bearings:
         return ""
     words = {element.error_words for element in bearings if isinstance(element, RingElement)}
-    return NO_MAP if "" in words else "; ".join(sorted(words))
+    if "" in words:
+        return NO_MAP
+    stated = "; ".join(sorted(words))
+    if film_share == 0.0:
+        return f"{stated}; how films relax is not in it"
+    films = f"what one relaxation time of a slice leaves out ({100.0 * film_share:.2g} % of the median band)"
+    return f"{films}, then {stated}" if film_share > 0.5 else f"{stated}; then {films}"
 
 
 def ring_matrices(stiffness: FloatArray, damping: FloatArray) -> tuple[FloatArray, FloatArray]:

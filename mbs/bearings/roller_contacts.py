@@ -177,6 +177,10 @@ class ContactGroup:
         times = relaxation_times(self.law, approach) if self.relaxes else np.zeros_like(approach)
         return load, stiffness * self.length, damping * self.length, times
 
+    def natural_times(self) -> FloatArray:
+        """Natural time of each slice [s], shape (r,), see `natural_times`."""
+        return natural_times(self.law, self.approach)
+
     def film_response(self) -> FilmResponse | None:
         """Part that the law of its slices leaves out with memory; None where nothing is known of oscillating films."""
         loads = self.state()[0]

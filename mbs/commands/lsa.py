@@ -106,7 +106,7 @@ def _report(found: LsaResult, label: str) -> list[str]:
         f"{found.asked} frequencies, and {frequencies.size - found.asked} more around lightly "
         "damped modes",
         *_peaks(model, found),
-        *band_lines(model),
+        *band_lines(model, found.film_share),
         *film_lines(found.errors, frequencies),
         *(
             f"warning: {load.element}: {load.dynamic:.3g} N of dynamic load at {load.frequency:.4g} Hz exceed the "

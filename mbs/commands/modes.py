@@ -58,7 +58,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         *done.lines,
         *heading(model, model.scene.speed),
         *_table(found, shown),
-        *band_lines(model),
+        *band_lines(model, 0.0 if found.bands is None else found.bands.film_share),
         *film_law_line(model, found.film_law is not None),
         *_overdamped(found, overdamped),
         *(f"  {note}" for note in notes),

@@ -80,7 +80,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             *_undamped(entry, case.model.system),
             *_complex(entry),
             *_responses(entry),
-            *band_lines(case.model),
+            *band_lines(case.model, entry.film_share),
             *_exchanged(entry),
             *_unsure(entry),
             *_lost(entry),

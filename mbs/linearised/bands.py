@@ -1,4 +1,6 @@
-"""Effect of the errors that a map states on what a linear analysis finds: first derivatives, and sums of their sizes.
+"""Effect of errors of known size on what a linear analysis finds: first derivatives, and sums of their sizes.
+
+They are the errors that a map states, and what films with memory leave out.
 
 A contact law is the approach, the stiffness and the damping at each load. Each may be wrong by its bound
 (`ehdmaps.maps.law_errors`), at all loads of a bearing with the same sign, which makes three changes a bearing:
@@ -15,7 +17,10 @@ and a response by dH = -S Z^-1 dZ Z^-1 B. A slice with a film that relaxes has Z
 theta = c/(k_s - k); k_s, the stiffness of the locked film, is held.
 
 A band is the sum of the sizes of these changes: of the three kinds, and over the bearings, which share the errors of
-one map. That is the largest change to first order that the bounds allow.
+one map. That is the largest change to first order that the bounds allow. Films with memory leave out a part that
+depends on the frequency, see `mbs.linearised.film_part`: the size of it for all bearings together, and that of its
+possible error, are added to bands of modes and responses. Undamped modes and k and c of bearings are those of slow
+motion, of which they leave out nothing.
 """
 
 from __future__ import annotations
@@ -32,6 +37,7 @@ from scipy.interpolate import CubicSpline
 from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
 from mbs.bearings.bearing_element import RingElement, ring_following
 from mbs.bearings.roller_contacts import ContactGroup
+from mbs.linearised.film_part import FilmPart, film_part
 from mbs.model.equilibrium import Equilibrium
 
 if TYPE_CHECKING:
@@ -63,10 +69,24 @@ class ModeBands(NamedTuple):
         Bands of |eigenvalue|/(2 pi) [Hz].
     damping_ratio : array
         Bands of the damping ratio.
+    by_films : array, shape (2, modes)
+        Part of both that is what films with memory leave out; 0 of motions that do not oscillate, and of other films.
     """
 
     frequency: FloatArray
     damping_ratio: FloatArray
+    by_films: FloatArray
+
+    @property
+    def film_share(self) -> float:
+        """Median part of bands of damping ratios that is what films with memory leave out; 0 without any band."""
+        return film_share(self.by_films[1], self.damping_ratio)
+
+
+def film_share(by_films: FloatArray, bands: FloatArray) -> float:
+    """Median part of bands that is what films with memory leave out, arrays of one shape; 0 without any band."""
+    some = bands > 0.0
+    return float(np.median(by_films[some] / bands[some])) if np.any(some) else 0.0
 
 
 class SliceChange(NamedTuple):
@@ -105,9 +125,12 @@ class LawBands:
     ----------
     changes : tuple of tuple of SliceChange
         Each change with all slices that it reaches: for each bearing those of `KINDS`.
+    films : FilmPart or None
+        What films leave out, in groups as those of the changes; None of films without memory.
     """
 
     changes: tuple[tuple[SliceChange, ...], ...]
+    films: FilmPart | None
     _balance: Equilibrium
     _groups: tuple[_Slices, ...]
 
@@ -141,11 +164,14 @@ class LawBands:
 
     def of_modes(self, eigenvalues: ComplexArray, right: ComplexArray, left: ComplexArray) -> ModeBands:
         """Bands of modes; arguments as of `eigenvalue_changes`."""
-        changes = self.eigenvalue_changes(eigenvalues, right, left)
-        size = np.maximum(np.abs(eigenvalues), 1e-300)
-        grown = (changes * eigenvalues.conj()).real / size
-        ratio = -(changes.real - eigenvalues.real * grown / size) / size
-        return ModeBands(np.abs(grown).sum(axis=0) / (2.0 * np.pi), np.abs(ratio).sum(axis=0))
+        by_laws = _sizes(self.eigenvalue_changes(eigenvalues, right, left), eigenvalues).sum(axis=1)
+        by_films = np.zeros_like(by_laws)
+        if self.films is not None:
+            change, doubt = self.films.eigenvalue_changes(eigenvalues, right, left)
+            size = np.maximum(np.abs(eigenvalues), 1e-300)
+            by_films = _sizes(change, eigenvalues) + np.array([doubt / (2.0 * np.pi), doubt / size])
+        frequency, damping_ratio = by_laws + by_films
+        return ModeBands(frequency, damping_ratio, by_films)
 
     def of_undamped(self, frequency: FloatArray, shapes: FloatArray) -> FloatArray:
         """Bands of undamped frequencies [Hz], either way, shape (n,).
@@ -185,8 +211,10 @@ class LawBands:
 
     def of_responses(
         self, frequencies: FloatArray, motion: ComplexArray, back: ComplexArray, responses: ComplexArray
-    ) -> FloatArray:
+    ) -> tuple[FloatArray, FloatArray]:
         """Bands of the size of frequency responses, either way, shape (frequencies, sensors, inputs) [their unit].
+
+        The second are the part of them that is what films with memory leave out.
 
         Parameters
         ----------
@@ -212,21 +240,31 @@ class LawBands:
         for one in self._groups:
             rows = one.port_rows[:, self._active[one.element]]
             products.append((rows[:, :, None] * rows[:, None, :]).reshape(one.times.size, -1))
-        for change in self.changes:
-            moved = np.zeros(responses.shape, dtype=np.complex128)
+
+        def moved_by(parts: Sequence[tuple[int, ComplexArray]]) -> list[ComplexArray]:
+            """Change of the responses by each element, of changes of the slices of groups at the places."""
             by_element: dict[int, ComplexArray] = {}
-            for part in change:
-                slices = self._groups[part.group]
-                dynamic = _dynamic(slices, part, np.asarray(1j * places, dtype=np.complex128))
-                matrix = (dynamic.real @ products[part.group]) + 1j * (dynamic.imag @ products[part.group])
-                before = by_element.get(slices.element)
-                by_element[slices.element] = matrix if before is None else before + matrix
+            for group, dynamic in parts:
+                element = self._groups[group].element
+                matrix = (dynamic.real @ products[group]) + 1j * (dynamic.imag @ products[group])
+                by_element[element] = by_element.get(element, np.zeros_like(matrix)) + matrix
+            moved = []
             for element, matrix in by_element.items():
                 at, size = places_of[element], self._active[element].size
                 at_all = CubicSpline(np.log(places), matrix)(logs) if places.size > 1 else matrix
-                moved -= back[:, :, at] @ at_all.reshape(-1, size, size) @ motion[:, at]
-            band += np.abs((moved * unit).real)
-        return band
+                moved.append(-back[:, :, at] @ at_all.reshape(-1, size, size) @ motion[:, at])
+            return moved
+
+        s = np.asarray(1j * places, dtype=np.complex128)
+        for change in self.changes:
+            moved = moved_by([(part.group, _dynamic(self._groups[part.group], part, s)) for part in change])
+            band += np.abs((np.sum(moved, axis=0) * unit).real)
+        by_films = np.zeros_like(band)
+        if self.films is not None:
+            parts, doubts = zip(*(group.left_out(s) for group in self.films.groups), strict=True)
+            by_films += np.abs((np.sum(moved_by(list(enumerate(parts))), axis=0) * unit).real)
+            by_films += np.sum(np.abs(moved_by(list(enumerate(doubts)))), axis=0)
+        return band + by_films, by_films
 
     def of_bearings(self) -> FloatArray:
         """Bands of k [N/m] and c [N s/m] of each bearing along its force, either way, shape (2, bearings).
@@ -295,7 +333,15 @@ def law_bands(balance: Equilibrium) -> LawBands | None:
         changes.append(tuple(_stiffer(g, states[g], bounds[g].stiffness) for g in own_groups))
         changes.append(tuple(_damped(g, states[g], bounds[g].damping) for g in own_groups))
         changes.append(_thicker(balance, slices, states, slopes, {g: bounds[g].film_offset for g in own_groups}))
-    return LawBands(tuple(changes), balance, tuple(slices))
+    return LawBands(tuple(changes), film_part(balance), balance, tuple(slices))
+
+
+def _sizes(changes: ComplexArray, eigenvalues: ComplexArray) -> FloatArray:
+    """Sizes of changes of |eigenvalue|/(2 pi) [Hz] and of the damping ratio, shape (2, ..., modes)."""
+    size = np.maximum(np.abs(eigenvalues), 1e-300)
+    grown = (changes * eigenvalues.conj()).real / size
+    ratio = -(changes.real - eigenvalues.real * grown / size) / size
+    return np.asarray(np.abs([grown / (2.0 * np.pi), ratio]))
 
 
 def _stiffer(group: int, state: _State, bound: FloatArray) -> SliceChange:

@@ -26,7 +26,7 @@ import scipy
 from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
 from ehdmaps.errors import AnalysisError
 from ehdmaps.units import MOTIONS, Display
-from mbs.linearised.bands import law_bands
+from mbs.linearised.bands import film_share, law_bands
 from mbs.linearised.dynamic import dynamic_stiffness, system_film_states
 from mbs.linearised.modes import StateModes
 from mbs.model.elements import Input, Quantity, Sensor
@@ -371,7 +371,7 @@ def level_bands(
     frequencies: FloatArray,
     motion: ComplexArray,
     responses: ComplexArray,
-) -> FloatArray | None:
+) -> tuple[FloatArray | None, float]:
     """Bands of the levels of frequency responses, either way, shape (frequencies, sensors, inputs) [dB].
 
     A response H with the band b is told as 20 log10(1 + b/|H|), which stays finite at an antiresonance, where its
@@ -396,10 +396,13 @@ def level_bands(
     -------
     array or None
         None for laws that state no errors.
+    float
+        Median part of the bands that is what films with memory leave out.
     """
     laws = law_bands(balance)
     if laws is None:
-        return None
+        return None, 0.0
     back = seen_of_loads(balance, states, sensors, frequencies, laws.ports)
-    band = laws.of_responses(frequencies, laws.ports @ motion, back, responses)
-    return np.asarray(20.0 * np.log10(1.0 + band / np.maximum(np.abs(responses), 1e-300)))
+    band, by_films = laws.of_responses(frequencies, laws.ports @ motion, back, responses)
+    levels = np.asarray(20.0 * np.log10(1.0 + band / np.maximum(np.abs(responses), 1e-300)))
+    return levels, film_share(by_films, band)

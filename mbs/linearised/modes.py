@@ -20,14 +20,13 @@ from ehdmaps.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from ehdmaps.errors import AnalysisError
 from mbs.linearised.bands import ModeBands, law_bands
 from mbs.linearised.dynamic import (
-    FilmLawPart,
     FilmStates,
     LostMode,
     OwnFrequency,
     at_own_frequency,
-    film_law_part,
     system_film_states,
 )
+from mbs.linearised.film_part import FilmLawPart, film_law_part, film_part
 from mbs.model.equilibrium import Equilibrium
 
 FREE = 1e-6
@@ -60,9 +59,9 @@ class Modes:
         Motions that do not oscillate and are as quick as films relax. They cannot be told from these, and are in no
         array.
     bands : ModeBands or None
-        What the errors that a map states may change, see `mbs.linearised.bands`; None for laws that state none.
+        What errors of known size may change, see `mbs.linearised.bands`; None for laws that state none.
     film_law : FilmLawPart or None
-        What films with memory leave out, see `mbs.linearised.dynamic`; None where that is not known.
+        What films with memory leave out, see `mbs.linearised.film_part`; None where that is not known.
     """
 
     eigenvalues: ComplexArray
@@ -229,7 +228,7 @@ def modes_of(balance: Equilibrium, states: StateModes) -> Modes:
     laws = law_bands(balance)
     left = states.left[kept, n : 2 * n]
     bands = None if laws is None else laws.of_modes(values, shapes, left)
-    film_law = film_law_part(balance, values, shapes, left)
+    film_law = film_law_part(film_part(balance) if laws is None else laws.films, values, shapes, left)
     translations = np.array([unit != "rad" for unit in balance.system.units])
     for k in range(shapes.shape[1]):
         column = shapes[:, k]

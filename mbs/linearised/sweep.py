@@ -20,7 +20,7 @@ from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
 from ehdmaps.errors import AnalysisError, InputError
 from mbs.bearings.bearing_element import RingElement, ring_matrices
 from mbs.linearised.averaged import AveragedEquilibrium, PitchSpread, averaged, over_pitch, pitch_spread, steady_system
-from mbs.linearised.bands import law_bands
+from mbs.linearised.bands import film_share, law_bands
 from mbs.linearised.dynamic import LostMode
 from mbs.linearised.linear import checked_response, peak_places, with_peaks
 from mbs.linearised.modes import StateModes, UndampedModes, energy_shares, state_modes, undamped_modes
@@ -318,6 +318,7 @@ def sweep(
         bearings=_bearings(points, first),
         responses=ResponseSweep(frequencies, tuple(inputs), tuple(sensors), values, peak_frequency, peak_size, errors),
         between=sum(link.between for link in links),
+        film_share=film_share(*np.hstack([[point.by_films[1], point.complex_errors[1]] for point in points])),
     )
 
 
@@ -340,6 +341,7 @@ class _Recorded:
     frequency_error: FloatArray
     complex_errors: FloatArray
     bearing_errors: FloatArray
+    by_films: FloatArray
     spread: PitchSpread
 
 
@@ -372,16 +374,20 @@ def _record(point: Point) -> _Recorded:
     )
 
 
-def _errors(point: Point) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Bands of undamped frequencies (n,), of complex modes (2, modes) and of bearings (2, bearings); NaN if unknown."""
+def _errors(point: Point) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Bands of undamped frequencies (n,), complex modes (2, modes) and bearings (2, bearings), and parts by films.
+
+    The parts are those of the bands of complex modes, (2, modes). NaN if unknown.
+    """
     n, kept, states = point.balance.system.size, point.kept, point.states
     laws = law_bands(point.balance)
     if laws is None:
         shape = (2, bearing_parts(point.balance).size)
-        return np.full(n, np.nan), np.full((2, kept.size), np.nan), np.full(shape, np.nan)
+        unknown = np.full((2, kept.size), np.nan)
+        return np.full(n, np.nan), unknown, np.full(shape, np.nan), unknown
     damped = laws.of_modes(point.damped.eigenvalues, states.right[:n, kept], states.left[kept, n : 2 * n])
     undamped = laws.of_undamped(point.undamped.frequency, point.undamped.shapes)
-    return undamped, np.array(damped), laws.of_bearings()
+    return undamped, np.array([damped.frequency, damped.damping_ratio]), laws.of_bearings(), damped.by_films
 
 
 def _peaks(axis: FloatArray, size: FloatArray) -> list[FloatArray]:

@@ -222,6 +222,8 @@ class Sweep:
         See there.
     between : int
         Speeds that were put in between to follow the modes.
+    film_share : float
+        Median part of the bands of complex modes that is what films with memory leave out.
     """
 
     speeds: FloatArray
@@ -234,6 +236,7 @@ class Sweep:
     bearings: BearingSweep
     responses: ResponseSweep
     between: int
+    film_share: float = 0.0
 
 
 _BESIDE = 3

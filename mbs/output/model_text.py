@@ -117,15 +117,17 @@ def _estimated(model: Model) -> list[str]:
     return [f"  {name} ({', '.join(bearings)}): {words}" for (name, words), bearings in kinds.items()]
 
 
-def band_lines(model: Model) -> list[str]:
+def band_lines(model: Model, film_share: float = 0.0) -> list[str]:
     """A line on what the bands of a result hold; none without bearings.
 
     Parameters
     ----------
     model : Model
         The model.
+    film_share : float
+        Part of the bands that is what films with memory leave out; 0 if that is not in them.
     """
-    words = error_words(model.system)
+    words = error_words(model.system, film_share)
     return [f"  bands (+-): {words}"] if words else []
 
 
@@ -144,11 +146,11 @@ def film_law_line(model: Model, known: bool) -> list[str]:
     if known:
         return [
             "  film law: what one relaxation time of a slice leaves out of the response of the film solver, which the "
-            "map holds: true less printed, to first order; in no band"
+            "map holds: true less printed, to first order; its size is in the bands"
         ]
     if model.memory == "slow":
         return ["  film law: not known; films of slow motion leave out how films relax (--films memory has it)"]
-    return ["  film law: not known; the law holds no response of the film solver, and no band holds this part"]
+    return ["  film law: not known; the law holds no response of the film solver"]
 
 
 def clean(value: float) -> float:

@@ -19,7 +19,7 @@ _SIZE = (9.0, 5.5)
 BAND_ALPHA = 0.2
 """Opacity of the bands of errors."""
 
-BAND_WORDS = "band by the errors that the map states"
+BAND_WORDS = "band by errors of known size"
 """How figures call them."""
 
 ESTIMATED = f"estimated error of the films above {100.0 * NOTABLE:g} %"

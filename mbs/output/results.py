@@ -269,7 +269,7 @@ def _is_rigid_in_x(model: Model, body: str) -> bool:
     return not any(np.any(frame.transform[0]) for frame in model.system.body(body).frames.values())
 
 
-BAND = "band, either way, by the errors that the map states, of"
+BAND = "band, either way, by errors of known size, of"
 """How datasets call the bands; they are NaN where none is stated."""
 
 STEP_ERROR = {"units": "dB", "long_name": "estimated error of the level by the step, from parts with half of it"}
@@ -358,7 +358,8 @@ def modes_dataset(found: Modes, balance: Equilibrium) -> xr.Dataset:
         for name, part in (("real", found.shapes.real), ("imaginary", found.shapes.imag))
     )
     none = np.full(found.frequency.shape, np.nan)
-    frequency_band, damping_band = (none, none) if found.bands is None else found.bands
+    frequency_band, damping_band = (none, none) if found.bands is None else found.bands[:2]
+    film_share = 0.0 if found.bands is None else found.bands.film_share
     frequency_law, damping_law = (none, none) if found.film_law is None else found.film_law
     variables = {
         "frequency": ("mode", found.frequency, {"units": "Hz", "long_name": "|eigenvalue|/(2 pi)"}),
@@ -382,7 +383,9 @@ def modes_dataset(found: Modes, balance: Equilibrium) -> xr.Dataset:
         **imaginary,
     }
     coordinates = {"part": list(found.parts), "mode": np.arange(1, found.eigenvalues.size + 1)}
-    return xr.Dataset(variables, coords={**_coordinates(balance.system), **coordinates}, attrs=_operation(balance))
+    return xr.Dataset(
+        variables, coords={**_coordinates(balance.system), **coordinates}, attrs=_operation(balance, film_share)
+    )
 
 
 def linear_dataset(
@@ -393,6 +396,7 @@ def linear_dataset(
     inputs: Sequence[Input],
     sensors: Sequence[Sensor],
     level_error: FloatArray | None = None,
+    film_share: float = 0.0,
 ) -> xr.Dataset:
     """State space and frequency responses.
 
@@ -412,6 +416,8 @@ def linear_dataset(
         Sensors, where motion is measured.
     level_error : ndarray, optional
         Bands of the levels [dB], in the shape of the responses; NaN if left out.
+    film_share : float
+        Part of these bands that is what films with memory leave out.
     """
     names = list(balance.system.coordinates)
     films = space.A.shape[0] - 2 * len(names)
@@ -445,7 +451,7 @@ def linear_dataset(
         "state": states,
         "of_state": states,
     }
-    return xr.Dataset(variables, coords=coordinates, attrs=_operation(balance))
+    return xr.Dataset(variables, coords=coordinates, attrs=_operation(balance, film_share))
 
 
 def run_dataset(system: System, run: Recording) -> xr.Dataset:
@@ -535,12 +541,12 @@ def _bearing_names(system: System) -> npt.NDArray[np.str_]:
     return np.array([system.elements[i].element.name for i in system.select(RingElement)], dtype=np.str_)
 
 
-def _operation(balance: Equilibrium) -> dict[str, Any]:
-    """Speed and quality of an equilibrium."""
+def _operation(balance: Equilibrium, film_share: float = 0.0) -> dict[str, Any]:
+    """Speed and quality of an equilibrium, and the errors in bands of which films leave out a share."""
     return {
         "speed_rad_per_s": balance.operation.speed,
         "angle_rad": balance.operation.angle,
-        "bands": error_words(balance.system),
+        "bands": error_words(balance.system, film_share),
         "residual": balance.residual,
         "newton_steps": balance.steps,
     }

@@ -68,7 +68,13 @@ def mode_table(found: ModesResult, highest: float) -> Markup:
         f"{len(all_modes.lost)} modes could not be brought to the films of their own frequency and are not listed."
         if all_modes.lost
         else "",
-        *(line.strip() + "." for line in (*band_lines(found.model), *film_law_line(found.model, law is not None))),
+        *(
+            line.strip() + "."
+            for line in (
+                *band_lines(found.model, 0.0 if bands is None else bands.film_share),
+                *film_law_line(found.model, law is not None),
+            )
+        ),
         *film_lines(found.errors, all_modes.frequency[listed]),
     ]
     return joined(

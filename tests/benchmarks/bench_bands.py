@@ -9,18 +9,31 @@ difference is covered where it is at most the band of the coarse map; beside it 
 wrong too. Told is the share that is covered, of frequencies and of damping ratios, and how large the differences are as
 parts of the band: a band that covers all, and of which differences are a thousandth, is of no use either. The same for
 k and c of the bearings along their load. With --cost also what the bands cost, as ratios of processor times.
+
+Run: python -m tests.benchmarks.bench_bands --exact [--machine NAME ...] [--oil NAME ...] [--random SEED]
+
+Modes with films of the table beside those of films by the film solver itself, at their own complex frequency
+(`tests.cases.exact_films`), for `MACHINES`, `OILS`, `RPM_OF` and `CLEARANCES`: how often the band covers what is true,
+and the band of the map alone, without what films with memory leave out. Rollers are massless, and the loads of the
+slices are those of the equilibrium of the table for both: so the part of the film offset is not tested. With --random
+speed and clearance are drawn between the ends of these instead, two for each machine and oil.
 """
 
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import time
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.maps.law import ContactLaw
+from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.units import RPM, TEMPERATURE
 from mbs.analyses.lsa import lsa
 from mbs.analyses.modes import modes as modes_of_model
@@ -36,9 +49,23 @@ from mbs.scene.assembly import Model, assemble
 from mbs.scene.changes import with_temperature
 from mbs.scene.reader import read_scene
 from mbs.settings import SweepRange
+from tests.cases.exact_films import ExactFilms, ExactMachine
 
 SPEEDS = tuple(rpm / RPM.factor for rpm in (500.0, 1000.0, 1500.0, 2000.0, 2500.0))
 TEMPERATURES = tuple(celsius + 273.15 for celsius in (35.0, 40.0, 55.0, 65.0))
+MACHINES = ("nu308_rigid", "n1014_rigid", "gearbox", "nu2210_shaft")
+"""Scenes; the geometry of NU2210 is estimated from the catalogue."""
+
+OILS = {
+    "FVA3": Lubricant.named("FVA3"),
+    "VG 32": Lubricant.roelands(viscosity=0.032, pressure_viscosity=18e-9, density=865.0),
+    "VG 320": Lubricant.roelands(viscosity=0.32, pressure_viscosity=26e-9, density=895.0),
+    "PAO": Lubricant.roelands(viscosity=0.031, pressure_viscosity=13e-9, density=830.0),
+}
+"""At the temperature of each scene."""
+
+RPM_OF, CLEARANCES = (300.0, 1500.0, 6000.0), (0.0, 20e-6, 60e-6)
+
 HIGHEST = 12e3
 LEAST_SHARE, LEAST_LIKENESS = 0.05, 0.9
 
@@ -157,6 +184,79 @@ def cost(scene: str, emap: EHDMap) -> None:
         print(f"  {name} with bands takes {np.median(ratios):.3f} of the time without ({spent[1]:.3f} s)")
 
 
+class Beside(NamedTuple):
+    """A mode beside the true one: differences, bands, and parts of the bands by films; frequency, damping ratio."""
+
+    true: FloatArray
+    difference: FloatArray
+    bands: FloatArray
+    by_films: FloatArray
+
+
+def beside_exact(
+    scene: str, oil: Lubricant, rpm: float, clearance: float, known: dict[tuple[float, float], ExactFilms]
+) -> Iterator[Beside | None]:
+    """The modes of a machine beside those with exact films; None for a mode that has none."""
+    read = read_scene(scene)
+    massless = read.with_bearings(
+        dataclasses.replace(entry, rollers_as_bodies=False, centrifugal=False) for entry in read.bearings
+    )
+    speed = rpm / RPM.factor
+    model = assemble(dataclasses.replace(massless, lubricant=oil, speed=speed), "table", None, clearance)
+    balance, found = analysed(model, speed)
+    bands = found.bands
+    assert bands is not None
+    share = found.shares[[found.parts.index(entry.name) for entry in model.bearings]].sum(axis=0)
+    exact = ExactMachine(balance, oil, known)
+    for k in np.flatnonzero((found.eigenvalues.imag > 0.0) & (share >= LEAST_SHARE) & (found.frequency < HIGHEST)):
+        true = exact.mode(complex(found.eigenvalues[k]), found.shapes[:, k])
+        if true is None or true[0].imag <= 0.0:
+            yield None
+            continue
+        size = abs(true[0])
+        values = np.array([size / (2.0 * np.pi), -true[0].real / size])
+        ours = np.array([found.frequency[k], found.damping_ratio[k]])
+        yield Beside(values, ours - values, np.array([part[k] for part in bands[:2]]), bands.by_films[:, k])
+
+
+def exact_line(words: str, modes_beside: Sequence[Beside | None]) -> None:
+    """A line on how many modes are covered, of frequencies and of damping ratios."""
+    there = [entry for entry in modes_beside if entry is not None]
+    line = f"{words:28}{len(there):6d}{len(modes_beside) - len(there):5d}"
+    for place in range(2) if there else ():
+        true, wrong, band, films = (
+            np.array([getattr(entry, name)[place] for entry in there])
+            for name in ("true", "difference", "bands", "by_films")
+        )
+        wrong = np.maximum(np.abs(wrong), 1e-12 * np.abs(true))
+        parts = 100.0 * np.mean(wrong <= band), 100.0 * np.mean(wrong <= band - films)
+        middle, most = 100.0 * np.quantile(wrong / np.abs(true), [0.5, 0.95])
+        line += f"   |{parts[0]:6.1f}{parts[1]:7.1f}{np.median(band / wrong):8.2g}{middle:8.2g}{most:7.2g}"
+    print(line, flush=True)
+
+
+def exactly(machines: Sequence[str], oils: Sequence[str], seed: int | None) -> None:
+    """Print what is covered beside exact films."""
+    head = "   |covered  map  st/true  true %   95 %"
+    print(f"{'machine, oil':28}{'modes':>6}{'none':>5}{head}{head}\n{'':39}   |frequency{'':32}|damping ratio")
+    rng = np.random.default_rng(seed)
+    every: list[Beside | None] = []
+    films: dict[tuple[str, str], dict[tuple[float, float], ExactFilms]] = {}
+    for machine in machines:
+        for oil in oils:
+            cases = [(rpm, clearance) for rpm in RPM_OF for clearance in CLEARANCES]
+            if seed is not None:
+                drawn = rng.uniform(size=(2, 2))
+                cases = [
+                    (RPM_OF[0] * (RPM_OF[-1] / RPM_OF[0]) ** float(x), CLEARANCES[-1] * float(y)) for x, y in drawn
+                ]
+            known = films.setdefault((machine, oil), {})
+            rows = [one for case in cases for one in beside_exact(machine, OILS[oil], *case, known)]
+            exact_line(f"{machine}, {oil}", rows)
+            every += rows
+    exact_line("all", every)
+
+
 def laws_of(element: Element) -> list[ContactLaw]:
     """Laws of a bearing that is made from a map."""
     if isinstance(element, RollerElement):
@@ -169,11 +269,19 @@ def laws_of(element: Element) -> list[ContactLaw]:
 def main() -> None:
     """Compare."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("coarse")
-    parser.add_argument("fine")
-    parser.add_argument("scenes", nargs="+")
+    parser.add_argument("coarse", nargs="?")
+    parser.add_argument("fine", nargs="?")
+    parser.add_argument("scenes", nargs="*")
     parser.add_argument("--cost", action="store_true")
+    parser.add_argument("--exact", action="store_true")
+    parser.add_argument("--machine", action="append", choices=MACHINES)
+    parser.add_argument("--oil", action="append", choices=OILS)
+    parser.add_argument("--random", type=int)
     given = parser.parse_args()
+    if given.exact:
+        with threadpool_limits(1):
+            exactly(given.machine or MACHINES, given.oil or tuple(OILS), given.random)
+        return
     coarse, fine = open_map(given.coarse), open_map(given.fine)
     print(f"coarse: {coarse.law_errors.words}")
     print(f"speeds {', '.join(map(RPM.text, SPEEDS))}; temperatures {', '.join(map(TEMPERATURE.text, TEMPERATURES))}")

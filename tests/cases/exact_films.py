@@ -32,7 +32,7 @@ HIGHEST = 12e3
 """Frequency up to which films are exact [Hz]."""
 
 LOADS = np.unique(
-    np.concatenate([np.geomspace(40.0, 3e3, 26), np.geomspace(3e3, 3e4, 34), np.geomspace(3e4, 1.2e5, 12)])
+    np.concatenate([np.geomspace(1.0, 3e3, 48), np.geomspace(3e3, 3e4, 34), np.geomspace(3e4, 1.2e5, 12)])
 )
 """Loads at which films are solved [N/m]; lighter slices have the film of the lightest one."""
 

@@ -17,9 +17,11 @@ from mbs.analyses.campbell import campbell, law_changes, with_changed_laws
 from mbs.analyses.lsa import LsaSettings, lsa
 from mbs.analyses.modes import modes
 from mbs.analyses.ramp import silent_run
-from mbs.bearings.bearing_element import NO_MAP
+from mbs.bearings.bearing_element import NO_MAP, error_words
 from mbs.linearised.bands import law_bands
-from mbs.linearised.linear import frequency_response, input_matrix, responses, seen_of_loads
+from mbs.linearised.dynamic import dynamic_stiffness
+from mbs.linearised.film_part import FilmSlices
+from mbs.linearised.linear import frequency_response, input_matrix, responses, seen_of_loads, sensor_matrix
 from mbs.linearised.modes import state_modes, undamped_modes
 from mbs.linearised.sweep import along_load
 from mbs.model.elements import Operation
@@ -124,7 +126,7 @@ def test_derivatives_are_those_of_systems_solved_again(models, scene):
     back = seen_of_loads(balance, states, sensors, frequencies, laws.ports)
     motion = laws.ports @ responses(balance, inputs, frequencies)
     for index, change in enumerate(laws.changes[:3]):
-        only = dataclasses.replace(laws, changes=(change,))
+        only = dataclasses.replace(laws, changes=(change,), films=None)
         other = changed(balance, laws, change, SMALL)
         again = states_of(other)
         moved = (nearest(again.eigenvalues, values + SMALL * found[index]) - values) / SMALL
@@ -136,7 +138,7 @@ def test_derivatives_are_those_of_systems_solved_again(models, scene):
         band = only.of_undamped(plain.frequency, plain.shapes)[swings]
         np.testing.assert_allclose(np.sort(shift), np.sort(band), rtol=5e-3, atol=1e-3 * band.max(initial=1e-9))
         level = (np.abs(frequency_response(other, inputs, sensors, frequencies)) - np.abs(direct)) / SMALL
-        band = only.of_responses(frequencies, motion, back, direct)
+        band, _ = only.of_responses(frequencies, motion, back, direct)
         np.testing.assert_allclose(band, np.abs(level), rtol=5e-3, atol=1e-3 * band.max())
         sides = np.abs(along_load(other)[1:] - along_load(balance)[1:]) / SMALL
         np.testing.assert_allclose(only.of_bearings(), sides, rtol=5e-3, atol=1e-6 * sides.max())
@@ -184,9 +186,10 @@ def test_bands_are_told(models):
     np.testing.assert_array_equal(data["damping_ratio_error"], bands.damping_ratio)
     # k within 0.1 %, c within 1 %: a frequency by about half of the first, and by some of the second where c stiffens
     light = result.modes.damping_ratio < 0.3
-    assert 0.0 < (bands.frequency / result.modes.frequency)[light].max() < 2e-3
+    by_map = bands.frequency - bands.by_films[0]
+    assert 0.0 < (by_map / result.modes.frequency)[light].max() < 2e-3
     assert "95 % of 100 checked points" in data.attrs["bands"]
-    (line,) = band_lines(model)
+    (line,) = band_lines(model, bands.film_share)
     assert data.attrs["bands"] in line
     found = lsa(model, LsaSettings((50.0, 500.0), Operation(SPEED)))
     assert found.level_error.shape == found.responses.shape == found.dataset["response_level_error"].shape
@@ -265,3 +268,95 @@ def test_the_band_of_a_level_is_the_largest_difference_of_its_runs(models, monke
     np.testing.assert_allclose(found.dataset["sum_level_error"][0], expected, rtol=1e-6)
     assert campbell(model).runs[0].level_error is None
     assert len(told) == 4
+
+
+@pytest.fixture(scope="module")
+def with_response():
+    """A machine whose law holds the response of its films."""
+    return assemble(read_scene("nu308_rigid"), "table")
+
+
+@pytest.fixture
+def sure(monkeypatch):
+    """Films of which what they leave out is known without a doubt."""
+    plain = FilmSlices.left_out
+
+    def left_out(slices, s):
+        part, doubt = plain(slices, s)
+        return part, 0.0 * doubt
+
+    monkeypatch.setattr(FilmSlices, "left_out", left_out)
+
+
+def more_of(balance, laws, s, size):
+    """Dynamic stiffness with a part of what the films leave out, shape (n, n)."""
+    added = dynamic_stiffness(balance, np.array([s]))[0]
+    for group in laws.films.groups:
+        added = added + size * (group.rows.T * group.left_out(np.array([s]))[0][0]) @ group.rows
+    return added
+
+
+def test_what_films_leave_out_is_that_of_systems_solved_again(with_response, sure):
+    """Eigenvalues, and sizes of responses, of the system with a tenth of it; the second order is a thousandth."""
+    balance = equilibrium(with_response.system, Operation(SPEED))
+    laws, states, n = law_bands(balance), states_of(balance), balance.system.size
+    kept = np.flatnonzero(states.oscillates)
+    own = states.at_own_frequency(balance, kept)
+    right, left = states.right[:n, kept], states.left[kept, n : 2 * n]
+    found, doubt = laws.films.eigenvalue_changes(own.eigenvalues, right, left)
+    assert not np.any(doubt) and np.all(found != 0.0)
+    for k, s in enumerate(own.eigenvalues):
+        # Z of the other system, read by the vectors of this one: Z of this one leaves nothing there.
+        matrix, turned = more_of(balance, laws, s, 1.0), np.linalg.solve(balance.system.mass, left[k])
+        assert -turned @ matrix @ right[:, k] == pytest.approx(found[k], rel=2e-2, abs=1e-3 * np.abs(found).max())
+    inputs, sensors = with_response.scene.inputs, with_response.scene.sensors
+    frequencies = np.geomspace(30.0, 5e3, 30)
+    direct = frequency_response(balance, inputs, sensors, frequencies)
+    back = seen_of_loads(balance, states, sensors, frequencies, laws.ports)
+    motion = laws.ports @ responses(balance, inputs, frequencies)
+    _, by_films = laws.of_responses(frequencies, motion, back, direct)
+    places, forces = sensor_matrix(balance, sensors), input_matrix(balance, inputs)
+    orders = np.array([{"displacement": 0, "velocity": 1, "acceleration": 2}[sensor.quantity] for sensor in sensors])
+    for f, frequency in enumerate(frequencies):
+        s = 2j * np.pi * frequency
+        again = places @ np.linalg.solve(more_of(balance, laws, s, SMALL), forces) * (s**orders)[:, None]
+        level = np.abs(np.abs(again) - np.abs(direct[f])) / SMALL
+        # 12 places a decade for the splines of what the slices leave out
+        np.testing.assert_allclose(by_films[f], level, rtol=2e-2, atol=1e-2 * by_films[f].max())
+
+
+def test_bands_hold_what_films_with_memory_leave_out(models, with_response):
+    """With and without a response of the films; more of the stiffness at higher frequencies."""
+    frequencies = np.array([100.0, 1e3, 4e3])
+    for model in (models["nu308_rigid"], with_response):
+        found = modes(model, Operation(SPEED))
+        bands, laws = found.modes.bands, law_bands(found.balance)
+        swings = found.modes.eigenvalues.imag > 0.0
+        assert np.all(bands.by_films[:, swings] > 0.0) and not np.any(bands.by_films[:, ~swings])
+        assert np.all(bands.damping_ratio[swings] > bands.by_films[1, swings]) and 0.0 < bands.film_share < 1.0
+        assert "one relaxation time" in found.dataset.attrs["bands"]
+        for group in laws.films.groups:
+            part, doubt = group.left_out(2j * np.pi * frequencies)
+            size = np.sum(np.abs(part) + doubt, axis=1) / group.stiffness.sum()
+            assert size[0] > 0.0 and np.all(np.diff(size) > 0.0)
+        loud = lsa(model, LsaSettings((50.0, 4e3), Operation(SPEED)))
+        assert 0.0 < loud.film_share < 1.0 and "one relaxation time" in loud.dataset.attrs["bands"]
+    law = found.modes.film_law
+    some = np.isfinite(law.damping_ratio)
+    # The part has its sign there and its size here: what is added is its possible error, and the second order.
+    assert np.all(bands.damping_ratio[some] > 0.9 * np.abs(law.damping_ratio[some]))
+
+
+def test_slow_films_leave_out_no_memory(maps):
+    model = assemble(read_scene("nu308_rigid"), "map", maps["nu308_rigid"], films="slow")
+    found = modes(model, Operation(SPEED))
+    assert not np.any(found.modes.bands.by_films) and found.modes.bands.film_share == 0.0
+    assert found.dataset.attrs["bands"].endswith("how films relax is not in it")
+    assert lsa(model, LsaSettings((50.0, 500.0), Operation(SPEED))).film_share == 0.0
+
+
+def test_the_largest_source_of_bands_comes_first(models):
+    system = models["nu308_rigid"].system
+    large, small = (error_words(system, share) for share in (0.8, 0.2))
+    assert large.startswith("what one relaxation time of a slice leaves out (80 % of the median band), then numerical")
+    assert small.endswith("then what one relaxation time of a slice leaves out (20 % of the median band)")

@@ -21,7 +21,8 @@ from mbs.analyses.film_errors import film_errors
 from mbs.analyses.modes import modes as analysed
 from mbs.commands.modes import _table
 from mbs.linearised.averaged import steady_system
-from mbs.linearised.dynamic import FilmLawPart, element_dynamic_stiffness
+from mbs.linearised.dynamic import element_dynamic_stiffness
+from mbs.linearised.film_part import FilmLawPart
 from mbs.linearised.modes import modes
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
