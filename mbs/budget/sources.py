@@ -65,7 +65,7 @@ def model_choices(base: Subject, model: Model) -> list[Tried]:
     base : Subject
         The scene with films that have their memory.
     model : Model
-        Its model.
+        Model of the scene.
     """
     return [*_laws(base), *_supplies(base), *_unknown(base, model)]
 
@@ -189,7 +189,7 @@ def linear_row(group: str, label: str, found: LinearLook, beside: LinearReferenc
     Parameters
     ----------
     group, label : str
-        Of the choice.
+        Group and name of the choice.
     found : LinearLook
         What was found.
     beside : LinearReference

@@ -43,7 +43,7 @@ class Examination:
     maps : MapSet or None
         The maps of its law.
     budget : Trade or str
-        Its error budget, or why there is none; empty where it was not looked for.
+        Error budget of the machine, or why there is none; empty where it was not looked for.
     """
 
     statics: StaticsResult

@@ -13,9 +13,9 @@ from ehdmaps.trade.answer import answer_lines, budget
 from ehdmaps.trade.data import trade_json
 from ehdmaps.trade.text import trade_text
 from mbs import assemble, parse_scene, read_scene
+from mbs.budget.linear_look import LinearReference, linear_look
 from mbs.cli import main
 from mbs.instruments import tradeoff as analysis
-from mbs.budget.linear_look import LinearReference, linear_look
 from mbs.instruments.tradeoff import TradeoffSettings, tradeoff
 from mbs.scene import changes
 from mbs.scene.choices import LawChoice

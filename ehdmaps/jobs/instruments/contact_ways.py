@@ -562,7 +562,7 @@ class TableReader(ContactSolverDefaults):
         Parameters
         ----------
         contact, lubricant, loads, entrainment_speed, temperature
-            As of `ehdmaps.physics.solution.ContactSolver`.
+            The arguments of `ehdmaps.physics.solution.ContactSolver.solve_line`.
         """
         found = film_table(lubricant).films(
             contact, lubricant, np.array(loads), entrainment_speed, temperature, thickest_film=math.inf

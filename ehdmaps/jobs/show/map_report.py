@@ -235,7 +235,7 @@ def map_report(emap: EHDMap, name: str, command: str, budget: Trade | str | None
     command : str
         Command line that asks for it.
     budget : Trade or str, optional
-        Its error budget, or why there is none, see `ehdmaps.jobs.show.map_budget`.
+        Error budget of the map, or why there is none, see `ehdmaps.jobs.show.map_budget`.
 
     Raises
     ------
