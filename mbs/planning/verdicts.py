@@ -161,7 +161,7 @@ class Verdict:
 
     @property
     def asked(self) -> bool:
-        """Whether it is as it was asked for, in the place of a judgement."""
+        """Tell whether it is as it was asked for, in the place of a judgement."""
         return self.words.startswith(_ASKED)
 
     @property

@@ -304,8 +304,7 @@ def _data_entries(job: Job, stated: ContactModel) -> tuple[Entry, ...]:
         words = f"structural law {other} in place of {job.contacts[0].structural_law}"
         others.append(("structural law", words, OtherSolids(stated, other, job.bearing)))
     return tuple(
-        Entry(Group("as stated", model, f"{name}"), f"{what} as stated", stated, lacks=name)
-        for what, name, model in others
+        Entry(Group("as stated", model, name), f"{what} as stated", stated, lacks=name) for what, name, model in others
     )
 
 
