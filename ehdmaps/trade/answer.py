@@ -7,7 +7,7 @@ known, and what it costs to have it. Everything is read from the rows of the mea
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
@@ -144,6 +144,64 @@ def budget(trade: Trade) -> tuple[Bar, ...]:
         if max(found.high for found in errors.values()) > 0.0:
             bars.append(Bar(source.name, errors, costs[-1] if costs else math.nan, against))
     return tuple(sorted(bars, key=lambda bar: -bar.largest(trade)))
+
+
+BUDGET_WORDS = "wrong by, where it is left out or not known: median to 95 % of the points"
+"""What the axis of a budget shows."""
+
+_DECADES = 1e-5
+"""Lowest value of an axis over the largest one, but where a whole bar would lie below."""
+
+
+@dataclass(frozen=True)
+class Mark:
+    """Bar of a drawn budget.
+
+    Attributes
+    ----------
+    row, place : int
+        Place of its source among the lines of the budget, and of its quantity among those that are shown.
+    low, high : float
+        Median and 95 % quantile, as printed; the median may be zero.
+    """
+
+    row: int
+    place: int
+    low: float
+    high: float
+
+
+def budget_marks(trade: Trade, bars: Sequence[Bar]) -> tuple[Mark, ...]:
+    """Bars of a drawn budget; a quantity without an error above zero has none.
+
+    Parameters
+    ----------
+    trade : Trade
+        The measurement.
+    bars : sequence of Bar
+        Lines of its budget.
+    """
+    return tuple(
+        Mark(row, place, size(trade, name, found.median), size(trade, name, found.high))
+        for row, bar in enumerate(bars)
+        for place, name in enumerate(trade.shown)
+        if (found := bar.errors.get(name)) is not None and found.high > 0.0
+    )
+
+
+def budget_axis(trade: Trade, bars: Sequence[Bar]) -> tuple[float, float]:
+    """Ends of the logarithmic axis of a budget, as printed: no bar lies below it as a whole.
+
+    Parameters
+    ----------
+    trade : Trade
+        The measurement.
+    bars : sequence of Bar
+        Lines of its budget; at least one.
+    """
+    marks = budget_marks(trade, bars)
+    least, most = min(mark.high for mark in marks), max(mark.high for mark in marks)
+    return min(0.3 * least, max(0.5 * min(mark.low for mark in marks), _DECADES * most)), 4.0 * most
 
 
 def answer_lines(trade: Trade) -> Iterator[str]:

@@ -8,10 +8,11 @@ from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ehdmaps.figures import COLOURS, typeset, write_heading
-from ehdmaps.trade.answer import Bar, budget, number, size
+from ehdmaps.trade.answer import BUDGET_WORDS, UNITS, Bar, budget, budget_axis, budget_marks, number
 from ehdmaps.trade.record import Choice, Judged, Trade, front
 
 RESOLUTION = 150
@@ -36,7 +37,7 @@ def trade_figure(trade: Trade, everything: bool = False) -> Figure:
     bars = budget(trade)
     if everything or not bars:
         return choices_figure(trade)
-    figure = Figure(figsize=(8.0, 0.42 * len(bars) + 1.6), layout="constrained")
+    figure = Figure(figsize=(8.0, max(0.42, 0.16 * len(trade.shown)) * len(bars) + 1.6), layout="constrained")
     write_heading(figure, typeset("\n".join([trade.title, *trade.frame[:1]])), 8)
     budget_panel(figure.add_subplot(), trade, bars)
     return figure
@@ -44,6 +45,8 @@ def trade_figure(trade: Trade, everything: bool = False) -> Figure:
 
 def budget_panel(panel: Axes, trade: Trade, bars: Sequence[Bar]) -> None:
     """Draw an error budget: a bar from the median to 95 % of the points for each source and quantity, on one log axis.
+
+    A number is the end of its bar. A bar whose median lies below the axis begins with a triangle.
 
     Parameters
     ----------
@@ -56,26 +59,26 @@ def budget_panel(panel: Axes, trade: Trade, bars: Sequence[Bar]) -> None:
     """
     units = {judged.name: judged.unit for judged in trade.judged}
     wide = 0.8 / len(trade.shown)
-    smallest = math.inf
-    for row, bar in enumerate(bars):
-        for place, name in enumerate(trade.shown):
-            found = bar.errors.get(name)
-            if found is None or not found.high > 0.0:
-                continue
-            low, high = (size(trade, name, value) for value in (max(found.median, 1e-3 * found.high), found.high))
-            y = row + (place - 0.5 * (len(trade.shown) - 1)) * wide
-            panel.barh(y, high - low, wide * 0.85, left=low, color=COLOURS[place])
-            smallest = min(smallest, low)
-    handles = [
-        Patch(color=COLOURS[place], label=f"{name} [{'dB' if units[name] == 'dB' else '%'}]")
-        for place, name in enumerate(trade.shown)
+    left, right = budget_axis(trade, bars)
+    for mark in budget_marks(trade, bars):
+        y = mark.row + (mark.place - 0.5 * (len(trade.shown) - 1)) * wide
+        panel.barh(y, mark.high - max(mark.low, left), wide * 0.85, left=max(mark.low, left), color=COLOURS[mark.place])
+        panel.annotate(
+            number(mark.high), (mark.high, y), xytext=(2, 0), textcoords="offset points", fontsize=6.5, va="center"
+        )
+        if mark.low < left:
+            panel.plot(left, y, "<", color=COLOURS[mark.place], ms=5, clip_on=False)
+    handles: list[Patch | Line2D] = [
+        Patch(color=COLOURS[place], label=f"{name} [{UNITS[units[name]]}]") for place, name in enumerate(trade.shown)
     ]
+    if any(mark.low < left for mark in budget_marks(trade, bars)):
+        handles.append(Line2D([], [], ls="", marker="<", color="0.3", ms=5, label="median below the axis"))
     panel.legend(handles=handles, fontsize=7, loc="lower right")
     panel.set_xscale("log")
-    panel.set_xlim(left=max(0.5 * smallest, 1e-5))
+    panel.set_xlim(left, right)
     panel.set_yticks(range(len(bars)), [typeset(_budget_name(bar)) for bar in bars], fontsize=7.5)
     panel.invert_yaxis()
-    panel.set_xlabel("wrong by, where it is left out or not known: median to 95 % of the points", fontsize=7.5)
+    panel.set_xlabel(BUDGET_WORDS, fontsize=7.5)
     panel.tick_params(axis="x", labelsize=7)
     panel.grid(axis="x", lw=0.3, which="major")
     panel.set_axisbelow(True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -16,8 +16,9 @@ from ehdmaps.jobs.make.store import store_path
 from ehdmaps.program import tell
 from ehdmaps.units import LOAD, SPEED, TEMPERATURE
 from mbs.commands.common import Done, Looked
-from mbs.planning.auto import MOST_TOLERANCE, TOLERANCE, Automatic, AutoSettings, MadeMap, settled
+from mbs.planning.auto import MOST_TOLERANCE, Automatic, AutoSettings, MadeMap, settled
 from mbs.planning.ranges import MARGIN
+from mbs.planning.verdicts import TOLERANCE, Verdict, up_to
 from mbs.scene.choices import CHOICES, OPTIONS, Subject, named_law
 from mbs.scene.reader import read_scene
 from mbs.scene.scene import Scene
@@ -27,6 +28,9 @@ R = TypeVar("R")
 
 _CONTRARY = ("map", "structural_law")
 """Options that stand for a map that is there."""
+
+_STATED = ("film memory", "oil supply")
+"""Physics of films that a command has, or has as the scene states it, unless `--auto` finds that it does not matter."""
 
 _OF_FILMS = tuple(choice for choice in OPTIONS if choice.concerned == "films")
 """Choices that a law without films does not take."""
@@ -182,16 +186,33 @@ def _lines(found: Automatic[Any]) -> list[str]:
     read = maps is not None and any(emap.from_table for emap in maps.maps)
     lines = [*(["auto: films from the film table"] if read else []), *map(_map_line, found.made)]
     lines += [f"{'warning: ' if verdict.warns else ''}auto: {verdict.line}" for verdict in found.verdicts]
+    lines.append(_without(found))
     return lines + [f"warning: auto: {one.path}: {line}" for one in found.made for line in one.unmet]
 
 
 def _map_line(made: MadeMap) -> str:
     """A line on a map: where it is, what it covers."""
-    data = made.generated.dataset
+    data = made.emap.dataset
     load, speed, kelvin = (data[name].values for name in ("load", "entrainment_speed", "temperature"))
-    sweep = made.generated.sweep
+    sweep = made.sweep
+    counts = (
+        "made before, covers this" if sweep is None else f"{sweep.solved} points solved, {sweep.taken_over} taken over"
+    )
+    margin = "" if sweep is None else f" ({MARGIN:g} times the largest load at rest)"
     return (
-        f"auto: {made.path}: {sweep.solved} points solved, {sweep.taken_over} taken over; "
-        f"{LOAD.value(load[0]):.3g} to {LOAD.text(load[-1])} ({MARGIN:g} times the largest load at rest), "
+        f"auto: {made.path}: {counts}; {LOAD.value(load[0]):.3g} to {LOAD.text(load[-1])}{margin}, "
         f"{SPEED.value(speed[0]):.3g} to {SPEED.text(speed[-1])}, {TEMPERATURE.text(kelvin[0])}"
     )
+
+
+def _without(found: Automatic[Any]) -> str:
+    """A line on what the same command gives without `--auto`."""
+
+    def named(verdicts: Iterable[Verdict]) -> str:
+        return ", ".join(dict.fromkeys(f"{verdict.physics} ({up_to(verdict.size)})" for verdict in verdicts))
+
+    judged = [verdict for verdict in found.verdicts if not math.isnan(verdict.size) and not verdict.asked]
+    only = named(verdict for verdict in judged if verdict.on and verdict.solver)
+    more = named(verdict for verdict in judged if verdict.on is False and verdict.physics in _STATED)
+    parts = [*([f"leaves out {only}"] if only else []), *([f"has {more}"] if more else [])]
+    return f"auto: the same command without --auto {' and '.join(parts) or 'has the same physics'}"

@@ -12,9 +12,6 @@ import xarray as xr
 from ehdmaps.errors import InputError
 from ehdmaps.report.page import REPORT, write_report
 from mbs.analyses.case import Case
-from mbs.analyses.modes import ModesResult
-from mbs.analyses.statics import StaticsResult
-from mbs.analyses.sweep import SweepResult
 from mbs.commands.auto import analysed
 from mbs.commands.cases import load_cases
 from mbs.commands.common import Looked
@@ -45,7 +42,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     looked: list[_Asked] = []
     done = analysed(arguments, _asked, lambda asked: _examine(asked, looked), _looks_at)
     asked = looked[-1]
-    found = Examination(*done.result, _maps(asked))
+    found = done.result
     saved = None if asked.saved is None else (Path(arguments.result).name, asked.saved)
     maps = [Path(path).name for path in arguments.map or ()]
     # a page that is sent need not tell the folders of who made it
@@ -81,11 +78,10 @@ def _asked(arguments: argparse.Namespace) -> _Asked:
     return _Asked(cases[0], speeds, saved)
 
 
-def _examine(asked: _Asked, looked: list[_Asked]) -> tuple[StaticsResult, ModesResult | str, SweepResult | str]:
+def _examine(asked: _Asked, looked: list[_Asked]) -> Examination:
     """Examine the model; what was asked last is kept, with the maps that `--auto` made."""
     looked.append(asked)
-    found = examined(asked.case.model, _maps(asked), asked.speeds, asked.saved is None)
-    return found.statics, found.modes, found.sweep
+    return examined(asked.case.model, _maps(asked), asked.speeds, asked.saved is None, asked.case.subject)
 
 
 def _maps(asked: _Asked) -> MapSet | None:

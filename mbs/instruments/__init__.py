@@ -2,7 +2,6 @@
 
 ===========  ==================================================================================
 tradeoff     speed against accuracy of a scene
-linear_look  what a user looks at in a linear system
 tolerance    step, slices and cut-off that keep the level of a run-up within a tolerance
 kept_choice  a choice of these that is kept, and used again
 ramp_parts   short runs around some speeds of a ramp

@@ -18,47 +18,40 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ehdmaps.arrays import FloatArray
-from ehdmaps.choices import supply_from_text
 from ehdmaps.errors import AnalysisError, EhdmapsError, InputError
 from ehdmaps.maps.emap import EHDMap
-from ehdmaps.physics.surface import Surface
 from ehdmaps.trade.record import Choice, ErrorSummary, Judged, Scope, Source, Trade
 from ehdmaps.units import RPM
-from mbs.analyses.case import Progress, common_clearance, silent
+from mbs.analyses.case import Progress, silent
 from mbs.analyses.operating import held
 from mbs.analyses.ramp import recorded_run, run_course
 from mbs.analyses.sensors import looked_at
-from mbs.instruments.linear_look import LinearLook, LinearReference, linear_look
+from mbs.budget.linear_look import LinearLook, LinearReference, linear_look
+from mbs.budget.sources import (
+    DAMPING,
+    FREQUENCY,
+    HEIGHT,
+    LINEAR,
+    Tried,
+    differences_row,
+    linear_row,
+    model_choices,
+    model_sources,
+)
 from mbs.instruments.ramp_parts import PartRun, Ramp, RampPart, ramp_of, run_part
 from mbs.instruments.tolerance import Numerics
 from mbs.linearised.averaged import pitch
 from mbs.scene import changes
-from mbs.scene.assembly import Model
 from mbs.scene.choices import CHOICES, LawChoice, Subject, named_law
-from mbs.scene.contact_laws import law_label
-from mbs.scene.fields import HERTZ, MICROMETRE, MILLISECOND
+from mbs.scene.fields import HERTZ, MILLISECOND
 from mbs.scene.map_set import TABLE_LAW, MapSet
 from mbs.scene.scene import Scene
 from mbs.settings import CampbellSettings
 from mbs.spectral.levels import Reference
 
-FREQUENCY, DAMPING, HEIGHT, LOAD = "frequency", "damping ratio", "response peak", "roller load"
 LEVEL, FORCE = "sum level", "bearing force"
-JUDGED = (
-    Judged(FREQUENCY),
-    Judged(DAMPING),
-    Judged(HEIGHT, "dB"),
-    Judged(LOAD),
-    Judged(LEVEL, "dB"),
-    Judged(FORCE, "dB"),
-)
+JUDGED = (*LINEAR, Judged(LEVEL, "dB"), Judged(FORCE, "dB"))
 """What is compared: the first four in a linear analysis, the others in a run-up."""
-
-DAMPER = "hertz:1.25e-5 s"
-"""A dry contact with the damper in the middle of the usual range."""
-
-SUPPLIES = ("flooded", "oil bath", "oil air", "grease")
 
 SLICES = (6, 11, 21, 41, 81)
 """Slices of a roller that are tried; the last ones are the reference."""
@@ -69,10 +62,6 @@ COARSER, FINER = (4.0, 2.0), (0.5, 0.25)
 ANGLES = (1, 2, 4, 8)
 """Cage angles within one pitch that are tried; the last ones are the reference."""
 
-WARMER, LOOSER, ROUGH = 5.0, 10e-6, Surface(2e-7)
-"""By how much what a scene states is changed: temperature [K], clearance [m]; and a surface."""
-
-UNKNOWN = "what a scene states"
 NUMBERS = ("slices", "cut-off", "step", "cage angles")
 """Groups of choices."""
 
@@ -105,17 +94,6 @@ class TradeoffSettings:
 
     campbell: CampbellSettings
     runs: bool = True
-
-
-@dataclass(frozen=True)
-class _Tried:
-    """A choice that is measured, and what it is compared with."""
-
-    group: str
-    label: str
-    subject: Subject
-    reference: Subject
-    default: bool = False
 
 
 def tradeoff(
@@ -154,7 +132,7 @@ def tradeoff(
     runs = settings.runs and scene.run_up is not None
     numerics = Numerics.of(scene) if scene.run_up is not None else None
     model = base.model()
-    models = [*_laws(base), *_supplies(base), *_unknown(base, model), *_maps(base, maps)]
+    models = [*model_choices(base, model), *_maps(base, maps)]
     linear = [*models, *_numbers(base, ("slices", "cutoff"), settings)]
     ramp = ramp_of(model, settings.campbell, looked_at(scene, settings.campbell)) if runs else None
     tried = [*models, *_numbers(base, ("step", "slices", "cutoff"), settings)] if ramp else []
@@ -205,13 +183,7 @@ def _scopes(choices: Sequence[Choice]) -> tuple[Scope, ...]:
 
 def _sources(base: Subject, choices: Sequence[Choice]) -> tuple[Source, ...]:
     """Sources of error: what a law leaves out, what a scene states and may be wrong, and the numbers as they are."""
-    memory = f"{base.law.label}, memory"
-    found = [
-        Source("films, their stiffness and damping", law_label("hertz"), memory),
-        Source("film memory", f"{base.law.label}, slow films", memory),
-        *(Source(f"oil supply: {text}", text) for text in SUPPLIES[1:]),
-        *(Source(choice.label, choice.label) for choice in choices if choice.group == f"linear: {UNKNOWN}"),
-    ]
+    found = model_sources(base, choices)
     for part in NUMBERS:
         labels = [choice for choice in choices if choice.group.endswith(f": {part}")]
         usual = next((index for index, choice in enumerate(labels) if choice.default), None)
@@ -223,62 +195,16 @@ def _sources(base: Subject, choices: Sequence[Choice]) -> tuple[Source, ...]:
     return tuple(found)
 
 
-def _unknown(base: Subject, model: Model) -> Iterable[_Tried]:
-    """Choices of what a scene states or leaves open, each a little off."""
-    clearance = common_clearance(model)
-    stated: list[tuple[str, float | str | Surface, str]] = [
-        ("temperature", base.scene.temperature + WARMER, f"rings {WARMER:g} K warmer than told")
-    ]
-    if math.isfinite(clearance):
-        stated.append(("clearance", clearance + LOOSER, f"clearance {MICROMETRE.text(LOOSER)} more than told"))
-    if base.law.maps is not None:
-        structure = base.law.maps.maps[0].structural_law
-        other = "iso16281" if structure == "half_space" else "half_space"
-        stated.append(("structural-law", other, f"structural law {other} in place of {structure}"))
-    if model.surface is not None and model.surface.smooth:
-        stated.append(("roughness", ROUGH, ROUGH.label))
-    for key, value, label in stated:
-        with contextlib.suppress(InputError):
-            yield _Tried(UNKNOWN, label, CHOICES[key].change(base, value), base)
-
-
-def _laws(base: Subject) -> Iterable[_Tried]:
-    """Laws from dry to the most complete one."""
-    memory = base.law
-    has_map = memory.name != "formula"
-    laws = [
-        (LawChoice(law_label("hertz"), "hertz"), not has_map),
-        (LawChoice(f"{law_label('hertz')}, usual damper", DAMPER), False),
-        *([(LawChoice(law_label("formula"), "formula", films="memory"), False)] if has_map else []),
-        (dataclasses.replace(memory, label=f"{memory.label}, slow films", films="slow"), False),
-        (dataclasses.replace(memory, label=f"{memory.label}, memory"), has_map),
-    ]
-    for law, default in laws:
-        same = law.name == memory.name and law.films == memory.films
-        subject = base if same else dataclasses.replace(base, law=law)
-        yield _Tried("law", law.label, subject, base, default)
-
-
-def _supplies(base: Subject) -> Iterable[_Tried]:
-    """Oil supplies, by the reference law."""
-    given = set(base.model().supplies.values())
-    for text in SUPPLIES:
-        supply = supply_from_text(text)
-        same = given == {supply}
-        subject = base if same else dataclasses.replace(base, law=dataclasses.replace(base.law, supply=supply))
-        yield _Tried("oil supply", text, subject, base, same)
-
-
-def _maps(base: Subject, maps: Sequence[LawChoice]) -> Iterable[_Tried]:
+def _maps(base: Subject, maps: Sequence[LawChoice]) -> Iterable[Tried]:
     """Other maps, and the map of the reference with fewer points."""
     for law in maps[1:]:
-        yield _Tried("map", law.label, dataclasses.replace(base, law=dataclasses.replace(law, films="memory")), base)
+        yield Tried("map", law.label, dataclasses.replace(base, law=dataclasses.replace(law, films="memory")), base)
     given = base.law.maps
     if given is None:
         return
-    yield _Tried("map", "as given", base, base, True)
+    yield Tried("map", "as given", base, base, True)
     for label, thin in _thinned(given):
-        yield _Tried("map", label, dataclasses.replace(base, law=dataclasses.replace(base.law, maps=thin)), base)
+        yield Tried("map", label, dataclasses.replace(base, law=dataclasses.replace(base.law, maps=thin)), base)
 
 
 def _thinned(given: MapSet) -> Iterable[tuple[str, MapSet]]:
@@ -300,7 +226,7 @@ def _every_second(emap: EHDMap) -> dict[str, slice]:
     return {"load": slice(None, None, 2)} if emap.dataset.sizes["load"] % 2 else {}
 
 
-def _numbers(base: Subject, keys: Sequence[str], settings: TradeoffSettings) -> Iterable[_Tried]:
+def _numbers(base: Subject, keys: Sequence[str], settings: TradeoffSettings) -> Iterable[Tried]:
     """Numbers from coarse to fine, each with the finest one as its reference."""
     scene = base.scene
     for key in keys:
@@ -310,7 +236,7 @@ def _numbers(base: Subject, keys: Sequence[str], settings: TradeoffSettings) -> 
         for value in values:
             words = Numerics(0.0, None, None).but(**{key: value}).words(key)
             subject = base if value == own else _with(base, key, value)
-            yield _Tried(_GROUPS[key], words, subject, reference, value == own)
+            yield Tried(_GROUPS[key], words, subject, reference, value == own)
 
 
 _GROUPS = {"step": "step", "slices": "slices", "cutoff": "cut-off"}
@@ -339,13 +265,13 @@ def _with(base: Subject, key: str, value: float | int) -> Subject:
     return CHOICES[key].change(base, value)
 
 
-def _together(base: Subject, numerics: Numerics) -> _Tried:
+def _together(base: Subject, numerics: Numerics) -> Tried:
     """All settings of the scene beside the finest of all."""
     finest = base
     for key in ("step", "slices"):
         values, best, _ = _values(base.scene, key, base.scene.campbell.highest)
         finest = _with(finest, key, best) if values else finest
-    return _Tried("all settings of the scene", numerics.text, base, finest, True)
+    return Tried("all settings of the scene", numerics.text, base, finest, True)
 
 
 class _Measured:
@@ -413,7 +339,7 @@ def _warm(subject: Subject, ramp: Ramp) -> None:
         recorded_run(held(dataclasses.replace(subject, scene=scene).model()), course, ramp.sensors)
 
 
-def _linear_choice(one: _Tried, measure: _Measured, settings: TradeoffSettings) -> Choice:
+def _linear_choice(one: Tried, measure: _Measured, settings: TradeoffSettings) -> Choice:
     """A row of the linear analyses."""
     reference, found = measure.linear(one.reference), measure.linear(one.subject)
     if isinstance(reference, str):
@@ -421,41 +347,7 @@ def _linear_choice(one: _Tried, measure: _Measured, settings: TradeoffSettings) 
     group = f"linear: {one.group}"
     if isinstance(found, str):
         return Choice(group, one.label, math.nan, {}, solved=0, asked=1, lost=(found,), default=one.default)
-    beside = LinearReference.of(reference, settings.campbell.highest)
-    differences = beside.beside(found)
-    return _linear_row(group, one.label, found.seconds, beside, one.default, differences.frequency, differences.damping,
-                       differences.height, differences.load)  # fmt: skip
-
-
-def _linear_row(
-    group: str,
-    label: str,
-    seconds: float,
-    beside: LinearReference,
-    default: bool,
-    frequency: FloatArray,
-    damping: FloatArray,
-    height: FloatArray,
-    load: FloatArray,
-) -> Choice:
-    """A row, from its errors at the modes, peaks and bearings of the reference."""
-    modes = [HERTZ.text(value) for value in beside.look.modes.frequency[beside.chosen]]
-    sensors = beside.look.balance.system
-    bearings = [entry.element.name for entry in sensors.elements][: load.size]
-    peaks = [HERTZ.text(at) for _, at in beside.peaks]
-    missing = tuple(
-        f"no mode like that of {name}" for name, value in zip(modes, frequency, strict=True) if np.isnan(value)
-    )
-    errors = {
-        FREQUENCY: ErrorSummary.of(frequency, modes),
-        DAMPING: ErrorSummary.of(damping, modes),
-        HEIGHT: ErrorSummary.of(height, peaks),
-        LOAD: ErrorSummary.of(load, bearings),
-    }
-    kept = {name: found for name, found in errors.items() if found.points}
-    return Choice(
-        group, label, seconds, kept, solved=len(modes) - len(missing), asked=len(modes), lost=missing, default=default
-    )
+    return linear_row(group, one.label, found, LinearReference.of(reference, settings.campbell.highest), one.default)
 
 
 def _angle_choices(base: Subject, measure: _Measured, settings: TradeoffSettings) -> list[Choice]:
@@ -482,11 +374,13 @@ def _angle_choices(base: Subject, measure: _Measured, settings: TradeoffSettings
         # Of loads a user wants the largest one, wherever the cage stands.
         errors.append((1.0 + kinds[3][here].max(axis=0)) / (1.0 + kinds[3].max(axis=0)) - 1.0)
         words = f"{count} angle{'s' if count > 1 else ''}"
-        choices.append(_linear_row("linear: cage angles", words, count * first.seconds, beside, count == 1, *errors))
+        choices.append(
+            differences_row("linear: cage angles", words, count * first.seconds, beside, count == 1, *errors)
+        )
     return choices
 
 
-def _run_choice(one: _Tried, measure: _Measured) -> Choice:
+def _run_choice(one: Tried, measure: _Measured) -> Choice:
     """A row of the run-ups."""
     reference, found = measure.runs(one.reference), measure.runs(one.subject)
     if isinstance(reference, str):

@@ -2,9 +2,10 @@
 
 The order of things: the ranges of the scene as the analysis visits it (`mbs.planning.question`, `mbs.planning.plan`),
 the physics that they require (`mbs.planning.verdicts`), films of each type of bearing, and the analysis. Films come
-from the film table; where heat or a limiting stress matter, a map is made by `ehdmaps.jobs.make.generate`, whose store
-beside it knows what is solved. Where no contact law can be made of that map, as the solver ended at some of its points,
-the physics that was chosen for it is left out again, and its verdict says so.
+from the film table. Where heat or a limiting stress matter, a map is made by `ehdmaps.jobs.make.generate`, whose store
+beside it knows what is solved; or one of a wider range is taken that was made before (`mbs.planning.kept_maps`). Where
+no contact law can be made of that map, as the solver ended at some of its points, the physics that was chosen for it is
+left out again, and its verdict says so.
 """
 
 from __future__ import annotations
@@ -21,18 +22,20 @@ from ehdmaps.errors import InputError, MapError
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.job_text import Entry
 from ehdmaps.jobs.make.batch_generate import make_folder
-from ehdmaps.jobs.make.generate import Generated, generate
+from ehdmaps.jobs.make.generate import generate
 from ehdmaps.jobs.make.law_check import REFUSED, unmet
-from ehdmaps.jobs.make.sweep import Progress
+from ehdmaps.jobs.make.sweep import Progress, SweepResult
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.outputs import MAP, Output, check_outputs
 from ehdmaps.physics.heat import PHYSICS
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.rheology import SHEARS
 from mbs.model.relaxation import Films
+from mbs.planning.kept_maps import covering
 from mbs.planning.machine import machine_verdicts
 from mbs.planning.plan import PlanResult, PlanSettings, plan
 from mbs.planning.verdicts import (
+    TOLERANCE,
     Verdict,
     heat_verdict,
     in_force,
@@ -51,9 +54,6 @@ from mbs.scene.map_set import MapSet, table_maps
 from mbs.scene.scene import Scene
 
 R = TypeVar("R")
-
-TOLERANCE = 0.05
-"""Change of a stiffness or damping of a contact above which physics is switched on, as a part of it."""
 
 MOST_TOLERANCE = 9.0
 """A tenfold stiffness or damping, 20 dB."""
@@ -122,33 +122,31 @@ class AutoSettings:
 
 @dataclass(frozen=True, eq=False)
 class MadeMap:
-    """A map that was made for an analysis.
+    """A map that was made for an analysis, now or before.
 
     Attributes
     ----------
     path : Path
         File of the map.
-    generated : Generated
-        The map, and how it came about.
+    emap : EHDMap
+        The map.
+    sweep : SweepResult or None
+        Counts of its points; None for a map of a wider range that was there.
     """
 
     path: Path
-    generated: Generated
-
-    @property
-    def emap(self) -> EHDMap:
-        """The map."""
-        return EHDMap(self.generated.dataset, self.generated.backbone)
+    emap: EHDMap
+    sweep: SweepResult | None
 
     @property
     def refused(self) -> str:
         """Reason why no contact law can be made of it; empty where one can, or where that was not looked at."""
-        return str(self.generated.dataset.attrs.get(REFUSED, ""))
+        return str(self.emap.dataset.attrs.get(REFUSED, ""))
 
     @property
     def unmet(self) -> tuple[str, ...]:
         """Bars that its contact laws miss, without the advice, as the job was planned."""
-        lines = unmet(self.generated.dataset, self.generated.backbone is not None)
+        lines = unmet(self.emap.dataset, self.emap.backbone is not None)
         return tuple(line for line in lines if line.startswith(("unmet", "no contact law")))
 
 
@@ -163,7 +161,7 @@ class Automatic(Generic[R]):
     subject : Subject
         Scene and law that it was made with.
     made : tuple of MadeMap
-        Maps that were made, of the types of bearing whose films the film table has not.
+        Maps of the types of bearing whose films the film table has not, made now or before.
     verdicts : tuple of Verdict
         Which physics is on, and why: memory, supply, roughness, then heat of each type of bearing, shear of each, and
         what the scene file switches (`mbs.planning.machine`); last, what films leave out of k and c.
@@ -255,7 +253,7 @@ def settled(
     required = _verdicts(scene, found, settings, supplies, highest)
     pairs = tuple(pair.of_table(settings) for pair in required.of_maps) if warm else required.of_maps
     films, pairs = _films(looked_at, found, pairs, settings, progress)
-    summed = [left_out_verdict((required.of_laws[1], pair.heat, pair.shear)) for pair in pairs]
+    summed = [left_out_verdict((*required.of_laws, pair.heat, pair.shear, *required.of_machine)) for pair in pairs]
     maps = MapSet(
         [
             (one.emap if isinstance(one, MadeMap) else one).with_left_out(*errors)
@@ -369,9 +367,16 @@ def _film(
         return read
     job = found.job(index, solver=pair.solver)
     make_folder(settings.folder, "--maps")
-    path = settings.folder / map_name(scene.name, job)
+    name = map_name(scene.name, job)
+    path = settings.folder / name
+    if not path.exists():
+        alike = sorted(settings.folder.glob(f"{name.rpartition('_')[0]}_{'?' * DIGITS}.nc"))
+        there = covering(alike, job)
+        if there is not None:
+            return MadeMap(*there, None)
     check_outputs([Output("--maps", path, MAP)])
-    return MadeMap(path, generate(dataclasses.replace(job, name=path.stem), path, settings.workers, progress=progress))
+    made = generate(dataclasses.replace(job, name=path.stem), path, settings.workers, progress=progress)
+    return MadeMap(path, EHDMap(made.dataset, made.backbone), made.sweep)
 
 
 def _remedies(verdicts: tuple[Verdict, ...]) -> list[str]:

@@ -12,7 +12,8 @@ is the exponent of the film in the speed). c is k^2 times the loss.
 film memory       |dZ/Z| of the dynamic stiffness k + i omega c beside k + i omega c/(1 + i omega theta)
 oil supply        k and c on a layer, by the closed forms of starved rigid surfaces (`ehdmaps.physics.oil_supply`)
 inlet heating     film by the factor of Gupta et al. (`ehdmaps.physics.heat`), loss by its square
-roughness         Lambda, the smallest film over the roughness: asperities touch below `TOUCHING`
+roughness         Lambda, the smallest film over the roughness: asperities touch below `TOUCHING`; k and c by the
+                  load sharing of contact laws on the closed film
 ================  ================================================================================================
 """
 
@@ -25,6 +26,8 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
+from ehdmaps.maps.contact_curve import FilmSamples
+from ehdmaps.maps.rough_layer import RoughLayer
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.films import dowson_higginson_minimum, martin_minimum, moes_central_and_slope
 from ehdmaps.physics.heat import inlet_shear_heating_factor, thermal_loading, viscosity_slope
@@ -32,6 +35,7 @@ from ehdmaps.physics.hertz import half_width, max_pressure, natural_time
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import dowson_groups, film_from_moes, moes_groups
 from ehdmaps.physics.oil_supply import CORNER, compliance_ratio, damping_ratio, film_ratio, passing
+from ehdmaps.physics.surface import Surface
 
 TOUCHING = 3.0
 """Lambda below which asperities touch, as of the usual charts of rolling bearings."""
@@ -218,3 +222,36 @@ def film_over_roughness(state: ClosedContact, roughness: float) -> FloatArray:
         Combined rms roughness [m], > 0.
     """
     return np.asarray(state.minimum_film / roughness)
+
+
+def roughness_effect(state: ClosedContact, surface: Surface, lubricant: Lubricant) -> tuple[FloatArray, FloatArray]:
+    """By how much rough surfaces change k and c of a contact, as parts of the values of smooth ones.
+
+    Parameters
+    ----------
+    state : ClosedContact
+        The contact of smooth surfaces.
+    surface : Surface
+        Rough surfaces.
+    lubricant : Lubricant
+        The oil.
+
+    Notes
+    -----
+    Load sharing as of `ehdmaps.maps.rough_layer`, on the closed film. A film sample is known by the cube root g of its
+    load: slope dh/dg = -3 g^2 s, and the loss 9 g times that of the film.
+    """
+    root = np.cbrt(state.load)[:, None, None]
+    smooth = FilmSamples(
+        root,
+        state.film[:, None, None],
+        -3.0 * root**2 * state.film_compliance[:, None, None],
+        9.0 * root * state.loss[:, None, None],
+    )
+    layer = RoughLayer(surface, state.contact, lubricant, state.speed)
+    rough = layer(smooth, np.array([state.speed]), np.array([state.temperature]))
+    compliance = -(rough.slope / (3.0 * root**2))[:, 0, 0]
+    loss = (rough.loss / (9.0 * root))[:, 0, 0]
+    stiffness = 1.0 / (state.solids + compliance)
+    damping = loss * stiffness**2
+    return np.abs(stiffness / state.stiffness - 1.0), np.abs(damping / state.damping - 1.0)

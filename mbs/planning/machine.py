@@ -20,10 +20,12 @@ from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import with_law
 from ehdmaps.units import RPM
+from mbs.analyses.operating import held
 from mbs.bearings.bearing import MOST_COUPLED
 from mbs.bearings.thermal import STEEL_EXPANSION
 from mbs.gears.gear_kernel import FORCE
 from mbs.linearised.modes import energy_shares
+from mbs.model.elements import Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.planning.criteria import ClosedContact, closed_contact
 from mbs.planning.plan import PlanResult
@@ -40,6 +42,9 @@ NARROWER = 10e-6
 
 _OTHER_LAWS: tuple[StructuralLaw, ...] = ("palmgren", "half_space")
 """Laws of the solids beside which that of planned maps, ISO 16281, is held."""
+
+_STATED_LAW: StructuralLaw = "palmgren"
+"""The other law that holds for rollers between raceways: what it differs by, no analysis decides."""
 
 _SOFT = 1e-9
 """Mass that is added to a singular stiffness, in squares of its mean frequency, as where an equilibrium is sought."""
@@ -69,7 +74,7 @@ def machine_verdicts(
     tolerance = ranges[0].tolerance
     rest = _AtRest(found.filled)
     verdicts = [
-        centrifugal_verdict(found, ranges),
+        centrifugal_verdict(found, tolerance),
         *([rollers_verdict(found, ranges, frequency)] if frequency > 0.0 else []),
         slices_verdict(found, rest, tolerance),
         coupling_verdict(found, rest, tolerance),
@@ -93,7 +98,13 @@ class _AtRest:
     def __init__(self, model: Model) -> None:
         self.model = model
         self.balance = equilibrium(model.system, model.operation)
-        self._stiffness = _along_loads(model, self.balance)
+        self._stiffness = self._along(model, self.balance)
+
+    @staticmethod
+    def _along(model: Model, balance: Equilibrium) -> FloatArray:
+        """Stiffness of each bearing along its load [N/m]."""
+        bearings = len(model.bearings)
+        return _along_loads(balance.forces[:bearings], balance.element_stiffness[:bearings])
 
     def change(self, changed: _Changed) -> float:
         """Largest change of the stiffness of a bearing along its load, as a part; NaN where there is no equilibrium.
@@ -106,61 +117,61 @@ class _AtRest:
         scene = self.model.scene
         try:
             other = assemble(scene.with_bearings(map(changed, scene.bearings)), "hertz")
-            stiffness = _along_loads(other, equilibrium(other.system, other.operation, self.balance.displacement))
+            stiffness = self._along(other, equilibrium(other.system, other.operation, self.balance.displacement))
         except (AnalysisError, InputError):
             return math.nan
         with np.errstate(divide="ignore", invalid="ignore"):
             return float(np.nanmax(np.abs(stiffness / self._stiffness - 1.0), initial=0.0))
 
 
-def _along_loads(model: Model, balance: Equilibrium) -> FloatArray:
-    """Stiffness of each bearing along its load [N/m]; NaN without one."""
+def _along_loads(forces: Sequence[FloatArray], matrices: Sequence[FloatArray]) -> FloatArray:
+    """Stiffness or damping of each bearing along its load; NaN without one."""
     found = []
-    for index, _ in enumerate(model.bearings):
-        force = balance.forces[index][1:3]
-        size = float(np.linalg.norm(force))
-        along = force / size if size > 0.0 else np.full(2, math.nan)
-        found.append(float(along @ balance.element_stiffness[index][1:3, 1:3] @ along))
+    for force, matrix in zip(forces, matrices, strict=True):
+        size = float(np.linalg.norm(force[1:3]))
+        along = force[1:3] / size if size > 0.0 else np.full(2, math.nan)
+        found.append(float(along @ matrix[1:3, 1:3] @ along))
     return np.array(found)
 
 
-def centrifugal_verdict(found: PlanResult, ranges: Sequence[Range]) -> Verdict:
-    """Judge the centrifugal load of the rollers that carry a bearing: it is added to the load of the outer contact.
+def centrifugal_verdict(found: PlanResult, tolerance: float) -> Verdict:
+    """Judge the centrifugal load of the rollers: by equilibria with it and without, on films of the closed formula.
 
     Parameters
     ----------
     found : PlanResult
-        The plan.
-    ranges : sequence of Range
-        Contacts of each geometry.
+        The plan; the highest of its speeds counts.
+    tolerance : float
+        Accepted change, as a part.
     """
     fastest = found.speeds[1]
-    sizes = []
-    for needed, there in zip(found.needed, ranges, strict=True):
-        loads = np.geomspace(*SHARES, _LOADS) * there.highest
-        more = max(
-            entry.bearing.centrifugal_load(entry.inner_spin, entry.outer_spin)
-            for entry in found.model.bearings
-            if entry.name in needed.bearings
-        )
-        inner, plain, loaded = (
-            closed_contact(state.contact, there.lubricant, load, state.speed, state.temperature)
-            for state, load in (
-                (_fastest(there, "inner"), loads),
-                (_fastest(there, "outer"), loads),
-                (_fastest(there, "outer"), loads + more * fastest**2),
-            )
-        )
-        parts = zip(_in_series(inner, loaded), _in_series(inner, plain), strict=True)
-        sizes.append(max(float(np.max(np.abs(new / old - 1.0))) for new, old in parts))
-    size, tolerance = max(sizes), ranges[0].tolerance
-    return _stated(
+    try:
+        with_it, without = (_moving(found, centrifugal) for centrifugal in (True, False))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            parts = np.nanmax(np.abs(with_it / without - 1.0), axis=1, initial=0.0)
+        stiffness, damping = (float(part) for part in parts)
+    except (AnalysisError, InputError):
+        stiffness = damping = math.nan
+    size = max(stiffness, damping)
+    verdict = _stated(
         "centrifugal load",
         [entry.centrifugal for entry in found.scene.bearings],
         size,
-        f"it changes k or c of a roller by {up_to(size)} at {RPM.text(fastest)} ({beside(size, tolerance)})",
+        f"it changes k or c of a bearing by {_told(size, tolerance)} at {RPM.text(fastest)}",
         "centrifugal in [[bearings]]",
     )
+    return verdict if math.isnan(size) else dataclasses.replace(verdict, errors=(stiffness, damping))
+
+
+def _moving(found: PlanResult, centrifugal: bool) -> FloatArray:
+    """Stiffness and damping of each bearing along its load at the highest speed, (2, bearings)."""
+    scene = found.model.scene
+    loaded = (dataclasses.replace(entry, centrifugal=centrifugal, slices_coupled=False) for entry in scene.bearings)
+    model = held(assemble(scene.with_bearings(loaded), "formula"))
+    balance = equilibrium(model.system, Operation(found.speeds[1], 0.0))
+    bearings = len(model.bearings)
+    parts = (balance.element_stiffness[:bearings], balance.element_damping[:bearings])
+    return np.array([_along_loads(balance.forces[:bearings], part) for part in parts])
 
 
 def rollers_verdict(found: PlanResult, ranges: Sequence[Range], frequency: float) -> Verdict:
@@ -281,7 +292,7 @@ def structure_verdict(ranges: Sequence[Range]) -> Verdict:
     ranges : sequence of Range
         Contacts of each geometry.
     """
-    sizes: dict[str, float] = {}
+    sizes: dict[str, tuple[float, float]] = {}
     for law in _OTHER_LAWS:
         for there in ranges:
             for state in there.slowest_and_fastest:
@@ -291,11 +302,13 @@ def structure_verdict(ranges: Sequence[Range]) -> Verdict:
                     closed_contact(contact, there.lubricant, loads, state.speed, state.temperature)
                     for contact in contacts
                 )
-                sizes[law] = max(sizes.get(law, 0.0), _change(own, other))
-    size = max(sizes.values())
-    words = ", ".join(f"by {up_to(part)} with {law}" for law, part in sizes.items())
+                before, here = sizes.get(law, (0.0, 0.0)), _changes(own, other)
+                sizes[law] = max(before[0], here[0]), max(before[1], here[1])
+    size = max(max(pair) for pair in sizes.values())
+    words = ", ".join(f"by {up_to(max(pair))} with {law}" for law, pair in sizes.items())
     told = f"iso16281; k or c of a contact changes {words} ({beside(size, ranges[0].tolerance)})"
-    return Verdict("structural law", True, size, f"{told}; --structural-law beside --map has another")
+    words = f"{told}; --structural-law beside --map has another"
+    return Verdict("structural law", None, size, words, errors=sizes[_STATED_LAW])
 
 
 def housing_verdict(rest: _AtRest, tolerance: float) -> Verdict:
@@ -371,21 +384,11 @@ def undecided(rest: _AtRest, flooded: bool) -> Verdict:
 _LOADS = 9
 
 
-def _fastest(there: Range, name: str) -> ClosedContact:
-    """A contact at its highest speed."""
-    return max((state for state in there.states if state.contact.name == name), key=lambda state: state.speed)
-
-
-def _in_series(first: ClosedContact, second: ClosedContact) -> tuple[FloatArray, FloatArray]:
-    """Stiffness and damping of a roller between two contacts: compliances add, and losses c/k^2 do."""
-    stiffness = np.asarray(1.0 / (1.0 / first.stiffness + 1.0 / second.stiffness))
-    return stiffness, np.asarray((first.loss + second.loss) * stiffness**2)
-
-
-def _change(plain: ClosedContact, other: ClosedContact) -> float:
-    """Largest change of k or c, as a part of the plain value."""
+def _changes(plain: ClosedContact, other: ClosedContact) -> tuple[float, float]:
+    """Largest changes of k and of c, as parts of the plain values."""
     parts = ((other.stiffness, plain.stiffness), (other.damping, plain.damping))
-    return float(max(np.max(np.abs(new / old - 1.0)) for new, old in parts))
+    stiffness, damping = (float(np.max(np.abs(new / old - 1.0))) for new, old in parts)
+    return stiffness, damping
 
 
 def _narrower(entry: BearingSpec, by: float) -> BearingSpec:

@@ -41,6 +41,7 @@ from mbs.planning.criteria import (
     film_over_roughness,
     heat_effect,
     memory_effect,
+    roughness_effect,
     supply_effect,
 )
 from mbs.planning.ranges import Needed
@@ -109,6 +110,9 @@ def _solved(
     ]
 
 
+TOLERANCE = 0.05
+"""Change of a stiffness or damping of a contact above which physics is switched on, as a part of it."""
+
 SHARES = (0.1, 1.0)
 """Loads of rollers that carry a bearing, over the highest one at rest."""
 
@@ -117,6 +121,10 @@ _ZETA, _ZETAS = (RIGID, 6.0), 41
 """Places ln(M/M_valley) that the lines of a map reach, and how many of them are looked at."""
 
 _LAYERS = 241
+
+
+_ASKED = "as asked"
+"""Beginning of the reason of what was asked for."""
 
 
 @dataclass(frozen=True)
@@ -150,6 +158,11 @@ class Verdict:
     solver: Mapping[str, Entry] = field(default_factory=dict)
     errors: tuple[float, float] = (0.0, 0.0)
     warns: bool = False
+
+    @property
+    def asked(self) -> bool:
+        """Tell whether it is as it was asked for, in the place of a judgement."""
+        return self.words.startswith(_ASKED)
 
     @property
     def missing(self) -> tuple[float, float]:
@@ -261,7 +274,7 @@ def memory_verdict(found: Range, frequency: float, asked: Films | None, without:
         f"{HERTZ.text(frequency)} and {SPEED.text(state.speed)}"
     )
     if asked is not None:
-        return Verdict(name, asked == "memory", size, f"as asked; {words}")
+        return Verdict(name, asked == "memory", size, f"{_ASKED}; {words}")
     if without:
         return Verdict(name, False, size, f"{words}; with {without} there is none", warns=size > found.tolerance)
     return Verdict(name, size > found.tolerance, size, f"{words} ({beside(size, found.tolerance)})")
@@ -288,7 +301,7 @@ def supply_verdict(found: Range, supplies: tuple[OilSupply, ...], asked: bool = 
     size = max(float(np.max(supply_effect(state, thinnest.oil_layer))) for state in found.states)
     words = f"{thinnest.label} changes k or c of a contact by {up_to(size)} ({beside(size, found.tolerance)})"
     on = asked or size > found.tolerance
-    return Verdict(name, on, size, f"{'as asked; ' if asked else ''}{words}", errors=(size, size))
+    return Verdict(name, on, size, f"{f'{_ASKED}; ' if asked else ''}{words}", errors=(size, size))
 
 
 def roughness_verdict(found: Range, surface: Surface | None) -> Verdict:
@@ -312,7 +325,13 @@ def roughness_verdict(found: Range, surface: Surface | None) -> Verdict:
     size = smallest / surface.roughness
     beside = "asperities touch" if size < TOUCHING else "asperities do not touch"
     words = f"Lambda down to {size:.2g} at {SPEED.text(state.speed)} ({beside}; they do below {TOUCHING:g})"
-    return Verdict(name, size < TOUCHING, size, words)
+    pairs = [roughness_effect(entry, surface, found.lubricant) for entry in found.states]
+    carried = [entry.load >= SHARES[0] * found.highest * (1.0 - 1e-9) for entry in found.states]
+    changes = np.max(
+        [[part[which].max() for part in pair] for pair, which in zip(pairs, carried, strict=True)], axis=0
+    ).tolist()
+    words += f"; it changes k of a contact by {up_to(changes[0])}, c by {up_to(changes[1])}"
+    return Verdict(name, size < TOUCHING, size, words, errors=(changes[0], changes[1]))
 
 
 def heat_verdict(found: Range, asked: str | None = None) -> Verdict:
@@ -337,7 +356,7 @@ def heat_verdict(found: Range, asked: str | None = None) -> Verdict:
     words = f"it would lower c by {change} ({beside(size, found.tolerance)})"
     if asked is not None:
         on = asked != ISOTHERMAL
-        return Verdict(name, on, size, f"as asked, {asked}; {words}", {"physics": asked} if on else {}, errors)
+        return Verdict(name, on, size, f"{_ASKED}, {asked}; {words}", {"physics": asked} if on else {}, errors)
     if size <= found.tolerance:
         return Verdict(name, False, size, words, errors=errors)
     refused = _no_rule(found)
@@ -372,7 +391,7 @@ def shear_verdict(found: Range, asked: str | None = None) -> Verdict:
         )
     if asked is not None:
         on = asked != "newtonian"
-        return Verdict(name, on, size, f"as asked, {asked}; {words}", {"shear": asked} if on else {}, errors)
+        return Verdict(name, on, size, f"{_ASKED}, {asked}; {words}", {"shear": asked} if on else {}, errors)
     on = size > found.tolerance
     return Verdict(name, on, size, words, {"shear": "limiting"} if on else {}, errors)
 
@@ -432,7 +451,7 @@ MOST_STATED = 0.9
 
 
 def left_out_verdict(verdicts: Sequence[Verdict]) -> tuple[Verdict, tuple[float, float]]:
-    """Sum up what films leave out, and what errors of k and c a law is to state for it.
+    """Sum up what is left out or not decided, and what errors of k and c a law is to state for it.
 
     Parameters
     ----------
@@ -449,8 +468,8 @@ def left_out_verdict(verdicts: Sequence[Verdict]) -> tuple[Verdict, tuple[float,
     return Verdict("left out of the films", None, max(stiffness, damping), words), stated
 
 
-MOST_TOLD = 10.0
-"""Change, as a part, above which its size is not told: what grows tenfold or vanishes is another contact."""
+MOST_TOLD = 9.0
+"""Change, as a part, above which its size is not told: what grows tenfold is another contact."""
 
 
 def percent(part: float) -> str:
@@ -479,10 +498,12 @@ def up_to(part: float) -> str:
 
     Examples
     --------
-    >>> up_to(0.55), up_to(5820.6)
-    ('up to 55 %', 'more than 10 times')
+    >>> up_to(0.55), up_to(2.32), up_to(5820.6)
+    ('up to 55 %', 'a factor of up to 3.3', 'a factor of more than 10')
     """
-    return f"up to {percent(part)}" if part <= MOST_TOLD else f"more than {MOST_TOLD:g} times"
+    if part <= 1.0:
+        return f"up to {percent(part)}"
+    return f"a factor of up to {1.0 + part:.2g}" if part <= MOST_TOLD else f"a factor of more than {1.0 + MOST_TOLD:g}"
 
 
 def beside(size: float, tolerance: float) -> str:

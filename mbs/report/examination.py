@@ -7,11 +7,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TypeVar
 
-from ehdmaps.errors import AnalysisError
+from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.trade.record import Trade
 from mbs.analyses.modes import ModesResult, modes
 from mbs.analyses.statics import StaticsResult, statics
 from mbs.analyses.sweep import SweepResult, SweepSettings, sweep
+from mbs.budget.sources import error_budget
 from mbs.scene.assembly import Model
+from mbs.scene.choices import Subject
 from mbs.scene.map_set import MapSet
 from mbs.scene.scene import Scene
 from mbs.settings import SweepRange
@@ -39,12 +42,15 @@ class Examination:
         Modes over speed, or why there are none.
     maps : MapSet or None
         The maps of its law.
+    budget : Trade or str
+        Error budget of the machine, or why there is none; empty where it was not looked for.
     """
 
     statics: StaticsResult
     modes: ModesResult | str
     sweep: SweepResult | str
     maps: MapSet | None
+    budget: Trade | str = ""
 
     @property
     def model(self) -> Model:
@@ -52,7 +58,13 @@ class Examination:
         return self.statics.model
 
 
-def examined(model: Model, maps: MapSet | None, speeds: SweepRange | None, swept: bool = True) -> Examination:
+def examined(
+    model: Model,
+    maps: MapSet | None,
+    speeds: SweepRange | None,
+    swept: bool = True,
+    subject: Subject | None = None,
+) -> Examination:
     """Find it.
 
     Parameters
@@ -65,18 +77,35 @@ def examined(model: Model, maps: MapSet | None, speeds: SweepRange | None, swept
         Speeds of the sweep; a few of [sweep] of the scene, or about its operating speed, if None.
     swept : bool
         Whether there is a sweep at all.
+    subject : Subject, optional
+        The scene with its law, of which there is an error budget; none if left out.
 
     Raises
     ------
     AnalysisError
         If there is no equilibrium.
     """
+    budget: Trade | str = ""
+    if subject is not None and model.bearings:
+        budget = _or_reason(lambda: error_budget(subject, highest_of(model.scene)))
     return Examination(
         statics(model),
         _or_reason(lambda: modes(model)),
         _or_reason(lambda: _sweep(model, speeds)) if swept else "",
         maps,
+        budget,
     )
+
+
+def highest_of(scene: Scene) -> float:
+    """Highest frequency that matters to a scene [Hz].
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    """
+    return float(max(scene.frequencies, default=scene.campbell.highest))
 
 
 def speeds_of(scene: Scene) -> SweepRange | None:
@@ -105,5 +134,5 @@ def _or_reason(find: Callable[[], R]) -> R | str:
     """The result, or why there is none."""
     try:
         return find()
-    except AnalysisError as error:
+    except (AnalysisError, InputError) as error:
         return str(error)

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import xarray as xr
 
 from ehdmaps.figures import typeset
+from ehdmaps.jobs.show.budget_chart import budget_section
 from ehdmaps.jobs.show.map_report import job, provenance, written_by
 from ehdmaps.program import plain
 from ehdmaps.report.page import Markup, Section, document, joined, pairs, sentences, tag
@@ -15,7 +16,7 @@ from ehdmaps.units import RPM
 from mbs.analyses.sensors import excited_orders
 from mbs.report.bearings import bearings
 from mbs.report.campbell import campbell, lines_of, mode_table, saved_campbell
-from mbs.report.examination import Examination
+from mbs.report.examination import Examination, highest_of
 from mbs.report.machine import in_short, machine, map_sections, notes, used_maps, warnings
 
 
@@ -65,6 +66,7 @@ def scene_report(
     sections += [
         Section("modes", f"Modes at {RPM.text(scene.speed)}", [_modes(found)]),
         Section("campbell-diagram", "Campbell diagram", [_campbell(found, saved)]),
+        *([budget_section(found.budget)] if found.budget else []),
         Section("limits", "What limits these numbers", [_limits(warning_lines, [*notes(found), *remarks])]),
         Section("provenance", "Provenance", [_provenance(found, command, maps)]),
     ]
@@ -72,17 +74,11 @@ def scene_report(
     return document(scene.title, typeset(lead), sections)
 
 
-def _highest(examination: Examination) -> float:
-    """Highest frequency that matters [Hz]."""
-    scene = examination.model.scene
-    return float(max(scene.frequencies, default=scene.campbell.highest))
-
-
 def _modes(examination: Examination) -> Markup:
     """The modes, or why there are none."""
     if isinstance(examination.modes, str):
         return tag("p", f"There are no modes: {examination.modes}", class_="warning")
-    return mode_table(examination.modes, _highest(examination))
+    return mode_table(examination.modes, highest_of(examination.model.scene))
 
 
 def _campbell(examination: Examination, saved: tuple[str, xr.Dataset] | None) -> Markup:
@@ -94,10 +90,12 @@ def _campbell(examination: Examination, saved: tuple[str, xr.Dataset] | None) ->
     orders = [(order, f"{order:g}") for order in given] if given else sorted(excited.items())
     if saved is not None:
         name, dataset = saved
-        return saved_campbell(dataset, orders, _highest(examination), name)
+        return saved_campbell(dataset, orders, highest_of(examination.model.scene), name)
     if isinstance(examination.sweep, str):
         return tag("p", f"There is no Campbell diagram: {examination.sweep}", class_="warning")
-    return campbell(lines_of(examination.sweep.sweeps[0]), orders, _highest(examination), model.scene.speed)
+    return campbell(
+        lines_of(examination.sweep.sweeps[0]), orders, highest_of(examination.model.scene), model.scene.speed
+    )
 
 
 def _limits(warning_lines: Sequence[str], note_lines: Sequence[str]) -> Markup:

@@ -175,19 +175,8 @@ ALLOWED = {
 """What each layer may import besides itself and other distributions. `ehdmaps` itself is the shop window of all."""
 
 SCENES = (
-    *(
-        "__main__",
-        "analyses",
-        "cli",
-        "commands",
-        "exports",
-        "instruments",
-        "library",
-        "output",
-        "planning",
-        "report",
-        "scene",
-    ),
+    *("__main__", "analyses", "budget", "cli", "commands", "exports", "instruments", "library", "output"),
+    *("planning", "report", "scene"),
 )
 """Modules of mbs that plan a scene or are its command line: they may call ehdmaps.jobs; no other module of mbs may
 call them."""
@@ -336,7 +325,8 @@ def test_folders_have_at_most_twenty_files(package) -> None:
 
 
 CORE = (
-    *("bearings", "model", "linearised", "transient", "spectral", "scene", "analyses", "planning", "output", "report"),
+    *("bearings", "model", "linearised", "transient", "spectral", "scene", "analyses", "budget"),
+    *("planning", "output", "report"),
 )
 
 

@@ -15,6 +15,7 @@ import pytest
 from ehdmaps.errors import AnalysisError, InputError, MapError
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.make.generate import generate
+from ehdmaps.jobs.make.tasks import solver_version
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.lubricant import Lubricant
@@ -23,9 +24,18 @@ from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.surface import Surface
 from mbs import AutoSettings, automatic, parse_scene, statics
 from mbs.commands.auto_maps import read_tolerance
-from mbs.planning import auto, plan, verdicts
+from mbs.planning import auto, kept_maps, plan, verdicts
 from mbs.planning.auto import settled
-from mbs.planning.criteria import closed_contact, film_over_roughness, heat_effect, memory_effect, supply_effect
+from mbs.planning.criteria import (
+    closed_contact,
+    film_over_roughness,
+    heat_effect,
+    memory_effect,
+    roughness_effect,
+    supply_effect,
+)
+from mbs.planning.kept_maps import covering, covers
+from mbs.planning.left_out import left_out_line
 from mbs.planning.question import at_one_speed, in_time, over_speeds
 from mbs.planning.ranges import Needed
 from mbs.planning.verdicts import (
@@ -384,9 +394,9 @@ def test_physics_whose_map_makes_no_law_is_left_out_and_said(file, capsys, holes
     status, out, _ = run(capsys, "statics", file, "--auto")
     assert status == 1 and "films from the film table" in out and "equilibrium in" in out
     assert (
-        "warning: auto: limiting shear stress: off, left out although it would change k or c of a contact by up to "
-        "268 % at 14.85 m/s (more than 5 %): the map with it makes no contact law (backbone of the map: has 2 unsolved "
-        "points)\n"
+        "warning: auto: limiting shear stress: off, left out although it would change k or c of a contact by a "
+        "factor of up to 3.7 at 14.85 m/s (more than 5 %): the map with it makes no contact law (backbone of the map: "
+        "has 2 unsolved points)\n"
     ) in out
 
 
@@ -421,8 +431,9 @@ def test_a_change_of_damping_in_its_valley_is_held_against_what_is_felt():
 
 
 def test_no_size_is_told_beyond_ten_times():
-    assert up_to(5820.6) == "more than 10 times"
-    assert up_to(10.0) == "up to 1000 %"
+    assert up_to(5820.6) == "a factor of more than 10"
+    assert up_to(9.0) == "a factor of up to 10"
+    assert up_to(1.0) == "up to 100 %"
     huge = dataclasses.replace(there(1.0, 313.15), tolerance=1e-6)
     assert "%" not in re.search(r"wrong by (.*?) in k", memory_verdict(huge, 1e7, None).words).group(1)
 
@@ -456,3 +467,67 @@ def test_an_equilibrium_has_no_bands_and_what_is_on_is_not_left_out(folder):
     assert errors == (0.0, 0.2) and verdict.words.startswith(
         "0 % of k and 20 % of c of a contact, by the sizes above; "
     )
+
+
+# maps that were made before
+
+
+def test_a_map_of_a_wider_range_is_used_again_and_no_other(tmp_path):
+    """Loads and speeds may be fewer; another temperature, oil, physics or solver is another map."""
+    wide, narrow, hotter = (
+        plan.plan(given).job(0, solver={"shear": "limiting"})
+        for given in (
+            scene(f"{SHORT}\n{SWEPT}"),
+            at_one_speed(scene()),
+            dataclasses.replace(at_one_speed(scene()), temperature=333.15),
+        )
+    )
+    assert covers(wide, wide) and covers(wide, narrow)
+    assert not covers(narrow, wide) and not covers(wide, hotter)
+    assert not covers(wide, dataclasses.replace(narrow, solver_options={"shear": "eyring"}))
+    assert not covers(wide, dataclasses.replace(narrow, solver="formula", solver_options={}))
+    by_formula = [dataclasses.replace(job, solver="formula", solver_options={}) for job in (wide, narrow)]
+    damaged, path = tmp_path / "damaged.nc", tmp_path / "wide.nc"
+    damaged.write_bytes(b"\x89HDF\r\n\x1a\n and no more")
+    generate(dataclasses.replace(wide, name="wide"), path, 1, solver=solvers.build("formula", {}))
+    # it was made by another solver than its job names, so that it is not that of the job
+    assert covering([damaged, path], narrow) is None
+    assert covers(*by_formula)
+
+
+def test_a_command_of_fewer_speeds_takes_the_map_that_is_there(tmp_path, by_formula, monkeypatch):
+    monkeypatch.setattr(verdicts, "shear_effect", lambda *given: (0.1, 0.2))
+    monkeypatch.setattr(kept_maps, "solver_version", lambda solver: solver_version(solvers.build("formula", {})))
+    swept = scene(f"{SHORT}\n{SWEPT}")
+    settings = AutoSettings(folder=tmp_path, highest=0.0)
+    first = automatic(swept, statics, settings, planned_for=over_speeds(swept, None))
+    again = automatic(swept, statics, settings, planned_for=at_one_speed(swept))
+    assert len(by_formula) == 1
+    assert (first.made[0].sweep is None, again.made[0].sweep) == (False, None)
+    assert again.made[0].path == first.made[0].path
+
+
+# what the other way would give
+
+
+def test_a_result_says_what_the_other_way_gives(file, capsys, monkeypatch):
+    monkeypatch.setattr(verdicts, "shear_effect", lambda *given: (0.1, 0.2))
+    _, out, _ = run(capsys, "statics", file, "--auto")
+    assert "auto: the same command without --auto leaves out limiting shear stress (up to 20 %)\n" in out
+    _, out, _ = run(capsys, "statics", file, "--auto", "--shear", "newtonian")
+    assert "auto: the same command without --auto has the same physics\n" in out
+
+
+def test_films_without_heat_say_so_where_it_matters():
+    slow, fast = (at_one_speed(scene(SHORT.replace("500 rpm", f"{rpm} rpm"))) for rpm in (200, 3000))
+    assert left_out_line(slow) == ""
+    assert re.search(r"no heat, which would lower c of a contact by up to \d+ % at 4.95 m/s", left_out_line(fast))
+    assert left_out_line(dataclasses.replace(fast, lubricant=None)) == ""
+
+
+def test_roughness_that_does_not_touch_still_has_a_size():
+    """Load sharing goes to nothing for thick films, and to more than a tolerance where asperities touch."""
+    state, oil = contact([1e4, 1e5]), Lubricant.named("FVA3")
+    sizes = [max(float(part.max()) for part in roughness_effect(state, Surface(rq), oil)) for rq in (2e-8, 1e-7, 5e-7)]
+    assert sizes[0] < sizes[1] < sizes[2]
+    assert sizes[0] < 0.01 < 0.05 < sizes[2]

@@ -84,7 +84,7 @@ def test_what_the_scene_has_is_said_with_the_key_that_switches_it():
     some = scene.with_bearings([dataclasses.replace(first, centrifugal=True, rollers_as_bodies=True), *others])
     plain, mixed = judged(scene, 5e3), judged(some, 5e3)
     assert plain["centrifugal load"].line.startswith(
-        "centrifugal load: off, as the scene has it; it changes k or c of a roller"
+        "centrifugal load: off, as the scene has it; it changes k or c of a bearing"
     )
     assert mixed["centrifugal load"].line.startswith("centrifugal load: on, in 1 of 2 bearings, as the scene has it; ")
     assert mixed["rollers as bodies"].on and mixed["rollers as bodies"].words.endswith("; rollers in [[bearings]]")

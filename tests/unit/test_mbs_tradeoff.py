@@ -13,9 +13,9 @@ from ehdmaps.trade.answer import answer_lines, budget
 from ehdmaps.trade.data import trade_json
 from ehdmaps.trade.text import trade_text
 from mbs import assemble, parse_scene, read_scene
+from mbs.budget.linear_look import LinearReference, linear_look
 from mbs.cli import main
 from mbs.instruments import tradeoff as analysis
-from mbs.instruments.linear_look import LinearReference, linear_look
 from mbs.instruments.tradeoff import TradeoffSettings, tradeoff
 from mbs.scene import changes
 from mbs.scene.choices import LawChoice
@@ -96,7 +96,7 @@ class TestTradeoff:
         assert json.loads(trade_json(found))
         bars = {bar.name: bar for bar in budget(found)}
         films = "films, their stiffness and damping"
-        assert {films, "5 slices", "rings 5 K warmer than told", "1 angle of the cages"} <= set(bars)
+        assert {films, "5 slices", "rings 5 K warmer than stated", "1 angle of the cages"} <= set(bars)
         # of a run and of a linear analysis in one line
         assert set(bars[films].errors) == {"frequency", "damping ratio", "sum level"}
         assert bars["5 slices"].errors["frequency"] == rows["linear: slices", "5 slices"].errors["frequency"]

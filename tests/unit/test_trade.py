@@ -12,7 +12,18 @@ import xarray as xr
 from matplotlib.collections import LineCollection
 
 from ehdmaps.errors import InputError
-from ehdmaps.trade.answer import answer_lines, budget, budget_lines, cheapest, time_text
+from ehdmaps.jobs.show.budget_chart import budget_section
+from ehdmaps.trade.answer import (
+    answer_lines,
+    budget,
+    budget_axis,
+    budget_lines,
+    budget_marks,
+    cheapest,
+    number,
+    size,
+    time_text,
+)
 from ehdmaps.trade.data import check_trade_files, trade_dataset, trade_json, write_trade
 from ehdmaps.trade.figure import trade_figure
 from ehdmaps.trade.record import Choice, ErrorSummary, Judged, Scope, Source, Trade, front
@@ -205,7 +216,30 @@ def test_the_picture_of_a_budget_has_a_bar_a_source_and_quantity(answered: Trade
     highs = sorted(found.high * unit for bar in budget(answered)
                    for found, unit in ((bar.errors["film"], 100.0), (bar.errors["level"], 1.0)))  # fmt: skip
     assert ends == pytest.approx(highs, rel=1e-9)
+    # each bar ends with its number, and none begins before the axis does
+    assert [text.get_text() for text in panel.texts] == [
+        number(mark.high) for mark in budget_marks(answered, budget(answered))
+    ]
+    assert min(bar.get_x() for bar in panel.patches) >= panel.get_xlim()[0]
     assert len(trade_figure(answered, everything=True).axes) == 3
+
+
+def test_a_bar_that_begins_below_the_axis_is_marked(trade: Trade) -> None:
+    """A median of zero has no place on a logarithmic axis: a triangle for such a bar, in picture and report."""
+    rare = choice("rare", 1e-3, [0.0, 0.0, 0.03])
+    plain = replace(trade, choices=(rare,), sources=(Source("seldom", "rare"),), shown=("film",))
+    low, high = budget_axis(plain, budget(plain))
+    assert 0.0 < low < size(plain, "film", budget(plain)[0].errors["film"].high) < high
+    (panel,) = trade_figure(plain).axes
+    assert [line.get_marker() for line in panel.lines] == ["<"]
+    section = str(budget_section(plain).content[-1])
+    assert section.count("<path") - section.count('class="grid"') == 2  # the bar's and the key's
+    assert "median below the axis" in section and "seldom" in section
+
+
+def test_a_report_without_a_budget_says_why(trade: Trade) -> None:
+    assert "no error budget: no speed" in str(budget_section("no speed").content[0])
+    assert "Nothing that was looked at" in str(budget_section(replace(trade, sources=())).content[0])
 
 
 @pytest.mark.parametrize(("seconds", "text"), [(1.3e-6, "1.3 us"), (0.0022, "2.2 ms"), (72.0, "72 s"), (0.5, "500 ms")])

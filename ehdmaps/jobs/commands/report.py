@@ -6,6 +6,7 @@ import argparse
 import shlex
 from pathlib import Path
 
+from ehdmaps.jobs.show.map_budget import map_budget
 from ehdmaps.jobs.show.map_report import map_report
 from ehdmaps.jobs.show.opening import choice_words, open_given
 from ehdmaps.outputs import Output, check_outputs
@@ -19,5 +20,6 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     check_outputs([Output("-o", output, REPORT)], [path])
     emap = open_given(path, arguments)
     words = ["ehdmaps", "report", path.name, *choice_words(arguments)]
-    write_report(output, map_report(emap, path.name, shlex.join([*words, "-o", output.name])))
+    command = shlex.join([*words, "-o", output.name])
+    write_report(output, map_report(emap, path.name, command, map_budget(emap)))
     return f"{output}: written", 0

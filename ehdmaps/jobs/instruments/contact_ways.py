@@ -37,7 +37,7 @@ from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.hertz import max_pressure
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import OilSupply
-from ehdmaps.physics.solution import ContactSolver, FilmSolution
+from ehdmaps.physics.solution import ContactSolver, ContactSolverDefaults, FilmSolution
 from ehdmaps.physics.spectrum import contact_spectrum
 from ehdmaps.physics.surface import Surface
 from ehdmaps.table.file import film_table
@@ -541,6 +541,37 @@ class FromTable:
             for row, index in enumerate(places):
                 answers[index] = film_answer(read.solution(row), questions[index])
         return tuple(answers[index] for index in range(len(questions)))
+
+
+@dataclass(frozen=True)
+class TableReader(ContactSolverDefaults):
+    """The film table in the place of a solver, a line of loads in one call."""
+
+    name = "film table"
+
+    def solve_line(
+        self,
+        contact: LineContact,
+        lubricant: Lubricant,
+        loads: tuple[float, ...],
+        entrainment_speed: float,
+        temperature: float,
+    ) -> tuple[FilmSolution, ...]:
+        """Films of the table at rising loads.
+
+        Parameters
+        ----------
+        contact, lubricant, loads, entrainment_speed, temperature
+            The arguments of `ehdmaps.physics.solution.ContactSolver.solve_line`.
+        """
+        found = film_table(lubricant).films(
+            contact, lubricant, np.array(loads), entrainment_speed, temperature, thickest_film=math.inf
+        )
+        return tuple(found.solution(row) for row in range(len(loads)))
+
+    def settings(self) -> dict[str, float | int | str]:
+        """No settings."""
+        return {}
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,7 +7,7 @@ the model.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, get_args
 
@@ -29,11 +29,12 @@ from ehdmaps.jobs.instruments.contact_ways import (
     RoughRule,
     RoughSolved,
     Slow,
+    TableReader,
     Warmer,
 )
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.make.table_law import job_map
-from ehdmaps.maps.law import LawKind
+from ehdmaps.maps.law import ContactLaw, LawKind
 from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import with_law
 from ehdmaps.physics.closed_form import FilmFormula, FormulaSolver
@@ -41,6 +42,7 @@ from ehdmaps.physics.heat import INLET_HEAT, THERMAL
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.solution import ContactSolver
 from ehdmaps.physics.surface import Surface
+from ehdmaps.table.solver import TableSolver
 from ehdmaps.trade.record import Source
 
 REFINEMENT = 4.0
@@ -195,7 +197,7 @@ def contestants(job: Job, openfoam: bool) -> tuple[Entry, ...]:
         *(_openfoam_entries(job, solved) if openfoam else ()),
         *_shear_entries(own, stated),
         *(_heat_entries(own) if job.lubricant.thermal_conductivity is not None else ()),
-        *_data_entries(job, usual),
+        *_data_entries(job, Flooded(usual)),
         Entry(supplied, "layer: flooded film", Flooded(usual), solved, default=True, lacks=layer.label),
         Entry(
             supplied, "layer: rule of contact laws", LayerRule(usual, layer), LayerRule(rule, layer), has=layer.label
@@ -227,6 +229,48 @@ def contestants(job: Job, openfoam: bool) -> tuple[Entry, ...]:
     )
 
 
+def quick(job: Job, laws: Mapping[str, ContactLaw]) -> tuple[Entry, ...]:
+    """Return few contestants for the error budget of a report: films of the table where it serves, rules, few solves.
+
+    Parameters
+    ----------
+    job : Job
+        Job of the map.
+    laws : mapping of str to ContactLaw
+        Flooded, smooth laws of the map, one a contact; empty where none can be made.
+    """
+    own = {key: value for key, value in _own(job, "reynolds").items() if key in solvers.GRID_KEYS}
+    usual = _finer(own, 1.0)
+    solved, plain = Flooded(usual), replace(job, supply=None, surface=None, law_check=0)
+    mapped = solvers.of_map(plain)
+    films: ContactSolver = TableReader() if isinstance(mapped, TableSolver) else usual
+    read = Flooded(films) if isinstance(films, TableReader) else solved
+    layer = OIL_LAYER if job.supply is None or job.supply.flooded else job.supply
+    surface = ROUGHNESS if job.surface is None or job.surface.smooth else job.surface
+    limited = Flooded(_finer({**own, "shear": "limiting"}, 1.0))
+    entries = [
+        _beside("film memory", LockedPole(films, False), Slow(films)),
+        _beside(layer.label, LayerRule(usual, layer), solved),
+        _beside(surface.label, RoughRule(films, surface), read, surface.roughness),
+        _beside("limiting shear stress", limited, solved),
+        *_data_entries(job, read),
+    ]
+    if job.lubricant.thermal_conductivity is not None:
+        heated = Flooded(_finer({**own, "physics": INLET_HEAT}, 1.0))
+        entries.append(_beside("heat of the inlet, by its rule", heated, solved))
+    if read is not solved:
+        entries.append(_beside(TABLE, solved, read))
+    if laws:
+        entries.append(_beside("contact law between its points", Flooded(mapped), FromLaw(laws)))
+    return tuple(entries)
+
+
+def _beside(source: str, truth: ContactModel, without: ContactModel, least_film: float = 0.0) -> Entry:
+    """An entry that leaves a source of error out, beside what has it."""
+    group = Group(source, truth, f"{source}, as it is known cheaply", least_film)
+    return Entry(group, f"without {source}", without, lacks=source)
+
+
 def _table_entries(job: Job, solved: ContactModel) -> tuple[Entry, ...]:
     """Entries of what is read from the film table: films, and contact laws; none where it does not serve the job."""
     flooded = replace(job, supply=None, surface=None, law_check=0)
@@ -243,12 +287,11 @@ def _table_entries(job: Job, solved: ContactModel) -> tuple[Entry, ...]:
     )
 
 
-def _data_entries(job: Job, usual: ReynoldsSolver) -> tuple[Entry, ...]:
+def _data_entries(job: Job, stated: ContactModel) -> tuple[Entry, ...]:
     """Entries of what is stated, beside what may be: the oil's coefficient, the law of the solids, the temperature."""
-    stated = Flooded(usual)
     other: StructuralLaw = "iso16281" if job.contacts[0].structural_law == "half_space" else "half_space"
     others: list[tuple[str, str, ContactModel]] = [
-        ("temperature", f"rings {RINGS:g} K warmer than told", Warmer(stated, RINGS))
+        ("temperature", f"rings {RINGS:g} K warmer than stated", Warmer(stated, RINGS))
     ]
     if job.lubricant.pressure_viscosity.coefficient != "none":
         more = f"pressure-viscosity data {DATA - 1.0:.0%} off"
@@ -261,8 +304,7 @@ def _data_entries(job: Job, usual: ReynoldsSolver) -> tuple[Entry, ...]:
         words = f"structural law {other} in place of {job.contacts[0].structural_law}"
         others.append(("structural law", words, OtherSolids(stated, other, job.bearing)))
     return tuple(
-        Entry(Group("as stated", model, f"{name}, density {usual.density:g}"), f"{what} as stated", stated, lacks=name)
-        for what, name, model in others
+        Entry(Group("as stated", model, name), f"{what} as stated", stated, lacks=name) for what, name, model in others
     )
 
 

@@ -89,7 +89,9 @@ def reference_words(truths: Sequence[Truth]) -> str:
         References of all groups.
     """
     own = {truth.group.truth: truth for truth in truths if not truth.group.reference}
-    return "; ".join(f"{_solver(model)} ({own[model].asked.seconds:.2g} s a point)" for model in own) or "as told there"
+    return (
+        "; ".join(f"{_solver(model)} ({own[model].asked.seconds:.2g} s a point)" for model in own) or "as stated there"
+    )
 
 
 def _solver(model: ContactModel) -> str:

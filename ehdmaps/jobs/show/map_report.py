@@ -22,6 +22,7 @@ from ehdmaps.jobs.make.report import (
     status_rows,
     tip_line,
 )
+from ehdmaps.jobs.show.budget_chart import budget_section
 from ehdmaps.jobs.show.describe import (
     backbone_lines,
     geometry_rows,
@@ -40,6 +41,7 @@ from ehdmaps.physics.solution import Status
 from ehdmaps.program import plain
 from ehdmaps.report.chart import number, shown
 from ehdmaps.report.page import Markup, Section, document, joined, pairs, sentences, table, tag
+from ehdmaps.trade.record import Trade
 from ehdmaps.units import DAMPING, FILM, LOAD, SPEED, STIFFNESS, TEMPERATURE
 from ehdmaps.version import version
 
@@ -221,7 +223,7 @@ def _key() -> Markup:
     return tag("ul", *entries, class_="legend")
 
 
-def map_report(emap: EHDMap, name: str, command: str) -> str:
+def map_report(emap: EHDMap, name: str, command: str, budget: Trade | str | None = None) -> str:
     """Return the report of a map.
 
     Parameters
@@ -232,6 +234,8 @@ def map_report(emap: EHDMap, name: str, command: str) -> str:
         Name of its file.
     command : str
         Command line that asks for it.
+    budget : Trade or str, optional
+        Error budget of the map, or why there is none, see `ehdmaps.jobs.show.map_budget`.
 
     Raises
     ------
@@ -247,6 +251,7 @@ def map_report(emap: EHDMap, name: str, command: str) -> str:
         *curve_sections(of, (), "map"),
         Section("limits", "Where the map is limited, and why", [limits(emap, "map")]),
         Section("accuracy", "How accurate it is", [accuracy(emap)]),
+        *([] if budget is None else [budget_section(budget)]),
         Section("provenance", "Provenance", [provenance(emap, name), written_by(command)]),
     ]
     lead = f"Map file {name}, made {created}. All values are per unit length of contact."

@@ -1,0 +1,233 @@
+"""Error budget of a machine: laws, oil supplies, and what a scene states or leaves open, by linear looks.
+
+A look is one equilibrium with its modes and responses. Each choice is beside the film with its memory.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.choices import supply_from_text
+from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.physics.surface import Surface
+from ehdmaps.trade.record import Choice, ErrorSummary, Judged, Source, Trade
+from ehdmaps.units import RPM
+from mbs.analyses.case import common_clearance
+from mbs.budget.linear_look import LinearLook, LinearReference, linear_look
+from mbs.scene.assembly import Model
+from mbs.scene.choices import CHOICES, LawChoice, Subject, named_law
+from mbs.scene.contact_laws import law_label
+from mbs.scene.fields import HERTZ, MICROMETRE
+from mbs.scene.map_set import TABLE_LAW
+
+FREQUENCY, DAMPING, HEIGHT, LOAD = "frequency", "damping ratio", "response peak", "roller load"
+
+LINEAR = (Judged(FREQUENCY), Judged(DAMPING), Judged(HEIGHT, "dB"), Judged(LOAD))
+"""What is compared in a linear analysis."""
+
+DAMPER = "hertz:1.25e-5 s"
+"""A dry contact with the damper in the middle of the usual range."""
+
+SUPPLIES = ("flooded", "oil bath", "oil air", "grease")
+
+
+WARMER, LOOSER, ROUGH = 5.0, 10e-6, Surface(2e-7)
+"""By how much what a scene states is changed: temperature [K], clearance [m]; and a surface."""
+
+
+UNKNOWN = "what a scene states"
+"""Group of the choices of what is stated."""
+
+
+@dataclass(frozen=True)
+class Tried:
+    """Choice that is measured, and what it is compared with."""
+
+    group: str
+    label: str
+    subject: Subject
+    reference: Subject
+    default: bool = False
+
+
+def model_choices(base: Subject, model: Model) -> list[Tried]:
+    """Choices of laws, of supplies, and of what is stated, each beside the most complete model.
+
+    Parameters
+    ----------
+    base : Subject
+        The scene with films that have their memory.
+    model : Model
+        Model of the scene.
+    """
+    return [*_laws(base), *_supplies(base), *_unknown(base, model)]
+
+
+def model_sources(base: Subject, choices: Sequence[Choice]) -> list[Source]:
+    """Sources of error of the model: what a law leaves out, what a scene states and may be wrong.
+
+    Parameters
+    ----------
+    base : Subject
+        The scene with films that have their memory.
+    choices : sequence of Choice
+        What was measured.
+    """
+    memory = f"{base.law.label}, memory"
+    return [
+        Source("films, their stiffness and damping", law_label("hertz"), memory),
+        Source("film memory", f"{base.law.label}, slow films", memory),
+        *(Source(f"oil supply: {text}", text) for text in SUPPLIES[1:]),
+        *(Source(choice.label, choice.label) for choice in choices if choice.group == f"linear: {UNKNOWN}"),
+    ]
+
+
+def error_budget(subject: Subject, highest: float) -> Trade:
+    """Look at a machine with each source of error, at its operating speed.
+
+    Parameters
+    ----------
+    subject : Subject
+        The scene with its law; one without films is held against the film table.
+    highest : float
+        Frequency up to which modes and peaks count [Hz].
+
+    Raises
+    ------
+    AnalysisError
+        If the scene has no equilibrium.
+    InputError
+        If it has no law with films.
+    """
+    scene, law = subject.scene, subject.law
+    if not law.has_films:
+        law = named_law(TABLE_LAW if scene.lubricant is not None else "formula", scene)
+    base = dataclasses.replace(subject, law=dataclasses.replace(law, films="memory"))
+    model = base.model()
+    beside = LinearReference.of(linear_look(model), highest)
+    choices = []
+    for one in model_choices(base, model):
+        try:
+            found = beside.look if one.subject is base else linear_look(one.subject.model())
+        except (AnalysisError, InputError):
+            continue  # what has no equilibrium has no error either
+        choices.append(linear_row(f"linear: {one.group}", one.label, found, beside, one.default))
+    counted = f"{beside.chosen.size} modes and {len(beside.peaks)} peaks"
+    sample = f"{counted} up to {HERTZ.text(highest)} at {RPM.text(scene.speed)}"
+    return Trade(
+        level="system",
+        title=f"Error budget of {scene.title}",
+        cost="s",
+        reference=f"{base.law.label} with memory of its films",
+        judged=LINEAR,
+        choices=tuple(choices),
+        frame=(
+            f"{sample}, one equilibrium and linear analysis a line, against {base.law.label} with memory; "
+            "mbs tradeoff measures more.",
+        ),
+        sources=tuple(model_sources(base, choices)),
+        shown=(FREQUENCY, DAMPING, HEIGHT) if beside.peaks else (FREQUENCY, DAMPING),
+    )
+
+
+def _unknown(base: Subject, model: Model) -> Iterator[Tried]:
+    """Choices of what a scene states or leaves open, each a little off."""
+    clearance = common_clearance(model)
+    stated: list[tuple[str, float | str | Surface, str]] = [
+        ("temperature", base.scene.temperature + WARMER, f"rings {WARMER:g} K warmer than stated")
+    ]
+    if math.isfinite(clearance):
+        stated.append(("clearance", clearance + LOOSER, f"clearance {MICROMETRE.text(LOOSER)} more than stated"))
+    if base.law.maps is not None:
+        structure = base.law.maps.maps[0].structural_law
+        other = "iso16281" if structure == "half_space" else "half_space"
+        stated.append(("structural-law", other, f"structural law {other} in place of {structure}"))
+    if model.surface is not None and model.surface.smooth:
+        stated.append(("roughness", ROUGH, ROUGH.label))
+    for key, value, label in stated:
+        with contextlib.suppress(InputError):
+            yield Tried(UNKNOWN, label, CHOICES[key].change(base, value), base)
+
+
+def _laws(base: Subject) -> Iterator[Tried]:
+    """Laws from dry to the most complete one."""
+    memory = base.law
+    has_map = memory.name != "formula"
+    laws = [
+        (LawChoice(law_label("hertz"), "hertz"), not has_map),
+        (LawChoice(f"{law_label('hertz')}, usual damper", DAMPER), False),
+        *([(LawChoice(law_label("formula"), "formula", films="memory"), False)] if has_map else []),
+        (dataclasses.replace(memory, label=f"{memory.label}, slow films", films="slow"), False),
+        (dataclasses.replace(memory, label=f"{memory.label}, memory"), has_map),
+    ]
+    for law, default in laws:
+        same = law.name == memory.name and law.films == memory.films
+        subject = base if same else dataclasses.replace(base, law=law)
+        yield Tried("law", law.label, subject, base, default)
+
+
+def _supplies(base: Subject) -> Iterator[Tried]:
+    """Oil supplies, by the reference law."""
+    given = set(base.model().supplies.values())
+    for text in SUPPLIES:
+        supply = supply_from_text(text)
+        same = given == {supply}
+        subject = base if same else dataclasses.replace(base, law=dataclasses.replace(base.law, supply=supply))
+        yield Tried("oil supply", text, subject, base, same)
+
+
+def linear_row(group: str, label: str, found: LinearLook, beside: LinearReference, default: bool) -> Choice:
+    """Make the row of a linear analysis.
+
+    Parameters
+    ----------
+    group, label : str
+        Group and name of the choice.
+    found : LinearLook
+        What was found.
+    beside : LinearReference
+        The reference.
+    default : bool
+        Whether it is what is used where nothing is said.
+    """
+    parts = beside.beside(found)
+    errors = (parts.frequency, parts.damping, parts.height, parts.load)
+    return differences_row(group, label, found.seconds, beside, default, *errors)
+
+
+def differences_row(
+    group: str,
+    label: str,
+    seconds: float,
+    beside: LinearReference,
+    default: bool,
+    frequency: FloatArray,
+    damping: FloatArray,
+    height: FloatArray,
+    load: FloatArray,
+) -> Choice:
+    """Make a row from its errors at the modes, peaks and bearings of the reference; arguments as of `linear_row`."""
+    modes = [HERTZ.text(value) for value in beside.look.modes.frequency[beside.chosen]]
+    sensors = beside.look.balance.system
+    bearings = [entry.element.name for entry in sensors.elements][: load.size]
+    peaks = [HERTZ.text(at) for _, at in beside.peaks]
+    missing = tuple(
+        f"no mode like that of {name}" for name, value in zip(modes, frequency, strict=True) if np.isnan(value)
+    )
+    errors = {
+        FREQUENCY: ErrorSummary.of(frequency, modes),
+        DAMPING: ErrorSummary.of(damping, modes),
+        HEIGHT: ErrorSummary.of(height, peaks),
+        LOAD: ErrorSummary.of(load, bearings),
+    }
+    kept = {name: found for name, found in errors.items() if found.points}
+    return Choice(
+        group, label, seconds, kept, solved=len(modes) - len(missing), asked=len(modes), lost=missing, default=default
+    )
