@@ -39,7 +39,7 @@ SWEEP = """Gearbox: law map of NU308
 def test_every_block_has_a_recipe_and_commands_that_can_be_run():
     assert len(ALL) >= 35
     for block in ALL:
-        assert re.fullmatch(r"printed(\[-?\d*:-?\d*\])?", block.recipe) or block.recipe in RECIPES, block.place
+        assert re.fullmatch(r"printed(\[-?\d*:-?\d*(,-?\d*:-?\d*)*\])?", block.recipe) or block.recipe in RECIPES, block.place
         assert block.weight in WEIGHTS, block.place
         assert block.commands, block.place
         assert {shlex.split(command)[0] for command in block.commands} <= set(PROGRAMS), block.place
@@ -126,6 +126,13 @@ def test_a_printed_block_is_made_of_lines_of_the_output():
     made = [Output("mbs modes a", "title\nk 2\nend\n")]
     assert printed(block, made) == rewritten(block, made) == "```\nk 2\n```\n"
     assert [each.found for each in compared(block, made).different] == ["2"]
+
+
+def test_a_printed_block_may_leave_out_lines_between():
+    origins = {"statics-of-a": {"recipe": "printed[:1,-2:]", "weight": "quick", "commands": ["mbs modes a"]}}
+    page = "<!-- figures statics-of-a -->\n```\nk 1\nc 3\nend\n```\n<!-- end of figures -->\n"
+    (block,) = blocks("page.md", page, origins)
+    assert printed(block, [Output("mbs modes a", "k 1\nk 2\nc 3\nend\n")]) == block.text
 
 
 def test_a_row_is_the_rest_of_its_line():
