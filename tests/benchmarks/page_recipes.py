@@ -79,7 +79,7 @@ RECIPES: dict[str, Callable[[Sequence[Output]], list[Figure]]] = {
         housing_modes,
         run_of_flexible,
         loads_of_the_flexible,
-            amplitudes_of_the_rig,
+        amplitudes_of_the_rig,
         constants_of_the_rigid,
         shaft_mode_of_the_rigid,
         own_laws_of_the_rigid,

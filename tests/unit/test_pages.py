@@ -39,7 +39,9 @@ SWEEP = """Gearbox: law map of NU308
 def test_every_block_has_a_recipe_and_commands_that_can_be_run():
     assert len(ALL) >= 35
     for block in ALL:
-        assert re.fullmatch(r"printed(\[-?\d*:-?\d*(,-?\d*:-?\d*)*\])?", block.recipe) or block.recipe in RECIPES, block.place
+        assert re.fullmatch(r"printed(\[-?\d*:-?\d*(,-?\d*:-?\d*)*\])?", block.recipe) or block.recipe in RECIPES, (
+            block.place
+        )
         assert block.weight in WEIGHTS, block.place
         assert block.commands, block.place
         assert {shlex.split(command)[0] for command in block.commands} <= set(PROGRAMS), block.place
