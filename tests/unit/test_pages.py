@@ -51,6 +51,16 @@ def test_every_name_stands_on_one_page():
     assert sorted(block.name for block in ALL) == sorted(FIGURES)
 
 
+def test_the_ten_rows_of_the_trade_have_the_figures_of_its_tables():
+    page = (ROOT / "TRADE.md").read_text(encoding="utf-8")
+    rows = [row for row in page.partition("## One contact")[0].splitlines() if row.startswith("| ")][1:]
+    assert len(rows) == 10
+    tables = "\n".join(block.text for block in ALL if block.name.startswith(("budget-of", "trade-of")))
+    told = re.findall(r"\d[\d.]* / \d[\d.]*|x \d[\d.]*", " ".join(rows))
+    assert len(told) >= 25
+    assert [figure for figure in told if not re.search(rf"(?<![\d.]){re.escape(figure)}(?![\d.])", tables)] == []
+
+
 def test_printed_output_on_pages_has_a_marker():
     for page in PAGES:
         text = (ROOT / page).read_text(encoding="utf-8")
