@@ -7,5 +7,6 @@
 | `calculix` | CalculiX and Abaqus, as springs and dashpots along lines |
 | `nastran` | Nastran, as CBUSH with tables over frequency |
 | `ansys` | Ansys Mechanical APDL, as a bearing file over speed |
+| `exudyn` | Exudyn, as a connector that calls the force element |
 | `matrices` | columns of K and C over speed and frequency, with errors, for other rotor programs |
 """

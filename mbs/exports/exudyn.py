@@ -1,0 +1,171 @@
+"""Bearing in Exudyn, the multibody program: a connector between two markers that calls our force element.
+
+Exudyn has finite rotations and calls a Python function for the force of a connector. Here that function takes the pose
+of the inner ring in the frame of the outer one, counts the angle through which it has turned, and asks `BearingForce`.
+With `films` "memory" the films of all slices go on from step to step: what was found last at a time is taken as the
+begin of the next step, so that iterations and tries at one time do not count as steps.
+
+Source of the interface: Exudyn's manual, ObjectConnectorRigidBodySpringDamper, springForceTorqueUserFunction.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import InputError
+from ehdmaps.maps.kernels.memory import FilmState
+from mbs.bearings.bearing_force import BearingForce
+from mbs.bearings.laws import DryLaw
+
+_SAME_SPEED = 1e-4
+"""Change of the entrainment speed, as a part of it, up to which the law is not prepared anew; films go with its power
+of some 0.7."""
+
+
+class ExudynBearing:
+    """A cylindrical roller bearing as a user function of Exudyn.
+
+    The outer ring turns with the body of the first marker, the inner one with that of the second. The x axes of both
+    markers are the axis of the bearing. The bearing has no force along x and no moment about it.
+
+    Parameters
+    ----------
+    force : BearingForce
+        The force element, with its clearance and its law.
+    temperature : float
+        Temperature of the raceways [K]; dry laws need none.
+    films : {"slow", "memory"}
+        Whether films follow at once, with stiffness and damping of slow motion, or relax; "memory" steps forward in
+        time only, with the steps of the integrator.
+    start_angle : float
+        Angle of the first roller at the begin, from y towards z [rad].
+    centrifugal : bool
+        Whether rollers press on the outer ring as they go round; of laws of maps, with slow films.
+
+    Raises
+    ------
+    InputError
+        Where a dry law is to have films with memory, or films with memory centrifugal loads.
+
+    Notes
+    -----
+    Speeds are those of the bodies: nothing is prescribed. Films follow the mean speed of the surfaces; for a change of
+    less than 1e-4 of it the law is not prepared anew. Jacobians of Exudyn are differences of this force: in soft
+    mounts let ``newton.numericalDifferentiation`` take steps of some 1e-12 m.
+
+    Examples
+    --------
+    >>> from mbs import Bearing, BearingForce
+    >>> from mbs.bearings import laws
+    >>> bearing = Bearing.named("NU308", clearance=20e-6)
+    >>> connector = ExudynBearing(BearingForce(bearing, laws.hertz(bearing)))
+    >>> still, level = np.zeros(3), np.eye(3)
+    >>> f = connector(None, 0.0, 0, np.array([0.0, 15e-6, 0.0]), still, still, still, None, None, level, level, None)
+    >>> bool(f[1] > 0.0)
+    True
+    """
+
+    def __init__(
+        self,
+        force: BearingForce,
+        temperature: float = math.nan,
+        films: Literal["slow", "memory"] = "slow",
+        start_angle: float = 0.0,
+        centrifugal: bool = False,
+    ) -> None:
+        if films == "memory" and isinstance(force.law, DryLaw):
+            raise InputError("exudyn bearing, films: got 'memory' with a dry law; allowed: 'slow', or a law with films")
+        if films == "memory" and centrifugal:
+            raise InputError("exudyn bearing, centrifugal: got True with films 'memory'; allowed: with films 'slow'")
+        self.force = force
+        self.temperature = temperature
+        self.films = films
+        self.start_angle = start_angle
+        self.centrifugal = centrifugal
+        self._speed = math.nan
+        self._begin = self._last = _Moment()
+
+    def add(self, system: Any, outer: Any, inner: Any) -> Any:
+        """Add the connector to a system of Exudyn.
+
+        Parameters
+        ----------
+        system : exudyn.MainSystem
+            The system.
+        outer, inner : MarkerIndex
+            Markers of rigid bodies at the centre of the bearing, whose x axes are its axis.
+
+        Returns
+        -------
+        ObjectIndex
+            The connector.
+        """
+        from exudyn.utilities import ObjectConnectorRigidBodySpringDamper
+
+        function: Any = self
+        return system.AddObject(
+            ObjectConnectorRigidBodySpringDamper(
+                markerNumbers=[outer, inner],
+                stiffness=np.zeros((6, 6)),
+                damping=np.zeros((6, 6)),
+                springForceTorqueUserFunction=function,
+            )
+        )
+
+    def __call__(
+        self,
+        system: Any,
+        time: float,
+        item: Any,
+        displacement: FloatArray,
+        rotation: FloatArray,
+        velocity: FloatArray,
+        turning: FloatArray,
+        *parameters: Any,
+    ) -> FloatArray:
+        """Force and moment that the connector has, (6,) [N], [N m]; arguments as Exudyn gives them."""
+        cosines, sines = np.cos(rotation), np.sin(rotation)
+        # Of the rotation x y z the entries that lean the axis of the inner ring.
+        lean_y = sines[0] * sines[1] * cosines[2] + cosines[0] * sines[2]
+        lean_z = sines[0] * sines[2] - cosines[0] * sines[1] * cosines[2]
+        pose = np.array([*displacement, 0.0, -lean_z, lean_y])
+        # A leaning axis goes round with the spin; that is no rate of its lean.
+        rate = np.array([*velocity, 0.0, turning[1] - turning[0] * lean_y, turning[2] - turning[0] * lean_z])
+        if time > self._last.time:
+            self._begin = self._last
+        # The rotation is known but for full turns.
+        angle = self._begin.angle + math.remainder(float(rotation[0]) - self._begin.angle, 2.0 * math.pi)
+        cage = self.start_angle + self.force.bearing.cage_angle(angle)
+        conditions: dict[str, float] = {}
+        if not isinstance(self.force.law, DryLaw):
+            geometry = self.force.bearing.geometry
+            speed = float(geometry.entrainment_speed(float(turning[0])))
+            if not abs(speed - self._speed) <= _SAME_SPEED * self._speed:
+                self._speed = speed
+            conditions = {"entrainment_speed": self._speed, "temperature": self.temperature}
+        if self.centrifugal:
+            conditions["centrifugal_load"] = float(self.force.bearing.centrifugal_load(float(turning[0])))
+        if self.films == "slow":
+            found, films = self.force.evaluate(pose, rate, cage_angle=cage, **conditions), None
+        elif self._begin.films is None:  # the begin, or statics
+            found = self.force.evaluate(pose, cage_angle=cage, **conditions)
+            films = self.force.in_time(self._speed, self.temperature, 0.0).settled(pose, cage)
+        else:
+            step = time - self._begin.time
+            found, films = self.force.advance(self._begin.films, pose, step, cage_angle=cage, **conditions)
+        self._last = _Moment(time, angle, films)
+        return -found.force
+
+
+@dataclass(frozen=True, eq=False)
+class _Moment:
+    """A time [s], the angle through which the inner ring has turned until then [rad], and the films."""
+
+    time: float = -math.inf
+    angle: float = 0.0
+    films: FilmState | None = None
