@@ -186,12 +186,6 @@ def loads_of_the_flexible(outputs: Sequence[Output]) -> list[Figure]:
     return [*given("200 20"), *slow, *given("2000"), *(mode.last for mode in film)]
 
 
-def lower_than_dry(outputs: Sequence[Output]) -> list[Figure]:
-    """Mode along the load, dry and with the map."""
-    dry, film = (_along_load(outputs[0].text, f"{law}, 1 x") for law in ("dry Hertz", "film table"))
-    return [*given("20"), dry.first, film.first, *given("200"), film.last, *given("2000 141")]
-
-
 def highest_peak(text: str) -> tuple[float, float]:
     """Frequency and height of the highest peak of sensor S1 that `mbs lsa` prints."""
     found = re.search(r"(?m)^  S1 .*: peaks at (.*)$", text)

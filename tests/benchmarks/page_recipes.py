@@ -32,7 +32,6 @@ from tests.benchmarks.machine_recipes import (
     levels_of_laws,
     loads_of_the_flexible,
     loads_of_the_gearbox,
-    lower_than_dry,
     own_laws_of_the_rigid,
     peaks_dry,
     peaks_with_films,
@@ -80,7 +79,6 @@ RECIPES: dict[str, Callable[[Sequence[Output]], list[Figure]]] = {
         housing_modes,
         run_of_flexible,
         loads_of_the_flexible,
-        lower_than_dry,
         amplitudes_of_the_rig,
         constants_of_the_rigid,
         shaft_mode_of_the_rigid,
@@ -113,7 +111,7 @@ RECIPES: dict[str, Callable[[Sequence[Output]], list[Figure]]] = {
 
 
 def printed(block: Block, outputs: Sequence[Output]) -> str:
-    """Lines of what a command prints, in a fence; which ones says its recipe, as a slice.
+    """Lines of what a command prints, in a fence; which ones says its recipe, as slices: `printed[0:2,7:]`.
 
     Raises
     ------
@@ -122,8 +120,10 @@ def printed(block: Block, outputs: Sequence[Output]) -> str:
     """
     if len(outputs) != 1:
         raise ValueError(f"{block.place}: got {len(outputs)} commands; allowed: one for printed lines")
-    first, _, last = block.recipe.partition("[")[2].rstrip("]").partition(":")
-    lines = outputs[0].text.rstrip("\n").splitlines()[int(first) if first else None : int(last) if last else None]
+    lines = outputs[0].text.rstrip("\n").splitlines()
+    slices = block.recipe.partition("[")[2].rstrip("]") or ":"
+    bounds = [[int(bound) if bound else None for bound in each.split(":")] for each in slices.split(",")]
+    lines = [line for first, last in bounds for line in lines[first:last]]
     text = "\n".join(line.rstrip() for line in lines).strip("\n")
     opening = block.text.lstrip().partition("\n")[0]
     return f"{opening}\n{text}\n```\n" if opening.startswith("```") else f"{text}\n"

@@ -39,7 +39,9 @@ SWEEP = """Gearbox: law map of NU308
 def test_every_block_has_a_recipe_and_commands_that_can_be_run():
     assert len(ALL) >= 35
     for block in ALL:
-        assert re.fullmatch(r"printed(\[-?\d*:-?\d*\])?", block.recipe) or block.recipe in RECIPES, block.place
+        assert re.fullmatch(r"printed(\[-?\d*:-?\d*(,-?\d*:-?\d*)*\])?", block.recipe) or block.recipe in RECIPES, (
+            block.place
+        )
         assert block.weight in WEIGHTS, block.place
         assert block.commands, block.place
         assert {shlex.split(command)[0] for command in block.commands} <= set(PROGRAMS), block.place
@@ -47,6 +49,16 @@ def test_every_block_has_a_recipe_and_commands_that_can_be_run():
 
 def test_every_name_stands_on_one_page():
     assert sorted(block.name for block in ALL) == sorted(FIGURES)
+
+
+def test_the_ten_rows_of_the_trade_have_the_figures_of_its_tables():
+    page = (ROOT / "TRADE.md").read_text(encoding="utf-8")
+    rows = [row for row in page.partition("## One contact")[0].splitlines() if row.startswith("| ")][1:]
+    assert len(rows) == 10
+    tables = "\n".join(block.text for block in ALL if block.name.startswith(("budget-of", "trade-of")))
+    told = re.findall(r"\d[\d.]* / \d[\d.]*|x \d[\d.]*", " ".join(rows))
+    assert len(told) >= 25
+    assert [figure for figure in told if not re.search(rf"(?<![\d.]){re.escape(figure)}(?![\d.])", tables)] == []
 
 
 def test_printed_output_on_pages_has_a_marker():
@@ -126,6 +138,13 @@ def test_a_printed_block_is_made_of_lines_of_the_output():
     made = [Output("mbs modes a", "title\nk 2\nend\n")]
     assert printed(block, made) == rewritten(block, made) == "```\nk 2\n```\n"
     assert [each.found for each in compared(block, made).different] == ["2"]
+
+
+def test_a_printed_block_may_leave_out_lines_between():
+    origins = {"statics-of-a": {"recipe": "printed[:1,-2:]", "weight": "quick", "commands": ["mbs modes a"]}}
+    page = "<!-- figures statics-of-a -->\n```\nk 1\nc 3\nend\n```\n<!-- end of figures -->\n"
+    (block,) = blocks("page.md", page, origins)
+    assert printed(block, [Output("mbs modes a", "k 1\nk 2\nc 3\nend\n")]) == block.text
 
 
 def test_a_row_is_the_rest_of_its_line():
