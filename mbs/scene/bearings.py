@@ -137,11 +137,12 @@ def read_bearing(section: Table, name: str) -> BearingSpec | MatrixSpec | None:
     if section.choice("kind", ("rollers", "table")) == "table":
         return read_table_bearing(section, name)
     inner, outer = fields.place(section, "inner"), fields.place(section, "outer")
-    given = section.get("geometry", required='{ name = "NU308" } or dimensions, as [bearing] of a job file')
+    given = section.get("geometry", required='a designation such as "NU308", or dimensions, as [bearing] of a job file')
     problems: list[str] = []
     geometry = None
     if "geometry" in section:
-        geometry, _ = read_contacts(Table({"bearing": given}, "geometry", problems), None)
+        named = {"name": given} if isinstance(given, str) else given
+        geometry, _ = read_contacts(Table({"bearing": named}, "geometry", problems), None)
     for problem in problems:
         section.note("geometry", problem.removeprefix("[bearing] ").removeprefix("[bearing]: "))
     profile = read_profile(section, geometry)
