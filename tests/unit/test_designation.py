@@ -17,7 +17,7 @@ from ehdmaps.physics.bearing import BEARINGS
 from ehdmaps.physics.catalogue import _RATINGS, designated, estimate, stated_errors
 from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.lubricant import LUBRICANTS, Lubricant
-from ehdmaps.physics.own_oil import _LIMITS, _QUADRATICS, CLASSES, OilClass, viscosity_100, viscosity_index
+from ehdmaps.physics.own_oil import _LIMITS, _QUADRATICS, CLASSES, viscosity_100, viscosity_index
 from mbs.cli import main as mbs_main
 
 SMALL = """
@@ -179,7 +179,7 @@ def test_sources():
 
 
 def test_bands_follow_the_spread():
-    """Film formulas: the film goes with alpha to 0.5 to 0.6; k of a bearing with the length of its rollers to some 0.9."""
+    """By film formulas a film goes with the root of alpha or a little more; k nearly with the length of the rollers."""
     job = parse_job(SMALL + '[solver]\nname = "formula"\n', "job", "job.toml")
     point = OperatingPoint(2e4, 2.0, 333.15)
     alpha = pressure_viscosity_band(job, point, of_map(job))
