@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from typing import Any
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers
@@ -69,7 +70,11 @@ def geometry_band(job: Job, point: OperatingPoint, solver: ContactSolver) -> Ban
     )
     oil = _of_temperature(job.lubricant, point.temperature, 1.0)
     base = _answer(job, bearing, oil, point, solver)
-    return _added([_largest(base, lambda s, c=change: _answer(job, c(s), oil, point, solver)) for change in changes])
+
+    def changed(change: Callable[[float], BearingGeometry]) -> Callable[[float], Answer]:
+        return lambda sign: _answer(job, change(sign), oil, point, solver)
+
+    return _added([_largest(base, changed(change)) for change in changes])
 
 
 def pressure_viscosity_band(job: Job, point: OperatingPoint, solver: ContactSolver) -> Band | None:
@@ -125,8 +130,8 @@ def _of_temperature(oil: Lubricant, temperature: float, factor: float) -> Lubric
     if oil.correlation is None:
         return oil
     alpha = factor * oil.at(temperature).pressure_viscosity.pressure_viscosity
-    law = replace(oil.pressure_viscosity, pressure_viscosity_40=alpha, pressure_viscosity_100=alpha)  # type: ignore[call-arg]
-    return replace(oil, correlation=None, pressure_viscosity=law)
+    coefficients: dict[str, Any] = {"pressure_viscosity_40": alpha, "pressure_viscosity_100": alpha}
+    return replace(oil, correlation=None, pressure_viscosity=replace(oil.pressure_viscosity, **coefficients))
 
 
 def _answer(job: Job, bearing: BearingGeometry, oil: Lubricant, point: OperatingPoint, solver: ContactSolver) -> Answer:
