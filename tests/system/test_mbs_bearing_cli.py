@@ -197,7 +197,7 @@ def test_overload_and_what_is_outside_the_map_make_status_1(here, capsys, formul
 
 
 BAD = (
-    ("NU3O9", [], "BEARING: got 'NU3O9' (did you mean 'NU309'?); allowed: a designation such as NU308 or NU210"),
+    ("NU3O9", [], "BEARING: got 'NU3O9' (did you mean 'NU319'?); allowed: a designation such as NU308 or NU210"),
     ("NU308", ["--load", "nan"], "--load: got 'nan', which does not start with a number"),
     ("NU308", ["--load", "-5 kN"], "--load: got '-5 kN'; allowed: 0.001 N to 1e+07 N"),
     ("NU308", ["--load", "0 N"], "--load: got '0 N'; allowed: 0.001 N to 1e+07 N"),
