@@ -277,5 +277,5 @@ def test_every_command_of_mbs(words, folder, monkeypatch):
     text = text.replace('{ name = "NU308", diametral_clearance = "0 um" }', '"NU 2210 ECP"').replace(
         'name = "FVA3" ', 'name = "ISO VG 68"'
     )
-    (folder / "scene.toml").write_text(text.replace('duration = "0.2 s"', 'duration = "0.02 s"'))
+    (folder / "scene.toml").write_text(text.replace('duration = "0.2 s"', 'duration = "0.1 s"'))
     run(mbs_main, words)
