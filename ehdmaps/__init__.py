@@ -12,7 +12,7 @@
 open_map            a map file, as `EHDMap`
 generate            make a map: of a job file, a shipped job, or a `Job`; `read_job`, `Job.build`
 generate_batch      make the maps of a batch file
-law                 a contact law without a map: films from the film table
+law                 a contact law without a map: films from the film table; `law("NU210", "ISO VG 46")`
 compare             two maps, as a `Comparison`
 solve               one contact at one operating point, without a map
 solve_points        contacts at many operating points: dataset in, dataset out

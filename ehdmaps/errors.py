@@ -5,6 +5,7 @@ Messages say where, what was got (with unit), what is allowed, and what to do.
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Sequence
 
 
@@ -64,3 +65,21 @@ class MapError(EhdmapsError):
 
 class OutsideMapError(EhdmapsError):
     """A contact law was called outside the range of its map and its policy is `error`."""
+
+
+def short(value: object) -> str:
+    """Quote a value of any kind and size for a message."""
+    if isinstance(value, int) and not isinstance(value, bool) and abs(value) >= 10**20:
+        return f"a number of {value.bit_length()} bits"
+    if isinstance(value, (dict, list, tuple)):
+        kind = "a table" if isinstance(value, dict) else "a list"
+        return f"{kind} of {len(value)} entries"
+    if isinstance(value, str) and len(value) > 60:
+        value = value[:50] + "..."
+    return repr(value)
+
+
+def closest(word: str, allowed: tuple[str, ...]) -> str:
+    """Say ' (did you mean ...?)' where one of the allowed words is close, else nothing."""
+    matches = difflib.get_close_matches(word[:100], allowed, n=1, cutoff=0.6)
+    return f" (did you mean {matches[0]!r}?)" if matches else ""

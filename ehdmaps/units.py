@@ -7,7 +7,6 @@ whatever is printed or drawn: the table "Units" of the reference page has them.
 
 from __future__ import annotations
 
-import difflib
 import math
 import re
 from dataclasses import dataclass
@@ -15,6 +14,8 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from ehdmaps.errors import InputError
+from ehdmaps.errors import closest as closest  # noqa: PLC0414  # what readers of texts take from here, too
+from ehdmaps.errors import short as short  # noqa: PLC0414
 
 if TYPE_CHECKING:
     import pint
@@ -138,24 +139,6 @@ def quantity_within(text: object, unit: str, low: float, high: float, wrong: str
     if not low <= value <= high:
         raise InputError(wrong)
     return value
-
-
-def short(value: object) -> str:
-    """Quote a value of any kind and size for a message."""
-    if isinstance(value, int) and not isinstance(value, bool) and abs(value) >= 10**20:
-        return f"a number of {value.bit_length()} bits"
-    if isinstance(value, (dict, list, tuple)):
-        kind = "a table" if isinstance(value, dict) else "a list"
-        return f"{kind} of {len(value)} entries"
-    if isinstance(value, str) and len(value) > 60:
-        value = value[:50] + "..."
-    return repr(value)
-
-
-def closest(word: str, allowed: tuple[str, ...]) -> str:
-    """Say ' (did you mean ...?)' where one of the allowed words is close, else nothing."""
-    matches = difflib.get_close_matches(word[:100], allowed, n=1, cutoff=0.6)
-    return f" (did you mean {matches[0]!r}?)" if matches else ""
 
 
 def _allowed(unit: str) -> str:

@@ -294,7 +294,7 @@ def _bearing(top: Program) -> None:
             "both",
         )
     command.add_argument(
-        "--oil", metavar="NAME", help="oil without a map: FVA3, Spirax MA 80W; default: the file's, else FVA3"
+        "--oil", metavar="NAME", help="oil without a map: FVA3, ISO VG 46; default: the file's, else FVA3"
     )
     command.add_argument(
         "--profile",

@@ -9,8 +9,10 @@ problem      bearing or contact, material, lubricant, axes of the grid
 supply       oil supply and roughness of a job, a scene or a command line, as text
 solids       the structural law
 solvers      names and settings of the solvers
+defaults     what a job takes where it says nothing; the job of a designation
 reader       job file, shipped job or map file -> `Job`
 job_text     values in SI -> the text of a job file, for `Job.build`
+estimate_bands  effect of what is estimated on stiffness, damping and film
 make         the room from a job to a map file, from a batch to its maps
 solve        the room of single operating points
 show         the room where a map is opened, described, drawn, compared

@@ -21,7 +21,8 @@ _TARGET = "csv"
 
 _MAKE, _LOOK, _GIVE, _MEASURE = "make a map", "look", "hand over", "laboratory"
 
-_OF_MAPS = tuple(choice.key for choice in MAP_CHOICES)
+_OF_BEARING = ("bearing", "oil")
+_OF_MAPS = (*(choice.key for choice in MAP_CHOICES), *_OF_BEARING)
 
 _RENAMED = {
     "--tolerance": "--law-tolerance of generate",
@@ -43,9 +44,14 @@ def parser() -> argparse.ArgumentParser:
         renamed=_RENAMED,
     )
     add_choices(top.shared, MAP_CHOICES, "job", several=False)
+    instead = top.shared.add_argument_group("instead of a file")
+    instead.add_argument("--bearing", metavar="NAME", help="a bearing by its designation, such as NU210")
+    instead.add_argument("--oil", metavar="NAME", help='its oil, such as "ISO VG 46, VI 120"; default: FVA3')
 
-    generate = top.add_command(_MAKE, "generate", "make a map; the same command goes on after an interruption")
-    generate.add_argument("jobs", metavar="JOB", nargs="+", help="of several, one map after the other")
+    generate = top.add_command(
+        _MAKE, "generate", "make a map; the same command goes on after an interruption", _OF_BEARING
+    )
+    generate.add_argument("jobs", metavar="JOB", nargs="*", help="of several, one map after the other")
     generate.add_argument(
         "-o",
         "--output",
@@ -79,12 +85,12 @@ def parser() -> argparse.ArgumentParser:
         "-o", "--output", metavar="MAP.nc", help="of the job, or the folder of the batch, as for generate"
     )
 
-    check = top.add_command(_MAKE, "check", "list every problem of a job; estimate points, time, memory")
-    check.add_argument("job", metavar="JOB")
+    check = top.add_command(_MAKE, "check", "list every problem of a job; estimate points, time, memory", _OF_BEARING)
+    _add_job(check)
     check.add_argument("--solver", metavar="NAME", help=_SOLVER)
 
     show = top.add_command(_LOOK, "show", "what a map holds", _OF_MAPS)
-    show.add_argument("map", metavar="MAP.nc")
+    _add_job(show, "map")
 
     plot = top.add_command(
         _LOOK,
@@ -92,15 +98,15 @@ def parser() -> argparse.ArgumentParser:
         "stiffness, damping and films on one page; of rough surfaces Lambda and the share of the films instead",
         _OF_MAPS,
     )
-    plot.add_argument("map", metavar="MAP.nc")
+    _add_job(plot, "map")
     plot.add_argument("-o", "--output", metavar="FIG.png", help="default: the map's name with .png; also .pdf, .svg")
 
     report = top.add_command(_LOOK, "report", "a map as one page to send: no network needed, prints to PDF", _OF_MAPS)
-    report.add_argument("map", metavar="MAP.nc")
+    _add_job(report, "map")
     report.add_argument("-o", "--output", metavar="REPORT.html", help="default: the map's name with .html")
 
-    solve = top.add_command(_MAKE, "solve", "one operating point, as a table", ["supply"])
-    solve.add_argument("job", metavar="JOB")
+    solve = top.add_command(_MAKE, "solve", "one operating point, as a table", ["supply", *_OF_BEARING])
+    _add_job(solve)
     solve.add_argument("--load", required=True, help='such as "62 N" (with --length) or "88 N/mm"')
     solve.add_argument("--length", help='that carries the load, such as "0.7 mm"')
     solve.add_argument(
@@ -146,8 +152,10 @@ def parser() -> argparse.ArgumentParser:
         ".pdf, .svg",
     )
 
-    length = top.add_command(_LOOK, "length", "load and pressure over the length of a roller, and finite elements")
-    length.add_argument("job", metavar="JOB", help="with [bearing]; finite elements are shipped for NU308 and N1014")
+    length = top.add_command(
+        _LOOK, "length", "load and pressure over the length of a roller, and finite elements", _OF_BEARING
+    )
+    _add_job(length, help="with [bearing]; finite elements are shipped for NU308 and N1014")
     length.add_argument("--plot", metavar="FIG.png", help="all cases on one page; also .pdf, .svg")
     length.add_argument("--reference", metavar="FILE.json", help="finite elements of another bearing, made by --solve")
     length.add_argument(
@@ -170,6 +178,25 @@ def parser() -> argparse.ArgumentParser:
     return top
 
 
+def _add_job(command: argparse.ArgumentParser, name: str = "job", help: str | None = None) -> None:
+    """Add a job or map, in the place of which a bearing may stand: see `_OF_BEARING`."""
+    command.add_argument(name, metavar="JOB" if name == "job" else "MAP.nc", nargs="?", help=help)
+
+
+def _place_bearing(arguments: argparse.Namespace) -> None:
+    """Put the bearing that is given in the place of the job or map, one of which a command needs."""
+    if "bearing" not in arguments:
+        return
+    from ehdmaps.jobs.defaults import bearing_source
+
+    name = next(name for name in ("jobs", "job", "map") if name in arguments)
+    given = getattr(arguments, name)
+    needed = not getattr(arguments, "list", False)
+    source = bearing_source(arguments.bearing, arguments.oil, given or None, needed)
+    if source is not None:
+        setattr(arguments, name, [source] if name == "jobs" else source)
+
+
 def _add_export(top: Program) -> None:
     """Add the arguments of `ehdmaps export`: those of all targets, and, once the target is known, its own."""
     export = top.add_command(
@@ -179,7 +206,7 @@ def _add_export(top: Program) -> None:
         _OF_MAPS,
         epilog="`ehdmaps export --list` names the targets, `ehdmaps export --to TARGET --help` their options.",
     )
-    export.add_argument("map", metavar="MAP.nc", nargs="?")
+    _add_job(export, "map")
     export.add_argument("--list", action="store_true", help="list the targets")
     export.add_argument("--to", metavar="TARGET", default=_TARGET, help="default: csv, curves over load as a table")
     export.add_argument("-o", "--output", metavar="PATH", help="default: the map's name with the target's ending")
@@ -201,8 +228,10 @@ def _add_export(top: Program) -> None:
 
 def _add_solids(top: Program) -> None:
     """Add the arguments of `ehdmaps solids`."""
-    solids = top.add_command(_MEASURE, "solids", "the structural law of a bearing by finite elements, once per bearing")
-    solids.add_argument("job", metavar="JOB")
+    solids = top.add_command(
+        _MEASURE, "solids", "the structural law of a bearing by finite elements, once per bearing", _OF_BEARING
+    )
+    _add_job(solids)
     solids.add_argument("-o", "--output", metavar="FILE.json", help="all that was found; default: none")
     solids.add_argument("--mesh-convergence", action="store_true", help="three meshes, and other seats of the rings")
     solids.add_argument("--contact", action="store_true", help="CalculiX solves the contact too; some minutes")
@@ -225,8 +254,10 @@ def _add_compare(top: Program) -> None:
 
 def _add_tradeoff(top: Program) -> None:
     """Add the arguments of `ehdmaps tradeoff`."""
-    tradeoff = top.add_command(_MEASURE, "tradeoff", "measured speed and accuracy of solvers, settings and physics")
-    tradeoff.add_argument("job", metavar="JOB")
+    tradeoff = top.add_command(
+        _MEASURE, "tradeoff", "measured speed and accuracy of solvers, settings and physics", _OF_BEARING
+    )
+    _add_job(tradeoff)
     tradeoff.add_argument("--points", metavar="N", type=count, default=60, help="random points; default: 60")
     tradeoff.add_argument("--seed", metavar="S", type=_count, default=1, help="seed of the points; default: 1")
     tradeoff.add_argument(
@@ -285,6 +316,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _command(arguments: argparse.Namespace) -> tuple[str, int]:
     """Load the command that is asked for, and do it."""
+    _place_bearing(arguments)
     result: tuple[str, int] = importlib.import_module(f"ehdmaps.jobs.commands.{arguments.command}").run(arguments)
     return result
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from ehdmaps.errors import InputError
@@ -94,6 +94,8 @@ class Job:
         `ehdmaps.jobs.make.correction`; None where they are those of `solver`.
     solids : SolidsKeys
         What the job says of its solids: dimensions for finite elements, and what they found.
+    assumed : tuple of str
+        What the job leaves to the program, in words: oil, axes, solver.
     """
 
     name: str
@@ -114,6 +116,7 @@ class Job:
     surface: Surface | None = None
     corrected_by: CorrectedBy | None = None
     solids: SolidsKeys = NO_SOLIDS
+    assumed: tuple[str, ...] = field(default=(), compare=False)
 
     @classmethod
     def build(

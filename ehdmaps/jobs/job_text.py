@@ -261,7 +261,7 @@ def _lubricant(oil: Lubricant) -> Iterator[tuple[str, Entry]]:
     """Yield the keys of [lubricant]: the name of a known oil, or the data of an own one."""
     yield from _label(oil.label)
     record = oil.record()
-    if oil.name in LUBRICANTS:
+    if oil.name in LUBRICANTS or oil.oil_class is not None:
         named = Lubricant.named(oil.name)
         heat = {key: getattr(oil, key) for key in _OIL_HEAT_UNITS if getattr(oil, key) != getattr(named, key)}
         if replace(named, **heat) == oil and None not in heat.values():

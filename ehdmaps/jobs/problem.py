@@ -14,9 +14,9 @@ from ehdmaps.jobs.table import Table
 from ehdmaps.labels import label_problem
 from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
-from ehdmaps.physics.catalogue import designations, estimate, estimate_from_dimensions
+from ehdmaps.physics.catalogue import estimate, estimate_from_dimensions, plain_designation
 from ehdmaps.physics.contact import OIL_TEMPERATURES, LineContact
-from ehdmaps.physics.lubricant import DENSITY_LAWS, LUBRICANTS, Lubricant
+from ehdmaps.physics.lubricant import DENSITY_LAWS, Lubricant
 from ehdmaps.physics.own_oil import CORRELATIONS, Stated, stated_problems
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.physics.viscosity import PRESSURE_LAWS, Parameter
@@ -283,24 +283,24 @@ def _bearing(section: Table) -> BearingGeometry | None:
     """Read [bearing]: a name, or dimensions."""
     label = _label(section)
     if "estimate" in section:
-        return _estimate(section, label)
+        return _estimate(section, "estimate", label)
     if "name" in section:
-        name = _bearing_name(section)
+        name = _known_name(section)
+        if name is None:
+            return _estimate(section, "name", label)
         clearance = _clearance(section)
         for key in (*_BEARING_LENGTHS, "rollers"):
             if key in section:
                 section.get(key)
                 section.note(key, "stands beside name; allowed: a name, or dimensions without a name; delete one")
         section.close(others=("estimate", *_BEARING_KEYS))
-        if name is None:
-            return None
         named = replace(BEARINGS[name], label=label)
         if clearance is None:
             return named
         return _built(section, lambda: replace(named, diametral_clearance=clearance))
     if not any(key in section for key in _BEARING_KEYS):
         section.note(
-            "name", f"missing; allowed: {', '.join(BEARINGS)}; or give {', '.join(_BEARING_KEYS)}, or estimate"
+            "name", f"missing; allowed: a designation such as 'NU206'; or give {', '.join(_BEARING_KEYS)}, or estimate"
         )
         section.close(others=("name", "estimate", "basic_static_rating", *_BEARING_KEYS))
         return None
@@ -318,30 +318,27 @@ def _bearing(section: Table) -> BearingGeometry | None:
     return _built(section, lambda: BearingGeometry(name, inner, outer, diameter, length, rollers, play, label))
 
 
-def _bearing_name(section: Table) -> str | None:
-    """Read the name of a bearing whose inner geometry is known."""
+def _known_name(section: Table) -> str | None:
+    """Read the name of a bearing whose inner geometry is known; None for any other."""
     name = section.get("name")
-    if name in designations() and name not in BEARINGS:
-        section.note(
-            "name",
-            f"got {name!r}, whose inner geometry is not known here; allowed: {', '.join(BEARINGS)}; or estimate = "
-            f'"{name}"',
-        )
-        return None
-    return section.choice("name", tuple(BEARINGS))
+    plain = plain_designation(name) if isinstance(name, str) else ""
+    return plain if plain in BEARINGS else None
 
 
-def _estimate(section: Table, label: str | None) -> BearingGeometry | None:
-    """Read a bearing that is estimated: by its designation, or a table of its catalogue dimensions."""
-    value = section.get("estimate")
+def _estimate(section: Table, word: str, label: str | None) -> BearingGeometry | None:
+    """Read a bearing that is estimated: by its designation, or a table of its catalogue dimensions.
+
+    It stands under the key `word`: estimate; or name, which takes a designation alone.
+    """
+    value = section.get(word)
     rating = section.quantity("basic_static_rating", "N", 1e2, 1e9, Display("kN", 1e-3))
     clearance = _clearance(section)
     for key in ("name", *_BEARING_LENGTHS, "rollers"):
-        if key in section:
+        if key in section and key != word:
             section.get(key)
-            section.note(key, "stands beside estimate; allowed: one of the two; delete one")
-    section.close(others=("name", *_BEARING_KEYS))
-    if isinstance(value, dict):
+            section.note(key, f"stands beside {word}; allowed: one of the two; delete one")
+    section.close(others=("name", "estimate", *_BEARING_KEYS))
+    if isinstance(value, dict) and word == "estimate":
         table = Table(value, f"{section.where} estimate", section.problems)
         sizes = [table.quantity(key, "m", 1e-3, 10.0, LENGTH, required=True) for key in _CATALOGUE_LENGTHS]
         table.close()
@@ -358,7 +355,8 @@ def _estimate(section: Table, label: str | None) -> BearingGeometry | None:
         if rating is None and "basic_static_rating" in section:
             return None
     else:
-        section.note("estimate", f'got {short(value)}; allowed: a designation such as "NU206", or {_CATALOGUE_FORM}')
+        more = f", or {_CATALOGUE_FORM}" if word == "estimate" else ""
+        section.note(word, f'got {short(value)}; allowed: a designation such as "NU206"{more}')
         return None
     if made is None or (clearance is None and "diametral_clearance" in section):
         return None
@@ -408,13 +406,16 @@ def read_lubricant(section: Table) -> Lubricant | None:
     stated_heat = {key: section.quantity(key, *rule) for key, rule in _OIL_HEAT.items()}
     heat: dict[str, Any] = {key: value for key, value in stated_heat.items() if value is not None}
     if "name" in section:
-        name = section.choice("name", LUBRICANTS)
+        name = section.get("name")
         for key in _OIL_KEYS:
             if key in section:
                 section.get(key)
                 section.note(key, "stands beside name; allowed: a name, or data without a name; delete one")
         section.close(others=_OIL_KEYS)
-        return replace(Lubricant.named(name), label=label, **heat) if name is not None else None
+        if not isinstance(name, str):
+            section.note("name", f"got {short(name)}; allowed: the name of an oil, such as 'FVA3' or 'ISO VG 46'")
+            return None
+        return _built(section, lambda: replace(Lubricant.named(name), label=label, **heat))
     law = section.choice("viscosity_law", tuple(PRESSURE_LAWS), required=True)
     values: dict[str, Any] = {
         key: section.quantity(key, *rule, required=key == "density") for key, rule in _OIL_QUANTITIES.items()

@@ -11,7 +11,7 @@ from typing import Any
 
 from ehdmaps import inputs
 from ehdmaps.errors import InputError
-from ehdmaps.jobs import solvers, table
+from ehdmaps.jobs import defaults, solvers, table
 from ehdmaps.jobs.job import DEFAULT_CORRECTION_POINTS, MOST_CHECKS, MOST_POINTS, CorrectedBy, Job
 from ehdmaps.jobs.problem import LOAD_AXIS, TEMPERATURE_AXIS, read_axis, read_contacts, read_lubricant, read_speeds
 from ehdmaps.jobs.solids import NO_SOLIDS, check_solids, read_solids
@@ -52,7 +52,8 @@ def read_job(
     Parameters
     ----------
     source : str or path
-        Name of a shipped job ("nu308"), path of a job file, or path of a map file, whose job is read again.
+        Name of a shipped job ("nu308"), path of a job file, or path of a map file, whose job is read again; or a
+        designation with an oil behind a comma, "NU210, ISO VG 46".
     solver : str, optional
         Takes the place of the job's solver: it keeps physics, shear and sliding, its other keys have their defaults.
     to_run : bool
@@ -66,12 +67,18 @@ def read_job(
         With every problem found.
     """
     source = fspath(source)
+    by_designation = defaults.designated_job(source)
+    if by_designation is not None:
+        return parse_job(by_designation.text, by_designation.name, source, solver, to_run, finding_solids)
     if source in shipped_jobs():
         text = (resources.files("ehdmaps.jobs") / "shipped" / f"{source}.toml").read_text(encoding="utf-8")
         return parse_job(text, source, f"{source} (shipped)", solver, to_run, finding_solids)
     path = Path(source)
     known = shipped_jobs()
-    allowed = f"a job file, a map file, or a shipped job: {', '.join(known)}{closest(source, known)}"
+    allowed = (
+        f"a job file, a map file, or a shipped job: {', '.join(known)}{closest(source, known)}; or --bearing with a "
+        "designation, such as NU210"
+    )
     if inputs.first_bytes(path, 8, allowed, source).startswith(_SIGNATURES):
         text, name, of_map = _job_of_map(path)
         return parse_job(text, name, f"{source} (job of the map)", solver or of_map, to_run, finding_solids)
@@ -117,15 +124,25 @@ def parse_job(
     problems: list[str] = []
     if not name.isprintable():
         problems.append(f"is called {name!r:.80}; allowed: printable characters, which its map can carry; rename it")
-    job = _job(Table(values, "job file", problems), text, name, solver, to_run, finding_solids)
+    completed = defaults.complete(values)
+    top = Table(completed.values, "job file", problems)
+    job = _job(top, text, name, solver, to_run, finding_solids, completed)
     if problems or job is None:
         raise InputError([f"{where}: {problem}" for problem in problems])
     return job
 
 
-def _job(top: Table, text: str, name: str, override: str | None, to_run: bool, finding_solids: bool) -> Job | None:
+def _job(
+    top: Table,
+    text: str,
+    name: str,
+    override: str | None,
+    to_run: bool,
+    finding_solids: bool,
+    completed: defaults.Completed,
+) -> Job | None:
     """Read all tables; None where a problem was noted."""
-    schema = top.get("schema", required="schema = 1")
+    schema = top.get("schema")
     if "schema" in top and (isinstance(schema, bool) or schema != 1):
         top.note("schema", f"got {schema!r:.60}; allowed: 1; this version of ehdmaps reads no other")
 
@@ -169,6 +186,8 @@ def _job(top: Table, text: str, name: str, override: str | None, to_run: bool, f
     if grid:
         axes = _grid(grid, len(contacts) or 2, bearing, known=bearing is not None or "bearing" not in top)
         if oil is not None and axes[2] is not None:
+            if completed.temperatures:
+                axes[2] = defaults.served(oil, axes[2])
             _check_temperatures(oil, axes[2], grid)
         _check_loads(contacts, axes[0], grid)
     top.close(others=_TABLES)
@@ -190,6 +209,7 @@ def _job(top: Table, text: str, name: str, override: str | None, to_run: bool, f
         temperatures=temperatures,
         solver=solver,
         solver_options=options,
+        assumed=completed.assumed,
         **rest,
     )
 
@@ -319,7 +339,8 @@ def _check_temperatures(oil: Lubricant, temperatures: tuple[float, ...], grid: T
 def is_map(source: str) -> bool:
     """Tell whether a job was given as a map file."""
     try:
-        return source not in shipped_jobs() and inputs.first_bytes(source, 8, "").startswith(_SIGNATURES)
+        given = source in shipped_jobs() or defaults.designated_job(source) is not None
+        return not given and inputs.first_bytes(source, 8, "").startswith(_SIGNATURES)
     except InputError:
         return False
 

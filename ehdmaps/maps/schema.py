@@ -330,6 +330,9 @@ NUMBERS = ("lubricant_verified", "structural_scaling")
 CHECKSUM = "content_sha256"
 """Attribute with the checksum of everything that a law or a reader of the map relies on; see `checksum`."""
 
+ASSUMED = "job_assumed"
+"""Attribute of a map whose job leaves oil, axes or solver to the program: what it took, in words."""
+
 OIL_SUPPLY = "oil_supply"
 """Attribute of a map whose job states the oil supply of its contacts, JSON: what its laws have by default.
 
@@ -357,6 +360,7 @@ CODE = "code_hash"
 TEXTS = (
     "title",
     "job_name",
+    ASSUMED,
     "created",
     "fill",
     "solver_version",

@@ -15,7 +15,7 @@ References
 ----------
 ISO 15, Rolling bearings - Radial bearings - Boundary dimensions. ISO 76, Rolling bearings - Static load ratings.
 Raceways of series 2, 22, 3, 23: catalogues of Schaeffler and Koyo, which agree; of series 10: Schaeffler, some makers
-differ by 0.5 mm or so.
+differ by 0.5 mm or so. Static ratings: SKF, Rolling bearings (general catalogue), suffix ECP.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ import math
 import re
 from typing import NamedTuple
 
-from ehdmaps.errors import InputError
-from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.errors import InputError, closest, short
+from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
 
 FILLED = 0.8
 """Share of the pitch circle that rollers take: gives the published number for NU308, NU205, NU206, NU2205, N204."""
@@ -43,7 +43,27 @@ ERRORS = "raceways to about 3 %, roller diameter {} %, roller length {} %, numbe
 """What an estimate is good for: measured on bearings whose inner geometry is known, and on the table, see the tests."""
 
 _MM = 1e-3
-_DESIGNATION = re.compile(r"(NU|NJ|NUP|N) ?(10|22|23|2|3)(\d\d)E?")
+_DESIGNATION = re.compile(
+    r"(NUP|NU|NJ|N)[ -]*(10|22|23|2|3)[ -]?(\d\d)"
+    r"(?:[ .-]*E[A-Z]{0,3})?(?:[ ./-]*(?:XL|TVP[2-5]?|M1A?|JP[1-3]|C[2-5]|P[56]|CN))*"
+)
+"""Type, dimension series and bore code; then suffixes of the reinforced design, cages, clearance and accuracy."""
+
+_RATINGS = {
+    "204": 22e3, "205": 27e3, "206": 36.5e3, "207": 48e3, "208": 53e3, "209": 64e3, "210": 69.5e3, "211": 95e3,
+    "212": 102e3, "213": 118e3, "214": 137e3, "215": 156e3, "216": 166e3, "217": 200e3, "218": 220e3, "220": 305e3,
+    "305": 36.5e3,
+}  # fmt: skip
+"""Static ratings C0 [N] by series and bore code, as far as they are certain; others are estimated without."""
+
+
+class Errors(NamedTuple):
+    """Errors of an estimate: relative ones, and the number of rollers that may be too many or too few."""
+
+    raceways: float
+    roller_diameter: float
+    roller_length: float
+    rollers: int
 
 
 class Catalogue(NamedTuple):
@@ -119,9 +139,10 @@ def estimate(designation: str, basic_static_rating: float | None = None) -> Bear
     ----------
     designation : str
         N, NU, NJ or NUP of series 10, 2, 22, 3, 23 with bores of 20 to 100 mm, such as "NU206"; they differ in their
-        ribs alone.
+        ribs alone. Blanks and the suffixes of today's design do not matter: "NU 206 ECP".
     basic_static_rating : float, optional
-        C0 [N] of the bearing's catalogue; without it the roller length is a share of the width.
+        C0 [N] of the bearing's catalogue; without it that of the table here, and where it has none, the roller length
+        is a share of the width.
 
     Returns
     -------
@@ -140,8 +161,72 @@ def estimate(designation: str, basic_static_rating: float | None = None) -> Bear
     (13, 9.0, 9.39)
     """
     entry = _looked_up(designation)
+    name = plain_designation(designation)
+    rating = tabulated_rating(designation) if basic_static_rating is None else basic_static_rating
+    # makers' ratings of one bearing differ by up to a fifth, and so do their rollers
     errors = ERRORS.format(12, 20 if basic_static_rating is None else 6, 1)
-    return _geometry(designation, entry, basic_static_rating, errors)
+    return _geometry(name, entry, rating, errors, "SKF's " if basic_static_rating is None else "")
+
+
+def designated(designation: str) -> BearingGeometry:
+    """Bearing by its designation: its known inner geometry, else an estimate that is marked so.
+
+    Parameters
+    ----------
+    designation : str
+        One of `BEARINGS`, or what `estimate` takes; blanks and suffixes of today's design do not matter.
+
+    Raises
+    ------
+    InputError
+        If there is no such bearing.
+
+    Examples
+    --------
+    >>> designated("NU 308 ECP").estimated is None, designated("nu 210").name
+    (True, 'NU210')
+    """
+    name = plain_designation(designation)
+    return BEARINGS[name] if name in BEARINGS else estimate(designation)
+
+
+def plain_designation(designation: str) -> str:
+    """Designation without blanks and suffixes, such as "NU210"; empty where it is none.
+
+    Parameters
+    ----------
+    designation : str
+        Designation as it was typed.
+
+    Examples
+    --------
+    >>> plain_designation("NU 210-E-TVP2"), plain_designation("6206")
+    ('NU210', '')
+    """
+    match = _matched(designation)
+    return "".join(match.groups()) if match else ""
+
+
+def tabulated_rating(designation: str) -> float | None:
+    """Static rating C0 [N] that the table has of a bearing; None where it has none.
+
+    Parameters
+    ----------
+    designation : str
+        Such as "NU206".
+
+    Examples
+    --------
+    >>> tabulated_rating("NJ 210 ECP"), tabulated_rating("NU2210")
+    (69500.0, None)
+    """
+    match = _matched(designation)
+    return _RATINGS.get(match.group(2) + match.group(3)) if match else None
+
+
+def _matched(designation: str) -> re.Match[str] | None:
+    """Type, dimension series and bore code of a designation."""
+    return _DESIGNATION.fullmatch(designation.strip().upper())
 
 
 def estimate_from_dimensions(
@@ -185,6 +270,31 @@ def estimate_from_dimensions(
     return _geometry(name, entry, basic_static_rating, ERRORS.format(18, 13, 4))
 
 
+def stated_errors(geometry: BearingGeometry) -> Errors:
+    """Errors that an estimated bearing states of itself.
+
+    Parameters
+    ----------
+    geometry : BearingGeometry
+        A bearing with `estimated` set.
+
+    Raises
+    ------
+    InputError
+        If it states none.
+
+    Examples
+    --------
+    >>> stated_errors(estimate("NU206", 39e3))
+    Errors(raceways=0.03, roller_diameter=0.12, roller_length=0.06, rollers=1)
+    """
+    found = re.search(r"(\d+) %, roller diameter (\d+) %, roller length (\d+) %, .* (\d+)$", geometry.estimated or "")
+    if found is None:
+        raise InputError(f"bearing {geometry.name!r}: states no errors; allowed: a bearing that `estimate` made")
+    raceways, diameter, length, number = map(int, found.groups())
+    return Errors(raceways / 100, diameter / 100, length / 100, number)
+
+
 def static_rating(geometry: BearingGeometry) -> float:
     """Static rating C0 of ISO 76 [N]; of a bearing that was estimated by its rating, this rating.
 
@@ -220,7 +330,7 @@ def boundary(designation: str) -> Catalogue | None:
     >>> boundary("N1014").bore
     0.07
     """
-    match = _DESIGNATION.fullmatch(designation)
+    match = _matched(designation)
     return _entries().get((match.group(2), match.group(3))) if match else None
 
 
@@ -241,14 +351,15 @@ def _looked_up(designation: str) -> Catalogue:
     entry = boundary(designation)
     if entry is None:
         raise InputError(
-            f"bearing estimate: got {designation!r:.60}; allowed: N, NU, NJ or "
-            "NUP of series 10, 2, 22, 3, 23 with bores of 20 mm (25 mm in series 10) to 100 mm, such as 'NU206'; give "
-            "others by bore, outside_diameter, width and basic_static_rating"
+            f"bearing designation: got {short(designation)}{closest(designation.upper(), designations())}; allowed: "
+            f"{', '.join(BEARINGS)}, and N, NU, NJ or NUP of series 10, 2, 22, 3, 23 with bores of 20 mm (25 mm in "
+            "series 10) to 100 mm, such as 'NU206'; give others by bore, outside_diameter, width and "
+            "basic_static_rating"
         )
     return entry
 
 
-def _geometry(name: str, entry: Catalogue, rating: float | None, errors: str) -> BearingGeometry:
+def _geometry(name: str, entry: Catalogue, rating: float | None, errors: str, whose: str = "") -> BearingGeometry:
     """Rollers between two raceways."""
     diameter = 0.5 * (entry.outer_raceway - entry.inner_raceway)
     pitch = 0.5 * (entry.outer_raceway + entry.inner_raceway)
@@ -258,7 +369,7 @@ def _geometry(name: str, entry: Catalogue, rating: float | None, errors: str) ->
         basis = "width"
     else:
         length = rating / (RATING * (1.0 - diameter / pitch) * rollers * diameter)
-        basis = "static rating (ISO 76)"
+        basis = f"{whose}static rating (ISO 76)"
     if not 0.25 * entry.width < length < 0.9 * entry.width:
         raise InputError(
             f"bearing estimate: got basic_static_rating {rating!r} N, which takes rollers of {length / _MM:.4g} mm in "

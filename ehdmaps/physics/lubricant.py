@@ -6,6 +6,7 @@ A `Lubricant` holds laws over temperature; `Lubricant.at` gives the `LubricantSt
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from typing import Any, Literal, Required, TypedDict, Unpack
@@ -13,10 +14,19 @@ from typing import Any, Literal, Required, TypedDict, Unpack
 import numpy as np
 
 from ehdmaps.arrays import Values, as_given
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, closest, short
 from ehdmaps.labels import label_problem
 from ehdmaps.physics.isotherm import FreeVolume, Isotherm, IsothermLaw, PressureViscosity, density
-from ehdmaps.physics.own_oil import CORRELATIONS, Stated, estimated_coefficient, own_laws
+from ehdmaps.physics.own_oil import (
+    CLASSES,
+    CORRELATIONS,
+    DENSITY,
+    DENSITY_SLOPE,
+    OilClass,
+    Stated,
+    estimated_coefficient,
+    own_laws,
+)
 from ehdmaps.physics.viscosity import (
     ROELANDS_LOG,
     ROELANDS_PRESSURE,
@@ -227,11 +237,27 @@ class Lubricant:
     @property
     def estimated(self) -> str:
         """Statement of what is estimated and how well, in words; empty where nothing is."""
-        return CORRELATIONS[self.correlation].sentence if self.correlation else ""
+        if not self.correlation:
+            return ""
+        oil_class = self.oil_class
+        by_class = f"{oil_class.sentence}; " if oil_class else ""
+        return by_class + CORRELATIONS[self.correlation].sentence
+
+    @property
+    def oil_class(self) -> OilClass | None:
+        """Class of ISO 3448 from which all its data are; None for an oil that has data of its own."""
+        try:
+            found = OilClass.of(self.name)
+            same = found and self.viscosity == AstmViscosity(*found.viscosities) and self.density_15 == DENSITY
+        except InputError:
+            return None
+        return found if same else None
 
     @classmethod
     def named(cls, name: str) -> Lubricant:
-        """One of the oils of `LUBRICANTS`.
+        """One of the oils of `LUBRICANTS`, or an oil of a viscosity class, such as "ISO VG 46" or "ISO VG 46, VI 120".
+
+        Case, blanks and hyphens do not matter.
 
         FVA 3
             Reference oil; Lubricants 11, 2023, 369, table A1. The source of the viscosity law was not found
@@ -241,18 +267,25 @@ class Lubricant:
             No data sheet was found: typical values of an SAE 80W gear oil, marked unverified. nu40 = 87.5
             mm2/s, nu100 = 9.5 mm2/s, rho15 = 887 kg/m3, the density slope of FVA 3, and Roelands' law with
             the z that gives alpha = 2e-8 1/Pa at 40 degC.
+        ISO VG 7 to 3200
+            Viscosity by class and index, all else estimated, see `OilClass`; Roelands' law.
 
         Raises
         ------
         InputError
             If there is no oil of that name.
         """
-        try:
-            return _NAMED[name]
-        except KeyError:
-            raise InputError(
-                f"lubricant name: got {name!r}; allowed: {', '.join(LUBRICANTS)}; give other oils by their data"
-            ) from None
+        known = {_plain(word): oil for word, oil in _NAMED.items()}.get(_plain(name))
+        if known is not None:
+            return known
+        oil_class = OilClass.of(name)
+        if oil_class is not None:
+            return _of_class(oil_class)
+        raise InputError(
+            f"lubricant name: got {short(name)}{closest(name, LUBRICANTS)}; allowed: {', '.join(LUBRICANTS)}, or "
+            f"ISO VG {', '.join(map(str, CLASSES))} (ISO 3448), with an index as in 'ISO VG 46, VI 120'; give other "
+            "oils by their data"
+        )
 
     @classmethod
     def barus(cls, **data: Unpack[OilData]) -> Lubricant:
@@ -499,6 +532,27 @@ def _spirax() -> Lubricant:
     )
 
 
+def _of_class(oil_class: OilClass) -> Lubricant:
+    """Oil of a viscosity class."""
+    cold, hot = oil_class.viscosities
+    return Lubricant.roelands(
+        viscosity_40=cold,
+        viscosity_100=hot,
+        density=DENSITY,
+        density_slope=DENSITY_SLOPE,
+        pressure_viscosity=oil_class.correlation,
+        name=oil_class.name,
+    )
+
+
+def _plain(name: str) -> str:
+    """A name without case, blanks and hyphens."""
+    return re.sub(r"[\s_-]+", "", name).casefold()
+
+
 _NAMED: Mapping[str, Lubricant] = {oil.name: oil for oil in (_fva3(), _spirax())}
+DEFAULT_OIL = "FVA3"
+"""Oil where none is said: a mineral oil of ISO VG 100 whose data are published."""
+
 LUBRICANTS: tuple[str, ...] = tuple(_NAMED)
 """Names that `Lubricant.named` knows."""

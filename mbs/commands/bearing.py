@@ -18,8 +18,9 @@ from ehdmaps.errors import EhdmapsError, InputError
 from ehdmaps.inputs import first_bytes, read_text
 from ehdmaps.outputs import FIGURE, Output, output_problems, write_figure
 from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
+from ehdmaps.physics.catalogue import designated, designations, plain_designation
 from ehdmaps.physics.contact import OIL_TEMPERATURES
-from ehdmaps.physics.lubricant import LUBRICANTS, Lubricant
+from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.physics.surface import SMOOTH, Surface
@@ -59,8 +60,8 @@ if TYPE_CHECKING:
 
 
 LAWS = ("hertz", "formula", TABLE_LAW, "map")
-OIL, CELSIUS_40, ROUGHNESS = "FVA3", 313.15, 0.3e-6
-"""Assumed where nothing is given: the oil, the temperature of the raceways [K], the combined rms roughness [m]."""
+CELSIUS_40, ROUGHNESS = 313.15, 0.3e-6
+"""Assumed where nothing is given: the temperature of the raceways [K], the combined rms roughness [m]."""
 
 MOST_POINTS, MOST_SLICES = 500, 1000
 MOST_SLICES_IN_ALL = 5_000_000
@@ -258,7 +259,7 @@ def _assumed(
     if "clearance" not in chosen and given.geometry.diametral_clearance == 0.0:
         found.append("no clearance")
     if arguments.oil is None and given.oil is None and "map" not in chosen:
-        found.append(f"oil {OIL}")
+        found.append(f"oil {DEFAULT_OIL}")
     return tuple(found)
 
 
@@ -294,11 +295,21 @@ def _bearing(source: str, problems: list[str]) -> _Given | None:
     """The bearing of a name, a shipped job or a file."""
     if source in BEARINGS:
         return _Given(BEARINGS[source], STEEL)
-    from ehdmaps.jobs.reader import shipped_jobs  # with the readers of all tables of a job
+    from ehdmaps.jobs.defaults import SHIPPED  # with the readers of all tables of a job
 
-    allowed = f"{', '.join(BEARINGS)}, or a TOML file with [bearing], such as a job"
-    if source not in shipped_jobs() and not ("\0" not in source and os.path.isfile(source)):
-        problems.append(f"BEARING: got {short(source)}{closest(source, tuple(BEARINGS))}; allowed: {allowed}")
+    is_file = "\0" not in source and os.path.isfile(source)
+    if plain_designation(source) and not is_file and source not in SHIPPED:
+        try:
+            return _Given(designated(source), STEEL)
+        except InputError as error:
+            problems += [f"BEARING: {problem}" for problem in error.problems]
+            return None
+    from ehdmaps.jobs.reader import shipped_jobs
+
+    allowed = "a designation such as NU308 or NU210, or a TOML file with [bearing], such as a job"
+    if source not in shipped_jobs() and not is_file:
+        near = closest(source.upper(), (*BEARINGS, *designations()))
+        problems.append(f"BEARING: got {short(source)}{near}; allowed: {allowed}")
         return None
     try:
         return _from_file(source)
@@ -447,14 +458,15 @@ def _oil(
     problems: list[str],
 ) -> Lubricant | None:
     """The oil: that of the map, of --oil, of the file, or FVA 3; the temperature must suit it."""
-    oil = given.oil if given is not None and given.oil is not None else Lubricant.named(OIL)
+    oil = given.oil if given is not None and given.oil is not None else Lubricant.named(DEFAULT_OIL)
     if name is not None and with_map:
         problems.append(f"--oil: got {short(name)} with a map, which was made for an oil; leave one of the two out")
-    elif name is not None and name not in LUBRICANTS:
-        problems.append(f"--oil: got {short(name)}{closest(name, LUBRICANTS)}; allowed: {', '.join(LUBRICANTS)}")
-        return None
     elif name is not None:
-        oil = Lubricant.named(name)
+        try:
+            oil = Lubricant.named(name)
+        except InputError as error:
+            problems += [f"--oil: {problem}" for problem in error.problems]
+            return None
     if emap is not None:
         oil = emap.lubricant
     try:

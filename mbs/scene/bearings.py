@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from ehdmaps.jobs.problem import read_contacts
 from ehdmaps.jobs.supply import read_supply
 from ehdmaps.jobs.table import Table
-from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
+from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import OIL_TEMPERATURES
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.units import LENGTH, PRESSURE, TEMPERATURE, Display, short
@@ -185,8 +185,7 @@ def _geometry(section: Table) -> BearingGeometry | None:
         if not isinstance(designation, str):
             section.note("bearing", f'got {short(designation)}; allowed: a designation such as "NU210"')
             return None
-        # Those whose inner geometry is known have a name; that of others is estimated, and results say so.
-        key, given = "bearing", {"name" if designation in BEARINGS else "estimate": designation}
+        key, given = "bearing", {"name": designation}
         if "diametral_clearance" in section:
             given["diametral_clearance"] = section.get("diametral_clearance")
     elif "geometry" not in section:
@@ -194,6 +193,8 @@ def _geometry(section: Table) -> BearingGeometry | None:
             "bearing", 'missing; allowed: a designation such as "NU210"; or geometry, as [bearing] of a job file'
         )
         return None
+    elif isinstance(given, str):
+        given = {"name": given}
     problems: list[str] = []
     geometry, _ = read_contacts(Table({"bearing": given}, "geometry", problems), None)
     for problem in problems:

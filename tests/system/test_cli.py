@@ -398,7 +398,7 @@ def test_solve_says_when_there_is_no_solution(capsys, monkeypatch):
     ("arguments", "messages"),
     [
         (
-            ["nu309", "--load", "40 x", "--speed", "-1 m/s", "--temperature", "40"],
+            ["nu3o8", "--load", "40 x", "--speed", "-1 m/s", "--temperature", "40"],
             [
                 "did you mean 'nu308'?",
                 "--load: got the unit 'x'",

@@ -66,7 +66,10 @@ def test_an_override_replaces_keys_of_a_table_and_leaves_the_others():
         ("bearings = ['NU308']", "oils: missing"),
         ("bearings = []\noils = ['FVA3']", "bearings: got an empty list; allowed: at least one"),
         ("bearings = 'NU308'\noils = ['FVA3']", "bearings: got 'NU308'; allowed: a list of names"),
-        ("bearings = ['NU999']\noils = ['FVA3']", r"cat.toml, NU999_FVA3: \[bearing\] name: got 'NU999'"),
+        (
+            "bearings = ['NU999']\noils = ['FVA3']",
+            r"cat.toml, NU999_FVA3: \[bearing\]: bearing designation: got 'NU999'",
+        ),
         ("bearings = ['NU308', 'nu308']\noils = ['FVA3']", "got 'nu308' again; allowed: each name once"),
         ("bearings = ['NU308']\nestimates = ['NU308']\noils = ['FVA3']", "estimates: got 'NU308', which bearings has"),
         ("bearings = ['../NU308']\noils = ['FVA3']", "got '../NU308', which becomes a part of a file's name"),

@@ -165,7 +165,6 @@ def test_the_commented_alternatives_of_the_shipped_job_are_valid():
 
 BROKEN = {
     "not TOML": ("schema = = 1", "job.toml: is not TOML: .*strings with units stand in quotes"),
-    "no schema": (changed("schema = 1\n", ""), "job file schema: missing; allowed: schema = 1"),
     "another schema": (changed("schema = 1", "schema = 2"), "schema: got 2; allowed: 1"),
     "schema is a boolean": (changed("schema = 1", "schema = true"), "schema: got True; allowed: 1"),
     "unknown key": (
@@ -186,7 +185,6 @@ BROKEN = {
         changed('"formula"', '"formula"\nfilm_formula = 3'),
         "film_formula: got 3; allowed: 'moes', .*, in quotes",
     ),
-    "no solver": (GOOD[: GOOD.index("[solver]")], r"job file solver: missing; allowed: a table with name"),
     "solver is no table": (
         'solver = "formula"\n' + GOOD[: GOOD.index("[solver]")],
         r"\[solver\]: got 'formula'; allowed: a table",
@@ -198,15 +196,11 @@ BROKEN = {
     ),
     "empty bearing": (
         changed('name = "NU308"\n', ""),
-        r"\[bearing\] name: missing; allowed: N1014, NU308; or give inner",
+        r"\[bearing\] name: missing; allowed: a designation such as 'NU206'; or give inner",
     ),
     "unknown bearing": (
         changed("NU308", "NU3008"),
-        r"name: got 'NU3008' \(did you mean 'NU308'\?\); allowed: 'N1014', 'NU308'",
-    ),
-    "bearing of a catalogue": (
-        changed("NU308", "NU309"),
-        r"name: got 'NU309', whose inner geometry is not known here; allowed: N1014, NU308; or estimate = \"NU309\"",
+        r"bearing designation: got 'NU3008' \(did you mean 'NU308'\?\); allowed: N1014, NU308, and N, NU, NJ",
     ),
     "name and dimensions": (
         changed('"NU308"', '"NU308"\nrollers = 12'),
@@ -257,7 +251,10 @@ BROKEN = {
         changed("[lubricant]", "[material]\npoisson_ratio = nan\n[lubricant]"),
         "poisson_ratio: got nan; allowed: 0 to 0.499",
     ),
-    "unknown oil": (changed('"FVA3"', '"FVA4"'), r"\[lubricant\] name: got 'FVA4' \(did you mean 'FVA3'\?\)"),
+    "unknown oil": (
+        changed('"FVA3"', '"FVA4"'),
+        r"\[lubricant\]: lubricant name: got 'FVA4' \(did you mean 'FVA3'\?\)",
+    ),
     "oil and data": (changed('"FVA3"', '"FVA3"\ndensity = "880 kg/m^3"'), r"density: stands beside name"),
     "oil without density": (
         GOOD.replace(NAMED_OIL, OIL.replace('density = "880 kg/m^3"\n', "")),
@@ -271,8 +268,6 @@ BROKEN = {
         GOOD.replace(NAMED_OIL, OIL.replace("roelands", "barus") + "roelands_z = 0.6\n"),
         "roelands_z: stands beside viscosity_law = 'barus'; allowed: with 'roelands' only",
     ),
-    "no grid": (GOOD[: GOOD.index("[grid]")] + GOOD[GOOD.index("[solver]") :], "job file grid: missing"),
-    "no axis": (changed(LOAD + "\n", ""), r"\[grid\] load: missing; allowed: \{ from"),
     "axis as a number": (changed(LOAD, "load = 5"), r"\[grid\] load: got 5; allowed: \{ from"),
     "empty axis": (changed(LOAD, "load = []"), "load: got an empty list; allowed: at least one value"),
     "unsorted axis": (
@@ -340,7 +335,7 @@ def test_a_broken_job_says_where_what_and_what_to_do(case):
 
 def test_all_problems_at_once():
     text = (
-        changed("NU308", "NU309")
+        changed("NU308", "NU3009")
         .replace('"FVA3"', '"FVA4"')
         .replace("points = 5", "points = 0")
         .replace('"20 degC"', '"20 N"')
@@ -350,7 +345,7 @@ def test_all_problems_at_once():
     with pytest.raises(InputError) as raised:
         parse(text)
     found = "\n".join(raised.value.problems)
-    for part in ("NU309", "FVA4", "points: got 0", "'N'", "'iso'", "schema: got 7", "shema: unknown key"):
+    for part in ("NU3009", "FVA4", "points: got 0", "'N'", "'iso'", "schema: got 7", "shema: unknown key"):
         assert part in found
     assert len(raised.value.problems) == 7
 
@@ -398,7 +393,7 @@ def test_a_bearing_that_was_wrong_already_is_not_called_missing():
     for bearing, said in (
         ('estimate = "NU206"\nbasic_static_rating = "-3 kN"', ["basic_static_rating: got '-3 kN'"]),
         ('estimate = "NU999"\nbasic_static_rating = "3 N"', ["basic_static_rating: got '3 N'", "got 'NU999'"]),
-        ('name = "NU309"', ["NU309"]),
+        ('name = "NU3009"', ["NU3009"]),
     ):
         with pytest.raises(InputError) as raised:
             parse(speeds.replace('name = "NU308"', bearing))
@@ -414,8 +409,8 @@ def test_a_wrong_solver_option():
 def test_a_file_that_is_not_there(tmp_path):
     with pytest.raises(InputError, match=r"cannot be read \(No such file or directory\); allowed: .*n1014, nu308"):
         read_job(str(tmp_path / "none.toml"))
-    with pytest.raises(InputError, match=r"did you mean 'nu308'\?"):
-        read_job("nu309")
+    with pytest.raises(InputError, match=r"did you mean 'nu308'\?.*or --bearing with a designation, such as NU210"):
+        read_job("nu3o8")
     with pytest.raises(InputError, match="cannot be read"):
         read_job("a\0b")
 

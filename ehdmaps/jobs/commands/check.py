@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from ehdmaps.jobs import solvers
+from ehdmaps.jobs.estimate_bands import band_lines
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.make.batch import is_batch, read_batch
 from ehdmaps.jobs.make.batch_generate import plan_batch
@@ -65,8 +66,10 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     lines = [
         f"{arguments.job}: no problems{'' if solved else UNSOLVED}",
         f"  {job.title}, {job.lubricant.title}, solver {job.solver}, structural law {job.contacts[0].structural_law}",
+        *([f"  assumed: {', '.join(job.assumed)}"] if job.assumed else []),
         *job.estimates,
         *oil_lines(job),
+        *band_lines(job),
         f"  supply  {supply_words(job.supply)}",
         f"  surfaces {surface_words(job.surface)}",
         f"  {'contact':20s} {len(job.contacts):6d}  {names}",

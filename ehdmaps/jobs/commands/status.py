@@ -7,6 +7,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from ehdmaps.errors import InputError
+from ehdmaps.jobs.defaults import designated_job
 from ehdmaps.jobs.make.batch import SUMMARY, is_batch
 from ehdmaps.jobs.make.status import RunStatus, Seen, duration, look, status_path
 from ehdmaps.jobs.make.store import store_path
@@ -52,7 +53,7 @@ def _output(name: str, output: str | None) -> Path:
     place = Path(name)
     if store_path(place).exists() or status_path(place).exists() or is_map(name):
         return place
-    if name in shipped_jobs() or place.is_file():
+    if name in shipped_jobs() or place.is_file() or designated_job(name) is not None:
         return Path(f"{read_job(name).name}.nc")
     raise InputError(
         f"{name}: is not there, nor its store; allowed: a map, its store, or a job whose map is made in this folder"

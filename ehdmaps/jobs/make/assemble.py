@@ -267,6 +267,7 @@ def _attributes(job: Job, solver: ContactSolver) -> dict[str, Any]:
         "job_name": job.name,
         "job_toml": job.text,
         "job_sha256": job.sha256,
+        **({schema.ASSUMED: ", ".join(job.assumed)} if job.assumed else {}),
         "solver": solver.name,
         "solver_settings": record_json(solver.settings()),
         "solver_version": solver_version(solver),

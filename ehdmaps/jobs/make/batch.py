@@ -33,6 +33,7 @@ from typing import Any
 from ehdmaps import inputs
 from ehdmaps.errors import InputError
 from ehdmaps.jobs import table
+from ehdmaps.jobs.defaults import designated_job
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.job_text import tables_text
 from ehdmaps.jobs.reader import LONGEST_FILE, parse_job, shipped_jobs
@@ -113,7 +114,7 @@ def is_batch(source: str | PathLike[str]) -> bool:
     source : str or path
         Path of a file, or the name of a shipped job.
     """
-    if fspath(source) in shipped_jobs():
+    if fspath(source) in shipped_jobs() or designated_job(fspath(source)) is not None:
         return False
     try:
         if not inputs.first_bytes(Path(source), 1, ""):

@@ -90,6 +90,8 @@ def _lines(generated: Generated, output: Path) -> Iterator[str]:
     yield f"{output}: {dataset.attrs['title']}"
     if estimated := record_from_json(dataset.attrs["geometry"], "geometry").get("estimated"):
         yield f"  bearing: {estimated}"
+    if assumed := dataset.attrs.get(schema.ASSUMED):
+        yield f"  assumed: {assumed}"
     counts = f"{sweep.taken_over} taken over, {sweep.solved} solved now"
     yield f"points: {counts}, {holes(dataset)} without a solution"
     yield from films_lines(dataset)

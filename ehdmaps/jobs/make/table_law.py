@@ -17,6 +17,7 @@ from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.law import ContactLaw, LawKind, OutsidePolicy
 from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.catalogue import designated
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import OilSupply
@@ -117,8 +118,8 @@ def job_map(job: Job, source: str) -> EHDMap:
 
 
 def law(
-    of: BearingGeometry | LineContact,
-    lubricant: Lubricant,
+    of: BearingGeometry | LineContact | str,
+    lubricant: Lubricant | str,
     kind: LawKind | None = None,
     loads: tuple[float, float] = LOADS,
     entrainment_speeds: tuple[float, float] = SPEEDS,
@@ -136,10 +137,11 @@ def law(
 
     Parameters
     ----------
-    of : BearingGeometry or LineContact
-        A bearing, or one contact.
-    lubricant : Lubricant
-        The oil.
+    of : BearingGeometry, LineContact or str
+        A bearing, or one contact; or the designation of a bearing, "NU210", whose inner geometry is estimated where it
+        is not known.
+    lubricant : Lubricant or str
+        The oil, or its name or class: "FVA3", "ISO VG 46".
     kind : {"series", "inner", "outer", "line"}, optional
         Contact of a bearing, or a roller between both raceways, which is the default.
     loads, entrainment_speeds, temperatures : (float, float)
@@ -165,6 +167,8 @@ def law(
     >>> import ehdmaps
     >>> nu308 = ehdmaps.law(ehdmaps.BearingGeometry.named("NU308"), ehdmaps.Lubricant.named("FVA3"))  # doctest: +SKIP
     """
+    of = designated(of) if isinstance(of, str) else of
+    lubricant = Lubricant.named(lubricant) if isinstance(lubricant, str) else lubricant
     allowed: tuple[LawKind, ...] = ("series", "inner", "outer") if isinstance(of, BearingGeometry) else ("line",)
     chosen = kind or allowed[0]
     if chosen not in allowed:

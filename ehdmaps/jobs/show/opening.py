@@ -64,6 +64,10 @@ def choice_words(arguments: argparse.Namespace) -> list[str]:
 
 def _is_job(path: str | PathLike[str]) -> bool:
     """Tell whether a job is given in the place of a map."""
+    from ehdmaps.jobs.defaults import designated_job
+
+    if designated_job(fspath(path)) is not None:
+        return True
     if Path(path).suffix:
         return Path(path).suffix == ".toml"
     from ehdmaps.jobs.reader import shipped_jobs

@@ -1,0 +1,172 @@
+"""Effect of what is estimated: inner geometry and pressure-viscosity, taken to their stated errors one by one.
+
+The bearing keeps its load and speed, so that fewer or shorter rollers carry more each: stiffness and damping are those
+of all rollers in the middle of the map, Z L k(F/(Z L)). The parts of the geometry are independent of one another, and
+their effects are added as squares.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from typing import Any
+
+from ehdmaps.errors import InputError
+from ehdmaps.jobs import solvers
+from ehdmaps.jobs.job import Job
+from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.catalogue import stated_errors
+from ehdmaps.physics.contact import OperatingPoint
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.own_oil import CORRELATIONS
+from ehdmaps.physics.solution import ContactSolver, contact_solution
+from ehdmaps.units import LOAD, SPEED, TEMPERATURE
+
+Answer = tuple[float, float, float]
+"""Stiffness, damping and thinner central film of a bearing, in proportion."""
+
+
+@dataclass(frozen=True)
+class Band:
+    """Relative half-widths of stiffness, damping and central film.
+
+    Attributes
+    ----------
+    stiffness, damping, film : float
+        Half-widths; nan where a point has no solution.
+    """
+
+    stiffness: float
+    damping: float
+    film: float
+
+    @property
+    def words(self) -> str:
+        """The band for people."""
+        return f"k {self.stiffness:.0%}, c {self.damping:.0%}, film {self.film:.0%}"
+
+
+def geometry_band(job: Job, point: OperatingPoint, solver: ContactSolver) -> Band | None:
+    """Band of an estimated inner geometry; None where it is known.
+
+    Parameters
+    ----------
+    job : Job
+        A job with a bearing.
+    point : OperatingPoint
+        Point of the estimated bearing.
+    solver : ContactSolver
+        What gives the films.
+    """
+    bearing = job.bearing
+    if bearing is None or bearing.estimated is None:
+        return None
+    errors = stated_errors(bearing)
+    changes: tuple[Callable[[float], BearingGeometry], ...] = (
+        lambda sign: replace(bearing, roller_diameter=bearing.roller_diameter * (1.0 + sign * errors.roller_diameter)),
+        lambda sign: replace(bearing, roller_length=bearing.roller_length * (1.0 + sign * errors.roller_length)),
+        lambda sign: replace(bearing, rollers=bearing.rollers + round(sign) * errors.rollers),
+    )
+    oil = _of_temperature(job.lubricant, point.temperature, 1.0)
+    base = _answer(job, bearing, oil, point, solver)
+
+    def changed(change: Callable[[float], BearingGeometry]) -> Callable[[float], Answer]:
+        return lambda sign: _answer(job, change(sign), oil, point, solver)
+
+    return _added([_largest(base, changed(change)) for change in changes])
+
+
+def pressure_viscosity_band(job: Job, point: OperatingPoint, solver: ContactSolver) -> Band | None:
+    """Band of a pressure-viscosity by a correlation, to its error; None where it is stated.
+
+    Parameters
+    ----------
+    job : Job
+        A job with a bearing.
+    point : OperatingPoint
+        The point.
+    solver : ContactSolver
+        What gives the films.
+    """
+    bearing, correlation = job.bearing, job.lubricant.correlation
+    if bearing is None or correlation is None:
+        return None
+    error = CORRELATIONS[correlation].rms
+
+    def changed(sign: float) -> Answer:
+        oil = _of_temperature(job.lubricant, point.temperature, 1.0 + sign * error)
+        return _answer(job, bearing, oil, point, solver)
+
+    return _added([_largest(changed(0.0), changed)])
+
+
+def band_lines(job: Job) -> Iterator[str]:
+    """Lines on the effect of what is estimated, in the middle of the map; none for solvers without films, or slow ones.
+
+    Parameters
+    ----------
+    job : Job
+        The job.
+    """
+    solver = solvers.of_map(job)
+    if job.solver == "hertz" or solver.slow:
+        return
+    point = OperatingPoint(*(axis[len(axis) // 2] for axis in (job.loads, job.entrainment_speeds, job.temperatures)))
+    place = (
+        f"({LOAD.text(point.load)}, {SPEED.text(point.entrainment_speed)}, {TEMPERATURE.text(point.temperature)}, the "
+        "middle of the map; load and speed of the bearing held)"
+    )
+    for what, band in (
+        ("inner geometry", geometry_band(job, point, solver)),
+        ("pressure-viscosity", pressure_viscosity_band(job, point, solver)),
+    ):
+        if band is not None:
+            yield f"  the estimated {what} may change, either way: {band.words} {place}"
+
+
+def _of_temperature(oil: Lubricant, temperature: float, factor: float) -> Lubricant:
+    """The oil with a constant alpha, a factor times that of one temperature; itself where alpha is no estimate."""
+    if oil.correlation is None:
+        return oil
+    alpha = factor * oil.at(temperature).pressure_viscosity.pressure_viscosity
+    coefficients: dict[str, Any] = {"pressure_viscosity_40": alpha, "pressure_viscosity_100": alpha}
+    return replace(oil, correlation=None, pressure_viscosity=replace(oil.pressure_viscosity, **coefficients))
+
+
+def _answer(job: Job, bearing: BearingGeometry, oil: Lubricant, point: OperatingPoint, solver: ContactSolver) -> Answer:
+    """Stiffness, damping and film of a bearing whose load and speed are those of the job's own at its point."""
+    assert job.bearing is not None
+    mine = bearing.rollers * bearing.roller_length
+    share = job.bearing.rollers * job.bearing.roller_length / mine
+    speed = bearing.entrainment_speed(job.bearing.inner_speed(point.entrainment_speed))
+    at = OperatingPoint(point.load * share, speed, point.temperature)
+    law = job.contacts[0].structural_law
+    # the law of finite elements is known for no estimated bearing but by the approaches of the job
+    contacts = [
+        replace(new, structural_law=law, fe_approach=old.fe_approach)
+        for new, old in zip(bearing.contacts(job.contacts[0].material, "half_space"), job.contacts, strict=True)
+    ]
+    found = []
+    for contact in contacts:
+        (film,) = solver.solve_line(contact, oil, (at.load,), at.entrainment_speed, at.temperature)
+        found.append(contact_solution(film, contact, at))
+    compliance = sum(1.0 / one.stiffness for one in found)
+    loss = sum(one.damping / one.stiffness**2 for one in found)
+    return mine / compliance, mine * loss / compliance**2, min(one.central_film for one in found)
+
+
+def _largest(base: Answer, changed: Callable[[float], Answer]) -> Band:
+    """The larger change of either sign; of one that no bearing can have, that of the other."""
+    changes = []
+    for sign in (-1.0, 1.0):
+        try:
+            changes.append([abs(new / old - 1.0) for new, old in zip(changed(sign), base, strict=True)])
+        except InputError:
+            continue
+    return Band(*(max(values, default=math.nan) for values in zip(*changes, strict=True)))
+
+
+def _added(bands: list[Band]) -> Band:
+    """Independent bands together."""
+    return Band(*(math.hypot(*(getattr(band, key) for band in bands)) for key in ("stiffness", "damping", "film")))

@@ -1,0 +1,281 @@
+"""A bearing by its designation and an oil by its class: the names, the numbers, and every command and picture."""
+
+import json
+
+import numpy as np
+import pytest
+
+import ehdmaps
+from ehdmaps.errors import InputError
+from ehdmaps.jobs.cli import main
+from ehdmaps.jobs.defaults import bearing_source, designated_job
+from ehdmaps.jobs.estimate_bands import geometry_band, pressure_viscosity_band
+from ehdmaps.jobs.job_text import lubricant_keys
+from ehdmaps.jobs.reader import parse_job, read_job
+from ehdmaps.jobs.solvers import of_map
+from ehdmaps.physics.bearing import BEARINGS
+from ehdmaps.physics.catalogue import _RATINGS, designated, estimate, stated_errors
+from ehdmaps.physics.contact import OperatingPoint
+from ehdmaps.physics.lubricant import LUBRICANTS, Lubricant
+from ehdmaps.physics.own_oil import _LIMITS, _QUADRATICS, CLASSES, viscosity_100, viscosity_index
+from mbs.cli import main as mbs_main
+
+SMALL = """
+[bearing]
+name = "NJ 2207 ECP"
+[lubricant]
+name = "ISO VG 150, VI 140"
+[grid]
+load = ["5 N/mm", "20 N/mm", "80 N/mm"]
+entrainment_speed = ["1 m/s", "2 m/s", "4 m/s"]
+temperature = ["50 degC", "60 degC"]
+"""
+
+
+@pytest.mark.parametrize(
+    "text", ["NU210", "nu 210", "NU-210", "NU 210 ECP", "NU210-E-TVP2", "NU 210 E.TVP2/C3", " NU210 ECJ "]
+)
+def test_spellings_of_one_bearing(text):
+    assert designated(text) == estimate("NU210")
+
+
+def test_one_row_serves_four_types():
+    lengths = {designated(f"{kind}210").roller_length for kind in ("NU", "NJ", "NUP", "N")}
+    assert len(lengths) == 1
+    assert designated("NU 308 ECP") is BEARINGS["NU308"]
+
+
+@pytest.mark.parametrize("text", ["NU210M", "NU 210 W", "6210", "NN3010"])
+def test_other_designs_are_refused(text):
+    with pytest.raises(InputError, match="bearing designation: got"):
+        designated(text)
+
+
+@pytest.mark.parametrize("key", _RATINGS)
+def test_tabulated_ratings_suit_the_width(key):
+    """Rollers by the rating and by the share of the width agree to the stated 20 %: a slip of the table would not."""
+    by_rating = estimate(f"NU{key}")
+    stated = stated_errors(by_rating)
+    assert 0.5 < by_rating.roller_length / _width(key) < 0.5 * 1.4
+    assert stated.roller_length == 0.2
+    assert "SKF's static rating" in by_rating.estimated
+
+
+def _width(key):
+    from ehdmaps.physics.catalogue import boundary
+
+    return boundary(f"NU{key}").width
+
+
+def test_errors_are_stated_by_estimates_alone():
+    with pytest.raises(InputError, match=r"bearing 'NU308': states no errors; allowed: a bearing that `estimate` made"):
+        stated_errors(BEARINGS["NU308"])
+
+
+@pytest.mark.parametrize(
+    ("cold", "hot", "index"),
+    [(73.30, 8.86, 92), (22.83, 5.05, 156), (68.0, 8.6, 96), (30.0, 5.23, 104), (120.0, 20.9, 200), (70.0, 11.1, 150)],
+)
+def test_viscosity_index_of_published_pairs(cold, hot, index):
+    """The examples of the standard, and oils of textbooks. Their viscosities are rounded, which moves an index by 2."""
+    assert viscosity_index(cold, hot) == pytest.approx(index, abs=2.5)
+
+
+@pytest.mark.parametrize("grade", [grade for grade in CLASSES if grade >= 10])
+@pytest.mark.parametrize("index", [40.0, 95.0, 100.0, 130.0])
+def test_the_index_comes_back(grade, index):
+    hot = viscosity_100(CLASSES[grade], index)
+    assert viscosity_index(CLASSES[grade], hot) == pytest.approx(index, abs=0.2)  # the pieces meet to 0.2 % of H
+
+
+def test_the_pieces_of_iso_2909_meet():
+    """To the digits of its tables; a wrong coefficient would not."""
+    for limit, left, right in zip(_LIMITS[1:], _QUADRATICS, _QUADRATICS[1:], strict=False):
+        for part in (slice(3), slice(3, 6)):
+            assert np.polyval(left[part], limit) == pytest.approx(np.polyval(right[part], limit), rel=2e-3)
+
+
+def test_oils_by_class():
+    oil = Lubricant.named("VG46")
+    assert oil == Lubricant.named("iso-vg 46")
+    assert oil.name == "ISO VG 46" and oil.viscosity.viscosity_40 == pytest.approx(46e-6)
+    assert not oil.verified and "viscosity index 95 (assumed)" in oil.estimated and "So and Klaus" in oil.estimated
+    other = Lubricant.named("ISO VG 46, VI 150")
+    assert other.name == "ISO VG 46, VI 150" and other.viscosity.viscosity_100 > oil.viscosity.viscosity_100
+    assert Lubricant.named("fva 3") is Lubricant.named("FVA3")
+    assert lubricant_keys(other) == {"name": "ISO VG 46, VI 150"}
+    own = Lubricant.barus(viscosity=0.1, pressure_viscosity=2e-8, density=880.0, name="ISO VG 46")
+    assert own.oil_class is None and not own.estimated
+
+
+@pytest.mark.parametrize("grade", [grade for grade in CLASSES if grade >= 7])
+def test_every_class_from_7_on_makes_an_oil(grade):
+    oil = Lubricant.named(f"ISO VG {grade}")
+    assert 1e-9 < oil.at(333.15).pressure_viscosity.pressure_viscosity < 5e-8
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("ISO VG 47", r"viscosity class: got 'ISO VG 47' \(did you mean 'ISO VG 46'\?\); allowed: ISO VG 2, 3, 5"),
+        ("ISO VG 46, VI 900", r"viscosity index: got 900; allowed: 0 to 400; mineral oils have about 95"),
+        ("ISO VG 5", r"viscosity index: got 95 for 4.6 mm2/s at 40 degC; allowed: what gives 2 mm2/s or more"),
+        ("Mobil", r"lubricant name: got 'Mobil'; allowed: FVA3, Spirax MA 80W, or ISO VG 2"),
+    ],
+)
+def test_wrong_oils(text, said):
+    with pytest.raises(InputError, match=said):
+        Lubricant.named(text)
+
+
+def test_no_index_of_a_thin_oil():
+    with pytest.raises(InputError, match=r"viscosity index: got 1.5 mm2/s at 100 degC; allowed: 2 mm2/s and above"):
+        viscosity_index(4.6, 1.5)
+
+
+def test_a_job_needs_its_bearing_alone():
+    job = parse_job('[bearing]\nname = "NU 210"\n', "job", "job.toml")
+    assert job.lubricant.name == "FVA3" and job.shape == (2, 25, 12, 6)
+    assert job.assumed[0] == "oil FVA3" and len(job.assumed) == 6
+    shipped = read_job("nu308")
+    assert (job.loads, job.entrainment_speeds, job.temperatures) == (
+        shipped.loads, shipped.entrainment_speeds, shipped.temperatures
+    )  # fmt: skip
+    assert shipped.assumed == ()
+    with pytest.raises(InputError, match=r"^job.toml: job file bearing: missing"):
+        parse_job("", "job", "job.toml")
+
+
+def test_assumed_temperatures_are_those_of_the_oil():
+    job = read_job("NU210, ISO VG 1000")
+    assert job.temperatures == pytest.approx([313.15, 333.15, 353.15, 373.15, 393.15])
+
+
+def test_a_rating_of_the_catalogue_stands_beside_the_name():
+    job = parse_job('[bearing]\nname = "NU210"\nbasic_static_rating = "75 kN"\n', "job", "job.toml")
+    assert job.bearing == estimate("NU210", 75e3)
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ((None, "FVA3", "nu308"), r"--oil: got 'FVA3' without --bearing"),
+        ((None, None, None), r"JOB: missing; allowed: a job or map, or --bearing"),
+        (("NU210", None, "nu308"), r"--bearing: got 'NU210' beside a job or map"),
+        (("NU21O", "VG47", None), r"--bearing: bearing designation: got 'NU21O'.*\n--oil: viscosity class: got 'VG47'"),
+    ],
+)
+def test_wrong_options(given, said):
+    with pytest.raises(InputError, match=said):
+        bearing_source(*given)
+
+
+def test_sources():
+    assert bearing_source("nu 210 ECP", "vg 46", None) == "NU210, vg 46"
+    assert bearing_source(None, None, None, needed=False) is None
+    assert designated_job("job.toml") is None and designated_job("nu308") is None
+    assert designated_job("NU308").name == "NU308"
+    assert Lubricant.named("FVA3").name in LUBRICANTS
+
+
+def test_bands_follow_the_spread():
+    """By film formulas a film goes with the root of alpha or a little more; k nearly with the length of the rollers."""
+    job = parse_job(SMALL + '[solver]\nname = "formula"\n', "job", "job.toml")
+    point = OperatingPoint(2e4, 2.0, 333.15)
+    alpha = pressure_viscosity_band(job, point, of_map(job))
+    assert 0.3 * 0.17 < alpha.film < 0.7 * 0.17 and alpha.stiffness < 0.02
+    wide = geometry_band(job, point, of_map(job))
+    close = geometry_band(
+        parse_job(SMALL.replace('ECP"', 'ECP"\nbasic_static_rating = "63 kN"'), "job", ""), point, of_map(job)
+    )
+    assert 0.15 < wide.stiffness < 0.3 and close.stiffness < 0.7 * wide.stiffness
+    known = read_job("NU308, FVA3")
+    assert (
+        geometry_band(known, point, of_map(job)) is None and pressure_viscosity_band(known, point, of_map(job)) is None
+    )
+
+
+def run(command, words):
+    """Run a command; its exit status says that it was done."""
+    status = command(words.split("|"))
+    assert status == 0, words
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("designation")
+
+
+def test_the_first_commands_of_a_user(folder, monkeypatch, capsys):
+    monkeypatch.chdir(folder)
+    (folder / "job.toml").write_text(SMALL)
+    run(main, "generate|job.toml|--workers|1")
+    text = capsys.readouterr().out
+    assert text.count("inner geometry estimated") == text.count("viscosity of ISO VG 150 by its class") == 1
+    assert "assumed: solver reynolds, structural law iso16281" in text
+    attributes = ehdmaps.open_map("job.nc").dataset.attrs
+    assert attributes["job_assumed"] == "solver reynolds, structural law iso16281"
+    assert json.loads(attributes["lubricant"])["name"] == "ISO VG 150, VI 140"
+    assert ehdmaps.open_map("job.nc").lubricant == Lubricant.named("ISO VG 150, VI 140")
+    run(main, "check|job.toml")
+    text = capsys.readouterr().out
+    assert text.count("inner geometry estimated") == 1 and text.count("the estimated inner geometry may change") == 1
+    run(main, "solve|--bearing|NJ 2207|--oil|VG 150|--load|50 N/mm|--speed|2 m/s|--temperature|60 degC")
+    run(mbs_main, "bearing|NJ 2207 ECP|--oil|ISO VG 150|--load|2 kN|--speed|1500 rpm|--law|table")
+    assert "NJ2207" in capsys.readouterr().out
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "words",
+    [
+        "show|job.nc",
+        "plot|job.nc",
+        "report|job.nc",
+        "export|job.nc",
+        "compare|job.nc|job.nc",
+        "tradeoff|job.toml|--points|2|--openfoam|0",
+        "check|--bearing|NJ2207|--oil|ISO VG 150, VI 140",
+        "show|--bearing|NJ2207|--oil|ISO VG 150, VI 140",
+        "export|--bearing|NJ2207|--oil|VG150|-o|own.csv",
+    ],
+)
+def test_every_command_of_ehdmaps(words, folder, monkeypatch):
+    monkeypatch.chdir(folder)
+    (folder / "job.toml").write_text(SMALL)
+    if not (folder / "job.nc").exists():
+        run(main, "generate|job.toml|--workers|1")
+    run(main, words)
+
+
+def test_the_length_of_a_roller_needs_finite_elements_that_are_not_shipped(folder, monkeypatch, capsys):
+    monkeypatch.chdir(folder)
+    assert main(["length", "--bearing", "NJ2207"]) == 2
+    assert "got 'NJ2207'; allowed: N1014, NU308; for others run `ehdmaps length JOB --solve" in capsys.readouterr().err
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "words",
+    [
+        "statics|scene.toml|--law|table",
+        "modes|scene.toml|--law|table",
+        "lsa|scene.toml|--law|table",
+        "sweep|scene.toml|--law|table|--speed|500 rpm|1000 rpm|3",
+        "critical|scene.toml|--law|table|--speed|500 rpm|1000 rpm|3",
+        "runup|scene.toml|--law|table|-o|run.nc",
+        "campbell|scene.toml|--law|table",
+        "report|scene.toml|--law|table",
+        "plan|scene.toml|-o|plan.toml",
+    ],
+)
+def test_every_command_of_mbs(words, folder, monkeypatch):
+    from importlib import resources
+
+    monkeypatch.chdir(folder)
+    text = (resources.files("mbs") / "systems" / "nu308_rigid.toml").read_text()
+    text = text.replace('{ name = "NU308", diametral_clearance = "0 um" }', '"NU 2210 ECP"').replace(
+        'name = "FVA3" ', 'name = "ISO VG 68"'
+    )
+    (folder / "scene.toml").write_text(text.replace('duration = "0.2 s"', 'duration = "0.1 s"'))
+    run(mbs_main, words)
