@@ -167,7 +167,9 @@ class TestScenes:
         return parse_scene(SWINGING.replace(self.RAMP, words), "swinging", "swinging")
 
     def test_pieces(self):
-        course = self.scene('times = ["0 s", "1 s", "3 s", "4 s"]\nspeeds = ["0 rpm", "300 rpm", "300 rpm", "-60 rpm"]\n')
+        course = self.scene(
+            'times = ["0 s", "1 s", "3 s", "4 s"]\nspeeds = ["0 rpm", "300 rpm", "300 rpm", "-60 rpm"]\n'
+        )
         course = course.run_up
         assert course.duration == 4.0
         assert course.speed.at(2.0)[0] == pytest.approx(300.0 * RPM)
