@@ -19,7 +19,7 @@ from matplotlib.patheffects import withStroke
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.figures import COLOURS, SHADE, WARNING, legend_columns, typeset, write_heading
-from mbs.output.page import BAND_ALPHA, BAND_WORDS, ESTIMATED, grid, shade_handle
+from mbs.output.page import BAND_ALPHA, BAND_WORDS, ESTIMATED, grid, shade_handle, whole_numbers
 from mbs.spectral.campbell import Campbell, RunUpSpectra
 from mbs.spectral.levels import Reference, level
 from mbs.spectral.run_signal import RPM
@@ -45,6 +45,9 @@ _SPARSE = (0.0, (1.0, 4.0))
 _LIMIT = (0.0, (5.0, 1.5, 1.0, 1.5))
 _LIMIT_COLOUR = "#ff7f0e"
 """Of the frequency from which on the films are notably wrong: seen on the colours of the levels and on paper."""
+
+_LEAST_LEVELS = 1.0
+"""Least range of sum levels that is shown [dB]: what changes by less is flat."""
 
 _LEGEND = 120
 """Letters that have room beside each other in the legend of the sum levels."""
@@ -180,7 +183,11 @@ def campbell_figure(
     right.set_ylabel(f"mean level, {reference_text(reference)}", fontsize=7)
     right.set_xlim(0.0, last)
     left.set_xlim(panels[0].get_xlim())
+    low, high = left.get_ylim()
+    spare = max(0.5 * (_LEAST_LEVELS - (high - low)), 0.0)
+    left.set_ylim(low - spare, high + spare)
     for panel in (left, right):
+        whole_numbers(panel)
         panel.grid(color="0.88", lw=0.5)
         panel.set_axisbelow(True)
         panel.tick_params(labelsize=7)

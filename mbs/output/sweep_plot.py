@@ -46,7 +46,7 @@ _LEAST_CHANGE = 0.01
 _LETTERS, _TITLES = 150, 100
 """Letters that have room beside each other in a legend, and in titles of maps over the width of the page."""
 
-_NAME = 40
+_NAME = 32
 """Letters of the name of a bearing in the legend."""
 
 _LEGEND_ROW, _ROWS_WITHIN = 0.17, 3
