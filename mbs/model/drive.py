@@ -151,9 +151,9 @@ class Drive:
         Parameters
         ----------
         time : float
-            At which the step begins [s].
+            Time at which the step begins [s].
         speed : float
-            At which it begins [rad/s].
+            Speed there [rad/s].
         taken : float
             Torque that the moving system takes [N m].
         h : float

@@ -114,7 +114,7 @@ class Course:
 
     @property
     def jumps(self) -> bool:
-        """Whether it has two values at one time."""
+        """True where it has two values at one time."""
         return bool(np.any(np.diff(self.times) == 0.0))
 
     def __call__(self, time: float) -> float:
