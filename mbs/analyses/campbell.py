@@ -23,7 +23,7 @@ from ehdmaps.maps.law_errors import LawChange
 from mbs.analyses.case import Case, Failed, Progress, as_cases, side_by_side, silent
 from mbs.analyses.film_errors import notable_from
 from mbs.analyses.operating import held, operating, states_of
-from mbs.analyses.ramp import recorded_run, rehearsed, run_course
+from mbs.analyses.ramp import recorded_run, rehearsed, run_course, silent_run
 from mbs.analyses.reach import fade_of
 from mbs.analyses.sensors import chosen_sensors, followed_orders
 from mbs.analyses.step_error import StepCheck, step_check
@@ -360,7 +360,12 @@ def campbell_problems(scene: Scene, settings: CampbellSettings, sensors: Sequenc
     """Everything about the run and the sensors of a scene that is not possible with some settings."""
     problems: list[str] = []
     chosen_sensors(scene, settings, sensors, problems)
-    run_course(scene, settings.highest, problems)
+    course = run_course(scene, settings.highest, problems)
+    if course is not None and not problems:
+        try:
+            silent_run(course).ramp()
+        except InputError as error:
+            problems += error.problems
     return problems
 
 

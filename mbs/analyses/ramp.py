@@ -50,7 +50,7 @@ def course_of(model: Model, course: RunUp) -> SpeedProfile:
     speed = course.speed
     if not isinstance(speed, DrivenSpeed) or not model.bearings:
         return speed
-    speeds = max(speed.course.values) * np.arange(1, SPEEDS + 1) / SPEEDS
+    speeds = max(map(abs, speed.course.values)) * np.arange(1, SPEEDS + 1) / SPEEDS
     if speeds[0] <= 0.0:
         return speed
     system = steady_system(model.system)

@@ -103,7 +103,7 @@ def followed_orders(model: Model, settings: CampbellSettings, course: RunUp) -> 
     if settings.orders:
         return [(order, f"{order:g}") for order in settings.orders]
     # None that lies above the band at every speed.
-    slowest = min(course.speed.at(0.0)[0], course.speed.at(course.duration)[0])
+    slowest = min(abs(course.speed.at(at)[0]) for at in (0.0, course.duration))
     return orders_in_band(excited_orders(model, _turns(course)), settings.highest, slowest)
 
 

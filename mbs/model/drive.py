@@ -1,7 +1,9 @@
 """Speed by torques: the spin of a system as a freedom with inertia, under motor and load torques over speed.
 
-    J w' = motor(w) - load(w) - what the moving system takes
+    J w' = motor(w) - sign(w) load(|w|) - what the moving system takes
 
+The motor drives forwards or, with a torque below zero, backwards. The load resists either way. At rest it holds the
+shaft up to its torque there.
 All torques and J are those on the shaft that turns with the speed of the system. What the system takes is the power of
 its turning loads and of the turning of its cages, tables and gears, over the speed: it is known after some steps, and
 its mean over them acts in the next ones, so that energy is kept with that delay.
@@ -26,7 +28,7 @@ FOLLOWED, FEWEST = 2e-3, 20
 """Time after which the torque that the moving system takes is found anew [s], and fewest steps of a run in it."""
 
 SLOWEST = 1e-3
-"""Angle of a turn over which power becomes a torque [rad]; below it the torque before holds."""
+"""Angle of a turn over which power becomes a torque [rad]; below it the torque before holds. At rest there is none."""
 
 _POINTS = 4000
 
@@ -45,7 +47,7 @@ class TorqueCurve:
     Raises
     ------
     InputError
-        If they make no course.
+        If they make no course, or one that jumps.
     """
 
     speeds: tuple[float, ...]
@@ -53,7 +55,10 @@ class TorqueCurve:
     _course: Course = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "_course", Course(self.speeds, self.torques))
+        course = Course(self.speeds, self.torques)
+        if course.jumps:
+            raise InputError(f"torque, speeds: got {self.speeds!r:.80}; allowed: each above the last")
+        object.__setattr__(self, "_course", course)
 
     @classmethod
     def constant(cls, torque: float) -> TorqueCurve:
@@ -73,8 +78,10 @@ class Drive:
     ----------
     inertia : float
         Moment of inertia of all that turns, on the shaft with the speed of the system [kg m2], > 0.
-    motor, load : TorqueCurve
-        Torque that drives, and torque that resists turning [N m].
+    motor : TorqueCurve
+        Torque that drives, over the speed with its sign [N m]; below zero it drives backwards.
+    load : TorqueCurve
+        Torque that resists turning, over the speed without its sign [N m].
     motor_until : float
         Time at which the motor is switched off [s].
 
@@ -99,7 +106,7 @@ class Drive:
             raise InputError(problems)
 
     def rate(self, time: float, speed: float, taken: float = 0.0) -> float:
-        """Rate at which the speed rises [rad/s2]; what resists brings to rest, and does not turn back.
+        """Rate at which the speed rises [rad/s2]; a load brings to rest, and does not turn back.
 
         Parameters
         ----------
@@ -110,9 +117,55 @@ class Drive:
         taken : float
             Torque that the moving system takes [N m].
         """
-        motor = self.motor(speed) if time < self.motor_until else 0.0
-        rate = (motor - self.load(speed) - taken) / self.inertia
-        return max(rate, 0.0) if speed <= 0.0 else rate
+        towards = self.towards(time, speed, taken)
+        return self._rate(time, speed, taken, towards) if towards else 0.0
+
+    def towards(self, time: float, speed: float, taken: float = 0.0) -> float:
+        """Direction in which the shaft turns, or sets off from rest: 1, -1, or 0 where it stays at rest.
+
+        Parameters
+        ----------
+        time : float
+            [s].
+        speed : float
+            [rad/s].
+        taken : float
+            Torque that the moving system takes, which the motor has to overcome as well [N m].
+        """
+        if speed != 0.0:
+            return math.copysign(1.0, speed)
+        motor = self._driving(time, speed)
+        return math.copysign(1.0, motor) if abs(motor) > self.load(0.0) + abs(taken) else 0.0
+
+    def _driving(self, time: float, speed: float) -> float:
+        """Torque of the motor [N m], as long as it is on."""
+        return self.motor(speed) if time < self.motor_until else 0.0
+
+    def _rate(self, time: float, speed: float, taken: float, towards: float) -> float:
+        """Rate while the shaft turns in a direction."""
+        return (self._driving(time, speed) - towards * self.load(towards * speed) - taken) / self.inertia
+
+    def after(self, time: float, speed: float, taken: float, h: float, towards: float) -> tuple[float, float]:
+        """Speed after a step [rad/s] and angle turned in it [rad], by Runge and Kutta's rule of fourth order.
+
+        Parameters
+        ----------
+        time : float
+            Time at which the step begins [s].
+        speed : float
+            Speed there [rad/s].
+        taken : float
+            Torque that the moving system takes [N m].
+        h : float
+            Length of the step [s].
+        towards : float
+            Direction in which the load is overcome all through the step, 1 or -1.
+        """
+        k1 = self._rate(time, speed, taken, towards)
+        k2 = self._rate(time, speed + 0.5 * h * k1, taken, towards)
+        k3 = self._rate(time, speed + 0.5 * h * k2, taken, towards)
+        k4 = self._rate(time, speed + h * k3, taken, towards)
+        return speed + h * (k1 + 2.0 * k2 + 2.0 * k3 + k4) / 6.0, h * speed + h * h * (k1 + k2 + k3) / 6.0
 
 
 @dataclass(frozen=True)
@@ -138,7 +191,7 @@ class DrivenSpeed(SpeedProfile):
         drive : Drive
             What turns the system.
         begin : float
-            First speed [rad/s], >= 0.
+            First speed [rad/s], either way round.
         duration : float
             How long [s].
         """
@@ -221,8 +274,10 @@ class DrivenRun:
         speed, angle = self.at(time)
         self._account(time)
         turned = angle - self._between(self._settled)[1]
-        if turned > SLOWEST:
+        if abs(turned) > SLOWEST:
             self._torque = taken / turned
+        elif speed == 0.0:
+            self._torque = 0.0
         self._taken += taken
         self._settled = time
         keep = bisect.bisect_left(self._times, time)
@@ -263,13 +318,14 @@ class DrivenRun:
                 there = drive.motor_until
             h = there - here
             inside = min(here, math.nextafter(there, here))
-            k1 = drive.rate(inside, w, taken)
-            k2 = drive.rate(inside, w + 0.5 * h * k1, taken)
-            k3 = drive.rate(inside, w + 0.5 * h * k2, taken)
-            k4 = drive.rate(inside, w + h * k3, taken)
-            rise = h * (k1 + 2.0 * k2 + 2.0 * k3 + k4) / 6.0
-            turned = h * w + h * h * (k1 + k2 + k3) / 6.0
-            after = w + rise if w + rise > 0.0 else max(w + rise, 0.0)
+            towards = drive.towards(inside, w, taken)
+            after, turned = drive.after(inside, w, taken, h, towards) if towards else (0.0, 0.0)
+            if towards * after < 0.0:
+                # Up to rest and no further: from there on it may stay, or turn the other way.
+                if w != 0.0:
+                    h *= w / (w - after)
+                    there = max(here + h, math.nextafter(here, math.inf))
+                after, turned = 0.0, drive.after(inside, w, taken, h, towards)[1] if w != 0.0 else 0.0
             self._times.append(there)
             self._knots.append((after, angle + turned, drive.rate(there, after, taken)))
 
@@ -285,4 +341,4 @@ class DrivenRun:
                 w = self._between(first + part * h)[0]
                 running = 0.5 * (first + last) < self._drive.motor_until
                 self._motor += weight * h / 6.0 * w * (self._drive.motor(w) if running else 0.0)
-                self._load += weight * h / 6.0 * w * self._drive.load(w)
+                self._load += weight * h / 6.0 * abs(w) * self._drive.load(abs(w))

@@ -82,7 +82,7 @@ class Course:
     Attributes
     ----------
     times : tuple of float
-        Rising [s].
+        Rising [s]. The same time twice makes a jump, at which the later value holds.
     values : tuple of float
         Factors, or speeds [rad/s], as many.
 
@@ -102,12 +102,20 @@ class Course:
                 "least one"
             )
         problems = []
-        if not np.all(np.isfinite(self.times)) or np.any(np.diff(self.times) <= 0.0):
-            problems.append(f"course, times: got {self.times!r:.80}; allowed: finite and rising")
+        thrice = any(first == third for first, third in zip(self.times, self.times[2:], strict=False))
+        if not np.all(np.isfinite(self.times)) or np.any(np.diff(self.times) < 0.0) or thrice:
+            problems.append(
+                f"course, times: got {self.times!r:.80}; allowed: finite and rising, the same one twice for a jump"
+            )
         if not np.all(np.isfinite(self.values)):
             problems.append(f"course, values: got {self.values!r:.80}; allowed: finite")
         if problems:
             raise InputError(problems)
+
+    @property
+    def jumps(self) -> bool:
+        """True where it has two values at one time."""
+        return bool(np.any(np.diff(self.times) == 0.0))
 
     def __call__(self, time: float) -> float:
         """Value at a time [s]."""
@@ -137,7 +145,12 @@ class SpeedProfile:
     Attributes
     ----------
     course : Course
-        Speed [rad/s] over time; the first time is 0.
+        Speed [rad/s] over time, either way round; the first time is 0.
+
+    Raises
+    ------
+    InputError
+        For another first time, and for a speed that jumps.
     """
 
     course: Course
@@ -145,6 +158,11 @@ class SpeedProfile:
     def __post_init__(self) -> None:
         if self.course.times[0] != 0.0:
             raise InputError(f"speed, times: got {self.course.times[0]!r} s as the first; allowed: 0 s")
+        if self.course.jumps:
+            raise InputError(
+                f"speed, times: got {self.course.times!r:.80}, of which two are the same; allowed: rising, as no shaft "
+                "changes its speed in no time"
+            )
 
     @cached_property
     def _angles(self) -> tuple[float, ...]:

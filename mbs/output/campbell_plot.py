@@ -18,8 +18,8 @@ from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.figures import COLOURS, SHADE, WARNING, typeset, write_heading
-from mbs.output.page import BAND_ALPHA, BAND_WORDS, ESTIMATED, grid, shade_handle
+from ehdmaps.figures import COLOURS, SHADE, WARNING, legend_columns, typeset, write_heading
+from mbs.output.page import BAND_ALPHA, BAND_WORDS, ESTIMATED, grid, shade_handle, whole_numbers
 from mbs.spectral.campbell import Campbell, RunUpSpectra
 from mbs.spectral.levels import Reference, level
 from mbs.spectral.run_signal import RPM
@@ -46,8 +46,11 @@ _LIMIT = (0.0, (5.0, 1.5, 1.0, 1.5))
 _LIMIT_COLOUR = "#ff7f0e"
 """Of the frequency from which on the films are notably wrong: seen on the colours of the levels and on paper."""
 
-_SHORT_LABEL = 18
-"""Letters of a law's label of which two fit beside one another in the legend of the sum levels."""
+_LEAST_LEVELS = 1.0
+"""Least range of sum levels that is shown [dB]: what changes by less is flat."""
+
+_LEGEND = 120
+"""Letters that have room beside each other in the legend of the sum levels."""
 
 _LETTERS = 88
 """Of the names of all laws beside one another, above their diagrams; longer ones are wrapped."""
@@ -173,19 +176,18 @@ def campbell_figure(
     shaded = (
         [Patch(color="0.3", alpha=BAND_ALPHA, lw=0.0, label=BAND_WORDS)] if any(b is not None for b in bands) else []
     )
-    short = max(map(len, laws)) <= _SHORT_LABEL
-    if short or len(laws) < MOST_LAWS:
-        left.legend(
-            handles=[*left.lines, *shaded], fontsize=7, frameon=False, ncols=2 if short and len(laws) > 2 else 1
-        )
-    else:
-        # So many long names would lie on the lines.
-        lower.legend(handles=[*left.lines, *shaded], loc="outside lower center", ncols=2, fontsize=7, frameon=False)
+    named = [*left.lines, *shaded]
+    columns = legend_columns([str(entry.get_label()) for entry in named], _LEGEND, MOST_LAWS)
+    lower.legend(handles=named, loc="outside lower center", ncols=columns, fontsize=7, frameon=False)
     right.set_xlabel("order (periods a turn)", fontsize=7)
     right.set_ylabel(f"mean level, {reference_text(reference)}", fontsize=7)
     right.set_xlim(0.0, last)
     left.set_xlim(panels[0].get_xlim())
+    low, high = left.get_ylim()
+    spare = max(0.5 * (_LEAST_LEVELS - (high - low)), 0.0)
+    left.set_ylim(low - spare, high + spare)
     for panel in (left, right):
+        whole_numbers(panel)
         panel.grid(color="0.88", lw=0.5)
         panel.set_axisbelow(True)
         panel.tick_params(labelsize=7)

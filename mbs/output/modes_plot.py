@@ -309,7 +309,7 @@ def _diagram(panel: Axes, fits: Sequence[ModalFit]) -> None:
         panel.plot(frequency[~stable], orders[~stable], mark, color=colour, ms=2.5, mfc="none", mew=0.4, alpha=0.5)
         highest = max(highest, int(orders.max()))
     panel.set(ylabel="order, pole pairs\n(hollow: not stable)", ylim=(0, highest + 1))
-    panel.legend(fontsize=8, frameon=True, framealpha=0.9, edgecolor="none", loc="lower right")
+    panel.legend(fontsize=8, frameon=False, ncols=2, loc="lower right", bbox_to_anchor=(1.0, 1.0), borderpad=0.1)
 
 
 def _near(fit: ModalFit) -> list[np.ndarray[tuple[int], np.dtype[np.float64]]]:

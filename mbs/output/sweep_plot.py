@@ -24,6 +24,7 @@ from mbs.linearised.sweep_result import Sweep, UndampedSweep
 from mbs.output.page import BAND_ALPHA, BAND_WORDS, ESTIMATED, grid, headed, shade, shade_handle, whole_numbers
 from mbs.output.sweep_data import orbits
 from mbs.scene.assembly import Model
+from mbs.scene.fields import MICROMETRE
 
 _LEAST_SHARE = 0.05
 _MAPS_IN_A_ROW = 4
@@ -44,6 +45,12 @@ _LEAST_CHANGE = 0.01
 
 _LETTERS, _TITLES = 150, 100
 """Letters that have room beside each other in a legend, and in titles of maps over the width of the page."""
+
+_NAME = 32
+"""Letters of the name of a bearing in the legend."""
+
+_LEGEND_ROW, _ROWS_WITHIN = 0.17, 3
+"""Height of a row of the legend of all lines [inch], and rows for which the page has room."""
 
 _WIDTH = 9.0
 _ROW = 3.1
@@ -106,7 +113,6 @@ def sweep_figure(
     # With more cases their numbers would lie on each other.
     for entry, colour, last in zip(sweeps, COLOURS, (False, True), strict=False):
         _numbers(top[0], entry, colour, last)
-    _bearing_names(middle[1], sweeps[0].bearings.names)
     if len(handles) > 1:
         columns = legend_columns(labels, _LETTERS, 4)
         parts[0].legend(handles=handles, loc="outside upper center", ncols=columns, fontsize=8, frameon=False)
@@ -135,6 +141,8 @@ def sweep_figure(
         styles.append(Line2D([], [], color="0.3", lw=1.2, ls=_LIMIT, label=_ABOVE))
     if below > sweeps[0].speeds[0]:
         styles.append(shade_handle(f"below {below * RPM.factor:.4g} rpm: {_BELOW}"))
+    styles += _bearing_names(sweeps[0].bearings.names)
+    figure.set_figheight(figure.get_figheight() + _LEGEND_ROW * max(math.ceil(len(styles) / 3) - _ROWS_WITHIN, 0))
     parts[1].legend(handles=styles, loc="outside lower center", ncols=3, fontsize=7.5, frameon=False)
     if maps:
         _maps(parts[2], maps, [labels[index] for index in mapped], [limits[index] for index in mapped])
@@ -221,14 +229,17 @@ def _numbers(panel: Axes, entry: Sweep, colour: str, last: bool) -> None:
         )  # fmt: skip
 
 
-def _bearing_names(panel: Axes, names: Sequence[str]) -> None:
-    """Show which dashes are which bearing."""
-    handles = [
-        Line2D([], [], color="0.3", lw=1.3, ls=dashes, label=name)
+def _bearing_names(names: Sequence[str]) -> list[Artist]:
+    """Entries of a legend that show which dashes are which bearing."""
+    return [
+        Line2D([], [], color="0.3", lw=1.3, ls=dashes, label=f"k, c of {_shortened(name)}")
         for name, dashes in zip(names, _DASHES * 16, strict=False)
     ]
-    if handles:
-        panel.legend(handles=handles, fontsize=6.5, frameon=False, loc="lower left")
+
+
+def _shortened(name: str) -> str:
+    """A name that has room in the legend."""
+    return name if len(name) <= _NAME else f"{name[: _NAME - 1]}…"
 
 
 def _room(panel: Axes) -> None:
@@ -300,7 +311,7 @@ def _axes(panel: Axes, label: str, scale: str = "linear") -> None:
     panel.set_ylabel(label, fontsize=9)
     panel.grid(color="0.9", lw=0.5, which="both" if scale == "log" else "major")
     panel.set_axisbelow(True)
-    panel.tick_params(labelsize=8)
+    panel.tick_params(labelsize=8, which="both")
     if scale == "linear":
         whole_numbers(panel)
 
@@ -443,7 +454,7 @@ def _orbits(panel: Axes, law: CriticalCurves, response: OrderResponse, colour: s
     for index in range(len(places)):
         style = {"color": COLOURS[index % len(COLOURS)]} if colour is None else {"color": colour, "ls": _style(index)}
         panel.semilogy(law.speeds * _RPM, np.maximum(axes[:, index, 0], _LEAST) * 1e6, lw=1.1, **style)
-    panel.set_ylabel(f"orbit by order {response.order:.4g},\nlargest radius, um")
+    panel.set_ylabel(f"orbit by order {response.order:.4g},\nlargest radius, {typeset(MICROMETRE.unit)}")
 
 
 def _places(law: CriticalCurves, several: bool) -> list[Line2D]:

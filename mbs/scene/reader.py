@@ -45,6 +45,8 @@ SHORTEST, LONGEST = 1e-6, 1e3
 
 _MOST_ORDERS = 50
 _LARGEST_ORDER = 1e4
+_FASTEST = 1e5
+"""Highest speed, either way round [rad/s]."""
 
 
 def read_drive(section: Table) -> Drive | None:
@@ -56,7 +58,9 @@ def read_drive(section: Table) -> Drive | None:
         The table; the caller closes it.
     """
     inertia = section.quantity("inertia", "kg m^2", 1e-12, 1e9, Display("kg m^2"), required=True)
-    motor = _read_torque(section, "motor", 'a torque such as "12 N m", or { speeds = [...], torques = [...] }')
+    motor = _read_torque(
+        section, "motor", 'a torque such as "12 N m", or { speeds = [...], torques = [...] }', -_FASTEST
+    )
     load = _read_torque(section, "load", "")
     until = section.quantity("motor_until", "s", 1e-9, 1e6, Display("s"))
     if inertia is None or motor is None or load is None:
@@ -64,8 +68,8 @@ def read_drive(section: Table) -> Drive | None:
     return fields.built(section, lambda: Drive(inertia, motor, load, math.inf if until is None else until))
 
 
-def _read_torque(section: Table, key: str, required: str) -> TorqueCurve | None:
-    """Read a torque, constant or over speed; none at all if it may be absent and is."""
+def _read_torque(section: Table, key: str, required: str, lowest: float = 0.0) -> TorqueCurve | None:
+    """Read a torque, constant or over speeds from a lowest one on; none at all if it may be absent and is."""
     value = section.get(key, required)
     if key not in section:
         return None if required else TorqueCurve.constant(0.0)
@@ -79,7 +83,7 @@ def _read_torque(section: Table, key: str, required: str) -> TorqueCurve | None:
     if not (isinstance(speeds, list) and isinstance(torques, list) and 2 <= len(speeds) == len(torques) <= MOST_POINTS):
         table.note("speeds", f"got {short(speeds)} and {short(torques)}; allowed: 2 to {MOST_POINTS} of each, as many")
         return None
-    at = [table.quantity_of(part, f"speeds[{k}]", "rad/s", 0.0, 1e5, RPM) for k, part in enumerate(speeds)]
+    at = [table.quantity_of(part, f"speeds[{k}]", "rad/s", lowest, 1e5, RPM) for k, part in enumerate(speeds)]
     found = [
         table.quantity_of(part, f"torques[{k}]", "N m", -_LARGEST, _LARGEST, MOMENT) for k, part in enumerate(torques)
     ]
@@ -398,6 +402,11 @@ class _Reader:
             )
             return Constant()
         course = tuple(value for value in read if value is not None)
+        if course[:2] == (0.0, 0.0):
+            section.note(
+                "times",
+                "jumps at 0 s, from whose loads a run begins at rest; allowed: a jump later; delete the first time",
+            )
         return fields.built(section, lambda: Course(course, tuple(numbers))) or Constant()
 
     def _input(self, section: Table, name: str) -> Input | None:
@@ -434,19 +443,24 @@ class _Reader:
         return found
 
     def _run_up(self, section: Table, drive: Drive | None) -> RunUp | None:
-        """Read [runup]; with a drive the last speed is not given."""
-        begin = section.quantity("from", "rad/s", 0.0, 1e5, RPM, required=True)
-        driven = "drive" in self._top
-        end = section.quantity("to", "rad/s", 0.0, 1e5, RPM, required=not driven)
-        if driven and "to" in section:
-            section.note("to", "stands beside [drive], by which the speed follows from torques; delete one of both")
-        duration = section.quantity("duration", "s", 1e-9, 1e6, Display("s"), required=True)
+        """Read [runup]: a ramp, a course by points, or with a drive the first speed alone."""
+        driven, pointed = "drive" in self._top, "times" in section or "speeds" in section
+        begin = section.quantity("from", "rad/s", -_FASTEST, _FASTEST, RPM, required=not pointed)
+        end = section.quantity("to", "rad/s", -_FASTEST, _FASTEST, RPM, required=not (driven or pointed))
+        duration = section.quantity("duration", "s", 1e-9, 1e6, Display("s"), required=not pointed)
+        for key in ("to", "times", "speeds"):
+            if driven and key in section:
+                section.note(key, "stands beside [drive], by which the speed follows from torques; delete one of both")
+        for key in ("from", "to", "duration"):
+            if pointed and key in section:
+                section.note(key, "stands beside times and speeds, which say the whole course; delete one of both")
+        points = self._points(section) if pointed else None
         step = section.quantity("step", "s", 1e-9, 1.0, MILLISECOND, required=True)
         sample = section.quantity("sample", "s", 1e-9, 1e3, MILLISECOND)
         radius = section.number("spectral_radius", 0.0, 1.0)
         tolerance = section.quantity("tolerance", "m", 1e-15, 1e-3, MICROMETRE)
         self._close(section)
-        if begin is None or (end is None and drive is None) or duration is None or step is None:
+        if step is None or (points is None and (begin is None or duration is None or (end is None and drive is None))):
             return None
         settings = fields.built(
             section,
@@ -459,7 +473,28 @@ class _Reader:
         )
         if settings is None:
             return None
+        if points is not None:
+            return RunUp(points, points.course.times[-1], settings)
+        assert begin is not None and duration is not None
         if end is None:
             assert drive is not None
             return RunUp(DrivenSpeed.of(drive, begin, duration), duration, settings)
         return RunUp(SpeedProfile.ramp(begin, end, duration), duration, settings)
+
+    def _points(self, section: Table) -> SpeedProfile | None:
+        """Read times and speeds of a course; None where a problem was noted."""
+        times, speeds = section.get("times", "a list"), section.get("speeds", "a list")
+        if not (isinstance(times, list) and isinstance(speeds, list) and 2 <= len(times) == len(speeds) <= MOST_POINTS):
+            if "times" in section and "speeds" in section:
+                allowed = f"2 to {MOST_POINTS} of each, as many, as lists"
+                section.note("times", f"got {short(times)} and {short(speeds)}; allowed: {allowed}")
+            return None
+        at = [section.quantity_of(part, f"times[{k}]", "s", 0.0, 1e6, Display("s")) for k, part in enumerate(times)]
+        found = [
+            section.quantity_of(part, f"speeds[{k}]", "rad/s", -_FASTEST, _FASTEST, RPM)
+            for k, part in enumerate(speeds)
+        ]
+        known = [(time, speed) for time, speed in zip(at, found, strict=True) if time is not None and speed is not None]
+        if len(known) < len(times):
+            return None
+        return fields.built(section, lambda: SpeedProfile(Course(*map(tuple, zip(*known, strict=True)))))

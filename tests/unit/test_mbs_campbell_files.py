@@ -133,16 +133,29 @@ def test_what_is_not_valid_is_drawn_and_named(spectra):
     assert words == [
         "above the line: estimated error of the films above 5 %",
         "up to 400 rpm: below the map, film fades to dry",
+        "a",
+        "b",
     ]
 
 
-@pytest.mark.parametrize("words", ["Reynolds map", "Reynolds map, films with memory"])
-def test_the_legend_of_the_laws_stays_in_its_panel(spectra, words):
-    figure = campbell_figure("title", ["dry Hertz", words, f"{words} "], [spectra] * 3, REFERENCE)
+@pytest.mark.parametrize("words", ["law", "Reynolds map", "Reynolds map, films with memory, oil air, half space"])
+@pytest.mark.parametrize("count", [1, 3, 4])
+def test_the_legend_of_the_laws_lies_below_the_curves_and_on_the_page(spectra, words, count):
+    figure = campbell_figure("title", [f"{words} {k}" for k in range(count)], [spectra] * count, REFERENCE)
     figure.draw_without_rendering()
-    ((panel, legend),) = ((axes, axes.get_legend()) for axes in figure.axes if axes.get_legend() is not None)
-    assert legend.get_window_extent().x0 >= panel.get_window_extent().x0
-    assert legend.get_window_extent().x1 <= panel.get_window_extent().x1
+    ((lower, legend),) = ((part, entry) for part in figure.subfigs for entry in part.legends)
+    box = legend.get_window_extent()
+    assert all(box.y1 <= panel.get_window_extent().y0 for panel in lower.axes)
+    assert box.x0 >= figure.bbox.x0 and box.x1 <= figure.bbox.x1
+
+
+def test_a_flat_sum_level_is_flat_and_has_no_offset(spectra):
+    figure = campbell_figure("title", ["a"], [spectra], REFERENCE)
+    figure.draw_without_rendering()
+    sums = next(axes for axes in figure.axes if axes.get_ylabel().startswith("sum level"))
+    assert np.ptp(sums.lines[0].get_ydata()) < 0.1
+    assert np.ptp(sums.get_ylim()) >= 1.0
+    assert sums.yaxis.get_offset_text().get_text() == ""
 
 
 def test_four_long_names_stay_beside_one_another(spectra):

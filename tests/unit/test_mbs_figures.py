@@ -34,6 +34,7 @@ from mbs.scene.assembly import assemble
 from mbs.scene.reader import read_scene
 from mbs.transient.run import Recording, States
 from tests.cases.bearings import map_law
+from tests.cases.pictures import cut_off
 
 RPM = np.pi / 30.0
 LOWEST = 0.3
@@ -423,7 +424,7 @@ class TestSweepFigure:
         words = texts(figure)
         assert "above the line: estimated error of the films above 5 %" in words
         assert "below 100 rpm: below the map, film fades to dry" in words
-        assert "bearing_left" in words and "bearing_right" in words
+        assert "k, c of bearing_left" in words and "k, c of bearing_right" in words
         numbered = {int(text.get_text()) for text in frequency.texts}
         shown = np.flatnonzero(result.undamped.bearing_share.max(axis=0) >= 0.05) + 1
         assert numbered and numbered <= set(shown.tolist())
@@ -432,6 +433,26 @@ class TestSweepFigure:
         figure = sweep_figure("title", "law", [result], ["a"])
         assert not any("estimated error" in word or "below" in word for word in texts(figure) if word)
         assert not any(bands(panel) for panel in figure.axes)
+
+    @pytest.mark.slow
+    @pytest.mark.parametrize("count", [1, 20])
+    def test_names_of_bearings_lie_off_the_curves_and_on_the_page(self, result, count):
+        of = result.bearings
+        wide = {
+            part.name: np.repeat(values[:, :1], count, axis=1)
+            for part in dataclasses.fields(of)
+            if isinstance(values := getattr(of, part.name), np.ndarray)
+        }
+        names = tuple(f"{k}, a bearing with a name that is much too long for a legend" for k in range(count))
+        many = dataclasses.replace(result, bearings=dataclasses.replace(of, names=names, **wide))
+        figure = sweep_figure("title", "law", [many], ["a"])
+        figure.draw_without_rendering()
+        (legend,) = figure.subfigs[1].legends
+        box = legend.get_window_extent()
+        assert len(legend.get_texts()) >= count
+        assert all(box.y1 <= panel.get_window_extent().y0 for panel in figure.axes[2:5])
+        assert all(panel.get_window_extent().height > 100.0 for panel in figure.axes[2:5])
+        assert cut_off(figure) == []
 
     def test_round_off_is_no_change_and_no_offset(self, result):
         figure = sweep_figure("title", "law", [result], ["a"])

@@ -85,7 +85,7 @@ def _page(sheet: Sheet) -> Figure:
     temperatures = spread(dataset.sizes["temperature"], MOST_TEMPERATURES)
     contacts = dataset.sizes["contact"]
     what, oil = what_is_mapped(sheet.emap)
-    write_line(figure, 0.963, f"Films and {surface.label}: {what}, {oil}", 13, "bold")
+    write_line(figure, 0.963, typeset(f"Films and {surface.label}: {what}, {oil}"), 13, "bold")
     parameter = f"Λ: minimum film between smooth surfaces over it; {_below(sheet)}."
     write_line(figure, 0.934, f"Combined rms roughness of both surfaces. {parameter}", 8)
     share = "film and asperities in balance (Johnson, Greenwood and Poon; asperities of Greenwood and Tripp)"

@@ -112,10 +112,12 @@ def _row(row: FilmRow, pressures: Axes, films: Axes, velocities: Axes) -> None:
         lower, upper = row.surface_speeds
         for name, colour in _PLACES:
             height, velocity = fields.profile(fields.U[:, 0], shown[name], rows)
-            label = f"{name}, x/b = {shown[name] / row.half_width:.3g}"
+            label = f"{name}, x/b {shown[name] / row.half_width:.3g}".replace("-", "−")
             across, along = np.r_[0.0, height, 1.0], np.r_[lower, velocity, upper]
             velocities.plot(along, across, color=colour, lw=1.0, marker=".", ms=3, label=label)
-        velocities.legend(frameon=False, fontsize=7.5)
+        velocities.legend(
+            frameon=False, fontsize=7, ncols=2, loc="lower center", bbox_to_anchor=(0.5, 1.0), borderpad=0.1
+        )
     velocities.set_xlabel("velocity along the film, m/s")
     velocities.set_ylabel("y/h, from the lower surface")
     velocities.grid(color="0.88", lw=0.4)
@@ -139,6 +141,6 @@ def _temperatures(row: FilmRow, axes: Axes, figure: Figure) -> None:
     shown = TEMPERATURE.factor * fields.T.reshape(x.size, -1)[window].T + TEMPERATURE.offset
     heights = (np.arange(shown.shape[0]) + 0.5) / shown.shape[0]
     image = axes.pcolormesh(x[window], heights, shown, shading="nearest", cmap="inferno", rasterized=True)
-    figure.colorbar(image, ax=axes, label=f"temperature, {TEMPERATURE.unit}")
+    figure.colorbar(image, ax=axes, label=f"temperature, {typeset(TEMPERATURE.unit)}")
     axes.set_xlabel("x/b, from the contact centre")
     axes.set_ylabel("y/h, from the lower surface")
