@@ -16,6 +16,8 @@ from ehdmaps.jobs.table import Table
 from mbs.scene.reader import parse_scene
 from tests.manual.recording import Readings, recording
 
+_SPEED = "entrainment_speed = ['1 m/s']"
+_SOLVER = '[solver]\nname = "hertz"\n'
 _AXIS = '{ from = "1 N/mm", to = "2 N/mm", points = 2, spacing = "log" }'
 JOBS = (
     f"""
@@ -39,24 +41,26 @@ corrected_by = "formula"
 line_steps = {{}}
 [correction]
 """,
-    """
+    f"""
 [bearing]
 name = "NU308"
 [lubricant]
 viscosity_law = "tait-doolittle"
 [grid]
 inner_ring_speed = ["100 rpm"]
-""",
-    """
+{_SOLVER}""",
+    f"""
 [bearing]
-estimate = { bore = "30 mm" }
+estimate = {{ bore = "30 mm" }}
 [lubricant]
 name = "FVA3"
-""",
-    "[contact]\n[lubricant]\nviscosity_law = 'fva3'\n[grid]\nload = ['1 N/mm']",
-    "[lubricant]\nviscosity_law = 'barus'",
+[grid]
+entrainment_speed = ["1 m/s"]
+{_SOLVER}""",
+    f"[contact]\n[lubricant]\nviscosity_law = 'fva3'\n[grid]\nload = ['1 N/mm']\n{_SPEED}\n{_SOLVER}",
+    f"[lubricant]\nviscosity_law = 'barus'\n[grid]\n{_SPEED}\n{_SOLVER}",
 )
-BATCH = "[batch]\noils = ['FVA3']\nestimates = ['NU206']"
+BATCH = f"[batch]\noils = ['FVA3']\nestimates = ['NU206']\n[grid]\nentrainment_speed = ['1 m/s']\n{_SOLVER}"
 SCENE = """
 [operation]
 gravity = ["0 m/s^2", "0 m/s^2", "-9.81 m/s^2"]
