@@ -74,7 +74,7 @@ class LinearTable:
         Errors of k and c of slow motion along the load that the map states, as parts of k and c; NaN where it states
         none.
     film_errors : tuple of FilmError
-        For each speed how films answer over frequency along the load, and the error of that; empty at rest.
+        Answer of the films over frequency along the load at each speed, and its error; empty at rest.
     """
 
     request: BearingRequest

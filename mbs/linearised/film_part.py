@@ -103,7 +103,7 @@ class FilmPart:
 
     @property
     def known(self) -> bool:
-        """Whether all laws hold a response of their films, so that signs are known."""
+        """Tell whether all laws hold a response of their films, so that signs are known."""
         return all(group.response is not None for group in self.groups)
 
     def eigenvalue_changes(
