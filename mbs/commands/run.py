@@ -14,7 +14,7 @@ from mbs.scene.choices import OPTIONS
 from mbs.scene.reader import read_scene
 from mbs.scene.scene import Scene
 
-_AUTO = ("auto: ", "warning: auto: ")
+_TOLD_ONCE = ("auto: ", "warning: auto: ", "note: these films")
 
 MARK = "mbs run"
 TEXT = Kind("a text of mbs run", (".txt",), lambda path: path.read_bytes().startswith(MARK.encode()))
@@ -37,8 +37,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
                 raise
             text, found = "\n".join(f"warning: no result: {line}" for line in str(error).splitlines()), 1
         status = max(status, found)
-        # The same plan and the same verdicts are told once.
-        shown = [line for line in text.splitlines() if line not in told or not line.startswith(_AUTO)]
+        # The same plan, the same verdicts and the same note on films are told once.
+        shown = [line for line in text.splitlines() if line not in told or not line.startswith(_TOLD_ONCE)]
         told.update(text.splitlines())
         lines += ["", f"=== mbs {name} {arguments.scene}", *shown]
         if folder is not None:

@@ -119,6 +119,7 @@ PAGES = (
     "mbs/REFERENCE.md",
     "mbs/MACHINES.md",
     "openfoam_cases/RESULTS.md",
+    "examples/first_steps.sh",
 )
 PARSERS = {"ehdmaps": ehdmaps_cli.parser, "mbs": cli.parser}
 LEFT_OUT = {
