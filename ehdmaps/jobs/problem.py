@@ -351,7 +351,7 @@ def _estimate(section: Table, word: str, label: str | None) -> BearingGeometry |
             return None
         made = _built(section, lambda: estimate_from_dimensions(bore, outside, width, rating))
     elif isinstance(value, str):
-        made = _built(section, lambda: estimate(value, rating))
+        made = _built(section, lambda: estimate(value, rating), word)
         if rating is None and "basic_static_rating" in section:
             return None
     else:
@@ -476,13 +476,13 @@ def _pressure_viscosity(section: Table) -> float | str | None:
     return section.quantity_of(text, "pressure_viscosity", "1/Pa", 1e-10, 1e-7, _COEFFICIENT)
 
 
-def _built(section: Table, make: Callable[[], Built]) -> Built | None:
-    """Make a value of the physics; note its problems under the table's name."""
+def _built(section: Table, make: Callable[[], Built], key: str = "") -> Built | None:
+    """Make a value of the physics; note its problems under the table's name, and under a key that it is made of."""
     try:
         return make()
     except InputError as error:
         for problem in error.problems:
-            section.note("", problem)
+            section.note(key, problem)
     except (ValueError, OverflowError, ZeroDivisionError) as error:
         section.note("", f"its values together give no usable {section.where} ({error}); check their units")
     return None

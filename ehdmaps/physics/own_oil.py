@@ -500,7 +500,7 @@ def viscosity_100(viscosity_40: float, index: float) -> float:
     Examples
     --------
     >>> round(viscosity_100(46.0, 95.0), 2), round(viscosity_100(100.0, 95.0), 1)
-    (6.75, 11.1)
+    (6.64, 11.1)
     """
     low, high = LEAST, viscosity_40
     if not (high > low and viscosity_index(viscosity_40, low) <= index <= viscosity_index(viscosity_40, high)):

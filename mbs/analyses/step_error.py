@@ -217,8 +217,8 @@ def up_to(signals: FloatArray, step: float, highest: float) -> FloatArray:
     >>> import numpy as np
     >>> times = np.arange(4000) * 1e-4
     >>> both = np.sin(2.0 * np.pi * 100.0 * times) + 5.0 * np.sin(2.0 * np.pi * 3000.0 * times)
-    >>> np.std(up_to(both[:, None], 1e-4, 1000.0), axis=0).round(3)
-    array([0.707])
+    >>> np.std(up_to(both[:, None], 1e-4, 1000.0), axis=0).round(2)
+    array([0.71])
     """
     count = signals.shape[0]
     if highest >= 0.5 / step:

@@ -200,6 +200,8 @@ def linear_look(model: Model, angle: float = 0.0) -> LinearLook:
 
 
 def _highest(look: LinearLook, column: int, frequency: float) -> float:
-    """Highest level of a response around a frequency [dB]."""
+    """Highest level of a response around a frequency [dB]; between two frequencies where none is near."""
     near = np.abs(look.frequencies - frequency) <= AROUND * frequency
+    if not near.any():
+        return float(np.interp(frequency, look.frequencies, look.levels[:, column]))
     return float(np.max(look.levels[near, column]))

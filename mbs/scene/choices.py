@@ -277,11 +277,11 @@ def named_law(name: str, scene: Scene) -> LawChoice:
     InputError
         If the film table does not serve the scene. What else is wrong about a law is said by `assemble`.
     """
-    from mbs.scene.contact_laws import NO_BEARING, law_label
+    from mbs.scene.contact_laws import law_label
     from mbs.scene.map_set import TABLE_LAW, table_maps
 
     if name != TABLE_LAW:
-        return LawChoice(law_label(name) if scene.bearings else NO_BEARING, name)
+        return LawChoice(law_label(name), name)
     return map_law(table_maps(scene))
 
 

@@ -125,9 +125,6 @@ HERTZ_FORMS = "hertz:TIME such as 'hertz:1.25e-5 s', hertz:DAMPING such as 'hert
 TABLE_FORM = "table:FILE.csv"
 """The form of the dry law by points, for messages."""
 
-NO_BEARING = "no roller bearing"
-"""Label of the law of a scene in which no contact follows one."""
-
 _LABELS = {"hertz": "dry Hertz", "formula": "film formula"}
 
 

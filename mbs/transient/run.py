@@ -386,15 +386,17 @@ def _drive(
     marks: list[Mark] | None = None,
 ) -> tuple[int, int]:
     """Step to the end, with halved steps where they are needed, and add marks; steps made, and steps taken back."""
-    chunk = CHUNK if shaft is None else max(round(FOLLOWED / settings.step), FEWEST)
     finest = 1 << HALVINGS
     tick = settings.step / finest
     sample = settings.steps_per_sample * finest
     row = sample // plan.stride
     ticks, end = 0, plan.samples * sample
     apart = end // MARKS
-    if marks is not None:
-        chunk = min(chunk, max(apart // sample, 1) * settings.steps_per_sample)
+    # The same with marks and without: to look at the error of the step must not change the run.
+    if shaft is None:
+        chunk = min(CHUNK, max(apart // sample, 1) * settings.steps_per_sample)
+    else:
+        chunk = max(round(FOLLOWED / settings.step), FEWEST)
     level = steps = halved = samples = 0
     while ticks < end:
         stride = finest >> level

@@ -333,7 +333,7 @@ BODIES = {
 del BODIES[('"20 kHz"', '"20 Hz"')], BODIES[('"b.mas"', '"b.sti"')]
 
 EHDMAPS_OPTIONS: dict[str, tuple[str, int, str]] = {
-    "check": ("check", 2, "required: JOB"),
+    "check": ("check", 2, "JOB: missing; allowed: a job or map, or --bearing"),
     "no command": ("", 2, "required: COMMAND"),
     "unknown command": ("make", 2, "invalid choice: 'make'"),
     "unknown option": ("check job.toml --colour", 2, "unrecognized arguments: --colour"),
@@ -341,7 +341,7 @@ EHDMAPS_OPTIONS: dict[str, tuple[str, int, str]] = {
     "a folder": ("check .", 2, "cannot be read (it is a folder)"),
     "a pipe": ("check pipe", 2, "cannot be read (it is a pipe)"),
     "generate a pipe": ("generate pipe", 2, "cannot be read (it is a pipe)"),
-    "a close name": ("check nu380", 2, "did you mean 'nu308'?"),
+    "a close name": ("check nu380", 2, "got 'nu380' (did you mean 'NU320'?)"),
     "a long name": (f"check {'x' * 5000}", 2, "cannot be read"),
     "a solver": ("check job.toml --solver herz", 2, "--solver: got 'herz'"),
     "workers 0": ("generate job.toml --workers 0", 2, "--workers: got '0'"),

@@ -135,7 +135,10 @@ LEGAL_IN_JOBS: set[str] = set()
 
 OPTIONAL_IN_JOBS = {
     f"job.toml without {key}"
-    for key in ("bearing.diametral_clearance", "solver.fill", "solver.backbone", "solver.law_check")
+    for key in (
+        *("schema", "bearing.diametral_clearance", "grid.entrainment_speed", "grid.temperature"),
+        *("solver.name", "solver.structural_law", "solver.fill", "solver.backbone", "solver.law_check"),
+    )
 }
 
 EHDMAPS = named(

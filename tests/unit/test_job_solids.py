@@ -78,7 +78,6 @@ def test_solids_of_the_job():
 @pytest.mark.parametrize(
     ("solids", "geometry", "solver", "message"),
     [
-        ("", NAMED, "", r"\[solver\] structural_law: missing"),
         ('[solids]\nlaw = "fe"\n', NAMED, 'structural_law = "fe"', r"\[solids\] law: stands beside structural_law of"),
         ('[solids]\nlaw = "fee"\n', NAMED, "", r"\[solids\] law: got 'fee' \(did you mean 'fe'\?\)"),
         ('[solids]\nlaw = "fe"\n', OWN, "", r"\[solids\] law: law fe: got the bearing 'bearing 60/80 .* solids JOB"),

@@ -184,13 +184,14 @@ def test_silence_can_be_drawn(tmp_path):
 )
 def test_a_highest_level_below_the_map_is_said_to_be_one(spectra, monkeypatch, lowest, words):
     command = importlib.import_module("mbs.commands.campbell")
-    monkeypatch.setattr(command, "fade_of", lambda model: Fade(lowest / RPM, 0.05, "the map") if lowest else None)
+    analysis = importlib.import_module("mbs.analyses.campbell")
+    monkeypatch.setattr(analysis, "fade_of", lambda model: Fade(lowest / RPM, 0.05, "the map") if lowest else None)
     loud = spectra.campbell.sum_level.copy()
     loud[0] = 300.0
     changed = dataclasses.replace(spectra, campbell=dataclasses.replace(spectra.campbell, sum_level=loud))
     run = ramp()
     entry = types.SimpleNamespace(spectra=(changed,), record=run, case=types.SimpleNamespace(model=None))
-    fading = command._fading(entry)
+    fading = analysis.fading(entry)
     speeds, half = changed.campbell.speeds, 0.5 * changed.campbell.window * 300.0 / RPM
     # The speed rises by 300 rpm a second; windows that begin within a sample of the edge are left open.
     assert np.all(fading[speeds - half < 0.99 * lowest / RPM])

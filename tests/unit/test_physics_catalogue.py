@@ -134,7 +134,7 @@ def test_a_job_with_an_estimated_bearing():
     [
         (
             'name = "NU221"',
-            r"\[bearing\]: bearing designation: got 'NU221' \(did you mean 'NU2219'\?\); allowed: N1014",
+            r"\[bearing\] name: bearing designation: got 'NU221' \(did you mean 'NU2219'\?\); allowed: N1014",
         ),
         ("name = 206", r"name: got 206; allowed: a designation such as \"NU206\"$"),
         ('estimate = "NU206"\nrollers = 13', r"\[bearing\] rollers: stands beside estimate; allowed: one of the two"),
@@ -142,7 +142,7 @@ def test_a_job_with_an_estimated_bearing():
         ("estimate = 206", r"estimate: got 206; allowed: a designation such as \"NU206\", or \{ bore = "),
         (
             'estimate = "NU999"',
-            r"\[bearing\]: bearing designation: got 'NU999'.*; allowed: N1014, NU308, and N, NU, NJ",
+            r"\[bearing\] estimate: bearing designation: got 'NU999'.*; allowed: N1014, NU308, and N, NU, NJ",
         ),
         ('estimate = { bore = "30 mm" }', r"\[bearing\] basic_static_rating: missing; allowed: C0 of the catalogue"),
         ('estimate = { bore = "30 mm" }', r"\[bearing\] estimate width: missing"),

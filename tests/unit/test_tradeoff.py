@@ -324,4 +324,4 @@ def test_sources_name_who_lacks_and_who_has_them():
     found = {source.name: source for source in sources(contestants(JOB, openfoam=False))}
     assert found["film memory"].off == "frequency: slow motion"
     assert found["film memory"].on == "frequency: one pole, fitted"
-    assert {"grid of the solver", "rings 5 K warmer than told", "roughness 0.2 um"} <= set(found)
+    assert {"grid of the solver", "rings 5 K warmer than stated", "roughness 0.2 um"} <= set(found)

@@ -108,7 +108,8 @@ def test_space_grows_to_all_unknowns_where_frequencies_are_absurd() -> None:
     frequency = 1e4
     direct = np.linalg.solve(linear.matrix + 1j * frequency * rates, linear.unit.astype(complex))[linear.height]
     (found,) = film_compliances(linear, np.array([frequency]))
-    assert found == pytest.approx(-direct - DRY_COMPLIANCE, rel=1e-6)  # round-off
+    # Round-off of a basis as large as the matrix: 2e-7 to 2e-6, by the processor.
+    assert found == pytest.approx(-direct - DRY_COMPLIANCE, rel=1e-5)
 
 
 @pytest.mark.parametrize(("M", "L"), [(0.1, 20.0), (0.82, 20.0), (4.0, 20.0), (10.0, 0.0)])
