@@ -10,8 +10,7 @@ from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.make.tasks import solver_version
 from ehdmaps.jobs.reader import read_job
 from ehdmaps.maps.emap import EHDMap, open_map
-
-_AXES = ("loads", "entrainment_speeds")
+from mbs.planning.ranges import LIGHT
 
 
 def covering(paths: list[Path], job: Job) -> tuple[Path, EHDMap] | None:
@@ -42,16 +41,17 @@ def covering(paths: list[Path], job: Job) -> tuple[Path, EHDMap] | None:
 def covers(wide: Job, job: Job) -> bool:
     """Tell whether a job asks for the same contacts, oil, temperatures and solver, over loads and speeds as wide.
 
+    A map that begins at `LIGHT` or below is light enough, since laws go on below their lowest load.
+
     Parameters
     ----------
     wide, job : Job
         The job that was made, and the one that is asked for.
     """
-    inside = all(
-        min(getattr(wide, axis)) <= min(getattr(job, axis)) and max(getattr(job, axis)) <= max(getattr(wide, axis))
-        for axis in _AXES
-    )
-    return inside and _asked(wide) == _asked(job)
+    light = min(wide.loads) <= max(min(job.loads), LIGHT) and max(job.loads) <= max(wide.loads)
+    slow, fast = min(wide.entrainment_speeds), max(wide.entrainment_speeds)
+    inside = slow <= min(job.entrainment_speeds) and max(job.entrainment_speeds) <= fast
+    return light and inside and _asked(wide) == _asked(job)
 
 
 def _asked(job: Job) -> tuple[object, ...]:
