@@ -159,7 +159,9 @@ def _table(found: Modes, shown: IntArray) -> list[str]:
     for k in shown:
         by = ["", ""]
         if bands is not None:
-            by = [f"{bands.frequency[k]:10.2g}", f"{bands.damping_ratio[k]:10.2g}"]
+            own = float(found.frequency[k])
+            relative = clean(bands.frequency[k] / own) if own > 0.0 else 0.0
+            by = [f"{own * relative:10.2g}", f"{clean(bands.damping_ratio[k]):10.2g}"]
         if law is not None:
             by = [text + _part(part[k]) for text, part in zip(by, law, strict=True)]
         ratio = clean(found.damping_ratio[k])

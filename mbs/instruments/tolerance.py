@@ -389,6 +389,12 @@ def _chosen(trials: _Trials, tolerance: float, given: Numerics) -> tuple[Numeric
         if error + change <= tolerance:
             break
         numerics = numerics.but(slices=more.slices)
+    else:
+        if error + change > tolerance:
+            # A shorter step is no cure for that.
+            could_not = (
+                f"the sum level still changes too much by slices: {_decibel(change)} up to {numerics.words('slices')}"
+            )
     return numerics, change, could_not
 
 

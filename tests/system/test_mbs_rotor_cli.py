@@ -101,3 +101,13 @@ def test_no_critical_speed_without_spin_or_speeds(here, capsys):
     _scene(here, ('[sweep]\nfrom = "300 rpm"\nto = "15000 rpm"\npoints = 50\nassumed = ["from", "to"]\n', ""))
     status, _, err = run(capsys, "critical", "own.toml")
     assert (status, "no speeds" in err) == (2, True)
+
+
+@pytest.mark.slow
+def test_a_mode_without_films_has_bands_of_zero(here, capsys):
+    """The axial mode strains the locating spring alone: what rounding leaves of its bands is no error."""
+    status, out, _ = run(capsys, "modes", "overhung_rotor", "--law", "table")
+    axial = next(line for line in out.splitlines() if "locating 97.4 %" in line).split()
+    assert status == 0
+    assert (axial[2], axial[5]) == ("0", "0")
+    assert all(float(line.split()[2]) > 0.0 for line in out.splitlines() if " rotor 9" in line)

@@ -22,6 +22,7 @@ from mbs.scene.choices import LawChoice, Subject
 from tests.cases.swinging import SWINGING
 
 DRY = LawChoice("dry", "hertz")
+DAMPED = LawChoice("damped", "hertz:1.25e-5 s")
 
 
 def run(subject):
@@ -173,6 +174,21 @@ class TestChoosing:
         found = within(Subject(coarse, DRY), 0.01)
         assert not found.met
         assert "could not: the sum level still changes too much by step 20 us" in "\n".join(found.lines)
+
+    @pytest.mark.slow
+    def test_a_shorter_step_is_no_cure_for_slices(self, monkeypatch):
+        """Levels that still change with the most slices are told after one run, not sought by ever shorter steps."""
+        monkeypatch.setattr(tolerance_module, "MOST_SLICES", 81)
+        runs = []
+
+        def counted(changed):
+            runs.append(changed)
+            return run(changed)
+
+        found, _ = tolerance_module.within(Subject(read_scene("nu308_rigid"), DAMPED), 3.0, counted)
+        assert not found.met and len(runs) == 1
+        assert found.numerics.step == Numerics.of(read_scene("nu308_rigid")).step
+        assert "could not: the sum level still changes too much by slices" in "\n".join(found.lines)
 
     def test_runs_that_drift_apart_have_no_level(self, swinging, monkeypatch):
         # A quarter of the time, in which two runs drift apart by e^16: rounding grows by e^64 in the whole.
