@@ -44,7 +44,10 @@ _OTHER_LAWS: tuple[StructuralLaw, ...] = ("palmgren", "half_space")
 """Laws of the solids beside which that of planned maps, ISO 16281, is held."""
 
 _STATED_LAW: StructuralLaw = "palmgren"
-"""The other law that holds for rollers between raceways: what it differs by, no analysis decides."""
+"""The other law that finite elements of rings in their seats support: what it differs by, no analysis decides.
+
+`half_space` is told and not counted: its depth is exact for a roller, and too stiff for a ring (docs/solids.md).
+"""
 
 _SOFT = 1e-9
 """Mass that is added to a singular stiffness, in squares of its mean frequency, as where an equilibrium is sought."""
@@ -307,7 +310,8 @@ def structure_verdict(ranges: Sequence[Range]) -> Verdict:
     size = max(max(pair) for pair in sizes.values())
     words = ", ".join(f"by {up_to(max(pair))} with {law}" for law, pair in sizes.items())
     told = f"iso16281; k or c of a contact changes {words} ({beside(size, ranges[0].tolerance)})"
-    words = f"{told}; --structural-law beside --map has another"
+    counted = f"bands count {_STATED_LAW} alone, as half_space is too stiff for rings"
+    words = f"{told}; {counted}; --structural-law beside --map has another"
     return Verdict("structural law", None, size, words, errors=sizes[_STATED_LAW])
 
 

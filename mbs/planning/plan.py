@@ -270,10 +270,11 @@ def _planned(scene: Scene, model: Model, settings: PlanSettings) -> PlanResult:
             f"{SPEED.text(max(fastest))}; allowed: up to {SPEED.text(SPEED_AXIS.high)}, the limit of a map; check units"
         )
     mounted = held(model)
-    dry = ranges.largest_loads(mounted.system, mounted.bearings, speeds[1])
     # Loads that turn would thin the films, whose room is largest where the rotor has no unbalance. An unloaded bearing
     # has films, too: those of a light load.
     at_rest = ranges.largest_loads(mounted.system, mounted.bearings, speeds[1], turning=False)
+    turns = bool(mounted.system.turning)
+    dry = ranges.largest_loads(mounted.system, mounted.bearings, speeds[1]) if turns else at_rest
     rooms = tuple(
         ranges.film_room(entry.bearing.geometry, oil, max(load, ranges.LIGHT), speed, scene.temperature)
         if speed > 0.0
