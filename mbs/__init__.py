@@ -60,14 +60,17 @@ if TYPE_CHECKING:
     from mbs.instruments.variants import Variation, variants
     from mbs.library import bearing, modal_fit, reduce, write_report
     from mbs.model.body import Inertia
+    from mbs.model.drive import Drive
     from mbs.model.elements import Input, Load, Operation, Sensor, Spring
     from mbs.model.profiles import SpeedProfile
     from mbs.planning.auto import AutoSettings, automatic
     from mbs.planning.plan import PlanSettings, plan
     from mbs.scene.assembly import Model, assemble
+    from mbs.scene.matrices import MatrixSpec
     from mbs.scene.reader import parse_scene, read_scene, shipped_systems
     from mbs.scene.scene import Scene
     from mbs.scene.specs import BearingSpec, FlexibleSpec, RigidSpec, ShaftSpec
+    from mbs.scene.turning import OrderLoad, Unbalance
     from mbs.settings import CampbellSettings, RunUp, Settings, SweepRange
 
 __all__ = [
@@ -80,6 +83,7 @@ __all__ = [
     "CampbellSettings",
     "Case",
     "Disc",
+    "Drive",
     "FlexibleSpec",
     "GearPair",
     "GivenTemperatures",
@@ -90,9 +94,11 @@ __all__ = [
     "LawChoice",
     "Load",
     "LsaSettings",
+    "MatrixSpec",
     "Model",
     "Mounting",
     "Operation",
+    "OrderLoad",
     "PlanSettings",
     "ReductionPlan",
     "RigidSpec",
@@ -107,6 +113,7 @@ __all__ = [
     "Spring",
     "SweepRange",
     "SweepSettings",
+    "Unbalance",
     "Variation",
     "assemble",
     "automatic",
@@ -138,6 +145,7 @@ _HOMES = {
     "CampbellSettings": "settings",
     "Case": "analyses.case",
     "Disc": "flexible.shaft_parts",
+    "Drive": "model.drive",
     "FlexibleSpec": "scene.specs",
     "GearPair": "gears.pair",
     "GivenTemperatures": "bearings.thermal",
@@ -148,9 +156,11 @@ _HOMES = {
     "LawChoice": "scene.choices",
     "Load": "model.elements",
     "LsaSettings": "analyses.lsa",
+    "MatrixSpec": "scene.matrices",
     "Model": "scene.assembly",
     "Mounting": "bearings.thermal",
     "Operation": "model.elements",
+    "OrderLoad": "scene.turning",
     "PlanSettings": "planning.plan",
     "ReductionPlan": "flexible.plan",
     "RigidSpec": "scene.specs",
@@ -165,6 +175,7 @@ _HOMES = {
     "Spring": "model.elements",
     "SweepRange": "settings",
     "SweepSettings": "analyses.sweep",
+    "Unbalance": "scene.turning",
     "Variation": "instruments.variants",
     "assemble": "scene.assembly",
     "automatic": "planning.auto",
