@@ -352,7 +352,8 @@ static reading load_at(const ehd_film *film, double approach) {
     return found;
 }
 
-/* Load and rate; see ehd_film_rate. With m = w, but at least EHD_OPENING p: x = (w^2 - p^2)/(2 m), xi' = x/(dG/dxi). */
+/* Load and rate; see ehd_film_rate. x = (w^2 - p^2)/(2 m), xi' = x/(dG/dxi), with m = w, but for an opening contact,
+ * below w = 2 e p with e = EHD_OPENING: m = e p + w^2/(4 e p), which goes on smoothly to e p. */
 static void rate_film(const ehd_film *film, double approach, double state, ehd_film_rates *rates) {
     double t;
     const double scale = film->inverse_scale, xi = most(state, film->lift_off);
@@ -363,10 +364,11 @@ static void rate_film(const ehd_film *film, double approach, double state, ehd_f
     const double c = most(read_cubic(cubic, t).slope, 0.0) * scale + film->least_damping;
     const double dc = held ? 0.0 : (2.0 * cubic[2] + 6.0 * t * cubic[3]) * scale * scale;
     const reading w = load_at(film, approach - y.value);
-    const int opening = w.value < EHD_OPENING * p;
-    const double m = opening ? EHD_OPENING * p : w.value, x = m > 0.0 ? 0.5 * (w.value - p) * (w.value + p) / m : 0.0;
-    const double x_by_w = m <= 0.0 ? 0.5 : opening ? w.value / m : 1.0 - x / m;
-    const double x_by_p = m <= 0.0 ? 0.0 : opening ? -p / m - x / p : -p / m;
+    const double edge = EHD_OPENING * p, part = w.value < 2.0 * edge ? 0.5 * w.value / edge : 1.0;
+    const double m = part < 1.0 ? edge * (1.0 + part * part) : w.value;
+    const double x = m > 0.0 ? 0.5 * (w.value - p) * (w.value + p) / m : 0.0;
+    const double x_by_w = m > 0.0 ? (w.value - x * part) / m : 0.5;
+    const double x_by_p = m > 0.0 ? -(p + x * EHD_OPENING * (part < 1.0 ? 1.0 - part * part : 0.0)) / m : 0.0;
     rates->load = w.value;
     rates->stiffness = w.slope;
     rates->by_state = -w.slope * dy;

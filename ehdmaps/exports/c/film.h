@@ -64,9 +64,10 @@ int ehd_film_advance(const ehd_film *film, double step, double last_step, double
                      ehd_film_state *after, ehd_force *force);
 
 /* What keeps rates finite where there is hardly a load. dG/dxi is raised by what makes the shortest relaxation time this
- * [s], and where a contact opens so fast that w falls below this part of p, the film follows more slowly. */
+ * [s], and where a contact opens so fast that w falls below 2 EHD_OPENING p, the film follows more slowly. Without that
+ * its rate goes to minus infinity as w goes to zero, which no corrector follows. */
 #define EHD_SHORTEST_MEMORY 1e-12
-#define EHD_OPENING 1e-3
+#define EHD_OPENING 0.002
 
 /* Load and rate at an approach [m] and a state xi [m]: a differential equation, stiff where contacts carry little. The
  * rate and its derivatives are numbers above the highest mapped load too: solvers try states far from where they end. */
