@@ -67,7 +67,7 @@ int ehd_film_advance(const ehd_film *film, double step, double last_step, double
  * [s], and where a contact opens so fast that w falls below 2 EHD_OPENING p, the film follows more slowly. Without that
  * its rate goes to minus infinity as w goes to zero, which no corrector follows. */
 #define EHD_SHORTEST_MEMORY 1e-12
-#define EHD_OPENING 0.002
+#define EHD_OPENING 0.003
 
 /* Load and rate at an approach [m] and a state xi [m]: a differential equation, stiff where contacts carry little. The
  * rate and its derivatives are numbers above the highest mapped load too: solvers try states far from where they end. */
