@@ -13,6 +13,7 @@ from ehdmaps.trade.answer import answer_lines, budget
 from ehdmaps.trade.data import trade_json
 from ehdmaps.trade.text import trade_text
 from mbs import assemble, parse_scene, read_scene
+from mbs.budget import sources
 from mbs.budget.linear_look import LinearReference, linear_look
 from mbs.cli import main
 from mbs.instruments import tradeoff as analysis
@@ -57,12 +58,12 @@ class TestLinearLook:
 class TestTradeoff:
     @pytest.mark.slow
     def test_rows_references_and_defaults(self, monkeypatch):
-        monkeypatch.setattr(analysis, "SUPPLIES", ("flooded", "oil air"))
+        monkeypatch.setattr(sources, "SUPPLIES", ("flooded", "oil air"))
         monkeypatch.setattr(analysis, "SLICES", (3, 9))
         monkeypatch.setattr(analysis, "ANGLES", (1, 2))
         # Tables of a formula take longer than all the rest.
-        every = analysis._laws
-        monkeypatch.setattr(analysis, "_laws", lambda *given: [one for one in every(*given) if "film" not in one.label])
+        every = sources._laws
+        monkeypatch.setattr(sources, "_laws", lambda *given: [one for one in every(*given) if "film" not in one.label])
         made = []
         run_part = analysis.run_part
         monkeypatch.setattr(analysis, "run_part", lambda *given: made.append(given[2]) or run_part(*given))
