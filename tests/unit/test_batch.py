@@ -68,7 +68,7 @@ def test_an_override_replaces_keys_of_a_table_and_leaves_the_others():
         ("bearings = 'NU308'\noils = ['FVA3']", "bearings: got 'NU308'; allowed: a list of names"),
         (
             "bearings = ['NU999']\noils = ['FVA3']",
-            r"cat.toml, NU999_FVA3: \[bearing\]: bearing designation: got 'NU999'",
+            r"cat.toml, NU999_FVA3: \[bearing\] name: bearing designation: got 'NU999'",
         ),
         ("bearings = ['NU308', 'nu308']\noils = ['FVA3']", "got 'nu308' again; allowed: each name once"),
         ("bearings = ['NU308']\nestimates = ['NU308']\noils = ['FVA3']", "estimates: got 'NU308', which bearings has"),
