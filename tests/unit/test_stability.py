@@ -44,8 +44,8 @@ def _wait(folder: Path) -> str:
 
 
 def _fill(folder: Path) -> str:
-    # Sixteen times the bar, a page at a time: what the child gives back of a large parent's memory hides as much growth.
-    pages = np.empty(100_000_000)
+    # Eight times the bar, a page at a time: what the child gives back of a large parent hides as much growth.
+    pages = np.empty(50_000_000)
     pages[::512] = 1.0
     return "" if pages[0] == 1.0 else "no"
 
@@ -119,7 +119,8 @@ def after_the_good_one(read, parent: int):
     ],
 )
 def test_whatever_a_reader_does_wrong_is_found(read, words, monkeypatch) -> None:
-    monkeypatch.setattr(fuzzing, "MOST_SECONDS", 0.6)
+    # Memory that a machine was not asked for before comes slowly.
+    monkeypatch.setattr(fuzzing, "MOST_SECONDS", 10.0 if read is _fill else 0.6)
     monkeypatch.setattr(fuzzing, "MOST_MEMORY", 50e6)
     found = fuzz(Reader("file", [GOOD], after_the_good_one(read, os.getpid())), 1, 1)
     assert (found.tried, found.failed) == (1, 1)
