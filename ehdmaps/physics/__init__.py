@@ -22,6 +22,7 @@ heat                data that heat needs, reductions of the film by inlet shear 
 solution            `FilmSolution`, `ContactSolution`, `Status`, the Protocol `ContactSolver` and its defaults
 spectrum            film compliance and dynamic stiffness over frequency
 closed_form         the solvers `hertz` and `formula`; how thick and how thin a film may be
+point               point contacts: dry ellipses; balls
 ==================  ====================================================================================
 
 Nothing is imported here: take the names from their modules.
