@@ -2,6 +2,8 @@
 
 ==============  ====================================================================================
 ellipse         dry point contact of Hertz: ellipticity, semi-axes, pressure, approach, stiffness
+ball_geometry   `BallGeometry`: curvatures, groove centres, free contact angle, speeds of rolling
+ball_catalogue  `BallGeometry` estimated from a designation and its static rating
 ==============  ====================================================================================
 
 Nothing is imported here: take the names from their modules.

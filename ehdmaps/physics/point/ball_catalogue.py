@@ -1,0 +1,303 @@
+"""Inner geometry of ball bearings that only a catalogue describes: estimated, and marked so.
+
+Catalogues give boundary dimensions and the static rating of ISO 76, C0 = f0 Z Dw^2 cos(alpha) [N, mm], whose factor f0
+knows Dw cos(alpha)/d_m. From them:
+
+- pitch diameter d_m = (d + D)/2;
+- deep groove: each Z has one Dw by the rating. The catalogue's own f0 and the arc through which balls are put in
+  between the eccentric rings, (Z - 1) 2 asin(Dw/d_m) near `FILLING_ARC`, tell which Z it is;
+- angular contact: balls as large as in the deep groove bearing of the same section (60, 62, 63), Z from the rating,
+  then Dw from the rating once more;
+- groove radii `INNER_CONFORMITY` and `OUTER_CONFORMITY` of the ball diameter.
+
+Makers differ, in balls and in ratings; an own rating scales the balls of the table.
+
+References
+----------
+ISO 15 and ISO 12044: boundary dimensions. ISO 76: static ratings, factors f0 (table 1). Dimensions, ratings
+and f0 of the series 60, 62, 63, ratings of 70 C, 72 C, 72 B, 73 B, and the constant K of axial clearance, from which
+the sum of the groove radii comes: NSK, Rolling Bearings, catalogue E1102e. Series 64: SKF, Rolling bearings (general
+catalogue).
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import NamedTuple
+
+from ehdmaps.errors import InputError, closest, short
+from ehdmaps.physics.point.ball_geometry import BallGeometry
+
+FILLING_ARC = math.radians(189.0)
+"""Arc that the balls of a deep groove bearing take while they are put in [rad]; most have 183 to 198 degrees."""
+
+_FACTOR_ERROR, _ARC_ERROR = 0.1, math.radians(8.0)
+"""By how much factor and arc tell the number of balls: a digit of the one, what bearings scatter of the other [rad]."""
+
+INNER_CONFORMITY, OUTER_CONFORMITY = 0.515, 0.52
+"""Groove radius over ball diameter. Their sum is that of NSK's table 15.4 (1.035 +- 0.002); its shares are assumed.
+ISO 281 takes at most 0.52 and 0.53, which others use."""
+
+ANGLES = {"C": 15.0, "AC": 25.0, "B": 40.0}
+"""Contact angle by its suffix [deg]."""
+
+ERRORS = "pitch diameter to {} %, ball diameter {} %, groove radii 0.515 to 0.53 of it, number of balls {}"
+"""What an estimate is good for: measured on bearings whose inner geometry is known, see the tests."""
+
+# f0 of ISO 76 by 100 Dw cos(alpha)/d_m
+_FACTORS = (
+    *(14.7, 14.9, 15.1, 15.3, 15.5, 15.7, 15.9, 16.1, 16.3, 16.5, 16.4, 16.1, 15.9, 15.6, 15.4, 15.2, 14.9, 14.7, 14.4),
+    *(14.2, 14.0, 13.7, 13.5, 13.2, 13.0, 12.8, 12.5, 12.3, 12.1, 11.8, 11.6, 11.4, 11.2, 10.9, 10.7, 10.5, 10.3, 10.0),
+    *(9.8, 9.6, 9.4),
+)
+
+_SUFFIXES = r"(?:[ .,/-]*(?:2?RS[HLRJ]?[12]?|2?Z|ZZ|DDU|LLU|LLB|VV|NR?|TN9?|T[VN]?H?P?|M|MA|JEM|C[2-5]|CN|CM|P[456]))*"
+_DEEP = re.compile(r"(6[0234])[ -]?(\d\d)" + _SUFFIXES)
+_ANGULAR = re.compile(r"(7[023])[ -]?(\d\d)[ .-]?(AC|C|B)[ED]?(?:CB|[PMJY])?[PMJY]?" + _SUFFIXES)
+_MM = 1e-3
+
+# bore, outside diameter, width [mm], C0 [N] of 60, its f0, C0 of 70 C
+_SERIES_0 = (
+    (10, 26, 8, 1970, 12.4, 2490), (12, 28, 8, 2370, 13.0, 2900), (15, 32, 9, 2830, 13.9, 3400),
+    (17, 35, 10, 3250, 14.4, 3800), (20, 42, 12, 5000, 13.8, 6550), (25, 47, 12, 5850, 14.5, 7400),
+    (30, 55, 13, 8300, 14.7, 10300), (35, 62, 14, 10300, 14.8, 13700), (40, 68, 15, 11500, 15.3, 15900),
+    (45, 75, 16, 15200, 15.3, 19300), (50, 80, 16, 16600, 15.6, 21900), (55, 90, 18, 21200, 15.3, 28600),
+    (60, 95, 18, 23200, 15.6, 30500), (65, 100, 18, 25200, 15.8, 34500), (70, 110, 20, 31000, 15.6, 43000),
+    (75, 115, 20, 33500, 15.8, 45500), (80, 125, 22, 40000, 15.6, 55500), (85, 130, 22, 43000, 15.8, 58500),
+    (90, 140, 24, 50000, 15.6, 69000), (95, 145, 24, 54000, 15.8, 73000), (100, 150, 24, 54000, 15.9, 77000),
+)  # fmt: skip
+# the same of 62, of 72 C, of 72 B
+_SERIES_2 = (
+    (10, 30, 9, 2390, 13.2, 2610, 2500), (12, 32, 10, 3050, 12.3, 3850, 3750), (15, 35, 11, 3750, 13.2, 4550, 4300),
+    (17, 40, 12, 4800, 13.2, 5850, 5500), (20, 47, 14, 6600, 13.1, 8050, 7650), (25, 52, 15, 7850, 13.9, 10200, 9400),
+    (30, 62, 16, 11300, 13.8, 14700, 13500), (35, 72, 17, 15300, 13.8, 19900, 18400),
+    (40, 80, 18, 17900, 14.0, 25200, 23000), (45, 85, 19, 20400, 14.4, 28800, 26200),
+    (50, 90, 20, 23200, 14.4, 31500, 28600), (55, 100, 21, 29300, 14.3, 40000, 36000),
+    (60, 110, 22, 36000, 14.3, 49000, 44500), (65, 120, 23, 40000, 14.4, 58500, 52500),
+    (70, 125, 24, 44000, 14.5, 64500, 58000), (75, 130, 25, 49500, 14.7, 70000, 58500),
+    (80, 140, 26, 53000, 14.6, 77500, 69500), (85, 150, 28, 62000, 14.5, 90500, 81000),
+    (90, 160, 30, 71500, 14.5, 105000, 94000), (95, 170, 32, 82000, 14.4, 112000, 101000),
+    (100, 180, 34, 93000, 14.4, 127000, 114000),
+)  # fmt: skip
+# the same of 63, of 73 B
+_SERIES_3 = (
+    (10, 35, 11, 3450, 11.2, 4050), (12, 37, 12, 4200, 11.1, 4200), (15, 42, 13, 5450, 12.3, 6600),
+    (17, 47, 14, 6650, 12.4, 8000), (20, 52, 15, 7900, 12.4, 9650), (25, 62, 17, 11200, 13.2, 14600),
+    (30, 72, 19, 15000, 13.3, 19300), (35, 80, 21, 19200, 13.2, 24200), (40, 90, 23, 24000, 13.2, 30500),
+    (45, 100, 25, 32000, 13.1, 40000), (50, 110, 27, 38500, 13.2, 48000), (55, 120, 29, 44500, 13.1, 56500),
+    (60, 130, 31, 52000, 13.1, 65500), (65, 140, 33, 60000, 13.2, 75500), (70, 150, 35, 68000, 13.2, 86000),
+    (75, 160, 37, 77000, 13.2, 97500), (80, 170, 39, 86500, 13.3, 109000), (85, 180, 41, 97000, 13.3, 122000),
+    (90, 190, 43, 107000, 13.3, 135000), (95, 200, 45, 119000, 13.3, 149000), (100, 215, 47, 141000, 13.2, 178000),
+)  # fmt: skip
+# the same of 64, without f0
+_SERIES_4 = (
+    (20, 72, 19, 15000), (25, 80, 21, 19300), (30, 90, 23, 23600), (35, 100, 25, 31000), (40, 110, 27, 36500),
+    (45, 120, 29, 45000), (50, 130, 31, 52000), (55, 140, 33, 62000), (60, 150, 35, 69500), (65, 160, 37, 78000),
+    (70, 180, 42, 104000), (75, 190, 45, 114000), (80, 200, 48, 125000), (85, 210, 52, 137000), (90, 225, 54, 150000),
+)  # fmt: skip
+
+
+class BallCatalogue(NamedTuple):
+    """Entry of a catalogue: lengths [m], C0 [N], f0 of ISO 76; None where the table has none."""
+
+    bore: float
+    outside_diameter: float
+    width: float
+    basic_static_rating: float | None
+    factor: float | None
+
+
+def ball_estimate(designation: str, basic_static_rating: float | None = None) -> BallGeometry:
+    """Inner geometry of a ball bearing by its designation.
+
+    Parameters
+    ----------
+    designation : str
+        Deep groove of series 60, 62, 63 (bores of 10 to 100 mm), 64 (20 to 90 mm); angular contact of series 70, 72, 73
+        with the suffix C (15 degrees), AC (25) or B (40), such as "7208B". Blanks and suffixes of seals, cages,
+        clearance and accuracy do not matter.
+    basic_static_rating : float, optional
+        C0 [N] of the bearing's own catalogue; else that of the table.
+
+    Returns
+    -------
+    BallGeometry
+        The bearing with `estimated` set; clearance zero.
+
+    Raises
+    ------
+    InputError
+        If there is no such bearing, or no balls fit the rating.
+
+    Examples
+    --------
+    >>> bearing = ball_estimate("6208-2RS C3")
+    >>> bearing.balls, round(1e3 * bearing.ball_diameter, 2), round(1e3 * bearing.pitch_diameter, 1)
+    (9, 11.91, 60.0)
+    """
+    series, code, suffix = _parts(designation)
+    entry = _entry(series, code, suffix)
+    if entry is None:
+        raise InputError(
+            f"ball bearing designation: got {short(designation)}{closest(designation.upper(), ball_designations())}; "
+            "allowed: 60, 62, 63 with bores of 10 to 100 mm, 64 with 20 to 90 mm, such as '6208'; 70, 72, 73 with the "
+            "suffix C, AC or B for the contact angle, such as '7208B'"
+        )
+    name = series + code + suffix
+    pitch = 0.5 * (entry.bore + entry.outside_diameter)
+    own = basic_static_rating is not None
+    rating = entry.basic_static_rating if basic_static_rating is None else basic_static_rating
+    if own and not (isinstance(rating, int | float) and math.isfinite(rating) and rating > 0.0):
+        raise InputError(f"ball bearing estimate: got basic_static_rating {rating!r:.60} N; allowed: finite and > 0")
+    angle = math.radians(ANGLES[suffix]) if suffix else 0.0
+    section = 0.5 * (entry.outside_diameter - entry.bore)
+    if not suffix:
+        balls, diameter = _filled(name, float(entry.basic_static_rating or 0.0), entry.factor, pitch, section)
+        if own:
+            diameter = _diameter(name, float(rating or 0.0) / balls, pitch, 0.0, section)
+    else:
+        deep = ball_estimate("6" + series[1] + code)
+        if rating is None:  # as many balls as the next angle has
+            near = ball_estimate(series + code + ("B" if series == "73" else "C"))
+            balls, diameter = near.balls, near.ball_diameter
+        else:
+            each = _rating(deep.ball_diameter, pitch, angle)
+            balls = max(round(rating / each), 3)
+            diameter = _diameter(name, rating / balls, pitch, angle, section)
+    whose = "own" if own else "SKF's" if series == "64" else "NSK's"
+    basis = f"inner geometry estimated from catalogue dimensions and {whose} static rating (ISO 76): "
+    errors = ERRORS.format(2, 8, 2 if suffix else 1)
+    return BallGeometry(
+        name, diameter, pitch, balls, INNER_CONFORMITY, OUTER_CONFORMITY, angle, 0.0, estimated=basis + errors
+    )
+
+
+def plain_ball_designation(designation: str) -> str:
+    """Designation without blanks and suffixes, such as "6208" or "7208B"; empty where it is none.
+
+    Parameters
+    ----------
+    designation : str
+        Designation as it was typed.
+
+    Examples
+    --------
+    >>> plain_ball_designation("7208 becbp"), plain_ball_designation("NU208")
+    ('7208B', '')
+    """
+    return "".join(_parts(designation))
+
+
+def ball_boundary(designation: str) -> BallCatalogue | None:
+    """Boundary dimensions and rating of a ball bearing by its designation; None where it is not in the table.
+
+    Parameters
+    ----------
+    designation : str
+        Such as "6208".
+
+    Examples
+    --------
+    >>> ball_boundary("6208").outside_diameter
+    0.08
+    """
+    return _entry(*_parts(designation))
+
+
+def ball_designations() -> tuple[str, ...]:
+    """Designations that `ball_estimate` knows."""
+    return tuple(
+        f"{series}{_code(row[0])}{suffix}"
+        for series, table in _TABLES.items()
+        for suffix in (("",) if series[0] == "6" else tuple(ANGLES))
+        if (series, suffix) != ("73", "C")
+        for row in table
+    )
+
+
+def static_factor(gamma: float) -> float:
+    """Factor f0 of ISO 76 for radial and angular contact ball bearings, by Dw cos(alpha)/d_m, 0 to 0.4.
+
+    Examples
+    --------
+    >>> static_factor(0.2)
+    14.0
+    """
+    place = 100.0 * min(max(gamma, 0.0), 0.4)
+    low = min(int(place), len(_FACTORS) - 2)
+    return _FACTORS[low] + (place - low) * (_FACTORS[low + 1] - _FACTORS[low])
+
+
+def ball_static_rating(geometry: BallGeometry) -> float:
+    """Static rating C0 of ISO 76 [N]."""
+    return geometry.balls * _rating(geometry.ball_diameter, geometry.pitch_diameter, geometry.contact_angle)
+
+
+_TABLES = {
+    **{"60": _SERIES_0, "62": _SERIES_2, "63": _SERIES_3, "64": _SERIES_4},
+    **{"70": _SERIES_0, "72": _SERIES_2, "73": _SERIES_3},
+}
+_COLUMNS = {("70", "C"): 5, ("72", "C"): 5, ("72", "B"): 6, ("73", "B"): 5}
+"""Columns of the ratings of angular contact bearings."""
+
+
+def _parts(designation: str) -> tuple[str, str, str]:
+    """Series, bore code and suffix of the contact angle; empty where it is no designation of a ball bearing."""
+    text = designation.strip().upper()
+    deep, angular = _DEEP.fullmatch(text), _ANGULAR.fullmatch(text)
+    if deep is not None:
+        return deep.group(1), deep.group(2), ""
+    return (angular.group(1), angular.group(2), angular.group(3)) if angular is not None else ("", "", "")
+
+
+def _code(bore: float) -> str:
+    """Bore code of a bore [mm]."""
+    return {10: "00", 12: "01", 15: "02", 17: "03"}.get(int(bore), f"{int(bore) // 5:02d}")
+
+
+def _entry(series: str, code: str, suffix: str) -> BallCatalogue | None:
+    """The entry of the table; None where there is none."""
+    if (series, suffix) == ("73", "C"):
+        return None
+    column = 3 if not suffix else _COLUMNS.get((series, suffix))
+    for row in _TABLES.get(series, ()):
+        if _code(row[0]) == code:
+            rating = None if column is None else float(row[column])
+            factor = row[4] if not suffix and len(row) > 4 else None
+            return BallCatalogue(row[0] * _MM, row[1] * _MM, row[2] * _MM, rating, factor)
+    return None
+
+
+def _rating(diameter: float, pitch: float, angle: float) -> float:
+    """Static rating of a ball [N]."""
+    cosine = math.cos(angle)
+    return static_factor(diameter * cosine / pitch) * (diameter / _MM) ** 2 * cosine
+
+
+def _diameter(name: str, rating: float, pitch: float, angle: float, section: float) -> float:
+    """Diameter of the balls by the rating of one of them [m]."""
+    low, high = 0.2 * section, 0.95 * section
+    if not _rating(low, pitch, angle) < rating < _rating(high, pitch, angle):
+        raise InputError(
+            f"ball bearing estimate of {name}: no balls fit its static rating between {low / _MM:.3g} and "
+            f"{high / _MM:.3g} mm; allowed: C0, not C, in N"
+        )
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if _rating(middle, pitch, angle) < rating else (low, middle)
+    return 0.5 * (low + high)
+
+
+def _filled(name: str, rating: float, factor: float | None, pitch: float, section: float) -> tuple[int, float]:
+    """Number and diameter of the balls of a deep groove bearing."""
+    found: list[tuple[float, int, float]] = []
+    for balls in range(5, 25):
+        if _rating(0.2 * section, pitch, 0.0) < rating / balls < _rating(0.95 * section, pitch, 0.0):
+            diameter = _diameter(name, rating / balls, pitch, 0.0, section)
+            arc = (balls - 1) * 2.0 * math.asin(diameter / pitch)
+            doubt = ((arc - FILLING_ARC) / _ARC_ERROR) ** 2
+            if factor is not None:
+                doubt += ((static_factor(diameter / pitch) - factor) / _FACTOR_ERROR) ** 2
+            found.append((doubt, balls, diameter))
+    return min(found)[1:]

@@ -1,0 +1,227 @@
+"""Geometry of a ball bearing: curvatures of its contacts, groove centres, free contact angle, speeds of rolling.
+
+The groove of a raceway is an arc of radius f Dw about a centre; f is its conformity. A ball that both rings touch
+without load has the two groove centres A = (f_i + f_o - 1) Dw apart, on a line at the free contact angle alpha_0 to the
+radial plane. Centred rings with a diametral clearance s have
+
+    A cos alpha_0 = A cos alpha - s/2,
+
+with alpha the nominal contact angle: zero for deep groove bearings, whose clearance gives them an angle of their own.
+A negative clearance beyond that (preload) has no free angle: it is zero, and all balls carry load in the middle.
+
+References
+----------
+T. A. Harris, M. N. Kotzalas, Essential Concepts of Bearing Technology, CRC, 2007. ISO/TS 16281, Rolling bearings -
+Methods for calculating the modified reference rating life for universally loaded bearings.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, fields
+
+from ehdmaps.errors import InputError
+from ehdmaps.labels import label_problem
+from ehdmaps.physics.point.ellipse import Ellipse
+from ehdmaps.physics.solids import Material, reduced_modulus
+
+MOST_BALLS = 500
+LARGEST_ANGLE = math.radians(60.0)
+"""Largest nominal contact angle [rad]."""
+
+_CONFORMITIES = (0.5, 1.0)
+
+
+@dataclass(frozen=True)
+class BallGeometry:
+    """A deep groove or angular contact ball bearing.
+
+    Attributes
+    ----------
+    name : str
+        Name for provenance and messages.
+    ball_diameter, pitch_diameter : float
+        Dw and d_m [m], d_m the diameter on which the centres of the balls lie.
+    balls : int
+        Number Z of balls.
+    inner_conformity, outer_conformity : float
+        Radius of each groove over the ball diameter, f, 0.5 < f <= 1.
+    contact_angle : float
+        Nominal contact angle alpha [rad], 0 for deep groove bearings. Positive: an axial force on the inner ring in +x
+        is carried; negative: one in -x. At most 60 degrees either way.
+    clearance : float
+        Diametral clearance s [m], < 0 for preload. Of angular contact bearings it is what fits and temperature add to
+        the nominal geometry.
+    label : str or None
+        Free text shown instead of the name; no part of what makes bearings equal.
+    estimated : str or None
+        How its inner geometry was estimated and how well, see `ehdmaps.physics.point.ball_catalogue`; None where it
+        is known.
+
+    Raises
+    ------
+    InputError
+        With every problem of the geometry.
+
+    Examples
+    --------
+    >>> bearing = BallGeometry("6305", 11.5e-3, 43.5e-3, 7, 0.52, 0.53, 0.0, 10e-6)
+    >>> round(1e3 * bearing.groove_distance, 4), round(math.degrees(bearing.free_angle), 3)
+    (0.575, 7.561)
+    """
+
+    name: str
+    ball_diameter: float
+    pitch_diameter: float
+    balls: int
+    inner_conformity: float
+    outer_conformity: float
+    contact_angle: float = 0.0
+    clearance: float = 0.0
+    label: str | None = field(default=None, compare=False)
+    estimated: str | None = None
+
+    def __post_init__(self) -> None:
+        problems = _problems(self)
+        if problems:
+            raise InputError(problems)
+
+    @property
+    def title(self) -> str:
+        """Name of the bearing in titles: its label, else its name; `estimated` is for a line of its own."""
+        return self.label or self.name
+
+    def record(self) -> dict[str, float | str]:
+        """Everything that defines the bearing, for provenance; SI units; what is not given is left out."""
+        values = {entry.name: getattr(self, entry.name) for entry in fields(self)}
+        return {name: value for name, value in values.items() if value is not None}
+
+    @property
+    def gamma(self) -> float:
+        """Ratio Dw cos(alpha)/d_m, by the nominal contact angle."""
+        return self.ball_diameter * math.cos(self.contact_angle) / self.pitch_diameter
+
+    @property
+    def groove_distance(self) -> float:
+        """Distance A of the groove centres where both rings touch a ball without load [m]."""
+        return (self.inner_conformity + self.outer_conformity - 1.0) * self.ball_diameter
+
+    @property
+    def radial_distance(self) -> float:
+        """Radial distance of the groove centres of centred rings, A cos(alpha) - s/2 [m]."""
+        return self.groove_distance * math.cos(self.contact_angle) - 0.5 * self.clearance
+
+    @property
+    def free_angle(self) -> float:
+        """Free contact angle alpha_0 of centred rings without load [rad], with the sign of the contact angle.
+
+        Zero where the rings press on the balls in the middle.
+        """
+        return math.copysign(math.acos(min(self.radial_distance / self.groove_distance, 1.0)), self.contact_angle)
+
+    @property
+    def axial_play(self) -> float:
+        """Axial way of the inner ring from its middle until balls are touched, A sin(abs(alpha_0)) [m].
+
+        Deep groove bearings have it to both sides. Of angular contact bearings it is the axial distance of their groove
+        centres where the balls are touched.
+        """
+        return self.groove_distance * math.sin(abs(self.free_angle))
+
+    @property
+    def inner_groove_radius(self) -> float:
+        """Distance of the inner groove's centre from the axis, d_m/2 + (f_i - 1/2) Dw cos(alpha_0) [m]."""
+        return 0.5 * self.pitch_diameter + (self.inner_conformity - 0.5) * self.ball_diameter * math.cos(
+            self.free_angle
+        )
+
+    def contacts(self, material: Material, rings: Material | None = None) -> tuple[Ellipse, Ellipse]:
+        """Dry ellipses of the inner and the outer contact.
+
+        Parameters
+        ----------
+        material : Material
+            Material of the balls.
+        rings : Material, optional
+            Material of both rings; that of the balls if left out.
+        """
+        modulus = reduced_modulus(material, material if rings is None else rings)
+        half = 0.5 * self.ball_diameter
+        return (
+            Ellipse(half * (1.0 - self.gamma), _across(half, self.inner_conformity), modulus),
+            Ellipse(half * (1.0 + self.gamma), _across(half, self.outer_conformity), modulus),
+        )
+
+    def ball_mass(self, material: Material) -> float:
+        """Mass of a ball [kg]."""
+        return material.density * math.pi / 6.0 * self.ball_diameter**3
+
+    def entrainment_speed(self, inner_speed: float, outer_speed: float = 0.0) -> float:
+        """Entrainment speed u = (d_m/4) abs(omega_i - omega_o) (1 - gamma^2) [m/s] at both races, in pure rolling.
+
+        Parameters
+        ----------
+        inner_speed, outer_speed : float
+            Speeds of the rings [rad/s].
+
+        Examples
+        --------
+        >>> bearing = BallGeometry("6305", 11.5e-3, 43.5e-3, 7, 0.52, 0.53)
+        >>> round(bearing.entrainment_speed(3000 * math.pi / 30), 3)
+        3.178
+        """
+        return 0.25 * self.pitch_diameter * abs(inner_speed - outer_speed) * (1.0 - self.gamma**2)
+
+    def cage_speed(self, inner_speed: float, outer_speed: float = 0.0) -> float:
+        """Speed of the cage [rad/s] in pure rolling at the nominal contact angle.
+
+        Parameters
+        ----------
+        inner_speed, outer_speed : float
+            Speeds of the rings [rad/s].
+        """
+        return 0.5 * (inner_speed * (1.0 - self.gamma) + outer_speed * (1.0 + self.gamma))
+
+
+def _across(half: float, conformity: float) -> float:
+    """Reduced radius of a ball of radius `half` in a groove, across the direction of rolling [m]."""
+    return half * 2.0 * conformity / (2.0 * conformity - 1.0)
+
+
+def _problems(geometry: BallGeometry) -> list[str]:
+    """Everything that is wrong with a geometry."""
+    where = f"ball bearing {geometry.name!r}" if isinstance(geometry.name, str) else "ball bearing"
+    problems = [] if isinstance(geometry.name, str) and geometry.name else [f"{where}: has no name"]
+    problems += [f"{where}, label: {problem}" for problem in label_problem(geometry.label)]
+    numbers = (
+        ("ball_diameter", "m", 0.0, math.inf, "> 0"),
+        ("pitch_diameter", "m", 0.0, math.inf, "> 0"),
+        ("inner_conformity", "", *_CONFORMITIES, "above 0.5 and at most 1; it is radius over ball diameter"),
+        ("outer_conformity", "", *_CONFORMITIES, "above 0.5 and at most 1; it is radius over ball diameter"),
+        ("contact_angle", "rad", -math.inf, LARGEST_ANGLE, "from -60 to 60 deg"),
+        ("clearance", "m", -math.inf, math.inf, ""),
+    )
+    for name, unit, above, most, allowed in numbers:
+        value = getattr(geometry, name)
+        number = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+        inside = number and above < value <= most and not (name == "contact_angle" and value < -LARGEST_ANGLE)
+        if not inside:
+            words = f"finite and {allowed}" if allowed else "a finite number"
+            problems.append(f"{where}, {name}: got {value!r:.60}{' ' + unit if unit else ''}; allowed: {words}")
+    count = geometry.balls
+    if not isinstance(count, int) or isinstance(count, bool) or not 3 <= count <= MOST_BALLS:
+        problems.append(f"{where}, balls: got {count!r:.60}; allowed: a whole number from 3 to {MOST_BALLS}")
+    if problems:
+        return problems
+    if not geometry.ball_diameter < geometry.pitch_diameter * math.sin(math.pi / count) * (1.0 + 1e-9):
+        problems.append(
+            f"{where}: got {count} balls of {1e3 * geometry.ball_diameter:.4g} mm on a pitch diameter of "
+            f"{1e3 * geometry.pitch_diameter:.4g} mm; allowed: balls that have room beside each other"
+        )
+    if not abs(geometry.clearance) < geometry.groove_distance * math.cos(geometry.contact_angle):
+        problems.append(
+            f"{where}, clearance: got {1e6 * geometry.clearance:.4g} um; allowed: less than the distance of the groove "
+            f"centres, {1e6 * geometry.groove_distance * math.cos(geometry.contact_angle):.4g} um, either way; check "
+            "its unit"
+        )
+    return problems
