@@ -56,6 +56,9 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.surface import SMOOTH, Surface
 
+_MOST_LAWS = 6
+"""Laws of a map that are kept: those of a roller and of both its contacts, with two supplies."""
+
 
 class EHDMap:
     """A map of stiffness, damping, approach and films over load, entrainment speed and temperature.
@@ -229,6 +232,8 @@ class EHDMap:
     ) -> ContactLaw:
         """Make a contact law from the map; takes about a second, some seconds with rough surfaces.
 
+        What was made is kept: the same law is a moment's work when it is asked for again, with counts of its own.
+
         Parameters
         ----------
         kind : {"series", "inner", "outer", "line"}
@@ -251,10 +256,15 @@ class EHDMap:
         allowed = [name for name in get_args(LawKind) if name in by_name or (name == "series" and "inner" in by_name)]
         if kind not in allowed:
             raise InputError(f"contact law, kind: got {kind!r}; allowed in this map: {', '.join(allowed)}")
+        key = kind, outside, supply or self.supply, self.surface if surface is None else surface
+        if key in self._laws:
+            return self._laws[key].again()
         names = ("inner", "outer") if kind == "series" else (kind,)
         contacts = tuple(by_name[name] for name in names)
         check_loads(self.dataset["load"].values, contacts)
-        return ContactLaw(
+        if len(self._laws) >= _MOST_LAWS:
+            self._laws.pop(next(iter(self._laws)))
+        self._laws[key] = ContactLaw(
             kind,
             contacts,
             self.lubricant,
@@ -262,10 +272,16 @@ class EHDMap:
             outside,
             self._resolution,
             rolling=self.rolling_film,
-            supply=supply or self.supply,
-            surface=self.surface if surface is None else surface,
+            supply=key[2],
+            surface=key[3],
             errors=self.law_errors,
         )
+        return self._laws[key]
+
+    @cached_property
+    def _laws(self) -> dict[tuple[LawKind, OutsidePolicy, OilSupply, Surface], ContactLaw]:
+        """Laws that were made, the latest last."""
+        return {}
 
     @property
     def from_table(self) -> bool:

@@ -150,6 +150,12 @@ class ContactLaw:
         """Scratch for `kernel.collapse` and `kernel.evaluate`, one for each thread and each `Point` kept."""
         return _workspace(self.table)
 
+    def again(self) -> ContactLaw:
+        """The same law with counts of its own, all zero; films that were read are shared."""
+        other = copy.copy(self)
+        other._outside, other._latest = self._outside.emptied(), None
+        return other
+
     def changed(self, change: LawChange) -> ContactLaw:
         """The law with another stiffness, damping and film, for samples of what its errors do.
 
@@ -158,10 +164,9 @@ class ContactLaw:
         change : LawChange
             What is changed.
         """
-        other = copy.copy(self)
-        # Of the copy nothing is kept that follows from the table, or is counted.
+        other = self.again()
+        # Of the copy nothing is kept that follows from the table.
         other.__dict__.pop("table", None)
-        other._outside, other._latest = self._outside.emptied(), None
         own = changed_table(self._plain.own, change)
         other._plain = self._plain._replace(own=own, inner=own, outer=own)
         if self.kind == "series":

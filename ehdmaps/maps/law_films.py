@@ -28,6 +28,9 @@ LIGHTEST = 1.0
 _LOAD_STEP = 0.1
 """Step of ln of the load between the factors of the locked film."""
 
+_MOST_LOCKED = 4096
+"""Sets of such factors that are kept, of 1 kB each: a run-up over a decade of speed comes to 600."""
+
 
 @dataclass(frozen=True, eq=False)
 class LawFilms:
@@ -118,8 +121,21 @@ class LawFilms:
         entrainment_speed, temperature : float
             u [m/s], of either sign, and T [K]; held at the edges of the map.
         """
-        field = self.field
         u, T = self._held(entrainment_speed, temperature)
+        if (u, T) not in self._locked:
+            if len(self._locked) >= _MOST_LOCKED:
+                self._locked.clear()
+            self._locked[u, T] = self._locked_factors(u, T)
+        return self._locked[u, T]
+
+    @cached_property
+    def _locked(self) -> dict[tuple[float, float], LockedFactors]:
+        """Factors that were made: runs of one law come to the same speeds."""
+        return {}
+
+    def _locked_factors(self, u: float, T: float) -> LockedFactors:
+        """Factors at a speed and a temperature within the map."""
+        field = self.field
         lowest, highest = float(field.first_loads(np.array([u]), np.array([T]))[0, 0]), field.load_range[1]
         loads = np.geomspace(lowest, highest, 2 + math.ceil(math.log(highest / lowest) / _LOAD_STEP))
         whole, offset, compliance = np.zeros((3, loads.size))

@@ -265,3 +265,20 @@ def test_import_is_light():
     code = f"import sys, ehdmaps; print([name for name in {heavy} if name in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+def test_a_law_is_made_once_and_counts_for_each_that_asked():
+    """The second law of a map shares its tables, so that numbers are equal, and has counts of its own."""
+    emap = EHDMap(dataset_of())
+    first, second = (emap.law("series", outside="clamp") for _ in range(2))
+    assert first is not second
+    assert first.plain_table is second.plain_table
+    fast = 10.0 * first.speed_range[1]
+    numbers = first.at(fast, 330.0).memory.table.cells
+    assert np.array_equal(numbers, second.at(fast, 330.0).memory.table.cells)
+    assert first.outside_counts == second.outside_counts
+    second.at(fast, 330.0)
+    assert first.outside_counts != second.outside_counts
+    assert emap.law("series", outside="error").plain_table is not first.plain_table
+    # with a centrifugal load too
+    assert first.table.inner is emap.law("series", outside="clamp").table.inner
