@@ -1,0 +1,8 @@
+"""Ball bearings, deep groove and angular contact: five freedoms, quasi-static, with the speed of their balls.
+
+=====================  ================================================================================================
+`laws`                 contact laws of both raceways: Hertz, with a damper, or a film over it
+`ball_kernel`          the balance of each ball, and the sums over balls: force, stiffness, damping
+`ball_bearing`         the force element; loads and contact angles of the balls
+=====================  ================================================================================================
+"""

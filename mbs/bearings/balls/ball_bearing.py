@@ -1,0 +1,352 @@
+"""A ball bearing as a force element with five freedoms: force, stiffness and damping by the pose of its inner ring.
+
+Frame O sits in the middle of the outer groove, x along its axis. Pose and signs are those of `mbs.bearings.bearing`:
+x, y, z, and the tilts theta_y = -n_z, theta_z = n_y of the inner ring's axis n; theta_x has no force. The pose zero has
+both grooves where their nominal contact angle puts them: deep groove bearings stand in their middle, so that clearance
+lets them go either way; angular contact bearings just touch, without clearance.
+
+Quasi-static: each ball is in balance at the speeds that hold, and has no inertia against small motions beside that.
+Speeds, and with them centrifugal load and gyroscopic moment, are held in the derivatives. The outer raceway's traction
+holds the whole gyroscopic moment (outer raceway control). The potential of dry contacts takes the arm of the inner
+groove's centre for both displacement and moment; ISO/TS 16281 takes d_m/2 for moments, which is 1 % less.
+
+References
+----------
+T. A. Harris, M. N. Kotzalas, Advanced Concepts of Bearing Technology, CRC, 2007, chapter 3. J. M. de Mul, J. M. Vree,
+D. A. Maas, Journal of Tribology 111 (1989) 142. ISO/TS 16281.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.compiled import in_python
+from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.physics.point.ball_geometry import BallGeometry
+from ehdmaps.physics.solids import STEEL, Material
+from mbs.bearings.balls.ball_kernel import NO_BALANCE, NOT_FINITE, TOO_FAR, BallShape, ball_force, load_approach
+from mbs.bearings.balls.laws import BallLaw
+from mbs.model.elements import ElementDefaults, Excitation, Forces, Operation, Port
+
+FASTEST = 2e4
+"""Largest accepted speed of a ring [rad/s]; 1e5 rpm is half of it."""
+
+NEGLIGIBLE = 1e-11
+"""Approach [m] of a dry contact under a centrifugal load that is left out: less than a micronewton."""
+
+HARMONICS = 3
+"""Multiples of the passing frequency of the balls that are worth following."""
+
+_COLUMNS = 16
+
+
+@dataclass(frozen=True, eq=False)
+class BallLoads:
+    """State of all balls at one pose.
+
+    Attributes
+    ----------
+    angle : array (Z,)
+        Angles of the balls in O, from y towards z, within -pi to pi [rad].
+    load : array (2, Z)
+        Loads of the inner and the outer contact [N].
+    contact_angle : array (2, Z)
+        Contact angles of both [rad].
+    approach : array (2, Z)
+        Approaches of both [m]; below zero a gap, or a film.
+    """
+
+    angle: FloatArray
+    load: FloatArray
+    contact_angle: FloatArray
+    approach: FloatArray
+
+    def mean_angle(self, side: int) -> float:
+        """Mean contact angle of a side, 0 the inner one, by the loads of its balls [rad]; zero without load."""
+        total = float(np.sum(self.load[side]))
+        return float(self.load[side] @ self.contact_angle[side]) / total if total > 0.0 else 0.0
+
+
+class BallForce:
+    """Force, stiffness and damping of a ball bearing.
+
+    Parameters
+    ----------
+    geometry : BallGeometry
+        Geometry and clearance.
+    law : BallLaw
+        Laws of the contacts, see `mbs.bearings.balls.laws`.
+    material : Material
+        Material of the balls; its density gives them mass.
+    compiled : bool
+        Whether the compiled kernel is called, or the same in Python.
+
+    Notes
+    -----
+    An object is for one thread: it keeps the places of the balls as a start for the next call.
+    """
+
+    def __init__(
+        self, geometry: BallGeometry, law: BallLaw, material: Material = STEEL, *, compiled: bool = True
+    ) -> None:
+        self.geometry, self.law, self.material = geometry, law, material
+        distance, angle = geometry.groove_distance, geometry.contact_angle
+        self.shape = BallShape(
+            axial=distance * math.sin(angle),
+            radial=geometry.radial_distance,
+            arm=geometry.inner_groove_radius,
+            inner_arm=(geometry.inner_conformity - 0.5) * geometry.ball_diameter,
+            outer_arm=(geometry.outer_conformity - 0.5) * geometry.ball_diameter,
+            most_travel=distance,
+            most_tilt=distance / geometry.inner_groove_radius,
+        )
+        places = 2.0 * math.pi * np.arange(geometry.balls) / geometry.balls
+        self._cos, self._sin, self._places = np.cos(places), np.sin(places), places
+        self._kernel = ball_force if compiled else in_python(ball_force)
+        self._centres = np.full((geometry.balls, 2), np.nan)
+        self._balls = np.zeros((geometry.balls, _COLUMNS))
+        self._out = np.zeros(6), np.zeros((6, 6)), np.zeros((6, 6))
+        self._rest = (0.0, 0.0)
+
+    def speed_loads(
+        self, inner_speed: float, outer_speed: float, cage_speed: float | None = None
+    ) -> tuple[float, float]:
+        """Centrifugal load F_c of a ball, and factor G of its gyroscopic moment G sin(alpha_o).
+
+        F_c = m (d_m/2) w_c^2 and G = J w_c (w_c - w_o) d_m/Dw, J = m Dw^2/10; [N], [N m]. The traction of rings that
+        turn against each other, with a cage that is slow, would drive an idle ball out of its groove: G is at least
+        -F_c Dw/4, by which it stays.
+
+        Parameters
+        ----------
+        inner_speed, outer_speed : float
+            Speeds of the rings [rad/s].
+        cage_speed : float, optional
+            Speed of the cage [rad/s]; that of pure rolling at the nominal contact angle if left out.
+
+        Raises
+        ------
+        InputError
+            For speeds that are no finite numbers, or beyond `FASTEST`.
+        """
+        geometry = self.geometry
+        if not all(abs(speed) <= FASTEST for speed in (inner_speed, outer_speed)):
+            raise InputError(
+                f"ball bearing, speeds: got {inner_speed!r} and {outer_speed!r} rad/s; allowed: finite numbers, at "
+                f"most {FASTEST:g} rad/s either way"
+            )
+        cage = geometry.cage_speed(inner_speed, outer_speed) if cage_speed is None else cage_speed
+        if not abs(cage) <= FASTEST:
+            raise InputError(f"ball bearing, cage_speed: got {cage!r} rad/s; allowed: at most {FASTEST:g} rad/s")
+        mass, ratio = geometry.ball_mass(self.material), geometry.pitch_diameter / geometry.ball_diameter
+        inertia = 0.1 * mass * geometry.ball_diameter**2
+        centrifugal = 0.5 * mass * geometry.pitch_diameter * cage**2
+        least = -0.25 * geometry.ball_diameter * centrifugal
+        return centrifugal, max(inertia * cage * (cage - outer_speed) * ratio, least)
+
+    def __call__(
+        self,
+        pose: npt.ArrayLike,
+        velocity: npt.ArrayLike | None = None,
+        *,
+        cage_angle: float = 0.0,
+        inner_speed: float = 0.0,
+        outer_speed: float = 0.0,
+        cage_speed: float | None = None,
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Force on the inner ring, and its derivatives.
+
+        Parameters
+        ----------
+        pose, velocity : array (6,)
+            Pose and velocity of the inner ring in O [m], [rad], [m/s], [rad/s]; at rest if there is no velocity.
+            Damping is that of small velocities: the force is linear in them.
+        cage_angle : float
+            Angle of the first ball, from y towards z [rad].
+        inner_speed, outer_speed : float
+            Speeds of the rings [rad/s].
+        cage_speed : float, optional
+            Speed of the cage [rad/s]; that of pure rolling at the nominal contact angle if left out.
+
+        Returns
+        -------
+        f, K, C : arrays (6,), (6, 6), (6, 6)
+            Force and moments [N], [N m] in O about the centre of the inner ring, K = -df/dpose at rest,
+            C = -df/dvelocity.
+
+        Raises
+        ------
+        InputError
+            For values that are no finite numbers, and poses or speeds beyond reason.
+        AnalysisError
+            Where the balance of a ball is not found.
+        """
+        force, stiffness, damping = self._evaluated(pose, cage_angle, inner_speed, outer_speed, cage_speed)
+        force, stiffness, damping = force.copy(), stiffness.copy(), damping.copy()
+        if velocity is not None:
+            rate = _six(velocity, "velocity")
+            if not np.all(np.isfinite(rate)):
+                raise InputError(f"ball bearing, velocity: got {rate.tolist()}; allowed: finite numbers")
+            force -= damping @ rate
+        return force, stiffness, damping
+
+    def balls(
+        self,
+        pose: npt.ArrayLike,
+        *,
+        cage_angle: float = 0.0,
+        inner_speed: float = 0.0,
+        outer_speed: float = 0.0,
+        cage_speed: float | None = None,
+    ) -> BallLoads:
+        """Loads, contact angles and approaches of all balls; arguments and errors as of a call.
+
+        Parameters
+        ----------
+        pose : array (6,)
+            Pose of the inner ring in O.
+        cage_angle, inner_speed, outer_speed, cage_speed : float
+            Angle of the cage [rad] and speeds [rad/s], see `BallForce.__call__`.
+        """
+        self._evaluated(pose, cage_angle, inner_speed, outer_speed, cage_speed)
+        angle = np.angle(np.exp(1j * (self._places + cage_angle)))
+        rows = self._balls.T.copy()
+        return BallLoads(angle, rows[10:12], rows[12:14], rows[14:16])
+
+    def kernel_arguments(
+        self,
+        *,
+        cage_angle: float = 0.0,
+        inner_speed: float = 0.0,
+        outer_speed: float = 0.0,
+        cage_speed: float | None = None,
+    ) -> tuple[FloatArray, tuple[Any, ...]]:
+        """Numbers and arrays that `ball_force` takes after the pose, for compiled code.
+
+        Parameters
+        ----------
+        cage_angle, inner_speed, outer_speed, cage_speed : float
+            Angle of the cage [rad] and speeds [rad/s], see `BallForce.__call__`.
+        """
+        centrifugal, moment = self.speed_loads(inner_speed, outer_speed, cage_speed)
+        if self._rest[0] != centrifugal:
+            self._rest = centrifugal, load_approach(self.law.outer, centrifugal) if centrifugal > 0.0 else 0.0
+        if self.law.dry and self._rest[1] < NEGLIGIBLE:
+            centrifugal = moment = 0.0
+        traction = 2.0 * moment / self.geometry.ball_diameter
+        numbers = np.array([cage_angle, centrifugal, traction, self._rest[1]], dtype=np.float64)
+        laws = self.law.inner, self.law.outer
+        return numbers, (self._cos, self._sin, self.shape, *laws, *self._out, self._centres, self._balls)
+
+    def _evaluated(
+        self, pose: npt.ArrayLike, cage_angle: float, inner_speed: float, outer_speed: float, cage_speed: float | None
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Call the kernel; its arrays are overwritten by the next call."""
+        place = _six(pose, "pose")
+        numbers, arrays = self.kernel_arguments(
+            cage_angle=cage_angle, inner_speed=inner_speed, outer_speed=outer_speed, cage_speed=cage_speed
+        )
+        found = self._kernel(place, numbers, *arrays)
+        if found == NO_BALANCE:  # once more, from nothing
+            self._centres[:] = np.nan
+            found = self._kernel(place, numbers, *arrays)
+        if found < 0:
+            self._centres[:] = np.nan
+            self._refuse(found, place, cage_angle)
+        return self._out
+
+    def _refuse(self, found: int, pose: FloatArray, cage_angle: float) -> None:
+        """Say what is wrong."""
+        if found == NOT_FINITE:
+            raise InputError(
+                f"ball bearing, pose: got {pose.tolist()} and the cage angle {cage_angle!r}; allowed: finite numbers"
+            )
+        if found == TOO_FAR:
+            raise InputError(
+                f"ball bearing, pose: got x, y, z = {pose[0]:.6g}, {pose[1]:.6g}, {pose[2]:.6g} m, theta_y, theta_z = "
+                f"{pose[4]:.6g}, {pose[5]:.6g} rad; allowed: within {self.shape.most_travel:.6g} m (the distance of "
+                f"the groove centres) and {self.shape.most_tilt:.6g} rad; check units and the step of the solver"
+            )
+        raise AnalysisError(f"ball bearing {self.geometry.name}: no balance of a ball was found at {pose.tolist()}")
+
+
+def _six(values: npt.ArrayLike, name: str) -> FloatArray:
+    """Six numbers."""
+    try:
+        array = np.ascontiguousarray(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise InputError(f"ball bearing, {name}: got {values!r:.80}; allowed: six real numbers") from None
+    if array.shape != (6,):
+        raise InputError(f"ball bearing, {name}: got an array of shape {array.shape}; allowed: (6,)")
+    return array
+
+
+@dataclass(frozen=True, eq=False)
+class BallElement(ElementDefaults):
+    """A ball bearing between an inner and an outer ring.
+
+    Attributes
+    ----------
+    name : str
+        Name for messages and results.
+    inner, outer : str
+        Places at the middle of the bearing.
+    force : BallForce
+        The force.
+    inner_spin, outer_spin : float
+        Speeds of the rings as multiples of the system's.
+    cage_spin : float or None
+        That of the cage; None for pure rolling at the nominal contact angle.
+    start_angle : float
+        Angle of the first ball from y at the beginning [rad].
+    """
+
+    name: str
+    inner: str
+    outer: str
+    force: BallForce
+    inner_spin: float = 1.0
+    outer_spin: float = 0.0
+    cage_spin: float | None = None
+    start_angle: float = 0.0
+
+    @property
+    def ports(self) -> tuple[Port, ...]:
+        """Displacement of the inner ring against the outer one."""
+        return (Port(self.inner, self.outer),)
+
+    @property
+    def excitation(self) -> Excitation | None:
+        """The passing of the balls; None for a cage that stands."""
+        order = self.force.geometry.balls * abs(self._cage)
+        return Excitation(order, HARMONICS, rank=1) if order > 0.0 else None
+
+    @cached_property
+    def _cage(self) -> float:
+        """Speed of the cage as a multiple of the system's."""
+        rolling = self.force.geometry.cage_speed(self.inner_spin, self.outer_spin)
+        return rolling if self.cage_spin is None else self.cage_spin
+
+    def conditions(self, operation: Operation) -> dict[str, float]:
+        """Angle of the cage and speeds, by the names that the force takes."""
+        return {
+            "cage_angle": self.start_angle + self._cage * operation.angle,
+            "inner_speed": self.inner_spin * operation.speed,
+            "outer_speed": self.outer_spin * operation.speed,
+            "cage_speed": self._cage * operation.speed,
+        }
+
+    def balls(self, displacement: FloatArray, operation: Operation) -> BallLoads:
+        """Loads of all balls at rest at the displacement (6,) of the inner ring against the outer one."""
+        return self.force.balls(displacement, **self.conditions(operation))
+
+    def evaluate(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> Forces:
+        """Force on the inner ring, stiffness and damping, see `Element.evaluate`."""
+        return Forces(*self.force(displacement, velocity, **self.conditions(operation)))
