@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import time
 from collections.abc import Callable, Sequence
@@ -36,8 +37,8 @@ if TYPE_CHECKING:
     from mbs.spectral.spectra import AmplitudeSpectrum
     from mbs.timedata.records import TimeRecord
 
-_KEPT = Options(states=True, every_step=True, marks=True)
-"""States at the samples, and sensors at every step: fewer would fold what lies above their band into it."""
+_KEPT = Options(every_step=True, marks=True)
+"""Sensors at every step: fewer would fold what lies above their band into it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +52,8 @@ class RunUpResult:
     course : RunUp
         Speed, duration, and how it was integrated.
     record : Recording
-        Recorded states, forces and signals, and how often each element was outside its map.
+        Recorded forces and signals, motion of the coordinates where asked for, and how often each element was outside
+        its map.
     seconds : float
         How long the integration took [s].
     dataset : xarray.Dataset
@@ -87,7 +89,9 @@ def runup_problems(scene: Scene) -> list[str]:
     return [] if scene.run_up else [f"{scene.name}: [runup] missing; a run needs from, to, duration and step"]
 
 
-def runup(model: Model, settings: RunUp | None = None, progress: Progress | None = None) -> RunUpResult:
+def runup(
+    model: Model, settings: RunUp | None = None, progress: Progress | None = None, *, states: bool = True
+) -> RunUpResult:
     """Integrate the nonlinear system in time over a speed profile, from its equilibrium.
 
     Parameters
@@ -98,6 +102,9 @@ def runup(model: Model, settings: RunUp | None = None, progress: Progress | None
         Speed over time, duration and steps; [runup] of the scene if left out.
     progress : callable, optional
         Told how many steps are done, and of how many.
+    states : bool
+        Whether the motion of all coordinates is kept at the samples, 24 bytes a coordinate and sample; else forces of
+        the bearings at the samples and signals of the sensors at every step alone, which are the same numbers.
 
     Raises
     ------
@@ -118,7 +125,7 @@ def runup(model: Model, settings: RunUp | None = None, progress: Progress | None
     tell = progress or silent
     total = _steps(_course(model, settings))
     tell(0, total)
-    return RunUpResult(held(model), *_run(model, lambda done: tell(done, total), settings))
+    return RunUpResult(held(model), *_run(model, lambda done: tell(done, total), settings, states=states))
 
 
 class _Made(NamedTuple):
@@ -145,7 +152,7 @@ def _steps(course: RunUp) -> int:
     return math.ceil(course.duration / course.settings.sample - 1e-9) * course.settings.steps_per_sample
 
 
-def _run(model: Model, told: Callable[[int], None], settings: RunUp | None = None) -> _Made:
+def _run(model: Model, told: Callable[[int], None], settings: RunUp | None = None, *, states: bool = True) -> _Made:
     """Integrate over a speed profile, that of the scene if none is given; what is told are steps."""
     course, model = _course(model, settings), held(model)
     start = equilibrium(model.system, Operation(course.speed.at(0.0)[0]))
@@ -159,7 +166,7 @@ def _run(model: Model, told: Callable[[int], None], settings: RunUp | None = Non
         sensors=sensors,
         displacement=start.displacement,
         progress=lambda done: told(done * steps),
-        options=_KEPT,
+        options=dataclasses.replace(_KEPT, states=states),
     )
     seconds = time.perf_counter() - begin
     dataset = with_energy(run_dataset(model.system, record), record.energy)
@@ -201,7 +208,12 @@ class RunUps(NamedTuple):
 
 
 def runups(
-    cases: Sequence[Case], progress: Progress | None = None, *, keep_partial: bool = False, workers: int = 1
+    cases: Sequence[Case],
+    progress: Progress | None = None,
+    *,
+    keep_partial: bool = False,
+    workers: int = 1,
+    states: bool = True,
 ) -> RunUps:
     """Integrate the run of one scene with several laws.
 
@@ -215,6 +227,8 @@ def runups(
         Whether Ctrl-C returns the laws that have come to the end, if there are any; else it is raised.
     workers : int
         Number of processes among which the laws are divided.
+    states : bool
+        Whether the motion of all coordinates is kept, as for `runup`.
 
     Raises
     ------
@@ -239,7 +253,7 @@ def runups(
     runs: dict[int, RunUpResult] = {}
     failed: list[str] = []
     made = side_by_side(
-        lambda index, told: _run(cases[index].model, told),
+        lambda index, told: _run(cases[index].model, told, states=states),
         sizes,
         workers,
         lambda done: tell(done, sum(sizes)),

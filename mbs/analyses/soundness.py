@@ -18,7 +18,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.surface import HARDNESS
 from ehdmaps.units import PRESSURE
-from mbs.bearings.bearing_element import BearingElement
+from mbs.bearings.bearing_element import BearingElement, ring_motion
 from mbs.bearings.bearing_force import BearingForce
 from mbs.model.elements import Operation
 from mbs.scene.assembly import Model, ring_motions
@@ -109,9 +109,7 @@ def unsound_run(model: Model, record: Recording) -> tuple[Unsound, ...]:
     found: list[Unsound | None] = []
     for bearing, forces, motions in zip(model.bearings, record.forces, record.motions, strict=False):
         sample = int(np.argmax(np.hypot(forces[:, 1], forces[:, 2])))
-        ports = motions[sample]
-        # Rollers that are bodies have both rings in their ports.
-        motion = ports if ports.size == 6 else ports[:6] - ports[6:12]
+        motion = ring_motion(motions[sample])
         at = Operation(float(record.speed[sample]), float(record.angle[sample]), float(record.time[sample]))
         found.append(_crushed(bearing, motion, at))
     left = record.energy.relative_residual

@@ -516,6 +516,17 @@ def ring_following(stiffness: FloatArray) -> FloatArray:
     return following
 
 
+def ring_motion(ports: FloatArray) -> FloatArray:
+    """Displacement of an inner ring against the outer one from that of the ports of its element, shape (..., 6).
+
+    Parameters
+    ----------
+    ports : array, shape (..., 6) or (..., 12 + Z)
+        Displacements of the ports [m or rad]; rollers that are bodies have both rings in theirs.
+    """
+    return ports if ports.shape[-1] == 6 else ports[..., :6] - ports[..., 6:12]
+
+
 _NO_FILMS = "got 'memory' with a law without films; allowed: laws map and formula"
 
 _AT_REST = 1e6

@@ -80,7 +80,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     done = analysed(
         arguments,
         _asked,
-        lambda asked: _ran(asked, workers),
+        # The file has the motion of all coordinates, which is many times what all else takes.
+        lambda asked: _ran(asked, workers, states=bool(arguments.output)),
         lambda asked: _looks_at(asked.cases[0].model.scene),
     )
     found, asked, tolerated = done.result
@@ -106,11 +107,11 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     return "\n".join(lines), 1 if outside or found.failed else done.status
 
 
-def _ran(asked: _Asked, workers: int) -> tuple[RunUps, _Asked, Tolerated | None]:
+def _ran(asked: _Asked, workers: int, *, states: bool) -> tuple[RunUps, _Asked, Tolerated | None]:
     """Run, with step and slices that are chosen where a tolerance is given."""
 
     def run(cases: list[Case]) -> tuple[RunUps, StepCheck | None]:
-        found = runups(cases, Told("step"), keep_partial=True, workers=workers)
+        found = runups(cases, Told("step"), keep_partial=True, workers=workers, states=states)
         return found, found.runs[0].steps
 
     found, tolerated = tolerated_run(asked.cases, asked.tolerance, run)

@@ -455,14 +455,14 @@ def linear_dataset(
 
 
 def run_dataset(system: System, run: Recording) -> xr.Dataset:
-    """Trajectory of a run: motion of all coordinates, and forces of the bearings.
+    """Trajectory of a run: forces of the bearings, and motion of all coordinates where that was recorded.
 
     Parameters
     ----------
     system : System
         Whose run it is.
     run : Recording
-        What was recorded, with the states.
+        What was recorded.
     """
     variables: dict[str, Any] = {
         "speed": ("time", run.speed, {"units": "rad/s", "long_name": "speed of the system"}),
@@ -474,19 +474,22 @@ def run_dataset(system: System, run: Recording) -> xr.Dataset:
         ("velocity", run.states.velocity),
         ("acceleration", run.states.acceleration),
     ):
-        variables |= _by_kind(system, values, ("time",), order)
+        if values.shape[0] > 0:
+            variables |= _by_kind(system, values, ("time",), order)
     names = _bearing_names(system)
     variables["outside_calls"] = (
         "bearing",
         np.array([run.outside[str(name)] for name in names], dtype=np.int64),
         {"units": "1", "long_name": "law calls outside the map"},
     )
-    coordinates = {
+    coordinates: dict[str, Any] = {
         "time": ("time", run.time, {"units": "s", "long_name": "time"}),
         "bearing": names,
     }
+    if run.states.displacement.shape[0] > 0:
+        coordinates |= _coordinates(system)
     attributes = {"steps": run.steps, "steps_halved": run.halved, "newton_iterations": run.iterations}
-    return xr.Dataset(variables, coords={**_coordinates(system), **coordinates}, attrs=attributes)
+    return xr.Dataset(variables, coords=coordinates, attrs=attributes)
 
 
 def _by_kind(system: System, values: FloatArray, dims: tuple[str, ...], order: str) -> dict[str, Any]:

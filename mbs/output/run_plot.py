@@ -12,6 +12,7 @@ from matplotlib.lines import Line2D
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.figures import COLOURS, typeset, write_heading
 from ehdmaps.units import RPM
+from mbs.bearings.bearing_element import ring_motion
 from mbs.output.page import grid, headed, shade, shade_handle, whole_numbers
 from mbs.scene.assembly import Model
 from mbs.spectral.spectra import AmplitudeSpectrum
@@ -151,7 +152,7 @@ def run_figure(
     model : Model
         What ran.
     run : Recording
-        The run, with its states.
+        The run.
     below : float
         Speed [rad/s] below which the film fades to the dry contact: these times are shaded.
     words : str
@@ -174,7 +175,7 @@ def run_figure(
     axes = upper.subplots(3, columns, sharex=True, sharey="row", squeeze=False)
     everything = [(model, run), *others]
     forces = [[np.hypot(f[:, 1], f[:, 2]) for f in one.forces[: len(model.bearings)]] for _, one in everything]
-    places = [[_place(of, one, index) for index in range(len(model.bearings))] for of, one in everything]
+    places = [[_place(one, index) for index in range(len(model.bearings))] for _, one in everything]
     force_unit, force_factor = _unit([force for part in forces for force in part], _FORCES)
     length_unit, length_factor = _unit([place for part in places for place in part], _LENGTHS)
     for law, (_, one) in enumerate(everything):
@@ -223,10 +224,9 @@ def signals_figure(data: TimeData, spectra: Sequence[Sequence[Sequence[Amplitude
     return figure
 
 
-def _place(model: Model, run: Recording, index: int) -> FloatArray:
-    """Radial displacement of an inner ring against the outer one [m]."""
-    bearing = model.bearings[index]
-    motion = run.states.displacement @ model.system.relative(bearing.inner, bearing.outer).T
+def _place(run: Recording, index: int) -> FloatArray:
+    """Radial displacement of the inner ring of a bearing against the outer one [m]."""
+    motion = ring_motion(run.motions[index])
     return np.asarray(np.hypot(motion[:, 1], motion[:, 2]))
 
 

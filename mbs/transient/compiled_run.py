@@ -27,6 +27,9 @@ from mbs.transient.stepping import ITERATIONS, Mark, Method, Stepper
 _NOTHING = 1e-15
 """Damping of a pair of modes, as a part of the largest, that is round-off."""
 
+_AT_ONCE = 1000
+"""Samples whose motions are turned into coordinates at once."""
+
 
 class CompiledRun:
     """Steps of a system in compiled code, with the state that they lead to.
@@ -169,9 +172,16 @@ class CompiledRun:
         return done, error
 
     def recorded(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Outputs (samples, k), forces in all ports (samples, ports), and motions (samples, 3, n) where recorded."""
+        """Outputs (samples, k), forces in all ports (samples, ports), and motions (samples, 3, n) where recorded.
+
+        To be asked once, at the end: motions of the modes become those of the coordinates where they are.
+        """
         records = self._records
-        return records.outputs, records.forces @ self._elements.expand, records.motions @ self._modes.T
+        # Sample by sample, whatever the size of the blocks: a second array of that size would take as much again.
+        for first in range(0, records.motions.shape[0], _AT_ONCE):
+            block = records.motions[first : first + _AT_ONCE]
+            block[:] = block @ self._modes.T
+        return records.outputs, records.forces @ self._elements.expand, records.motions
 
     @property
     def position(self) -> FloatArray:

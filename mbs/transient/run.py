@@ -134,7 +134,7 @@ class Options:
     Attributes
     ----------
     states : bool
-        Whether the motion of all coordinates is recorded, for runs that are short enough.
+        Whether the motion of all coordinates is recorded: 24 bytes a coordinate and sample.
     every_step : bool
         Whether sensors are recorded at every step instead of at the samples, so that nothing is folded into their band.
     compiled : bool
@@ -233,12 +233,12 @@ def run(
     ends = np.cumsum([0, *ports]).tolist()
     parts = [slice(begin, end) for begin, end in pairwise(ends)]
     count = len(sensors)
-    operations = [Operation(w, angle, at) for (w, angle), at in zip(courses.tolist(), times.tolist(), strict=True)]
     port_motions = tuple(outputs[:: plan.stride, count + part.start : count + part.stop] for part in parts)
 
     def account() -> EnergyBalance:
         """The balance; what changes of the speed brought takes a second or two, whatever the length of the run."""
         elements = [entry.element for entry in system.elements]
+        operations = [Operation(w, angle, at) for (w, angle), at in zip(courses.tolist(), times.tolist(), strict=True)]
         by_speed = [
             element.brought_by_speed(motion, operations) for element, motion in zip(elements, port_motions, strict=True)
         ]

@@ -175,6 +175,30 @@ class TestAsTheCommand:
         xr.testing.assert_identical(found.dataset, written("runup"))
         check_told(told, found.record.steps)
 
+    def test_runup_with_signals_only(self, model, written):
+        whole, lean = (runup(model, states=states) for states in (True, False))
+        # the same steps, so not a bit differs
+        for name in ("signals", "signal_time", "signal_speed", "time"):
+            np.testing.assert_array_equal(getattr(lean.record, name), getattr(whole.record, name))
+        for one, other in zip((*lean.record.forces, *lean.record.motions),
+                              (*whole.record.forces, *whole.record.motions), strict=True):  # fmt: skip
+            np.testing.assert_array_equal(one, other)
+        of_all = whole.dataset.variables
+        coordinates = {name for name in of_all if any("coordinate" in dim for dim in of_all[name].dims)}
+        assert {"displacement", "velocity", "acceleration"} <= coordinates
+        xr.testing.assert_identical(lean.dataset, whole.dataset.drop_vars(coordinates))
+        assert lean.record.states.displacement.size == 0
+        assert coordinates <= set(written("runup").variables)
+
+    def test_picture_shows_the_rings_as_the_coordinates_say(self, model):
+        # rounding of two sums over the modes
+        found = runup(model)
+        bearing, moved = model.bearings[0], found.record.states.displacement
+        relative = moved @ model.system.relative(bearing.inner, bearing.outer).T
+        expected = np.hypot(relative[:, 1], relative[:, 2])
+        shown = found.plot().axes[len(model.bearings)].lines[0].get_ydata()
+        np.testing.assert_allclose(shown / shown.max(), expected / expected.max(), atol=1e-9)
+
     @pytest.mark.slow
     def test_campbell_of_two_laws(self, model, written):
         other = assemble(model.scene, "constant:hertz")
