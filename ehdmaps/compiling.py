@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import time
 from collections.abc import Callable
 from typing import Any
@@ -74,3 +75,22 @@ class Compiling(event.Listener):
         """Listen no more."""
         with contextlib.suppress(ValueError):  # it has ended already
             _EVENTS.unregister("numba:compile", self)
+
+
+def stopwatch() -> Callable[[], float]:
+    """Start a watch that stands still while numba compiles; calling it gives the time so far [s]."""
+    compiling = _listening()
+    begin = time.perf_counter() - compiling.seconds
+
+    def elapsed() -> float:
+        return time.perf_counter() - compiling.seconds - begin
+
+    return elapsed
+
+
+@functools.cache
+def _listening() -> Compiling:
+    """One listener for all watches of a process."""
+    found = Compiling(lambda _: None, time.perf_counter)
+    found.listen()
+    return found

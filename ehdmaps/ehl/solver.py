@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 import sys
-import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,6 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.compiling import stopwatch
 from ehdmaps.ehl.column import heat_groups
 from ehdmaps.ehl.grid import GridShape
 from ehdmaps.ehl.group_solution import GroupSolution
@@ -385,9 +385,9 @@ class ReynoldsSolver(ContactSolverDefaults):
             reason = f"{supply.label}, {ratio:.3g} of the flooded flow: starved films are isothermal ones only"
             return SuppliedFilm(FilmSolution(Status.OUTSIDE_VALIDITY, reason), ratio)
         _, M, L = self._problem(contact, lubricant, point)
-        started = time.perf_counter()
+        watch = stopwatch()
         starved = starved_groups(M, L, self.resolution, layer, flooded)
-        seconds = film.solve_seconds + time.perf_counter() - started
+        seconds = film.solve_seconds + watch()
         groups = starved.solution
         if groups.outcome != CONVERGED:
             reason = f"{supply.label}, {ratio:.3g} of the flooded flow: no place found for the meniscus"
@@ -423,9 +423,9 @@ class ReynoldsSolver(ContactSolverDefaults):
         beyond = _beyond_reach(peak, M, L)
         if beyond:
             return FilmSolution(Status.OUTSIDE_VALIDITY, beyond), None
-        started = time.perf_counter()
+        watch = stopwatch()
         groups = solve_groups(problem, M, L, self.resolution, previous)
-        seconds = time.perf_counter() - started
+        seconds = watch()
         if groups.outcome != CONVERGED:
             word = "diverged" if groups.outcome == DIVERGED else "stagnated"
             status = Status.DIVERGED if groups.outcome == DIVERGED else Status.STAGNATED

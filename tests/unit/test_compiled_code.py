@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import ast
+import time
 from pathlib import Path
 
 import pytest
+from numba.core import event
+
+from ehdmaps.compiling import stopwatch
 
 ROOT = Path(__file__).parents[2]
 
@@ -62,3 +66,13 @@ def test_it_finds_them(line):
 @pytest.mark.parametrize("line", ["out[:] = 0.0", "out[:, j] = -math.inf", "out[:] = PROBE", "out[j] = row[j]"])
 def test_numbers_are_no_arrays(line):
     assert not list(slices_of_arrays(f"@njit\ndef f(out, row, j):\n    {line}\n"))
+
+
+def test_time_of_compiling_is_no_time_of_solving():
+    """Compiling is an event of numba; the times of its listener and of the watch are those of one clock."""
+    begin = time.perf_counter()
+    watch = stopwatch()
+    with event.trigger_event("numba:compile"):
+        time.sleep(0.05)
+        during = watch()
+    assert 0.0 <= during <= watch() <= time.perf_counter() - begin - 0.05

@@ -38,7 +38,14 @@ ALLOWED = {
     "ehdmaps.compiling": set(),
     "ehdmaps.workers": {"ehdmaps.compiling", "ehdmaps.errors", "ehdmaps.interrupts", "ehdmaps.program"},
     "ehdmaps.physics": {"ehdmaps.arrays", "ehdmaps.errors", "ehdmaps.labels"},
-    "ehdmaps.ehl": {"ehdmaps.arrays", "ehdmaps.compiled", "ehdmaps.copies", "ehdmaps.errors", "ehdmaps.physics"},
+    "ehdmaps.ehl": {
+        "ehdmaps.arrays",
+        "ehdmaps.compiled",
+        "ehdmaps.compiling",
+        "ehdmaps.copies",
+        "ehdmaps.errors",
+        "ehdmaps.physics",
+    },
     "ehdmaps.maps": {
         "ehdmaps.arrays",
         "ehdmaps.compiled",

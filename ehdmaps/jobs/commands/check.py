@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from ehdmaps.compiling import stopwatch
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.estimate_bands import band_lines
 from ehdmaps.jobs.job import Job
@@ -153,10 +153,10 @@ def estimated_time(job: Job, solver: ContactSolver, points: int) -> Estimate:
         return _time_of_slow(tasks[len(tasks) // 2], points)
     tasks[0].run()  # compiles, where the solver does
     sample = tasks[:: max(len(tasks) // _SAMPLES, 1)][:_SAMPLES]
-    begin = time.perf_counter()
+    watch = stopwatch()
     for task in sample:
         task.run()
-    per_point = (time.perf_counter() - begin) / sum(task.points for task in sample)
+    per_point = watch() / sum(task.points for task in sample)
     cores = available_cores()
     seconds = points * (per_point / cores + _SECONDS_PER_POINT)
     words = f"about {seconds:.2g} s on {cores} cores ({per_point * 1e3:.2g} ms a point, from {len(sample)} lines)"
@@ -165,9 +165,9 @@ def estimated_time(job: Job, solver: ContactSolver, points: int) -> Estimate:
 
 def _time_of_slow(task: LineTask, points: int) -> Estimate:
     """Estimate the time from one point in the middle of the map, which shows that the solver runs, too."""
-    begin = time.perf_counter()
+    watch = stopwatch()
     arrays = task.run()
-    seconds = time.perf_counter() - begin
+    seconds = watch()
     status = Status(int(arrays["status"][0]))
     trial = f"{seconds:.2g} s for one point in the middle of the map: {status.word}"
     if not status.usable:
