@@ -221,6 +221,38 @@ def element_gyroscopic(section: CrossSection, length: float) -> FloatArray:
     return matrix
 
 
+def over_both_planes(
+    plane_mass: FloatArray,
+    plane_rotary: tuple[FloatArray, FloatArray],
+    plane_stiffness: FloatArray,
+    bars: tuple[FloatArray, FloatArray],
+    springs: tuple[FloatArray, FloatArray],
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Matrices of an element from those of one plane and of its axis; mass, gyroscopic, stiffness, (12, 12) each.
+
+    Parameters
+    ----------
+    plane_mass : array, shape (4, 4)
+        Mass of y1 theta1 y2 theta2 in the plane x-y.
+    plane_rotary : (array, array), shapes (4, points) and (points, 4)
+        Rotations times the moment of inertia about x that each point has, and rotations.
+    plane_stiffness : array, shape (4, 4)
+        Stiffness of the same.
+    bars, springs : (array, array), shape (2, 2)
+        Inertia and stiffness along x and about x.
+    """
+    mass, gyroscopic, stiffness = (np.zeros((12, 12)) for _ in range(3))
+    for rows, bar, spring in zip((_X, _THETA_X), bars, springs, strict=True):
+        mass[np.ix_(rows, rows)], stiffness[np.ix_(rows, rows)] = bar, spring
+    for matrix, plane in ((mass, plane_mass), (stiffness, plane_stiffness)):
+        matrix[np.ix_(_XY, _XY)] = plane
+        matrix[np.ix_(_XZ, _XZ)] = plane * np.outer(_SIGN, _SIGN)
+    weighted, rotation = plane_rotary
+    half = -_SIGN[:, None] * (weighted @ rotation)
+    gyroscopic[np.ix_(_XZ, _XY)], gyroscopic[np.ix_(_XY, _XZ)] = half, -half.T
+    return mass, gyroscopic, stiffness
+
+
 def wave_length(section: CrossSection, frequency: float) -> float:
     """Length of the shortest bending wave that travels along a Timoshenko beam at a frequency [Hz], [m].
 

@@ -20,9 +20,10 @@ from scipy.linalg import cho_factor, cho_solve, eigh
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from mbs.flexible.beam import element_gyroscopic, element_mass, element_stiffness
+from mbs.flexible.beam import CrossSection, element_gyroscopic, element_mass, element_stiffness
 from mbs.flexible.reduced_body import modal_damping
 from mbs.flexible.shaft_parts import GROUPS, Disc, Section, divide, shaft_problems
+from mbs.flexible.taper import Along, ElementMatrices, tapered_element
 from mbs.model.body import FREEDOMS, Body, Frame, Inertia, lever_arm
 
 _ROUND_OFF = 1e-6
@@ -101,9 +102,9 @@ def shaft_model(
     with np.errstate(all="ignore"):
         for index, (element, (begin, end)) in enumerate(zip(elements, pairwise(nodes), strict=True)):
             here = slice(size * index, size * (index + 2))
-            mass[here, here] += element_mass(element, end - begin)[np.ix_(pair, pair)]
-            gyroscopic[here, here] += element_gyroscopic(element, end - begin)[np.ix_(pair, pair)]
-            stiffness[here, here] += element_stiffness(element, end - begin)[np.ix_(pair, pair)]
+            matrices = element_matrices(element, end - begin)
+            for whole, part in zip((mass, gyroscopic, stiffness), matrices, strict=True):
+                whole[here, here] += part[np.ix_(pair, pair)]
         model = ShaftModel(np.array(nodes), tuple(freedoms), mass, gyroscopic, stiffness)
         for disc in discs:
             node = model.node(disc.position)
@@ -114,6 +115,23 @@ def shaft_model(
     if not all(np.all(np.isfinite(matrix)) for matrix in (mass, gyroscopic, stiffness)):
         raise InputError("sections: stiffness or mass is not finite; allowed: dimensions and moduli of a machine")
     return model
+
+
+def element_matrices(element: CrossSection | Along, length: float) -> ElementMatrices:
+    """Matrices of an element of a shaft.
+
+    Parameters
+    ----------
+    element : CrossSection or callable
+        Section; by the part of the length where it changes.
+    length : float
+        [m].
+    """
+    if not isinstance(element, CrossSection):
+        return tapered_element(element, length)
+    return ElementMatrices(
+        element_mass(element, length), element_gyroscopic(element, length), element_stiffness(element, length)
+    )
 
 
 def reduced(
@@ -202,7 +220,8 @@ def flexible_shaft(
     """A shaft of Timoshenko beams with rigid discs.
 
     Where sections overlap along x, stiffness and mass add up: one is taken as pressed into the bore of the other all
-    along, with plane sections in common. A part that adds mass only is a disc.
+    along, with plane sections in common. A layer that adds mass only has a Young's modulus of 0; a part that is fixed
+    at one place is a disc, and without moments of inertia a point mass on the axis.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Parts of a shaft: cylinders that bend, rigid discs, how they fit together, and where its nodes are."""
+"""Parts of a shaft: cylinders and cones that bend, rigid discs, how they fit together, and where its nodes are."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import numpy as np
 from ehdmaps.errors import InputError
 from ehdmaps.physics.solids import STEEL
 from mbs.flexible.beam import CrossSection, element_length, wave_length
+from mbs.flexible.taper import Along
 from mbs.model.body import FREEDOMS, Inertia
 
 FARTHEST = 1e4
@@ -29,20 +30,22 @@ GROUPS = (("x",), ("theta_x",), ("y", "theta_z"), ("z", "theta_y"))
 
 @dataclass(frozen=True)
 class Section:
-    """A hollow cylinder of a shaft. Sections may lie one upon the other, as a ring that is pressed on.
+    """A hollow cylinder or cone of a shaft. Sections may lie one upon the other, as a ring that is pressed on.
 
     Attributes
     ----------
     begin, end : float
         Distances along x from the position of the shaft [m].
     diameter, bore : float
-        0 <= bore < diameter [m].
+        Diameters at `begin`, 0 <= bore < diameter [m].
     youngs_modulus : float
-        [Pa].
+        [Pa]; 0 of a layer that has mass and does not stiffen what it lies upon.
     poisson_ratio : float
         -1 < nu < 0.5.
     density : float
         [kg/m3].
+    end_diameter, end_bore : float or None
+        Diameters at `end` of a cone, 0 <= bore < diameter [m]; None: the same as at `begin`.
 
     Raises
     ------
@@ -57,6 +60,8 @@ class Section:
     youngs_modulus: float = STEEL.youngs_modulus
     poisson_ratio: float = STEEL.poisson_ratio
     density: float = STEEL.density
+    end_diameter: float | None = None
+    end_bore: float | None = None
 
     def __post_init__(self) -> None:
         problems = [
@@ -65,7 +70,8 @@ class Section:
                 ("begin", self.begin, "m", -FARTHEST, FARTHEST),
                 ("end", self.end, "m", -FARTHEST, FARTHEST),
                 ("diameter", self.diameter, "m", 1e-6, FARTHEST),
-                ("youngs_modulus", self.youngs_modulus, "Pa", 1.0, 1e15),
+                ("end_diameter", self.last_diameter, "m", 1e-6, FARTHEST),
+                ("youngs_modulus", self.youngs_modulus, "Pa", 0.0, 1e15),
                 ("density", self.density, "kg/m3", 1e-6, 1e6),
             )
             if not low <= value <= high
@@ -75,19 +81,55 @@ class Section:
                 f"section, end: got {self.end!r} m, begin {self.begin!r} m; allowed: end > begin, by more than "
                 f"{TOGETHER:g} m"
             )
-        if not 0.0 <= self.bore < self.diameter:
-            problems.append(
-                f"section, bore: got {self.bore!r} m, diameter {self.diameter!r} m; allowed: 0 <= bore < diameter"
+        problems += [
+            f"section, {end}bore: got {bore!r} m, {end}diameter {diameter!r} m; allowed: 0 <= bore < diameter"
+            for end, bore, diameter in (
+                ("", self.bore, self.diameter),
+                ("end_", self.last_bore, self.last_diameter),
             )
+            if not 0.0 <= bore < diameter and (end == "" or self.tapered)
+        ]
         if not -1.0 < self.poisson_ratio < 0.5:
             problems.append(f"section, poisson_ratio: got {self.poisson_ratio!r}; allowed: -1 < nu < 0.5")
         if problems:
             raise InputError(problems)
 
     @property
-    def cross_section(self) -> CrossSection:
-        """Properties that it has per length."""
-        return CrossSection.annulus(self.diameter, self.bore, self.youngs_modulus, self.poisson_ratio, self.density)
+    def last_diameter(self) -> float:
+        """Outer diameter at `end` [m]."""
+        return self.diameter if self.end_diameter is None else self.end_diameter
+
+    @property
+    def last_bore(self) -> float:
+        """Bore at `end` [m]."""
+        return self.bore if self.end_bore is None else self.end_bore
+
+    @property
+    def tapered(self) -> bool:
+        """Tell whether diameter or bore change along it."""
+        return (self.diameter, self.bore) != (self.last_diameter, self.last_bore)
+
+    @property
+    def mass(self) -> float:
+        """[kg]."""
+        outer, inner = (
+            one**2 + one * other + other**2
+            for one, other in ((self.diameter, self.last_diameter), (self.bore, self.last_bore))
+        )
+        return self.density * math.pi / 12.0 * (outer - inner) * (self.end - self.begin)
+
+    def diameters(self, place: float) -> tuple[float, float]:
+        """Outer diameter and bore at a place along x [m]."""
+        part = (place - self.begin) / (self.end - self.begin)
+        return (
+            self.diameter + part * (self.last_diameter - self.diameter),
+            self.bore + part * (self.last_bore - self.bore),
+        )
+
+    def at(self, place: float) -> CrossSection:
+        """Properties that it has per length at a place along x [m]."""
+        diameter, bore = self.diameters(place) if self.tapered else (self.diameter, self.bore)
+        return CrossSection.annulus(diameter, bore, self.youngs_modulus, self.poisson_ratio, self.density)
 
 
 @dataclass(frozen=True)
@@ -128,7 +170,7 @@ def misfits(
         if not fewest <= count <= MOST_PARTS:
             problems.append(f"{kind}: got {count}; allowed: {fewest} to {MOST_PARTS}")
             return problems
-    problems += _gaps(sections)
+    problems += _gaps(sections) or _limp(sections)
     problems += _clashes(sections)
     begin, end = min(section.begin for section in sections), max(section.end for section in sections)
     places = [(f"discs[{index}]", disc.position) for index, disc in enumerate(discs)]
@@ -154,31 +196,66 @@ def _freedoms(freedoms: Sequence[str]) -> Iterator[str]:
             yield f"freedoms: got {there[0]} alone; allowed: {' and '.join(group)} together, as bending needs both"
 
 
-def _gaps(sections: Sequence[Section]) -> Iterator[str]:
-    """Yield each gap between sections along x."""
+def _gaps(sections: Sequence[Section]) -> list[str]:
+    """Each gap between sections along x."""
+    problems = []
     ordered = sorted(sections, key=lambda section: section.begin)
     reached = ordered[0].end
     for section in ordered[1:]:
         if section.begin > reached + TOGETHER:
-            yield (
+            problems.append(
                 f"sections: nothing from {reached * 1e3:.6g} to {section.begin * 1e3:.6g} mm; allowed: no gap; close "
                 "it with a section, or make two shafts"
             )
         reached = max(reached, section.end)
+    return problems
+
+
+def _limp(sections: Sequence[Section]) -> list[str]:
+    """The places along x where no section is stiff."""
+    stiff = [section for section in sections if section.youngs_modulus > 0.0]
+    if not stiff:
+        return ["sections: got no youngs_modulus above 0; allowed: one that bends at each place"]
+    begin, end = min(section.begin for section in sections), max(section.end for section in sections)
+    problems, reached = [], begin
+    for section in [*sorted(stiff, key=lambda section: section.begin), None]:
+        onward = end if section is None else section.begin
+        if onward > reached + TOGETHER:
+            problems.append(
+                f"sections: nothing that bends from {reached * 1e3:.6g} to {onward * 1e3:.6g} mm; allowed: layers "
+                "without stiffness upon one with a youngs_modulus above 0"
+            )
+        reached = reached if section is None else max(reached, section.end)
+    return problems
 
 
 def _clashes(sections: Sequence[Section]) -> Iterator[str]:
     """Yield each pair of sections that takes up the same space."""
     for (i, one), (j, other) in combinations(enumerate(sections), 2):
         begin, end = max(one.begin, other.begin), min(one.end, other.end)
-        inner, outer = max(one.bore, other.bore), min(one.diameter, other.diameter)
-        if end - begin > TOGETHER and outer - inner > TOGETHER:
+        if end - begin <= TOGETHER:
+            continue
+        tapered = one.tapered or other.tapered
+        inner, outer = max(
+            (_common(one, other, place) for place in np.linspace(begin, end, _LOOKS if tapered else 2).tolist()),
+            key=lambda both: both[1] - both[0],
+        )
+        if outer - inner > TOGETHER:
             yield (
                 f"sections[{i}] and sections[{j}]: both fill x = {begin * 1e3:.6g} to {end * 1e3:.6g} mm between "
                 f"d = {inner * 1e3:.6g} and {outer * 1e3:.6g} mm; allowed: one in the bore of the other; give the ring "
                 "a bore"
             )
 
+
+def _common(one: Section, other: Section, place: float) -> tuple[float, float]:
+    """Inner and outer diameter of what two sections both fill at a place [m]; the inner one is larger if nothing."""
+    (diameter, bore), (outer, inner) = one.diameters(place), other.diameters(place)
+    return max(bore, inner), min(diameter, outer)
+
+
+_LOOKS = 33
+"""Places along two sections, one of them a cone, at which they are compared."""
 
 CUTOFFS = (1e-3, 1e7)
 """Lowest and highest cut-off [Hz]."""
@@ -243,7 +320,7 @@ def shaft_problems(
 
 def divide(
     sections: Sequence[Section], places: Sequence[float], largest_element: float | None, cutoff: float | None
-) -> tuple[list[float], list[CrossSection]]:
+) -> tuple[list[float], list[CrossSection | Along]]:
     """Divide a shaft into elements: nodes where anything begins, ends or sits, and as many between as are needed.
 
     Parameters
@@ -261,8 +338,8 @@ def divide(
     -------
     nodes : list of float
         Places along x, rising [m].
-    sections : list of CrossSection
-        What is between each node and the next.
+    sections : list of CrossSection or callable
+        What is between each node and the next; where a cone is, its section by the part of the length.
 
     Raises
     ------
@@ -274,18 +351,18 @@ def divide(
     for mark in marks:
         if mark - steps[-1] > TOGETHER:
             steps.append(mark)
-    spans = [_span(sections, 0.5 * (begin + end)) for begin, end in pairwise(steps)]
-    if cutoff is not None and all(wave_length(span, cutoff) < diameter for span, diameter in spans):
+    spans = [_Span.of(sections, begin, end) for begin, end in pairwise(steps)]
+    if cutoff is not None and all(wave_length(span.at(0.5), cutoff) < span.diameter for span in spans):
         raise InputError(
             f"cutoff: got {cutoff:.6g} Hz, where bending waves are shorter than the diameter all along the shaft; "
             "allowed: where sections stay plane, at waves of a few diameters; lower it"
         )
     nodes = [steps[0]]
-    elements: list[CrossSection] = []
-    for (span, diameter), (begin, end) in zip(spans, pairwise(steps), strict=True):
-        longest = largest_element or (0.5 * diameter if cutoff is None else element_length(span, cutoff, WAVE_ERROR))
+    elements: list[CrossSection | Along] = []
+    for span in spans:
+        longest = largest_element or (0.5 * span.diameter if cutoff is None else span.longest(cutoff))
         # A span that is a multiple of the largest element but for round-off is not cut once more.
-        wanted = (end - begin) / longest - 1e-9
+        wanted = (span.end - span.begin) / longest - 1e-9
         if not len(elements) + wanted <= MOST_ELEMENTS:
             raise InputError(
                 f"largest_element: got {longest * 1e3:.4g} mm{'' if largest_element else ' by default'}, which makes "
@@ -293,18 +370,51 @@ def divide(
                 f"{'' if cutoff is None else ', or lower the cut-off'}"
             )
         count = max(1, math.ceil(wanted))
-        nodes += np.linspace(begin, end, count + 1)[1:].tolist()
-        elements += [span] * count
+        nodes += np.linspace(span.begin, span.end, count + 1)[1:].tolist()
+        elements += [span.piece(index, count) for index in range(count)]
     return nodes, elements
 
 
-def _span(sections: Sequence[Section], place: float) -> tuple[CrossSection, float]:
-    """Cross-section and outer diameter [m] at a place along x [m]."""
-    there = [section for section in sections if section.begin < place < section.end] or [
-        # Between two sections that are so close that they count as touching.
-        min(sections, key=lambda section: max(section.begin - place, place - section.end))
-    ]
-    total = there[0].cross_section
-    for section in there[1:]:
-        total += section.cross_section
-    return total, max(section.diameter for section in there)
+@dataclass(frozen=True)
+class _Span:
+    """Sections between two places along x at which anything begins or ends [m]."""
+
+    sections: Sequence[Section]
+    begin: float
+    end: float
+
+    @classmethod
+    def of(cls, sections: Sequence[Section], begin: float, end: float) -> _Span:
+        """The sections that are there."""
+        place = 0.5 * (begin + end)
+        there = [section for section in sections if section.begin < place < section.end] or [
+            # Between two sections that are so close that they count as touching.
+            min(sections, key=lambda section: max(section.begin - place, place - section.end))
+        ]
+        return cls(there, begin, end)
+
+    @property
+    def diameter(self) -> float:
+        """Outer diameter in the middle [m]."""
+        return max(section.diameters(0.5 * (self.begin + self.end))[0] for section in self.sections)
+
+    def at(self, part: float) -> CrossSection:
+        """Cross-section at a part of the length, 0 to 1."""
+        place = self.begin + part * (self.end - self.begin)
+        # A place may lie beyond a section by as much as counts as touching.
+        found = [one.at(min(max(place, one.begin), one.end)) for one in self.sections]
+        total = found[0]
+        for one in found[1:]:
+            total += one
+        return total
+
+    def longest(self, cutoff: float) -> float:
+        """Longest element up to a cut-off [Hz], [m]."""
+        tapered = any(section.tapered for section in self.sections)
+        return min(element_length(self.at(part), cutoff, WAVE_ERROR) for part in ((0.0, 1.0) if tapered else (0.5,)))
+
+    def piece(self, index: int, count: int) -> CrossSection | Along:
+        """One of so many elements."""
+        if not any(section.tapered for section in self.sections):
+            return self.at(0.5)
+        return lambda part: self.at((index + part) / count)

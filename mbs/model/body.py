@@ -98,7 +98,7 @@ class Inertia:
     mass : float
         [kg], > 0.
     polar, transverse : float
-        Moments of inertia about x and about y or z, through the part's centre of mass [kg m2].
+        Moments of inertia about x and about y or z, through the part's centre of mass [kg m2]; 0 of a point mass.
     offset : float
         Place of the centre of mass along x, from the position of the body [m].
 
@@ -115,10 +115,12 @@ class Inertia:
 
     def __post_init__(self) -> None:
         problems = []
-        for name, unit, low in (("mass", "kg", 0.0), ("polar", "kg m2", 0.0), ("transverse", "kg m2", 0.0)):
+        if not (math.isfinite(self.mass) and self.mass > 0.0):
+            problems.append(f"inertia, mass: got {self.mass!r} kg; allowed: finite and > 0")
+        for name in ("polar", "transverse"):
             value = getattr(self, name)
-            if not (math.isfinite(value) and value > low):
-                problems.append(f"inertia, {name}: got {value!r} {unit}; allowed: finite and > 0")
+            if not (math.isfinite(value) and value >= 0.0):
+                problems.append(f"inertia, {name}: got {value!r} kg m2; allowed: finite and >= 0")
         if not problems and self.polar > 2.0 * self.transverse * (1.0 + 1e-9):
             problems.append(
                 f"inertia, polar: got {self.polar!r} kg m2; allowed: at most twice the transverse {self.transverse!r}; "
@@ -265,6 +267,12 @@ def rigid_problems(
         problems.append(f"body {name!r}, freedoms: got none; allowed: some of {', '.join(FREEDOMS)}; or use ground")
     if not parts:
         problems.append(f"body {name!r}, parts: got none; allowed: at least one part with a mass")
+    problems += [
+        f"body {name!r}, freedoms: got {freedom}, about which its parts have no moment of inertia; allowed: parts with "
+        "one; leave the freedom out, or state the moments"
+        for freedom in FREEDOMS[3:]
+        if parts and freedom in freedoms and not _turning_inertia(parts, freedom) > 0.0
+    ]
     if CENTRE in frames:
         problems.append(f"body {name!r}, frames: {CENTRE!r} is there already, at the position; choose another name")
     problems += [
@@ -275,6 +283,15 @@ def rigid_problems(
     if not math.isfinite(spin):
         problems.append(f"body {name!r}, spin: got {spin!r}; allowed: finite")
     return problems
+
+
+def _turning_inertia(parts: Sequence[Inertia], freedom: str) -> float:
+    """Moment of inertia of parts about an axis through the centre of mass of all [kg m2]."""
+    if freedom == "theta_x":
+        return sum(part.polar for part in parts)
+    mass = sum(part.mass for part in parts)
+    centre = sum(part.mass / mass * part.offset for part in parts)
+    return sum(part.transverse + part.mass * (part.offset - centre) ** 2 for part in parts)
 
 
 def lever_arm(offset: Sequence[float]) -> FloatArray:

@@ -357,14 +357,17 @@ class _Reader:
             found.append(fields.cylinder(table))
         mass = section.quantity("mass", "kg", 1e-6, 1e6, Display("kg"))
         unit = Display("kg m^2")
-        polar = section.quantity("polar_inertia", "kg m^2", 1e-12, 1e6, unit)
-        transverse = section.quantity("transverse_inertia", "kg m^2", 1e-12, 1e6, unit)
+        polar = section.quantity("polar_inertia", "kg m^2", 0.0, 1e6, unit)
+        transverse = section.quantity("transverse_inertia", "kg m^2", 0.0, 1e6, unit)
         keys = ("mass", "polar_inertia", "transverse_inertia")
-        if any(key in section for key in keys):
-            if not all(key in section for key in keys):
-                section.note("mass", f"stands without its companions; allowed: {', '.join(keys)} together")
-            elif mass is not None and polar is not None and transverse is not None:
-                found.append(fields.built(section, lambda: Inertia(mass, polar, transverse)))
+        moments = [key for key in keys[1:] if key in section]
+        if "mass" in section or moments:
+            if moments and not all(key in section for key in keys):
+                section.note(
+                    "mass", f"stands without its companions; allowed: {', '.join(keys)} together, or mass alone"
+                )
+            elif mass is not None and not (moments and (polar is None or transverse is None)):
+                found.append(fields.built(section, lambda: Inertia(mass, polar or 0.0, transverse or 0.0)))
         elif "cylinders" not in section:
             section.note("cylinders", f"missing; allowed: cylinders, or {', '.join(keys)}, or both")
         return [part for part in found if part is not None]

@@ -21,7 +21,7 @@ from mbs.flexible.beam import (
 )
 from mbs.flexible.reduced_body import modal_damping
 from mbs.flexible.shaft import flexible_shaft
-from mbs.flexible.shaft_parts import Disc, Section
+from mbs.flexible.shaft_parts import Disc, Section, shaft_problems
 from mbs.linearised.modes import modes
 from mbs.model.body import FREEDOMS, Inertia, lever_arm, rigid_body
 from mbs.model.elements import Operation, Spring
@@ -265,6 +265,19 @@ def test_held_freedoms_do_not_move():
             {"sections": (BAR, Section(0.1, 0.2, 0.06, 0.03))},
             r"sections\[0\] and sections\[1\]: both fill x = 100 to 200",
         ),
+        (
+            {"sections": (BAR, Section(0.1, 0.2, 0.06, 0.04, 2e11, 0.3, 7850.0, 0.06, 0.03))},
+            r"sections\[0\] and sections\[1\]: both fill x = 100 to 200 mm between d = 30 and 40 mm",
+        ),
+        ({"sections": (Section(0.0, 0.3, 0.04, 0.0, 0.0),)}, "sections: got no youngs_modulus above 0"),
+        (
+            {"sections": (BAR, Section(0.3, 0.4, 0.04, 0.0, 0.0))},
+            "sections: nothing that bends from 300 to 400 mm; allowed: layers without stiffness upon one with",
+        ),
+        (
+            {"sections": (Section(0.0, 0.1, 0.04), Section(0.0, 0.3, 0.06, 0.04, 0.0), Section(0.2, 0.3, 0.04))},
+            "sections: nothing that bends from 100 to 200 mm",
+        ),
         ({"discs": [Disc(-0.1, DISC.inertia)]}, r"discs\[0\]: got x = -100 mm"),
         ({"position": (0.0, 0.0)}, "position: got .*three finite numbers"),
         ({"position": (0.0, 0.0, math.inf)}, "position: got .*three finite numbers"),
@@ -309,14 +322,25 @@ def test_all_problems_of_a_shaft_come_at_once():
         ((0.0, 0.1, 0.04, 0.04), "bore: got 0.04 m, diameter 0.04 m; allowed: 0 <= bore < diameter"),
         ((0.0, 0.1, 0.04, -0.01), "bore: got -0.01 m"),
         ((0.0, 0.1, math.inf), "diameter: got inf m"),
-        ((0.0, 0.1, 0.04, 0.0, 0.0), "youngs_modulus: got 0.0 Pa"),
+        ((0.0, 0.1, 0.04, 0.0, -1.0), "youngs_modulus: got -1.0 Pa"),
         ((0.0, 0.1, 0.04, 0.0, 2e11, 0.5), "poisson_ratio: got 0.5; allowed: -1 < nu < 0.5"),
         ((0.0, 0.1, 0.04, 0.0, 2e11, 0.3, -1.0), "density: got -1.0 kg/m3"),
+        ((0.0, 0.1, 0.04, 0.0, 2e11, 0.3, 7850.0, math.nan), "end_diameter: got nan m"),
+        ((0.0, 0.1, 0.04, 0.02, 2e11, 0.3, 7850.0, 0.01), "end_bore: got 0.02 m, end_diameter 0.01 m"),
     ],
 )
 def test_a_section_that_is_none_is_refused(values, text):
     with pytest.raises(InputError, match=text):
         Section(*values)
+
+
+def test_cones_that_touch_may_lie_in_each_other():
+    cone = Section(0.0, 0.3, 0.04, 0.0, 2e11, 0.3, 7850.0, 0.08)
+    ring = Section(0.0, 0.3, 0.1, 0.04, 2e11, 0.3, 7850.0, 0.1, 0.08)
+    assert not shaft_problems([cone, ring], [], BENDING, (0.0, 0.0, 0.0), FRAMES, 0.0, None, None, 0.0)
+    # One is within the other at either end, and both fill the same space between.
+    other = Section(0.0, 0.3, 0.08, 0.05, 2e11, 0.3, 7850.0, 0.04, 0.02)
+    assert "both fill" in shaft_problems([cone, other], [], BENDING, (0.0, 0.0, 0.0), FRAMES, 0.0, None, None, 0.0)[0]
 
 
 def test_stiffness_that_is_not_finite_is_refused():
@@ -454,10 +478,10 @@ def test_what_may_not_be_left_out_is_missed(key):
         ),
         (
             {"sections": [{**TABLE["sections"][0], "poisson_ratio": 0.6}]},
-            ["poisson_ratio: got 0.6; allowed: 0 to 0.499"],
+            ["poisson_ratio: got 0.6; allowed: -0.999 to 0.499"],
         ),
         ({"discs": "none"}, ["discs: got 'none'; allowed: a list of tables with at, diameter, width, or at, mass"]),
-        ({"discs": [{"at": "1 mm", "mass": "1 kg"}]}, ["polar_inertia: missing", "transverse_inertia: missing"]),
+        ({"discs": [{"at": "1 mm", "mass": "1 kg", "polar_inertia": "1 kg m^2"}]}, ["transverse_inertia: missing"]),
         (
             {
                 "discs": [

@@ -217,6 +217,41 @@ def test_sections_of_a_file_are_those_of_the_scene(tmp_path):
     assert csv_sections(tmp_path / "shaft.csv") == list(inline.sections[:4])
 
 
+def test_cones_layers_and_point_masses_of_a_file_are_those_of_the_scene(tmp_path):
+    rows = [
+        "length [mm], outer diameter [mm], inner diameter [mm], end outer diameter [mm], end inner diameter [mm], "
+        "youngs modulus [GPa], poisson ratio",
+        "100, 40, 10, 60, 20, ,",
+        "50, 60, , , , 190, -0.1",
+    ]
+    (tmp_path / "rotor.csv").write_text("\n".join(rows), encoding="utf-8")
+    cone, bar = csv_sections(tmp_path / "rotor.csv")
+    assert (cone.diameter, cone.bore, cone.last_diameter, cone.last_bore) == (0.04, 0.01, 0.06, 0.02)
+    assert (bar.diameter, bar.last_diameter, bar.tapered, bar.poisson_ratio) == (0.06, 0.06, False, -0.1)
+    text = (
+        HEAD
+        + """
+[[shafts]]
+name = "rotor"
+sections = [
+    { length = "0.1 m", diameter = "40 mm", end_diameter = "60 mm", bore = "10 mm", end_bore = "20 mm" },
+    { from = "0 mm", to = "50 mm", diameter = "80 mm", bore = "60 mm", youngs_modulus = "0 Pa" },
+]
+discs = [{ name = "end", at = "100 mm", mass = "2 kg" }]
+[[bodies]]
+name = "foot"
+freedoms = ["y", "z"]
+mass = "3 kg"
+"""
+    )
+    shaft = next(body for body in parse_scene(text, "a", "a").bodies if body.name == "rotor")
+    assert shaft.sections[0] == cone
+    assert shaft.sections[1].youngs_modulus == 0.0
+    assert (shaft.discs[0].inertia.polar, shaft.discs[0].inertia.transverse) == (0.0, 0.0)
+    foot = next(body for body in parse_scene(text, "a", "a").bodies if body.name == "foot")
+    assert foot.parts[0].mass == 3.0
+
+
 @pytest.mark.parametrize(
     ("content", "texts"),
     [

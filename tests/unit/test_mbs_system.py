@@ -41,6 +41,10 @@ class TestBody:
         body = rigid_body("a", [Inertia(2.0, 0.01, 0.02, offset=0.1)], ["y", "theta_z"])
         np.testing.assert_allclose(body.mass, [[2.0, 0.2], [0.2, 0.02 + 2.0 * 0.01]])
 
+    def test_two_point_masses_apart_have_a_moment_of_inertia(self):
+        body = rigid_body("a", [Inertia(2.0, 0.0, 0.0, 0.1), Inertia(2.0, 0.0, 0.0, -0.1)], ["y", "theta_z"])
+        np.testing.assert_allclose(body.mass, [[4.0, 0.0], [0.0, 0.04]], atol=ROUND_OFF)
+
     def test_lever_arm_is_the_cross_product(self):
         rotation, offset = np.array([0.1, -0.2, 0.3]), np.array([0.5, 0.7, -0.4])
         moved = lever_arm(offset) @ np.array([0, 0, 0, *rotation])
@@ -50,6 +54,12 @@ class TestBody:
         ("make", "message"),
         [
             (lambda: Inertia(0.0, 1.0, 1.0), "mass: got 0.0 kg; allowed: finite and > 0"),
+            (lambda: Inertia(1.0, -1.0, 1.0), "polar: got -1.0 kg m2; allowed: finite and >= 0"),
+            (lambda: rigid_body("a", [Inertia(1.0, 0.0, 0.0)], ["y", "theta_z"]), "got theta_z, about which its parts"),
+            (
+                lambda: rigid_body("a", [Inertia(1.0, 0.0, 1.0)], ["theta_x"]),
+                "got theta_x, about which its parts have no",
+            ),
             (lambda: Inertia(1.0, 3.0, 1.0), "at most twice the transverse"),
             (lambda: Inertia(1.0, 1.0, 1.0, math.nan), "offset: got nan m; allowed: finite"),
             (lambda: Inertia.cylinder(0.0, 1.0, 0.05, 0.06), "0 <= bore < diameter"),

@@ -24,12 +24,14 @@ from mbs.flexible.beam import (
     element_length,
     element_mass,
     element_stiffness,
+    shear_coefficient,
     wave_length,
 )
 from mbs.flexible.shaft import flexible_shaft
 from mbs.flexible.shaft_parts import WAVE_ERROR, Disc, Section
+from mbs.flexible.taper import tapered_element
 from mbs.linearised.modes import modes
-from mbs.model.body import Inertia, lever_arm
+from mbs.model.body import FREEDOMS, Inertia, lever_arm
 from mbs.model.elements import ElementDefaults, Forces, Operation, Port, Spring
 from mbs.model.equilibrium import equilibrium
 from mbs.model.system import System
@@ -329,9 +331,9 @@ def stepped_pieces():
     pieces = []
     for begin, end in pairwise(marks):
         here = [section for section in STEPS if section.begin < 0.5 * (begin + end) < section.end]
-        total = here[0].cross_section
+        total = here[0].at(begin)
         for section in here[1:]:
-            total += section.cross_section
+            total += section.at(begin)
         pieces.append(lambda omega, speed, s=total, d=end - begin: transfer(s, d, omega, speed))
         if end in points:
             pieces.append(lambda omega, speed, values=points[end]: point(*values, omega, speed))
@@ -590,3 +592,120 @@ def test_rotor_of_nelson_and_mcvaugh():
     ]
     # The elements of the paper, of up to 38 mm, at the sixth critical speed of 1600 Hz.
     np.testing.assert_allclose(found, exact, rtol=2e-4)
+
+
+# ---- cones, and layers without stiffness
+
+CONE = Section(0.0, 0.4, 0.03, 0.01, E, NU, RHO, 0.06, 0.02)
+
+
+def cone_pieces(section, count):
+    """A cone as so many short cylinders of its diameters in their middle."""
+    marks = np.linspace(section.begin, section.end, count + 1).tolist()
+    return [
+        Section(begin, end, *section.diameters(0.5 * (begin + end)), E, NU, section.density)
+        for begin, end in pairwise(marks)
+    ]
+
+
+def test_an_element_of_one_section_is_the_same_by_either_way():
+    section, length = CrossSection.annulus(0.05, 0.02, E, NU, RHO), 0.07
+    matrices = tapered_element(lambda part: section, length)
+    plain = (element_mass(section, length), element_gyroscopic(section, length), element_stiffness(section, length))
+    for found, wanted in zip(matrices, plain, strict=True):
+        # Round-off of products and quotients of nearly equal size.
+        np.testing.assert_allclose(found, wanted, rtol=1e-11, atol=1e-12 * np.max(np.abs(wanted)))
+
+
+@pytest.mark.parametrize("first", [0.02, 1e-4])
+def test_a_cone_bends_under_loads_at_its_end_as_the_closed_form_says(first):
+    # A solid cone, by its flexibility: the integrals of x^2/d^4, of 1/d^2 and of 1/d^4 in closed form.
+    last, length, force = 0.05, 0.3, 100.0
+    body = shaft([Section(0.0, length, first, 0.0, E, NU, RHO, last)], largest_element=1.0)
+    rows = free_rows(body, [f"right.{freedom}" for freedom in BENDING])
+    load = np.zeros(len(rows))
+    load[0] = force
+    moved = np.linalg.solve(body.stiffness[np.ix_(rows, rows)], load)
+    slope = (last - first) / length
+
+    def root(power):
+        """Integral of the diameter to the power of -power along the cone."""
+        return (first ** (1 - power) - last ** (1 - power)) / ((power - 1) * slope)
+
+    moment = (root(2) - 2.0 * first * root(3) + first**2 * root(4)) / slope**2
+    bending = 64.0 / (math.pi * E) * moment
+    shear = 4.0 / (math.pi * shear_coefficient(0.0, NU) * E / (2.0 * (1.0 + NU))) * root(2)
+    # One element: quadrature over ratios of diameters of 2.5 and 500.
+    assert moved[0] == pytest.approx(force * (bending + shear), rel=1e-8)
+    turned = -64.0 / (math.pi * E) * (root(3) - first * root(4)) / slope
+    assert moved[body.coordinates.index("left.theta_z")] == pytest.approx(force * turned, rel=1e-8)
+
+
+def test_a_long_sharp_cone_has_the_frequency_that_kirchhoff_found():
+    # Held at its base: omega = 8.719 sqrt(E I/(rho A))/L^2 with the values of the base (Timoshenko, Vibration Problems
+    # in Engineering, 3rd ed., 1955, chapter V.66). The tip is cut at 1e-5, which lowers the
+    # frequency by twice that; shear and rotary inertia are small, and the number has four digits.
+    diameter, length = 0.1, 10.0
+    body = shaft([Section(0.0, length, 1e-6, 0.0, E, NU, RHO, diameter)], freedoms=PLANE, largest_element=0.2)
+    found = frequencies(body, ["right.y", "right.theta_z"])[0]
+    assert found == pytest.approx(8.719 * math.sqrt(E / RHO) * 0.25 * diameter / length**2, rel=2e-4)
+
+
+PINNED = tuple(f"{end}.{freedom}" for end in ("left", "right") for freedom in ("y", "z"))
+
+
+@pytest.mark.parametrize("speed", [200.0, 3000.0])
+def test_a_cone_is_the_limit_of_many_short_cylinders(speed):
+    disc = Disc(0.3, Inertia(1.0, 1e-3, 6e-4))
+    found = whirls(shaft([CONE], [disc], largest_element=0.0025), speed, PINNED)
+    found = np.sort(found[np.argsort(np.abs(found))][:6])
+    errors = []
+    for count in (20, 40):
+        values = whirls(shaft(cone_pieces(CONE, count), [disc], largest_element=0.0025), speed, PINNED)
+        errors.append(np.abs(np.sort(values[np.argsort(np.abs(values))][:6]) / found - 1.0))
+    coarse, fine = errors
+    # Steps have an error of second order in their length; both have the elements of the cone.
+    assert np.all(fine < 2e-4)
+    assert np.all(fine < 0.3 * coarse)
+
+
+def test_a_cone_has_its_mass_and_its_moments_of_inertia():
+    body = shaft([CONE], freedoms=("x", *BENDING, "theta_x"), frames={"base": 0.0}, largest_element=0.05)
+    order = [FREEDOMS.index(name.partition(".")[2]) for name in body.coordinates[:6]]
+    motion = np.vstack([lever_arm((frame.position[0], 0.0, 0.0))[order] for frame in body.line])
+    whole = motion.T @ body.mass @ motion
+    pieces = [Inertia.cylinder(s.begin, s.end, s.diameter, s.bore, s.density) for s in cone_pieces(CONE, 2000)]
+    mass = sum(piece.mass for piece in pieces)
+    # Error of second order in the length of 2000 steps.
+    assert whole[0, 0] == pytest.approx(mass, rel=1e-6)
+    assert CONE.mass == pytest.approx(mass, rel=1e-6)
+    assert whole[3, 3] == pytest.approx(sum(piece.polar for piece in pieces), rel=1e-6)
+    about = sum(piece.transverse + piece.mass * piece.offset**2 for piece in pieces)
+    assert whole[4, 4] == pytest.approx(about, rel=1e-6)
+    turning = motion.T @ body.gyroscopic @ motion
+    assert turning[4, 5] == pytest.approx(sum(piece.polar for piece in pieces), rel=1e-6)
+
+
+def test_a_layer_without_stiffness_is_mass_alone():
+    bar = round_bar(0.04, 0.5)
+    layer = Section(0.2, 0.3, 0.1, 0.04, 0.0, NU, RHO)
+    loaded, bare = (shaft(parts, largest_element=0.01) for parts in ([bar, layer], [bar]))
+    # Nodes at the ends of the layer are at 0.2 m but for round-off.
+    np.testing.assert_allclose(loaded.stiffness, bare.stiffness, rtol=1e-12, atol=1e-12 * np.max(bare.stiffness))
+    rings = [Disc(0.2 + 0.005 * (2 * k + 1), Inertia.cylinder(-0.005, 0.005, 0.1, 0.04, RHO)) for k in range(10)]
+    discs = shaft([bar], rings, largest_element=0.005)
+    for speed in (0.0, 2000.0):
+        found, wanted, light = (np.sort(np.abs(whirls(body, speed, PINNED)))[:6] for body in (loaded, discs, bare))
+        # Ten discs in place of a layer: second order in their width against waves of 0.3 m and more.
+        np.testing.assert_allclose(found, wanted, rtol=1e-3)
+        assert np.all(np.abs(found / light - 1.0) > 1e-2)
+
+
+def test_a_disc_without_moments_of_inertia_is_a_point_mass():
+    # A light shaft with a mass in its middle: the frequency of a spring of 48 E I/L^3 with shear.
+    length, section = 1.0, CrossSection.annulus(0.02, 0.0, E, NU, LIGHT)
+    body = shaft([round_bar(0.02, length, LIGHT)], [Disc(0.5 * length, Inertia(5.0, 0.0, 0.0))], largest_element=0.5)
+    found = frequencies(body, PINNED)[0]
+    softness = length**3 / (48.0 * section.bending) + length / (4.0 * section.shear)
+    # The mass of the shaft.
+    assert found == pytest.approx(1.0 / math.sqrt(5.0 * softness), rel=1e-5)

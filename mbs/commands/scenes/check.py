@@ -53,10 +53,7 @@ def _words(spec: object) -> str:
     if not isinstance(spec, ShaftSpec):
         return ""
     begin, end = min(part.begin for part in spec.sections), max(part.end for part in spec.sections)
-    mass = sum(
-        part.density * 0.25 * math.pi * (part.diameter**2 - part.bore**2) * (part.end - part.begin)
-        for part in spec.sections
-    )
+    mass = sum(part.mass for part in spec.sections)
     discs = sum(disc.inertia.mass for disc in spec.discs)
     cutoff = "no reduction" if spec.cutoff is None else f"modes up to {HERTZ.text(spec.cutoff)} with held places"
     return f"{LENGTH.text(end - begin, 5)}, {mass:.4g} kg and discs of {discs:.4g} kg, {cutoff}, "

@@ -25,6 +25,10 @@ _COLUMNS = {
     "diameter": "diameter",
     "inner diameter": "bore",
     "bore": "bore",
+    "end outer diameter": "end_diameter",
+    "end diameter": "end_diameter",
+    "end inner diameter": "end_bore",
+    "end bore": "end_bore",
     "youngs modulus": "youngs_modulus",
     "poisson ratio": "poisson_ratio",
     "density": "density",
@@ -178,7 +182,7 @@ def _chained(rows: Iterable[tuple[str, object]], problems: list[str]) -> list[Se
 
 
 def _section(table: Table, reached: float) -> tuple[Section | None, float | None]:
-    """Read a cylinder that bends, and where the next one with a length begins."""
+    """Read a cylinder or cone, and where the next one with a length begins."""
     begin: float | None
     end: float | None
     chained = "length" in table
@@ -194,8 +198,10 @@ def _section(table: Table, reached: float) -> tuple[Section | None, float | None
         end = table.quantity("to", "m", -100.0, 100.0, LENGTH, required=True)
     diameter = table.quantity("diameter", "m", 1e-5, 100.0, LENGTH, required=True)
     bore = table.quantity("bore", "m", 0.0, 100.0, LENGTH)
-    modulus = table.quantity("youngs_modulus", "Pa", 1e8, 2e12, PRESSURE)
-    ratio = table.number("poisson_ratio", 0.0, 0.499)
+    end_diameter = table.quantity("end_diameter", "m", 1e-5, 100.0, LENGTH)
+    end_bore = table.quantity("end_bore", "m", 0.0, 100.0, LENGTH)
+    modulus = table.quantity("youngs_modulus", "Pa", 0.0, 2e12, PRESSURE)
+    ratio = table.number("poisson_ratio", -0.999, 0.499)
     density = table.quantity("density", "kg/m^3", 100.0, 25000.0, Display("kg/m^3"))
     table.close(("length", "from", "to"))
     onward = end if chained else None
@@ -211,6 +217,8 @@ def _section(table: Table, reached: float) -> tuple[Section | None, float | None
             STEEL.youngs_modulus if modulus is None else modulus,
             STEEL.poisson_ratio if ratio is None else ratio,
             STEEL.density if density is None else density,
+            end_diameter,
+            end_bore,
         ),
     )
     return made, onward

@@ -22,6 +22,9 @@ BENDING = ("y", "z", "theta_y", "theta_z")
 CUTOFF = 5e3
 """Cut-off of a shaft that states none [Hz]."""
 
+MOMENTS = ("polar_inertia", "transverse_inertia")
+"""Keys of the moments of inertia; both, or none."""
+
 _INERTIA = Display("kg m^2")
 
 
@@ -125,7 +128,7 @@ def _frames(section: Table, standing: Mapping[str, float]) -> dict[str, float]:
 
 def _discs(section: Table) -> tuple[list[Disc], dict[str, float]]:
     """Read the rigid parts of a shaft, and the places of those that have a name [m]."""
-    allowed = "a list of tables with at, diameter, width, or at, mass, polar_inertia, transverse_inertia"
+    allowed = "a list of tables with at, diameter, width, or at, mass, and if wanted polar_inertia, transverse_inertia"
     given = section.get("discs")
     if "discs" in section and not isinstance(given, list):
         section.note("discs", f"got {short(given)}; allowed: {allowed}")
@@ -165,11 +168,15 @@ def _middle_cylinder(table: Table) -> Inertia | None:
 
 
 def _inertia(table: Table) -> Inertia | None:
-    """Read mass and moments of inertia."""
+    """Read mass and moments of inertia; a point mass has none."""
     mass = table.quantity("mass", "kg", 1e-6, 1e6, Display("kg"), required=True)
-    polar = table.quantity("polar_inertia", "kg m^2", 1e-12, 1e6, _INERTIA, required=True)
-    transverse = table.quantity("transverse_inertia", "kg m^2", 1e-12, 1e6, _INERTIA, required=True)
+    given = any(key in table for key in MOMENTS)
+    polar, transverse = (table.quantity(key, "kg m^2", 0.0, 1e6, _INERTIA, required=given) for key in MOMENTS)
     table.close(("diameter", "width", "bore"))
-    if mass is None or polar is None or transverse is None:
+    if mass is None:
+        return None
+    if not given:
+        return fields.built(table, lambda: Inertia(mass, 0.0, 0.0))
+    if polar is None or transverse is None:
         return None
     return fields.built(table, lambda: Inertia(mass, polar, transverse))
