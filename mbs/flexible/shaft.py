@@ -123,7 +123,7 @@ def element_matrices(element: CrossSection | Along, length: float) -> ElementMat
     Parameters
     ----------
     element : CrossSection or callable
-        Section; by the part of the length where it changes.
+        Section of the element; by the part of the length where it changes.
     length : float
         [m].
     """
