@@ -19,8 +19,8 @@ _INSTRUMENTS = ("stability", "tradeoff", "variants")
 _LOOK, _LINEAR, _TIME, _MEASURED = "look", "linear", "in time", "measured"
 _PREPARE, _LABORATORY = "maps and bodies", "laboratory"
 
-_SCENES = ("check", "new")
-"""Commands on scene files themselves."""
+_SCENES = ("check", "importing", "new")
+"""Modules of commands on scene files themselves."""
 
 _OWN_PHYSICS = ("auto", "maps", PHYSICS.key, SHEAR.key, "auto_tolerance")
 
@@ -60,6 +60,7 @@ def parser() -> argparse.ArgumentParser:
             add(command)
     _bearing(top)
     _check(top)
+    _import(top)
     _modal_fit(top)
     _new(top)
     _plan(top)
@@ -331,6 +332,14 @@ def _new(top: Program) -> None:
     command.add_argument("-o", "--output", metavar="SCENE.toml", help="default: shaft.toml in this folder")
 
 
+def _import(top: Program) -> None:
+    """Add the command that makes a scene of a rotor of another program."""
+    words = "a scene of a rotor that ROSS 2 saved: shaft, discs, bearings, seals, supports"
+    command = top.add_command(_PREPARE, "import", words)
+    command.add_argument("rotor", metavar="ROTOR", help="file of Rotor.save, .toml or .json")
+    command.add_argument("-o", "--output", metavar="SCENE.toml", help="default: ROTOR_scene.toml in this folder")
+
+
 def _plan(top: Program) -> None:
     """Add the command that plans the contact map of a scene; its -o is a job."""
     words = "which ranges a scene needs of a contact map, and the job that covers just these"
@@ -508,7 +517,8 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _command(arguments: argparse.Namespace) -> tuple[str, int]:
     """Load the command that is asked for, and do it."""
-    name = arguments.command.replace("-", "_")
+    # A module cannot be called import.
+    name = {"import": "importing"}.get(arguments.command, arguments.command.replace("-", "_"))
     rooms = {**dict.fromkeys(_INSTRUMENTS, "mbs.instruments.commands"), **dict.fromkeys(_SCENES, "mbs.commands.scenes")}
     room = rooms.get(name, "mbs.commands")
     result: tuple[str, int] = importlib.import_module(f"{room}.{name}").run(arguments)

@@ -19,6 +19,10 @@ if TYPE_CHECKING:
     from mbs.scene.surroundings import Built, Surroundings
 
 
+_PARTS = 32
+"""Lines in place of a cubic between two speeds: they leave a thousandth of its bulge."""
+
+
 @dataclass(frozen=True, eq=False)
 class MatrixSpec:
     """A spring or bearing by matrices.
@@ -129,9 +133,25 @@ def _read(section: Table) -> tuple[FloatArray, FloatArray, FloatArray] | None:
     section.get("stiffness", '{ y = "1e7 N/m", y_z = "2e6 N/m", z = ... }')
     stiffness = fields.matrices(section, "stiffness", "N/m", "N m/rad", count)
     damping = fields.matrices(section, "damping", "N s/m", "N m s/rad", count, least=0.0)
+    between = section.choice("between", ("line", "cubic"))
+    if between is not None and "speeds" not in section:
+        section.note("between", "stands without speeds; allowed: with a table over speed; delete it")
     if speeds is None or stiffness is None or damping is None:
         return None
-    return speeds, stiffness, damping
+    return _on_cubics(speeds, stiffness, damping) if between == "cubic" and count > 1 else (speeds, stiffness, damping)
+
+
+def _on_cubics(
+    speeds: FloatArray, stiffness: FloatArray, damping: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Speeds and tables on cubics through the values, so close that straight lines between them show nothing."""
+    from scipy.interpolate import make_interp_spline
+
+    parts = max(min(_PARTS, (MOST_SPEEDS - 1) // (speeds.size - 1)), 1)
+    fine = np.interp(np.arange(parts * (speeds.size - 1) + 1) / parts, np.arange(speeds.size), speeds)
+    # A table of three speeds lies on a parabola, one of two on a line.
+    curves = [make_interp_spline(speeds, table, k=min(3, speeds.size - 1)) for table in (stiffness, damping)]
+    return fine, curves[0](fine), curves[1](fine)
 
 
 def _speeds(section: Table) -> FloatArray | None:

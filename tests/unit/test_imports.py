@@ -182,7 +182,7 @@ ALLOWED = {
 """What each layer may import besides itself and other distributions. `ehdmaps` itself is the shop window of all."""
 
 SCENES = (
-    *("__main__", "analyses", "budget", "cli", "commands", "exports", "instruments", "library", "output"),
+    *("__main__", "analyses", "budget", "cli", "commands", "exports", "imports", "instruments", "library", "output"),
     *("planning", "report", "scene"),
 )
 """Modules of mbs that plan a scene or are its command line: they may call ehdmaps.jobs; no other module of mbs may

@@ -1,0 +1,35 @@
+"""`mbs import`: a scene of a rotor that another program saved; nothing that is there is overwritten."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from ehdmaps.errors import InputError
+from ehdmaps.outputs import Output, output_problems, write_text
+from mbs.commands.scenes.new import NEW
+from mbs.imports.ross_file import read_ross
+from mbs.imports.ross_scene import ross_scene, summary
+from mbs.scene.assembly import assemble
+from mbs.scene.reader import parse_scene
+
+
+def run(arguments: argparse.Namespace) -> tuple[str, int]:
+    """Read the rotor, write the scene, and make sure that it stands."""
+    source = Path(arguments.rotor)
+    target = Path(arguments.output or f"{source.stem}_scene.toml")
+    problems, text, words = [], "", ""
+    try:
+        rotor = read_ross(source)
+        try:
+            text, words = ross_scene(rotor, target.name, source.stem), summary(rotor)
+            assemble(parse_scene(text, target.stem, "as a scene"))
+        except InputError as error:
+            problems += [f"{source}: {problem}" for problem in error.problems]
+    except InputError as error:
+        problems += error.problems
+    problems += output_problems([Output("-o", target, NEW)], [source])
+    if problems:
+        raise InputError(problems)
+    write_text(target, text, NEW)
+    return f"{target}: written, of {words}; then: mbs check {target}", 0
