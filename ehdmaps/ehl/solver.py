@@ -39,6 +39,7 @@ from ehdmaps.physics.heat import (
     ISOTHERMAL,
     PHYSICS,
     THERMAL,
+    extreme_note,
     heat_data,
     heated,
     heated_spectrum,
@@ -558,6 +559,9 @@ def _in_si(
     stress = state.viscosity * speed / film
     if newtonian:
         notes.append(wall_stress_note(profile.position * half, profile.pressure * peak, profile.film * film))
+    # isothermal films have the NaN of the others: films without temperatures are equal
+    hottest = math.nan if math.isnan(groups.surface_rise) else heat.temperature + groups.surface_rise
+    notes.append(extreme_note(hottest, groups.central_film * film))
     return FilmSolution(
         status=status,
         reason="; ".join(filter(None, notes)),
@@ -577,9 +581,8 @@ def _in_si(
         max_pressure_error=groups.max_pressure_error,
         rolling_force_error=groups.rolling_force_error,
         mass_flow_error=groups.mass_flow_error,
-        # isothermal films have the NaN of the others: films without temperatures are equal
         film_temperature=math.nan if math.isnan(groups.film_rise) else heat.temperature + groups.film_rise,
-        surface_temperature=math.nan if math.isnan(groups.surface_rise) else heat.temperature + groups.surface_rise,
+        surface_temperature=hottest,
         traction=profile.traction * stress * half,
         wall_stress=profile.wall_stress * stress,
         iterations=groups.steps,

@@ -22,7 +22,7 @@ from ehdmaps.openfoam.run import RunError
 from ehdmaps.physics.closed_form import THIN_FILM_LIMIT, HertzSolver, too_thick
 from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.films import film_times_rise, moes_central, rolling_force_of_inlet
-from ehdmaps.physics.heat import ISOTHERMAL, THERMAL, heat_data
+from ehdmaps.physics.heat import ISOTHERMAL, THERMAL, extreme_note, heat_data
 from ehdmaps.physics.hertz import DRY_COMPLIANCE, LARGEST_PRESSURE, half_width, max_pressure
 from ehdmaps.physics.lubricant import Lubricant, LubricantState
 from ehdmaps.physics.moes import film_from_moes, moes_groups
@@ -481,6 +481,7 @@ def _film(
         notes.append("negative damping at the valley; a contact law takes zero")
     if newtonian:
         notes.append(wall_stress_note(fine.film.x, fine.film.pressure, fine.film.film))
+    notes.append(extreme_note(results.surface_temperature, results.central_film))
     largest_error = abs(error(results.max_pressure, rough.max_pressure))
     largest_error += peak_sampling_error(fine.film.x, fine.film.pressure, cusp=True)
     return FilmSolution(

@@ -63,6 +63,40 @@ def viscosity_slope(lubricant: Lubricant, temperature: float) -> float:
     return min((above - at) / _KELVIN, 0.0)
 
 
+HOTTEST_SURFACE = 473.15
+"""Temperature of a surface up to which a film with temperatures is told without a remark [K]: 200 degC, at which common
+bearing steels have lost hardness, and to which no viscosity of an oil is measured."""
+
+THINNEST_HOT_FILM = 5e-9
+"""Central film down to which it is [m]: some molecules of an oil, whose viscosity is no longer that of much oil."""
+
+
+def extreme_note(surface_temperature: float, central_film: float) -> str:
+    """Remark on a film with temperatures that no oil and no steel would have; empty where there is none.
+
+    Parameters
+    ----------
+    surface_temperature : float
+        Highest temperature of the surfaces [K]; NaN of an isothermal film, of which nothing is said.
+    central_film : float
+        [m].
+
+    Examples
+    --------
+    >>> extreme_note(520.0, 15e-9)
+    'surfaces at 247 degC: above 200 degC neither steel nor oil are what they were'
+    """
+    notes = []
+    if surface_temperature > HOTTEST_SURFACE:
+        notes.append(
+            f"surfaces at {surface_temperature - 273.15:.0f} degC: above {HOTTEST_SURFACE - 273.15:.0f} degC neither "
+            "steel nor oil are what they were"
+        )
+    if central_film < THINNEST_HOT_FILM and not math.isnan(surface_temperature):
+        notes.append(f"film of {1e9 * central_film:.2g} nm: some molecules, below {1e9 * THINNEST_HOT_FILM:g} nm")
+    return "; ".join(notes)
+
+
 def thermal_loading(viscosity_slope: float, speed: float, conductivity: float) -> float:
     """Thermal loading parameter L = -(d eta0/dT) u^2/k_f [-].
 

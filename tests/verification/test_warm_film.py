@@ -25,7 +25,7 @@ from ehdmaps.ehl.warm_column import (
 from ehdmaps.ehl.warm_newton import wall_weights
 from ehdmaps.ehl.warm_response import WarmLinearisation
 from ehdmaps.physics.contact import OperatingPoint
-from ehdmaps.physics.heat import HeatData
+from ehdmaps.physics.heat import HOTTEST_SURFACE, HeatData, extreme_note
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.rheology import LIMITING_RATIO, LIMITING_STRESS_AT_REST
 from ehdmaps.physics.solution import FilmSolution, Status
@@ -126,6 +126,17 @@ def test_yielding_film() -> None:
     )
     assert 0.8 * bound < sliding.traction < bound
     assert sliding.film_temperature > rolling.film_temperature + 10.0
+
+
+def test_a_film_that_burns_says_so() -> None:
+    """Full sliding under 1000 N/mm is solved, far above what steel and oil stand; in pure rolling nothing is said."""
+    burning = film(1e6, 1.0, 60.0, replace(LIMITING, slide_to_roll=2.0))
+    assert burning.status is Status.CONVERGED
+    assert burning.surface_temperature > HOTTEST_SURFACE
+    assert burning.reason.startswith("surfaces at 2")
+    assert not film(1e6, 1.0, 60.0, LIMITING).reason
+    assert extreme_note(320.0, 1.35e-9) == "film of 1.4 nm: some molecules, below 5 nm"
+    assert not extreme_note(math.nan, 1.35e-9)
 
 
 @pytest.mark.parametrize(
