@@ -2,8 +2,9 @@
 
 numba keeps compiled code beside the source file and looks at that one file only. A function whose callee changed in
 another file would go on calling the old callee, and an installation could not be removed whole. So `njit` here keeps
-compiled code in the user's folder for caches, in a folder named by the hash of all sources and of the compiler
-(`ehdmaps.provenance.code_hash`) and by the processor. Another state of the sources finds another folder.
+compiled code in the user's folder for caches, in a folder named by the hash of the compiler and of all sources that
+compiled code depends on (`ehdmaps.provenance.compiled_hash`) and by the processor. Another state of these finds another
+folder.
 
 Where that folder cannot be written, in containers and for users of services, a private folder for temporary files
 takes its place, and where that cannot be written either, compiled code stays in memory. One line says so.
@@ -31,7 +32,7 @@ from numba.core import config
 
 from ehdmaps.outputs import cache_folder
 from ehdmaps.program import tell
-from ehdmaps.provenance import code_hash
+from ehdmaps.provenance import compiled_hash
 
 try:
     import fcntl
@@ -141,7 +142,7 @@ def _folder() -> Path | None:
         return None
     for place in (_user_folder, _temporary_folder):
         with contextlib.suppress(OSError, RuntimeError):  # no home folder is a RuntimeError
-            folder = place() / f"{code_hash()}-{_processor()}"
+            folder = place() / f"{compiled_hash()}-{_processor()}"
             _use(folder)
             if place is not _user_folder:
                 _say(f"compiled code is kept in {folder.parent}")

@@ -1,8 +1,12 @@
 """State of the sources that run: the commit of the clone, and one hash of all that a number is computed with.
 
-The hash is the only thing that says whether two numbers come from the same code. Compiled code (`ehdmaps.compiled`),
-solved points (`ehdmaps.jobs.make.tasks`) and reduced bodies (`mbs.flexible.carry_out`) are kept under it, and maps and
-results state it. So nothing that an older version made is ever taken for the work of a newer one.
+The hash is the only thing that says whether two numbers come from the same code. Solved points
+(`ehdmaps.jobs.make.tasks`) and reduced bodies (`mbs.flexible.carry_out`) are kept under it, and maps and results state
+it. So nothing that an older version made is ever taken for the work of a newer one.
+
+Compiled code (`ehdmaps.compiled`) is kept under a hash of fewer files: those that have compiled functions, and all that
+these import from the packages, and so on. A compiled function has frozen in it what its module imported, and nothing
+else of the packages. So an edit of a command, a report or a page does not compile anything anew.
 """
 
 from __future__ import annotations
@@ -11,7 +15,9 @@ import functools
 import hashlib
 import os
 import platform
+import re
 import subprocess
+from collections.abc import Iterator, Mapping
 from importlib import metadata
 from pathlib import Path
 
@@ -68,17 +74,73 @@ def sources_hash(root: Path = ROOT) -> str:
     str
         64 hexadecimal digits; empty where no file is found, or one cannot be read.
     """
-    digest = hashlib.sha256()
+    return _hashed(_sources(root))
+
+
+def kernels_hash(root: Path = ROOT) -> str:
+    """Return a hash over names and contents of the files that compiled code is made from.
+
+    Parameters
+    ----------
+    root : Path
+        The folder that holds the packages.
+
+    Returns
+    -------
+    str
+        64 hexadecimal digits; empty where no file is found, or one cannot be read.
+    """
+    sources = _sources(root)
+    return _hashed({name: sources[name] for name in kernel_files(sources)})
+
+
+def kernel_files(sources: Mapping[str, bytes]) -> list[str]:
+    """Return the names of the files that speak of `njit`, and of all that they import at their left margin, and so on.
+
+    Parameters
+    ----------
+    sources : mapping of str to bytes
+        Contents of Python files by their names, such as "mbs/gears/pair.py".
+    """
+    found = {name for name, content in sources.items() if b"njit" in content}
+    left = sorted(found)
+    while left:
+        for name in _imported(sources[left.pop()].decode("utf-8", "replace")):
+            if name in sources and name not in found:
+                found.add(name)
+                left.append(name)
+    return sorted(found)
+
+
+_IMPORT = re.compile(r"^(?:from ([\w.]+) import (?:\(([^)]*)\)|([^\n#]*))|import ([\w.]+))", re.MULTILINE)
+
+
+def _imported(text: str) -> Iterator[str]:
+    """Names of files that a file may import: modules, and what may be a module of a package."""
+    for module, listed, line, alone in _IMPORT.findall(text):
+        place = (module or alone).replace(".", "/")
+        for name in (place, *(f"{place}/{name}" for name in re.findall(r"\w+", listed or line))):
+            yield f"{name}.py"
+            yield f"{name}/__init__.py"
+
+
+def _sources(root: Path) -> dict[str, bytes]:
+    """Contents of the packages' Python files by their names, in order; none where one cannot be read."""
     names = sorted(
         path.relative_to(root).as_posix() for package in PACKAGES for path in root.glob(f"{package}/**/*.py")
     )
     try:
-        for name in names:
-            content = (root / name).read_bytes()
-            digest.update(f"{name}\0{len(content)}\0".encode() + content)
+        return {name: (root / name).read_bytes() for name in names}
     except OSError:
-        return ""
-    return digest.hexdigest() if names else ""
+        return {}
+
+
+def _hashed(sources: Mapping[str, bytes]) -> str:
+    """Hash of names and contents; empty without any."""
+    digest = hashlib.sha256()
+    for name, content in sources.items():
+        digest.update(f"{name}\0{len(content)}\0".encode() + content)
+    return digest.hexdigest() if sources else ""
 
 
 @functools.cache
@@ -90,15 +152,25 @@ def code_hash() -> str:
     str
         16 hexadecimal digits, over the Python files of this distribution and the versions of Python, numba, LLVM's
         binding, numpy and scipy. The processor is not in it: points that the nodes of a cluster solve belong together.
-        Compiled code is kept apart by processor besides.
     """
+    return _with_versions(sources_hash())
+
+
+@functools.cache
+def compiled_hash() -> str:
+    """Return the hash of all that compiled code is made from but the processor, 16 hexadecimal digits."""
+    return _with_versions(kernels_hash())
+
+
+def _with_versions(sources: str) -> str:
+    """Hash of sources together with the versions of what computes."""
     versions = [f"{platform.python_implementation()} {platform.python_version()}"]
     for name in _COMPUTE:
         try:
             versions.append(f"{name} {metadata.version(name)}")
         except metadata.PackageNotFoundError:
             versions.append(f"{name} missing")
-    return hashlib.sha256("\0".join((sources_hash(), *versions)).encode()).hexdigest()[:16]
+    return hashlib.sha256("\0".join((sources, *versions)).encode()).hexdigest()[:16]
 
 
 def _commit(root: Path) -> str:

@@ -496,9 +496,9 @@ def _compiled() -> int:
     """Return the number of files of machine code of this state of the sources."""
     from ehdmaps.compiled import FOLDER_VARIABLE
     from ehdmaps.outputs import cache_folder
-    from ehdmaps.provenance import code_hash
+    from ehdmaps.provenance import compiled_hash
 
-    return len(list(cache_folder("compiled", FOLDER_VARIABLE, os.environ).glob(f"{code_hash()}-*/**/*.nbc")))
+    return len(list(cache_folder("compiled", FOLDER_VARIABLE, os.environ).glob(f"{compiled_hash()}-*/**/*.nbc")))
 
 
 def _made(path: Path) -> None:

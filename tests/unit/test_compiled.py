@@ -1,5 +1,6 @@
-"""Where compiled code is kept: under one hash of all sources, and what becomes of it where nothing can be written."""
+"""Where compiled code is kept: under one hash of what it is made from, and what becomes of it where none can be."""
 
+import ast
 import multiprocessing
 import os
 import subprocess
@@ -74,6 +75,46 @@ def test_a_caller_in_an_unchanged_file_sees_that_its_callee_changed(site, tmp_pa
     assert len(folders(cache)) == 2
     # nothing lies beside the sources, so that an uninstalled package leaves no folder behind
     assert not list(site.rglob("*.nb?"))
+
+
+@pytest.mark.slow
+def test_only_what_compiled_code_is_made_from_compiles_it_anew(site, tmp_path):
+    """A constant behind two imports is frozen in compiled code; a module that no compiled one imports is not in it."""
+    package, cache = site / "ehdmaps", tmp_path / "cache"
+    (package / "report.py").write_text("from ehdmaps.caller import outer\n")
+    (package / "deep").mkdir()
+    (package / "deep" / "__init__.py").write_text("")
+    (package / "deep" / "numbers.py").write_text("FACTOR = 2.0\n")
+    (package / "between.py").write_text("from ehdmaps.deep import (\n    numbers,\n)\n\nFACTOR = numbers.FACTOR\n")
+    text = TWICE.format(factor="FACTOR")
+    (package / "callee.py").write_text(f"from ehdmaps.between import FACTOR\n{text}")
+    assert outer(site, cache) == (["3.0", "0"], "")
+    (package / "report.py").write_text("from ehdmaps.caller import outer\n\nTITLE = 'new'\n")
+    assert outer(site, cache) == (["3.0", "1"], "")
+    (package / "deep" / "numbers.py").write_text("FACTOR = 5.0\n")
+    assert outer(site, cache) == (["6.0", "0"], "")
+
+
+def test_files_of_compiled_code():
+    """All that they import of the packages stands at the left margin, or where compiled code sees nothing of it."""
+    sources = provenance._sources(ROOT)
+    files = provenance.kernel_files(sources)
+    assert {"ehdmaps/physics/isotherm.py", "ehdmaps/arrays.py", "mbs/transient/integration_kernel.py"} <= set(files)
+    assert not {"mbs/cli.py", "ehdmaps/jobs/cli.py", "mbs/output/run_plot.py"} & set(files)
+    assert len(files) < 0.4 * len(sources)
+    for name in files:
+        tree = ast.parse(sources[name])
+        hidden = [node for node in tree.body if isinstance(node, (ast.If, ast.Try, ast.With, ast.For))]
+        of_types = [node for node in hidden if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"]
+        for node in (one for block in hidden if block not in of_types for one in ast.walk(block)):
+            assert not (isinstance(node, ast.Import) and any(_own(one.name) for one in node.names)), name
+            assert not (isinstance(node, ast.ImportFrom) and _own(node.module)), name
+        imports = [node for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)]
+        assert not any(node.level or node.names[0].name == "*" for node in imports), name
+
+
+def _own(module):
+    return module is not None and module.split(".")[0] in provenance.PACKAGES
 
 
 @pytest.mark.slow
