@@ -32,9 +32,18 @@ HIGHEST = 12e3
 """Frequency up to which films are exact [Hz]."""
 
 LOADS = np.unique(
-    np.concatenate([np.geomspace(1.0, 3e3, 48), np.geomspace(3e3, 3e4, 34), np.geomspace(3e4, 1.2e5, 12)])
+    np.concatenate(
+        [
+            np.geomspace(0.02, 1.0, 14),
+            np.geomspace(1.0, 3e3, 48),
+            np.geomspace(3e3, 3e4, 34),
+            np.geomspace(3e4, 1.2e5, 12),
+        ]
+    )
 )
-"""Loads at which films are solved [N/m]; lighter slices have the film of the lightest one."""
+"""Loads at which films are solved [N/m]. Between rigid surfaces the damping is as w^1.5, and so are lighter slices."""
+
+RIGID_POWER = 1.5
 
 
 class ExactFilm(NamedTuple):
@@ -102,8 +111,13 @@ class ExactFilms:
 
     def at(self, loads: FloatArray, s: complex) -> ComplexArray:
         """Z at any loads [N/m2]."""
-        x = np.log(np.clip(loads, LOADS[0], LOADS[-1]))
-        return np.asarray(CubicSpline(np.log(LOADS), self.stiffness(s))(x))
+        return read(CubicSpline(np.log(LOADS), self.stiffness(s)), loads)
+
+
+def read(line: CubicSpline, loads: FloatArray) -> ComplexArray:
+    """Z at loads [N/m2] from its line over ln of the load; none without a load."""
+    inside = np.clip(loads, LOADS[0], LOADS[-1])
+    return np.asarray(line(np.log(inside)) * np.minimum(loads / LOADS[0], 1.0) ** RIGID_POWER)
 
 
 class Slices(NamedTuple):
@@ -179,12 +193,12 @@ class ExactMachine:
         """Dynamic stiffness of the system, shape (n, n)."""
         found = s * (s * self.mass + self.damping) + self.stiffness
         # Bearings of one speed share their films.
-        read: dict[int, CubicSpline] = {}
+        lines: dict[int, CubicSpline] = {}
         for slices in self.bearings:
             key = id(slices.films)
-            if key not in read:
-                read[key] = CubicSpline(np.log(LOADS), slices.films.stiffness(s))
-            weights = read[key](np.log(np.clip(slices.loads, LOADS[0], LOADS[-1]))) * slices.length
+            if key not in lines:
+                lines[key] = CubicSpline(np.log(LOADS), slices.films.stiffness(s))
+            weights = read(lines[key], slices.loads) * slices.length
             found = found + (slices.rows.T * weights) @ slices.rows
         return np.asarray(found)
 
