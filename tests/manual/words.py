@@ -55,7 +55,7 @@ def main() -> None:
     rows.append(([sum(counts[i] for counts, _ in rows) for i in range(4)], "together"))
     print(f" words in code sentences of {LONG} and more")
     for counts, name in sorted(rows):
-        print("{:6d} {:7d} {:9d} {:14d}  {}".format(*counts, name))
+        print(" ".join(f"{count:{width}d}" for count, width in zip(counts, (6, 7, 9, 14), strict=True)), "", name)
 
 
 if __name__ == "__main__":
