@@ -19,7 +19,7 @@ from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.make.tasks import line_tasks
 from ehdmaps.jobs.reader import parse_job, read_job
-from ehdmaps.jobs.solve.film_plot import places
+from ehdmaps.jobs.solve.film_plot import colour_limits, places
 from ehdmaps.openfoam import installation as installed
 from ehdmaps.openfoam.case import CLAIM, PREFIX, claimed, remove_leftovers
 from ehdmaps.openfoam.pyfoam import parse
@@ -623,3 +623,13 @@ def test_places_of_velocity_profiles():
     assert places(x, hertz)["inlet"] == pytest.approx(-0.99, abs=0.01)
     assert places(x, np.minimum(hertz[::-1], hertz.max()))["centre"] == 0.0
     assert places(x, x + 2.0)["spike"] == 2.0
+
+
+def test_a_thin_streak_takes_no_colours():
+    """Columns of unlike width: a hundredth of the area may be colder by any amount; a tenth may not."""
+    x = np.array([0.0, 1.0, 1.98, 2.0, 2.02, 3.0, 4.0])
+    values = np.tile([60.0, 61.0, 62.0, 20.0, 60.5, 60.2, 60.1], (3, 1))
+    assert colour_limits(x, values) == (60.0, 62.0)
+    values[:, 1] = 20.0
+    assert colour_limits(x, values)[0] == 20.0
+    assert colour_limits(x, np.full((3, 7), 60.0)) == (60.0, 60.0)

@@ -130,6 +130,29 @@ def _window(table: FilmTable, x: FloatArray) -> BoolArray:
     return np.asarray((x >= loaded[0] - margin) & (x <= loaded[-1] + margin))
 
 
+OUTLYING = 0.02
+"""Part of the shown area at either end of the temperatures that no colour tells apart: a streak behind the spike, where
+the oil is released within a hundredth of the contact, would take the scale from all the rest."""
+
+
+def colour_limits(x: FloatArray, values: FloatArray) -> tuple[float, float]:
+    """Return the values between which colours change: all but `OUTLYING` of the area lies between, at either end.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n,)
+        Places of the columns, rising.
+    values : ndarray, shape (rows, n)
+        Values in rows of equal height.
+    """
+    widths = np.broadcast_to(np.gradient(x), values.shape).ravel()
+    order = np.argsort(values, axis=None)
+    below = np.cumsum(widths[order]) / widths.sum()
+    ends = np.searchsorted(below, [OUTLYING, 1.0 - OUTLYING])
+    low, high = (float(values.ravel()[order[end]]) for end in ends)
+    return (low, high) if low < high else (float(values.min()), float(values.max()))
+
+
 def _temperatures(row: FilmRow, axes: Axes, figure: Figure) -> None:
     """Draw the temperature in the film of a contact."""
     table, fields = row.grid.film, row.grid.fields
@@ -140,7 +163,17 @@ def _temperatures(row: FilmRow, axes: Axes, figure: Figure) -> None:
     window = _window(table, x)
     shown = TEMPERATURE.factor * fields.T.reshape(x.size, -1)[window].T + TEMPERATURE.offset
     heights = (np.arange(shown.shape[0]) + 0.5) / shown.shape[0]
-    image = axes.pcolormesh(x[window], heights, shown, shading="nearest", cmap="inferno", rasterized=True)
-    figure.colorbar(image, ax=axes, label=f"temperature, {typeset(TEMPERATURE.unit)}")
+    low, high = colour_limits(x[window], shown)
+    image = axes.pcolormesh(
+        x[window], heights, shown, shading="nearest", cmap="inferno", vmin=low, vmax=high, rasterized=True
+    )
+    beyond = {(False, False): "neither", (True, False): "min", (False, True): "max", (True, True): "both"}
+    coldest, warmest = float(shown.min()), float(shown.max())
+    figure.colorbar(
+        image,
+        ax=axes,
+        extend=beyond[coldest < low, warmest > high],
+        label=f"temperature, {typeset(TEMPERATURE.unit)} (all: {coldest:.1f} to {warmest:.1f})",
+    )
     axes.set_xlabel("x/b, from the contact centre")
     axes.set_ylabel("y/h, from the lower surface")
