@@ -4,7 +4,8 @@ Run: python -m tests.benchmarks.auto_policy [--scenes grease rough]
 
 Each scene has two bearings on a shaft, at one speed. All physics are film memory, oil supply and roughness as stated,
 inlet heat where its rule holds, and a limiting stress, whatever they change. The differences of stiffness and damping
-stand beside what `--auto` itself states as left out.
+stand beside what `--auto` itself states as left out. The last column has what heat in the whole film makes of k and c
+of the most loaded inner contact, solved with temperatures and limiting stress beside the shear law of `--auto`.
 """
 
 from __future__ import annotations
@@ -19,8 +20,10 @@ from pathlib import Path
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.surface import Surface
+from mbs.bearings.bearing_element import BearingElement
 from mbs.budget.linear_look import LinearLook, LinearReference, linear_look
 from mbs.planning.auto import Automatic, AutoSettings, automatic
 from mbs.planning.question import at_one_speed
@@ -66,6 +69,27 @@ def along_loads(look: LinearLook) -> FloatArray:
     return np.array(found[: look.loads.size]).T
 
 
+def heat_in_the_film(scene: Scene, look: LinearLook, limiting: bool) -> str:
+    """Changes of k and c of the most loaded inner contact by heat in its film, the largest of all bearings."""
+    plain = ReynoldsSolver(shear="limiting" if limiting else "newtonian")
+    warm, changes = ReynoldsSolver(physics="thermal", shear="limiting"), []
+    balance, oil = look.balance, scene.lubricant
+    elements = [entry.element for entry in balance.system.elements if isinstance(entry.element, BearingElement)]
+    assert oil is not None
+    for element, load in zip(elements, look.loads.tolist(), strict=True):
+        contact = element.bearing.geometry.contacts(element.bearing.material, "iso16281")[0]
+        at = contact, oil, (load,), element.entrainment_speed(balance.operation), element.temperature
+        found = []
+        for solver in (plain, warm):
+            film = solver.solve_line(*at)[0]
+            if not film.status.usable:
+                return f"{film.status.word}: {film.reason}"
+            stiffness = 1.0 / (float(contact.structural_compliance(load)) + film.film_compliance)
+            found.append((stiffness, film.loss_compliance * stiffness**2))
+        changes.append([new / old - 1.0 for old, new in zip(*found, strict=True)])
+    return ", ".join(percent(max(map(abs, each))) for each in zip(*changes, strict=True))
+
+
 def row(name: str, scene: Scene, folder: Path) -> str:
     """A row of the table."""
     auto = analysed(scene, 0.05, folder)
@@ -79,7 +103,8 @@ def row(name: str, scene: Scene, folder: Path) -> str:
     parts = [stiffness, damping, *(float(np.nanmax(np.abs(one))) for one in (beside.frequency, beside.damping))]
     left_out = auto.verdicts[-1].words.split(" of a contact")[0]
     switched = f"{', '.join(dict.fromkeys(on)) or 'nothing'} | {', '.join(dict.fromkeys(more))}"
-    return f"| {name} | {switched} | {' | '.join(percent(part) for part in parts)} | {left_out} |"
+    heat = heat_in_the_film(scene, auto.result, any("shear" in physics for physics in on))
+    return f"| {name} | {switched} | {' | '.join(percent(part) for part in parts)} | {left_out} | {heat} |"
 
 
 def main() -> None:
@@ -88,8 +113,10 @@ def main() -> None:
     known = scenes()
     parser.add_argument("--scenes", nargs="+", choices=list(known), default=list(known))
     asked = parser.parse_args()
-    print("| scene | `--auto` has | all physics has | k | c | frequency | damping ratio | left out, as stated |")
-    print("|---|---|---|---|---|---|---|---|")
+    numbers = "k | c | frequency | damping ratio"
+    head = f"scene | `--auto` has | all physics has | {numbers} | left out, as stated | k, c by heat"
+    print(f"| {head} |")
+    print("|---|---|---|---|---|---|---|---|---|")
     with tempfile.TemporaryDirectory() as folder:
         for name in asked.scenes:
             print(row(name, known[name], Path(folder)), flush=True)
