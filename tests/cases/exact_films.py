@@ -37,7 +37,7 @@ LOADS = np.unique(
             np.geomspace(0.02, 1.0, 14),
             np.geomspace(1.0, 3e3, 48),
             np.geomspace(3e3, 3e4, 34),
-            np.geomspace(3e4, 1.2e5, 12),
+            np.geomspace(3e4, 6e5, 26),
         ]
     )
 )
@@ -116,6 +116,7 @@ class ExactFilms:
 
 def read(line: CubicSpline, loads: FloatArray) -> ComplexArray:
     """Z at loads [N/m2] from its line over ln of the load; none without a load."""
+    assert np.max(loads, initial=0.0) <= LOADS[-1]
     inside = np.clip(loads, LOADS[0], LOADS[-1])
     return np.asarray(line(np.log(inside)) * np.minimum(loads / LOADS[0], 1.0) ** RIGID_POWER)
 
