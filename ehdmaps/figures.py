@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import re
+import textwrap
 from collections.abc import Sequence
 from typing import Any
 
@@ -36,6 +38,10 @@ def typeset(text: str) -> str:
     return _UNIT.sub(lambda match: _LETTERS[match.group().strip()], text)
 
 
+_FILLED, _LETTER = 0.92, 0.5
+"""Part of the width of a figure that its heading may fill, and width of a letter by its size."""
+
+
 def write_heading(figure: Any, text: str, size: float, weight: str = "normal") -> None:
     """Write the heading of a figure; lines that are longer than it is wide are broken.
 
@@ -50,7 +56,13 @@ def write_heading(figure: Any, text: str, size: float, weight: str = "normal") -
     weight : str
         Their weight.
     """
-    figure.suptitle(text, fontsize=size, fontweight=weight, wrap=True)
+    fits = max(int(_FILLED * 72.0 * figure.get_figwidth() / (_LETTER * size)), 1)
+    lines: list[str] = []
+    for line in text.split("\n"):
+        # lines of about one length rather than a long one and a word
+        count = max(math.ceil(len(line) / fits), 1)
+        lines += textwrap.wrap(line, min(math.ceil(1.1 * len(line) / count), fits) if count > 1 else fits) or [""]
+    figure.suptitle("\n".join(lines), fontsize=size, fontweight=weight, wrap=True)
 
 
 def keep_within(figure: Any, text: Any) -> None:
