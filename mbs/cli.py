@@ -265,10 +265,12 @@ def _variants(command: argparse.ArgumentParser) -> None:
 
 def _bearing(top: Program) -> None:
     """Add the command on one bearing, without a scene."""
-    words = "one bearing without a scene: stiffness, damping, roller loads, pressures, films"
+    words = "one bearing without a scene: stiffness, damping, loads of rollers or balls, pressures, films"
     chosen = _choices("films", "load-factor", "start-angle")
     command = top.add_command(_LOOK, "bearing", words, chosen)
-    command.add_argument("bearing", metavar="BEARING", help="N1014, NU308, or a TOML file with [bearing] (a job)")
+    command.add_argument(
+        "bearing", metavar="BEARING", help="N1014, NU308, 6208, 7208B, or a TOML file with [bearing] (a job)"
+    )
     for option, example, what in (
         ("--load", '"5 kN"', "on the inner ring"),
         ("--speed", '"1500 rpm"', "of the inner ring; 0 rpm for dry contacts at rest"),
@@ -287,6 +289,9 @@ def _bearing(top: Program) -> None:
         metavar="ANGLE",
         help='of the load from y, where a roller is, towards z, such as "15 deg"; or its parts along y and z (0 deg)',
     )
+    command.add_argument("--axial", metavar="LOAD", help="on the inner ring of a ball bearing, along x (0 N)")
+    command.add_argument("--outer-speed", metavar="SPEED", help="of the outer ring of a ball bearing (0 rpm)")
+    command.add_argument("--tilts", action="store_true", help="the inner ring of a ball bearing tilts freely")
     for side in ("inner", "outer"):
         command.add_argument(
             f"--{side}-ring-temperature",

@@ -6,14 +6,13 @@ import argparse
 import dataclasses
 import math
 import os
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-from ehdmaps.choices import STRUCTURE, texts_of
+from ehdmaps.choices import STRUCTURE
 from ehdmaps.errors import EhdmapsError, InputError
 from ehdmaps.inputs import first_bytes, read_text
 from ehdmaps.outputs import FIGURE, Output, output_problems, write_figure
@@ -24,15 +23,24 @@ from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.physics.surface import SMOOTH, Surface
-from ehdmaps.units import RPM, TEMPERATURE, Display, closest, quantity, short
+from ehdmaps.units import RPM, TEMPERATURE, closest, short
 from mbs.analyses.bearing_point import bearing_points
 from mbs.bearings import laws
 from mbs.bearings.bearing import MOST_COUPLED, Bearing
 from mbs.bearings.films import SIDES, FilmSource, FormulaFilms, MapFilms
 from mbs.bearings.laws import Law
 from mbs.bearings.thermal import BearingState, Mounting, operating_clearance
+from mbs.commands.one_bearing.values import (
+    LOADS,
+    MOST_POINTS,
+    SPEEDS,
+    read_choices,
+    read_direction,
+    read_one,
+    read_values,
+    read_whole,
+)
 from mbs.output.bearing_table import (
-    WIDE_RANGE,
     BearingDescription,
     bearing_dataset,
     bearing_text,
@@ -40,7 +48,7 @@ from mbs.output.bearing_table import (
     write_csv,
 )
 from mbs.output.files import write_dataset
-from mbs.scene.choices import LACKS, OPTIONS
+from mbs.scene.choices import LACKS
 from mbs.scene.contact_laws import (
     HERTZ_FORMS,
     TABLE_FORM,
@@ -63,11 +71,13 @@ LAWS = ("hertz", "formula", TABLE_LAW, "map")
 CELSIUS_40, ROUGHNESS = 313.15, 0.3e-6
 """Assumed where nothing is given: the temperature of the raceways [K], the combined rms roughness [m]."""
 
-MOST_POINTS, MOST_SLICES = 500, 1000
+MOST_SLICES = 1000
+
+_BALLS = re.compile(r"\s*[67]\d{3}(?!\d)")
+"""Beginning of the designation of a ball bearing."""
+
 MOST_SLICES_IN_ALL = 5_000_000
 """Of all rollers at all points: half a gigabyte."""
-
-_LOADS, _SPEEDS = (1e-3, 1e7), (0.0, 1e5 * math.pi / 30.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,12 +153,13 @@ def read_request(arguments: argparse.Namespace) -> BearingRequest:
     """
     problems: list[str] = []
     given = _bearing(arguments.bearing, problems)
-    chosen = _chosen(arguments, problems)
+    chosen = read_choices(arguments, problems)
     emap = _map(chosen.get("map"), problems)
     law = _law(chosen.get("law"), "map" in chosen, problems)
     emap = _structured(emap, law, chosen, problems)
-    loads = read_values("--load", arguments.load, "N", _LOADS, FORCE, problems)
-    speeds = read_values("--speed", arguments.speed, "rad/s", _SPEEDS, RPM, problems)
+    _refuse_axial(arguments, problems)
+    loads = read_values("--load", arguments.load, "N", LOADS, FORCE, problems)
+    speeds = read_values("--speed", arguments.speed, "rad/s", SPEEDS, RPM, problems)
     if len(loads) * len(speeds) > MOST_POINTS:
         problems.append(f"--load, --speed: got {len(loads) * len(speeds)} points; allowed: at most {MOST_POINTS}")
     if _all_slices(given, arguments.slices) * len(loads) * len(speeds) > MOST_SLICES_IN_ALL:
@@ -158,7 +169,7 @@ def read_request(arguments: argparse.Namespace) -> BearingRequest:
         )
     around = chosen.get("temperature", CELSIUS_40)
     inner, outer = (
-        _one(
+        read_one(
             f"--{side}-ring-temperature",
             getattr(arguments, f"{side}_ring_temperature"),
             "K",
@@ -178,7 +189,7 @@ def read_request(arguments: argparse.Namespace) -> BearingRequest:
     stated = _surface(given, emap)
     surface = dataclasses.replace(stated, roughness=chosen["roughness"].roughness) if "roughness" in chosen else stated
     roughness = ROUGHNESS if surface.smooth else surface.roughness
-    direction = _direction(arguments.direction, problems)
+    direction = read_direction(arguments.direction, problems)
     bearing = _sliced(given, chosen.get("clearance"), arguments, problems)
     state = None
     if bearing is not None and (arguments.inner_ring_temperature, arguments.outer_ring_temperature) != (None, None):
@@ -233,6 +244,16 @@ def read_request(arguments: argparse.Namespace) -> BearingRequest:
             state=state,
         ),
     )
+
+
+def _refuse_axial(arguments: argparse.Namespace, problems: list[str]) -> None:
+    """Note options that are for ball bearings."""
+    given = [f"--{name}" for name in ("axial", "outer-speed") if getattr(arguments, name.replace("-", "_"), None)]
+    given += ["--tilts"] * bool(getattr(arguments, "tilts", False))
+    if given:
+        problems.append(
+            f"{', '.join(given)}: for ball bearings such as 6208; not for cylindrical rollers; leave it out"
+        )
 
 
 def _all_slices(given: _Given | None, slices: str) -> int:
@@ -368,7 +389,7 @@ def _sliced(
     """The bearing with clearance, profile and slices; without the last three where they are wrong."""
     before = len(problems)
     profile = profile_from_text(arguments.profile, given.geometry if given else None, problems)
-    slices = _whole("--slices", arguments.slices, 1, MOST_COUPLED if arguments.coupled else MOST_SLICES, problems)
+    slices = read_whole("--slices", arguments.slices, 1, MOST_COUPLED if arguments.coupled else MOST_SLICES, problems)
     if given is None:
         return None
     geometry = given.geometry
@@ -380,20 +401,6 @@ def _sliced(
     if len(problems) > before:
         return Bearing(given.geometry, "iso", 41, given.material)
     return Bearing(geometry, profile, slices, given.material, arguments.coupled)
-
-
-def _chosen(arguments: argparse.Namespace, problems: list[str]) -> dict[str, Any]:
-    """Values that were chosen, once each, by the names of the choices."""
-    chosen: dict[str, Any] = {}
-    for choice in OPTIONS:
-        texts = texts_of(arguments, choice)
-        if len(texts) > 1:
-            problems.append(
-                f"--{choice.name}: got {len(texts)} of them; allowed: one; run the command again for another"
-            )
-        for value in choice.values(texts[:1], problems):
-            chosen[choice.name] = value
-    return chosen
 
 
 def _map(path: str | None, problems: list[str]) -> EHDMap | None:
@@ -477,128 +484,6 @@ def _oil(
     return oil
 
 
-def _direction(given: Sequence[str] | None, problems: list[str]) -> tuple[float, float]:
-    """Unit vector of the load: an angle from y towards z, or two components."""
-    allowed = 'an angle from y towards z, such as "30 deg", or two numbers, the parts along y and z, not both zero'
-    texts = list(given or ["0 deg"])
-    try:
-        if len(texts) == 1:
-            angle = math.radians(float(texts[0])) if _is_number(texts[0]) else quantity(texts[0], "rad")
-            parts = (math.cos(angle), math.sin(angle))
-        else:
-            y, z = (float(text) for text in texts)
-            size = math.hypot(y, z)
-            parts = (y / size, z / size)
-    except (ValueError, ZeroDivisionError, InputError):
-        parts = (math.nan, math.nan)
-    if not np.all(np.isfinite(parts)):
-        problems.append(f"--direction: got {' '.join(texts)!r:.80}; allowed: {allowed}")
-        return 1.0, 0.0
-    # No part of a load along an axis by round-off.
-    clean = [0.0 if abs(part) < 1e-15 else part for part in parts]
-    return clean[0], clean[1]
-
-
-def _is_number(text: str) -> bool:
-    """Tell whether a text is a bare number."""
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
-
-
-def read_values(
-    option: str,
-    given: Sequence[Sequence[str]],
-    unit: str,
-    limits: tuple[float, float],
-    display: Display,
-    problems: list[str],
-) -> tuple[float, ...]:
-    """Rising values of an option: single ones, and ranges FROM TO POINTS, evenly spaced, wide ones in the logarithm.
-
-    Parameters
-    ----------
-    option : str
-        Name of the option; begins the messages.
-    given : sequence of sequences of str
-        What was given for it, once for each time that it was given.
-    unit : str
-        Unit of the values.
-    limits : (float, float)
-        Smallest and largest allowed value [unit].
-    display : Display
-        How messages show values.
-    problems : list of str
-        Takes what is wrong.
-    """
-    found: list[float] = []
-    for texts in given:
-        if len(texts) not in (1, 3):
-            problems.append(
-                f"{option}: got {len(texts)} values ({' '.join(texts)!r:.60}); allowed: one, or FROM TO POINTS; give "
-                "the option more than once for a list"
-            )
-            continue
-        before = len(problems)
-        ends = [_quantity(option, text, unit, limits, display, problems) for text in texts[:2]]
-        if len(texts) == 1:
-            found += ends
-            continue
-        points = _whole(f"{option}, POINTS", texts[2], 2, MOST_POINTS, problems)
-        if len(problems) == before and not ends[0] < ends[1]:
-            problems.append(f"{option}: got {texts[0]!r} to {texts[1]!r}; allowed: rising")
-        elif len(problems) == before:
-            wide = 0.0 < WIDE_RANGE * ends[0] < ends[1]
-            space = np.geomspace if wide else np.linspace
-            # Numbers as they were typed, and not one bit beside.
-            found += [float(f"{value:.12g}") for value in space(ends[0], ends[1], points)]
-    return tuple(sorted(set(found)))
-
-
-def _one(
-    option: str,
-    text: str | None,
-    unit: str,
-    limits: tuple[float, float],
-    display: Display,
-    default: float,
-    problems: list[str],
-) -> float:
-    """One value, or its default where none was given, or where a problem was noted."""
-    if text is None:
-        return default
-    value = _quantity(option, text, unit, limits, display, problems)
-    return default if math.isnan(value) else value
-
-
-def _quantity(
-    option: str, text: str, unit: str, limits: tuple[float, float], display: Display, problems: list[str]
-) -> float:
-    """One quantity within its limits; NaN where a problem was noted."""
-    try:
-        value = quantity(text, unit)
-    except InputError as error:
-        problems.append(f"{option}: {error.problems[0]}")
-        return math.nan
-    if not limits[0] <= value <= limits[1]:
-        problems.append(
-            f"{option}: got {short(text)}; allowed: {display.text(limits[0])} to {display.text(limits[1])}; check its "
-            "unit"
-        )
-        return math.nan
-    return value
-
-
-def _whole(option: str, text: str, low: int, high: int, problems: list[str]) -> int:
-    """A whole number; the lowest one where a problem was noted."""
-    if text.isascii() and text.isdigit() and len(text) < 10 and low <= int(text) <= high:
-        return int(text)
-    problems.append(f"{option}: got {short(text)}; allowed: a whole number from {low} to {high}")
-    return low
-
-
 RESOLUTION = 150
 FORMULA_LOADS = (100.0, 1e8)
 """Loads for which the law of the formula is made [N/m]; far beyond 4 GPa in any bearing of steel."""
@@ -606,6 +491,10 @@ FORMULA_LOADS = (100.0, 1e8)
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Compute all points, describe and write them; status 1 where one is outside of what the laws hold for."""
+    if _BALLS.match(arguments.bearing) and not os.path.isfile(arguments.bearing):
+        from mbs.commands.one_bearing.balls import run_balls  # with kernels that others do not need
+
+        return run_balls(arguments)
     request = read_request(arguments)
     points = bearing_points(
         request.bearing, law_of(request), request.films, request.load_vectors, request.speeds, request.temperature

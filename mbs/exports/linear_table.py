@@ -27,7 +27,8 @@ from mbs.analyses.film_errors import film_error
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.contact_report import axes_left
-from mbs.commands.bearing import BearingRequest, read_request, read_values
+from mbs.commands.bearing import BearingRequest, read_request
+from mbs.commands.one_bearing.values import read_values
 from mbs.linearised.bands import law_bands
 from mbs.linearised.dynamic import element_dynamic_stiffness
 from mbs.linearised.validity import FilmError

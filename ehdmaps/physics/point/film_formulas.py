@@ -1,0 +1,65 @@
+"""Published films of lubricated elliptical contacts: flooded, isothermal, Newtonian, rolling along the short axis.
+
+Groups of Hamrock and Dowson: U = eta0 u/(E' Rx) with the mean speed u, W = F/(E' Rx^2), G = alpha E', and the
+ellipticity k = b/a >= 1.
+
+References
+----------
+B. J. Hamrock, D. Dowson, Isothermal elastohydrodynamic lubrication of point contacts, part III, Journal of Lubrication
+Technology 99 (1977) 264-276.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ehdmaps.arrays import Values, as_given
+
+
+def hamrock_dowson_minimum(
+    speed_number: float, load_number: Values, material_number: float, ellipticity: float
+) -> Values:
+    """Minimum film, h/Rx = 3.63 U^0.68 G^0.49 W^-0.073 (1 - exp(-0.68 k)).
+
+    Fitted to 34 solutions of the piezoviscous-elastic regime, k = 1 to 8; its authors' own solutions lie within 5 % of
+    it, later ones 10 to 40 % below at high M.
+
+    Parameters
+    ----------
+    speed_number : float
+        U.
+    load_number : float or array
+        W, > 0.
+    material_number, ellipticity : float
+        G, k.
+
+    Examples
+    --------
+    >>> round(1e6 * hamrock_dowson_minimum(0.1683e-11, 0.1106e-6, 4522.0, 6.0), 3)
+    7.001
+    """
+    shape = 1.0 - np.exp(-0.68 * ellipticity)
+    return as_given(3.63 * speed_number**0.68 * material_number**0.49 * load_number**-0.073 * shape, load_number)
+
+
+def hamrock_dowson_central(
+    speed_number: float, load_number: Values, material_number: float, ellipticity: float
+) -> Values:
+    """Central film, h/Rx = 2.69 U^0.67 G^0.53 W^-0.067 (1 - 0.61 exp(-0.73 k)).
+
+    Parameters
+    ----------
+    speed_number : float
+        U.
+    load_number : float or array
+        W, > 0.
+    material_number, ellipticity : float
+        G, k.
+
+    Examples
+    --------
+    >>> round(1e6 * hamrock_dowson_central(0.1683e-11, 0.1106e-6, 4522.0, 6.0), 3)
+    8.736
+    """
+    shape = 1.0 - 0.61 * np.exp(-0.73 * ellipticity)
+    return as_given(2.69 * speed_number**0.67 * material_number**0.53 * load_number**-0.067 * shape, load_number)

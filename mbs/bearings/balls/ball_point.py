@@ -1,0 +1,305 @@
+"""One ball bearing at an operating point: where its inner ring comes to rest, and what its balls feel there.
+
+The outer ring is held in its place, the inner one moves along x, y and z, and tilts if it may. The cage turns as pure
+rolling at the mean contact angles of the loaded balls asks for; its speed is found with the equilibrium. Pressures are
+those of dry Hertz. Films are those of the formula of Hamrock and Dowson at the load of each contact; they tell how
+thick the film is and move nothing.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.point.film_formulas import hamrock_dowson_central, hamrock_dowson_minimum
+from ehdmaps.units import PRESSURE
+from mbs.bearings.balls.ball_bearing import BallElement, BallForce, BallLoads
+from mbs.model.body import Inertia, rigid_body
+from mbs.model.elements import Load, Operation
+from mbs.model.equilibrium import Equilibrium, equilibrium
+from mbs.model.system import System
+
+STATIC_LIMIT = 4.2e9
+"""Hertz pressure of the static load rating of ball bearings after ISO 76 [Pa]; permanent deformation above it."""
+
+SIDES = ("inner", "outer")
+
+_RING = "inner ring"
+_CAGE_ERROR = 1e-8
+_MOST_TURNS = 40
+_SLIP = 0.05
+"""Traction over load that a film is trusted to hold a ball by against its gyroscopic moment."""
+
+
+@dataclass(frozen=True, eq=False)
+class BallPoint:
+    """A ball bearing in equilibrium.
+
+    Attributes
+    ----------
+    force : BallForce
+        Geometry and laws.
+    load : array (3,)
+        Load on the inner ring, x, y and z [N].
+    inner_speed, outer_speed, cage_speed : float
+        [rad/s].
+    entrainment_speed : float
+        Mean of the two surface speeds of a contact, against the cage, at the mean contact angles [m/s].
+    pose : array (6,)
+        Pose of the inner ring in the outer one.
+    stiffness, damping : array (6, 6)
+        -d force/d pose and -d force/d velocity.
+    balls : BallLoads
+        Loads, contact angles, approaches.
+    pressure, central_film, minimum_film : array (2, Z)
+        Hertz pressure [Pa] and films [m] of the inner and outer contacts; NaN for films of contacts without load.
+    centrifugal_load : float
+        Centrifugal load of a ball [N].
+    problems, notes : tuple of str
+        Why the laws do not hold at the point; what else is to be known.
+    """
+
+    force: BallForce
+    load: FloatArray
+    inner_speed: float
+    outer_speed: float
+    cage_speed: float
+    entrainment_speed: float
+    pose: FloatArray
+    stiffness: FloatArray
+    damping: FloatArray
+    balls: BallLoads
+    pressure: FloatArray
+    central_film: FloatArray
+    minimum_film: FloatArray
+    centrifugal_load: float
+    problems: tuple[str, ...]
+    notes: tuple[str, ...]
+
+    @property
+    def size(self) -> float:
+        """Size of the radial load [N]."""
+        return math.hypot(self.load[1], self.load[2])
+
+    @property
+    def axial(self) -> float:
+        """Axial load [N]."""
+        return float(self.load[0])
+
+    @property
+    def loaded(self) -> int:
+        """Number of balls that carry more than 1 % of the highest inner load."""
+        inner = self.balls.load[0]
+        return int(np.count_nonzero(inner > 0.01 * inner.max()))
+
+    @property
+    def axes(self) -> FloatArray:
+        """Unit vectors along and across the radial load, (2, 3); along y without one."""
+        y, z = (self.load[1:] / self.size) if self.size > 0.0 else (1.0, 0.0)
+        return np.array([[0.0, y, z], [0.0, -z, y]])
+
+    def along_across(self, matrix: FloatArray) -> tuple[float, float, float]:
+        """Entries of a matrix (6, 6) along the radial load, across it, and along the axis."""
+        along, across = self.axes
+        part = matrix[:3, :3]
+        return float(along @ part @ along), float(across @ part @ across), float(part[0, 0])
+
+    @property
+    def smallest_film(self) -> float:
+        """Smallest of all minimum films [m]; NaN where none is known."""
+        known = self.minimum_film[np.isfinite(self.minimum_film)]
+        return float(known.min()) if known.size else math.nan
+
+
+def ball_point(
+    force: BallForce,
+    load: Sequence[float],
+    inner_speed: float,
+    outer_speed: float = 0.0,
+    *,
+    tilts: bool = False,
+    oil: Lubricant | None = None,
+    temperature: float = 313.15,
+) -> BallPoint:
+    """Equilibrium of a ball bearing.
+
+    Parameters
+    ----------
+    force : BallForce
+        Geometry and laws.
+    load : (float, float, float)
+        Load on the inner ring, x, y and z [N].
+    inner_speed, outer_speed : float
+        Speeds of the rings [rad/s].
+    tilts : bool
+        Whether the inner ring tilts freely, without a moment; else it is held.
+    oil : Lubricant, optional
+        Oil of the films; no films without one.
+    temperature : float
+        Temperature of the raceways, and so of the oil [K].
+
+    Raises
+    ------
+    InputError
+        For loads that are no finite numbers, or all zero.
+    AnalysisError
+        Where no equilibrium is found.
+    """
+    given = np.array(load, dtype=np.float64)
+    if given.shape != (3,) or not np.all(np.isfinite(given)) or not np.any(given):
+        raise InputError(f"ball point, load: got {load!r} N; allowed: three finite numbers, x, y, z, not all zero")
+    free = ["x", "y", "z", "theta_y", "theta_z"] if tilts else ["x", "y", "z"]
+    ring = rigid_body(_RING, [Inertia(1.0, 1.0, 1.0)], free)
+    loads = [Load("load", _RING, np.array([*given, 0.0, 0.0, 0.0]))]
+    geometry = force.geometry
+    cage = geometry.cage_speed(inner_speed, outer_speed)
+    start, pose = None, np.zeros(6)
+    for _ in range(_MOST_TURNS):
+        element = _Held("bearing", _RING, "ground", force, inner_speed, outer_speed, cage)
+        balance = _balance(System([ring], loads=loads, elements=[element]), start, given, force)
+        pose[[0, 1, 2, 4, 5][: len(free)]] = start = balance.displacement
+        balls = element.balls(pose, Operation())
+        before, cage = cage, _rolling(force, balls, inner_speed, outer_speed)
+        if abs(cage - before) <= _CAGE_ERROR * max(abs(inner_speed), abs(outer_speed)):
+            break
+    else:
+        raise AnalysisError(f"no steady speed of the cage of {geometry.name} was found in {_MOST_TURNS} turns")
+    contacts = geometry.contacts(force.material)
+    pressure = np.array([contact.max_pressure(balls.load[side]) for side, contact in enumerate(contacts)])
+    u = _entrainment(force, balls, inner_speed, outer_speed)
+    central, minimum = np.full((2, *pressure.shape), np.nan)
+    if oil is not None and u > 0.0:
+        state = oil.at(temperature)
+        for side, contact in enumerate(contacts):
+            carries = balls.load[side] > 0.0
+            numbers = (
+                state.viscosity * u / (contact.reduced_modulus * contact.rolling_radius),
+                balls.load[side][carries] / (contact.reduced_modulus * contact.rolling_radius**2),
+                state.pressure_viscosity.pressure_viscosity * contact.reduced_modulus,
+                contact.ellipticity,
+            )
+            central[side, carries] = contact.rolling_radius * hamrock_dowson_central(*numbers)
+            minimum[side, carries] = contact.rolling_radius * hamrock_dowson_minimum(*numbers)
+    centrifugal, factor = force.speed_loads(inner_speed, outer_speed, before)
+    return BallPoint(
+        force=force,
+        load=given,
+        inner_speed=inner_speed,
+        outer_speed=outer_speed,
+        cage_speed=before,
+        entrainment_speed=u,
+        pose=pose,
+        stiffness=balance.element_stiffness[0],
+        damping=balance.element_damping[0],
+        balls=balls,
+        pressure=pressure,
+        central_film=central,
+        minimum_film=minimum,
+        centrifugal_load=centrifugal,
+        problems=tuple(filter(None, [_overload(pressure), _shoulder(force, balls)])),
+        notes=tuple(filter(None, [_slack(force, balls), _sliding(force, balls, factor), _lost(balls, centrifugal)])),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Held(BallElement):
+    """A bearing whose rings and cage turn at speeds of their own [rad/s], whatever the system does."""
+
+    def conditions(self, operation: Operation) -> dict[str, float]:
+        """Speeds as they are."""
+        return {"inner_speed": self.inner_spin, "outer_speed": self.outer_spin, "cage_speed": self.cage_spin or 0.0}
+
+
+def _balance(system: System, start: FloatArray | None, load: FloatArray, force: BallForce) -> Equilibrium:
+    """The equilibrium, or what to do where there is none."""
+    try:
+        return equilibrium(system, Operation(), start)
+    except AnalysisError as error:
+        geometry = force.geometry
+        words = f"no equilibrium of {geometry.name} under {load[0]:.4g} N axial, {math.hypot(*load[1:]):.4g} N radial"
+        if geometry.contact_angle:
+            way = "positive" if geometry.contact_angle > 0.0 else "negative"
+            words += (
+                f"; an angular contact bearing falls apart without a {way} axial load, of about the radial one times "
+                "the tangent of its contact angle"
+            )
+        raise AnalysisError(f"{words}: {error.__cause__ or error}") from error
+
+
+def _rolling(force: BallForce, balls: BallLoads, inner_speed: float, outer_speed: float) -> float:
+    """Speed of the cage by pure rolling at the mean contact angles of both sides [rad/s]."""
+    ratio = force.geometry.ball_diameter / force.geometry.pitch_diameter
+    inner = 1.0 - ratio * math.cos(balls.mean_angle(0))
+    outer = 1.0 + ratio * math.cos(balls.mean_angle(1))
+    return (inner_speed * inner + outer_speed * outer) / (inner + outer)
+
+
+def _entrainment(force: BallForce, balls: BallLoads, inner_speed: float, outer_speed: float) -> float:
+    """Speed of both surfaces against the cage at the mean contact angles [m/s]."""
+    geometry = force.geometry
+    ratio = geometry.ball_diameter / geometry.pitch_diameter
+    inner = 1.0 - ratio * math.cos(balls.mean_angle(0))
+    outer = 1.0 + ratio * math.cos(balls.mean_angle(1))
+    return 0.5 * geometry.pitch_diameter * abs(inner_speed - outer_speed) * inner * outer / (inner + outer)
+
+
+def _overload(pressure: FloatArray) -> str:
+    """A sentence where a pressure is beyond the static limit; empty otherwise."""
+    side, ball = np.unravel_index(int(np.argmax(pressure)), pressure.shape)
+    if pressure[side, ball] <= STATIC_LIMIT:
+        return ""
+    return (
+        f"Hertz pressure of {PRESSURE.text(float(pressure[side, ball]))} ({SIDES[side]} raceway) is above "
+        f"{PRESSURE.text(STATIC_LIMIT)}, the static limit of ISO 76: permanent deformation; elastic contacts no longer "
+        "hold"
+    )
+
+
+def _shoulder(force: BallForce, balls: BallLoads) -> str:
+    """A sentence where balls of an angular contact bearing press the other way; empty otherwise."""
+    nominal = force.geometry.contact_angle
+    wrong = (balls.load[0] > 1e-3 * balls.load[0].max()) & (balls.contact_angle[0] * nominal < -1e-6)
+    if not np.any(wrong):
+        return ""
+    return (
+        f"{int(np.count_nonzero(wrong))} balls press against the shoulder that angular contact bearings lack; give an "
+        "axial load that holds the contact angle"
+    )
+
+
+def _slack(force: BallForce, balls: BallLoads) -> str:
+    """A sentence where the axial load does not hold the contact angle of an angular contact bearing."""
+    nominal, found = (abs(math.degrees(angle)) for angle in (force.geometry.contact_angle, balls.mean_angle(0)))
+    if found >= 0.5 * nominal:
+        return ""
+    return (
+        f"the axial load is too small to hold the contact angle: the rings slide to {found:.3g} deg of {nominal:.3g}; "
+        "a mounted bearing gets an axial load from the other one"
+    )
+
+
+def _sliding(force: BallForce, balls: BallLoads, factor: float) -> str:
+    """A sentence where the gyroscopic moment asks for more traction than a film is trusted to have."""
+    traction = 2.0 * abs(factor) * np.abs(np.sin(balls.contact_angle[1])) / force.geometry.ball_diameter
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = float(np.nanmax(np.where(balls.load[1] > 0.0, traction / balls.load[1], 0.0)))
+    if share <= _SLIP:
+        return ""
+    return (
+        f"the gyroscopic moment asks for a traction of {share:.2g} of the load at the outer raceway, more than films "
+        f"hold ({_SLIP:g}): balls may slide; more axial load prevents it"
+    )
+
+
+def _lost(balls: BallLoads, centrifugal: float) -> str:
+    """A sentence where centrifugal load lifts balls off the inner raceway; empty otherwise."""
+    count = int(np.count_nonzero((balls.load[0] <= 0.0) & (balls.load[1] > 0.0)))
+    if not count or centrifugal < 1e-2 * float(balls.load.max()):
+        return ""
+    return f"{count} of {balls.angle.size} balls run on the outer raceway alone, by their centrifugal load"

@@ -1,0 +1,1 @@
+"""Commands on one bearing without a scene: its values read, and ball bearings."""

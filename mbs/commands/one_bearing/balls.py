@@ -1,0 +1,225 @@
+"""`mbs bearing` of a ball bearing: deep groove or angular contact, by its designation; every problem at once."""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+from ehdmaps.errors import InputError
+from ehdmaps.outputs import Output, output_problems
+from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
+from ehdmaps.physics.point.ball_catalogue import ball_estimate
+from ehdmaps.physics.point.ball_geometry import BallGeometry
+from ehdmaps.physics.solids import STEEL
+from ehdmaps.units import RPM, TEMPERATURE
+from mbs.bearings.balls.ball_bearing import BallForce
+from mbs.bearings.balls.ball_point import BallPoint, ball_point
+from mbs.bearings.balls.laws import dry_law
+from mbs.commands.one_bearing.values import (
+    LOADS,
+    MOST_POINTS,
+    SPEEDS,
+    read_choices,
+    read_direction,
+    read_one,
+    read_values,
+)
+from mbs.output.ball_table import BallDescription, ball_dataset, ball_text, write_ball_csv
+from mbs.output.bearing_table import result_kind
+from mbs.output.files import write_dataset
+from mbs.scene.contact_laws import HERTZ_FORMS, Damper, hertz_damper
+from mbs.scene.fields import FORCE, MICROMETRE
+
+CELSIUS_40, ROUGHNESS = 313.15, 0.3e-6
+"""Assumed where nothing is given: the temperature of the raceways [K], the combined rms roughness [m]."""
+
+_TAKEN = ("law", "clearance", "temperature", "roughness")
+"""Choices that ball bearings take."""
+
+
+@dataclass(frozen=True, eq=False)
+class BallRequest:
+    """Request to be answered.
+
+    Attributes
+    ----------
+    force : BallForce
+        Geometry with its clearance, and law.
+    oil : Lubricant
+        Oil of the films.
+    loads : tuple of float
+        Sizes of the radial load on the inner ring [N].
+    axial : float
+        Axial load on the inner ring [N].
+    way : (float, float)
+        Direction of the radial load, y and z; a unit vector.
+    speeds : tuple of float
+        Speeds of the inner ring [rad/s].
+    outer_speed : float
+        Speed of the outer ring [rad/s].
+    description : BallDescription
+        The same in words.
+    """
+
+    force: BallForce
+    oil: Lubricant
+    loads: tuple[float, ...]
+    axial: float
+    way: tuple[float, float]
+    speeds: tuple[float, ...]
+    outer_speed: float
+    description: BallDescription
+
+
+def read_balls(arguments: argparse.Namespace) -> BallRequest:
+    """Read the bearing and all options.
+
+    Raises
+    ------
+    InputError
+        With every problem.
+    """
+    problems: list[str] = []
+    geometry = _geometry(arguments.bearing, problems)
+    chosen = read_choices(arguments, problems)
+    _refuse_others(arguments, list(chosen), problems)
+    axial = read_one("--axial", arguments.axial, "N", (-LOADS[1], LOADS[1]), FORCE, 0.0, problems)
+    least = 0.0 if axial else LOADS[0]
+    loads = read_values("--load", arguments.load, "N", (least, LOADS[1]), FORCE, problems)
+    speeds = read_values("--speed", arguments.speed, "rad/s", SPEEDS, RPM, problems)
+    limits = (-SPEEDS[1], SPEEDS[1])
+    outer = read_one("--outer-speed", arguments.outer_speed, "rad/s", limits, RPM, 0.0, problems)
+    if len(loads) * len(speeds) > MOST_POINTS:
+        problems.append(f"--load, --speed: got {len(loads) * len(speeds)} points; allowed: at most {MOST_POINTS}")
+    way = read_direction(arguments.direction, problems)
+    damper = _damper(chosen.get("law"), problems)
+    temperature = float(chosen.get("temperature", CELSIUS_40))
+    oil = _oil(arguments.oil, temperature, problems)
+    clearance = chosen.get("clearance")
+    if geometry is not None and clearance is not None:
+        try:
+            geometry = dataclasses.replace(geometry, clearance=float(clearance))
+        except InputError as error:
+            problems += [f"--clearance: {problem}" for problem in error.problems]
+    problems += output_problems((Output("-o", arguments.output, result_kind(arguments.output)),), [])
+    if problems or geometry is None or damper is None or oil is None:
+        raise InputError(tuple(dict.fromkeys(problems)))
+    roughness = chosen["roughness"].roughness if "roughness" in chosen else ROUGHNESS
+    assumed = [
+        *([f"temperature {TEMPERATURE.text(CELSIUS_40)}"] if "temperature" not in chosen else []),
+        *(
+            [f"combined rms roughness {MICROMETRE.text(ROUGHNESS)} (for Lambda only)"]
+            if "roughness" not in chosen
+            else []
+        ),
+        *(["no clearance"] if clearance is None else []),
+        *([f"oil {DEFAULT_OIL}"] if arguments.oil is None else []),
+    ]
+    law = dry_law(geometry, STEEL, damper.constant, damper.time)
+    return BallRequest(
+        force=BallForce(geometry, law),
+        oil=oil,
+        loads=loads,
+        axial=axial,
+        way=way,
+        speeds=speeds,
+        outer_speed=outer,
+        description=BallDescription(
+            law="dry Hertz" + (f", {damper.words} of each contact" if damper.words else ""),
+            films=f"films by the formula of Hamrock and Dowson, {oil.title}"
+            + ("" if oil.verified else " (unverified data of the oil)"),
+            direction=math.degrees(math.atan2(way[1], way[0])),
+            temperature=temperature,
+            roughness=roughness,
+            tilts=arguments.tilts,
+            assumed=tuple(assumed),
+        ),
+    )
+
+
+def run_balls(arguments: argparse.Namespace) -> tuple[str, int]:
+    """Compute all points, describe and write them; status 1 where one is outside of what the laws hold for."""
+    request = read_balls(arguments)
+    points = ball_points(request)
+    lines = ball_text(request.description, points)
+    if arguments.output:
+        dataset = ball_dataset(request.description, points)
+        if Path(arguments.output).suffix.lower() == ".csv":
+            write_ball_csv(dataset, arguments.output)
+        else:
+            write_dataset(dataset, Path(arguments.output))
+        lines.append(f"{arguments.output}: written")
+    return "\n".join(lines), 1 if any(point.problems for row in points for point in row) else 0
+
+
+def ball_points(request: BallRequest) -> list[list[BallPoint]]:
+    """Points at every load and every speed."""
+    return [
+        [
+            ball_point(
+                request.force,
+                (request.axial, load * request.way[0], load * request.way[1]),
+                speed,
+                request.outer_speed,
+                tilts=request.description.tilts,
+                oil=request.oil,
+                temperature=request.description.temperature,
+            )
+            for speed in request.speeds
+        ]
+        for load in request.loads
+    ]
+
+
+def _geometry(source: str, problems: list[str]) -> BallGeometry | None:
+    """The bearing of a designation."""
+    try:
+        return ball_estimate(source)
+    except InputError as error:
+        problems += [f"BEARING: {problem}" for problem in error.problems]
+        return None
+
+
+def _refuse_others(arguments: argparse.Namespace, chosen: list[str], problems: list[str]) -> None:
+    """Note options that are for roller bearings."""
+    given = [f"--{name}" for name in chosen if name not in _TAKEN]
+    given += [
+        f"--{side}-ring-temperature"
+        for side in ("inner", "outer")
+        if getattr(arguments, f"{side}_ring_temperature") is not None
+    ]
+    given += ["--profile"] * (arguments.profile != "iso") + ["--slices"] * (arguments.slices != "41")
+    given += ["--coupled"] * bool(arguments.coupled) + ["--plot"] * (arguments.plot is not None)
+    if given:
+        allowed = ", ".join(f"--{name}" for name in (*_TAKEN, "oil", "axial", "outer-speed", "tilts", "direction"))
+        problems.append(f"{', '.join(given)}: not for ball bearings; allowed: {allowed} and -o; leave it out")
+
+
+def _damper(law: str | None, problems: list[str]) -> Damper | None:
+    """Damper of the law hertz."""
+    try:
+        damper = Damper() if law is None else hertz_damper(law)
+    except InputError as error:
+        problems += error.problems
+        return None
+    if damper is None:
+        problems.append(
+            f"--law: got {law!r:.60} for a ball bearing; allowed: hertz, {HERTZ_FORMS}; maps are of line contacts"
+        )
+    return damper
+
+
+def _oil(name: str | None, temperature: float, problems: list[str]) -> Lubricant | None:
+    """The oil, which must suit the temperature."""
+    option = "--oil"
+    try:
+        oil = Lubricant.named(DEFAULT_OIL if name is None else name)
+        option = "--temperature"
+        oil.at(temperature)
+    except InputError as error:
+        problems += [f"{option}: {problem}" for problem in error.problems]
+        return None
+    return oil

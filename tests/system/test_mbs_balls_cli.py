@@ -1,0 +1,156 @@
+"""`mbs bearing` of ball bearings as a newcomer meets it."""
+
+from __future__ import annotations
+
+import csv
+import math
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.point.ball_catalogue import ball_estimate
+from ehdmaps.physics.solids import STEEL
+from mbs.bearings.balls.ball_bearing import BallForce
+from mbs.bearings.balls.ball_point import STATIC_LIMIT, ball_point
+from mbs.bearings.balls.laws import dry_law
+from tests.cases import commands
+
+RPM = math.pi / 30.0
+LOADED = ("6208", "--load", "2 kN", "--axial", "500 N", "--speed", "3000 rpm")
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def run(capsys, *arguments):
+    return commands.run(capsys, "bearing", *arguments)
+
+
+def numbers(out, label):
+    """Numbers of the line of the page that begins with its label."""
+    line = next(line for line in out.splitlines() if line.startswith(f"  {label}"))
+    return [float(word) for word in line[42:].split()]
+
+
+def test_one_point(capsys, here) -> None:
+    status, out, err = run(capsys, *LOADED)
+    assert (status, err) == (0, "")
+    geometry = ball_estimate("6208")
+    force = BallForce(geometry, dry_law(geometry))
+    point = ball_point(force, (500.0, 2000.0, 0.0), 3000.0 * RPM, oil=Lubricant.named("FVA3"))
+    assert numbers(out, "stiffness") == pytest.approx([1e-6 * point.stiffness[i, i] for i in (1, 2, 0)], rel=1e-4)
+    assert numbers(out, "Hertz pressure") == pytest.approx(1e-9 * point.pressure.max(axis=1), rel=1e-4)
+    angles = [math.degrees(point.balls.mean_angle(side)) for side in (0, 1)]
+    assert numbers(out, "mean contact angle") == pytest.approx(angles, rel=1e-4)
+    assert "inner geometry estimated from catalogue dimensions" in out
+    assert "7 of 9 balls carry more than 1 %" in out
+    assert "assumed: temperature 40 degC" in out
+
+
+def test_balance_of_the_balls(capsys, here) -> None:
+    """Radial and axial parts of all inner loads are the load: of the equilibrium, 1e-9."""
+    assert run(capsys, *LOADED, "-o", "out.nc")[0] == 0
+    with xr.open_dataset("out.nc") as data:
+        load = data["ball_load"].sel(contact="inner").values[0, 0]
+        angle = data["ball_contact_angle"].sel(contact="inner").values[0, 0]
+        assert np.sum(load * np.sin(angle)) == pytest.approx(500.0, rel=1e-8)
+        assert np.sum(load * np.cos(angle) * np.cos(data["ball"].values)) == pytest.approx(2000.0, rel=1e-8)
+        assert data.attrs["axial_load_N"] == 500.0
+        assert data.attrs["bearing_balls"] == 9
+        matrix = data["stiffness_matrix"].values[0, 0]
+        assert matrix[1, 1] == pytest.approx(float(data["stiffness_along"].values[0, 0]), rel=1e-12)
+
+
+def test_table_over_load_and_speed(capsys, here) -> None:
+    command = ("7208 BEP", "--load", "500 N", "1 kN", "2", "--axial", "3 kN", "--speed", "1000 rpm", "15000 rpm", "3")
+    status, out, _ = run(capsys, *command, "-o", "out.csv", "--law", "hertz:1.25e-5 s")
+    assert status == 0
+    with open("out.csv", encoding="utf-8") as file:
+        rows = list(csv.reader(line for line in file if not line.startswith("#")))
+    assert len(rows) == 1 + 2 * 3
+    column = rows[0].index("contact_angle_outer [rad]")
+    fast = [float(row[column]) for row in rows[1:4]]
+    assert fast[0] > fast[1] > fast[2]
+    damping, stiffness = (rows[0].index(name) for name in ("damping_axial [N s/m]", "stiffness_axial [N/m]"))
+    # each contact has c = tau k along its normal; what turns has none
+    ratio = float(rows[1][damping]) / float(rows[1][stiffness])
+    assert 0.8 * 1.25e-5 < ratio < 1.0001 * 1.25e-5
+    assert "note: the gyroscopic moment asks for a traction" in out
+
+
+def test_films_follow_the_speed(capsys, here) -> None:
+    """h_min goes with U^0.68 at one load: 2^0.68 = 1.602."""
+    films = [numbers(run(capsys, *LOADED[:-1], speed)[1], "smallest film")[0] for speed in ("400 rpm", "800 rpm")]
+    assert films[1] / films[0] == pytest.approx(2.0**0.68, rel=1e-3)
+
+
+def test_outer_ring_turns(capsys, here) -> None:
+    """The cage is faster, and so is the centrifugal load; radial stiffness hardly knows."""
+    inner = run(capsys, "6208", "--load", "1 kN", "--speed", "10000 rpm")[1]
+    outer = run(capsys, "6208", "--load", "1 kN", "--speed", "0 rpm", "--outer-speed", "10000 rpm")[1]
+    cages = [float(out.split("cage ")[1].split()[0]) for out in (inner, outer)]
+    assert cages[0] + cages[1] == pytest.approx(10000.0, rel=1e-3)
+    assert cages[1] > cages[0]
+
+
+def test_clearance_and_tilt(capsys, here) -> None:
+    tight = numbers(run(capsys, *LOADED)[1], "mean contact angle")
+    loose = numbers(run(capsys, *LOADED, "--clearance", "20 um")[1], "mean contact angle")
+    assert loose[0] > tight[0] + 1.0
+    out = run(capsys, *LOADED, "--tilts")[1]
+    assert "tilts freely" in out
+    assert abs(numbers(out, "tilt about y and z")[1]) > 0.01
+
+
+def test_overload_is_a_problem(capsys, here) -> None:
+    status, out, _ = run(capsys, "6208", "--load", "60 kN", "--speed", "0 rpm")
+    assert status == 1
+    assert "static limit of ISO 76" in out
+
+
+def test_static_rating_is_at_the_static_limit() -> None:
+    """ISO 76: C0 gives 4.2 GPa at the most loaded ball with 5 F/Z; its f0 is for grooves of 0.52, ours are closer."""
+    geometry = ball_estimate("6208")
+    inner = geometry.contacts(STEEL)[0]
+    pressure = inner.max_pressure(5.0 * 17900.0 / geometry.balls)
+    assert pressure == pytest.approx(STATIC_LIMIT, rel=0.12)
+
+
+def test_angular_contact_without_axial_load_is_said(capsys, here) -> None:
+    status, out, _ = run(capsys, "7208B", "--load", "1 kN", "--speed", "1000 rpm")
+    assert status == 0
+    assert "the axial load is too small to hold the contact angle" in out
+    status, _, err = run(capsys, "7208B", "--load", "1 N", "--axial=-2 kN", "--speed", "1000 rpm")
+    assert status != 0
+    assert "angular contact bearing falls apart" in err
+
+
+@pytest.mark.parametrize(
+    ("command", "words"),
+    [
+        (("7208", "--load", "1 kN", "--speed", "0 rpm"), "suffix C, AC or B"),
+        (("6299", "--load", "1 kN", "--speed", "0 rpm"), "ball bearing designation: got '6299'"),
+        (("6208", "--load", "0 N", "--speed", "0 rpm"), "--load: got '0 N'"),
+        (("6208", "--load", "1 kN", "--speed", "2e5 rpm"), "--speed: got '2e5 rpm'"),
+        (("6208", "--load", "1 kN", "--speed", "0 rpm", "--law", "map"), "--law: got 'map' for a ball bearing"),
+        (("6208", "--load", "1 kN", "--speed", "0 rpm", "--slices", "9"), "--slices: not for ball bearings"),
+        (("6208", "--load", "1 kN", "--speed", "0 rpm", "--axial", "many"), "--axial: "),
+        (("6208", "--load", "1 kN", "--speed", "0 rpm", "--clearance", "1 m"), "--clearance: "),
+        (("NU308", "--load", "1 kN", "--speed", "0 rpm", "--axial", "1 N"), "--axial: for ball bearings"),
+    ],
+)
+def test_wrong_options_are_refused(capsys, here, command, words) -> None:
+    status, _, err = run(capsys, *command)
+    assert status == 2
+    assert words in err
+
+
+def test_all_problems_at_once(capsys, here) -> None:
+    status, _, err = run(capsys, "7208", "--load", "x", "--speed", "y", "--axial", "z")
+    assert status == 2
+    assert "4 problems" in err
