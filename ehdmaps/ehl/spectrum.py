@@ -88,8 +88,17 @@ class FilmSpace:
             Frequencies Omega; complex for a motion e^(lambda t), -i lambda b/u. With a size up to that of which the
             space was made.
         """
-        moved = self.norm * _projected(self.hessenberg, self.heights.size, self.heights, frequencies)
-        return np.asarray(-moved - DRY_COMPLIANCE)
+        return np.asarray(-self.motions(frequencies) - DRY_COMPLIANCE)
+
+    def motions(self, frequencies: FloatArray | ComplexArray) -> ComplexArray:
+        """H0 by a load of one, over frequency, shape (k,).
+
+        Parameters
+        ----------
+        frequencies : ndarray, shape (k,)
+            Frequencies as of `compliances`.
+        """
+        return np.asarray(self.norm * _projected(self.hessenberg, self.heights.size, self.heights, frequencies))
 
 
 def film_space(linear: Linearisation, fastest: float) -> FilmSpace:

@@ -107,7 +107,7 @@ def parser() -> argparse.ArgumentParser:
 
     solve = top.add_command(_MAKE, "solve", "one operating point, as a table", ["supply", *_OF_BEARING])
     _add_job(solve)
-    solve.add_argument("--load", required=True, help='such as "62 N" (with --length) or "88 N/mm"')
+    solve.add_argument("--load", required=True, help='such as "62 N" (with --length) or "88 N/mm"; of a ball: "100 N"')
     solve.add_argument("--length", help='that carries the load, such as "0.7 mm"')
     solve.add_argument(
         "--speed", required=True, help='entrainment speed, such as "1.7 m/s", or of the inner ring, "500 rpm"'
@@ -148,8 +148,8 @@ def parser() -> argparse.ArgumentParser:
     solve.add_argument(
         "--plot",
         metavar="FIG.png",
-        help="with --frequency FROM TO POINTS: complex stiffness; else openfoam: pressure, film and velocity; also "
-        ".pdf, .svg",
+        help="with --frequency FROM TO POINTS: complex stiffness; of balls: film and pressure in plan view; else "
+        "openfoam: pressure, film and velocity; also .pdf, .svg",
     )
 
     length = top.add_command(
@@ -316,6 +316,13 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _command(arguments: argparse.Namespace) -> tuple[str, int]:
     """Load the command that is asked for, and do it."""
+    if arguments.command == "solve":
+        from ehdmaps.physics.point.ball_catalogue import plain_ball_designation
+
+        if any(plain_ball_designation(text or "") for text in (arguments.job, arguments.bearing)):
+            from ehdmaps.jobs.solve.ball_points import run as solve_balls
+
+            return solve_balls(arguments)
     _place_bearing(arguments)
     result: tuple[str, int] = importlib.import_module(f"ehdmaps.jobs.commands.{arguments.command}").run(arguments)
     return result

@@ -46,6 +46,14 @@ ALLOWED = {
         "ehdmaps.errors",
         "ehdmaps.physics",
     },
+    "ehdmaps.point": {
+        "ehdmaps.arrays",
+        "ehdmaps.compiled",
+        "ehdmaps.compiling",
+        "ehdmaps.ehl",
+        "ehdmaps.errors",
+        "ehdmaps.physics",
+    },
     "ehdmaps.maps": {
         "ehdmaps.arrays",
         "ehdmaps.compiled",
@@ -107,6 +115,7 @@ ALLOWED = {
         "ehdmaps.physics",
         "ehdmaps.ehl",
         "ehdmaps.openfoam",
+        "ehdmaps.point",
         "ehdmaps.maps",
         "ehdmaps.report",
         "ehdmaps.solids",

@@ -1,0 +1,252 @@
+"""`ehdmaps solve` of a ball bearing: its inner and outer contact at one load of a ball, by the point contact."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import InputError
+from ehdmaps.outputs import FIGURE, Output, output_problems
+from ehdmaps.physics.contact import OIL_TEMPERATURES
+from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
+from ehdmaps.physics.point.ball_catalogue import ball_estimate
+from ehdmaps.physics.point.ball_geometry import BallGeometry
+from ehdmaps.physics.solids import STEEL
+from ehdmaps.physics.spectrum import HIGHEST_FREQUENCY, LOWEST_FREQUENCY, MOST_FREQUENCIES
+from ehdmaps.point.solver import PointSolution, solve
+from ehdmaps.program import tell
+from ehdmaps.units import DAMPER, FILM, LENGTH, PRESSURE, RPM, SPEED, SPRING, TEMPERATURE, Display, quantity, short
+
+FORCE = Display("N")
+_HERTZ = Display("Hz")
+
+NUMBERS = (
+    ("largest pressure", "max_pressure", PRESSURE),
+    ("approach", "approach", FILM),
+    ("film offset", "film_offset", FILM),
+    ("central film", "central_film", FILM),
+    ("minimum film", "minimum_film", FILM),
+    ("stiffness k", "stiffness", SPRING),
+    ("damping c", "damping", DAMPER),
+)
+"""Lines of the table with an error: label, attribute of `PointSolution`, display."""
+
+_FASTEST = 1e6 * math.pi / 30.0
+_OF_LINES = (
+    *("length", "shear_stress", "slide_to_roll", "limiting_ratio", "keep_cases", "fields", "supply", "physics"),
+    "shear",
+)
+"""Options of line contacts."""
+
+
+@dataclass(frozen=True)
+class _Request:
+    """What is asked: bearing, oil, load of a ball [N], speed [m/s], temperature [K], frequencies [Hz], picture."""
+
+    bearing: BallGeometry
+    oil: Lubricant
+    load: float
+    speed: float
+    temperature: float
+    frequencies: FloatArray | None
+    plot: Path | None
+
+
+def run(arguments: argparse.Namespace) -> tuple[str, int]:
+    """Solve both contacts; status 1 if one of them has no solution.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        Arguments of `ehdmaps solve`.
+    """
+    request = _read(arguments)
+    solutions = {
+        name: solve(ellipse, request.oil, request.load, request.speed, request.temperature, request.frequencies)
+        for name, ellipse in zip(("inner", "outer"), request.bearing.contacts(STEEL), strict=True)
+    }
+    if request.plot is not None:
+        from ehdmaps.jobs.solve.point_plot import plot_points
+
+        plot_points(solutions, _heading(request), request.plot)
+        tell(f"{request.plot}: written")
+    text = _json(solutions) if arguments.json else _table(request, solutions)
+    return text, 0 if all(solution.status.usable for solution in solutions.values()) else 1
+
+
+def _read(arguments: argparse.Namespace) -> _Request:
+    """Read the arguments; all problems at once."""
+    problems: list[str] = []
+    if arguments.job is not None and arguments.bearing is not None:
+        problems.append(f"--bearing: got {short(arguments.bearing)} beside a job; allowed: one of the two")
+    for name in _OF_LINES:
+        if getattr(arguments, name, None) is not None:
+            option = name.replace("_", "-")
+            problems.append(f"--{option}: is one of line contacts; allowed: without it for the balls of a bearing")
+    if arguments.solver not in (None, "reynolds"):
+        problems.append(f"--solver: got {short(arguments.solver)}; allowed: reynolds for the balls of a bearing")
+
+    def read(option: str, text: str, unit: str, low: float, high: float, display: Display) -> float:
+        try:
+            value = quantity(text, unit)
+        except InputError as error:
+            problems.append(f"{option}: {error.problems[0]}")
+            return math.nan
+        if low <= value <= high:
+            return value
+        problems.append(f"{option}: got {text!r}; allowed: {display.text(low)} to {display.text(high)}")
+        return math.nan
+
+    bearing: BallGeometry | None = None
+    oil: Lubricant | None = None
+    try:
+        bearing = ball_estimate(arguments.job or arguments.bearing)
+    except InputError as error:
+        problems.extend(error.problems)
+    try:
+        oil = Lubricant.named(arguments.oil or DEFAULT_OIL)
+    except InputError as error:
+        problems.extend(f"--oil: {problem}" for problem in error.problems)
+    load = read("--load", arguments.load, "N", 0.0, 1e9, FORCE)
+    if any(unit in arguments.speed for unit in ("rpm", "rad")):
+        ring = read("--speed", arguments.speed, "rad/s", 0.0, _FASTEST, RPM)
+        speed = bearing.entrainment_speed(ring) if bearing is not None else math.nan
+    else:
+        speed = read("--speed", arguments.speed, "m/s", 0.0, 1e3, SPEED)
+    temperature = read("--temperature", arguments.temperature, "K", *OIL_TEMPERATURES, TEMPERATURE)
+    frequencies = None
+    if arguments.frequency is not None:
+        ends = [
+            read("--frequency", text, "Hz", LOWEST_FREQUENCY, HIGHEST_FREQUENCY, _HERTZ)
+            for text in arguments.frequency[:2]
+        ]
+        frequencies = _spaced(arguments.frequency, ends, problems)
+    problems += output_problems([Output("--plot", arguments.plot, FIGURE)])
+    if oil is not None and math.isfinite(temperature):
+        try:
+            oil.at(temperature)
+        except InputError as error:
+            problems.extend(f"--temperature: {problem}" for problem in error.problems)
+    if problems or bearing is None or oil is None:
+        raise InputError(problems)
+    plot = None if arguments.plot is None else Path(arguments.plot)
+    return _Request(bearing, oil, load, speed, temperature, frequencies, plot)
+
+
+def _spaced(given: Sequence[str], ends: list[float], problems: list[str]) -> FloatArray | None:
+    """Frequencies of --frequency: one, or FROM TO POINTS."""
+    if len(given) == 1:
+        return np.array(ends)
+    count = given[-1]
+    points = int(count) if len(given) == 3 and count.isascii() and count.isdigit() and len(count) <= 9 else -1
+    if not 2 <= points <= MOST_FREQUENCIES or ends[0] >= ends[1]:
+        problems.append(
+            f"--frequency: got {' '.join(given):.60}; allowed: one, or FROM TO POINTS, TO above FROM and 2 to "
+            f"{MOST_FREQUENCIES} of them"
+        )
+        return None
+    return np.geomspace(ends[0], ends[1], points)
+
+
+def _heading(request: _Request) -> str:
+    """Bearing, oil and point in words."""
+    place = f"{FORCE.text(request.load)} a ball, {SPEED.text(request.speed)}, {TEMPERATURE.text(request.temperature)}"
+    return f"{request.bearing.title}, {request.oil.title}: {place}"
+
+
+def _json(solutions: dict[str, PointSolution]) -> str:
+    """One object a contact, SI."""
+    return json.dumps([_record(name, solution) for name, solution in solutions.items()], indent=2, allow_nan=False)
+
+
+def _record(name: str, solution: PointSolution) -> dict[str, Any]:
+    """Plain values of a contact; None where there is no number."""
+    a, b = solution.ellipse.semi_axes(solution.load)
+    values: dict[str, Any] = {
+        "contact": name,
+        "load": solution.load,
+        "entrainment_speed": solution.entrainment_speed,
+        "temperature": solution.temperature,
+        "ellipticity": solution.ellipse.ellipticity,
+        "M": solution.load_number,
+        "L": solution.oil_number,
+        "hertz_semi_axes": [a, b],
+        "hertz_pressure": solution.ellipse.max_pressure(solution.load),
+        **{key: getattr(solution, key) for _, attribute, _ in NUMBERS for key in (attribute, f"{attribute}_error")},
+        "steps": solution.steps,
+        "solve_seconds": solution.solve_seconds,
+        "viscosity_extrapolated": solution.viscosity_extrapolated,
+        "status": solution.status.word,
+        "reason": solution.reason,
+    }
+    if solution.response is not None:
+        response = solution.response
+        values["frequency"] = response.frequencies.tolist()
+        for key in ("stiffness", "damping", "stiffness_error", "damping_error"):
+            values[f"{key}_over_frequency"] = getattr(response, key).tolist()
+    return {
+        key: None if isinstance(value, float) and not math.isfinite(value) else value for key, value in values.items()
+    }
+
+
+def _table(request: _Request, solutions: dict[str, PointSolution]) -> str:
+    """The printed table: a column a contact, each number with its error."""
+    found = list(solutions.values())
+    axes = [solution.ellipse.semi_axes(solution.load) for solution in found]
+    plain = Display("")
+    rows: list[tuple[str, str, list[str]]] = [
+        ("status", "", [solution.status.word for solution in found]),
+        ("ellipticity", "", [f"{solution.ellipse.ellipticity:.4g}" for solution in found]),
+        ("M", "", [_shown(solution.load_number, math.nan, plain) for solution in found]),
+        ("L", "", [_shown(solution.oil_number, math.nan, plain) for solution in found]),
+        ("Hertz semi-axes", LENGTH.unit, [f"{LENGTH.value(a):.4g} x {LENGTH.value(b):.4g}" for a, b in axes]),
+        (
+            "Hertz pressure",
+            PRESSURE.unit,
+            [f"{PRESSURE.value(float(solution.ellipse.max_pressure(solution.load))):.4g}" for solution in found],
+        ),
+    ]
+    for label, name, display in NUMBERS:
+        shown = [_shown(getattr(each, name), getattr(each, f"{name}_error"), display) for each in found]
+        rows.append((label, display.unit, shown))
+    rows.append(("time to solve", "ms", [f"{1e3 * solution.solve_seconds:.3g}" for solution in found]))
+    lines = [_heading(request)]
+    if request.bearing.estimated:
+        lines.append(request.bearing.estimated)
+    lines += [f"  {'':18s}{'':8s}" + "".join(f"{name:>24s}" for name in solutions)]
+    lines += [f"  {label:18s}{unit:8s}" + "".join(f"{value:>24s}" for value in shown) for label, unit, shown in rows]
+    for name, solution in solutions.items():
+        if solution.reason:
+            lines.append(f"{name}: {solution.reason}")
+        if solution.viscosity_extrapolated:
+            lines.append(f"{name}: viscosity extrapolated: pressure above {request.oil.reach}")
+        if solution.response is not None:
+            lines += ["", *_over_frequency(name, solution)]
+    return "\n".join(line.rstrip() for line in lines)
+
+
+def _over_frequency(name: str, solution: PointSolution) -> list[str]:
+    """Lines of a contact over frequency."""
+    response = solution.response
+    assert response is not None
+    lines = [f"{name}: {'frequency, Hz':>14s}{f'k, {SPRING.unit}':>24s}{f'c, {DAMPER.unit}':>24s}"]
+    columns = (response.stiffness, response.stiffness_error, response.damping, response.damping_error)
+    for frequency, k, k_error, c, c_error in zip(response.frequencies, *columns, strict=True):
+        lines.append(f"{frequency:21.5g}{_shown(k, k_error, SPRING):>24s}{_shown(c, c_error, DAMPER):>24s}")
+    return lines
+
+
+def _shown(value: float, error: float, display: Display) -> str:
+    """A number with its error in per cent."""
+    if not math.isfinite(value):
+        return "-"
+    text = f"{display.value(value):.5g}"
+    return text if not math.isfinite(error) else f"{text} +-{100.0 * error:.2g} %"

@@ -1,0 +1,58 @@
+"""`ehdmaps solve` of the contacts of a ball bearing."""
+
+import json
+
+import pytest
+
+from ehdmaps.jobs import cli
+
+POINT = ["--load", "100 N", "--speed", "3000 rpm", "--temperature", "60 degC"]
+
+
+def run(capsys, *arguments):
+    """Return exit status, stdout and stderr of a command."""
+    status = cli.main(["solve", *arguments])
+    captured = capsys.readouterr()
+    return status, captured.out, captured.err
+
+
+def test_both_contacts_of_a_ball_are_solved_and_drawn(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    status, out, err = run(capsys, "6208", *POINT, "--frequency", "100 Hz", "10 kHz", "3", "--plot", "film.png")
+    assert status == 0
+    assert "film.png: written" in err and (tmp_path / "film.png").stat().st_size > 20_000
+    lines = {line[:20].strip(): line for line in out.splitlines()}
+    assert lines["status"].split()[1:] == ["converged", "converged"]
+    assert "+-" in lines["central film"] and lines["damping c"].count("%") == 2
+    assert out.count("frequency, Hz") == 2
+
+
+def test_plain_values_have_the_same_numbers(capsys):
+    status, out, _ = run(capsys, "--bearing", "6208", "--oil", "ISO VG 46", *POINT, "--json")
+    inner, outer = json.loads(out)
+    assert status == 0
+    assert (inner["contact"], outer["contact"]) == ("inner", "outer")
+    assert inner["central_film"] < outer["central_film"] and 0.0 < inner["central_film_error"] < 0.05
+    assert inner["ellipticity"] > outer["ellipticity"] > 1.0
+
+
+def test_no_load_is_told_and_ends_with_status_one(capsys):
+    status, out, _ = run(capsys, "6208", "--load", "0 N", *POINT[2:])
+    assert status == 1
+    assert "inner: no load: the bodies do not meet, no film to solve" in out
+
+
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [
+        (["--length", "1 mm"], "--length: is one of line contacts"),
+        (["--solver", "openfoam"], "--solver: got 'openfoam'; allowed: reynolds"),
+        (["--frequency", "10 Hz", "1 Hz", "3"], "--frequency: got 10 Hz 1 Hz 3; allowed"),
+        (["--oil", "butter"], "--oil: "),
+        (["--load", "100 N/mm"], "--load: got the unit 'N/mm'"),
+    ],
+)
+def test_what_balls_do_not_take_is_refused(capsys, more, words):
+    status, _, err = run(capsys, "6208", *POINT, *more)
+    assert status == 2
+    assert words in err
