@@ -96,8 +96,12 @@ def _modes(command: argparse.ArgumentParser) -> None:
 
 def _shapes(command: argparse.ArgumentParser) -> None:
     """Add pictures and files of mode shapes."""
-    command.add_argument("--shapes", metavar="FIG.png", help="picture of mode shapes in space; also .pdf, .svg")
-    command.add_argument("--shapes-file", metavar="SHAPES.vtu", help="mode shapes for ParaView")
+    command.add_argument(
+        "--shapes", metavar="FIG.png", help="picture of mode shapes in space; also .pdf, .svg; .html: a page that moves"
+    )
+    command.add_argument(
+        "--shapes-file", metavar="SHAPES.vtu", help="mode shapes for ParaView; .pvd: a series over a period"
+    )
     command.add_argument(
         "--shape-modes", metavar="N", nargs="+", help="numbers of the modes there; default: those listed, six a picture"
     )
@@ -139,6 +143,12 @@ def _runup(command: argparse.ArgumentParser) -> None:
     )
     command.add_argument("--window", metavar="TIME", help='length of their windows, such as "50 ms"')
     command.add_argument("--highest", metavar="FREQUENCY", help='their highest frequency, such as "5 kHz"')
+    command.add_argument(
+        "--sound",
+        nargs="+",
+        metavar=("FILE.wav", "SENSOR"),
+        help="a sensor to listen to, of 16 bits and 48 kHz; default: the first of an acceleration",
+    )
     _recorded(command)
 
 
@@ -165,6 +175,13 @@ def _speeds(command: argparse.ArgumentParser) -> None:
         nargs=3,
         metavar=("FROM", "TO", "POINTS"),
         help='such as "500 rpm" "2500 rpm" 40, in place of [sweep] of the scene',
+    )
+
+
+def _waterfall(command: argparse.ArgumentParser) -> None:
+    """Add the waterfall of levels."""
+    command.add_argument(
+        "--waterfall", metavar="FIG.png", help="levels as a map and as spectra over speed, with lines of orders"
     )
 
 
@@ -417,7 +434,7 @@ _ON_SCENES = {
     "sweep": _OnScene(
         _LINEAR,
         "modes, bearings and frequency responses over speed",
-        (_parallel, _speeds, _cage_angles),
+        (_parallel, _speeds, _cage_angles, _waterfall),
         compares=True,
     ),
     "critical": _OnScene(
@@ -432,7 +449,7 @@ _ON_SCENES = {
     "campbell": _OnScene(
         _TIME,
         "run-up in time as levels over speed and frequency; SCENE may be a recorded run (.nc, .csv, .uff, .wav)",
-        (_campbell,),
+        (_campbell, _waterfall),
         compares=True,
     ),
     "variants": _OnScene(

@@ -114,7 +114,7 @@ def make(housing: Housing, size: float, cutoff: float, keep: Path | None = None)
         frequencies = solve.own_frequencies(mesh, housing.material, clamped, SHOWN, folder / "frequencies")
     interfaces = {name: _interface(model, mesh, name, seat) for name, seat in housing.seats.items()}
     attributes = _attributes(housing, mesh, model, size, cutoff, frequencies)
-    reduced = reduce(model, interfaces, housing.sensors, cutoff, attributes)
+    reduced = reduce(model, interfaces, housing.sensors, cutoff, attributes, mesh.surface[:, :3] + 1)
     return Made(
         mesh,
         reduced,

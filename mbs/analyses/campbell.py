@@ -265,6 +265,45 @@ class CampbellResult:
             [*first, *(entry.level_error[0] if entry.level_error else None for entry in self.runs)],
         )
 
+    def waterfall(self) -> Figure:
+        """Figure that `mbs campbell --waterfall` writes: levels of the first sensor with each law, and the orders."""
+        labels = [entry.case.label for entry in self.runs]
+        title = _title([entry.case.model for entry in self.runs], self.sensors[:1])
+        spectra = [entry.spectra[0] for entry in self.runs]
+        return waterfall_of(title, labels, spectra, Reference.of(self.sensors[0]), self.orders)
+
+
+def waterfall_of(
+    title: str,
+    labels: Sequence[str],
+    spectra: Sequence[RunUpSpectra],
+    reference: Reference,
+    orders: Sequence[tuple[float, str]],
+) -> Figure:
+    """Waterfall of runs.
+
+    Parameters
+    ----------
+    title : str
+        Heading of the page.
+    labels : sequence of str
+        What each run is.
+    spectra : sequence of RunUpSpectra
+        Levels of each run.
+    reference : Reference
+        Reference of the levels.
+    orders : sequence of (float, str)
+        Lines to draw in, with their names.
+    """
+    from mbs.output.campbell_plot import reference_text
+    from mbs.output.waterfall_plot import Waterfall, waterfall_figure
+
+    cases = [
+        Waterfall(label, found.campbell.speeds, found.campbell.frequencies, found.campbell.level)
+        for label, found in zip(labels, spectra, strict=True)
+    ]
+    return waterfall_figure(title, cases, f"{reference.quantity} level, {reference_text(reference)}", orders)
+
 
 def campbell(
     models: Model | Case | Sequence[Model | Case],

@@ -12,11 +12,13 @@ import xarray as xr
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.figures import typeset
 from mbs.analyses.case import Case, Failed, Progress, as_cases, side_by_side, silent
 from mbs.analyses.film_errors import notable_from
 from mbs.analyses.losses import losses_over_speed
 from mbs.analyses.operating import operating, states_of
 from mbs.analyses.reach import fade_of
+from mbs.analyses.sensors import excited_orders
 from mbs.linearised.critical import (
     CriticalSpeed,
     OrderResponse,
@@ -25,6 +27,7 @@ from mbs.linearised.critical import (
     turning_places,
     with_critical,
 )
+from mbs.linearised.linear import response_display
 from mbs.linearised.sweep import sweep as sweep_system
 from mbs.linearised.sweep_result import Sweep
 from mbs.model.system import System
@@ -38,6 +41,10 @@ from mbs.settings import SweepRange
 
 if TYPE_CHECKING:
     from mbs.output.files import Figure
+
+
+_LEAST_SIZE = 1e-300
+"""Of a response that has a level."""
 
 
 @dataclass(frozen=True)
@@ -107,6 +114,49 @@ class SweepResult:
             max((fade.speed for fade in fades), default=0.0),
             [case.model.memory == "memory" for case in cases],
         )
+
+    def waterfall(self) -> Figure:
+        """Figure that `mbs sweep --waterfall` writes: the first response of each case, with the orders of the machine.
+
+        Raises
+        ------
+        InputError
+            If the scene has no responses.
+        """
+        from mbs.output.waterfall_plot import Waterfall, waterfall_figure
+
+        model, responses = self.cases[0].model, self.sweeps[0].responses
+        if not responses.values.size:
+            raise InputError(waterfall_problems(model.scene))
+        display = response_display(responses.sensors[0], responses.inputs[0])
+        cases = [
+            Waterfall(
+                case.label,
+                found.speeds,
+                found.responses.frequencies,
+                20.0 * np.log10(np.maximum(display.factor * found.responses.largest(0, 0), _LEAST_SIZE)),
+            )
+            for case, found in zip(self.cases, self.sweeps, strict=True)
+        ]
+        look = model.scene.campbell
+        orders = [(order, f"{order:g}") for order in look.orders] or excited_orders(model, math.inf)
+        words = f"{responses.sensors[0].name} by {responses.inputs[0].name}"
+        return waterfall_figure(
+            f"{model.scene.title}\nresponse {words}", cases, f"{words}, dB re 1 {typeset(display.unit)}", orders
+        )
+
+
+def waterfall_problems(scene: Scene) -> list[str]:
+    """List what a scene lacks for a waterfall of its responses.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    """
+    if scene.frequencies and scene.inputs and scene.sensors:
+        return []
+    return [f"{scene.name}: got no responses; allowed with --waterfall: [linear] with frequencies, inputs and sensors"]
 
 
 def sweep(

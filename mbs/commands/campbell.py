@@ -23,7 +23,7 @@ from mbs.analyses.step_error import StepCheck
 from mbs.commands.auto import analysed
 from mbs.commands.campbell_recorded import measured_lines, measured_run, read_look, recorded_runs, signal_problems
 from mbs.commands.cases import load_cases
-from mbs.commands.common import Looked, Told, marked, unsound_lines, write
+from mbs.commands.common import Looked, Told, marked, unsound_lines, write, write_plot
 from mbs.instruments.commands.tolerance import asked_tolerance, several_problems, tolerated_run
 from mbs.instruments.tolerance import Tolerated
 from mbs.linearised.sweep_result import ComplexSweep, Sweep
@@ -76,6 +76,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     dataset = with_measured(dataset, beside.dataset) if beside else dataset
     measured = None if beside is None else (beside.record.label, beside.spectra)
     lines += write(arguments, marked(dataset, unsound), found.plot(measured) if arguments.plot else None)
+    if arguments.waterfall:
+        lines += write_plot(found.waterfall(), arguments.waterfall)
     if getattr(arguments, "signals", None):
         lines += write_time_data(arguments.signals, simulated_campbell(runs))
     outside = any(any(entry.record.outside.values()) for entry in runs)

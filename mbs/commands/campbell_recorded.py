@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from ehdmaps.errors import InputError
 from ehdmaps.outputs import FIGURE, Output, output_problems
 from ehdmaps.units import RPM, short
-from mbs.analyses.campbell import CampbellResult
+from mbs.analyses.campbell import CampbellResult, waterfall_of
 from mbs.analyses.ramp import rehearsed, run_course
 from mbs.analyses.recorded import (
     RecordedResult,
@@ -23,7 +23,7 @@ from mbs.analyses.recorded import (
     recorded_run_of,
 )
 from mbs.analyses.sensors import ALL_SENSORS, chosen_sensors, followed_orders
-from mbs.commands.common import read_option, write
+from mbs.commands.common import read_option, write, write_plot
 from mbs.output.campbell_table import highest_line, peak_lines, resolution_lines, sensor_line
 from mbs.output.files import RESULT
 from mbs.output.time_files import is_time_data, read_time_data, signal_outputs, write_time_data
@@ -35,6 +35,7 @@ from mbs.settings import CampbellSettings
 from mbs.spectral.campbell import RunUpSpectra
 from mbs.spectral.levels import Reference, difference_text
 from mbs.timedata.records import TimeChannel, TimeData
+from mbs.timedata.sound_file import SOUND
 from mbs.timedata.speed import AS_IT_IS, SpeedSource, with_speed
 
 if TYPE_CHECKING:
@@ -155,7 +156,18 @@ def signal_problems(arguments: argparse.Namespace, read: list[str | Path], laws:
         How many records --signals would hold.
     """
     outputs, problems = signal_outputs("--signals", getattr(arguments, "signals", None), laws)
-    others = [Output("-o", arguments.output, RESULT), Output("--plot", arguments.plot, FIGURE)]
+    others = [
+        Output("-o", arguments.output, RESULT),
+        Output("--plot", arguments.plot, FIGURE),
+        Output("--waterfall", getattr(arguments, "waterfall", None), FIGURE),
+    ]
+    sound = getattr(arguments, "sound", None)
+    if sound is not None:
+        others.append(Output("--sound", sound[0], SOUND))
+        if len(sound) > 2:
+            problems.append(f"--sound: got {len(sound)} values; allowed: a file, and a sensor")
+        if laws > 1:
+            problems.append(f"--sound: got {laws} laws; allowed: one, one law at a time")
     return problems + output_problems([*others, *outputs], read)
 
 
@@ -247,6 +259,11 @@ def recorded_runs(arguments: argparse.Namespace) -> tuple[str, int]:
             at = f", {channel.name}" if run.channels[1:] else ""
             lines.append(f"  {run.record.label} beside {runs[0].record.label}{at}: {text}")
     lines += write(arguments, found.dataset, _figure(data, found) if arguments.plot else None)
+    if arguments.waterfall:
+        title = f"{data.title or runs[0].record.label}\nsensor {runs[0].channels[0].name}; recorded run"
+        labels, spectra = [run.record.label for run in runs], [run.spectra[0] for run in runs]
+        figure = waterfall_of(title, labels, spectra, _reference(runs[0].channels[0]), found.orders)
+        lines += write_plot(figure, arguments.waterfall)
     if arguments.signals:
         lines += write_time_data(arguments.signals, dataclasses.replace(data, records=tuple(r.record for r in runs)))
     return "\n".join(lines), 0

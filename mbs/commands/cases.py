@@ -265,7 +265,10 @@ def _output_problems(arguments: argparse.Namespace, scene: Scene | None, kind: K
     """List problems with the files that are written."""
     tables = [path for law in texts_of(arguments, CHOICES["law"]) if (path := table_path(law)) is not None]
     read: list[str | Path] = [*texts_of(arguments, CHOICES["map"]), *tables, *(scene.files if scene else ())]
-    return scene_output_problems(arguments.scene, read, arguments.output, arguments.plot, kind)
+    problems = scene_output_problems(arguments.scene, read, arguments.output, arguments.plot, kind)
+    waterfall = getattr(arguments, "waterfall", None)
+    outputs = [Output("--plot", arguments.plot, FIGURE), Output("--waterfall", waterfall, FIGURE)]
+    return problems + (output_problems(outputs, [arguments.scene, *read]) if waterfall else [])
 
 
 def scene_problems(scene: Scene, error: InputError) -> list[str]:

@@ -11,7 +11,7 @@ import numpy as np
 from ehdmaps.arrays import IntArray
 from ehdmaps.errors import InputError
 from ehdmaps.extras import lacking
-from ehdmaps.outputs import FIGURE, Output, output_problems
+from ehdmaps.outputs import FIGURE, Output, output_problems, write_text
 from ehdmaps.units import RPM
 from mbs.analyses.modes import ModesResult, modes
 from mbs.analyses.reach import fade_lines, outside_at
@@ -23,8 +23,10 @@ from mbs.linearised.shapes import skeleton
 from mbs.output.files import RESULT
 from mbs.output.model_text import band_lines, clean, film_law_line, film_lines, heading
 from mbs.output.result_text import above_lines, free_lines, kinds, share_words
-from mbs.output.shapes_file import MOST_SHAPES as MOST_WRITTEN
-from mbs.output.shapes_file import SHAPES, write_shapes
+from mbs.output.shapes.shapes_file import MOST_SHAPES as MOST_WRITTEN
+from mbs.output.shapes.shapes_file import SHAPES, series_files, write_shapes
+from mbs.output.shapes.shapes_page import MOST_SHAPES as MOST_MOVING
+from mbs.output.shapes.shapes_page import PAGE, is_page, shapes_page
 from mbs.planning.question import at_one_speed
 from mbs.scene.assembly import Model
 from mbs.scene.fields import HERTZ, MILLISECOND
@@ -97,7 +99,7 @@ def _shape_problems(arguments: argparse.Namespace, model: Model | None) -> list[
             problems.append("--shape-modes: stands without --shapes and --shapes-file; allowed: with one of them")
         wrong = [text for text in numbers if not (text.isascii() and text.isdigit() and 1 <= int(text[:9]) <= _LAST)]
         problems += [f"--shape-modes: got {text!r:.40}; allowed: numbers of modes from 1 on" for text in wrong]
-        if picture is not None:
+        if picture is not None and not is_page(picture):
             from mbs.output.modes_plot import MOST_SHAPES
 
             if len(numbers) > MOST_SHAPES:
@@ -105,11 +107,13 @@ def _shape_problems(arguments: argparse.Namespace, model: Model | None) -> list[
     if file is not None:
         problems += lacking("flexible", "meshio", "--shapes-file")
     read = [arguments.scene, *(getattr(arguments, "map", None) or ()), *(model.scene.files if model else ())]
+    series = series_files(Path(file)) if file is not None and Path(file).suffix.lower() == ".pvd" else []
     outputs = [
         Output("-o", getattr(arguments, "output", None), RESULT),
         Output("--plot", getattr(arguments, "plot", None), FIGURE),
-        Output("--shapes", picture, FIGURE),
+        Output("--shapes", picture, PAGE if picture is not None and is_page(picture) else FIGURE),
         Output("--shapes-file", file, SHAPES),
+        *(Output("--shapes-file", path, SHAPES) for path in series),
     ]
     return problems + (output_problems(outputs, read) if picture or file else [])
 
@@ -129,9 +133,14 @@ def _write_shapes(arguments: argparse.Namespace, result: ModesResult, shown: Int
     wanted = there if given else [int(mode) for mode in shown]
     bones = skeleton(result.model.system)
     if file is not None:
-        write_shapes(Path(file), result.modes, bones, wanted)
-        lines.append(f"{file}: written, {min(len(wanted), MOST_WRITTEN)} modes")
-    if picture is not None:
+        beside = len(write_shapes(Path(file), result.modes, bones, wanted)) - 1
+        more = f", with {beside} files of the series" if beside else ""
+        lines.append(f"{file}: written, {min(len(wanted), MOST_WRITTEN)} modes{more}")
+    if picture is not None and is_page(picture):
+        (head, *words) = heading(result.model, result.model.scene.speed)
+        write_text(picture, shapes_page(head, " ".join(words).strip(), result.modes, bones, wanted), PAGE)
+        lines.append(f"{picture}: written, {min(len(wanted), MOST_MOVING)} modes")
+    elif picture is not None:
         from mbs.output.modes_plot import MOST_SHAPES, shapes_figure
 
         drawn = wanted[:MOST_SHAPES]

@@ -13,7 +13,7 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.figures import COLOURS
-from ehdmaps.units import RPM
+from ehdmaps.units import RPM, closest
 from ehdmaps.workers import available_cores
 from mbs.analyses.case import Case
 from mbs.analyses.film_errors import film_course
@@ -41,6 +41,7 @@ from mbs.settings import HIGHEST
 from mbs.spectral.spectra import AmplitudeSpectrum
 from mbs.timedata.netcdf_file import signal_variables
 from mbs.timedata.records import TimeChannel, TimeData, TimeRecord
+from mbs.timedata.sound_file import sound_channel, write_sound
 from mbs.timedata.speed import SpeedSource, with_speed
 
 if TYPE_CHECKING:
@@ -104,6 +105,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     lines += write(arguments, dataset, figure)
     if getattr(arguments, "signals", None) and data:
         lines += write_time_data(arguments.signals, data)
+    lines += _sound(arguments, data) if data else []
     return "\n".join(lines), 1 if outside or found.failed else done.status
 
 
@@ -140,8 +142,16 @@ def _asked(arguments: argparse.Namespace) -> _Asked:
     problems += several_problems(tolerance, cases)
     read = [arguments.scene, *(getattr(arguments, "map", None) or ()), *scene.files]
     problems += signal_problems(arguments, read, len(cases))
-    if (getattr(arguments, "signals", None) or wanted.speeds) and not scene.sensors:
-        problems.append(f"{scene.name}: got no [[sensors]]; allowed with --signals and --spectrum-at: at least one")
+    sound = getattr(arguments, "sound", None)
+    if (getattr(arguments, "signals", None) or sound or wanted.speeds) and not scene.sensors:
+        problems.append(
+            f"{scene.name}: got no [[sensors]]; allowed with --signals, --sound and --spectrum-at: at least one"
+        )
+    names = tuple(sensor.name for sensor in scene.sensors)
+    if sound and names and sound[1:] and sound[1].lower() not in map(str.lower, names):
+        problems.append(
+            f"--sound: {sound[1]!r:.60} is not there{closest(sound[1], names)}; allowed: {', '.join(names)}"
+        )
     if scene.run_up is not None and wanted.speeds and not problems:
         course = scene.run_up
         fine = dataclasses.replace(course, settings=dataclasses.replace(course.settings, sample=course.settings.step))
@@ -220,7 +230,16 @@ def _recorded(arguments: argparse.Namespace) -> tuple[str, int]:
     lines += write(arguments, with_spectra(dataset, spectra), figure)
     if arguments.signals:
         lines += write_time_data(arguments.signals, data)
-    return "\n".join(lines), 0
+    return "\n".join([*lines, *_sound(arguments, data)]), 0
+
+
+def _sound(arguments: argparse.Namespace, data: TimeData) -> list[str]:
+    """Write the sound of a sensor where it is asked for."""
+    given = getattr(arguments, "sound", None)
+    if given is None:
+        return []
+    record = data.records[0]
+    return write_sound(Path(given[0]), record, sound_channel(record, (*given[1:], None)[0], "--sound"))
 
 
 def _spectra_of(data: TimeData, wanted: _Spectra, scene: Scene | None) -> list[list[tuple[AmplitudeSpectrum, ...]]]:

@@ -17,10 +17,10 @@ from mbs.analyses.film_errors import film_errors
 from mbs.analyses.operating import operating
 from mbs.analyses.reach import axes_outside, fade_lines, outside_lines, sources_of
 from mbs.analyses.soundness import unsound_over_speed
-from mbs.analyses.sweep import SweepSettings, sweep, sweep_problems
+from mbs.analyses.sweep import SweepSettings, sweep, sweep_problems, waterfall_problems
 from mbs.commands.auto import analysed
 from mbs.commands.cases import load_cases
-from mbs.commands.common import Looked, marked, unsound_lines, write
+from mbs.commands.common import Looked, marked, unsound_lines, write, write_plot
 from mbs.linearised.linear import response_display
 from mbs.linearised.modes import free_motions
 from mbs.linearised.sweep import MOST_ANGLES
@@ -38,6 +38,7 @@ from mbs.output.model_text import (
 from mbs.output.state_text import flooded_note, state_lines
 from mbs.planning.question import over_speeds
 from mbs.scene.assembly import Model
+from mbs.scene.scene import Scene
 from mbs.settings import MOST_SPEEDS, SweepRange
 
 if TYPE_CHECKING:
@@ -89,6 +90,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         ]
     figure = result.plot() if arguments.plot else None
     lines += outside + write(arguments, marked(result.dataset, unsound), figure)
+    if arguments.waterfall:
+        lines += write_plot(result.waterfall(), arguments.waterfall)
     return "\n".join(lines), 1 if outside or unsound else done.status
 
 
@@ -121,12 +124,20 @@ def _read(arguments: argparse.Namespace) -> tuple[SweepSettings, list[Case]]:
             f"--cage-angles: got {arguments.cage_angles!r:.40}; allowed: a whole number from 1 to {MOST_ANGLES}"
         )
     try:
-        cases = load_cases(arguments, needs=None if arguments.speed else sweep_problems, speeds=speeds)
+        cases = load_cases(arguments, needs=lambda scene: _needs(arguments, scene), speeds=speeds)
     except InputError as error:
         problems += error.problems
     if problems:
         raise InputError(problems)
     return SweepSettings(speeds, angles), cases
+
+
+def _needs(arguments: argparse.Namespace, scene: Scene) -> list[str]:
+    """List what a scene lacks for what is asked for."""
+    return [
+        *([] if arguments.speed else sweep_problems(scene)),
+        *(waterfall_problems(scene) if arguments.waterfall else []),
+    ]
 
 
 def read_speeds(texts: Sequence[str]) -> SweepRange:

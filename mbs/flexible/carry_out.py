@@ -37,6 +37,7 @@ from mbs.flexible.plan import CylinderSurface, NodeList, PlannedInterface, Reduc
 from mbs.flexible.reduced_body import ReducedBody
 from mbs.flexible.reduced_file import read_reduced, write_reduced
 from mbs.flexible.reduction import NEAREST, Interface, Point, nodes_in_plane, nodes_on_cylinder, reduce
+from mbs.flexible.skin import read_skin
 
 
 def carry_out(plan: ReductionPlan) -> ReducedBody:
@@ -118,6 +119,7 @@ def reduce_model(
         {name: entry for name, entry in points.items() if entry is not None},
         plan.cutoff,
         {"mesh": plan.mesh.name, "matrices": plan.form, **(attributes or {})},
+        read_skin(plan.mesh),
     )
 
 

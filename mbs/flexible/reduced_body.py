@@ -12,7 +12,7 @@ from scipy.linalg import eigh
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from mbs.model.body import Body, Frame
+from mbs.model.body import Body, Frame, Skin
 
 
 def modal_damping(mass: FloatArray, stiffness: FloatArray, ratio: float) -> FloatArray:
@@ -87,6 +87,8 @@ class ReducedBody:
         transform, so a moment has no effect there and a sensed rotation is zero.
     attributes : mapping of str to str
         Origin of the matrices.
+    skin : Skin or None
+        Surface of the finite-element body, with places from its origin, for pictures; None where it is not known.
 
     Raises
     ------
@@ -100,6 +102,7 @@ class ReducedBody:
     units: tuple[str, ...]
     frames: Mapping[str, Frame]
     attributes: Mapping[str, str] = field(default_factory=dict)
+    skin: Skin | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "coordinates", tuple(self.coordinates))
@@ -140,6 +143,7 @@ class ReducedBody:
                 problems.append(
                     f"reduced body, frame {name!r}: got values that are no finite numbers; allowed: finite ones"
                 )
+        problems += [] if self.skin is None else _skin_problems(self.skin, size)
         if not problems:
             problems = self._matrix_problems()
         if problems:
@@ -179,6 +183,24 @@ class ReducedBody:
                     "positive semi-definite matrix; a body does not push itself away from rest"
                 )
         return problems
+
+
+def _skin_problems(skin: Skin, size: int) -> list[str]:
+    """List problems with the surface of a body of some coordinates."""
+    count, corners = skin.positions.shape[0], skin.triangles
+    if skin.positions.shape != (count, 3) or skin.transforms.shape != (count, 3, size) or corners.shape[1:] != (3,):
+        return [
+            f"reduced body, surface: got shapes {skin.positions.shape}, {skin.transforms.shape} and {corners.shape}; "
+            f"allowed: (p, 3), (p, 3, {size}) and (t, 3)"
+        ]
+    if not (np.all(np.isfinite(skin.positions)) and np.all(np.isfinite(skin.transforms))):
+        return ["reduced body, surface: got values that are no finite numbers; allowed: finite ones"]
+    if corners.size and not (int(corners.min()) >= 0 and int(corners.max()) < count):
+        return [
+            f"reduced body, surface: got corners {int(corners.min())} to {int(corners.max())} of {count} places; "
+            f"allowed: 0 to {count - 1}"
+        ]
+    return []
 
 
 def mode_frequencies(reduced: ReducedBody) -> FloatArray:
@@ -234,6 +256,7 @@ def up_to(reduced: ReducedBody, cutoff: float) -> ReducedBody:
         tuple(reduced.units[k] for k in kept),
         {name: replace(frame, transform=frame.transform[:, kept]) for name, frame in reduced.frames.items()},
         {**reduced.attributes, "cutoff": f"{cutoff:.6g} Hz"},
+        None if reduced.skin is None else replace(reduced.skin, transforms=reduced.skin.transforms[:, :, kept]),
     )
 
 
@@ -284,4 +307,10 @@ def to_body(
             key: Frame(here + turn @ frame.position, both @ frame.transform) for key, frame in reduced.frames.items()
         },
         spin=spin,
+        skin=None if reduced.skin is None else _placed(reduced.skin, here, turn),
     )
+
+
+def _placed(skin: Skin, here: FloatArray, turn: FloatArray) -> Skin:
+    """A surface in the system, from the origin of its body and turned about it."""
+    return Skin(here + skin.positions @ turn.T, np.einsum("ab,pbn->pan", turn, skin.transforms), skin.triangles)

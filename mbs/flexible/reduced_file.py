@@ -1,8 +1,12 @@
 """Reduced bodies in files: netCDF to keep and to show, npz for other programs. The same bytes for the same body.
 
 netCDF: dimensions coordinate, with_respect_to, frame, freedom, axis; variables mass, stiffness, unit, position,
-transform; provenance as attributes. npz: arrays mass (n, n), stiffness (n, n), coordinates (n,), units
-(n,), frames (f,), positions (f, 3), transforms (f, 6, n), attributes (a, 2) as texts; the last is optional.
+transform; provenance as attributes. Bodies with a surface for pictures have the dimensions surface_node, triangle and
+corner, too, and the variables surface_position, surface_transform (3 digits), and surface_triangle.
+
+npz: arrays mass (n, n), stiffness (n, n), coordinates (n,), units (n,), frames (f,), positions (f, 3), transforms
+(f, 6, n); optional attributes (a, 2) as texts, surface_position (p, 3), surface_transform (p, 3, n), surface_triangle
+(t, 3).
 """
 
 from __future__ import annotations
@@ -21,7 +25,7 @@ from ehdmaps.netcdf_structure import structure_problem
 from ehdmaps.outputs import MADE_AS, Kind, root_attributes, written_aside
 from mbs.flexible.plan import REDUCED_SUFFIXES, check_reduced, check_reduced_suffix
 from mbs.flexible.reduced_body import MOST_COORDINATES, ReducedBody
-from mbs.model.body import FREEDOMS, Frame
+from mbs.model.body import FREEDOMS, Frame, Skin
 
 SCHEMA_VERSION = 1
 
@@ -30,6 +34,10 @@ MOST_FRAMES = 10_000
 _MADE = {MADE_AS: "reduced body"}
 _ARRAYS = ("mass", "stiffness", "coordinates", "units", "frames", "positions", "transforms")
 _OPTIONAL = "attributes"
+_SKIN = ("surface_position", "surface_transform", "surface_triangle")
+_PACKED = {"zlib": True, "complevel": 6, "shuffle": True}
+_DIGITS = {"significant_digits": 3, "quantize_mode": "GranularBitRound"}
+"""Of displacements of a surface, which are for pictures: a quarter of the bytes."""
 _DAMAGED = (
     OSError,
     ValueError,
@@ -81,7 +89,11 @@ def write_reduced(path: Path, reduced: ReducedBody, kind: Kind = REDUCED) -> Non
             with aside.open("wb") as file:
                 np.savez(file, allow_pickle=False, **_arrays(reduced))
         else:
-            _dataset(reduced).to_netcdf(aside, engine="netcdf4", mode="w")
+            encoding: dict[str, dict[str, Any]] = {}
+            if reduced.skin is not None:
+                encoding = {name: dict(_PACKED) for name in _SKIN}
+                encoding["surface_transform"] |= _DIGITS
+            _dataset(reduced).to_netcdf(aside, engine="netcdf4", mode="w", encoding=encoding)
 
 
 def read_reduced(path: Path) -> ReducedBody:
@@ -117,7 +129,14 @@ def _arrays(reduced: ReducedBody) -> dict[str, Any]:
         "positions": np.array([frame.position for frame in frames]).reshape(-1, 3),
         "transforms": np.array([frame.transform for frame in frames]).reshape(-1, 6, reduced.size),
         _OPTIONAL: np.array(sorted({**reduced.attributes, **_MADE}.items()), dtype=np.str_).reshape(-1, 2),
+        **({} if reduced.skin is None else _skin_arrays(reduced.skin)),
     }
+
+
+def _skin_arrays(skin: Skin) -> dict[str, Any]:
+    """A surface as arrays, for pictures: in single precision."""
+    values = (skin.positions.astype(np.float32), skin.transforms.astype(np.float32), skin.triangles.astype(np.int32))
+    return dict(zip(_SKIN, values, strict=True))
 
 
 def _dataset(reduced: ReducedBody) -> xr.Dataset:
@@ -147,6 +166,21 @@ def _dataset(reduced: ReducedBody) -> xr.Dataset:
             {"units": f"m or rad, {per}", "long_name": "displacement of the place by the coordinates"},
         ),
     }
+    if reduced.skin is not None:
+        place, motion, corners = (arrays[name] for name in _SKIN)
+        variables |= {
+            _SKIN[0]: (
+                ("surface_node", "axis"),
+                place,
+                {"units": "m", "long_name": "places of the surface from the origin of the finite-element body"},
+            ),
+            _SKIN[1]: (
+                ("surface_node", "axis", "coordinate"),
+                motion,
+                {"units": f"m, {per}", "long_name": "displacement of the surface by the coordinates"},
+            ),
+            _SKIN[2]: (("triangle", "corner"), corners, {"long_name": "triangles of the surface, by their nodes"}),
+        }
     coordinates = {
         "coordinate": ("coordinate", arrays["coordinates"], {"long_name": "coordinates of the reduced body"}),
         "with_respect_to": ("with_respect_to", arrays["coordinates"], {"long_name": "coordinates of the reduced body"}),
@@ -170,7 +204,7 @@ def _npz(path: Path) -> dict[str, Any]:
                     f"{path}: got the arrays {', '.join(file.files)!r:.100}; missing: {', '.join(missing)}; allowed: "
                     "those that write_reduced writes"
                 )
-            return {name: file[name] for name in (*_ARRAYS, _OPTIONAL) if name in file.files}
+            return {name: file[name] for name in (*_ARRAYS, _OPTIONAL, *_SKIN) if name in file.files}
     except _DAMAGED as error:
         raise _unreadable(path, error) from error
 
@@ -206,6 +240,7 @@ def _netcdf(path: Path) -> dict[str, Any]:
     plural = {"unit": "units", "position": "positions", "transform": "transforms"}
     plural |= {"coordinate": "coordinates", "frame": "frames"}
     given = {plural.get(name, name): dataset[name].values for name in dims}
+    given |= {name: dataset[name].values for name in _SKIN if name in dataset}
     kept = {key: str(value) for key, value in dataset.attrs.items() if key != "schema_version"}
     return {**given, _OPTIONAL: np.array(sorted(kept.items()), dtype=np.str_).reshape(-1, 2)}
 
@@ -236,6 +271,14 @@ def _body(given: Mapping[str, Any]) -> ReducedBody:
             problems.append("frames: a name is there twice; allowed: each once")
         if size > MOST_COORDINATES:
             problems.append(f"coordinates: got {size}; allowed: at most {MOST_COORDINATES}")
+    skin = {name: np.asarray(given[name]) for name in _SKIN if name in given}
+    problems += [
+        f"{name}: got {value.ndim} dimensions of {value.dtype}; allowed: {wanted} dimensions of numbers"
+        for (name, value), wanted in zip(skin.items(), (2, 3, 2), strict=False)
+        if value.ndim != wanted or value.dtype.kind not in ("iu" if name == _SKIN[2] else "fiu")
+    ]
+    if skin and len(skin) < len(_SKIN):
+        problems.append(f"surface: got {', '.join(skin)}; allowed: {', '.join(_SKIN)}, or none of them")
     texts = np.asarray(given.get(_OPTIONAL, np.zeros((0, 2), dtype=np.str_)))
     if texts.ndim != 2 or texts.shape[1] != 2 or texts.dtype.kind not in "U":
         problems.append(f"attributes: got shape {texts.shape} of {texts.dtype}; allowed: pairs of texts")
@@ -249,7 +292,14 @@ def _body(given: Mapping[str, Any]) -> ReducedBody:
         units=tuple(names["units"].tolist()),
         frames={name: Frame(*place) for name, place in zip(names["frames"].tolist(), places, strict=True)},
         attributes={key: text for key, text in texts.tolist() if key not in _MADE},
+        skin=_skin(skin) if skin else None,
     )
+
+
+def _skin(arrays: Mapping[str, Any]) -> Skin:
+    """A surface of its arrays."""
+    place, motion, corners = (arrays[name] for name in _SKIN)
+    return Skin(place.astype(np.float64), motion.astype(np.float64), corners.astype(np.int64))
 
 
 def _unreadable(path: Path, error: BaseException) -> InputError:

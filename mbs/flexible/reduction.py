@@ -30,6 +30,7 @@ from mbs.flexible.finite_elements import FiniteElementModel, named
 from mbs.flexible.held_body import HeldBody
 from mbs.flexible.plan import KINDS, Kind
 from mbs.flexible.reduced_body import ReducedBody
+from mbs.flexible.skin import skin_of
 from mbs.model.body import FREEDOMS, Frame, lever_arm
 
 _DEGENERATE = 1e-8
@@ -299,6 +300,7 @@ def reduce(
     points: Mapping[str, Point] | None = None,
     cutoff: float = 1e4,
     attributes: Mapping[str, str] | None = None,
+    triangles: IntArray | None = None,
 ) -> ReducedBody:
     """Reduce a finite-element body to its interfaces and its modes up to a cut-off.
 
@@ -314,6 +316,9 @@ def reduce(
         Highest frequency of the modes with all interfaces held [Hz].
     attributes : mapping of str to str, optional
         Provenance, added to the result's own.
+    triangles : array of int, shape (t, 3), optional
+        Node numbers of its skin, as of `mbs.flexible.skin.skin_triangles`, for pictures; the result has none if left
+        out.
 
     Returns
     -------
@@ -372,6 +377,7 @@ def reduce(
             ),
             **(attributes or {}),
         },
+        skin=None if triangles is None else skin_of(model, triangles, motion),
     )
 
 

@@ -43,6 +43,8 @@ class Skeleton:
         Names of the bodies.
     size : float
         Largest extent of the system [m].
+    triangles : array of int, shape (t, 3)
+        Places that are corners of the surface of a body.
     """
 
     points: FloatArray
@@ -52,6 +54,7 @@ class Skeleton:
     kinds: tuple[str, ...]
     bodies: tuple[str, ...]
     size: float
+    triangles: IntArray
 
     def displacement(self, shape: ComplexArray) -> ComplexArray:
         """Displacements of all places in a mode, turned in phase so that they are as real as can be, shape (p, 3).
@@ -65,9 +68,21 @@ class Skeleton:
         turned = np.exp(-0.5j * np.angle(np.sum(moved * moved)))
         return np.asarray(moved * turned, dtype=np.complex128)
 
+    def scaled(self, shape: ComplexArray) -> ComplexArray:
+        """The same as `displacement`, with 1 as the largest part of a displacement; zero where no place moves.
+
+        Parameters
+        ----------
+        shape : array of complex, shape (n,)
+            A column of `mbs.linearised.modes.Modes.shapes`.
+        """
+        moved = self.displacement(shape)
+        largest = float(np.max(np.abs(moved), initial=0.0))
+        return moved / largest if largest > 0.0 else moved
+
 
 def skeleton(system: System) -> Skeleton:
-    """Places and lines of a system: shafts along their nodes, other bodies between their frames.
+    """Places and lines of a system: shafts along their nodes, other bodies by their surface, else between their frames.
 
     Parameters
     ----------
@@ -75,12 +90,14 @@ def skeleton(system: System) -> Skeleton:
         The system.
     """
     everything = [frame.position for body in system.bodies for frame in (*body.frames.values(), *body.line)]
+    everything += [place for body in system.bodies if body.skin is not None for place in body.skin.positions]
     size = float(np.max(np.ptp(everything, axis=0), initial=0.0)) or 1.0
     points: list[FloatArray] = []
     transforms: list[FloatArray] = []
     owners: list[int] = []
     lines: list[tuple[int, int]] = []
     kinds: list[str] = []
+    triangles: list[IntArray] = []
 
     def add(body: int, place: FloatArray, moved: FloatArray) -> int:
         whole = np.zeros((3, system.size))
@@ -91,7 +108,11 @@ def skeleton(system: System) -> Skeleton:
         return len(points) - 1
 
     for index, body in enumerate(system.bodies):
-        nodes = body.line or _apart(body, size)
+        if body.skin is not None:
+            triangles.append(len(points) + body.skin.triangles)
+            for place, moved in zip(body.skin.positions, body.skin.transforms, strict=True):
+                add(index, place, moved)
+        nodes = body.line or (() if body.skin is not None else _apart(body, size))
         first = len(points)
         for node in nodes:
             add(index, node.position, node.transform[:3])
@@ -127,6 +148,7 @@ def skeleton(system: System) -> Skeleton:
         tuple(kinds),
         tuple(names),
         size,
+        np.concatenate([np.zeros((0, 3), dtype=np.int64), *triangles]),
     )
 
 

@@ -17,7 +17,7 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from ehdmaps.arrays import FloatArray
+from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import InputError
 from ehdmaps.physics.solids import STEEL
 
@@ -46,6 +46,25 @@ class Frame:
 
 
 @dataclass(frozen=True, eq=False)
+class Skin:
+    """Surface of a body as triangles, for pictures of its shape.
+
+    Attributes
+    ----------
+    positions : array, shape (p, 3)
+        Places in the system, or from the origin of the body [m].
+    transforms : array, shape (p, 3, n)
+        Their displacement by the coordinates of the body [m].
+    triangles : array of int, shape (t, 3)
+        Indices of the corners among the places.
+    """
+
+    positions: FloatArray
+    transforms: FloatArray
+    triangles: IntArray
+
+
+@dataclass(frozen=True, eq=False)
 class Body:
     """Blocks of the equations of motion of one body: M q'' + (D + speed G) q' + K q = forces.
 
@@ -67,6 +86,8 @@ class Body:
         Prescribed speed of the body about x as a multiple of the system's.
     line : tuple of Frame
         Places one after the other along a shaft, for pictures of its shape; none of other bodies.
+    skin : Skin or None
+        Its surface, for pictures of its shape; None where that is not known.
     gravity : array, shape (n, 3), or None
         Load on the coordinates by gravity along x, y, z of 1 m/s2 [kg or kg m]; None where `mbs.model.system` finds it.
     """
@@ -81,6 +102,7 @@ class Body:
     frames: Mapping[str, Frame] = field(default_factory=dict)
     spin: float = 0.0
     line: tuple[Frame, ...] = ()
+    skin: Skin | None = None
     gravity: FloatArray | None = None
 
     @property

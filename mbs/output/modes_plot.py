@@ -8,9 +8,11 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.figures import COLOURS, legend_columns, typeset, write_heading
@@ -113,6 +115,13 @@ _ABOVE, _LINE = 0.3, 0.2
 _LETTERS = 68
 """Letters of a legend that have room over a mode."""
 
+_SURFACE = colormaps["viridis"]
+_OPAQUE = 0.55
+"""Of a surface: shafts and bearings within are seen."""
+
+_LIGHT = np.array([0.45, -0.75, 0.48])
+"""Unit vector towards the light."""
+
 _ZOOM = 0.95
 _MOST_NAMES = 12
 
@@ -138,12 +147,15 @@ def shapes_figure(model: Model, found: Modes, bones: Skeleton, shown: Sequence[i
     width = _CELL[0] * columns
     figure = headed(model, words, (width, _CELL[1] * rows))
     figure.set_layout_engine("none")
-    moving = [index for index in range(len(bones.bodies)) if np.any(bones.owners == index)]
-    handles = [
+    skinned = set(bones.owners[bones.triangles[:, 0]].tolist())
+    moving = [index for index in range(len(bones.bodies)) if np.any(bones.owners == index) and index not in skinned]
+    handles: list[Any] = [
         Line2D([], [], color=_colour(index), lw=2.0, label=bones.bodies[index]) for index in moving[:_MOST_NAMES]
     ]
     if JOINT in bones.kinds:
         handles.append(Line2D([], [], color=COLOURS[1], lw=1.6, label="bearings and gears"))
+    if bones.triangles.size:
+        handles.append(Patch(color=_SURFACE(0.75), label="surface: dark moves little, bright most"))
     handles.append(Line2D([], [], color="0.8", lw=1.2, label="at rest"))
     names = legend_columns([str(handle.get_label()) for handle in handles], _LETTERS * columns, 3 * columns)
     foot = max(_FOOT, _LINE * math.ceil(len(handles) / names))
@@ -158,7 +170,7 @@ def shapes_figure(model: Model, found: Modes, bones: Skeleton, shown: Sequence[i
         x = (place % columns + 0.5) * _CELL[0]
         y = foot + (rows - place // columns - 0.5) * _CELL[1] - 0.15
         where = ((x - 0.5 * side) / width, (y - 0.5 * side) / height, side / width, side / height)
-        panel: Any = figure.add_axes(where, projection="3d")
+        panel: Any = figure.add_axes(where, projection="3d", computed_zorder=False)
         panel.patch.set_visible(False)
         _mode(panel, found, bones, mode)
         at = (x / width, (y + 0.5 * _CELL[1] + 0.1) / height)
@@ -173,6 +185,8 @@ def _mode(panel: Any, modes: Modes, bones: Skeleton, mode: int) -> None:
     largest = float(np.max(np.abs(moved), initial=0.0))
     scale = _LARGEST * bones.size / largest if _moves(largest, bones) else 0.0
     places = bones.points + scale * moved
+    if bones.triangles.size:
+        _surface(panel, bones, places, np.linalg.norm(moved, axis=1))
     for (begin, end), kind in zip(bones.lines, bones.kinds, strict=True):
         pair = [begin, end]
         if kind != JOINT:
@@ -181,10 +195,27 @@ def _mode(panel: Any, modes: Modes, bones: Skeleton, mode: int) -> None:
         panel.plot(*places[pair].T, color=colour, lw=_WIDTHS[kind], solid_capstyle="round", zorder=3)
     lines = zip(bones.lines, bones.kinds, strict=True)
     joined = {int(place) for pair, kind in lines if kind in (AXIS, MARK) for place in pair}
+    joined |= set(bones.triangles.ravel().tolist())
     alone = [place for place in range(len(places)) if place not in joined]
     colours = [_colour(int(bones.owners[place])) for place in alone]
     panel.scatter(*places[alone].T, s=7.0, c=colours, depthshade=False, zorder=4)
     _box(panel, np.concatenate([bones.points, places]))
+
+
+def _surface(panel: Any, bones: Skeleton, places: FloatArray, moved: FloatArray) -> None:
+    """Surfaces of bodies as they are displaced, coloured by how far; what stands behind is seen through them."""
+    from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+
+    corners = places[bones.triangles]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), np.finfo(np.float64).tiny)
+    largest = float(np.max(moved[bones.triangles], initial=0.0))
+    share = moved[bones.triangles].mean(axis=1) / largest if largest > 0.0 else np.zeros(len(corners))
+    colours = _SURFACE(share)
+    # Light from the side of the viewer, the same for both faces of a triangle.
+    colours[:, :3] *= (0.6 + 0.4 * np.abs(normal @ _LIGHT))[:, np.newaxis]
+    colours[:, 3] = _OPAQUE
+    panel.add_collection3d(Poly3DCollection(corners, facecolors=colours, edgecolors="none", linewidths=0.0, zorder=2))
 
 
 def _moves(largest: float, bones: Skeleton) -> bool:

@@ -6,6 +6,7 @@ quantities   which units a channel may have, and what was measured by them
 csv_file     tables of numbers with names and units in their first line
 uff_file     universal files, datasets 58
 wav_file     sound files, with a table beside them that says the scale
+sound_file   a sensor to listen to, written only
 netcdf_file  results of `mbs runup`, and signals alone
 speed        speed and angle of a record: a channel, pulses of a tacho, a table
 ===========  ====================================================================================

@@ -1,0 +1,1 @@
+"""Mode shapes for other programs: files for ParaView, and a page that moves."""
