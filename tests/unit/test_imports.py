@@ -141,6 +141,7 @@ ALLOWED = {
         "ehdmaps.units",
         "ehdmaps.version",
         "ehdmaps.physics",
+        "ehdmaps.point",
         "ehdmaps.maps",
         "ehdmaps.report",
         "ehdmaps.solids",

@@ -2,8 +2,8 @@
 
 The outer ring is held in its place, the inner one moves along x, y and z, and tilts if it may. The cage turns as pure
 rolling at the mean contact angles of the loaded balls asks for; its speed is found with the equilibrium. Pressures are
-those of dry Hertz. Films are those of the formula of Hamrock and Dowson at the load of each contact; they tell how
-thick the film is and move nothing.
+those of dry Hertz. Films are those that were solved, where the law has them. Else they are those of the formula of
+Hamrock and Dowson at the load of each contact; they tell how thick the film is and move nothing.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -24,6 +25,9 @@ from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import Load, Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.model.system import System
+
+if TYPE_CHECKING:
+    from mbs.bearings.balls.films import BallFilms
 
 STATIC_LIMIT = 4.2e9
 """Hertz pressure of the static load rating of ball bearings after ISO 76 [Pa]; permanent deformation above it."""
@@ -126,6 +130,7 @@ def ball_point(
     tilts: bool = False,
     oil: Lubricant | None = None,
     temperature: float = 313.15,
+    films: BallFilms | None = None,
 ) -> BallPoint:
     """Equilibrium of a ball bearing.
 
@@ -143,6 +148,8 @@ def ball_point(
         Oil of the films; no films without one.
     temperature : float
         Temperature of the raceways, and so of the oil [K].
+    films : BallFilms, optional
+        Films that were solved, in place of the formula's.
 
     Raises
     ------
@@ -174,7 +181,11 @@ def ball_point(
     pressure = np.array([contact.max_pressure(balls.load[side]) for side, contact in enumerate(contacts)])
     u = _entrainment(force, balls, inner_speed, outer_speed)
     central, minimum = np.full((2, *pressure.shape), np.nan)
-    if oil is not None and u > 0.0:
+    if films is not None:
+        for side, solved in enumerate(films.sides):
+            carries = balls.load[side] > 0.0
+            (_, central[side, carries], minimum[side, carries], _), _ = solved.read(balls.load[side][carries])
+    elif oil is not None and u > 0.0:
         state = oil.at(temperature)
         for side, contact in enumerate(contacts):
             carries = balls.load[side] > 0.0
@@ -203,7 +214,17 @@ def ball_point(
         minimum_film=minimum,
         centrifugal_load=centrifugal,
         problems=tuple(filter(None, [_overload(pressure), _shoulder(force, balls)])),
-        notes=tuple(filter(None, [_slack(force, balls), _sliding(force, balls, factor), _lost(balls, centrifugal)])),
+        notes=tuple(
+            filter(
+                None,
+                [
+                    _slack(force, balls),
+                    _sliding(force, balls, factor),
+                    _lost(balls, centrifugal),
+                    _beyond(force, balls),
+                ],
+            )
+        ),
     )
 
 
@@ -294,6 +315,19 @@ def _sliding(force: BallForce, balls: BallLoads, factor: float) -> str:
     return (
         f"the gyroscopic moment asks for a traction of {share:.2g} of the load at the outer raceway, more than films "
         f"hold ({_SLIP:g}): balls may slide; more axial load prevents it"
+    )
+
+
+def _beyond(force: BallForce, balls: BallLoads) -> str:
+    """A sentence where contacts that matter have loads without a solution; empty otherwise."""
+    low, high = force.law.loads
+    largest = float(balls.load.max())
+    light = np.count_nonzero((balls.load < low) & (balls.load > 1e-2 * largest))
+    if largest <= high and not light:
+        return ""
+    return (
+        f"films are solved from {low:.3g} to {high:.4g} N; contacts carry up to {largest:.4g} N, and {light} less than "
+        "that: their films go on along straight lines in the logarithms"
     )
 
 

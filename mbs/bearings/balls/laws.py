@@ -112,12 +112,12 @@ def film_normal_law(contact: Ellipse, curve: FilmCurve, loads: tuple[float, floa
         If the offset rises with the load so fast that the approach falls, or damping is not positive.
     """
     rough = np.geomspace(*loads, 20 * NODES)
-    dry = contact.approach(rough)
+    dry = np.asarray(contact.approach(rough))
     offset, _, damping = curve(rough)
     approach = dry - offset
     if not (np.all(np.isfinite(approach)) and np.all(np.diff(approach) > 0.0) and np.all(damping > 0.0)):
         raise InputError("ball law: got a film whose approach falls with the load, or no damping; allowed: neither")
-    scale = max(float(offset.max()), 1e-3 * float(dry.max()))
+    scale = max(float(np.median(offset)), 1e-3 * float(dry.max()))
     centre = float(np.interp(0.5 * scale, dry, approach))
     first, last = (math.asinh((end - centre) / scale) for end in (approach[0], approach[-1]))
     nodes = np.linspace(first, last, NODES)

@@ -7,6 +7,7 @@ import dataclasses
 import math
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ehdmaps.errors import InputError
 from ehdmaps.outputs import Output, output_problems
@@ -14,6 +15,7 @@ from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.physics.solids import STEEL
+from ehdmaps.program import tell
 from ehdmaps.units import RPM, TEMPERATURE
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.ball_point import BallPoint, ball_point
@@ -33,8 +35,14 @@ from mbs.output.files import write_dataset
 from mbs.scene.contact_laws import HERTZ_FORMS, Damper, hertz_damper
 from mbs.scene.fields import FORCE, MICROMETRE
 
+if TYPE_CHECKING:
+    from mbs.bearings.balls.films import BallFilms
+
 CELSIUS_40, ROUGHNESS = 313.15, 0.3e-6
 """Assumed where nothing is given: the temperature of the raceways [K], the combined rms roughness [m]."""
+
+FILMS = "films"
+"""Law of contacts with films that are solved at each speed."""
 
 _TAKEN = ("law", "clearance", "temperature", "roughness")
 """Choices that ball bearings take."""
@@ -47,7 +55,9 @@ class BallRequest:
     Attributes
     ----------
     force : BallForce
-        Geometry with its clearance, and law.
+        Geometry with its clearance, and its dry law.
+    solved : bool
+        Whether the law of each speed has films that are solved.
     oil : Lubricant
         Oil of the films.
     loads : tuple of float
@@ -65,6 +75,7 @@ class BallRequest:
     """
 
     force: BallForce
+    solved: bool
     oil: Lubricant
     loads: tuple[float, ...]
     axial: float
@@ -95,7 +106,8 @@ def read_balls(arguments: argparse.Namespace) -> BallRequest:
     if len(loads) * len(speeds) > MOST_POINTS:
         problems.append(f"--load, --speed: got {len(loads) * len(speeds)} points; allowed: at most {MOST_POINTS}")
     way = read_direction(arguments.direction, problems)
-    damper = _damper(chosen.get("law"), problems)
+    solved = chosen.get("law") == FILMS
+    damper = Damper() if solved else _damper(chosen.get("law"), problems)
     temperature = float(chosen.get("temperature", CELSIUS_40))
     oil = _oil(arguments.oil, temperature, problems)
     clearance = chosen.get("clearance")
@@ -121,6 +133,7 @@ def read_balls(arguments: argparse.Namespace) -> BallRequest:
     law = dry_law(geometry, STEEL, damper.constant, damper.time)
     return BallRequest(
         force=BallForce(geometry, law),
+        solved=solved,
         oil=oil,
         loads=loads,
         axial=axial,
@@ -128,8 +141,10 @@ def read_balls(arguments: argparse.Namespace) -> BallRequest:
         speeds=speeds,
         outer_speed=outer,
         description=BallDescription(
-            law="dry Hertz" + (f", {damper.words} of each contact" if damper.words else ""),
-            films=f"films by the formula of Hamrock and Dowson, {oil.title}"
+            law=f"films of {oil.title}, solved"
+            if solved
+            else "dry Hertz" + (f", {damper.words} of each contact" if damper.words else ""),
+            films=("films of the law" if solved else f"films by the formula of Hamrock and Dowson, {oil.title}")
             + ("" if oil.verified else " (unverified data of the oil)"),
             direction=math.degrees(math.atan2(way[1], way[0])),
             temperature=temperature,
@@ -157,21 +172,36 @@ def run_balls(arguments: argparse.Namespace) -> tuple[str, int]:
 
 def ball_points(request: BallRequest) -> list[list[BallPoint]]:
     """Points at every load and every speed."""
+    forces = [_at_speed(request, speed) for speed in request.speeds]
     return [
         [
             ball_point(
-                request.force,
+                force,
                 (request.axial, load * request.way[0], load * request.way[1]),
                 speed,
                 request.outer_speed,
                 tilts=request.description.tilts,
                 oil=request.oil,
                 temperature=request.description.temperature,
+                films=films,
             )
-            for speed in request.speeds
+            for speed, (force, films) in zip(request.speeds, forces, strict=True)
         ]
         for load in request.loads
     ]
+
+
+def _at_speed(request: BallRequest, speed: float) -> tuple[BallForce, BallFilms | None]:
+    """The force at a speed of the inner ring, and its films; dry where nothing rolls, or none are asked for."""
+    geometry = request.force.geometry
+    u = geometry.entrainment_speed(speed, request.outer_speed)
+    if not request.solved or u == 0.0:
+        return request.force, None
+    from mbs.bearings.balls.films import solved_films  # with the solver of point contacts
+
+    films = solved_films(geometry, request.oil, u, request.description.temperature)
+    tell(f"{RPM.text(speed)}: films {films.words}")
+    return BallForce(geometry, films.law), films
 
 
 def _geometry(source: str, problems: list[str]) -> BallGeometry | None:
@@ -207,7 +237,8 @@ def _damper(law: str | None, problems: list[str]) -> Damper | None:
         return None
     if damper is None:
         problems.append(
-            f"--law: got {law!r:.60} for a ball bearing; allowed: hertz, {HERTZ_FORMS}; maps are of line contacts"
+            f"--law: got {law!r:.60} for a ball bearing; allowed: hertz, {HERTZ_FORMS}, {FILMS}; maps are of line "
+            "contacts"
         )
     return damper
 
