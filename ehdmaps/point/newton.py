@@ -30,6 +30,9 @@ LOG_VISCOSITY_STEP = 5.0
 MOST_OF_FILM = 0.7
 """Largest part of the film that a step may take away."""
 
+LEAST_STEP = 1e-3
+"""Part of a step below which a solve ends: a film that the grid cannot carry closes."""
+
 MOST_STEPS = 60
 
 _LEAST_FILM = 1e-4
@@ -152,6 +155,8 @@ def newton(problem: PointProblem, grid: PointGrid, pressure: FloatArray, height:
             break
         change = grid.deflection(step) + move[-1]
         length, size = _length(step, change, film, found), float(np.max(np.abs(step))) / peak
+        if length < LEAST_STEP:
+            break
         pressure = pressure + length * step
         if length == 1.0:
             pressure[~free] = 0.0

@@ -22,7 +22,7 @@ from ehdmaps.physics.point.ellipse import Ellipse
 from ehdmaps.physics.solution import Status
 from ehdmaps.physics.spectrum import checked_frequencies
 from ehdmaps.point.problem import PointProblem
-from ehdmaps.point.two_grids import SHARES, PointGroups, Resolution, responses, solve_groups
+from ehdmaps.point.two_grids import MOST_ERROR, SHARES, PointGroups, Resolution, responses, solve_groups
 
 ELLIPTICITIES = (0.2, 40.0)
 """Ellipticities that are solved: beyond, a contact is one of a line."""
@@ -32,10 +32,6 @@ LOAD_NUMBERS = (0.05, 3e4)
 
 LARGEST_OIL_NUMBER = 30.0
 """Moes' L above which no solve is tried."""
-
-MOST_ERROR = 0.3
-"""Stated error of film, film offset or stiffness above which a point is refused: its two grids tell different stories.
-"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -246,7 +242,7 @@ def solve(
         return PointSolution(groups.status, reason, *where, M, L, steps=groups.steps, solve_seconds=seconds())
     response = None
     if asked is not None:
-        response = _response(groups, grids, asked, ellipse, load, entrainment_speed)
+        response = _response(groups, asked, ellipse, load, entrainment_speed)
     return _in_si(groups, where, (M, L), state, response, seconds())
 
 
@@ -324,12 +320,12 @@ def _dry(where: tuple[float, float, float, Ellipse], frequencies: FloatArray | N
 
 
 def _response(
-    groups: PointGroups, grids: Resolution, frequencies: FloatArray, ellipse: Ellipse, load: float, speed: float
+    groups: PointGroups, frequencies: FloatArray, ellipse: Ellipse, load: float, speed: float
 ) -> PointResponse:
     """Dynamic stiffness in SI."""
     half = float(ellipse.semi_axes(load)[0])
     unit = float(ellipse.max_pressure(load)) * ellipse.rolling_radius
-    found, left = responses(groups, grids, 2.0 * math.pi * frequencies * half / speed)
+    found, left = responses(groups, 2.0 * math.pi * frequencies * half / speed)
     slow = groups.errors
     assert slow is not None
     stiffness = np.maximum(SHARES["stiffness"][0] * np.abs(left.real / found.real), slow.stiffness)
@@ -349,18 +345,13 @@ def _in_si(
     load, speed, _, ellipse = where
     found, errors = groups.numbers, groups.errors
     assert found is not None and errors is not None and groups.fine is not None
-    refused = {
-        "film": max(errors.central_film, errors.minimum_film),
-        "film offset": errors.film_offset,
-        "stiffness": errors.stiffness,
-    }
-    worst = max(refused, key=lambda name: refused[name])
+    worst, error = groups.worst
     half, peak = float(ellipse.semi_axes(load)[0]), float(ellipse.max_pressure(load))
     film, spring = half * half / ellipse.rolling_radius, peak * ellipse.rolling_radius
     thick = too_thick(found.film_offset * film, ellipse.rolling_radius)
     physical = found.minimum_film > 0.0 and found.compliance > 0.0
-    if not physical or not refused[worst] <= MOST_ERROR or thick:
-        reason = thick or f"not resolved: both grids differ by {100.0 * refused[worst]:.0f} % in the {worst}"
+    if not physical or error > MOST_ERROR or thick:
+        reason = thick or f"not resolved: both grids differ by {100.0 * error:.0f} % in the {worst}"
         reason = reason if physical or thick else "not resolved: no film, or no stiffness, is left by extrapolation"
         return PointSolution(Status.OUTSIDE_VALIDITY, reason, *where, *moes, steps=groups.steps, solve_seconds=seconds)
     status, notes = Status.CONVERGED, []

@@ -39,6 +39,9 @@ THIN, THIN_EDGE, THIN_INLET = 0.07, 0.5, 0.625
 """Film [a^2/Rx] below which the cells at the edge of the dry contact are smaller, see `Cells.edge`, and the length of
 the inlet over the usual one: the far inlet of a thin film carries little."""
 
+MOST_ERROR = 0.3
+"""Stated error of film, film offset or stiffness above which both grids tell different stories."""
+
 SHARES = {
     "film_offset": (1.0, 0.0, 0.0),
     "compliance": (1.5, 0.5, 0.0),
@@ -61,6 +64,12 @@ class Resolution(NamedTuple):
     coarse: tuple[int, int] = (34, 12)
     fine: tuple[int, int] = (51, 18)
     inlet: float = 8.0
+
+    @property
+    def finer(self) -> Resolution:
+        """The next pair of grids: its coarse one is the fine one here."""
+        along, across = self.fine
+        return self._replace(coarse=self.fine, fine=(3 * along // 2, 3 * across // 2))
 
     @property
     def left(self) -> float:
@@ -106,6 +115,8 @@ class PointGroups:
         CONVERGED, or why not: STAGNATED, DIVERGED.
     steps : int
         Newton steps, all grids and starts together.
+    resolution : Resolution
+        The grids.
     numbers, errors : PointNumbers or None
         Values, and their errors relative to them; None without a solution.
     coarse, fine : PointState or None
@@ -114,14 +125,28 @@ class PointGroups:
 
     status: Status
     steps: int
+    resolution: Resolution
     numbers: PointNumbers | None = None
     errors: PointNumbers | None = None
     coarse: PointState | None = None
     fine: PointState | None = None
 
+    @property
+    def worst(self) -> tuple[str, float]:
+        """What has the largest stated error of film, film offset and stiffness, and that; inf without a solution."""
+        if self.errors is None:
+            return "", math.inf
+        errors = {
+            "film": max(self.errors.central_film, self.errors.minimum_film),
+            "film offset": self.errors.film_offset,
+            "stiffness": self.errors.stiffness,
+        }
+        name = max(errors, key=lambda key: errors[key])
+        return name, errors[name] if math.isfinite(errors[name]) else math.inf
+
 
 def solve_groups(problem: PointProblem, resolution: Resolution, previous: PointGroups | None = None) -> PointGroups:
-    """Solve a point on both grids.
+    """Solve a point on two grids, and where these do not resolve it on finer ones.
 
     Parameters
     ----------
@@ -132,6 +157,16 @@ def solve_groups(problem: PointProblem, resolution: Resolution, previous: PointG
     previous : PointGroups, optional
         A neighbour, of the same ellipticity, to start from.
     """
+    found = _solved_on(problem, resolution, previous)
+    if found.worst[1] <= MOST_ERROR:
+        return found
+    finer = _solved_on(problem, resolution.finer, None)
+    steps = found.steps + finer.steps
+    return replace(finer if finer.worst[1] < found.worst[1] else found, steps=steps)
+
+
+def _solved_on(problem: PointProblem, resolution: Resolution, previous: PointGroups | None) -> PointGroups:
+    """Solve a point on both grids of a resolution."""
     scale, edge, inlet = _ladders(problem)
     grids = [
         point_grid(problem.ellipticity, scale, Cells(along, across, inlet * resolution.inlet, edge))
@@ -148,7 +183,7 @@ def solve_groups(problem: PointProblem, resolution: Resolution, previous: PointG
                 break
         assert state is not None
         if not state.status.usable:
-            return PointGroups(state.status, steps)
+            return PointGroups(state.status, steps, resolution)
         states.append(state)
     coarse, fine = (numbers_of(state) for state in states)
     left = resolution.left
@@ -171,18 +206,16 @@ def solve_groups(problem: PointProblem, resolution: Resolution, previous: PointG
     row = top[:, int(np.unravel_index(np.argmax(top), top.shape)[1])]
     between = peak_sampling_error(grids[1].x, row, cusp=problem.isotherm.alpha > 0.0)
     errors = errors._replace(film_compliance=film_compliance, max_pressure=max(errors.max_pressure, between))
-    return PointGroups(Status.CONVERGED, steps, values, errors, states[0], states[1])
+    return PointGroups(Status.CONVERGED, steps, resolution, values, errors, states[0], states[1])
 
 
-def responses(groups: PointGroups, resolution: Resolution, frequencies: FloatArray) -> tuple[ComplexArray, FloatArray]:
+def responses(groups: PointGroups, frequencies: FloatArray) -> tuple[ComplexArray, FloatArray]:
     """Dynamic stiffness 1/z over frequency [p_H Rx], and the difference that extrapolation leaves, complex.
 
     Parameters
     ----------
     groups : PointGroups
         A point that is solved.
-    resolution : Resolution
-        Its grids.
     frequencies : ndarray, shape (k,)
         Omega = omega a/u, > 0.
 
@@ -193,7 +226,7 @@ def responses(groups: PointGroups, resolution: Resolution, frequencies: FloatArr
     """
     assert groups.coarse is not None and groups.fine is not None
     coarse, fine = (-Tangent.of(state).motions(frequencies) for state in (groups.coarse, groups.fine))
-    found = 1.0 / (fine + resolution.left * (fine - coarse))
+    found = 1.0 / (fine + groups.resolution.left * (fine - coarse))
     return found, np.asarray(found - 1.0 / fine)
 
 

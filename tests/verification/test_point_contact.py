@@ -18,7 +18,7 @@ from ehdmaps.point.grid import Cells, grid_on, point_grid
 from ehdmaps.point.linearisation import Tangent
 from ehdmaps.point.newton import newton, starts
 from ehdmaps.point.reynolds import balance, changed, jacobian
-from ehdmaps.point.two_grids import Resolution, solve_groups
+from ehdmaps.point.two_grids import MOST_ERROR, Resolution, solve_groups
 from tests.cases.points import point_problem
 
 LINES = tomllib.loads((Path(__file__).parents[1] / "references" / "line_contact.toml").read_text(encoding="utf-8"))[
@@ -262,6 +262,15 @@ def test_stated_errors_bound_the_difference_from_finer_grids(point):
         usual.numbers._fields, usual.numbers, finer.numbers, usual.errors, strict=True
     ):
         assert abs(value / exact - 1.0) < error, name
+
+
+def test_a_heavy_circle_is_solved_on_finer_grids():
+    """Side films narrower than a cell of the usual grids: these close, or differ by more than is allowed."""
+    found = solve_groups(point_problem(2000.0, 10.0, 1.0), Resolution())
+    assert found.status is Status.CONVERGED and found.resolution == Resolution().finer
+    assert found.worst[1] < MOST_ERROR
+    assert found.numbers.minimum_film < 0.5 * found.numbers.central_film
+    assert solve_groups(point_problem(2e4, 11.0, 1.0), Resolution()).numbers is None
 
 
 def test_a_start_from_a_neighbour_ends_in_the_same_numbers():
