@@ -10,6 +10,7 @@ bends, are left out before eigenvalues are found.
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -39,7 +40,7 @@ def machines(ross: Any) -> dict[str, tuple[Any, tuple[float, ...], int, float, f
     def cone(first: float, last: float, length: float, count: int) -> list[Any]:
         # ROSS's cones have the shapes of cylinders: some elements make the difference small.
         ends = np.linspace(first, last, count + 1).tolist()
-        return shaft(list(zip(ends, ends[1:], strict=False)), length / count)
+        return shaft(list(pairwise(ends)), length / count)
 
     speeds = np.linspace(100.0, 1300.0, 7)
     cross = 5e2 * speeds
