@@ -105,6 +105,8 @@ def compile_table(
     supply: OilSupply = FLOODED,
     rolling: RollingFilm | None = None,
     surface: Surface = SMOOTH,
+    slowest: float | None = None,
+    temperatures: tuple[float, float] | None = None,
 ) -> ApproachTable:
     """Table of one contact, or of several in series, without centrifugal load.
 
@@ -128,6 +130,10 @@ def compile_table(
         Mass flow of the contacts, where it is known.
     surface : Surface
         Roughness of the surfaces.
+    slowest : float, optional
+        Speed [m/s] down to which nodes are laid below the lowest one, beside those that are there without it.
+    temperatures : (float, float), optional
+        Temperatures [K] to which nodes are laid likewise; those of the field if left out.
 
     Raises
     ------
@@ -136,36 +142,43 @@ def compile_table(
     """
     resolution = resolution or (Resolution() if supply.flooded else Resolution(approach=_LAYERED_STEP))
     log_speeds = _axis(math.log(speeds[0]), math.log(speeds[1]), resolution.log_speed)
+    log_speeds, rows = _longer(log_speeds, math.log(slowest or speeds[0]), math.log(speeds[1]), resolution.log_speed)
     low, high = (1.0 / (temperature - COLDEST) for temperature in field.temperature_range)
+    cold, hot = (1.0 / (temperature - COLDEST) for temperature in temperatures or field.temperature_range)
     colds = _axis(high, low, 1e-3 * resolution.temperature)
-    temperatures = COLDEST + 1.0 / colds
+    colds, columns = _longer(colds, hot, cold, 1e-3 * resolution.temperature)
+    kelvins = COLDEST + 1.0 / colds
     us, layer = np.exp(log_speeds), supply.oil_layer
-    loads, scale = _alignment(contacts, lubricant, us, temperatures, surface.roughness)
+    loads, scale = _alignment(contacts, lubricant, us, kelvins, surface.roughness)
     slowest, rough = field.speed_range[0], () if surface.smooth else contacts
     sharing = [RoughLayer(surface, contact, lubricant, slowest) for contact in rough]
-    root, curve = _sampled(field, contacts, us, temperatures, held_load, resolution, layer, rolling, sharing)
+    root, curve = _sampled(field, contacts, us, kelvins, held_load, resolution, layer, rolling, sharing)
     offset = _approach_at(np.cbrt(loads), root, curve)
     if layer < math.inf:  # the lift-off from a layer is at one s
         least = 0.0 if surface.smooth else _FOOT
-        distance = np.maximum(offset - float(np.min(curve.approach[root >= least])), scale)
-        scale = distance * float(np.min(scale / distance))
+        mapped = curve.approach[:, rows, columns]
+        distance = np.maximum(offset - float(np.min(mapped[root[:, rows, columns] >= least])), scale)
+        scale = distance * float(np.min((scale / distance)[rows, columns]))
 
     stretched = np.arcsinh((curve.approach - offset) / scale)
     root_slope = scale * np.sqrt(1.0 + ((curve.approach - offset) / scale) ** 2) / curve.slope
     lifted = int(np.count_nonzero(root[:, 0, 0] < 0.0))
-    start = float(np.min(stretched[lifted])) - _MARGIN * resolution.approach
+    start = float(np.min(stretched[lifted][rows, columns])) - _MARGIN * resolution.approach
+    # nodes beyond the map come besides those that the map has without them
+    lowest = float(np.min(stretched[lifted])) - _MARGIN * resolution.approach
+    start -= resolution.approach * max(0, math.ceil((start - lowest) / resolution.approach - 1e-9))
     held = np.count_nonzero(root[:, 0, 0] <= np.cbrt(held_load))
     end = float(np.max(stretched[held - 1])) + _MARGIN * resolution.approach
     nodes: FloatArray = start + resolution.approach * np.arange(math.ceil((end - start) / resolution.approach) + 1.0)
 
     logs = np.log(curve.loss_ratio)
-    values = np.empty((log_speeds.size, temperatures.size, nodes.size, 2))
-    for i, j in np.ndindex(log_speeds.size, temperatures.size):
+    values = np.empty((log_speeds.size, kelvins.size, nodes.size, 2))
+    for i, j in np.ndindex(log_speeds.size, kelvins.size):
         line = stretched[:, i, j]
         if not np.all(np.diff(line) > 0.0):
             raise MapError(
                 f"law: the approach of the contacts {', '.join(c.name for c in contacts)} does not rise with "
-                f"load at {math.exp(log_speeds[i]):.4g} m/s, {temperatures[j]:.2f} K; a law needs that; "
+                f"load at {math.exp(log_speeds[i]):.4g} m/s, {kelvins[j]:.2f} K; a law needs that; "
                 "look at that part of the map, solve it again with a finer grid"
             )
         roots, slopes, ratios, within = root[:, i, j], root_slope[:, i, j], logs[:, i, j], nodes
@@ -206,6 +219,16 @@ def _axis(low: float, high: float, largest_step: float) -> FloatArray:
     if high <= low:
         return np.array([low])
     return np.linspace(low, high, max(8, math.ceil((high - low) / largest_step) + 1))
+
+
+def _longer(nodes: FloatArray, low: float, high: float, largest_step: float) -> tuple[FloatArray, slice]:
+    """Uniform nodes with more of them on either side, as far as from low to high, and the place of the given ones."""
+    step = largest_step if nodes.size == 1 else float(nodes[-1] - nodes[0]) / (nodes.size - 1)
+    below, above = (max(0, math.ceil(gap / step - 1e-9)) for gap in (float(nodes[0]) - low, high - float(nodes[-1])))
+    longer = np.concatenate(
+        (nodes[0] - step * np.arange(below, 0, -1.0), nodes, nodes[-1] + step * np.arange(1.0, above + 1.0))
+    )
+    return longer, slice(below, below + nodes.size)
 
 
 def _inverse_step(nodes: FloatArray) -> float:
@@ -280,7 +303,7 @@ def _sampled(
     films = [curve.film(tail, known, beyond_loads) for curve in curves]
     if layer < math.inf:
         films = [
-            oil_layer(contact, layer, curve.tail, rolling, speeds, temperatures)(film)
+            oil_layer(contact, layer, curve.tail, rolling, speeds, temperatures, field)(film)
             for contact, curve, film in zip(contacts, curves, films, strict=True)
         ]
     if sharing:

@@ -262,19 +262,27 @@ class EHDMap:
         names = ("inner", "outer") if kind == "series" else (kind,)
         contacts = tuple(by_name[name] for name in names)
         check_loads(self.dataset["load"].values, contacts)
+<<<<<<< HEAD
         if len(self._laws) >= _MOST_LAWS:
             self._laws.pop(next(iter(self._laws)))
         self._laws[key] = ContactLaw(
+=======
+        from ehdmaps.maps.edges.continued import continued_field  # with the film table
+
+        field = self.film_field(names)
+        return ContactLaw(
+>>>>>>> c8d63670 (Laws go on below the speeds and outside the temperatures of their map, on oil layers too)
             kind,
             contacts,
             self.lubricant,
-            self.film_field(names),
+            field,
             outside,
             self._resolution,
             rolling=self.rolling_film,
             supply=key[2],
             surface=key[3],
             errors=self.law_errors,
+            continued=continued_field(field, contacts, self.lubricant),
         )
         return self._laws[key]
 

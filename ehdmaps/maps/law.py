@@ -6,7 +6,7 @@ import copy
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Literal, get_args
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -35,8 +35,14 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.surface import SMOOTH, Surface
 
+if TYPE_CHECKING:
+    from ehdmaps.maps.edges.continued import ContinuedField
+
 LawKind = Literal["series", "inner", "outer", "line"]
 OutsidePolicy = Literal["error", "clamp", "asymptote"]
+
+LEAST_LOAD = 1.0
+"""Load from which on the error of a continued film is looked at [N/m]."""
 
 LOAD_REACH, SPEED_REACH = 100.0, 10.0
 """How far the policy `asymptote` goes, as multiples of the highest load and speed; it holds the edge beyond."""
@@ -45,8 +51,8 @@ LOAD_REACH, SPEED_REACH = 100.0, 10.0
 class ContactLaw:
     """Load per unit length of a contact over approach, rate, entrainment speed and temperature.
 
-    C1 in all arguments (below the lowest mapped speed the film fades, with a kink there), rising with the approach at
-    rest, never a tension, passive, with exact derivatives. Make one by `EHDMap.law`.
+    C1 in all arguments (below a tenth of the lowest mapped speed the film fades, with a kink there), rising with the
+    approach at rest, never a tension, passive, with exact derivatives. Make one by `EHDMap.law`.
 
     Calls are for arrays of any shape that broadcast, and cost about 0.1 us a point; `at` gives the law of one
     speed and temperature, five times faster. Other compiled code uses `table`, `workspace`, `counts` and the
@@ -67,7 +73,8 @@ class ContactLaw:
         What happens outside the map; counted always. `error`: OutsideMapError. `clamp`: load, speed and
         temperature are held at the edge, with the dry tangent above the highest load. `asymptote`: film offset
         and c go on with their end exponents, in speed at constant Moes number M, up to `LOAD_REACH` times the
-        highest load and `SPEED_REACH` times the highest speed, and as `clamp` beyond; temperature is held.
+        highest load and `SPEED_REACH` times the highest speed, and as `clamp` beyond; films go on over temperature
+        too, see `continued`.
     resolution : Resolution, optional
         Spacing of the nodes of the table.
     rolling : RollingFilm, optional
@@ -80,6 +87,9 @@ class ContactLaw:
         is so thin that the mean planes overlap, its share and its damping are a guess, see `ehdmaps.maps.rough_layer`.
     errors : LawErrors, optional
         How wrong the law may be, where its map says so; see `LawAtPoint.bounds`.
+    continued : ContinuedField, optional
+        The films below the lowest speed and outside the temperatures of the map. Without them smooth films fade from
+        the lowest mapped speed on, and the temperature is held at the edge with any policy.
 
     Raises
     ------
@@ -108,6 +118,7 @@ class ContactLaw:
         supply: OilSupply = FLOODED,
         surface: Surface = SMOOTH,
         errors: LawErrors | None = None,
+        continued: ContinuedField | None = None,
     ) -> None:
         if outside not in get_args(OutsidePolicy):
             raise InputError(f"contact law, outside: got {outside!r}; allowed: {', '.join(get_args(OutsidePolicy))}")
@@ -124,7 +135,8 @@ class ContactLaw:
         }
         self._outside = OutsideCalls(kind, outside == "error", ends)
         self.surface = surface
-        films = DryField(field, not surface.smooth) if field.dry else field
+        self.continued = None if field.dry else continued
+        films = DryField(field, not surface.smooth) if field.dry else continued or field
         self._films = LawFilms(self.contacts, lubricant, films, field.dry, supply, rolling)
         self._resolution = resolution
         self.rolling = rolling
@@ -208,7 +220,8 @@ class ContactLaw:
         """Excursions of points outside the map so far: axis, side, number, the farthest one, and where the map ends.
 
         Of calls of the law and of `LawAtPoint`, and of what compiled callers report by `note_outside`. Loads below the
-        map are told where the film there is a guess, see `low_loads`; they are no error with any policy.
+        map are told where the film there is a guess, see `low_loads`, and speeds below it where films are continued;
+        they are no error with any policy.
         """
         return self._outside.excursions
 
@@ -276,6 +289,7 @@ class ContactLaw:
         _evaluate_many(table, flat, forces, counts)
         self._settle(counts, named, flat)
         self._outside.keep(self._films.guesses(forces[0], flat[2], flat[3]))
+        self._note_slow(flat[2])
         w, dw_ddelta, dw_drate = (force.reshape(shape)[()] for force in forces)
         return w, dw_ddelta, dw_drate
 
@@ -312,6 +326,7 @@ class ContactLaw:
         counts = np.zeros(4, dtype=np.int64)
         point = kernel.collapse(table, _workspace(table), u, T, q, counts)
         self._settle(counts, named, [])
+        self._note_slow(np.array([u]))
         self._latest = LawAtPoint(u, T, q, point, self, bool(counts.any()))
         return self._latest
 
@@ -390,24 +405,32 @@ class ContactLaw:
             most = min(highest_structural_load(contact) for contact in self.contacts)
             held = max(held, min(LOAD_REACH * highest, most))
         rough = not self.surface.smooth
+        slowest, (cold, hot) = low, self.temperature_range
         if rough and not self._films.dry:
-            low /= GONE_BELOW
+            slowest = low = low / GONE_BELOW
+        elif self.continued is not None:
+            slowest = self.continued.slowest
+        if self.continued is not None and self.outside == "asymptote":
+            cold, hot = self.continued.reach
         self._speeds, self._held_load = (low, high), held
+        self._slowest, self._temperatures = slowest, (cold, hot)
         own = self._approach_table(self.contacts)
         return LawTable(
             own=own,
             inner=own,
             outer=own,
             structure=np.array([structural_parameters(contact) for contact in self.contacts]),
-            film_speed=0.0 if rough else np.inf if self._films.dry else low,
-            lowest_speed=low,
+            film_speed=0.0 if rough else np.inf if self._films.dry else slowest,
+            lowest_speed=slowest,
             highest_speed=high,
-            lowest_temperature=self.temperature_range[0],
-            highest_temperature=self.temperature_range[1],
+            lowest_temperature=cold,
+            highest_temperature=hot,
             highest_load=highest,
             highest_root=float(np.cbrt(highest)),
             held_load=held,
             counted_speed=self.speed_range[1],
+            counted_cold=self.temperature_range[0],
+            counted_hot=self.temperature_range[1],
         )
 
     def _approach_table(self, contacts: Sequence[LineContact]) -> ApproachTable:
@@ -422,6 +445,8 @@ class ContactLaw:
             FLOODED if self._films.dry else self.supply,
             self.rolling,
             self.surface,
+            self._slowest,
+            self._temperatures,
         )
 
     def _check_centrifugal(self, values: FloatArray) -> None:
@@ -444,6 +469,11 @@ class ContactLaw:
     def _settle(self, counts: IntArray, named: Mapping[str, FloatArray], flat: Sequence[FloatArray]) -> None:
         """Add up the counts of a call, and raise what they ask for."""
         self._outside.settle(counts, named, flat, self._loads_at_rest)
+
+    def _note_slow(self, speeds: FloatArray) -> None:
+        """Keep speeds below the map, where films are continued; they are no error with any policy."""
+        if self.continued is not None:
+            self._outside.keep(Range("entrainment_speed", self.speed_range[0], np.inf).excursions(speeds))
 
     def _loads_at_rest(self, flat: Sequence[FloatArray]) -> FloatArray:
         """Loads on the inner contact of flat arguments, as if nothing moved [N/m]."""
@@ -509,7 +539,11 @@ class LawAtPoint:
         if self.law.errors is None:
             return None
         names = [contact.name for contact in self.law.contacts]
-        return self.law.errors.bounds(names, loads, self.entrainment_speed, self.temperature)
+        u, T, continued = self.entrainment_speed, self.temperature, self.law.continued
+        added = None
+        if continued is not None and continued.outside(u, T):
+            added = {name: continued.errors(name, np.maximum(loads, LEAST_LOAD), abs(u), T) for name in names}
+        return self.law.errors.bounds(names, loads, u, T, added)
 
     def rolling_force(self, load: npt.ArrayLike) -> FloatArray:
         """Rolling force of each contact at a load on the inner one, both walls together [N/m].

@@ -263,7 +263,14 @@ class LawErrors:
         without = f"; without {', '.join(lacking)}" if lacking else ""
         return f"{' and '.join(parts)}{without}; {'other ' if any(self.left_out) else ''}{NOT_IN}"
 
-    def bounds(self, names: Sequence[str], loads: FloatArray, speed: float, temperature: float) -> LawBounds | None:
+    def bounds(
+        self,
+        names: Sequence[str],
+        loads: FloatArray,
+        speed: float,
+        temperature: float,
+        added: Mapping[str, LawBounds] | None = None,
+    ) -> LawBounds | None:
         """Bounds of one contact, or of several in series.
 
         Of contacts in series compliances add, and losses c/k^2 do: their relative errors are means with these weights.
@@ -276,6 +283,8 @@ class LawErrors:
             w [N/m]; held at the ends of the map.
         speed, temperature : float
             u [m/s], of either sign, and T [K]; held likewise.
+        added : mapping of str to LawBounds, optional
+            Errors of each contact besides, of films that are continued outside the map.
 
         Returns
         -------
@@ -286,6 +295,10 @@ class LawErrors:
         if speed == 0.0 or not self._log_speeds.size:
             return None
         single = [self._of_contact(name, loads, abs(speed), temperature) for name in names]
+        for i, name in enumerate(names if added is not None else ()):
+            more = (added or {})[name]
+            k, c, offset, *weights_of = single[i]
+            single[i] = (k + more.stiffness, c + more.damping, offset + more.film_offset, *weights_of)
         compliance = np.array([one[3] for one in single])
         loss = np.array([one[4] for one in single])
         weights = compliance / compliance.sum(axis=0)

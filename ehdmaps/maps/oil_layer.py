@@ -33,6 +33,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.maps.contact_curve import FilmSamples, Tail, dry_slope
+from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.rolling_film import FlowFilm, RollingFilm
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.oil_supply import CORNER, RIGID_FLOW, compliance_ratio, damping_ratio, film_ratio
@@ -50,6 +51,7 @@ def oil_layer(
     rolling: RollingFilm | None,
     speeds: FloatArray,
     temperatures: FloatArray,
+    field: FilmField | None = None,
 ) -> OilLayer:
     """Layer before a contact, at given speeds and temperatures.
 
@@ -65,8 +67,10 @@ def oil_layer(
         Mass flow of the flooded contact; None where it is not known.
     speeds, temperatures : array (n_u,), (n_T,)
         Entrainment speeds [m/s], > 0, and temperatures [K].
+    field : FilmField, optional
+        Films of the contact, which the flow follows outside the map.
     """
-    flow = None if rolling is None else rolling.flow_film(contact.name, tail.load, speeds, temperatures)
+    flow = None if rolling is None else rolling.flow_film(contact.name, tail.load, speeds, temperatures, field)
     return OilLayer(contact, thickness, tail, flow)
 
 

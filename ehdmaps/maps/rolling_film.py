@@ -13,6 +13,9 @@ a contact law are, or of its own grid at constant load where it has no backbone.
   Where no backbone reaches the rigid regime the way there is a guess.
 - Above the highest load they go on with their last exponent.
 - Beyond the speeds of the map too they go on with their last exponents. Temperatures are held at the edge.
+- A law on an oil layer asks for the mass flow outside the speeds and temperatures of the map too. There the flow over
+  the film is that at the edge of the map, at the same zeta: it is 1.2257 of rigid contacts and near one of loaded ones,
+  while the film itself changes by powers of ten.
 """
 
 from __future__ import annotations
@@ -29,7 +32,7 @@ from scipy.interpolate import CubicSpline, PPoly
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.maps.backbone import FEWEST_NODES, LATTICE_STEP, lagrange
-from ehdmaps.maps.film_field import RIGID, known_from, load_at
+from ehdmaps.maps.film_field import RIGID, FilmField, known_from, load_at
 from ehdmaps.maps.grid_field import lines_by_contact
 from ehdmaps.maps.kernels.splines import mix_lines, spline_weights
 from ehdmaps.maps.schema import BACKBONE_DIMS, DIMS
@@ -104,6 +107,8 @@ class RollingFilm:
         Range of the map's axes [N/m], [K].
     start : float
         zeta from which on the reader holds also below the lowest load; inf where it does not.
+    speed_range : tuple of float
+        Speeds of the map above zero [m/s].
     """
 
     def __init__(
@@ -114,7 +119,9 @@ class RollingFilm:
         load_range: tuple[float, float],
         temperature_range: tuple[float, float],
         start: float = math.inf,
+        speed_range: tuple[float, float] = (0.0, math.inf),
     ) -> None:
+        self._speeds = speed_range
         self._start = start
         self._contacts = {contact.name: contact for contact in contacts}
         self._lubricant = lubricant
@@ -177,7 +184,14 @@ class RollingFilm:
         T = float(np.clip(temperature, *self._temperatures))
         return mass / (self._lubricant.at(T).density * abs(entrainment_speed))
 
-    def flow_film(self, contact: str, first: FloatArray, speeds: FloatArray, temperatures: FloatArray) -> FlowFilm:
+    def flow_film(
+        self,
+        contact: str,
+        first: FloatArray,
+        speeds: FloatArray,
+        temperatures: FloatArray,
+        field: FilmField | None = None,
+    ) -> FlowFilm:
         """Mass flow over density at rest and speed along the loads of each speed and temperature.
 
         Parameters
@@ -188,18 +202,49 @@ class RollingFilm:
             Loads from which on it is asked for [N/m], > 0, each below the highest load of the map.
         speeds, temperatures : array (n_u,), (n_T,)
             Entrainment speeds [m/s], > 0, and temperatures [K].
+        field : FilmField, optional
+            Films of the contact. Outside the map the flow then follows them, see above; it goes on straight without.
         """
         line, reach = self._contacts[contact], np.log(self._loads[1] / first)
         places = np.linspace(0.0, 1.0, 4 + math.ceil(float(np.max(reach)) / _FLOW_STEP))
         logs = np.empty((places.size, speeds.size, temperatures.size))
-        for j, speed in enumerate(speeds.tolist()):
-            for k, kelvin in enumerate(temperatures.tolist()):
-                state = self._lubricant.at(kelvin)
-                number = moes_speed_number(speed, state.viscosity, line.radius, line.reduced_modulus)
-                loads = first[j, k] * np.exp(places * reach[j, k])
-                known = self._logarithms(line, loads, speed, kelvin, float(first[j, k]))[1]
-                logs[:, j, k] = known + math.log(line.radius * math.sqrt(number))
+        held_speeds, held = np.clip(speeds, *self._speeds), np.clip(temperatures, *self._temperatures)
+        same = growth = np.ones_like(logs)
+        if field is not None:
+            same, growth = self._from_edge(
+                line, first * np.exp(places[:, None, None] * reach), field, speeds, temperatures, held_speeds, held
+            )
+        for j, k in np.ndindex(speeds.size, temperatures.size):
+            speed, kelvin, loads = float(speeds[j]), float(temperatures[k]), first[j, k] * np.exp(places * reach[j, k])
+            if field is not None and (held_speeds[j], held[k]) != (speed, kelvin):
+                speed, kelvin, loads = float(held_speeds[j]), float(held[k]), same[:, j, k]
+            state = self._lubricant.at(kelvin)
+            number = moes_speed_number(speed, state.viscosity, line.radius, line.reduced_modulus)
+            known = self._logarithms(line, loads, speed, kelvin, float(loads[0]))[1]
+            logs[:, j, k] = known + math.log(line.radius * math.sqrt(number))
+        logs += np.log(growth)
         return FlowFilm(CubicSpline(places, logs), np.log(first), reach)
+
+    def _from_edge(
+        self,
+        line: LineContact,
+        loads: FloatArray,
+        field: FilmField,
+        speeds: FloatArray,
+        temperatures: FloatArray,
+        held_speeds: FloatArray,
+        held: FloatArray,
+    ) -> tuple[FloatArray, FloatArray]:
+        """Loads at the edge of the map with the same zeta, and how films grow from there, (n, n_u, n_T) each."""
+        units = np.empty((2, speeds.size, temperatures.size))
+        for j, k in np.ndindex(speeds.size, temperatures.size):
+            for i, (u, T) in enumerate(((speeds[j], temperatures[k]), (held_speeds[j], held[k]))):
+                units[i, j, k] = load_at(line, self._lubricant, 0.0, float(u), float(T))
+        same = loads * units[1] / units[0]
+        if np.array_equal(speeds, held_speeds) and np.array_equal(temperatures, held):
+            return same, np.ones_like(loads)
+        here = field.films(line.name, loads, speeds, temperatures)[0]
+        return same, np.asarray(here / field.films(line.name, same, held_speeds, held)[0])
 
     def _found(self, which: int, name: str, load: npt.ArrayLike, speed: float, temperature: float) -> FloatArray:
         """One of both, in SI."""
@@ -280,8 +325,8 @@ def rolling_film(
         reader, start = _lines_reader(backbone, contacts, lubricant)
     if reader is None:
         reader, start = _grid_reader(values, axes, contacts, lubricant), math.inf
-    load_range, _, temperature_range = ((float(axis[0]), float(axis[-1])) for axis in axes)
-    return RollingFilm(contacts, lubricant, reader, load_range, temperature_range, start)
+    load_range, speed_range, temperature_range = ((float(axis[0]), float(axis[-1])) for axis in axes)
+    return RollingFilm(contacts, lubricant, reader, load_range, temperature_range, start, speed_range)
 
 
 def _made_later(lines: Callable[[], xr.Dataset], contacts: Sequence[LineContact], lubricant: Lubricant) -> _Reader:

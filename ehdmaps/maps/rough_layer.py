@@ -51,7 +51,7 @@ from scipy.special import erfcx, gamma, ndtr, pbdv
 
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.compiled import njit
-from ehdmaps.maps.contact_curve import FilmSamples
+from ehdmaps.maps.contact_curve import FilmSamples, dry_slope
 from ehdmaps.maps.schema import DIMS
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import max_pressure
@@ -147,10 +147,13 @@ LEAST_PRESSURE = 1e3
 """Pressure below which asperities are not asked [Pa], a hundredth of the air's: the Gaussian has no highest one."""
 
 WHOLE_TO, GONE_BELOW = 10.0, 1e3
-"""How far the film goes on below the lowest mapped speed, at constant Moes number, and where it is gone.
+"""How far the film goes on below the lowest mapped speed, and where it is gone.
 
 At a tenth of the lowest speed, films of loaded contacts are some nanometres; nobody knows one of a thousandth.
 """
+
+TEMPERATURE_REACH = 40.0
+"""How far films go on beyond the temperatures of a map with the policy `asymptote`, at most [K]."""
 
 _FARTHEST, _DEEPEST = 14.0, -35.0
 _STEP = 0.02
@@ -347,8 +350,8 @@ def _shared(
 
 
 def _part_left(speed: FloatArray) -> FloatArray:
-    """Part of the film that is left at a speed, in lowest mapped speeds: from all to none without a kink."""
-    place = np.clip(np.log(speed * GONE_BELOW) / math.log(GONE_BELOW / WHOLE_TO), 0.0, 1.0)
+    """Part of the film that is left at a speed, in lowest mapped speeds: that of a law of smooth surfaces."""
+    place = np.minimum(speed * WHOLE_TO, 1.0)
     return np.asarray(place**3 * (10.0 - place * (15.0 - 6.0 * place)))
 
 
@@ -384,7 +387,8 @@ class RoughLayer:
     lubricant : Lubricant
         The oil.
     slowest : float
-        Lowest mapped entrainment speed [m/s]: the film is whole down to a tenth of it, and gone at a thousandth.
+        Lowest mapped entrainment speed [m/s]: the film is whole down to a tenth of it, and fades below as that of a law
+        of smooth surfaces; at a thousandth it is gone.
     """
 
     surface: Surface
@@ -411,8 +415,11 @@ class RoughLayer:
         """
         part = _part_left(speeds / self.slowest)[:, None]
         found = self.shared(film.root, part * film.offset, part * film.slope, speeds, temperatures)
-        share = np.maximum(part * found.share, _LEAST_SHARE)
-        return FilmSamples(film.root, found.offset, found.slope, film.loss * share**2)
+        # of smooth surfaces c at equal load fades as the film does
+        dry = dry_slope(self.contact, film.root)
+        faded = part * ((dry - part * film.slope) / (dry - film.slope)) ** 2
+        left = np.where(part < 1.0, faded, 1.0) * found.share**2
+        return FilmSamples(film.root, found.offset, found.slope, film.loss * np.maximum(left, _LEAST_SHARE**2))
 
     def shared(
         self, root: FloatArray, film: FloatArray, slope: FloatArray, speeds: FloatArray, temperatures: FloatArray

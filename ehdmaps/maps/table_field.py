@@ -18,7 +18,7 @@ import numpy as np
 import xarray as xr
 from scipy.interpolate import CubicSpline, PPoly
 
-from ehdmaps.arrays import BoolArray, ComplexArray, FloatArray
+from ehdmaps.arrays import BoolArray, ComplexArray, FloatArray, IndexArray
 from ehdmaps.errors import MapError
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone import ERROR, IMAGINARY, LOSS_SCALE, REAL, BackboneField, OffsetLine
@@ -31,7 +31,7 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import moes_groups, moes_speed_number, valley_load_number
 from ehdmaps.table.fields import NATURAL_FREQUENCIES
 from ehdmaps.table.file import film_table
-from ehdmaps.table.films import FilmTable
+from ehdmaps.table.films import FilmTable, TableFilms
 from ehdmaps.units import LOAD, SPEED, TEMPERATURE
 
 _STEP = 0.05
@@ -43,15 +43,23 @@ _BESIDE = 2
 _KEPT = 6
 """Sets of lines that are kept: a law asks for those of each of its contacts several times."""
 
+_FEWEST = 2
+"""Films of a line that the table must have."""
+
+_CLOSE, _EDGE = 1.0 - 1e-9, 1e-9
+"""Round-off of L, and of speeds and temperatures."""
+
 Range = tuple[float, float]
 
 
 class _Groups(NamedTuple):
-    """M per N/m, M at the valley and the film whose Moes number is one [m], each (n_u, n_T)."""
+    """M per N/m, M at the valley, the film whose Moes number is one [m], L and the speed [m/s], each (n_u, n_T)."""
 
     unit: FloatArray
     valley: FloatArray
     film: FloatArray
+    oil_number: FloatArray
+    speed: FloatArray
 
 
 class _Lines(NamedTuple):
@@ -77,6 +85,9 @@ class TableField:
         An oil of the family of the table.
     load_range, speed_range, temperature_range : (float, float)
         Ranges of a law [N/m], [m/s], > 0, and [K].
+    lenient : bool
+        Whether films that the table lacks are continued within these ranges too, and not only outside them: straight
+        along the loads, and at the largest L that the table knows.
     """
 
     dry = False
@@ -88,7 +99,9 @@ class TableField:
         load_range: Range,
         speed_range: Range,
         temperature_range: Range,
+        lenient: bool = False,
     ) -> None:
+        self._lenient = lenient
         self.contacts = tuple(contact.name for contact in contacts)
         self.load_range, self.speed_range, self.temperature_range = load_range, speed_range, temperature_range
         self._contacts = {contact.name: contact for contact in contacts}
@@ -155,17 +168,18 @@ class TableField:
         return self._memory.film_differences(contact, loads, speed, temperature)
 
     def _groups(self, contact: LineContact, speeds: FloatArray, temperatures: FloatArray) -> _Groups:
-        """Groups of a contact."""
-        found = np.empty((3, speeds.size, temperatures.size))
+        """Groups of a contact at speeds (n_u,) or (n_u, n_T)."""
+        every = np.broadcast_to(speeds if speeds.ndim == 2 else speeds[:, None], (len(speeds), temperatures.size))
+        found = np.empty((4, *every.shape))
         radius, modulus = contact.radius, contact.reduced_modulus
         for k, temperature in enumerate(temperatures.tolist()):
             state = self._lubricant.at(temperature)
             alpha = state.pressure_viscosity.pressure_viscosity
-            for j, speed in enumerate(speeds.tolist()):
+            for j, speed in enumerate(every[:, k].tolist()):
                 unit, L = moes_groups(1.0, speed, state.viscosity, alpha, radius, modulus)
                 scale = radius * math.sqrt(moes_speed_number(speed, state.viscosity, radius, modulus))
-                found[:, j, k] = float(unit), float(valley_load_number(L)), scale
-        return _Groups(*found)
+                found[:, j, k] = float(unit), float(valley_load_number(L)), scale, float(L)
+        return _Groups(*found, every)
 
     def _lines(self, contact: LineContact, speeds: FloatArray, temperatures: FloatArray) -> _Lines:
         """Lines over the loads of the field, from rigid films on, at each speed and temperature."""
@@ -179,34 +193,139 @@ class TableField:
         last = np.minimum(np.searchsorted(axis, high) + _BESIDE, axis.size)
         places = np.arange(axis.size)[:, None, None]
         wanted = (places >= first) & (places < last)
-        loads = np.exp(axis)[:, None, None] * groups.valley / groups.unit
-        u, T = np.broadcast_arrays(*np.meshgrid(speeds, temperatures, indexing="ij"))
         at = np.nonzero(wanted)
-        read = self._table.films(
-            contact, self._lubricant, loads[at], u[at[1:]], T[at[1:]], others=False, thickest_film=math.inf
-        )
-        needed = (loads >= self.first_loads(speeds, temperatures)) & (loads <= self.load_range[1])
-        lacking = np.flatnonzero(~read.usable & needed[at])
+        values, read = self._read(contact, axis[at[0]], at[1:], speeds, temperatures)
+        needed = (np.exp(axis)[:, None, None] * groups.valley / groups.unit)[at]
+        in_range = (needed >= self.first_loads(speeds, temperatures)[at[1:]]) & (needed <= self.load_range[1])
+        lacking = np.flatnonzero(~read.usable & in_range & ~self._goes_on(speeds, temperatures)[at[1:]])
         if lacking.size:
-            i = int(lacking[0])
-            raise MapError(
-                f"{read.reason.flat[i]!s} at {LOAD.text(float(loads[at][i]))}, {SPEED.text(float(u[at[1:]][i]))}, "
-                f'{TEMPERATURE.text(float(T[at[1:]][i]))}; have the films solved: [solver] films = "solved"'
-            )
-        w = loads[at]
-        width = half_width(w, contact.radius, contact.reduced_modulus)
-        film = groups.film[at[1:]]
-        values = np.full((3, *wanted.shape), np.nan)
-        with np.errstate(invalid="ignore"):
-            values[:, wanted] = (
-                np.log(read.film_offset / film),
-                -read.film_compliance * w / read.film_offset,
-                np.arcsinh(read.loss_compliance * u[at[1:]] * w / (read.film_offset * width) / LOSS_SCALE),
-            )
-        held = values.reshape(3, axis.size, -1)
+            self._refuse(read, int(lacking[0]), float(needed[lacking[0]]), speeds[at[1]], temperatures[at[2]])
+        held = np.full((3, *wanted.shape), np.nan)
+        held[:, *at] = values
+        held = held.reshape(3, axis.size, -1)
+        _keep_longest(held)
+        shortest = np.flatnonzero(np.count_nonzero(np.isfinite(held[0]), axis=0) < _FEWEST)
+        if shortest.size:
+            j, k = np.unravel_index(int(shortest[0]), groups.unit.shape)
+            i = int(np.flatnonzero((at[1] == j) & (at[2] == k) & ~read.usable)[0])
+            self._refuse(read, i, float(needed[i]), speeds[at[1]], temperatures[at[2]])
         _go_on(axis, held)
         film_line = OffsetLine.through(axis, held[0], held[1])
         return _Lines(film_line, CubicSpline(axis, held[2]), (float(axis[0]), float(axis[-1])), groups)
+
+    def _read(
+        self,
+        contact: LineContact,
+        zeta: FloatArray,
+        at: tuple[IndexArray, ...],
+        speeds: FloatArray,
+        temperatures: FloatArray,
+    ) -> tuple[FloatArray, TableFilms]:
+        """Read reduced films (3, n) at zeta (n,) of the lines `at`; those of too large an L at the largest one."""
+        groups = self._groups(contact, speeds, temperatures)
+        largest = _CLOSE * self._table.largest_oil_number
+        # an isoviscous oil has no L
+        held = groups.speed * (largest / np.maximum(groups.oil_number, largest)) ** 4
+        held = np.where(self._goes_on(speeds, temperatures), held, groups.speed)
+        groups = self._groups(contact, held, temperatures) if np.any(held < groups.speed) else groups
+        unit, valley, film, u = (part[at] for part in (groups.unit, groups.valley, groups.film, groups.speed))
+        w = np.exp(zeta) * valley / unit
+        read = self._table.films(
+            contact, self._lubricant, w, u, temperatures[at[1]], others=False, thickest_film=math.inf
+        )
+        width = half_width(w, contact.radius, contact.reduced_modulus)
+        with np.errstate(invalid="ignore"):
+            values = np.stack(
+                [
+                    np.log(read.film_offset / film),
+                    -read.film_compliance * w / read.film_offset,
+                    np.arcsinh(read.loss_compliance * u * w / (read.film_offset * width) / LOSS_SCALE),
+                ]
+            )
+        return np.where(read.usable, values, np.nan), read
+
+    def _goes_on(self, speeds: FloatArray, temperatures: FloatArray) -> BoolArray:
+        """Tell which lines go on straight where the table lacks films, (n_u, n_T): those outside the ranges."""
+        (slow, fast), (cold, hot) = self.speed_range, self.temperature_range
+        outside = (speeds < slow * (1.0 - _EDGE)) | (speeds > fast * (1.0 + _EDGE))
+        beyond = (temperatures < cold * (1.0 - _EDGE)) | (temperatures > hot * (1.0 + _EDGE))
+        return np.asarray(self._lenient | outside[:, None] | beyond)
+
+    def _refuse(self, read: TableFilms, i: int, load: float, speeds: FloatArray, temperatures: FloatArray) -> None:
+        """Say what the table lacks."""
+        raise MapError(
+            f"{read.reason.flat[i]!s} at {LOAD.text(load)}, {SPEED.text(float(speeds[i]))}, "
+            f'{TEMPERATURE.text(float(temperatures[i]))}; have the films solved: [solver] films = "solved"'
+        )
+
+    def knows(self, contact: str, speeds: FloatArray, temperatures: FloatArray) -> bool:
+        """Tell whether the table has films in the middle of the loads of a contact at all speeds and temperatures.
+
+        Parameters
+        ----------
+        contact : str
+            Name of the contact.
+        speeds, temperatures : array (n_u,), (n_T,)
+            [m/s], > 0, and [K].
+        """
+        chosen = self._contacts[contact]
+        groups = self._groups(chosen, speeds, temperatures)
+        middle = np.log(math.sqrt(self.load_range[0] * self.load_range[1]) * groups.unit / groups.valley)
+        at = np.nonzero(np.ones(groups.unit.shape, dtype=bool))
+        _, read = self._read(chosen, middle[at], at, speeds, temperatures)
+        return bool(np.all(read.usable))
+
+    def film_errors(
+        self, contact: str, loads: FloatArray, speed: float, temperature: float
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Errors of the reduced film of one contact, (n,) each: of ln h, of -d ln h/d ln w, and of asinh of the loss.
+
+        Where the table lacks the film, and lines go on straight, the errors are those at the last film that it has, and
+        what the line has changed since.
+
+        Parameters
+        ----------
+        contact : str
+            Name of the contact.
+        loads : array (n,)
+            [N/m].
+        speed, temperature : float
+            [m/s], > 0, and [K].
+        """
+        chosen, at, kelvin = self._contacts[contact], np.array([speed]), np.array([temperature])
+        groups = self._groups(chosen, at, kelvin)
+        zeta = np.log(np.asarray(loads, dtype=np.float64) * groups.unit[0, 0] / groups.valley[0, 0])
+        low, high = np.log(np.array(self.load_range) * groups.unit[0, 0] / groups.valley[0, 0])
+        axis = np.array(zeta_axis(min(low, float(np.min(zeta))), max(high, float(np.max(zeta))), 4.0 * _STEP))
+        zero = np.zeros(axis.size, dtype=np.intp)
+        values, read = self._read(chosen, axis, (zero, zero), at, kelvin)
+        known = np.flatnonzero(read.usable)
+        if not known.size:
+            whole = np.ones(zeta.size)
+            return whole, whole, whole
+        slope, share = np.abs(values[1, known]), np.sinh(values[2, known])
+        errors = [
+            read.errors["film_offset"][known],
+            slope * (read.errors["film_compliance"][known] + read.errors["film_offset"][known]),
+            np.abs(share) / np.hypot(1.0, share) * read.errors["loss_compliance"][known],
+        ]
+        held = np.clip(zeta, axis[known[0]], axis[known[-1]])
+        away = np.abs(zeta - held)
+        rates = np.gradient(values[2, known], axis[known]) if known.size > 1 else np.zeros(known.size)
+        moved = [np.interp(held, axis[known], np.abs(part)) * away for part in (values[1, known], rates)]
+        by_offset, by_slope, by_loss = (
+            np.interp(held, axis[known], np.nan_to_num(error, posinf=1.0)) for error in errors
+        )
+        return by_offset + moved[0], by_slope + moved[0], by_loss + moved[1]
+
+
+def _keep_longest(values: FloatArray) -> None:
+    """Forget what lies beyond a gap in a line, in place: each line keeps its longest stretch; (3, n, lines)."""
+    known = np.isfinite(values[0])
+    for line in np.flatnonzero(np.count_nonzero(np.diff(known.astype(np.int8), axis=0) == 1, axis=0) + known[0] > 1):
+        edges = np.flatnonzero(np.diff(np.concatenate(([0], known[:, line].astype(np.int8), [0]))))
+        first, last = max(edges.reshape(-1, 2).tolist(), key=lambda ends: ends[1] - ends[0])
+        values[:, :first, line] = values[:, last:, line] = np.nan
 
 
 def _go_on(axis: FloatArray, values: FloatArray) -> None:

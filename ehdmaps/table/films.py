@@ -153,6 +153,11 @@ class FilmTable:
         """Values of ln alpha where the piezoviscous part begins, and the isoviscous one ends."""
         return float(self.piezoviscous.axes.alpha[0]), float(np.log(self.isoviscous.axes.alpha[-1]))
 
+    @property
+    def largest_oil_number(self) -> float:
+        """Largest L of the table."""
+        return float(np.exp(self.piezoviscous.axes.size[-1]))
+
     def films(
         self,
         contact: LineContact,

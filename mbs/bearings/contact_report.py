@@ -192,12 +192,12 @@ def axes_left(law: Law, load: float, entrainment_speed: float, temperature: floa
 
 
 def fading(law: Law, entrainment_speed: float) -> str:
-    """A sentence where the speed is below the map, so that the film fades to the dry contact; empty otherwise."""
+    """A sentence where the speed is below the map, so that the film is continued or fades; empty otherwise."""
     if isinstance(law, DryLaw) or not 0.0 < abs(entrainment_speed) < law.speed_range[0] * (1.0 - 1e-9):
         return ""
     fate = "stiffness and damping fade to those of dry contacts from there on"
-    if not law.surface.smooth:
-        fate = "the law goes on at constant Moes number to a tenth of it, and from there into the rough dry contact"
+    if law.continued is not None or not law.surface.smooth:
+        fate = "the law goes on at the same groups to a tenth of it, and from there into the dry contact"
     return (
         f"entrainment speed of {SPEED.text(abs(entrainment_speed))} is below the lowest mapped one, "
         f"{SPEED.text(law.speed_range[0])}: {fate}, and films are continued by Moes' formula"

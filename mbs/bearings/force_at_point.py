@@ -476,7 +476,7 @@ def _is_within(law: ContactLaw, entrainment_speed: float, temperature: float, ce
     """Tell whether the whole film is there, and nothing is outside the map."""
     table = law.plain_table
     within = table.film_speed <= abs(entrainment_speed) <= table.counted_speed
-    within = within and table.lowest_temperature <= temperature <= table.highest_temperature
+    within = within and table.counted_cold <= temperature <= table.counted_hot
     return within and 0.0 <= centrifugal_load < law.load_range[1]
 
 

@@ -555,7 +555,7 @@ class FlatTable(NamedTuple):
         The numbers of each, in their order.
     structure : array (n, 3)
         The array of the `LawTable`.
-    numbers : array (9,)
+    numbers : array (11,)
         The numbers of the `LawTable`, in their order.
     """
 
@@ -616,7 +616,7 @@ def law_table(flat: FlatTable) -> LawTable:
         ApproachTable(flat.inner, flat.inner_place, *fixed_tuple(flat.axes[1], 6)),
         ApproachTable(flat.outer, flat.outer_place, *fixed_tuple(flat.axes[2], 6)),
         flat.structure,
-        *fixed_tuple(flat.numbers, 9),
+        *fixed_tuple(flat.numbers, 11),
     )
 
 

@@ -201,7 +201,7 @@ int ehd_film_at(ehd_film *film, double u, double T) {
     film->lift_off = point->film * point->lift_off;
     film->inverse_scale = point->own.inverse_scale;
     film->highest = point->highest_load * (1.0 + LOAD_TOLERANCE);
-    factors_at(log(least(most(fabs(u), LOWEST_SPEED), HIGHEST_SPEED)), least(most(T, EHD_LOWEST_TEMPERATURE), EHD_HIGHEST_TEMPERATURE), factors);
+    factors_at(log(least(most(fabs(u), most(EHD_LOWEST_SPEED, LOWEST_SPEED)), HIGHEST_SPEED)), least(most(T, EHD_LOWEST_TEMPERATURE), EHD_HIGHEST_TEMPERATURE), factors);
     fill_film_nodes(film, factors);
     fill_film_cells(film);
     fill_load_cells(film);

@@ -167,10 +167,10 @@ def _public_numbers(law: ContactLaw, bearing: BearingGeometry | None, options: K
         _define("EHD_HAS_CENTRIFUGAL", int(options.centrifugal), "whether centrifugal loads are taken"),
         _define("EHD_CONTACTS", len(law.contacts), "contacts in series: " + ", ".join(c.name for c in law.contacts)),
         _define("EHD_HIGHEST_LOAD", table.highest_load, "highest mapped load [N/m]"),
-        _define("EHD_LOWEST_SPEED", law.speed_range[0], "lowest mapped speed [m/s]; below it films fade"),
+        _define("EHD_LOWEST_SPEED", law.speed_range[0], "lowest mapped speed [m/s]"),
         _define("EHD_HIGHEST_SPEED", table.counted_speed, "highest mapped entrainment speed [m/s]"),
-        _define("EHD_LOWEST_TEMPERATURE", table.lowest_temperature, "[K]"),
-        _define("EHD_HIGHEST_TEMPERATURE", table.highest_temperature, "[K]"),
+        _define("EHD_LOWEST_TEMPERATURE", table.counted_cold, "lowest mapped temperature [K]"),
+        _define("EHD_HIGHEST_TEMPERATURE", table.counted_hot, "highest mapped temperature [K]"),
         _define("EHD_MOST_CELLS", max(_places(entry) - 3 for entry in tables), "cells of a line"),
     ]
     if bearing is not None:
@@ -201,6 +201,8 @@ def _private_numbers(law: ContactLaw, centrifugal: bool) -> str:
         _define("FILM_SPEED", table.film_speed, "speed below which films fade [m/s]")
         + _define("LOWEST_SPEED", table.lowest_speed, "speeds of the table [m/s]")
         + _define("HIGHEST_SPEED", table.highest_speed, "beyond it the law is held")
+        + _define("LOWEST_TEMPERATURE", table.lowest_temperature, "temperatures of the table [K]")
+        + _define("HIGHEST_TEMPERATURE", table.highest_temperature, "beyond them the law is held")
         + _define("HELD_LOAD", table.held_load, "load above which the law is its tangent [N/m]"),
         f"static const structure STRUCTURE[EHD_CONTACTS] = {{\n{rows}}};\n",
         _table("OWN", table.own, "the law"),

@@ -363,7 +363,7 @@ static contact_state held_state(const ehd_point *point, double approach) {
     return found;
 }
 
-/* Part of the film that is there: 0 at standstill, 1 from the lowest mapped speed on. */
+/* Part of the film that is there: 0 at standstill, 1 from `FILM_SPEED` on. */
 static double film_part(double speed) {
     const double part = speed >= FILM_SPEED ? 1.0 : speed / FILM_SPEED;
     return part * part * part * (10.0 - part * (15.0 - 6.0 * part));
@@ -391,7 +391,7 @@ int ehd_at(ehd_point *point, double u, double T, double q) {
     else
         point->status = outside_map(fabs(u), T);
     if (EHD_REFUSES(point->status)) return point->status;
-    T = least(most(T, EHD_LOWEST_TEMPERATURE), EHD_HIGHEST_TEMPERATURE);
+    T = least(most(T, LOWEST_TEMPERATURE), HIGHEST_TEMPERATURE);
     log_speed = log(most(least(fabs(u), HIGHEST_SPEED), LOWEST_SPEED));
     point->film = film_part(least(fabs(u), HIGHEST_SPEED));
     point->highest_load = EHD_HIGHEST_LOAD - q;

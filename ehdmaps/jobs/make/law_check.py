@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ import xarray as xr
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, MapError
 from ehdmaps.jobs.job import Job
-from ehdmaps.jobs.make.sampling import draw_apart, drawable
+from ehdmaps.jobs.make.sampling import draw_apart, draw_beyond, drawable
 from ehdmaps.jobs.make.store import Arrays
 from ehdmaps.jobs.make.tasks import LineTask
 from ehdmaps.maps.backbone import BackboneField
@@ -88,6 +89,12 @@ SEED = 20260
 INSIDE = ("", "valley")
 """Regions of the points: over the map, and in its damping valley."""
 
+EDGES = ("slow", "beyond")
+"""Regions outside the map, where laws continue their films: below its lowest speed, and outside its temperatures."""
+
+EDGE_SHARE = 0.1
+"""Points in each of these, as a share of those inside."""
+
 TOLERANCES = (1e-3, 0.1)
 """Smallest and largest tolerance of contact laws."""
 
@@ -128,7 +135,7 @@ _WORTH: Mapping[Axis, float] = {"load": 0.25}
 
 @dataclass(frozen=True)
 class LawCheck:
-    """Random points over the map and in its valley; `regions` says which is which.
+    """Random points over the map, in its valley and beyond its edges; `regions` says which is which.
 
     `compliance_bars` and `damping_bars` are those that the laws are held to; by a `tolerance` they are held to it by
     stiffness, damping and film offset, with what the fresh solves state to be wrong by themselves.
@@ -156,6 +163,8 @@ def plan_check(job: Job, solver: ContactSolver, tolerance: float | None = None) 
     rng = np.random.default_rng(SEED)
     over, valley = draw_apart(job, rng, count)
     drawn = [("", point) for point in over] + [("valley", point) for point in valley]
+    slow, beyond = draw_beyond(job, rng, round(EDGE_SHARE * count))
+    drawn += [("slow", point) for point in slow] + [("beyond", point) for point in beyond]
     # the proof of films that are read is films that are solved
     fresh = solver.other if isinstance(solver, TableSolver) else solver
     tasks = tuple(LineTask(contact, job.lubricant, (w,), u, T, fresh) for _, (contact, w, u, T) in drawn)
@@ -181,7 +190,8 @@ def checked_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -
     try:
         return check_laws(check, emap, results)
     except MapError as error:
-        return {"law_check_points": len(check.tasks), REFUSED: str(error)}
+        inside = sum(region in INSIDE for region in check.regions)
+        return {"law_check_points": inside, REFUSED: str(error)}
 
 
 def unmet(dataset: xr.Dataset, with_backbone: bool) -> list[str]:
@@ -283,7 +293,7 @@ def _between(
         field = emap.film_field((contact.name,))
         for task, region in zip(check.tasks, check.regions, strict=True):
             arrays = results[task.key]
-            if task.contact == contact and Status(int(arrays["status"][0])).usable:
+            if region in INSIDE and task.contact == contact and Status(int(arrays["status"][0])).usable:
                 missed = _missed_between(field, task, fresh_solution(task, arrays), check)
                 yield field, task, region, missed
 
@@ -320,31 +330,36 @@ def check_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> 
     dict
         Quantiles of the relative error in film compliance and damping of each contact's law, and the shares of the
         points that are within the bars, over the map and in its valley; quantiles of the error in stiffness and film
-        offset, too. A law has no damping below zero: where the solved one is, the law is held against zero by the
-        second bar, and the quantiles leave the point out. Where there is no film, only the second bars count.
+        offset, too. The same below the lowest speed and outside the temperatures of the map, as far as laws go on there
+        by the policy `asymptote`; no share is asked for there. A law has no damping below zero: where the solved one
+        is, the law is held against zero by the second bar, and the quantiles leave the point out. Where there is no
+        film, only the second bars count.
     """
     rows: list[FloatArray] = []
     regions: list[str] = []
-    for contact in check.contacts:
+    for contact, (policy, wanted) in product(check.contacts, (("error", INSIDE), ("asymptote", EDGES))):
         chosen = [
             (task, results[task.key], region)
             for task, region in zip(check.tasks, check.regions, strict=True)
-            if task.contact == contact and Status(int(results[task.key]["status"][0])).usable
+            if region in wanted and task.contact == contact and Status(int(results[task.key]["status"][0])).usable
         ]
+        if not chosen:
+            continue
+        # Fresh solves are those of flooded films between smooth surfaces, whatever the job states.
+        law = emap.law(contact.name, policy, supply=FLOODED, surface=SMOOTH)  # type: ignore[arg-type]
+        chosen = [point for point in chosen if _reaches(law, point[0])]
         if chosen:
-            # Fresh solves are those of flooded films between smooth surfaces, whatever the job states.
-            law = emap.law(contact.name, "error", supply=FLOODED, surface=SMOOTH)  # type: ignore[arg-type]
             rows.append(_errors(law, [(task, arrays) for task, arrays, _ in chosen], check))
             regions += [region for *_, region in chosen]
     record: dict[str, float | int | str] = {
         "law_check_seed": SEED,
-        "law_check_points": len(check.tasks),
-        "law_check_usable": len(regions),
+        "law_check_points": sum(region in INSIDE for region in check.regions),
+        "law_check_usable": sum(region in INSIDE for region in regions),
     }
     if not rows:
         return record
     table = np.concatenate(rows)
-    for region in INSIDE:
+    for region in (*INSIDE, *EDGES):
         mask = np.array([of_point == region for of_point in regions])
         if not np.any(mask):
             continue
@@ -359,6 +374,14 @@ def check_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> 
     if check.tolerance is not None:
         record[TOLERANCE] = check.tolerance
     return record
+
+
+def _reaches(law: ContactLaw, task: LineTask) -> bool:
+    """Tell whether a law has whole films at a point, where it lies outside the map."""
+    table, u, T = law.plain_table, task.entrainment_speed, task.temperature
+    if law.speed_range[0] <= u and law.temperature_range[0] <= T <= law.temperature_range[1]:
+        return True
+    return u >= table.film_speed and table.lowest_temperature <= T <= table.highest_temperature
 
 
 def _errors(law: ContactLaw, points: list[tuple[LineTask, Arrays]], check: LawCheck) -> FloatArray:

@@ -6,7 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ehdmaps.errors import InputError
 from ehdmaps.jobs.job import Job
+from ehdmaps.maps.rough_layer import TEMPERATURE_REACH, WHOLE_TO
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.moes import moes_groups, valley_load_number
 
@@ -74,6 +76,35 @@ def draw(job: Job, rng: np.random.Generator) -> SamplePoint:
     speed = log_uniform(rng, min(speeds), max(speeds))
     temperature = float(rng.uniform(min(job.temperatures), max(job.temperatures)))
     return SamplePoint(contact, log_uniform(rng, min(job.loads), max(job.loads)), speed, temperature)
+
+
+def draw_beyond(job: Job, rng: np.random.Generator, count: int) -> tuple[list[SamplePoint], list[SamplePoint]]:
+    """Draw points below the lowest speed of a map, and points outside its temperatures.
+
+    Speeds go down to that at which laws begin to fade the film, temperatures as far as laws go at most, where the oil
+    has a state.
+
+    Parameters
+    ----------
+    job : Job
+        Job over whose axes is drawn; it has a speed above zero.
+    rng : numpy.random.Generator
+        Source of chance.
+    count : int
+        How many of each.
+    """
+    slow, outside = [], []
+    lowest = min(u for u in job.entrainment_speeds if u > 0.0)
+    for n in range(count):
+        slow.append(draw(job, rng)._replace(speed=lowest * WHOLE_TO ** -rng.uniform()))
+        point, away = draw(job, rng), TEMPERATURE_REACH * rng.uniform()
+        T = min(job.temperatures) - away if n % 2 else max(job.temperatures) + away
+        try:
+            job.lubricant.at(T)
+        except InputError:
+            continue
+        outside.append(point._replace(temperature=T))
+    return slow, outside
 
 
 def draw_in_valley(job: Job, rng: np.random.Generator) -> SamplePoint | None:

@@ -185,7 +185,7 @@ def evaluate_at(point: Point, delta: float, rate: float, counts: IntArray) -> Fo
 
 @njit(error_model="numpy", forceinline=True)
 def within_map(table: LawTable, entrainment_speed: float, temperature: float, counts: IntArray) -> tuple[float, float]:
-    """Size of the speed, and temperature, held at the edges of the map and counted outside.
+    """Size of the speed, and temperature, held at the edges of the table and counted outside the map.
 
     Parameters
     ----------
@@ -201,9 +201,10 @@ def within_map(table: LawTable, entrainment_speed: float, temperature: float, co
     speed = abs(entrainment_speed)
     if speed > table.counted_speed * (1.0 + EDGE_TOLERANCE):
         counts[SPEED] += 1
-    low, high = table.lowest_temperature, table.highest_temperature
-    if not low * (1.0 - EDGE_TOLERANCE) <= temperature <= high * (1.0 + EDGE_TOLERANCE):
+    cold, hot = table.counted_cold, table.counted_hot
+    if not cold * (1.0 - EDGE_TOLERANCE) <= temperature <= hot * (1.0 + EDGE_TOLERANCE):
         counts[TEMPERATURE] += 1
+    low, high = table.lowest_temperature, table.highest_temperature
     return min(speed, table.highest_speed), min(max(temperature, low), high)
 
 
@@ -310,7 +311,7 @@ def evaluate(
     if (
         table.film_speed <= speed
         and table.lowest_speed <= speed <= table.counted_speed
-        and table.lowest_temperature <= temperature <= table.highest_temperature
+        and table.counted_cold <= temperature <= table.counted_hot
         and centrifugal_load == 0.0
     ):
         state = table_state(table.own, delta, log(speed), temperature, workspace[3, 0])

@@ -98,9 +98,9 @@ class LawTable(NamedTuple):
     film_speed : float
         Speed below which the film is faded [m/s]; inf for a map without films, 0 where it goes over into asperities.
     lowest_speed, highest_speed : float
-        Speed range of the table [m/s], > 0.
+        Speeds at which the table is held [m/s], > 0.
     lowest_temperature, highest_temperature : float
-        Temperature range of the table [K].
+        Temperatures at which the table is held [K].
     highest_load : float
         Highest mapped load [N/m]; loads above it are counted.
     highest_root : float
@@ -109,6 +109,8 @@ class LawTable(NamedTuple):
         Load above which the law is its dry tangent [N/m].
     counted_speed : float
         Speeds above it are counted [m/s].
+    counted_cold, counted_hot : float
+        Temperatures below and above them are counted [K].
     """
 
     own: ApproachTable
@@ -124,6 +126,8 @@ class LawTable(NamedTuple):
     highest_root: float
     held_load: float
     counted_speed: float
+    counted_cold: float
+    counted_hot: float
 
 
 class Line(NamedTuple):
@@ -156,7 +160,7 @@ class Point(NamedTuple):
     structure : array (n, 3)
         The same as in the table.
     film : float
-        Part of the film that is there, 1 at and above the lowest mapped speed, 0 at standstill.
+        Part of the film that is there, 1 at and above `LawTable.film_speed`, 0 at standstill.
     centrifugal_load : float
         q [N/m].
     inner_lift_off, outer_start : float
