@@ -262,16 +262,12 @@ class EHDMap:
         names = ("inner", "outer") if kind == "series" else (kind,)
         contacts = tuple(by_name[name] for name in names)
         check_loads(self.dataset["load"].values, contacts)
-<<<<<<< HEAD
         if len(self._laws) >= _MOST_LAWS:
             self._laws.pop(next(iter(self._laws)))
-        self._laws[key] = ContactLaw(
-=======
         from ehdmaps.maps.edges.continued import continued_field  # with the film table
 
         field = self.film_field(names)
-        return ContactLaw(
->>>>>>> c8d63670 (Laws go on below the speeds and outside the temperatures of their map, on oil layers too)
+        self._laws[key] = ContactLaw(
             kind,
             contacts,
             self.lubricant,
