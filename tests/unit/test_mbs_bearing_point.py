@@ -134,7 +134,7 @@ def test_a_film_that_fades_is_said():
     slow = law.speed_range[0]
     assert fading(law, slow) == fading(law, 0.0) == fading(laws.hertz(Bearing.named("NU308")), 1e-3) == ""
     assert fading(law, 0.5 * slow).startswith(
-        f"entrainment speed of {0.5 * slow:.4g} m/s is below the lowest mapped one, {slow:.4g} m/s: the law goes on"
+        f"entrainment speed of {0.5 * slow:.4g} m/s is below the lowest mapped one, {slow:.4g} m/s: stiffness"
     )
 
 
