@@ -317,7 +317,7 @@ class EHDMap:
         """
         chosen = tuple(contact for contact in self.contacts if contacts is None or contact.name in contacts)
         self._check_films(chosen)
-        ranges = (self._range(axis) for axis in ("load", "entrainment_speed", "temperature"))
+        ranges = self._range("load"), self._range("entrainment_speed"), self._range("temperature")
         if self.from_table:
             from ehdmaps.maps.table_field import TableField  # with the film table, that other maps do not need
 

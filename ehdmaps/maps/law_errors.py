@@ -297,8 +297,8 @@ class LawErrors:
         single = [self._of_contact(name, loads, abs(speed), temperature) for name in names]
         for i, name in enumerate(names if added is not None else ()):
             more = (added or {})[name]
-            k, c, offset, *weights_of = single[i]
-            single[i] = (k + more.stiffness, c + more.damping, offset + more.film_offset, *weights_of)
+            k, c, offset, soft, lossy = single[i]
+            single[i] = k + more.stiffness, c + more.damping, offset + more.film_offset, soft, lossy
         compliance = np.array([one[3] for one in single])
         loss = np.array([one[4] for one in single])
         weights = compliance / compliance.sum(axis=0)

@@ -216,7 +216,7 @@ class RollingFilm:
             )
         for j, k in np.ndindex(speeds.size, temperatures.size):
             speed, kelvin, loads = float(speeds[j]), float(temperatures[k]), first[j, k] * np.exp(places * reach[j, k])
-            if field is not None and (held_speeds[j], held[k]) != (speed, kelvin):
+            if field is not None and (float(held_speeds[j]), float(held[k])) != (speed, kelvin):
                 speed, kelvin, loads = float(held_speeds[j]), float(held[k]), same[:, j, k]
             state = self._lubricant.at(kelvin)
             number = moes_speed_number(speed, state.viscosity, line.radius, line.reduced_modulus)

@@ -179,7 +179,7 @@ class TableField:
                 unit, L = moes_groups(1.0, speed, state.viscosity, alpha, radius, modulus)
                 scale = radius * math.sqrt(moes_speed_number(speed, state.viscosity, radius, modulus))
                 found[:, j, k] = float(unit), float(valley_load_number(L)), scale, float(L)
-        return _Groups(*found, every)
+        return _Groups(found[0], found[1], found[2], found[3], every)
 
     def _lines(self, contact: LineContact, speeds: FloatArray, temperatures: FloatArray) -> _Lines:
         """Lines over the loads of the field, from rigid films on, at each speed and temperature."""
@@ -201,7 +201,7 @@ class TableField:
         if lacking.size:
             self._refuse(read, int(lacking[0]), float(needed[lacking[0]]), speeds[at[1]], temperatures[at[2]])
         held = np.full((3, *wanted.shape), np.nan)
-        held[:, *at] = values
+        held[:, wanted] = values
         held = held.reshape(3, axis.size, -1)
         _keep_longest(held)
         shortest = np.flatnonzero(np.count_nonzero(np.isfinite(held[0]), axis=0) < _FEWEST)

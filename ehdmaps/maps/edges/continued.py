@@ -153,7 +153,9 @@ class ContinuedField:
             at = np.ix_(np.arange(loads.shape[0]), rows, columns)
             u, T = speeds[rows], temperatures[columns]
             films = self._outside(contact, loads[at], u, T) if outside else None
-            found[:, *at] = self.origin.films(contact, loads[at], u, T) if films is None else films
+            inside = self.origin.films(contact, loads[at], u, T) if films is None else films
+            for k in range(3):
+                found[k][at] = inside[k]
         return found[0], found[1], found[2]
 
     def _blocks(self, speeds: FloatArray, temperatures: FloatArray) -> list[tuple[IndexArray, IndexArray, bool]]:

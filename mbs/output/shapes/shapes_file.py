@@ -53,7 +53,7 @@ def write_shapes(path: Path, found: Modes, bones: Skeleton, shown: Sequence[int]
         for mode in shown[:MOST_SHAPES]
     }
     if path.suffix.lower() != ".pvd":
-        data = {}
+        data: dict[str, FloatArray] = {}
         for name, moved in shapes.items():
             data |= {f"{name}_real": moved.real.copy(), f"{name}_imaginary": moved.imag.copy()}
         _write_mesh(path, bones, data)
