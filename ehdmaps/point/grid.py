@@ -65,7 +65,7 @@ class PointGrid:
     Attributes
     ----------
     ellipticity : float
-        kappa.
+        Ellipticity kappa.
     scale : float
         Stretch of the grid against the dry contact; above 1 for films as thick as that is wide.
     x, y : ndarray, shape (n,), (m,)
@@ -137,11 +137,11 @@ def point_grid(ellipticity: float, scale: float, cells: Cells) -> PointGrid:
     Parameters
     ----------
     ellipticity : float
-        kappa.
+        Ellipticity kappa.
     scale : float
         Stretch of the grid.
     cells : Cells
-        Its size.
+        Size of the grid.
     """
     ratio = float(elliptic_numbers(ellipticity).curvature_ratio)
     x = scale * _graded(_size_along(cells.edge), -cells.inlet, OUTLET * cells.inlet, cells.along)
@@ -156,7 +156,7 @@ def grid_on(ellipticity: float, scale: float, x: FloatArray, y: FloatArray) -> P
     Parameters
     ----------
     ellipticity : float
-        kappa.
+        Ellipticity kappa.
     scale : float
         Size of the pressures that a start has, over that of the dry contact.
     x, y : ndarray, shape (n,), (m,)

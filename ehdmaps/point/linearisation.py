@@ -43,7 +43,7 @@ class Tangent:
     state : PointState
         The state.
     found : Balance
-        Its equations.
+        Equations of the solution.
     factors : Factors
         Factors of their derivatives.
     """

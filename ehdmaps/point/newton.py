@@ -46,7 +46,7 @@ class Factors:
     Attributes
     ----------
     factors : tuple of ndarray
-        As `scipy.linalg.lu_factor` gives them.
+        Factors as `scipy.linalg.lu_factor` gives them.
     scale : ndarray, shape (k + 1,)
         What rows were multiplied by.
     """
@@ -74,7 +74,7 @@ class PointState:
     problem : PointProblem
         What was solved.
     grid : PointGrid
-        Its grid.
+        Grid of the state.
     pressure, film : ndarray, shape (n, m)
         P and H.
     height : float

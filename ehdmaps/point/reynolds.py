@@ -86,11 +86,11 @@ def balance(
     Parameters
     ----------
     x, y : ndarray, shape (n,), (m,)
-        Nodes.
+        Places of the nodes.
     pressure, film : ndarray, shape (n, m)
         P >= 0 and H > 0.
     wedge : float
-        lambda.
+        Wedge number lambda.
     isotherm : Isotherm
         The oil, pressures in p_H.
     far : ndarray of bool, shape (n, m)
@@ -185,7 +185,7 @@ def changed(found: Balance, pressure: FloatArray, film: FloatArray) -> FloatArra
     found : Balance
         The equations.
     pressure, film : ndarray, shape (n, m)
-        Changes.
+        Changes of both.
     """
     bands, gaps = found.by_pressure, found.by_film
     total = bands[:, :, 0] * pressure + gaps[:, :, 0] * film

@@ -95,7 +95,7 @@ def similarity(curvature_ratio: float) -> Similarity:
     Parameters
     ----------
     curvature_ratio : float
-        D.
+        Ratio D of the reduced radii.
 
     Examples
     --------
@@ -137,7 +137,7 @@ def far_tail(x: FloatArray, y: FloatArray, curvature_ratio: float) -> Tail:
     x, y : ndarray, shape (n,), (m,)
         Nodes along and across [a].
     curvature_ratio : float
-        D.
+        Ratio D of the reduced radii.
     """
     shape = similarity(curvature_ratio)
     place = np.arctan2(y[None, :], -x[:, None])

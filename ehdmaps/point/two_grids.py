@@ -133,7 +133,7 @@ class PointGroups:
 
     @property
     def worst(self) -> tuple[str, float]:
-        """What has the largest stated error of film, film offset and stiffness, and that; inf without a solution."""
+        """Number with the largest stated error of film, film offset and stiffness, and that; inf without a solution."""
         if self.errors is None:
             return "", math.inf
         errors = {

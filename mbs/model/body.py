@@ -87,7 +87,7 @@ class Body:
     line : tuple of Frame
         Places one after the other along a shaft, for pictures of its shape; none of other bodies.
     skin : Skin or None
-        Its surface, for pictures of its shape; None where that is not known.
+        Surface of the body, for pictures of its shape; None where that is not known.
     gravity : array, shape (n, 3), or None
         Load on the coordinates by gravity along x, y, z of 1 m/s2 [kg or kg m]; None where `mbs.model.system` finds it.
     """

@@ -76,7 +76,7 @@ class _Range(NamedTuple):
 
     @property
     def span(self) -> float:
-        """How far apart both ends are [dB]."""
+        """Distance of both ends [dB]."""
         return self.high - self.low
 
     @property

@@ -49,7 +49,7 @@ _OF_LINES = (
 
 @dataclass(frozen=True)
 class _Request:
-    """What is asked: bearing, oil, load of a ball [N], speed [m/s], temperature [K], frequencies [Hz], picture."""
+    """Question: bearing, oil, load of a ball [N], speed [m/s], temperature [K], frequencies [Hz], picture."""
 
     bearing: BallGeometry
     oil: Lubricant

@@ -56,7 +56,7 @@ class ContinuedField:
     origin : FilmField
         Films of the map.
     line_contacts : tuple of LineContact
-        Its contacts.
+        Contacts of the field.
     lubricant : Lubricant
         The oil.
     table : TableField or None
@@ -186,7 +186,7 @@ class ContinuedField:
     def _at_edge(
         self, contact: LineContact, loads: FloatArray, speeds: FloatArray, temperatures: FloatArray
     ) -> tuple[_Edge, FloatArray, FloatArray]:
-        """Where the edge of the map has the same zeta, with the films of the map and of the table there."""
+        """Places where the edge of the map has the same zeta, with the films of the map and of the table there."""
         assert self.table is not None
         held_speeds = np.maximum(speeds, self.speed_range[0])
         held = np.clip(temperatures, *self.temperature_range)
@@ -322,7 +322,7 @@ def continued_field(origin: FilmField, contacts: Sequence[LineContact], lubrican
     origin : FilmField
         Films of the map.
     contacts : sequence of LineContact
-        Its contacts, all of one material.
+        Contacts of the field, all of one material.
     lubricant : Lubricant
         The oil.
     """

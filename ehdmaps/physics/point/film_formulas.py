@@ -27,7 +27,7 @@ def hamrock_dowson_minimum(
     Parameters
     ----------
     speed_number : float
-        U.
+        Speed number U.
     load_number : float or array
         W, > 0.
     material_number, ellipticity : float
@@ -50,7 +50,7 @@ def hamrock_dowson_central(
     Parameters
     ----------
     speed_number : float
-        U.
+        Speed number U.
     load_number : float or array
         W, > 0.
     material_number, ellipticity : float
