@@ -80,6 +80,10 @@ _STRETCHES = 24
 _ORDER = 4.0
 _STEP_SHARE = 0.75
 
+_PROGRESS = 0.75
+"""Part of the error that a run stated with twice the step, above which a shorter one has brought nothing: of second
+order it is a quarter. So it is where signals are as small as what restarts of films shake."""
+
 KEYS = ("step", "slices", "cutoff")
 """The fields of `Numerics`, which are names of `mbs.scene.choices.CHOICES`."""
 
@@ -258,7 +262,7 @@ def within(
     trials = _Trials(subject, looked_at(subject.scene, settings)[0], settings.highest, progress or silent)
     numerics, change, could_not = _chosen(trials, tolerance, given)
     trials.finish()
-    lines = trials.told
+    lines, before = trials.told, math.inf
     while True:
         chosen = numerics.applied(subject)
         found, check = run(chosen)
@@ -266,6 +270,13 @@ def within(
         met = not could_not and error + change <= tolerance
         if met or could_not or not error + change > tolerance or numerics.step < 1.5 * _finest(given):
             break
+        if error > _PROGRESS * before:
+            could_not = (
+                f"half of the step leaves {error:.2g} of {before:.2g} dB that the run states: that is no error of "
+                "the step alone, and no shorter one is tried"
+            )
+            break
+        before = error
         lines.append(f"  {numerics.words('step')}: {error:.2g} dB by the run, so that it is made again with half of it")
         numerics = numerics.but(step=0.5 * numerics.step)
     same = ", as the scene has it" if numerics == given else ""

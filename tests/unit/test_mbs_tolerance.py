@@ -157,12 +157,25 @@ class TestChoosing:
         def doubtful(changed):
             found, check = run(changed)
             steps.append(changed.scene.run_up.settings.step)
-            return found, dataclasses.replace(check, by_level=check.by_level * 0.0 + (3.0 if len(steps) < 3 else 0.3))
+            return found, dataclasses.replace(check, by_level=check.by_level * 0.0 + (3.0, 2.1, 0.3)[len(steps) - 1])
 
         found, _ = tolerance_module.within(subject, 2.0, doubtful)
         assert found.met and steps == [20e-6, 10e-6, 5e-6] and found.numerics.step == 5e-6
         assert found.confirmed == pytest.approx(0.3)
         assert "step 20 us: 3 dB by the run, so that it is made again" in "\n".join(found.lines)
+
+    @pytest.mark.slow
+    def test_a_shorter_step_that_brings_nothing_is_the_last(self, swinging):
+        steps = []
+
+        def doubtful(changed):
+            found, check = run(changed)
+            steps.append(changed.scene.run_up.settings.step)
+            return found, dataclasses.replace(check, by_level=check.by_level * 0.0 + 9.0)
+
+        found, _ = tolerance_module.within(Subject(swinging, DRY), 2.0, doubtful)
+        assert not found.met and steps == [20e-6, 10e-6]
+        assert "no shorter one is tried" in "\n".join(found.lines)
 
     def test_a_run_without_an_error_confirms_nothing(self, swinging):
         found, _ = tolerance_module.within(Subject(swinging, DRY), 10.0, lambda changed: (run(changed)[0], None))
