@@ -161,6 +161,10 @@ def _faded_place(wanted: FloatArray, span: FloatArray, reach: FloatArray) -> Flo
     return tau
 
 
+_STEEPEST = 3.0
+"""Largest exponent, of either sign, with which c goes on above the highest load. Where a map ends in the damping
+valley, those of its end are some ten times that, and c would overflow within a factor of ten of the load."""
+
 _SMALL_STEP = 1e-4
 
 
@@ -324,7 +328,7 @@ class ContactCurve:
         with np.errstate(over="ignore"):  # of an impossible film, whose mapped part is refused
             offset = edge.film_offset * ratio**exponent
             slope = 3.0 * exponent * offset / root
-            damping = edge.damping * ratio**edge.damping_exponent
+            damping = edge.damping * ratio ** np.clip(edge.damping_exponent, -_STEEPEST, _STEEPEST)
             loss = damping / load * (dry_slope(self._contact, root) - slope) ** 2
         return FilmSamples(root, offset, slope, loss)
 

@@ -317,13 +317,13 @@ class EHDMap:
         """
         chosen = tuple(contact for contact in self.contacts if contacts is None or contact.name in contacts)
         self._check_films(chosen)
-        ranges = self._range("load"), self._range("entrainment_speed"), self._range("temperature")
-        if self.from_table:
+        if self.from_table or self.backbone is not None:
+            ranges = self._range("load"), self._range("entrainment_speed"), self._range("temperature")
+            if self.backbone is not None:
+                return line_field(self.backbone, chosen, self.lubricant, *ranges)
             from ehdmaps.maps.table_field import TableField  # with the film table, that other maps do not need
 
             return TableField(chosen, self.lubricant, *ranges)
-        if self.backbone is not None:
-            return line_field(self.backbone, chosen, self.lubricant, *ranges)
         data = self.dataset.sel(contact=[contact.name for contact in chosen]).transpose(*schema.DIMS, ...)
         return GridField(
             line_contacts=chosen,
