@@ -23,10 +23,11 @@ OLD, OLD_2, OLD_3, OLD_4 = (DATA / f"schema{version}.nc" for version in (1, 2, 3
 """NU308 by the solver reynolds, with a standstill and a backbone, as `ehdmaps generate` wrote it in schema 1 to 4."""
 
 RECORDED = {path: json.loads(path.with_suffix(".json").read_text()) for path in (OLD, OLD_2, OLD_3, OLD_4)}
-"""Values of their laws, recorded when tables were laid along the solved valley, which moved them by the error of a
-table from the code that made the maps, 3e-6 of w, 7e-4 of k, 2e-3 of c at most: points (approach, rate, speed,
-temperature) and (w, dw/ddelta, dw/drate) of the laws of the backbone, and of those of the grid alone; of schema 2
-also loads and tangents of a course in time with films that have a memory."""
+"""Values of their laws, recorded when laws went on below the lowest mapped speed by the film table. That changed the
+point below it, as intended, and those within the map by 1e-5 at most. Before, laying tables along the solved valley had
+moved them from the code that made the maps by 3e-6 of w, 7e-4 of k, 2e-3 of c at most. They are points (approach,
+rate, speed, temperature) and (w, dw/ddelta, dw/drate) of the laws of the backbone, and of those of the grid alone; of
+schema 2 also loads and tangents of a course in time with films that have a memory."""
 
 NEXT = schema.SCHEMA_VERSION + 1
 
