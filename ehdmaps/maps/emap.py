@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from os import PathLike, fspath
 from types import MappingProxyType
-from typing import get_args
+from typing import TYPE_CHECKING, get_args
 
 import numpy as np
 import xarray as xr
@@ -55,6 +55,13 @@ from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.surface import SMOOTH, Surface
+
+if TYPE_CHECKING:
+    from ehdmaps.maps.edges.continued import ContinuedField
+
+_CLOSED_FORMS = ("formula", "hertz")
+"""Solvers whose films differ from those of the film table by tens of percent: their laws are held at the edges of the
+map, where those of the table would join with a kink."""
 
 _MOST_LAWS = 6
 """Laws of a map that are kept: those of a roller and of both its contacts, with two supplies."""
@@ -264,7 +271,7 @@ class EHDMap:
         check_loads(self.dataset["load"].values, contacts)
         if len(self._laws) >= _MOST_LAWS:
             self._laws.pop(next(iter(self._laws)))
-        from ehdmaps.maps.edges.continued import continued_field  # with the film table
+        goes_on = self.dataset.attrs.get("solver") not in _CLOSED_FORMS
 
         field = self.film_field(names)
         self._laws[key] = ContactLaw(
@@ -278,7 +285,7 @@ class EHDMap:
             supply=key[2],
             surface=key[3],
             errors=self.law_errors,
-            continued=continued_field(field, contacts, self.lubricant),
+            continued=_continued(field, contacts, self.lubricant) if goes_on else None,
         )
         return self._laws[key]
 
@@ -580,3 +587,10 @@ def _between(values: FloatArray, axis: FloatArray, at: float, along: int) -> Flo
     i = min(max(int(np.searchsorted(axis, at)) - 1, 0), axis.size - 2)
     share = (at - axis[i]) / (axis[i + 1] - axis[i])
     return np.asarray((1.0 - share) * np.take(values, i, along) + share * np.take(values, i + 1, along))
+
+
+def _continued(field: FilmField, contacts: tuple[LineContact, ...], lubricant: Lubricant) -> ContinuedField | None:
+    """Films that go on beyond their map."""
+    from ehdmaps.maps.edges.continued import continued_field  # with the film table, that other maps do not need
+
+    return continued_field(field, contacts, lubricant)
