@@ -152,7 +152,7 @@ class Even:
     def __init__(self, film):
         self.film = film
 
-    def bounds(self, names, loads, speed, temperature):
+    def bounds(self, names, loads, speed, temperature, added=None):
         nothing = np.zeros(loads.shape)
         return LawBounds(nothing, nothing, nothing + self.film)
 
