@@ -18,10 +18,20 @@ from tests.cases.run_up import refused
 
 
 def arguments(scene, **values):
-    names = ("law", "map", "clearance", "output", "plot", "sensor", "highest", "window", "bands", "tolerance")
-    return argparse.Namespace(
-        **{**dict.fromkeys(names), "modes": False, "waterfall": None, "workers": 1, "scene": str(scene), **values}
+    names = (
+        "law",
+        "map",
+        "clearance",
+        "output",
+        "plot",
+        "sensor",
+        "highest",
+        "window",
+        "bands",
+        "tolerance",
+        "waterfall",
     )
+    return argparse.Namespace(**{**dict.fromkeys(names), "modes": False, "workers": 1, "scene": str(scene), **values})
 
 
 @pytest.fixture(scope="module")
