@@ -11,7 +11,6 @@ from pathlib import Path
 
 import numpy as np
 from scipy.io import wavfile
-from scipy.signal import resample_poly
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
@@ -75,6 +74,8 @@ def sound_samples(values: FloatArray, step: float) -> FloatArray:
     >>> heard.size, round(float(np.abs(heard[1000:-1000]).max()), 2)
     (9600, 1.0)
     """
+    from scipy.signal import resample_poly  # half a second, where a sound is written
+
     ratio = Fraction(RATE * step).limit_denominator(_FINEST)
     plain = values - np.mean(values)
     return np.asarray(resample_poly(plain, ratio.numerator, ratio.denominator), dtype=np.float64)

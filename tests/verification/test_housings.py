@@ -228,7 +228,7 @@ def test_seat_against_a_force_on_it(run):
 def test_shipped_file(name):
     housing = HOUSINGS[name]
     path = SHIPPED / f"{name}.nc"
-    assert path.stat().st_size < 300_000
+    assert path.stat().st_size < 900_000  # most of it the surface, for pictures
     reduced = read_reduced(path)
     assert set(reduced.frames) == {*housing.seats, *housing.sensors}
     for key, seat in housing.seats.items():
