@@ -239,6 +239,7 @@ class TestCommand:
             "structural_law",
             "output",
             "plot",
+            "waterfall",
             "highest",
             "window",
             "sensor",
