@@ -73,13 +73,15 @@ def skin_triangles(elements: Mapping[str, IntArray]) -> IntArray:
         _four(elements[kind][:, list(face)]) for kind, of_kind in _FACES.items() if kind in elements for face in of_kind
     ]
     solid = np.concatenate([np.zeros((0, 4), dtype=np.int64), *faces])
-    _, first, count = np.unique(np.sort(solid, axis=1), axis=0, return_index=True, return_counts=True)
+    # A triangle has its last corner twice; sorted, it must not depend on which corner that is.
+    last = np.where(solid[:, 3] == solid[:, 2], -1, solid[:, 3])
+    corners = np.sort(np.column_stack((solid[:, :3], last)), axis=1)
+    _, first, count = np.unique(corners, axis=0, return_index=True, return_counts=True)
     outside = solid[np.sort(first[count == 1])]
     nodes = np.unique(solid)
     shells = [_four(elements[kind][:, list(corners)]) for kind, corners in _SHELLS.items() if kind in elements]
     alone = [part[~np.isin(part, nodes).all(axis=1)] for part in shells]
     every = np.concatenate([outside, *alone])
-    # A triangle has its last corner twice.
     halves = np.concatenate([every[:, [0, 1, 2]], every[:, [0, 2, 3]]])
     return np.asarray(halves[(halves[:, 1] != halves[:, 2]) & (halves[:, 0] != halves[:, 2])])
 

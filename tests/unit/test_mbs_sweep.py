@@ -271,9 +271,8 @@ class TestRange:
 
 def given(**options):
     plain = {"scene": "nu308_rigid", "output": None, "plot": None, "speed": None, "cage_angles": None}
-    return argparse.Namespace(
-        **{**plain, "law": None, "map": None, "clearance": None, "load_factor": None, "workers": 1, **options}
-    )
+    unset = {"waterfall": None, "law": None, "map": None, "clearance": None, "load_factor": None}
+    return argparse.Namespace(**{**plain, **unset, "workers": 1, **options})
 
 
 class TestCases:

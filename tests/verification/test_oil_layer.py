@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from ehdmaps.ehl.solver import ReynoldsSolver
-from ehdmaps.errors import MapError
 from ehdmaps.maps.contact_curve import ContactCurve
 from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.maps.oil_layer import oil_layer
@@ -69,10 +68,13 @@ def test_a_layer_as_thick_as_the_asperities_are_high_gives_a_law_that_rises(reyn
         assert np.all(np.diff(load) >= 0.0) and np.all(stiffness >= 0.0), speed
 
 
-def test_a_grid_that_is_too_coarse_beyond_its_speeds_is_refused_with_the_way_out(solved_map):
-    """Without refinement lines film and flow are read from the grid, and do not go on alike to ten times the speed."""
+def test_a_grid_without_refinement_goes_on_beyond_its_speeds(solved_map):
+    """Flow and film read from the grid do not go on alike by themselves: beyond it they follow the film table."""
     grid = EHDMap(open_map(solved_map).dataset)
     for layer in (1e-6, 5e-6):
         grid.law("inner", outside="clamp", supply=OilSupply(layer))
-    with pytest.raises(MapError, match="ends at 5 m/s, and its films do not go on so far: take outside='clamp'"):
-        grid.law("inner", outside="asymptote", supply=OilSupply(5e-6))
+        law = grid.law("inner", outside="asymptote", supply=OilSupply(layer))
+        delta = np.concatenate((-np.geomspace(2.5 * layer + 3e-6, 1e-9, 1500), np.geomspace(1e-9, 2e-5, 500)))
+        for speed in (5.0, 12.0, 50.0):
+            load, stiffness, damping = law.at(speed, WARM)(delta, 0.0)
+            assert np.all(np.diff(load) >= 0.0) and np.all(stiffness >= 0.0) and np.all(damping >= 0.0)
