@@ -4,7 +4,8 @@ Run: python -m tests.benchmarks.fmu_rotor nu308.nc
      python -m tests.benchmarks.fmu_rotor nu308.nc --films memory
 
 It exports the map twice, by FMI 2.0 for one bearing and by FMI 3.0 for the other, and prints the largest difference of
-each coordinate as a part of what it moves, and what both runs cost. `mbs` makes its steps at three lengths: its error
+each coordinate as a part of what it moves, and what both runs cost. Films with memory are then run in Co-Simulation,
+by a master that extrapolates the force. `mbs` makes its steps at three lengths: its error
 is of second order, so that the difference has to fall by four each time until that of CVODE is left.
 """
 
@@ -19,7 +20,8 @@ from pathlib import Path
 
 from ehdmaps.jobs.cli import main as export
 from tests.cases.fmu import Unit
-from tests.cases.fmu_rotor import Rotor, side_by_side
+from tests.cases.fmu_rotor import Beside, Rotor, RotorOnUnits, side_by_side
+from tests.cases.fmu_run import stepped_run
 
 STEPS, TOLERANCES = (8e-6, 4e-6, 2e-6), (1e-6, 1e-8)
 """Of `mbs` [s], and of CVODE."""
@@ -34,6 +36,8 @@ ON_FILMS = dataclasses.replace(ROTOR, speeds=(150.0, 152.0), duration=0.05, slic
 """From 1432 to 1451 rpm: with memory each slice has a state, and `mbs` reads its tables of films every eight steps."""
 
 FILM_STEPS = (5e-6, 2.5e-6, 1.25e-6)
+MASTER_STEPS = (5e-6, 10e-6, 20e-6, 50e-6)
+"""Of Co-Simulation [s]."""
 
 
 def main() -> None:
@@ -60,13 +64,20 @@ def main() -> None:
         )
         _one(rotor, given.map, (left, right), folder, TOLERANCES[-1], "to compile, not to be counted")
         for step in steps:
-            _one(dataclasses.replace(rotor, step=step), given.map, (left, right), folder, TOLERANCES[-1])
+            found = _one(dataclasses.replace(rotor, step=step), given.map, (left, right), folder, TOLERANCES[-1])
+        if states:
+            for step in MASTER_STEPS:
+                stepped = stepped_run(RotorOnUnits(rotor, found.start), (left, right), found.times, step)
+                parts = ", ".join(f"{part:.1e}" for part in found.difference(stepped[:, :4]))
+                print(f"Co-Simulation in steps of {1e6 * step:g} us: {parts}", flush=True)
         for tolerance in TOLERANCES[:-1]:
             _one(dataclasses.replace(rotor, step=steps[-1]), given.map, (left, right), folder, tolerance)
 
 
-def _one(rotor: Rotor, map_file: str, units: tuple[Unit, Unit], folder: Path, tolerance: float, note: str = "") -> None:
-    """Print one pair of runs."""
+def _one(
+    rotor: Rotor, map_file: str, units: tuple[Unit, Unit], folder: Path, tolerance: float, note: str = ""
+) -> Beside:
+    """Print one pair of runs, and return it."""
     with contextlib.redirect_stdout(io.StringIO()):
         found = side_by_side(rotor, map_file, units, folder, tolerance)
     runup, cvode = found.seconds
@@ -78,6 +89,7 @@ def _one(rotor: Rotor, map_file: str, units: tuple[Unit, Unit], folder: Path, to
         + (f"; {note}" if note else ""),
         flush=True,
     )
+    return found
 
 
 if __name__ == "__main__":

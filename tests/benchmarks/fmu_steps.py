@@ -1,4 +1,4 @@
-"""Damping of a unit with films of memory in Co-Simulation, over the step, beside that of its own equations.
+"""Stiffness and damping of a unit with films of memory in Co-Simulation, over the step, beside those of its equations.
 
     python -m tests.benchmarks.fmu_steps MAP.nc
 
@@ -28,16 +28,19 @@ def compare(source: str) -> None:
         options = ["--films", "memory", "--slices", "9", "--clearance", "20 um"]
         assert main(["export", source, "--to", "fmu", "-o", str(file), *options]) == 0
         unit = Unit(file, Path(folder) / "unit")
-        print("damping beside that of the equations of the unit; with velocities, without; of a mass on a held force,")
-        print("on an extrapolated one")
+        print("beside the equations of the unit: stiffness and damping with velocities, the same without;")
+        print("damping of a mass on a held force, on an extrapolated one")
         for frequency in (300.0, 1e3, 3e3):
             stiffness, damping = linearised(unit, REST, frequency)
             print(f"{frequency:g} Hz: {stiffness * 1e-6:.4g} N/um, {damping * 1e-3:.4g} N s/mm")
             mass = stiffness / (2.0 * np.pi * frequency) ** 2
             for step in STEPS:
-                found = [stepped(unit, REST, frequency, step, velocities=given)[1] for given in (True, False)]
-                found += [swung(unit, REST, mass, frequency, step, way) for way in (False, True)]
-                print(f"  {step * 1e6:3g} us  " + "  ".join(f"{c / damping:8.4f}" for c in found))
+                found = []
+                for given in (True, False):
+                    k, c = stepped(unit, REST, frequency, step, velocities=given)
+                    found += [k / stiffness, c / damping]
+                found += [swung(unit, REST, mass, frequency, step, way) / damping for way in (False, True)]
+                print(f"  {step * 1e6:3g} us  " + "  ".join(f"{part:8.4f}" for part in found))
 
 
 if __name__ == "__main__":

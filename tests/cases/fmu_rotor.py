@@ -170,6 +170,8 @@ class Beside(NamedTuple):
 
     Attributes
     ----------
+    start : array, shape (8,)
+        Displacements and velocities at the beginning [m, rad, m/s, rad/s].
     times : array, shape (m,)
         [s].
     wanted, found : array, shape (m, 4)
@@ -180,6 +182,7 @@ class Beside(NamedTuple):
         That `mbs runup` and CVODE took.
     """
 
+    start: FloatArray
     times: FloatArray
     wanted: FloatArray
     found: FloatArray
@@ -194,7 +197,11 @@ class Beside(NamedTuple):
     @property
     def differences(self) -> FloatArray:
         """Largest difference of each coordinate as a part of what it moves, shape (4,)."""
-        return np.max(np.abs(self.found - self.wanted), axis=0) / self.moved
+        return self.difference(self.found)
+
+    def difference(self, found: FloatArray) -> FloatArray:
+        """Those of other displacements, shape (m, 4) as `found`."""
+        return np.max(np.abs(found - self.wanted), axis=0) / self.moved
 
 
 def side_by_side(rotor: Rotor, map_file: str, units: tuple[Unit, Unit], folder: Path, tolerance: float) -> Beside:
@@ -230,4 +237,4 @@ def side_by_side(rotor: Rotor, map_file: str, units: tuple[Unit, Unit], folder: 
         velocity = np.hstack([dataset["velocity"].values, dataset["rotation_velocity"].values])
     start = np.concatenate([wanted[0], velocity[0]])
     found, calls = coupled_run(RotorOnUnits(rotor, start), units, times, tolerance)
-    return Beside(times, wanted, found[:, :4], calls, (middle - began, time.perf_counter() - middle))
+    return Beside(start, times, wanted, found[:, :4], calls, (middle - began, time.perf_counter() - middle))

@@ -1,4 +1,4 @@
-"""Units as Model Exchange beside something that moves: all states of both in FMPy's CVODE."""
+"""Units beside something that moves: Model Exchange, all states of both in FMPy's CVODE, and Co-Simulation in steps."""
 
 from __future__ import annotations
 
@@ -206,3 +206,49 @@ def coupled_run(mover: Mover, units: Sequence[Unit], times: FloatArray, toleranc
         for unit in attached:
             unit.free()
     return np.array(found), joint.calls
+
+
+def stepped_run(
+    mover: Mover, units: Sequence[Unit], times: FloatArray, step: float, extrapolated: bool = True
+) -> FloatArray:
+    """Run a mover on units in Co-Simulation, in steps of one length.
+
+    Over a step the mover has the force that follows from those at the last two communication points, in its middle; or
+    it holds the last one. Its states are displacements, then velocities.
+
+    Parameters
+    ----------
+    mover, units, times
+        As of `coupled_run`; times are evenly spaced, by a whole number of steps.
+    step : float
+        [s].
+    extrapolated : bool
+        1.5 times the last force minus half of the one before, or the last force.
+
+    Returns
+    -------
+    array, shape (m, n)
+        States of the mover at the times.
+    """
+    states, half = mover.start.copy(), mover.start.size // 2
+    models = [unit.stepped(list(values), list(values.values())) for unit, values in
+              zip(units, mover.inputs(float(times[0]), states), strict=True)]  # fmt: skip
+    last = force = np.array([unit.get(model) for unit, model in zip(units, models, strict=True)])
+    each, found, change = round(float(times[1] - times[0]) / step), [states.copy()], np.zeros(half)
+    for number in range(each * (times.size - 1)):
+        time = float(times[0]) + number * step
+        taken = 1.5 * force - 0.5 * last if extrapolated else force
+        middle = np.concatenate([states[:half], states[half:] + 0.5 * change])
+        change = step * mover.rates(time + 0.5 * step, middle, list(taken))[half:]
+        states = np.concatenate([states[:half] + step * (states[half:] + 0.5 * change), states[half:] + change])
+        last, outputs = force, []
+        for unit, model, values in zip(units, models, mover.inputs(time + step, states), strict=True):
+            unit.put(model, list(values), list(values.values()))
+            model.doStep(time, step)
+            outputs.append(unit.get(model))
+        force = np.array(outputs)
+        if (number + 1) % each == 0:
+            found.append(states.copy())
+    for model in models:
+        model.freeInstance()
+    return np.array(found)
