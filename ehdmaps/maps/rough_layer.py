@@ -40,6 +40,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from enum import Enum
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -375,6 +376,25 @@ class SharedFilm:
 
 
 @dataclass(frozen=True)
+class SmoothContact:
+    """Films between smooth surfaces at some loads, and the solids; arrays (n,).
+
+    Attributes
+    ----------
+    load, film : array
+        w [N/m], > 0, and film offset [m].
+    film_compliance, loss, solids : array
+        Film compliance [m2/N], loss compliance [m2 s/N], and compliance of the solids [m2/N].
+    """
+
+    load: FloatArray
+    film: FloatArray
+    film_compliance: FloatArray
+    loss: FloatArray
+    solids: FloatArray
+
+
+@dataclass(frozen=True)
 class RoughLayer:
     """Load sharing in one contact; calling it takes films between smooth surfaces to those between rough ones.
 
@@ -462,6 +482,28 @@ FILM_PARAMETER, FILM_SHARE, MEAN_DISTANCE = "film_parameter", "film_share", "mea
 
 OVERLAP = "the mean planes of the rough surfaces overlap: out of the range of load sharing, the film's share is a guess"
 """What is said where a film carries a load and the distance of the mean planes is below zero."""
+
+DEEPEST_MEANT = -2.0
+"""Distance of the mean planes over the roughness that is a gap: there it is 2 % of that of mean planes that meet."""
+
+
+class MeanPlanes(Enum):
+    """How the mean planes of rough surfaces stand; the value is what is said of it."""
+
+    APART = ""
+    OVERLAP = OVERLAP
+    MERGED = (
+        "the mean planes of the rough surfaces overlap by more than twice the roughness, asperities are pressed flat: "
+        "no theory of single asperities holds, k and c are no more than a smooth course"
+    )
+
+    @classmethod
+    def of(cls, share: float, distance: float) -> MeanPlanes:
+        """By share of the film and distance of the mean planes over the roughness; apart where one is NaN."""
+        if distance < DEEPEST_MEANT:
+            return cls.MERGED
+        return cls.OVERLAP if share > 0.0 and distance < 0.0 else cls.APART
+
 
 BOUNDARY, MIXED = 1.0, 3.0
 """Lambda below which lubrication is usually called boundary, and mixed. What asperities carry there is `film_share`."""
@@ -561,3 +603,31 @@ def least_share(layer: RoughLayer, loads: FloatArray) -> FloatArray:
     pressures = 0.25 * np.pi * np.asarray(max_pressure(loads, contact.radius, contact.reduced_modulus))
     carried, _ = asperity_pressure(layer.surface, 0.0, contact.reduced_modulus)
     return np.asarray(1.0 - carried / pressures)
+
+
+def sharing_effect(layer: RoughLayer, smooth: SmoothContact, speed: float, temperature: float) -> FloatArray:
+    """k and c of a rough contact over those of the smooth one at equal load, (2, n); of c NaN without damping.
+
+    Parameters
+    ----------
+    layer : RoughLayer
+        The contact with its rough surfaces.
+    smooth : SmoothContact
+        Its film between smooth surfaces.
+    speed, temperature : float
+        u [m/s], >= 0, and T [K].
+
+    Notes
+    -----
+    A film sample is known by the cube root g of its load: slope dh/dg = -3 g^2 s, and the loss 9 g times that of the
+    film.
+    """
+    root = np.cbrt(smooth.load)[:, None, None]
+    film, gives, lost = (values[:, None, None] for values in (smooth.film, smooth.film_compliance, smooth.loss))
+    samples = FilmSamples(root, film, -3.0 * root**2 * gives, 9.0 * root * lost)
+    rough = layer(samples, np.array([speed]), np.array([temperature]))
+    compliance = -(rough.slope / (3.0 * root**2))[:, 0, 0]
+    stiffness = (smooth.solids + smooth.film_compliance) / (smooth.solids + compliance)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        damping = rough.loss[:, 0, 0] / samples.loss[:, 0, 0] * stiffness**2
+    return np.array([stiffness, damping])

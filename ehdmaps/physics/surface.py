@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
@@ -204,6 +204,11 @@ LIMITS: Mapping[str, tuple[float, float]] = MappingProxyType(
 )
 """Smallest and largest value of each property of asperities that is taken; hardness in Pa."""
 
+USUAL: Mapping[str, tuple[float, float]] = MappingProxyType(
+    {"asperity_product": (0.03, 0.05), "asperity_slope": (1e-4, 1e-2)}
+)
+"""Range of steel surfaces of each property that is seldom known (Teodorescu et al. 2005), from soft to stiff."""
+
 _UNITS = {"hardness": " Pa"}
 
 
@@ -216,9 +221,10 @@ class Surface:
     roughness : float
         Combined root mean square roughness sigma = sqrt(sigma_1^2 + sigma_2^2) [m]; 0 where the surfaces are smooth.
     asperity_product : float
-        eta sigma beta of density eta [1/m2] and radius beta [m] of the asperities; usually 0.03 to 0.05.
+        eta sigma beta of density eta [1/m2] and radius beta [m] of the asperities; usually 0.03 to 0.05. Left out, the
+        stiff end.
     asperity_slope : float
-        sigma/beta; usually 0.0001 to 0.01.
+        sigma/beta; usually 0.0001 to 0.01. Left out, the stiff end.
     hardness : float
         Most pressure within the spots where asperities touch [Pa].
 
@@ -250,6 +256,22 @@ class Surface:
     def smooth(self) -> bool:
         """True where there are no asperities."""
         return self.roughness == 0.0
+
+    @property
+    def corners(self) -> tuple[Surface, Surface]:
+        """The same roughness with the softest and with the stiffest usual asperities.
+
+        What is not at its default was stated: it is known, and stays.
+
+        Examples
+        --------
+        >>> [(each.asperity_product, each.asperity_slope) for each in Surface(2e-7, 0.04).corners]
+        [(0.04, 0.0001), (0.04, 0.01)]
+        """
+        usual = Surface(self.roughness)
+        open_ends = {name: ends for name, ends in USUAL.items() if getattr(self, name) == getattr(usual, name)}
+        soft, stiff = (replace(self, **{name: ends[i] for name, ends in open_ends.items()}) for i in (0, 1))
+        return soft, stiff
 
     @property
     def label(self) -> str:

@@ -466,8 +466,8 @@ class BearingPoint:
         """
         return self.load_sharing(surface, lubricant)[0]
 
-    def load_sharing(self, surface: Surface, lubricant: Lubricant) -> tuple[float, bool]:
-        """`film_share`, and whether the mean planes overlap in a slice, see `ehdmaps.maps.rough_layer`.
+    def load_sharing(self, surface: Surface, lubricant: Lubricant) -> tuple[float, str]:
+        """`film_share`, and what is to be said where mean planes overlap in a slice, see `ehdmaps.maps.rough_layer`.
 
         Parameters
         ----------
@@ -475,18 +475,19 @@ class BearingPoint:
             Arguments of `film_share`.
         """
         if surface.smooth:
-            return 1.0, False
-        from ehdmaps.maps.rough_layer import LEAST_SPEED, RoughLayer, load_sharing, overlapping
+            return 1.0, ""
+        from ehdmaps.maps.rough_layer import LEAST_SPEED, MeanPlanes, RoughLayer, load_sharing
 
         loads = self.rollers.load_per_length[self.most_loaded]
         loaded = loads > 0.0
         contacts = self.bearing.geometry.contacts(self.bearing.material, "iso16281")
         place = loads[loaded], np.array([self.entrainment_speed]), np.array([self.temperature])
-        shares, overlap = [], False
+        shares, planes = [], [MeanPlanes.APART]
         for contact, side in zip(contacts, self.contacts.sides, strict=True):
             film = side.central_film[self.most_loaded][loaded][:, None, None]
             layer = RoughLayer(surface, contact, lubricant, max(self.entrainment_speed, LEAST_SPEED))
             part, distance = (values[:, 0, 0] for values in load_sharing(layer, film, *place))
-            overlap = overlap or bool(np.any(overlapping(part, distance)))
+            planes += [MeanPlanes.of(*each) for each in zip(part.tolist(), distance.tolist(), strict=True)]
             shares.append(float(np.sum(part * loads[loaded]) / np.sum(loads)) if loaded.any() else math.nan)
-        return min(shares), overlap
+        worst = next(kind for kind in reversed(MeanPlanes) if kind in planes)
+        return min(shares), worst.value

@@ -154,6 +154,9 @@ def _unknown(base: Subject, model: Model) -> Iterator[Tried]:
     for key, value, label in stated:
         with contextlib.suppress(InputError):
             yield Tried(UNKNOWN, label, CHOICES[key].change(base, value), base)
+    if model.surface is not None and not model.surface.smooth and model.surface.corners[0] != model.surface:
+        soft = dataclasses.replace(base.scene, surface=model.surface.corners[0])
+        yield Tried(UNKNOWN, "softest usual asperities", dataclasses.replace(base, scene=soft), base)
 
 
 def _laws(base: Subject) -> Iterator[Tried]:

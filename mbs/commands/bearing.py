@@ -27,6 +27,7 @@ from ehdmaps.units import RPM, TEMPERATURE, closest, short
 from mbs.analyses.bearing_point import bearing_points
 from mbs.bearings import laws
 from mbs.bearings.bearing import MOST_COUPLED, Bearing
+from mbs.bearings.contact_report import BearingPoint
 from mbs.bearings.films import SIDES, FilmSource, FormulaFilms, MapFilms
 from mbs.bearings.laws import Law
 from mbs.bearings.thermal import BearingState, Mounting, operating_clearance
@@ -42,6 +43,7 @@ from mbs.commands.one_bearing.values import (
 )
 from mbs.output.bearing_table import (
     BearingDescription,
+    Points,
     bearing_dataset,
     bearing_text,
     result_kind,
@@ -496,10 +498,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
 
         return run_balls(arguments)
     request = read_request(arguments)
-    points = bearing_points(
-        request.bearing, law_of(request), request.films, request.load_vectors, request.speeds, request.temperature
-    )
-    lines = bearing_text(request.description, points)
+    points = _points(request)
+    lines = bearing_text(request.description, points, _corner_points(request, points))
     if arguments.output:
         dataset = bearing_dataset(request.description, points)
         if Path(arguments.output).suffix.lower() == ".csv":
@@ -514,6 +514,23 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         lines.append(f"{arguments.plot}: written")
     problems = any(point.problems for row in points for point in row)
     return "\n".join(lines), 1 if problems else 0
+
+
+def _points(request: BearingRequest) -> Points:
+    """The points of a request, by load, then by speed."""
+    return bearing_points(
+        request.bearing, law_of(request), request.films, request.load_vectors, request.speeds, request.temperature
+    )
+
+
+def _corner_points(request: BearingRequest, points: Points) -> list[BearingPoint]:
+    """One point with the softest and with the stiffest usual asperities; none of several, or of smooth surfaces."""
+    if request.description.surface.smooth or len(request.loads) * len(request.speeds) > 1:
+        return []
+    return [
+        (points if corner == request.surface else _points(dataclasses.replace(request, surface=corner)))[0][0]
+        for corner in request.surface.corners
+    ]
 
 
 def law_of(request: BearingRequest) -> Law:

@@ -244,7 +244,7 @@ REGIMES = ((1.0, "boundary: the surfaces touch"), (3.0, "mixed: asperities touch
 """What is usually said of Lambda below these values."""
 
 
-def bearing_text(description: BearingDescription, points: Points) -> list[str]:
+def bearing_text(description: BearingDescription, points: Points, corners: Sequence[BearingPoint] = ()) -> list[str]:
     """Lines that describe all points, and warn.
 
     Parameters
@@ -253,11 +253,13 @@ def bearing_text(description: BearingDescription, points: Points) -> list[str]:
         What they have in common.
     points : sequence of sequence of BearingPoint
         Points by load, then by speed.
+    corners : sequence of BearingPoint
+        The only point with the softest and the stiffest usual asperities; empty where they are not looked at.
     """
     everything = [point for line in points for point in line]
     lines = bearing_heading(description)
     if len(everything) == 1:
-        lines += _page(everything[0], description) + _rollers(everything[0])
+        lines += _page(everything[0], description) + _asperity_band(corners) + _rollers(everything[0])
         lines += _along(everything[0]) if description.bearing.coupled else []
     else:
         lines += _table(everything, description)
@@ -317,15 +319,28 @@ def _share_words(point: BearingPoint, description: BearingDescription) -> str:
     """Share that the film carries of the load of the most loaded roller; nothing for smooth surfaces."""
     if description.surface.smooth:
         return ""
-    share, overlap = point.load_sharing(description.surface, description.oil)
+    share, planes = point.load_sharing(description.surface, description.oil)
     if math.isnan(share):
         return ""
     words = f"; the film carries {share:.0%} of the load of the most loaded roller"
-    if not overlap:
-        return words
-    from ehdmaps.maps.rough_layer import OVERLAP
+    return f"{words}\n  {planes}" if planes else words
 
-    return f"{words}\n  {OVERLAP}"
+
+def _asperity_band(corners: Sequence[BearingPoint]) -> list[str]:
+    """K and C with the softest and with the stiffest usual asperities."""
+    if not corners:
+        return []
+    both = [(display, point.along_across(getattr(point, name))) for point in corners for display, name in _MATRICES]
+    values = [display.value(float(value)) for display, diagonal in both for value in diagonal]
+    soft, stiff = values[:4], values[4:]
+    k, k_across, c, c_across = (f"{a:.4g} to {b:.4g}" for a, b in zip(soft, stiff, strict=True))
+    return [
+        "  asperities are seldom known; with the softest to the stiffest usual ones stiffness is "
+        f"{k} along, {k_across} {SPRING.unit} across, damping {c} along, {c_across} {DAMPER.unit} across"
+    ]
+
+
+_MATRICES = ((SPRING, "stiffness"), (DAMPER, "damping"))
 
 
 def regime(film_parameter: float) -> str:

@@ -26,8 +26,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.maps.contact_curve import FilmSamples
-from ehdmaps.maps.rough_layer import RoughLayer
+from ehdmaps.maps.rough_layer import RoughLayer, SmoothContact, sharing_effect
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.films import dowson_higginson_minimum, martin_minimum, moes_central_and_slope
 from ehdmaps.physics.heat import inlet_shear_heating_factor, thermal_loading, viscosity_slope
@@ -238,20 +237,9 @@ def roughness_effect(state: ClosedContact, surface: Surface, lubricant: Lubrican
 
     Notes
     -----
-    Load sharing as of `ehdmaps.maps.rough_layer`, on the closed film. A film sample is known by the cube root g of its
-    load: slope dh/dg = -3 g^2 s, and the loss 9 g times that of the film.
+    Load sharing as of `ehdmaps.maps.rough_layer`, on the closed film.
     """
-    root = np.cbrt(state.load)[:, None, None]
-    smooth = FilmSamples(
-        root,
-        state.film[:, None, None],
-        -3.0 * root**2 * state.film_compliance[:, None, None],
-        9.0 * root * state.loss[:, None, None],
-    )
     layer = RoughLayer(surface, state.contact, lubricant, state.speed)
-    rough = layer(smooth, np.array([state.speed]), np.array([state.temperature]))
-    compliance = -(rough.slope / (3.0 * root**2))[:, 0, 0]
-    loss = (rough.loss / (9.0 * root))[:, 0, 0]
-    stiffness = 1.0 / (state.solids + compliance)
-    damping = loss * stiffness**2
-    return np.abs(stiffness / state.stiffness - 1.0), np.abs(damping / state.damping - 1.0)
+    smooth = SmoothContact(state.load, state.film, state.film_compliance, state.loss, state.solids)
+    stiffness, damping = sharing_effect(layer, smooth, state.speed, state.temperature)
+    return np.abs(stiffness - 1.0), np.abs(damping - 1.0)

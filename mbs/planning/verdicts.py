@@ -325,12 +325,24 @@ def roughness_verdict(found: Range, surface: Surface | None) -> Verdict:
     size = smallest / surface.roughness
     beside = "asperities touch" if size < TOUCHING else "asperities do not touch"
     words = f"Lambda down to {size:.2g} at {SPEED.text(state.speed)} ({beside}; they do below {TOUCHING:g})"
-    pairs = [roughness_effect(entry, surface, found.lubricant) for entry in found.states]
     carried = [entry.load >= SHARES[0] * found.highest * (1.0 - 1e-9) for entry in found.states]
-    changes = np.max(
-        [[part[which].max() for part in pair] for pair, which in zip(pairs, carried, strict=True)], axis=0
-    ).tolist()
+    # of asperities no more is known than their usual range
+    ends = np.array(
+        [
+            np.max(
+                [
+                    [part[which].max() for part in roughness_effect(entry, corner, found.lubricant)]
+                    for entry, which in zip(found.states, carried, strict=True)
+                ],
+                axis=0,
+            )
+            for corner in surface.corners
+        ]
+    )
+    changes, least = ends.max(axis=0).tolist(), ends.min(axis=0).tolist()
     words += f"; it changes k of a contact by {up_to(changes[0])}, c by {up_to(changes[1])}"
+    if ends[0].tolist() != ends[1].tolist():
+        words += f" (other usual asperities {up_to(least[0])}, {up_to(least[1])})"
     return Verdict(name, size < TOUCHING, size, words, errors=(changes[0], changes[1]))
 
 

@@ -80,6 +80,7 @@ def test_a_given_roughness_shares_the_load_and_an_assumed_one_does_not(tmp_path,
     (assumed, words), (given, rough_words) = found["assumed"], found["given"]
     assert "roughness 0.3 um (for Lambda only)" in words and "smooth surfaces" in words
     assert "of the load of the most loaded roller" not in words
+    assert "with the softest to the stiffest usual ones stiffness is " in rough_words
     assert "the film carries " in rough_words and ", roughness 0.3 um\n" in rough_words
     assert (assumed.attrs["surface"], given.attrs["surface"]) == ("smooth surfaces", "roughness 0.3 um")
     assert float(assumed["film_share"].item()) == 1.0

@@ -9,8 +9,17 @@ import pytest
 from scipy.integrate import quad
 
 from ehdmaps.errors import InputError
-from ehdmaps.maps.rough_layer import asperity_integral, asperity_pressure, mean_gap
+from ehdmaps.maps.rough_layer import (
+    MeanPlanes,
+    RoughLayer,
+    SmoothContact,
+    asperity_integral,
+    asperity_pressure,
+    mean_gap,
+    sharing_effect,
+)
 from ehdmaps.physics.surface import SMOOTH, Surface
+from tests.cases.laws import CONTACTS, OIL
 
 MODULUS = 230.77e9
 
@@ -64,6 +73,50 @@ def test_labels():
     assert Surface(2e-7).label == "roughness 0.2 um"
     assert SMOOTH.label == "smooth"
     assert SMOOTH.smooth and not Surface(1e-9).smooth
+
+
+def test_corners_are_the_ends_of_what_is_not_stated():
+    assert Surface(2e-7).corners == (Surface(2e-7, 0.03, 1e-4), Surface(2e-7))
+    assert Surface(2e-7, 0.04, 1e-3, 5e9).corners == (Surface(2e-7, 0.04, 1e-3, 5e9),) * 2
+    x = np.linspace(-8.0, 4.0, 13)
+    pressures = [asperity_pressure(each, x, MODULUS)[0] for each in Surface(2e-7).corners]
+    assert np.all(pressures[0] < pressures[1])
+
+
+def test_mean_planes_say_where_no_theory_of_asperities_holds():
+    assert [MeanPlanes.of(share, x).name for share, x in ((0.5, 0.1), (0.5, -0.1), (0.0, -0.1), (0.0, -2.1))] == [
+        "APART", "OVERLAP", "APART", "MERGED"
+    ]  # fmt: skip
+    assert MeanPlanes.of(math.nan, math.nan) is MeanPlanes.APART
+
+
+def test_k_and_c_of_a_rough_contact_over_the_smooth_one():
+    """k by a difference quotient of the rough offset, c by the film's share, of a film that falls as w^-0.2."""
+    contact, temperature, speed = CONTACTS[0], 333.15, 0.05
+
+    def smooth(load):
+        film = 5e-8 * (load / 1e4) ** -0.2
+        gives = 0.2 * film / load
+        return SmoothContact(load, film, gives, gives * 1e-4, np.asarray(contact.structural_compliance(load)))
+
+    load, step = np.array([5e3, 5e4]), 1e-4
+    for surface in Surface(2e-7).corners:
+        layer = RoughLayer(surface, contact, OIL, speed)
+        there = [
+            layer.shared(
+                np.cbrt(at)[:, None, None], smooth(at).film[:, None, None], np.zeros((2, 1, 1)),
+                np.array([speed]), np.array([temperature]),
+            )
+            for at in (load * (1.0 - step), load, load * (1.0 + step))
+        ]  # fmt: skip
+        gives = (there[0].offset - there[2].offset)[:, 0, 0] / (2.0 * step * load)
+        given = smooth(load)
+        stiffness = (given.solids + given.film_compliance) / (given.solids + gives)
+        found = sharing_effect(layer, given, speed, temperature)
+        np.testing.assert_allclose(found[0], stiffness, rtol=1e-4)  # of the difference quotient, Newton's 1e-6 in s
+        np.testing.assert_allclose(found[1], there[1].share[:, 0, 0] ** 2 * stiffness**2, rtol=1e-4)
+    nearly_smooth = RoughLayer(Surface(1e-9), contact, OIL, speed)
+    np.testing.assert_array_equal(sharing_effect(nearly_smooth, given, speed, temperature), 1.0)
 
 
 @pytest.mark.parametrize(

@@ -28,6 +28,7 @@ from ehdmaps.maps.rough_layer import (
     FILM_SHARE,
     MEAN_DISTANCE,
     OVERLAP,
+    MeanPlanes,
     RoughLayer,
     least_share,
     overlapping,
@@ -207,6 +208,10 @@ def test_solve_says_what_a_film_is_too_thin_for(tmp_path, capsys):
     assert (record["status"], record["film_note"]) == ("converged", "film below the roughness")
     assert record["film_parameter"] == pytest.approx(record["minimum_film"] / 2e-7)
     assert 0.0 < record["film_share"] < 1.0
+    softest, stiffest = (record[f"damping_{end}_asperities"] for end in ("soft", "stiff"))
+    assert 0.0 < stiffest < softest < record["damping"]  # the softer, the more is left to the film
+    assert cli.main(["solve", str(job), "--load", "20 N/mm", "--speed", "0 m/s", *point[4:]]) == 0
+    assert f"with the softest usual asperities {MeanPlanes.MERGED.value}" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("solver", [FormulaSolver(), ReynoldsSolver()])
@@ -241,6 +246,9 @@ def test_load_sharing_says_where_it_is_out_of_its_range(tmp_path, capsys):
     assert not overlapping(np.array([0.0]), np.array([-1.0])).any()  # the rough dry contact shares nothing
     said = "\n".join(roughness_lines(emap))
     assert f"at {100.0 * beyond.mean():.0f} % of the points, Lambda up to" in said and OVERLAP in said
+    assert "      softest usual asperities (product 0.03, slope 0.0001): k " in said
+    assert MeanPlanes.MERGED.value not in said
+    assert MeanPlanes.MERGED.value in "\n".join(roughness_lines(emap.with_surface(Surface(1e-5))))
     assert OVERLAP not in "\n".join(roughness_lines(emap.with_surface(Surface(1e-9))))
     job = tmp_path / "rough.toml"
     job.write_text(ROUGH)

@@ -29,13 +29,19 @@ from ehdmaps.maps.grid_field import has_own_lines
 from ehdmaps.maps.records import record_from_json
 from ehdmaps.maps.rough_layer import (
     BOUNDARY,
+    DEEPEST_MEANT,
     FILM_PARAMETER,
     FILM_SHARE,
+    LEAST_SPEED,
     MEAN_DISTANCE,
     MIXED,
     OVERLAP,
+    MeanPlanes,
+    RoughLayer,
+    SmoothContact,
     overlapping,
     rough_variables,
+    sharing_effect,
 )
 from ehdmaps.physics.approach import FE_LOAD
 from ehdmaps.physics.bearing import BearingGeometry
@@ -135,6 +141,43 @@ def roughness_lines(emap: EHDMap) -> Iterator[str]:
     if beyond.any():
         reach = np.max(rough[FILM_PARAMETER].values[beyond])
         yield f"    at {100.0 * np.mean(beyond):.0f} % of the points, Lambda up to {reach:.2g}, {OVERLAP}"
+    yield from _band_lines(emap, rough)
+
+
+def _band_lines(emap: EHDMap, rough: xr.Dataset) -> Iterator[str]:
+    """Yield k and c over those of smooth surfaces where films are below mixed, with soft and with stiff asperities."""
+    ordered = emap.dataset.transpose(*schema.DIMS, ...)
+    mixed = rough[FILM_PARAMETER].values < MIXED
+    if not mixed.any():
+        return
+    soft, stiff = emap.surface.corners
+    yield f"    k and c over those of smooth surfaces, at points with Lambda below {MIXED:g}; asperities are not known:"
+    distance = rough_variables(emap.dataset, emap.contacts, emap.lubricant, soft)[MEAN_DISTANCE].values
+    films = [ordered[name].values for name in ("film_offset", "film_compliance", "loss_compliance")]
+    loads, speeds, temperatures = (ordered[name].values for name in schema.DIMS[1:])
+    for word, corner in (("softest", soft), ("stiffest", stiff)):
+        found = np.full((2, *mixed.shape), np.nan)
+        for i, contact in enumerate(emap.contacts):
+            solids = np.asarray(contact.structural_compliance(loads))
+            for j, k in np.argwhere(mixed[i].any(axis=0)):
+                here = mixed[i, :, j, k]
+                film, gives, lost = (values[i, here, j, k] for values in films)
+                smooth = SmoothContact(loads[here], film, gives, lost, solids[here])
+                layer = RoughLayer(corner, contact, emap.lubricant, max(float(speeds[j]), LEAST_SPEED))
+                found[:, i, here, j, k] = sharing_effect(layer, smooth, float(speeds[j]), float(temperatures[k]))
+        parts = [values[np.isfinite(values)] for values in found]
+        words = [
+            f"{name} {np.median(part):.2f} in the median, {np.quantile(part, 0.05):.2f} at 5 %"
+            for name, part in zip("kc", parts, strict=True)
+            if part.size
+        ]
+        yield (
+            f"      {word} usual asperities (product {corner.asperity_product:g}, slope {corner.asperity_slope:g}): "
+            f"{'; '.join(words)}"
+        )
+    if (deep := distance < DEEPEST_MEANT).any():
+        where = f"at {100.0 * np.mean(deep):.0f} % of the points, by up to {-np.min(distance[deep]):.2g} times"
+        yield f"      with the softest, {where}: {MeanPlanes.MERGED.value}"
 
 
 def _geometry_lines(emap: EHDMap) -> Iterator[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -13,14 +14,16 @@ from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.make.report import ERRORS, FOUND_BY_SOME, NONE_STATED
 from ehdmaps.jobs.solvers import solver_words
 from ehdmaps.maps.rough_layer import (
+    DEEPEST_MEANT,
     FILM_PARAMETER,
     FILM_SHARE,
     LEAST_SPEED,
     MEAN_DISTANCE,
-    OVERLAP,
+    MeanPlanes,
     RoughLayer,
+    SmoothContact,
     load_sharing,
-    overlapping,
+    sharing_effect,
 )
 from ehdmaps.physics import hertz
 from ehdmaps.physics.closed_form import too_thin
@@ -67,6 +70,15 @@ _SOLUTION_FIELDS = (
 )
 
 
+ROUGH_BAND = {
+    "stiffness": ("stiffness_soft_asperities", "stiffness_stiff_asperities"),
+    "damping": ("damping_soft_asperities", "damping_stiff_asperities"),
+}
+"""Names of k and c between rough surfaces, with the softest and the stiffest usual asperities."""
+
+SOFT_DISTANCE = f"{MEAN_DISTANCE}_soft_asperities"
+
+
 def point_record(
     solution: ContactSolution, contact: LineContact, job: Job, point: OperatingPoint, frequency: float
 ) -> dict[str, Any]:
@@ -91,7 +103,7 @@ def point_record(
         **point_place(contact, job.lubricant, point),
         "frequency": frequency,
         **_numbers(solution),
-        **_rough(solution, contact, job.lubricant, point, surface),
+        **_rough(solution, contact, job.lubricant, point, surface, frequency),
         "status": solution.status.word,
         "film_note": too_thin(solution.minimum_film, surface.roughness),
         "reason": solution.reason,
@@ -131,20 +143,36 @@ def _numbers(solution: ContactSolution) -> dict[str, Any]:
 
 
 def _rough(
-    solution: ContactSolution, contact: LineContact, oil: Lubricant, point: OperatingPoint, surface: Surface
+    solution: ContactSolution,
+    contact: LineContact,
+    oil: Lubricant,
+    point: OperatingPoint,
+    surface: Surface,
+    frequency: float,
 ) -> dict[str, float]:
     """Return what the roughness makes of the film; nothing between smooth surfaces."""
     if surface.smooth:
         return {}
     layer = RoughLayer(surface, contact, oil, max(point.entrainment_speed, LEAST_SPEED))
-    place = (np.array([value]) for value in (point.load, point.entrainment_speed, point.temperature))
+    place = [np.array([value]) for value in (point.load, point.entrainment_speed, point.temperature)]
     share, distance = load_sharing(layer, np.full((1, 1, 1), solution.film_offset), *place)
-    return {
+    found = {
         "roughness": surface.roughness,
         FILM_PARAMETER: solution.minimum_film / surface.roughness,
         FILM_SHARE: float(share.item()),
         MEAN_DISTANCE: float(distance.item()),
     }
+    if frequency:  # shares are those of slow motion
+        return found
+    values = point.load, solution.film_offset, solution.film_compliance, solution.loss_compliance
+    smooth = SmoothContact(*(np.array([value]) for value in (*values, contact.structural_compliance(point.load))))
+    for corner, names in zip(surface.corners, zip(*ROUGH_BAND.values(), strict=True), strict=True):
+        times = sharing_effect(replace(layer, surface=corner), smooth, point.entrainment_speed, point.temperature)
+        stiffness, damping = solution.stiffness * times[0, 0], solution.damping * times[1, 0]
+        found |= dict(zip(names, (float(stiffness), float(damping)), strict=True))
+    soft = replace(layer, surface=surface.corners[0])
+    _, distance = load_sharing(soft, np.full((1, 1, 1), solution.film_offset), *place)
+    return {**found, SOFT_DISTANCE: float(distance.item())}
 
 
 def _groups(contact: LineContact, oil: Lubricant, point: OperatingPoint) -> dict[str, float | None]:
@@ -198,14 +226,20 @@ def point_table(job: Job, records: list[dict[str, Any]], point: OperatingPoint, 
     lines.extend(f"  {record['contact']}: {record['reason']}" for record in records if record["reason"])
     lines.extend(f"  {record['contact']}: {note}" for record in records if (note := _extrapolated(job, record)))
     lines.extend(f"  {record['contact']}: {note}" for record in records if (note := _tip(record)))
-    lines.extend(f"  {record['contact']}: {OVERLAP}" for record in records if _overlaps(record))
+    lines.extend(f"  {record['contact']}: {planes}" for record in records if (planes := _mean_planes(record)))
     return "\n".join(lines)
 
 
-def _overlaps(record: dict[str, Any]) -> bool:
-    """Tell whether the load sharing of a rough contact is out of its range."""
-    share, distance = record.get(FILM_SHARE), record.get(MEAN_DISTANCE)
-    return share is not None and distance is not None and bool(overlapping(share, distance))
+def _mean_planes(record: dict[str, Any]) -> str:
+    """Say where the load sharing of a rough contact is out of its range; empty where it is not."""
+    share, distance, soft = (record.get(name) for name in (FILM_SHARE, MEAN_DISTANCE, SOFT_DISTANCE))
+    if share is None or distance is None:
+        return ""
+    stated = MeanPlanes.of(share, distance)
+    if stated is not MeanPlanes.MERGED and soft is not None and soft < DEEPEST_MEANT:
+        merged = f"with the softest usual asperities {MeanPlanes.MERGED.value}"
+        return f"{stated.value}; {merged}" if stated.value else merged
+    return stated.value
 
 
 def _tip(record: dict[str, Any]) -> str:
@@ -258,6 +292,10 @@ def _rows(records: list[dict[str, Any]], length: float | None) -> Iterator[tuple
             yield row(words, name, display)
     yield row("stiffness k", "stiffness", STIFFNESS)
     yield row("damping c", "damping", DAMPING)
+    if ROUGH_BAND["stiffness"][0] in records[0]:
+        for letter, display, names in zip("kc", (STIFFNESS, DAMPING), ROUGH_BAND.values(), strict=True):
+            for kind, name in zip(("soft", "stiff"), names, strict=True):
+                yield row(f"{letter}, {kind} asperities", name, display)
     if length is not None:
         yield row("k x length", "stiffness", SPRING, length)
         yield row("c x length", "damping", DAMPER, length)
