@@ -49,6 +49,13 @@ from tests.benchmarks.machine_recipes import (
 )
 from tests.benchmarks.page_block import Block, Compared, Figure, compared_in_order, compared_texts, with_figures
 from tests.benchmarks.printed_tables import Output
+from tests.benchmarks.thesis_recipes import (
+    dry_laws_of_the_rigid,
+    height_of_the_rigid,
+    last_peak_of_the_flexible,
+    oil_of_the_thesis,
+    rig_at_high_speed,
+)
 
 TIMES = tuple(
     re.compile(pattern)
@@ -105,6 +112,11 @@ RECIPES: dict[str, Callable[[Sequence[Output]], list[Figure]]] = {
         periods,
         cutoffs,
         speed_sweep,
+        oil_of_the_thesis,
+        last_peak_of_the_flexible,
+        dry_laws_of_the_rigid,
+        rig_at_high_speed,
+        height_of_the_rigid,
     )
 }
 """Recipes that give figures in their order; beside them `printed[FROM:TO]`, lines of what one command prints."""

@@ -53,6 +53,8 @@ MADE = {
     "n1014.nc": "ehdmaps generate n1014 -o n1014.nc",
     "cfd.nc": "ehdmaps generate nu308_openfoam -o cfd.nc",
     "vg320.nc": "ehdmaps generate docs/vg320.toml -o vg320.nc",
+    "dry.nc": "ehdmaps generate nu308 --solver hertz -o dry.nc",
+    "spirax.nc": 'ehdmaps generate --bearing NU308 --oil "Spirax MA 80W" -o spirax.nc',
     "h12.nc": 'python -m examples.housings gearbox_housing --cutoff "12 kHz" -o h12.nc',
     "hits.uff": "mbs hammer n1014_testrig --map n1014.nc -o hits.uff",
 }
