@@ -1,5 +1,6 @@
 """Settings of all tests, maps that several of them read, and the report of those that take long unmarked."""
 
+import collections
 import gc
 import os
 import tempfile
@@ -59,6 +60,12 @@ QUICK = 2.0
 SPENT: dict[tuple[str, str], float] = {}
 """Seconds of tests without the mark, by phase and name."""
 
+FILES: collections.Counter[str] = collections.Counter()
+"""Seconds of all tests, by file."""
+
+LISTED = 30
+"""Files that the report names."""
+
 
 def processor_time() -> float:
     """Seconds of this process and of those that it waited for."""
@@ -69,8 +76,10 @@ def processor_time() -> float:
 def spend(item: pytest.Item, phase: str) -> Iterator[None]:
     begin = processor_time()
     yield
+    seconds = processor_time() - begin
+    FILES[item.nodeid.partition("::")[0]] += seconds
     if item.get_closest_marker("slow") is None:
-        SPENT[phase, item.nodeid] = processor_time() - begin
+        SPENT[phase, item.nodeid] = seconds
 
 
 @pytest.hookimpl(hookwrapper=True, tryfirst=True)
@@ -90,6 +99,9 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
         terminalreporter.section(f"not marked slow, and more than {QUICK:g} s of processor time")
     for seconds, phase, name in over:
         terminalreporter.write_line(f"{seconds:.1f} s {phase} {name}")
+    total = sum(FILES.values())
+    terminalreporter.section(f"processor time of the tests: {total:.0f} s; the files that take most of it")
+    terminalreporter.write_line(", ".join(f"{name} {seconds:.0f} s" for name, seconds in FILES.most_common(LISTED)))
 
 
 def made_map(folder: Path, text: str, statuses: tuple[int, ...] = (0,)) -> str:

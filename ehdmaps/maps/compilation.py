@@ -66,7 +66,7 @@ class Resolution:
     log_load: float = 0.02
 
 
-OF_TABLE = Resolution(approach=0.04, log_speed=0.26, log_load=0.01)
+OF_TABLE = Resolution(approach=0.04, log_speed=0.26)
 """Of laws with films from the film table, which follow the bottom of the damping valley more closely: nodes are dear
 where each is mixed from 36 lines, and cheap here. Distances of ln u twice as long make k wrong by 6e-6 in the median
 and 3e-5 at 95 % (NU308, FVA 3), less than films that are read are."""
