@@ -25,7 +25,7 @@ from mbs.model.system import Places, System
 from mbs.model.turning import TurningLoad
 from mbs.scene import kinds
 from mbs.scene.bodies import build_bodies
-from mbs.scene.contact_laws import ContactLaws, choose_law, supply_words, surface_label
+from mbs.scene.contact_laws import NO_LAW, ContactLaws, choose_law, supply_words, surface_label
 from mbs.scene.kinds import ElementKind
 from mbs.scene.map_set import TABLE_LAW, MapSet, table_maps
 from mbs.scene.oils import oil_warnings
@@ -254,7 +254,7 @@ def assemble(
             entry.name: laws.films(entry.bearing, laws.supply(spec))
             for entry, spec in zip(bearings, scene.bearings, strict=True)
         },
-        label=laws.label,
+        label=laws.label if bearings else NO_LAW,
         memory=laws.memory,
         supplies=laws.supplies,
         surface=laws.surface,

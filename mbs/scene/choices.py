@@ -632,7 +632,7 @@ def combinations(
     problems : list of str
         What is wrong is appended.
     """
-    found = [Combination(subject) for subject in subjects]
+    found = [Combination(_with_label(subject)) for subject in subjects]
     for choice in CHOICES.values():
         several = values.get(choice.name, ()) if choice.name not in LAWS else ()
         if choice.name == SUPPLY.name and not several:
@@ -645,6 +645,15 @@ def combinations(
             continue
         found = [entry for one in found for entry in _each(one, choice, several, problems)]
     return found
+
+
+def _with_label(subject: Subject) -> Subject:
+    """A subject whose law is not called dry where the scene has no roller bearing."""
+    from mbs.scene.contact_laws import NO_LAW
+
+    if subject.scene.bearings or subject.law.has_films:
+        return subject
+    return dataclasses.replace(subject, law=dataclasses.replace(subject.law, label=NO_LAW))
 
 
 def _each(one: Combination, choice: SceneChoice, several: Sequence[Any], problems: list[str]) -> list[Combination]:

@@ -125,6 +125,9 @@ HERTZ_FORMS = "hertz:TIME such as 'hertz:1.25e-5 s', hertz:DAMPING such as 'hert
 TABLE_FORM = "table:FILE.csv"
 """The form of the dry law by points, for messages."""
 
+NO_LAW = "no contact law"
+"""Label of a law in a scene without roller bearings."""
+
 _LABELS = {"hertz": "dry Hertz", "formula": "film formula"}
 
 

@@ -24,6 +24,12 @@ on = "rotor"
 at = "{place!r} m"
 moment = "{moment} kg m"
 
+[[sensors]]
+name = "wheel"
+on = "rotor:unbalance"
+direction = "y"
+quantity = "acceleration"
+
 [runup]
 from = "{begin} rad/s"
 to = "{end} rad/s"
@@ -120,3 +126,21 @@ def test_hammer(machine, capsys):
         "1",
     )
     assert hits.stat().st_size > 1000
+
+
+def test_runup_and_campbell(machine, capsys):
+    """Little is dissipated, so that the balance of energy judges the run.
+
+    Its residual is of second order in the step, (2 pi f h)^2/12 = 0.5 % at 400 Hz, up to which the machines answer.
+    Levels of all that happens are between nothing and the largest acceleration.
+    """
+    _, scene = machine
+    out = scene.with_name("run.nc")
+    said = went(capsys, "runup", scene, "-o", out)
+    assert float(re.search(r"residual .* J, ([\d.e-]+) %", said)[1]) < 0.5
+    said = went(capsys, "campbell", out)
+    assert "no contact law" in said
+    level = float(re.search(r"highest sum level ([\d.]+) dB", said)[1])
+    with xr.open_dataset(out) as dataset:
+        signal = dataset["signal"].sel(sensor="wheel").to_numpy()
+    assert 0.0 < level < 20.0 * math.log10(np.max(np.abs(signal)) / 1e-6)
