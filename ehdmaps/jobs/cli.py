@@ -140,6 +140,9 @@ def parser() -> argparse.ArgumentParser:
         help="limiting stress over pressure, of --shear limiting or --slide-to-roll FROM TO POINTS; default: 0.05",
     )
     solve.add_argument("--solver", metavar="NAME", help=_SOLVER)
+    solve.add_argument(
+        "--films", metavar="FILMS", help="of balls: solved | table; table: read from the film table; default: solved"
+    )
     solve.add_argument("--json", action="store_true", help="one object a contact, SI, per unit length")
     solve.add_argument("--keep-cases", metavar="FOLDER", nargs="?", const="ehdmaps-cases", help=_KEEP)
     solve.add_argument(
@@ -293,9 +296,11 @@ def _add_table(top: Program) -> None:
     table = top.add_command(_MEASURE, "table", "the film table, from which films are read without solving")
     parts = table.add_subparsers(dest="part", required=True, metavar="PART")
     make = parts.add_parser("make", help="solve it anew; minutes of one core")
-    make.add_argument("-o", "--output", metavar="FILE.nc", default="film_table.nc", help="default: film_table.nc")
+    make.add_argument("-o", "--output", metavar="FILE.nc", help="default: film_table.nc, or point_table.nc")
     show = parts.add_parser("show", help="nodes, provenance and errors")
     show.add_argument("file", metavar="FILE.nc", nargs="?", help="default: the table that is shipped")
+    for part in (make, show):
+        part.add_argument("--points", action="store_true", help="the table of point contacts, not that of lines")
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -74,6 +74,11 @@ def read_job(
         text = (resources.files("ehdmaps.jobs") / "shipped" / f"{source}.toml").read_text(encoding="utf-8")
         return parse_job(text, source, f"{source} (shipped)", solver, to_run, finding_solids)
     path = Path(source)
+    if not path.exists():
+        from ehdmaps.physics.point.ball_catalogue import ball_words  # for a message only
+
+        if words := ball_words(source):
+            raise InputError(words)
     known = shipped_jobs()
     allowed = (
         f"a job file, a map file, or a shipped job: {', '.join(known)}{closest(source, known)}; or --bearing with a "

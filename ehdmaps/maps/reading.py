@@ -322,9 +322,12 @@ def read_map(path: str | PathLike[str]) -> tuple[xr.Dataset, xr.Dataset | None]:
         with netCDF4.Dataset(name) as file:
             return _read(file, name)
     except DAMAGE as error:
+        from ehdmaps.physics.point.ball_catalogue import ball_words  # for a message only
+
         cause = " ".join(str(error).split()) or type(error).__name__
+        words = ball_words(name)
         raise MapError(
-            f"{name}: cannot be read ({cause:.300}); expected a map file written by `ehdmaps generate`"
+            words or f"{name}: cannot be read ({cause:.300}); expected a map file written by `ehdmaps generate`"
         ) from error
 
 

@@ -350,6 +350,10 @@ def _looked_up(designation: str) -> Catalogue:
     """The entry of a designation."""
     entry = boundary(designation)
     if entry is None:
+        from ehdmaps.physics.point.ball_catalogue import ball_words  # for a message only
+
+        if words := ball_words(designation):
+            raise InputError(f"bearing designation: {words}")
         raise InputError(
             f"bearing designation: got {short(designation)}{closest(designation.upper(), designations())}; allowed: "
             f"{', '.join(BEARINGS)}, and N, NU, NJ or NUP of series 10, 2, 22, 3, 23 with bores of 20 mm (25 mm in "

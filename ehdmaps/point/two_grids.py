@@ -145,7 +145,9 @@ class PointGroups:
         return name, errors[name] if math.isfinite(errors[name]) else math.inf
 
 
-def solve_groups(problem: PointProblem, resolution: Resolution, previous: PointGroups | None = None) -> PointGroups:
+def solve_groups(
+    problem: PointProblem, resolution: Resolution, previous: PointGroups | None = None, finer: bool = True
+) -> PointGroups:
     """Solve a point on two grids, and where these do not resolve it on finer ones.
 
     Parameters
@@ -156,13 +158,15 @@ def solve_groups(problem: PointProblem, resolution: Resolution, previous: PointG
         The grids.
     previous : PointGroups, optional
         A neighbour, of the same ellipticity, to start from.
+    finer : bool
+        Whether finer grids are tried, at ten times the cost.
     """
     found = _solved_on(problem, resolution, previous)
-    if found.worst[1] <= MOST_ERROR:
+    if found.worst[1] <= MOST_ERROR or not finer:
         return found
-    finer = _solved_on(problem, resolution.finer, None)
-    steps = found.steps + finer.steps
-    return replace(finer if finer.worst[1] < found.worst[1] else found, steps=steps)
+    better = _solved_on(problem, resolution.finer, None)
+    steps = found.steps + better.steps
+    return replace(better if better.worst[1] < found.worst[1] else found, steps=steps)
 
 
 def _solved_on(problem: PointProblem, resolution: Resolution, previous: PointGroups | None) -> PointGroups:

@@ -51,7 +51,7 @@ class Axes:
     @cached_property
     def knots(self) -> tuple[FloatArray, FloatArray]:
         """Knots of the splines along zeta and the size."""
-        return _knots(self.zeta), _knots(self.size)
+        return knots_of(self.zeta), knots_of(self.size)
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,11 +101,11 @@ def place_of(axes: Axes, zeta: FloatArray, size: FloatArray, alpha: FloatArray, 
     held, held_size = np.clip(zeta, axes.zeta[0], axes.zeta[-1]), np.clip(size, axes.size[0], axes.size[-1])
     away = zeta - held
     (i, along, slope), (j, along_size, slope_size) = (
-        _weights(knots, x) for knots, x in zip(axes.knots, (held, held_size), strict=True)
+        spline_weights(knots, x) for knots, x in zip(axes.knots, (held, held_size), strict=True)
     )
     by_alpha, by_bend = lagrange_weights(axes.alpha, alpha), lagrange_weights(axes.bend, bend)
     all_nodes = axes.zeta, axes.size, axes.alpha, axes.bend
-    cell = [_cell(nodes, x) for nodes, x in zip(all_nodes, (zeta, size, alpha, bend), strict=True)]
+    cell = [cell_of(nodes, x) for nodes, x in zip(all_nodes, (zeta, size, alpha, bend), strict=True)]
     return Place(
         first=np.column_stack([i, j]),
         zeta=along,
@@ -234,13 +234,32 @@ def heavier_films(field: Field, value: FloatArray, slope: FloatArray, above: Flo
     return np.asarray(value - slope * np.expm1(-above) if field.scale else value + slope * above)
 
 
-def _knots(nodes: FloatArray) -> FloatArray:
-    """Knots of the cubic spline through nodes, that has no knot at the last node but one at either end."""
+def knots_of(nodes: FloatArray) -> FloatArray:
+    """Knots of the cubic spline through nodes, that has no knot at the last node but one at either end.
+
+    Parameters
+    ----------
+    nodes : ndarray, shape (nodes,)
+        Places at which it is known, four or more.
+    """
     return np.concatenate([(nodes[0],) * (DEGREE + 1), nodes[2:-2], (nodes[-1],) * (DEGREE + 1)])
 
 
-def _weights(knots: FloatArray, x: FloatArray) -> tuple[IndexArray, FloatArray, FloatArray]:
-    """First coefficient that counts at places, weights of four, and their derivatives."""
+def spline_weights(knots: FloatArray, x: FloatArray) -> tuple[IndexArray, FloatArray, FloatArray]:
+    """First coefficient that counts at places, weights of four, and their derivatives.
+
+    Parameters
+    ----------
+    knots : ndarray
+        Those of `knots_of`.
+    x : ndarray, shape (n,)
+        Places between the nodes.
+
+    Returns
+    -------
+    first : ndarray, shape (n,)
+    weights, slopes : ndarray, shape (n, 4)
+    """
     cell = np.clip(np.searchsorted(knots, x, side="right") - 1, DEGREE, knots.size - DEGREE - 2)
     basis = [np.ones_like(x)]
     lower = basis
@@ -281,6 +300,14 @@ def lagrange_weights(nodes: FloatArray, x: FloatArray) -> FloatArray:
     )
 
 
-def _cell(nodes: FloatArray, x: FloatArray) -> IndexArray:
-    """Index of the cell between nodes; that at the end for places beyond."""
+def cell_of(nodes: FloatArray, x: FloatArray) -> IndexArray:
+    """Index of the cell between nodes; that at the end for places beyond.
+
+    Parameters
+    ----------
+    nodes : ndarray, shape (nodes,)
+        Nodes, rising.
+    x : ndarray, shape (n,)
+        Places that are looked up.
+    """
     return np.clip(np.searchsorted(nodes, x, side="right") - 1, 0, nodes.size - 2)

@@ -84,7 +84,7 @@ class Nodes:
         first = FIELDS.index(fields[0])
         codes = self.codes.reshape(-1, len(FIELDS))[place.cell, first : first + len(fields)]
         beyond = BEYOND_HEAVY * place.above - BEYOND_FLAT * place.flatter - BEYOND_LIGHT * np.expm1(place.below)
-        return np.asarray(_DECODED[codes] + beyond[:, None])
+        return np.asarray(decoded(codes) + beyond[:, None])
 
 
 def encoded(errors: FloatArray) -> ByteArray:
@@ -98,6 +98,17 @@ def encoded(errors: FloatArray) -> ByteArray:
     clipped = np.clip(np.where(np.isnan(errors), LARGEST_ERROR, errors), LEAST_ERROR, LARGEST_ERROR)
     span = np.log(LARGEST_ERROR / LEAST_ERROR)
     return np.asarray(np.ceil(CODES * np.log(clipped / LEAST_ERROR) / span - 1e-9).astype(np.uint8))
+
+
+def decoded(codes: ByteArray) -> FloatArray:
+    """Errors of their bytes.
+
+    Parameters
+    ----------
+    codes : ndarray of uint8
+        Those of `encoded`.
+    """
+    return np.asarray(_DECODED[codes])
 
 
 _DECODED = LEAST_ERROR * (LARGEST_ERROR / LEAST_ERROR) ** (np.arange(CODES + 1) / CODES)

@@ -12,7 +12,7 @@ import numpy as np
 from ehdmaps.outputs import MARK, TABLE, write_text
 from ehdmaps.units import DAMPER, FILM, PRESSURE, RPM, SPRING, TEMPERATURE
 from mbs.bearings.balls.ball_point import SIDES, BallPoint
-from mbs.output.bearing_table import regime, without_numbers
+from mbs.output.bearing_table import regime, shown, smallest, warning_lines
 from mbs.output.files import described
 from mbs.scene.fields import DEGREE, FORCE, MICROMETRE
 
@@ -100,8 +100,8 @@ def _side_row(point: BallPoint) -> dict[str, tuple[float, float]]:
     """Numbers of the inner and the outer contacts, by name, SI."""
     return {
         "hertz_pressure": (float(point.pressure[0].max()), float(point.pressure[1].max())),
-        "central_film": (_smallest(point.central_film[0]), _smallest(point.central_film[1])),
-        "minimum_film": (_smallest(point.minimum_film[0]), _smallest(point.minimum_film[1])),
+        "central_film": (smallest(point.central_film[0]), smallest(point.central_film[1])),
+        "minimum_film": (smallest(point.minimum_film[0]), smallest(point.minimum_film[1])),
         "contact_angle": (point.balls.mean_angle(0), point.balls.mean_angle(1)),
     }
 
@@ -220,7 +220,7 @@ def ball_text(description: BallDescription, points: Points) -> list[str]:
         lines += _page(everything[0], description) + _balls(everything[0])
     else:
         lines += _table(everything, description)
-    return lines + _warnings(everything)
+    return lines + warning_lines(everything)
 
 
 def ball_heading(description: BallDescription, point: BallPoint) -> list[str]:
@@ -250,7 +250,7 @@ def _page(point: BallPoint, description: BallDescription) -> list[str]:
         return f"  {label:32s} {unit:8s} " + " ".join(f"{value:12.5g}" for value in shown)
 
     def two(label: str, unit: str, name: str, factor: float) -> str:
-        return f"  {label:32s} {unit:8s} " + " ".join(f"{_shown(factor * value):>12s}" for value in sides[name])
+        return f"  {label:32s} {unit:8s} " + " ".join(f"{shown(_clean(factor * value)):>12s}" for value in sides[name])
 
     outer = f", outer ring {RPM.text(point.outer_speed)}" if point.outer_speed else ""
     lines = [
@@ -315,37 +315,12 @@ def _table(points: list[BallPoint], description: BallDescription) -> list[str]:
             f"{SPRING.value(row['stiffness_across']):9.4g} {SPRING.value(row['stiffness_axial']):9.4g} "
             f"{DAMPER.value(row['damping_along']):9.4g} {point.loaded:6d} {row['highest_ball_load']:9.5g} "
             f"{inner:6.1f} {outer:6.1f} {1e-9 * float(point.pressure.max()):7.4g} "
-            f"{_shown(1e6 * point.smallest_film, 4):>9s} {_shown(row['film_parameter'], 3):>7s}"
+            f"{shown(1e6 * point.smallest_film, 4):>9s} {shown(row['film_parameter'], 3):>7s}"
             f"{' !' if point.problems else ''}"
         )
     return lines
 
 
-def _warnings(points: list[BallPoint]) -> list[str]:
-    """Each warning and note once, with how many points it is about."""
-    lines = []
-    for word, name in (("warning", "problems"), ("note", "notes")):
-        groups: dict[str, list[str]] = {}
-        for point in points:
-            for sentence in getattr(point, name):
-                groups.setdefault(without_numbers(sentence), []).append(sentence)
-        for sentences in groups.values():
-            more = f" ({len(sentences)} of {len(points)} points, the last of them here)" if len(points) > 1 else ""
-            lines.append(f"{word}: {sentences[-1]}{more}")
-    return lines
-
-
-def _smallest(values: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> float:
-    """Smallest number; NaN if there is none."""
-    known = values[np.isfinite(values)]
-    return float(known.min()) if known.size else math.nan
-
-
 def _clean(angle: float) -> float:
     """Zero in place of round-off."""
     return 0.0 if abs(angle) < 1e-9 else angle
-
-
-def _shown(value: float, digits: int = 5) -> str:
-    """A number; a dash where there is none."""
-    return "-" if math.isnan(value) else f"{_clean(value) if digits == 5 else value:.{digits}g}"

@@ -28,6 +28,8 @@ from mbs.scene.fields import FORCE, MICROMETRE
 if TYPE_CHECKING:
     import xarray as xr
 
+    from mbs.bearings.balls.ball_point import BallPoint
+
 
 WIDE_RANGE = 20.0
 """A range of loads whose end is further above its beginning is spaced, and drawn, in the logarithm."""
@@ -264,7 +266,7 @@ def bearing_text(description: BearingDescription, points: Points, corners: Seque
     else:
         lines += _table(everything, description)
     torque = max((point.loss.torque for point in everything), default=math.nan)
-    return lines + flooded_note(torque, [description.supply]) + _warnings(everything)
+    return lines + flooded_note(torque, [description.supply]) + warning_lines(everything)
 
 
 def bearing_heading(description: BearingDescription) -> list[str]:
@@ -358,7 +360,7 @@ def regime(film_parameter: float) -> str:
 
 def _sides(label: str, unit: str, values: Iterable[float]) -> str:
     """A line of an inner and an outer value."""
-    return f"  {label:32s} {unit:8s} " + " ".join(f"{_shown(value):>12s}" for value in values)
+    return f"  {label:32s} {unit:8s} " + " ".join(f"{shown(value):>12s}" for value in values)
 
 
 def _rollers(point: BearingPoint) -> list[str]:
@@ -374,11 +376,11 @@ def _rollers(point: BearingPoint) -> list[str]:
         if rollers.load[index] <= 0.01 * rollers.load.max():
             continue
         pressures = [1e-9 * float(np.max(side.hertz_pressure[index])) for side in contacts.sides]
-        films = [1e6 * _smallest(side.minimum_film[index]) for side in contacts.sides]
+        films = [1e6 * smallest(side.minimum_film[index]) for side in contacts.sides]
         lines.append(
             f"  {index:6d} {math.degrees(rollers.angle[index]):7.1f} {rollers.load[index]:9.5g} "
-            f"{_shown(pressures[0], 3):>11s}{_shown(pressures[1], 3):>10s} "
-            f"{_shown(films[0], 3):>11s}{_shown(films[1], 3):>10s}"
+            f"{shown(pressures[0], 3):>11s}{shown(pressures[1], 3):>10s} "
+            f"{shown(films[0], 3):>11s}{shown(films[1], 3):>10s}"
         )
     return [line.rstrip() for line in lines]
 
@@ -418,14 +420,20 @@ def _table(points: list[BearingPoint], description: BearingDescription) -> list[
             f"{point.size:10.5g} {RPM.value(point.speed):8.5g} {SPRING.value(row['stiffness_along']):9.4g} "
             f"{SPRING.value(row['stiffness_across']):9.4g} {DAMPER.value(row['damping_along']):9.4g} {point.loaded:7d} "
             f"{row['highest_roller_load']:9.5g} {1e-9 * float(point.contacts.hertz_pressure.max()):7.4g} "
-            f"{_shown(1e6 * float(np.min(point.contacts.minimum_film)), 4):>9s} {_shown(row['film_parameter'], 3):>7s} "
-            f"{_shown(1e3 * row['rolling_torque'], 4):>8s}{share}{' !' if point.problems else ''}"
+            f"{shown(1e6 * float(np.min(point.contacts.minimum_film)), 4):>9s} {shown(row['film_parameter'], 3):>7s} "
+            f"{shown(1e3 * row['rolling_torque'], 4):>8s}{share}{' !' if point.problems else ''}"
         )
     return lines
 
 
-def _warnings(points: list[BearingPoint]) -> list[str]:
-    """Each warning and note once, with how many points it is about."""
+def warning_lines(points: Sequence[BearingPoint | BallPoint]) -> list[str]:
+    """Each warning and note once, with how many points it is about.
+
+    Parameters
+    ----------
+    points : sequence of BearingPoint or BallPoint
+        The points.
+    """
     lines = []
     for word, name in (("warning", "problems"), ("note", "notes")):
         # The number in a sentence differs from point to point; the first one is shown.
@@ -450,8 +458,14 @@ def without_numbers(sentence: str) -> str:
     return "".join(letter for letter in sentence if not (letter.isdigit() or letter in ".-+"))
 
 
-def _smallest(values: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> float:
-    """Smallest number; NaN if there is none."""
+def smallest(values: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> float:
+    """Smallest number; NaN if there is none.
+
+    Parameters
+    ----------
+    values : ndarray
+        Any of them may be NaN.
+    """
     known = values[np.isfinite(values)]
     return float(known.min()) if known.size else math.nan
 
@@ -461,6 +475,14 @@ def _clean(value: float, beside: float) -> float:
     return 0.0 if abs(value) < 1e-9 * abs(beside) else value
 
 
-def _shown(value: float, digits: int = 5) -> str:
-    """A number; a dash where there is none."""
+def shown(value: float, digits: int = 5) -> str:
+    """A number; a dash where there is none.
+
+    Parameters
+    ----------
+    value : float
+        The number, or NaN.
+    digits : int
+        Digits that count.
+    """
     return "-" if math.isnan(value) else f"{value:.{digits}g}"

@@ -36,6 +36,16 @@ def test_plain_values_have_the_same_numbers(capsys):
     assert inner["ellipticity"] > outer["ellipticity"] > 1.0
 
 
+def test_films_are_read_from_the_table(capsys):
+    """The same numbers as solved ones, within the errors that both state."""
+    read, solved = (json.loads(run(capsys, "6208", *POINT, "--json", *more)[1]) for more in (["--films", "table"], []))
+    for one, other in zip(read, solved, strict=True):
+        assert one["status"] == "converged" and one["M"] == pytest.approx(other["M"], rel=1e-12)
+        for name in ("approach", "film_offset", "central_film", "minimum_film", "stiffness", "damping"):
+            error = one[f"{name}_error"] + other[f"{name}_error"]
+            assert abs(one[name] / other[name] - 1.0) < error < 0.3, name
+
+
 def test_no_load_is_told_and_ends_with_status_one(capsys):
     status, out, _ = run(capsys, "6208", "--load", "0 N", *POINT[2:])
     assert status == 1
@@ -46,6 +56,8 @@ def test_no_load_is_told_and_ends_with_status_one(capsys):
     ("more", "words"),
     [
         (["--length", "1 mm"], "--length: is one of line contacts"),
+        (["--films", "guessed"], "--films: got 'guessed'; allowed: solved, table"),
+        (["--films", "table", "--frequency", "1 kHz"], "--frequency: stands beside --films table"),
         (["--solver", "openfoam"], "--solver: got 'openfoam'; allowed: reynolds"),
         (["--frequency", "10 Hz", "1 Hz", "3"], "--frequency: got 10 Hz 1 Hz 3; allowed"),
         (["--oil", "butter"], "--oil: "),
@@ -56,3 +68,11 @@ def test_what_balls_do_not_take_is_refused(capsys, more, words):
     status, _, err = run(capsys, "6208", *POINT, *more)
     assert status == 2
     assert words in err
+
+
+@pytest.mark.parametrize("command", ["generate", "check", "plot", "export", "show"])
+def test_commands_of_maps_say_what_takes_balls(tmp_path, monkeypatch, capsys, command):
+    monkeypatch.chdir(tmp_path)
+    assert cli.main([command, "6208-2RS"]) == 2
+    assert "6208 is a ball bearing: its contacts are points" in (err := capsys.readouterr().err)
+    assert "`ehdmaps solve 6208 --films table`" in err and "`mbs bearing 6208 --law films`" in err

@@ -89,6 +89,21 @@ def test_films_follow_the_speed(capsys, here) -> None:
     assert films[1] / films[0] == pytest.approx(2.0**0.68, rel=1e-3)
 
 
+@pytest.mark.parametrize("law", ["films", "table"])
+def test_laws_with_films_are_read(capsys, here, law) -> None:
+    """Films move the contact angle of a bearing without clearance, and damp; at rest there are none."""
+    command = (*LOADED[:-2], "--temperature", "60 degC")
+    status, out, err = run(capsys, *command, "--speed", "3000 rpm", "--law", law)
+    assert status == 0 and "read from the film table" in out
+    assert "3000 rpm: films read from the table at" in err and "solved" not in err
+    dry = run(capsys, *command, "--speed", "3000 rpm")[1]
+    angles = [numbers(page, "mean contact angle")[0] for page in (out, dry)]
+    assert 0.5 < angles[1] - angles[0] < 2.0
+    assert min(numbers(out, "damping")) > 0.0 == max(numbers(dry, "damping"))
+    still = run(capsys, *command, "--speed", "0 rpm", "--law", law)[1]
+    assert max(numbers(still, "damping")) == 0.0
+
+
 def test_outer_ring_turns(capsys, here) -> None:
     """The cage is faster, and so is the centrifugal load; radial stiffness hardly knows."""
     inner = run(capsys, "6208", "--load", "1 kN", "--speed", "10000 rpm")[1]

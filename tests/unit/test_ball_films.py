@@ -7,10 +7,15 @@ import math
 import numpy as np
 import pytest
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, SolverError
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from ehdmaps.physics.solids import STEEL
+from ehdmaps.point import solve
+from ehdmaps.table.points.file import shipped_point_table
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.ball_kernel import contact, load_approach
+from mbs.bearings.balls.films import ball_films
 from mbs.bearings.balls.laws import BallLaw, dry_law, film_normal_law
 from tests.cases.balls import DEEP, FREE, LOOSE, rest
 
@@ -110,3 +115,57 @@ def test_thin_films_are_dry_contacts() -> None:
     filmed = BallForce(DEEP, BallLaw("films", inner, outer, LOADS))(pose)
     dry = BallForce(DEEP, dry_law(DEEP))(pose)
     np.testing.assert_allclose(filmed[0], dry[0], rtol=1e-3, atol=1e-3 * np.max(np.abs(dry[0])))
+
+
+@pytest.fixture(scope="module")
+def read_films():
+    """Films of a 6208 with FVA 3 at 4.5 m/s and 60 degC, from the table alone."""
+    return ball_films(ball_estimate("6208"), Lubricant.named("FVA3"), 4.5, 333.15, solves=False)
+
+
+def test_read_films_are_those_of_solved_points(read_films) -> None:
+    """Film offset, films and damping within what table and solver state, between the table's loads."""
+    oil = Lubricant.named("FVA3")
+    for ellipse, side in zip(ball_estimate("6208").contacts(STEEL), read_films.sides, strict=True):
+        found = solve(ellipse, oil, 130.0, 4.5, 333.15)
+        values, _ = side.read(np.array([130.0]))
+        names = ("film_offset", "central_film", "minimum_film", "damping")
+        nearest = side.errors[np.argmin(np.abs(np.log(side.loads / 130.0)))]
+        for name, value, error in zip(names, values[:, 0], nearest, strict=True):
+            exact = getattr(found, name)
+            assert abs(value / exact - 1.0) < error + getattr(found, f"{name}_error"), name
+        assert side.read_loads == side.loads.size and nearest[0] < 0.05
+
+
+def test_read_films_are_those_of_the_table(read_films) -> None:
+    """Away from both ends the table's own cubics, 1e-4; stiffness is the slope of the offset, 1e-3."""
+    ellipse, side = ball_estimate("6208").contacts(STEEL)[0], read_films.inner
+    loads = np.geomspace(20.0, 200.0, 40)
+    films = shipped_point_table().films(ellipse, Lubricant.named("FVA3"), loads, 4.5, 333.15)
+    offset, slope, damping = side.curve(loads)
+    np.testing.assert_allclose(offset, films.film_offset, rtol=1e-4)
+    np.testing.assert_allclose(damping, films.damping, rtol=2e-3)
+    compliance = 1.0 / ellipse.stiffness(loads) - slope / loads
+    np.testing.assert_allclose(1.0 / compliance, films.stiffness, rtol=1e-3)
+
+
+def test_read_laws_are_passive_and_rise(read_films) -> None:
+    """From separate bodies to deep approaches: load rises, damping is positive, no step where the table ends."""
+    for law in (read_films.law.inner, read_films.law.outer):
+        approaches = np.linspace(-20e-6, 60e-6, 2001)
+        values = np.array([contact(law, approach) for approach in approaches])
+        assert np.all(np.diff(values[:, 0]) > 0.0) and np.all(values[:, 1:] > 0.0)
+        assert np.max(np.diff(np.log(values[:, 0]))) < 0.5
+
+
+def test_what_is_not_in_the_table_is_refused_or_solved(monkeypatch) -> None:
+    """L of 2 at 0.5 rpm: no film to read; with leave to solve, the solver is asked."""
+    arguments = ball_estimate("6208"), Lubricant.named("FVA3"), 1e-3, 333.15
+    with pytest.raises(SolverError, match=r"0 of \d+ loads .* have a film .*table of points: L outside of its nodes"):
+        ball_films(*arguments, solves=False)
+    asked = []
+    none = solve(arguments[0].contacts(STEEL)[0], arguments[1], 0.0, 1.0, 333.15)
+    monkeypatch.setattr("ehdmaps.point.solver.solve", lambda *given: asked.append(given) or none)
+    with pytest.raises(SolverError, match="no load"):
+        ball_films(*arguments)
+    assert len(asked) > 3

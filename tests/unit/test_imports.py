@@ -142,6 +142,7 @@ ALLOWED = {
         "ehdmaps.version",
         "ehdmaps.physics",
         "ehdmaps.point",
+        "ehdmaps.table",
         "ehdmaps.maps",
         "ehdmaps.report",
         "ehdmaps.solids",

@@ -177,6 +177,8 @@ def _read(arguments: argparse.Namespace) -> _Request:
     """Read job, point, length and frequencies; all problems at once."""
     problems: list[str] = []
     job: Job | None = None
+    if arguments.films is not None:
+        problems.append("--films: is one of the balls of a bearing; allowed: films = ... of [solver] in a job")
     try:
         job = read_job(arguments.job, arguments.solver, to_run=True)
     except InputError as error:

@@ -16,9 +16,13 @@ _TOLD_EVERY = 20
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Make a table, or show one."""
+    given = arguments.output if arguments.part == "make" else arguments.file
+    if arguments.points:
+        from ehdmaps.jobs.commands.point_table import make, show
+
+        return make(Path(given or "point_table.nc")) if arguments.part == "make" else show(given)
     if arguments.part == "make":
-        return _make(Path(arguments.output))
-    given = arguments.file
+        return _make(Path(given or "film_table.nc"))
     return _shown(shipped_tables() if given is None else read_tables(Path(given))), 0
 
 

@@ -1,4 +1,4 @@
-"""`ehdmaps solve` of a ball bearing: its inner and outer contact at one load of a ball, by the point contact."""
+"""`ehdmaps solve` of a ball bearing: both contacts at one load of a ball, solved or read from the table of points."""
 
 from __future__ import annotations
 
@@ -13,13 +13,16 @@ from typing import Any
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.compiling import stopwatch
 from ehdmaps.errors import InputError
 from ehdmaps.outputs import FIGURE, Output, output_problems
 from ehdmaps.physics.contact import OIL_TEMPERATURES
 from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from ehdmaps.physics.point.ball_geometry import BallGeometry
+from ehdmaps.physics.point.ellipse import Ellipse
 from ehdmaps.physics.solids import STEEL
+from ehdmaps.physics.solution import Status
 from ehdmaps.physics.spectrum import HIGHEST_FREQUENCY, LOWEST_FREQUENCY, MOST_FREQUENCIES
 from ehdmaps.point.solver import PointSolution, solve
 from ehdmaps.program import tell
@@ -39,6 +42,9 @@ NUMBERS = (
 )
 """Lines of the table with an error: label, attribute of `PointSolution`, display."""
 
+SOLVED, TABLE = "solved", "table"
+"""Films of the contacts, as films of [solver] says it of lines."""
+
 _FASTEST = 1e6 * math.pi / 30.0
 _OF_LINES = (
     *("length", "shear_stress", "slide_to_roll", "limiting_ratio", "keep_cases", "fields", "supply", "physics"),
@@ -49,7 +55,7 @@ _OF_LINES = (
 
 @dataclass(frozen=True)
 class _Request:
-    """Question: bearing, oil, load of a ball [N], speed [m/s], temperature [K], frequencies [Hz], picture."""
+    """Question: bearing, oil, load of a ball [N], speed [m/s], temperature [K], frequencies [Hz], films, picture."""
 
     bearing: BallGeometry
     oil: Lubricant
@@ -57,6 +63,7 @@ class _Request:
     speed: float
     temperature: float
     frequencies: FloatArray | None
+    films: str
     plot: Path | None
 
 
@@ -70,7 +77,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """
     request = _read(arguments)
     solutions = {
-        name: solve(ellipse, request.oil, request.load, request.speed, request.temperature, request.frequencies)
+        name: _contact(request, ellipse)
         for name, ellipse in zip(("inner", "outer"), request.bearing.contacts(STEEL), strict=True)
     }
     if request.plot is not None:
@@ -80,6 +87,43 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         tell(f"{request.plot}: written")
     text = _json(solutions) if arguments.json else _table(request, solutions)
     return text, 0 if all(solution.status.usable for solution in solutions.values()) else 1
+
+
+def _contact(request: _Request, ellipse: Ellipse) -> PointSolution:
+    """One contact, as the request asks."""
+    point = (request.oil, request.load, request.speed, request.temperature)
+    if request.films == TABLE:
+        return read_point(ellipse, *point)
+    return solve(ellipse, *point, request.frequencies)
+
+
+def read_point(ellipse: Ellipse, oil: Lubricant, load: float, speed: float, temperature: float) -> PointSolution:
+    """A point as the table of points has it, with the words of a solution.
+
+    Parameters
+    ----------
+    ellipse : Ellipse
+        The contact.
+    oil : Lubricant
+        The oil.
+    load, speed, temperature : float
+        F [N], u [m/s], T [K].
+    """
+    from ehdmaps.table.points.file import shipped_point_table
+    from ehdmaps.table.points.films import NUMBERS as KNOWN
+
+    seconds = stopwatch()
+    films = shipped_point_table().films(ellipse, oil, [load], speed, temperature)
+    numbers = {name: float(getattr(films, name)[0]) for name in KNOWN}
+    numbers |= {f"{name}_error": float(films.errors[name][0]) for name in KNOWN}
+    return PointSolution(
+        Status(int(films.status[0])),
+        str(films.reason[0]),
+        *(load, speed, temperature, ellipse, float(films.load_number[0]), float(films.oil_number[0])),
+        **numbers,  # type: ignore[arg-type]
+        solve_seconds=seconds(),
+        viscosity_extrapolated=bool(films.viscosity_extrapolated[0]),
+    )
 
 
 def _read(arguments: argparse.Namespace) -> _Request:
@@ -129,6 +173,12 @@ def _read(arguments: argparse.Namespace) -> _Request:
             for text in arguments.frequency[:2]
         ]
         frequencies = _spaced(arguments.frequency, ends, problems)
+    films = SOLVED if arguments.films is None else arguments.films
+    if films not in (SOLVED, TABLE):
+        problems.append(f"--films: got {short(films)}; allowed: {SOLVED}, {TABLE}")
+    for name in ("frequency", "plot") if films == TABLE else ():
+        if getattr(arguments, name) is not None:
+            problems.append(f"--{name}: stands beside --films {TABLE}, which has no field; allowed: --films {SOLVED}")
     problems += output_problems([Output("--plot", arguments.plot, FIGURE)])
     if oil is not None and math.isfinite(temperature):
         try:
@@ -138,7 +188,7 @@ def _read(arguments: argparse.Namespace) -> _Request:
     if problems or bearing is None or oil is None:
         raise InputError(problems)
     plot = None if arguments.plot is None else Path(arguments.plot)
-    return _Request(bearing, oil, load, speed, temperature, frequencies, plot)
+    return _Request(bearing, oil, load, speed, temperature, frequencies, films, plot)
 
 
 def _spaced(given: Sequence[str], ends: list[float], problems: list[str]) -> FloatArray | None:
@@ -217,7 +267,13 @@ def _table(request: _Request, solutions: dict[str, PointSolution]) -> str:
     for label, name, display in NUMBERS:
         shown = [_shown(getattr(each, name), getattr(each, f"{name}_error"), display) for each in found]
         rows.append((label, display.unit, shown))
-    rows.append(("time to solve", "ms", [f"{1e3 * solution.solve_seconds:.3g}" for solution in found]))
+    rows.append(
+        (
+            "time to read" if request.films == TABLE else "time to solve",
+            "ms",
+            [f"{1e3 * solution.solve_seconds:.3g}" for solution in found],
+        )
+    )
     lines = [_heading(request)]
     if request.bearing.estimated:
         lines.append(request.bearing.estimated)

@@ -189,6 +189,28 @@ def plain_ball_designation(designation: str) -> str:
     return "".join(_parts(designation))
 
 
+def ball_words(text: str) -> str:
+    """Words for a ball bearing that was asked for where only line contacts are; empty for other texts.
+
+    Parameters
+    ----------
+    text : str
+        What was typed.
+
+    Examples
+    --------
+    >>> ball_words("NU208"), ball_words("6208-2RS")[:20]
+    ('', '6208 is a ball beari')
+    """
+    name = plain_ball_designation(text)
+    if not name:
+        return ""
+    return (
+        f"{name} is a ball bearing: its contacts are points, and jobs, maps and their laws are of line contacts; take "
+        f"`ehdmaps solve {name} --films table` for a contact, `mbs bearing {name} --law films` for the bearing"
+    )
+
+
 def ball_boundary(designation: str) -> BallCatalogue | None:
     """Boundary dimensions and rating of a ball bearing by its designation; None where it is not in the table.
 

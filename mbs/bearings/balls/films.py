@@ -1,16 +1,18 @@
-"""Films of a ball bearing's contacts at one speed and temperature, solved at some loads and read along them.
+"""Films of a ball bearing's contacts at one speed and temperature over load: read from the table of points, or solved.
 
-Each contact is solved by `ehdmaps.point.solver` at loads that are evenly spaced in the logarithm. Between them film
-offset, damping and films are cubics in the logarithms of value and load; beyond the loads that have a solution they go
-on straight. Stiffness comes from the slope of the film offset, which is smoother than the tangents of single solutions.
-A load that has no solution is left out where its neighbours have one on both sides, and the loads end there else.
+The table is read at its own loads; where it has too few, a contact is solved by `ehdmaps.point.solver` at loads that
+are evenly spaced in the logarithm. Between loads film offset, damping and films are cubics in the logarithms of value
+and load, which at the table's loads are the table's own; beyond the loads that have a film they go on straight.
+Stiffness comes from the slope of the film offset, which is smoother than the tangents of single solutions. A load that
+has no film is left out where its neighbours have one on both sides, and the loads end there else.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -21,12 +23,15 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.physics.point.ellipse import Ellipse
 from ehdmaps.physics.solids import STEEL, Material
-from ehdmaps.point.solver import PointSolution, solve
+from ehdmaps.table.points.file import shipped_point_table
 from mbs.bearings.balls.laws import BallLaw, film_normal_law
 
 LOADS_PER_DECADE = 3
 FEWEST = 4
-"""Solutions that a curve needs."""
+"""Films that a curve needs."""
+
+MISSING = 2
+"""Neighbouring loads without a film at which a curve ends."""
 
 LIGHTEST, HIGHEST_PRESSURE = 2.0, 4.2e9
 """Lightest load [N], and Hertz pressure of the heaviest one [Pa]: the static limit of ISO 76."""
@@ -42,19 +47,22 @@ class ContactFilms:
     Attributes
     ----------
     loads : array (n,)
-        Loads that have a solution [N].
+        Loads that have a film [N].
     values : array (n, 4)
         Film offset, central film, minimum film [m], damping [N s/m].
     errors : array (n, 4)
         Stated relative errors of the same.
     left_out : tuple of str
-        Loads that have no solution, and why.
+        Loads that have no film, and why.
+    read_loads : int
+        How many loads were read from the table, all or none.
     """
 
     loads: FloatArray
     values: FloatArray
     errors: FloatArray
     left_out: tuple[str, ...]
+    read_loads: int = 0
 
     def read(self, load: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Values at loads (k,) and their slopes by ln load, each (4, k).
@@ -106,17 +114,27 @@ class BallFilms:
             max(float(side.errors[:, column].max()) for side in self.sides) for column in range(4)
         )
         low, high = self.law.loads
+        read = sum(side.read_loads for side in self.sides)
+        solved = sum(side.loads.size for side in self.sides) - read
+        parts = [f"read from the table at {read}"] * (read > 0) + [f"solved at {solved}"] * (solved > 0)
         return (
-            f"solved at {self.inner.loads.size} and {self.outer.loads.size} loads, {low:.3g} to {high:.4g} N; errors "
+            f"{', '.join(parts)} loads, {low:.3g} to {high:.4g} N; errors "
             f"up to {offset:.1%} of the film offset, {central:.1%} of the central and {minimum:.1%} of the smallest "
             f"film, {damping:.1%} of the damping"
         )
 
 
-def solved_films(
-    geometry: BallGeometry, oil: Lubricant, entrainment_speed: float, temperature: float, material: Material = STEEL
+def ball_films(
+    geometry: BallGeometry,
+    oil: Lubricant,
+    entrainment_speed: float,
+    temperature: float,
+    material: Material = STEEL,
+    *,
+    table: bool = True,
+    solves: bool = True,
 ) -> BallFilms:
-    """Solve both contacts over load.
+    """Films of both contacts over load.
 
     Parameters
     ----------
@@ -130,17 +148,21 @@ def solved_films(
         Temperature of the raceways [K].
     material : Material
         Material of balls and rings.
+    table : bool
+        Whether films are read from the table of points where it has them.
+    solves : bool
+        Whether films of a contact are solved where the table has too few.
 
     Raises
     ------
     SolverError
-        If too few loads of a contact have a solution.
+        If too few loads of a contact have a film.
     InputError
         If the oil has no such temperature.
     """
     contacts = geometry.contacts(material)
     films = [
-        _contact_films(side, contact, oil, entrainment_speed, temperature)
+        _contact_films(side, contact, _Point(oil, entrainment_speed, temperature), table, solves)
         for side, contact in zip(("inner", "outer"), contacts, strict=True)
     ]
     low, high = max(float(side.loads[0]) for side in films), min(float(side.loads[-1]) for side in films)
@@ -151,36 +173,98 @@ def solved_films(
     return BallFilms(films[0], films[1], BallLaw(f"films of {oil.title}", inner, outer, (low, high)))
 
 
-def _contact_films(side: str, contact: Ellipse, oil: Lubricant, speed: float, temperature: float) -> ContactFilms:
-    """Solutions of a contact over load."""
+class _Point(NamedTuple):
+    """Oil, entrainment speed [m/s], temperature [K]."""
+
+    oil: Lubricant
+    speed: float
+    temperature: float
+
+
+class _Film(NamedTuple):
+    """Film of one load: values and errors in the order of `ContactFilms`, no values where there is none, and why."""
+
+    load: float
+    values: tuple[float, ...]
+    errors: tuple[float, ...]
+    reason: str
+
+
+_NAMES = ("film_offset", "central_film", "minimum_film", "damping")
+
+
+def _contact_films(side: str, contact: Ellipse, point: _Point, table: bool, solves: bool) -> ContactFilms:
+    """Films of a contact over load."""
     heaviest = float((HIGHEST_PRESSURE / contact.max_pressure(1.0)) ** 3)
-    count = max(FEWEST, math.ceil(LOADS_PER_DECADE * math.log10(heaviest / LIGHTEST)) + 1)
-    loads = np.geomspace(LIGHTEST, heaviest, count)
-    found = [solve(contact, oil, float(load), speed, temperature) for load in loads]
+    found = _read(contact, point, heaviest) if table else []
     kept = _together(found)
+    read = len(kept) >= FEWEST
+    if solves and not read:
+        count = max(FEWEST, math.ceil(LOADS_PER_DECADE * math.log10(heaviest / LIGHTEST)) + 1)
+        found = list(_solved(contact, point, np.geomspace(LIGHTEST, heaviest, count)))
+        kept = _together(found)
     left_out = tuple(f"{one.load:.4g} N: {one.reason}" for one in found if one not in kept)
     if len(kept) < FEWEST:
         raise SolverError(
-            f"films of the {side} contact: {len(kept)} of {count} loads from {LIGHTEST:g} to {heaviest:.4g} N have a "
-            f"solution at {speed:.4g} m/s; at least {FEWEST} are needed ({'; '.join(left_out[:2])})"
+            f"films of the {side} contact: {len(kept)} of {len(found)} loads from {LIGHTEST:g} to {heaviest:.4g} N "
+            f"have a film at {point.speed:.4g} m/s; at least {FEWEST} are needed ({'; '.join(left_out[:2])})"
         )
-    values = [[one.film_offset, one.central_film, one.minimum_film, one.damping] for one in kept]
-    errors = [
-        [one.film_offset_error, one.central_film_error, one.minimum_film_error, one.damping_error] for one in kept
+    return ContactFilms(
+        np.array([one.load for one in kept]),
+        np.array([one.values for one in kept]),
+        np.array([one.errors for one in kept]),
+        left_out,
+        len(kept) if read else 0,
+    )
+
+
+def _read(contact: Ellipse, point: _Point, heaviest: float) -> list[_Film]:
+    """Films of the table at its own loads, and at both ends."""
+    films = shipped_point_table()
+    nodes = films.loads(contact, *point)
+    loads = np.r_[LIGHTEST, nodes[(nodes > LIGHTEST * _NEAR) & (nodes < heaviest / _NEAR)], heaviest]
+    read = films.films(contact, point.oil, loads, point.speed, point.temperature)
+    return [
+        _Film(
+            float(load),
+            tuple(float(getattr(read, name)[i]) for name in _NAMES) if read.usable[i] else (),
+            tuple(float(read.errors[name][i]) for name in _NAMES),
+            str(read.reason[i]),
+        )
+        for i, load in enumerate(loads)
     ]
-    return ContactFilms(np.array([one.load for one in kept]), np.array(values), np.array(errors), left_out)
 
 
-def _together(found: Sequence[PointSolution]) -> list[PointSolution]:
-    """The longest row of usable solutions in which no two neighbours are missing."""
-    rows: list[list[PointSolution]] = [[]]
+_NEAR = 1.02
+"""Ratio of a load of the table to an end that it stands beside, at least."""
+
+
+def _solved(contact: Ellipse, point: _Point, loads: FloatArray) -> Iterator[_Film]:
+    """Films of loads from light to heavy that are solved, until neighbours beyond one that has a film have none."""
+    from ehdmaps.point.solver import solve
+
+    missing, heavy = 0, False
+    for load in map(float, loads):
+        one = solve(contact, point.oil, load, point.speed, point.temperature)
+        good = one.status.usable and one.damping > 0.0 and one.film_offset > 0.0
+        values = tuple(getattr(one, name) for name in _NAMES) if good else ()
+        heavy = heavy or good
+        yield _Film(load, values, tuple(getattr(one, f"{name}_error") for name in _NAMES), one.reason)
+        missing = 0 if good else missing + 1
+        if heavy and missing == MISSING:
+            break
+
+
+def _together(found: list[_Film]) -> list[_Film]:
+    """The longest row of films in which no two neighbours are missing."""
+    rows: list[list[_Film]] = [[]]
     missing = 0
     for one in found:
-        if one.status.usable and one.damping > 0.0 and one.film_offset > 0.0:
+        if one.values:
             rows[-1].append(one)
             missing = 0
         else:
             missing += 1
-            if missing == 2:
+            if missing == MISSING:
                 rows.append([])
     return max(rows, key=len)

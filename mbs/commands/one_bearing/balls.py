@@ -41,8 +41,8 @@ if TYPE_CHECKING:
 CELSIUS_40, ROUGHNESS = 313.15, 0.3e-6
 """Assumed where nothing is given: the temperature of the raceways [K], the combined rms roughness [m]."""
 
-FILMS = "films"
-"""Law of contacts with films that are solved at each speed."""
+FILMS, TABLE = "films", "table"
+"""Laws of contacts with films at each speed: read from the table of points, and solved where it has none; or read."""
 
 _TAKEN = ("law", "clearance", "temperature", "roughness")
 """Choices that ball bearings take."""
@@ -56,8 +56,8 @@ class BallRequest:
     ----------
     force : BallForce
         Geometry with its clearance, and its dry law.
-    solved : bool
-        Whether the law of each speed has films that are solved.
+    films : str
+        `FILMS`, `TABLE`, or empty where the law is dry.
     oil : Lubricant
         Oil of the films.
     loads : tuple of float
@@ -75,7 +75,7 @@ class BallRequest:
     """
 
     force: BallForce
-    solved: bool
+    films: str
     oil: Lubricant
     loads: tuple[float, ...]
     axial: float
@@ -106,8 +106,9 @@ def read_balls(arguments: argparse.Namespace) -> BallRequest:
     if len(loads) * len(speeds) > MOST_POINTS:
         problems.append(f"--load, --speed: got {len(loads) * len(speeds)} points; allowed: at most {MOST_POINTS}")
     way = read_direction(arguments.direction, problems)
-    solved = chosen.get("law") == FILMS
-    damper = Damper() if solved else _damper(chosen.get("law"), problems)
+    law = chosen.get("law")
+    films = law if law in (FILMS, TABLE) else ""
+    damper = Damper() if films else _damper(chosen.get("law"), problems)
     temperature = float(chosen.get("temperature", CELSIUS_40))
     oil = _oil(arguments.oil, temperature, problems)
     clearance = chosen.get("clearance")
@@ -130,10 +131,11 @@ def read_balls(arguments: argparse.Namespace) -> BallRequest:
         *(["no clearance"] if clearance is None else []),
         *([f"oil {DEFAULT_OIL}"] if arguments.oil is None else []),
     ]
-    law = dry_law(geometry, STEEL, damper.constant, damper.time)
+    dry = dry_law(geometry, STEEL, damper.constant, damper.time)
+    source = {FILMS: "read from the film table, or solved", TABLE: "read from the film table"}
     return BallRequest(
-        force=BallForce(geometry, law),
-        solved=solved,
+        force=BallForce(geometry, dry),
+        films=films,
         oil=oil,
         loads=loads,
         axial=axial,
@@ -141,10 +143,10 @@ def read_balls(arguments: argparse.Namespace) -> BallRequest:
         speeds=speeds,
         outer_speed=outer,
         description=BallDescription(
-            law=f"films of {oil.title}, solved"
-            if solved
+            law=f"films of {oil.title}, {source[films]}"
+            if films
             else "dry Hertz" + (f", {damper.words} of each contact" if damper.words else ""),
-            films=("films of the law" if solved else f"films by the formula of Hamrock and Dowson, {oil.title}")
+            films=("films of the law" if films else f"films by the formula of Hamrock and Dowson, {oil.title}")
             + ("" if oil.verified else " (unverified data of the oil)"),
             direction=math.degrees(math.atan2(way[1], way[0])),
             temperature=temperature,
@@ -195,11 +197,11 @@ def _at_speed(request: BallRequest, speed: float) -> tuple[BallForce, BallFilms 
     """The force at a speed of the inner ring, and its films; dry where nothing rolls, or none are asked for."""
     geometry = request.force.geometry
     u = geometry.entrainment_speed(speed, request.outer_speed)
-    if not request.solved or u == 0.0:
+    if not request.films or u == 0.0:
         return request.force, None
-    from mbs.bearings.balls.films import solved_films  # with the solver of point contacts
+    from mbs.bearings.balls.films import ball_films  # with the table of point contacts
 
-    films = solved_films(geometry, request.oil, u, request.description.temperature)
+    films = ball_films(geometry, request.oil, u, request.description.temperature, solves=request.films == FILMS)
     tell(f"{RPM.text(speed)}: films {films.words}")
     return BallForce(geometry, films.law), films
 
@@ -237,8 +239,8 @@ def _damper(law: str | None, problems: list[str]) -> Damper | None:
         return None
     if damper is None:
         problems.append(
-            f"--law: got {law!r:.60} for a ball bearing; allowed: hertz, {HERTZ_FORMS}, {FILMS}; maps are of line "
-            "contacts"
+            f"--law: got {law!r:.60} for a ball bearing; allowed: hertz, {HERTZ_FORMS}, {FILMS}, {TABLE}; maps are of "
+            "line contacts"
         )
     return damper
 

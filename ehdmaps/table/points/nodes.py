@@ -1,0 +1,198 @@
+"""Nodes of the table of points: values, errors of the cells between them, holes; how they are read.
+
+Cubic splines along zeta, ln L and ln kappa, linear between the oils. A cell is a hole where one of its corners has no
+solution; what the splines run over there is no film, and is never given out. Below the lowest zeta all numbers go on as
+powers of M, those of a rigid contact; above the highest one there is none.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+from scipy.interpolate import BSpline
+
+from ehdmaps.arrays import ByteArray, FloatArray, IndexArray
+from ehdmaps.table.fields import NATURAL_FREQUENCIES, Field
+from ehdmaps.table.interpolation import DEGREE, cell_of, lagrange_weights, spline_weights
+from ehdmaps.table.nodes import CODES, decoded
+from ehdmaps.table.points.coordinates import PointAxes
+
+FILMS = (
+    Field("film_offset", 0.0, -2.0),
+    Field("damping", 0.0, 2.0),
+    Field("central_film", 0.0, -2.0),
+    Field("minimum_film", 0.0, -2.0),
+    Field("max_pressure", 0.0, 8.0 / 3.0),
+)
+"""Films at rest, held as logarithms of reduced numbers; slopes along zeta of a rigid contact."""
+
+RESPONSES = tuple(
+    Field(f"{part}_{natural:g}", 0.0, slope)
+    for natural in NATURAL_FREQUENCIES
+    for part, slope in (("stiffness", 3.0), ("damping", 2.0))
+)
+"""k and c at the natural frequencies omega sqrt(a^2 + 2 h Rx)/u, as logarithms."""
+
+FIELDS = FILMS + RESPONSES
+
+SLOPE = "stiffness"
+"""Error that is held beside those of `FIELDS`: of k, whose film compliance is the slope of the film offset."""
+
+ERRORS = (*(field.name for field in FIELDS), SLOPE)
+"""What errors are held of."""
+
+HOLE = CODES
+"""Code of a cell without films."""
+
+_OFFSET = FIELDS.index(FILMS[0])
+
+
+@dataclass(frozen=True, eq=False)
+class PointPlace:
+    """Place of points among the nodes.
+
+    Attributes
+    ----------
+    first : tuple of ndarray, shape (n,)
+        First coefficient along zeta, ln L and ln kappa.
+    zeta, slope, size, shape : ndarray, shape (n, 4)
+        Weights of four coefficients each; `slope` those of the derivative by zeta.
+    oil : ndarray, shape (n, oils)
+        Weights of the oils.
+    below : ndarray, shape (n,)
+        How far zeta lies below the first node, <= 0.
+    cell : ndarray, shape (n,)
+        Cell, counted through all axes.
+    """
+
+    first: tuple[IndexArray, IndexArray, IndexArray]
+    zeta: FloatArray
+    slope: FloatArray
+    size: FloatArray
+    shape: FloatArray
+    oil: FloatArray
+    below: FloatArray
+    cell: IndexArray
+
+
+@dataclass(frozen=True, eq=False)
+class PointNodes:
+    """Values at the nodes, and errors between them.
+
+    Attributes
+    ----------
+    axes : PointAxes
+        The nodes.
+    values : ndarray of float32, shape (n_zeta, n_size, n_shape, n_alpha, n_bend, fields)
+        Logarithms of `FIELDS` there.
+    codes : ndarray of uint8, shape (cells along each axis, errors)
+        Their errors in each cell in the order of `ERRORS`, see `ehdmaps.table.nodes.encoded`; `HOLE` where a corner has
+        no solution.
+    """
+
+    axes: PointAxes
+    values: npt.NDArray[np.float32]
+    codes: ByteArray
+
+    def place(self, zeta: FloatArray, size: FloatArray, shape: FloatArray, oil: tuple[FloatArray, FloatArray]) -> (
+        PointPlace
+    ):  # fmt: skip
+        """Place of points, arrays (n,); within the nodes but for zeta, which may lie below.
+
+        Parameters
+        ----------
+        zeta, size, shape : ndarray, shape (n,)
+            zeta, ln L, ln kappa.
+        oil : (ndarray, ndarray)
+            ln alpha and bend.
+        """
+        axes = self.axes
+        held = [np.clip(x, nodes[0], nodes[-1]) for x, nodes in zip((zeta, size, shape, *oil), axes.all, strict=True)]
+        along = [spline_weights(knots, x) for knots, x in zip(axes.knots, held[:3], strict=True)]
+        by_alpha, by_bend = lagrange_weights(axes.alpha, held[3]), lagrange_weights(axes.bend, held[4])
+        cell = [cell_of(nodes, x) for nodes, x in zip(axes.all, held, strict=True)]
+        (i, by_zeta, slope), (j, by_size, _), (k, by_shape, _) = along
+        return PointPlace(
+            first=(i, j, k),
+            zeta=by_zeta,
+            slope=slope,
+            size=by_size,
+            shape=by_shape,
+            oil=(by_alpha[:, :, None] * by_bend[:, None, :]).reshape(zeta.size, by_alpha.shape[1] * by_bend.shape[1]),
+            below=np.minimum(zeta - axes.zeta[0], 0.0),
+            cell=np.asarray(np.ravel_multi_index(cell, axes.cells)),
+        )
+
+    def read(self, place: PointPlace, fields: tuple[Field, ...] = FILMS) -> tuple[FloatArray, FloatArray]:
+        """Logarithms of reduced numbers and their slopes by zeta, both (n, fields); in holes they mean nothing.
+
+        Parameters
+        ----------
+        place : PointPlace
+            The points.
+        fields : tuple of Field
+            `FILMS` or `RESPONSES`.
+        """
+        coefficients = self._films if fields is FILMS else self._responses
+        i, j, k = place.first
+        values, slopes = (np.zeros((i.size, len(fields))) for _ in range(2))
+        for p in range(DEGREE + 1):
+            part = np.zeros_like(values)
+            for q in range(DEGREE + 1):
+                for r in range(DEGREE + 1):
+                    near = coefficients[i + p, j + q, k + r]
+                    weight = (place.size[:, q] * place.shape[:, r])[:, None] * place.oil
+                    part += np.einsum("no,nof->nf", weight, near)
+            values += place.zeta[:, p, None] * part
+            slopes += place.slope[:, p, None] * part
+        rigid = np.array([field.rigid_slope for field in fields])
+        lighter = place.below < 0.0
+        values[lighter] += rigid * place.below[lighter, None]
+        slopes[lighter] = rigid
+        return values, slopes
+
+    def errors(self, place: PointPlace) -> tuple[FloatArray, npt.NDArray[np.bool_]]:
+        """Errors in the order of `ERRORS`, shape (n, errors), and whether a point lies in a hole.
+
+        Below the lowest zeta they grow by what the slope there differs from that of a rigid contact.
+
+        Parameters
+        ----------
+        place : PointPlace
+            The points.
+        """
+        codes = self.codes.reshape(-1, len(ERRORS))[place.cell]
+        found = decoded(codes)
+        lighter = np.flatnonzero(place.below < 0.0)
+        if lighter.size:
+            found[lighter] += self._bent[None, :] * -place.below[lighter, None]
+        return found, np.any(codes == HOLE, axis=1)
+
+    @cached_property
+    def _bent(self) -> FloatArray:
+        """Largest difference of the slopes at the lowest zeta from those of a rigid contact, (errors,)."""
+        step = self.axes.zeta[1] - self.axes.zeta[0]
+        slopes = (self.values[1] - self.values[0]).reshape(-1, len(FIELDS)) / step
+        rigid = np.array([field.rigid_slope for field in FIELDS])
+        bent = np.max(np.abs(slopes - rigid), axis=0)
+        return np.asarray(np.r_[bent, bent[_OFFSET]])
+
+    @cached_property
+    def _films(self) -> FloatArray:
+        return self._coefficients(slice(0, len(FILMS)))
+
+    @cached_property
+    def _responses(self) -> FloatArray:
+        return self._coefficients(slice(len(FILMS), None))
+
+    def _coefficients(self, part: slice) -> FloatArray:
+        """Coefficients of the splines of some fields, (n_zeta, n_size, n_shape, oils, fields)."""
+        found = self.values[..., part].astype(float)
+        for axis, (nodes, knots) in enumerate(zip(self.axes.all[:3], self.axes.knots, strict=True)):
+            matrix = np.linalg.inv(BSpline.design_matrix(nodes, knots, DEGREE).toarray())
+            found = np.moveaxis(np.tensordot(matrix, found, (1, axis)), 0, axis)
+        *along, alphas, bends, fields = found.shape
+        return np.ascontiguousarray(found.reshape(*along, alphas * bends, fields))

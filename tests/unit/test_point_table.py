@@ -1,0 +1,177 @@
+"""The film table of points: against solved points, its ends, holes, refusals, its file; how it is made."""
+
+from __future__ import annotations
+
+import math
+import shutil
+from importlib import resources
+from pathlib import Path
+
+import netCDF4
+import numpy as np
+import pytest
+
+from ehdmaps.errors import MapError
+from ehdmaps.jobs.make import point_table as maker
+from ehdmaps.jobs.make.point_table import SolvedPoint
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.point.ellipse import Ellipse, elliptic_numbers
+from ehdmaps.physics.solution import Status
+from ehdmaps.point import solve
+from ehdmaps.table.points.coordinates import PointAxes, point_load_number
+from ehdmaps.table.points.file import SHIPPED, read_point_table, shipped_point_table, write_point_table
+from ehdmaps.table.points.films import NUMBERS
+from ehdmaps.table.points.nodes import ERRORS, FIELDS, HOLE
+
+STEEL = 230.769e9
+OIL = Lubricant.roelands(viscosity=0.02, pressure_viscosity=2e-8, density=870.0)
+WARM = 313.15
+CONTACT = Ellipse(5e-3, 120e-3, STEEL)
+
+
+@pytest.fixture(scope="module")
+def table():
+    return shipped_point_table()
+
+
+@pytest.mark.parametrize(
+    ("load", "speed", "oil"), [(8.0, 6.0, OIL), (150.0, 3.0, OIL), (40.0, 1.5, Lubricant.named("FVA3"))]
+)
+def test_numbers_are_those_of_solved_points(table, load, speed, oil):
+    """Within what table and solver state together; response at the natural frequencies too."""
+    films = table.films(CONTACT, oil, load, speed, WARM)
+    found = solve(CONTACT, oil, load, speed, WARM, films.frequencies)
+    assert films.usable and found.status.usable and not films.reason
+    assert films.load_number == pytest.approx(found.load_number, rel=1e-12)
+    assert films.oil_number == pytest.approx(found.oil_number, rel=1e-12)
+    for name in NUMBERS:
+        value, stated = getattr(found, name), float(films.errors[name]) + getattr(found, f"{name}_error")
+        assert abs(float(getattr(films, name)) - value) <= stated * abs(value), name
+    for name in ("stiffness", "damping"):
+        value, stated = getattr(found.response, name), films.errors[f"response_{name}"]
+        assert np.all(np.abs(getattr(films, f"response_{name}") / value - 1.0) <= 1.5 * stated), name
+    assert films.errors["film_offset"] < 0.06 and films.errors["stiffness"] < 0.1
+
+
+def test_a_line_over_load_is_passive_and_monotone(table):
+    """From rigid to heavy: load rises with the approach, damping is positive, films fall, k goes to that of Hertz."""
+    loads = np.geomspace(0.11, 400.0, 400)
+    films = table.films(CONTACT, OIL, loads, 5.0, WARM)
+    assert np.all(films.usable)
+    assert np.all(np.diff(films.approach) > 0.0) and np.all(films.damping > 0.0)
+    assert np.all(np.diff(films.film_offset) < 0.0) and np.all(films.minimum_film > 0.0)
+    assert np.all(films.response_damping > 0.0)
+    dry = CONTACT.stiffness(loads)
+    assert films.stiffness[-1] / dry[-1] == pytest.approx(1.0, abs=0.05)
+    # the slope of the approach is the compliance: quotients of 5 % of load, 1e-3
+    quotient = np.diff(films.approach) / np.diff(loads)
+    between = 1.0 / np.sqrt(films.stiffness[1:] * films.stiffness[:-1])
+    assert np.median(np.abs(quotient / between - 1.0)) < 2e-3
+
+
+def test_light_loads_are_rigid(table):
+    """Below the lowest node films go with F^-2, damping with F^2: the closed form of a rigid contact."""
+    loads = np.array([0.11, 0.22])
+    films = table.films(CONTACT, OIL, loads, 5.0, WARM)
+    assert films.film_offset[1] / films.film_offset[0] == pytest.approx(0.25, rel=1e-9)
+    assert films.damping[1] / films.damping[0] == pytest.approx(4.0, rel=1e-9)
+    assert np.all(films.errors["damping"] >= 0.0)
+
+
+@pytest.mark.parametrize(
+    ("contact", "oil", "load", "speed", "temperature", "words"),
+    [
+        (CONTACT, OIL, 0.0, 1.0, WARM, "no load: the bodies do not meet"),
+        (CONTACT, OIL, -1.0, 1.0, WARM, "absurd"),
+        (CONTACT, OIL, math.nan, 1.0, WARM, "absurd"),
+        (CONTACT, OIL, 1e9, 1.0, WARM, "Hertz pressure above"),
+        (CONTACT, OIL, 5.0, 1e-3, WARM, "L outside"),
+        (CONTACT, OIL, 800.0, 0.2, WARM, "beyond its highest loads"),
+        (CONTACT, OIL, 1e-9, 5.0, WARM, "below its lowest loads"),
+        (CONTACT, OIL, 1e-3, 5.0, WARM, "film thicker than"),
+        (Ellipse(5e-3, 2e-3, STEEL), OIL, 10.0, 5.0, WARM, "ellipticity outside"),
+        (Ellipse(5e-3, 5.0, STEEL), OIL, 10.0, 5.0, WARM, "ellipticity outside"),
+        (Ellipse(5e-3, 5e-3, STEEL), OIL, 60.0, 0.3, WARM, "no solution"),
+        (CONTACT, Lubricant.roelands(viscosity=0.02, pressure_viscosity=3e-9, density=870.0), 10.0, 5.0, WARM, "oils"),
+    ],
+)
+def test_what_the_table_has_not_is_told(table, contact, oil, load, speed, temperature, words):
+    """A typed status with its reason and no number at all."""
+    films = table.films(contact, oil, load, speed, temperature)
+    assert words in str(films.reason) and int(films.status) == int(Status.OUTSIDE_VALIDITY)
+    assert all(math.isnan(float(getattr(films, name))) and math.isnan(float(films.errors[name])) for name in NUMBERS)
+
+
+def test_surfaces_at_rest_are_dry(table):
+    films = table.films(CONTACT, OIL, 50.0, 0.0, WARM)
+    assert int(films.status) == int(Status.ASYMPTOTE) and films.reason == "no entrainment: dry contact"
+    assert films.stiffness == CONTACT.stiffness(50.0) and films.approach == CONTACT.approach(50.0)
+    assert films.damping == films.central_film == films.film_offset == 0.0
+
+
+def test_holes_are_cells_whose_corners_have_no_film(table):
+    """Heavy circles have none; long ellipses have, up to M of some 5000."""
+    zeta, hole = table.nodes.axes.zeta[:-1], np.any(table.nodes.codes == HOLE, axis=-1)
+    circles, long = hole[:, :, 0], hole[:, :, -1]
+    assert np.all(circles[zeta > 4.9]) and not np.any(circles[zeta < 3.0][:, :-1])
+    assert not np.any(long[zeta < 4.9])
+
+
+def test_solving_again_gives_the_nodes_of_the_shipped_file(table):
+    """To the rounding of the file, 2^-16, and that of Newton from another start, 1e-5."""
+    axes, (i, j, k) = table.nodes.axes, (17, 2, 3)
+    oil = float(np.exp(axes.alpha[1])), float(axes.bend[1])
+    (point,) = maker.solve_point_line(axes.zeta[i : i + 1], math.exp(axes.size[j]), math.exp(axes.shape[k]), *oil)
+    np.testing.assert_allclose(table.nodes.values[i, j, k, 1, 1], point.values, atol=5e-5)
+
+
+def test_file_is_small_and_a_changed_one_is_refused(tmp_path, table):
+    with resources.as_file(resources.files("ehdmaps.table.points").joinpath(SHIPPED)) as shipped:
+        assert shipped.stat().st_size < 300_000
+        copy = Path(shutil.copy(shipped, tmp_path / "copy.nc"))
+    with netCDF4.Dataset(copy, "a") as file:
+        file["values"][0, 0, 0, 0, 0, 0] = 1.0
+    with pytest.raises(MapError, match="was changed since it was made"):
+        read_point_table(copy)
+    (tmp_path / "none.nc").write_bytes(b"no table")
+    with pytest.raises(MapError, match="cannot be read as a film table of points"):
+        read_point_table(tmp_path / "none.nc")
+
+
+def test_a_table_is_made_read_again_and_states_its_errors(tmp_path, monkeypatch):
+    """Films by a formula in place of the solver: nodes are read to the rounding of the file, 2^-16, a point between
+    them within what is stated; cells around the one node without a film are holes, and no others.
+    """
+    axes = PointAxes(
+        np.array([0.0, 0.6, 1.1, 1.5, 2.0]), np.log([8.0, 10.0, 12.0, 15.0]), np.log([4.0, 5.0, 6.0, 7.0]),
+        np.log([10e-9, 30e-9]), np.array([0.0, 1.0]),
+    )  # fmt: skip
+
+    def line(zeta, oil_number, ellipticity, alpha, bend):
+        missing = (zeta > 1.9) & (ellipticity < 4.1) & (oil_number < 8.1) & (alpha < 1.1e-8) & (bend < 0.1)
+        return [None if no else formula(z, oil_number, ellipticity, bend) for z, no in zip(zeta, missing, strict=True)]
+
+    def formula(zeta, oil_number, ellipticity, bend):
+        shape = math.log(ellipticity) * math.log(oil_number) + 0.1 * bend
+        values = shape - 0.3 * np.arange(1.0, 16.0) * math.sin(0.7 * zeta)
+        kappa, M = ellipticity, float(point_load_number(zeta, np.asarray(oil_number), np.asarray(ellipticity)))
+        numbers = elliptic_numbers(kappa)
+        g = float(numbers.pressure_factor)
+        dry = 2.0 * float(numbers.integral) / (math.pi * kappa) / np.cbrt(3.0 * M / (math.pi * kappa * g))
+        slope = -0.21 * math.cos(0.7 * zeta) * math.exp(values[0]) / M
+        return SolvedPoint(values, -math.log(dry - slope), np.full(len(ERRORS), 1e-3))
+
+    monkeypatch.setattr(maker, "solve_point_line", line)
+    made = maker.make_point_table(axes)
+    write_point_table(tmp_path / "made.nc", made)
+    nodes = read_point_table(tmp_path / "made.nc").nodes
+    assert np.array_equal(nodes.values, made.nodes.values) and np.array_equal(nodes.codes, made.nodes.codes)
+    holes = np.argwhere(np.any(nodes.codes == HOLE, axis=-1))
+    assert holes.tolist() == [[3, 0, 0, 0, 0]]
+    for place, most in (((0.6, math.log(10.0), math.log(6.0)), 4e-5), ((0.8, math.log(11.0), math.log(5.5)), 1.0)):
+        at = tuple(np.array([x]) for x in (*place, math.log(10e-9), 0.0))
+        wanted = formula(place[0], math.exp(place[1]), math.exp(place[2]), 0.0)
+        wrong = maker.read_errors(nodes, at, [wanted])[0]
+        stated, hole = nodes.errors(nodes.place(*at[:3], at[3:]))
+        assert not hole[0] and np.all(wrong <= stated[0])
+        assert wrong[: len(FIELDS)].max() < most
