@@ -42,6 +42,7 @@ PAGES = (
     "TRADE.md",
     "docs/measured.md",
     "docs/accuracy.md",
+    "docs/point_contacts.md",
     "docs/solids.md",
     "docs/python.md",
     "ehdmaps/GLOSSARY.md",
