@@ -2,7 +2,7 @@
  * GFORCE of Adams Solver: force and moment of a cylindrical roller bearing with films.
  *
  *   GFORCE/id, I = inner marker, JFLOAT = floating marker, RM = outer marker,
- *   , FUNCTION = USER(inner, outer, temperature, clearance, metres, cage)\, ROUTINE = bearing:Gfosub
+ *   , FUNCTION = USER(inner, outer, temperature, clearance, metres, cage, memory)\, ROUTINE = bearing:Gfosub
  *
  *   inner, outer   numbers of the markers at the centres of both rings; the z axis of both is the axis of the bearing
  *                  (Adams turns joints about z). The outer marker stands or moves with the housing; it does not spin.
@@ -12,6 +12,8 @@
  *   metres         of one length of the model, such as 0.001 for millimetres; forces are in newtons, time in seconds
  *   cage           number of a VARIABLE that holds the angle of the first roller [rad]: turns of the inner ring times
  *                  EHD_CAGE_INNER of ehd.h, plus turns of the outer one times EHD_CAGE_OUTER; 0: the cage stands
+ *   memory         1: films have a memory, and go on with the steps of Adams (film_history.h); 0 or left out: they follow
+ *                  at once, with stiffness and damping of slow motion
  *
  * The film takes the speed of the inner marker against the outer one about z. Beyond the range of the map the run is
  * stopped with a message, also where only a trial of the solver is there. Exported with --outside clamp or asymptote the
@@ -26,7 +28,7 @@
 #include "ehd.h"
 #include "slv_c_utils.h"
 
-enum { PARAMETERS = 6 };
+enum { LEAST = 6, MOST = 7 };
 
 adams_c_Gfosub Gfosub;
 
@@ -39,12 +41,10 @@ void Gfosub(const struct sAdamsGforce *gforce, double time, int dflag, int iflag
     double axis[3], centre[3], velocity[3], omega[3], force[6], cage = 0.0, metres;
     int ids[4], i, status, failed = 0;
 
-    (void)time;
-    (void)dflag;
     for (i = 0; i < 6; ++i)
         result[i] = 0.0;
-    if (gforce->NPAR != PARAMETERS) {
-        c_errmes(1, "bearing: USER() takes inner, outer, temperature, clearance, metres, cage", gforce->ID, STOP);
+    if (gforce->NPAR < LEAST || gforce->NPAR > MOST) {
+        c_errmes(1, "bearing: USER() takes inner, outer, temperature, clearance, metres, cage, memory", gforce->ID, STOP);
         return;
     }
     metres = gforce->PAR[4];
@@ -70,8 +70,12 @@ void Gfosub(const struct sAdamsGforce *gforce, double time, int dflag, int iflag
         velocity[i] = metres * speed[(i + 2) % 3];
         omega[i] = turning[(i + 2) % 3];
     }
-    status = bearing_slot(gforce->ID, axis, centre, velocity, omega, cage, gforce->PAR[2],
-                          metres * gforce->PAR[3], force);
+    if (gforce->NPAR == MOST && gforce->PAR[6] != 0.0) /* dflag: Adams changes a pose for a partial derivative */
+        status = bearing_slot_memory(gforce->ID, axis, centre, omega, cage, gforce->PAR[2], metres * gforce->PAR[3],
+                                     time, dflag, force);
+    else
+        status = bearing_slot(gforce->ID, axis, centre, velocity, omega, cage, gforce->PAR[2],
+                              metres * gforce->PAR[3], force);
     if (status == SLOT_FULL || EHD_REFUSES(status)) {
         c_errmes(1, bearing_slot_text(status), gforce->ID, STOP);
         return;

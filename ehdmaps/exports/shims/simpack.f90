@@ -6,7 +6,8 @@
 ! To-marker: at the centre of the inner ring, on the shaft.
 !
 ! Parameters: 1 marker on the axis of the shaft, away from its centre, that tells the direction of the axis; 2
-! temperature of the raceways [K]; 3 diametral clearance [m]. First component of the u-vector: angle of the first roller
+! temperature of the raceways [K]; 3 diametral clearance [m]; 4: 1 if films have a memory, and go on with the steps of
+! Simpack (film_history.h), 0 if they follow at once. First component of the u-vector: angle of the first roller
 ! from y towards z [rad] (turns of the inner ring times EHD_CAGE_INNER of ehd.h); without one the cage stands.
 ! Output values: 1 to 3 force, 4 to 6 moment on the inner ring in the frame of the from-marker [N], [N m]; 7 status of the
 ! law. Where the law refuses, a message says why and the element returns an error. Exported with --outside clamp or
@@ -24,7 +25,7 @@ subroutine uforce40_type(str_dim, type_name, ierr)
 
    type_name = 'Roller bearing with films'
    call spck_df_FClass(fclass_force, ierr)
-   if (ierr == 0) call spck_df_ForceParDim(3, ierr)
+   if (ierr == 0) call spck_df_ForceParDim(4, ierr)
    if (ierr == 0) call spck_df_ForceStDynDim(0, ierr)
    if (ierr == 0) call spck_df_ForceOvDim(7, ierr)
 end subroutine
@@ -47,7 +48,8 @@ subroutine uforce40_setup(task, par_dim, stdyn_dim, ov_dim, str_dim, id, mk_from
       par_name(1) = 'Marker on the axis'
       par_name(2) = 'Temperature [K]'
       par_name(3) = 'Diametral clearance [m]'
-      par_type = [knr_marker, knr_double, knr_double]
+      par_name(4) = 'Films with memory (1) or slow (0)'
+      par_type = [knr_marker, knr_double, knr_double, knr_double]
       par_unit = knodef
       stdyn_name = ' '
       stdyn_unit = knodef
@@ -83,6 +85,14 @@ subroutine uforce40(task, par_dim, uin_dim, stdyn_dim, stroot_dim, ov_dim, id, p
          real(c_double), intent(out) :: found(6)
          integer(c_int) :: bearing_slot
       end function
+      function bearing_slot_memory(number, axis, place, turning, cage_angle, T, clearance, now, trial, found) bind(c)
+         use, intrinsic :: iso_c_binding
+         integer(c_int), value :: number, trial
+         real(c_double), intent(in) :: axis(3), place(3), turning(3)
+         real(c_double), value :: cage_angle, T, clearance, now
+         real(c_double), intent(out) :: found(6)
+         integer(c_int) :: bearing_slot_memory
+      end function
    end interface
 
    double precision :: distance, along, axis(3), place(3), speed(3), turning(3), found(6), cage
@@ -102,7 +112,11 @@ subroutine uforce40(task, par_dim, uin_dim, stdyn_dim, stroot_dim, ov_dim, id, p
    if (ierr /= 0) return
    cage = 0.0d0
    if (uin_dim > 0) cage = uin(1)
-   status = bearing_slot(id, axis, place, speed, turning, cage, par(2), par(3), found)
+   if (par(4) /= 0.0d0) then
+      status = bearing_slot_memory(id, axis, place, turning, cage, par(2), par(3), time, 0, found)
+   else
+      status = bearing_slot(id, axis, place, speed, turning, cage, par(2), par(3), found)
+   end if
    ov(1:6) = found
    ov(7) = status
    if (any(found /= found)) then

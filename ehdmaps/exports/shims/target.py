@@ -20,7 +20,8 @@ from ehdmaps.exports.target import BEARING_AXES, Target, check_folder, origin, w
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.units import quantity
 
-_SLOT = ("bearing_slot.h", "bearing_slot.c")
+_HISTORY = ("film_history.h", "film_history.c")
+_SLOT = ("bearing_slot.h", "bearing_slot.c", *_HISTORY)
 _CURVE_POINTS = 120
 _LEAST = 1e-3
 """Load at which the spline of Adams begins, over the highest load of the map."""
@@ -105,12 +106,16 @@ ADAMS = _target(
     "Adams",
     "adams.c",
     _SLOT,
-    "Compile ehd.c, bearing_slot.c and adams.c with slv_c_utils.h of your Adams into the library `bearing`.",
+    "Compile ehd.c, bearing_slot.c, film_history.c and adams.c with slv_c_utils.h of your Adams into the library "
+    "`bearing`.",
 )
-RECURDYN = _target("RecurDyn", "recurdyn.c", (), "Compile ehd.c and recurdyn.c into a library of user routines.")
+RECURDYN = _target(
+    "RecurDyn", "recurdyn.c", _HISTORY, "Compile ehd.c, film_history.c and recurdyn.c into a library of user routines."
+)
 SIMPACK = _target(
     "Simpack",
     "simpack.f90",
     _SLOT,
-    "Compile simpack.f90 with the module simpack of your installation, ehd.c and bearing_slot.c into user routines.",
+    "Compile simpack.f90 with the module simpack of your installation, ehd.c, bearing_slot.c and film_history.c into "
+    "user routines.",
 )

@@ -44,7 +44,7 @@ void c_usrmes(int wanted, const char *message, int id, const char *kind)
 
 int main(void)
 {
-    double par[6] = {11.0, 12.0, 0.0, 0.0, 1e-3, 7.0}, result[6];
+    double par[7] = {11.0, 12.0, 0.0, 0.0, 1e-3, 7.0, 0.0}, result[6], kick, step;
     struct sAdamsGforce gforce = {3, 6, 0, 11, 12, 13};
     double *all[4] = {place, angles, speed, turning};
     int i, k;
@@ -56,6 +56,20 @@ int main(void)
                 return 2;
     if (scanf("%lf %lf %lf", &cage, &par[2], &par[3]) != 3)
         return 2;
+    if (scanf("%lf %lf %lf", &par[6], &kick, &step) == 3) { /* with memory: a rest, and two steps after a kick along x */
+        gforce.NPAR = 7;
+        Gfosub(&gforce, 0.0, 0, 0, result);
+        place[0] += kick;
+        Gfosub(&gforce, 3.0 * step, 0, 0, result); /* a step that the solver gives up */
+        Gfosub(&gforce, step, 0, 0, result);
+        place[0] += kick;
+        Gfosub(&gforce, step, 1, 0, result); /* for a partial derivative */
+        place[0] -= kick;
+        Gfosub(&gforce, 2.0 * step, 0, 0, result);
+        for (i = 0; i < 6; ++i)
+            printf("%.17g\n", result[i]);
+        return 0;
+    }
     Gfosub(&gforce, 0.0, 0, 1, result);
     Gfosub(&gforce, 0.0, 0, 0, result);
     if (!stopped)
