@@ -328,6 +328,13 @@ def _command(arguments: argparse.Namespace) -> tuple[str, int]:
             from ehdmaps.jobs.solve.ball_points import run as solve_balls
 
             return solve_balls(arguments)
+    if arguments.command in ("generate", "show", "plot", "export"):
+        from ehdmaps.jobs.points.asked import points_source
+
+        if source := points_source(arguments):
+            from ehdmaps.jobs.points.commands import run as run_points
+
+            return run_points(arguments, source)
     _place_bearing(arguments)
     result: tuple[str, int] = importlib.import_module(f"ehdmaps.jobs.commands.{arguments.command}").run(arguments)
     return result

@@ -334,6 +334,8 @@ def read_map(path: str | PathLike[str]) -> tuple[xr.Dataset, xr.Dataset | None]:
 def _read(file: Any, where: str) -> tuple[xr.Dataset, xr.Dataset | None]:
     """Read an open file: first all that it declares, then the values."""
     attributes = _attributes(file)
+    if (made_as := attributes.get("made_as")) is not None:
+        raise MapError(f"{where}: is a {made_as!s:.40}; expected a map of line contacts, written by `ehdmaps generate`")
     refuse(version_problems(attributes), where)
     version = int(attributes["schema_version"])
     grid, refined = schema.table(schema.GRID, version), schema.table(schema.BACKBONE, version)

@@ -70,9 +70,9 @@ def test_what_balls_do_not_take_is_refused(capsys, more, words):
     assert words in err
 
 
-@pytest.mark.parametrize("command", ["generate", "check", "plot", "export", "show"])
-def test_commands_of_maps_say_what_takes_balls(tmp_path, monkeypatch, capsys, command):
+@pytest.mark.parametrize("command", ["check", "report", "tradeoff", "length"])
+def test_commands_of_lines_say_what_takes_balls(tmp_path, monkeypatch, capsys, command):
     monkeypatch.chdir(tmp_path)
     assert cli.main([command, "6208-2RS"]) == 2
     assert "6208 is a ball bearing: its contacts are points" in (err := capsys.readouterr().err)
-    assert "`ehdmaps solve 6208 --films table`" in err and "`mbs bearing 6208 --law films`" in err
+    assert "`ehdmaps generate 6208`" in err and "`mbs bearing 6208 --law films`" in err

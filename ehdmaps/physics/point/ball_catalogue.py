@@ -206,8 +206,9 @@ def ball_words(text: str) -> str:
     if not name:
         return ""
     return (
-        f"{name} is a ball bearing: its contacts are points, and jobs, maps and their laws are of line contacts; take "
-        f"`ehdmaps solve {name} --films table` for a contact, `mbs bearing {name} --law films` for the bearing"
+        f"{name} is a ball bearing: its contacts are points, and this is for line contacts; take "
+        f"`ehdmaps generate {name}` for a map of points, `ehdmaps solve {name}` for one, "
+        f"`mbs bearing {name} --law films` for the bearing"
     )
 
 

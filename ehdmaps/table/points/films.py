@@ -32,7 +32,7 @@ LIGHTEST = -14.0
 _SLACK = 1e-9
 _FAR_FROM_KNEE = np.inf
 
-_CAUSES = (
+CAUSES = (
     "",
     THICK_NOTE,
     "no entrainment: dry contact",
@@ -49,8 +49,10 @@ _CAUSES = (
     "table of points: a node beside it has no solution; solve this film",
     f"film thicker than {THICKEST_FILM:g} of the radius: neither thin-film theory nor a parabolic gap holds",
 )
+"""Causes of a status in words, by their number; empty for a plain film."""
+
 _NONE, _THICK, _DRY, _NO_LOAD, _NO_STATE, _LAW, _ABSURD, _PRESSURE = range(8)
-_KAPPA, _L, _OIL, _HEAVY, _LIGHT, _HOLE, _TOO_THICK = range(8, len(_CAUSES))
+_KAPPA, _L, _OIL, _HEAVY, _LIGHT, _HOLE, _TOO_THICK = range(8, len(CAUSES))
 
 NUMBERS = (
     *("approach", "film_offset", "stiffness", "damping", "film_compliance", "loss_compliance"),
@@ -114,7 +116,7 @@ class PointFilms:
     @property
     def reason(self) -> npt.NDArray[np.str_]:
         """Cause of the status in words; empty for a plain film."""
-        return np.array(_CAUSES)[self.cause]
+        return np.array(CAUSES)[self.cause]
 
 
 @dataclass(frozen=True, eq=False)

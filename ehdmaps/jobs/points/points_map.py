@@ -1,0 +1,254 @@
+"""A map of points: what the film table of points has of both contacts of a ball bearing, as a labelled dataset.
+
+Unlike maps of line contacts its loads are forces, those of one ball, and its films are read alone: a point that the
+table does not hold has a status, its reason in words, and no numbers.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import InputError, MapError
+from ehdmaps.jobs.points.asked import ENDING, MADE
+from ehdmaps.netcdf_structure import DAMAGE, structure_problem
+from ehdmaps.outputs import MADE_AS, dataset_kind, written_aside
+from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
+from ehdmaps.physics.point.ball_catalogue import ball_estimate
+from ehdmaps.physics.point.ball_geometry import BallGeometry
+from ehdmaps.physics.solids import STEEL
+from ehdmaps.physics.solution import Status
+from ehdmaps.table.file import CHECKSUM
+from ehdmaps.table.points.file import shipped_point_table
+from ehdmaps.table.points.films import CAUSES, NUMBERS
+from ehdmaps.version import version
+
+KIND = dataset_kind("a map of points of ehdmaps", MADE, (ENDING,))
+
+DIMS = ("contact", "load", "entrainment_speed", "temperature")
+
+SIDES = ("inner", "outer")
+
+LIGHTEST, HIGHEST_PRESSURE, LOADS = 1.0, 4.2e9, 32
+"""Lightest load [N], Hertz pressure of the inner contact at the heaviest one [Pa] (ISO 76), and how many there are."""
+
+SPEEDS = (0.0, *np.round(np.geomspace(0.1, 20.0, 12), 4).tolist())
+TEMPERATURES = (293.15, 313.15, 333.15, 353.15, 373.15, 393.15)
+"""Entrainment speeds [m/s], and temperatures [K] where the oil has a state."""
+
+_UNITS = {
+    "approach": ("m", "approach of ball and raceway"),
+    "film_offset": ("m", "dry less lubricated approach at equal load"),
+    "stiffness": ("N/m", "stiffness of the contact, in the limit of slow motion"),
+    "damping": ("N s/m", "damping of the contact, in the limit of slow motion"),
+    "film_compliance": ("m/N", "compliance of the contact less that of the dry one"),
+    "loss_compliance": ("m s/N", "damping over the square of the stiffness"),
+    "central_film": ("m", "film at the centre"),
+    "minimum_film": ("m", "smallest film"),
+    "max_pressure": ("Pa", "largest pressure"),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class PointsRequest:
+    """Question of a map of points.
+
+    Attributes
+    ----------
+    bearing : BallGeometry
+        The bearing.
+    oil : Lubricant
+        The oil.
+    """
+
+    bearing: BallGeometry
+    oil: Lubricant
+
+    @classmethod
+    def named(cls, bearing: str, oil: str | None = None) -> PointsRequest:
+        """Request by names.
+
+        Parameters
+        ----------
+        bearing : str
+            Designation, such as "6208"; with an oil behind a comma where no other is given.
+        oil : str, optional
+            Name of the oil.
+
+        Raises
+        ------
+        InputError
+            With every problem.
+        """
+        name, comma, beside = bearing.partition(",")
+        problems: list[str] = []
+        if comma and oil is not None:
+            problems.append(f"--oil: got {oil!r:.60} beside {beside.strip()!r:.60}; allowed: one of the two")
+        found: list[Any] = []
+        oil_name = beside.strip() if comma else DEFAULT_OIL if oil is None else oil
+        for option, read, text in (("--bearing", ball_estimate, name), ("--oil", Lubricant.named, oil_name)):
+            try:
+                found.append(read(text))
+            except InputError as error:
+                problems += [f"{option}: {problem}" for problem in error.problems]
+        if problems:
+            raise InputError(problems)
+        return cls(*found)
+
+    @property
+    def file_name(self) -> str:
+        """Name of the map's file."""
+        plain = "".join(letter if letter.isalnum() or letter in "-." else "_" for letter in self.oil.title)
+        return f"{self.bearing.name}_{plain}.nc"
+
+
+def points_map(request: PointsRequest) -> xr.Dataset:
+    """Read the map.
+
+    Parameters
+    ----------
+    request : PointsRequest
+        Bearing and oil.
+
+    Returns
+    -------
+    xarray.Dataset
+        Numbers and errors over `DIMS`, SI; status, and the number of its cause.
+    """
+    contacts = request.bearing.contacts(STEEL)
+    heaviest = float((HIGHEST_PRESSURE / contacts[0].max_pressure(1.0)) ** 3)
+    loads = np.geomspace(LIGHTEST, heaviest, LOADS)
+    speeds, temperatures = np.array(SPEEDS), np.array(_held(request.oil))
+    table = shipped_point_table()
+    films = [
+        table.films(contact, request.oil, loads[:, None, None], speeds[:, None], temperatures) for contact in contacts
+    ]
+
+    def stacked(values: list[Any]) -> FloatArray:
+        return np.stack(values)
+
+    variables: dict[str, Any] = {}
+    for name in NUMBERS:
+        unit, words = _UNITS[name]
+        variables[name] = (DIMS, stacked([getattr(one, name) for one in films]), {"units": unit, "long_name": words})
+        wrong = stacked([one.errors[name] for one in films])
+        variables[f"{name}_error"] = (DIMS, wrong, {"units": "1", "long_name": f"error of {words}, relative"})
+    flags = {"flag_values": [int(each) for each in Status], "flag_meanings": " ".join(each.word for each in Status)}
+    variables["status"] = (DIMS, stacked([one.status for one in films]), {"long_name": "status of the point", **flags})
+    causes = {"long_name": "cause of the status, a number of the attribute causes; 0 for a plain film"}
+    variables["cause"] = (DIMS, stacked([one.cause for one in films]), causes)
+    coordinates = {
+        "contact": ("contact", list(SIDES), {"long_name": "contact of a ball with this raceway"}),
+        "load": ("load", loads, {"units": "N", "long_name": "load of a ball"}),
+        "entrainment_speed": (
+            "entrainment_speed",
+            speeds,
+            {"units": "m/s", "long_name": "mean of both surface speeds"},
+        ),
+        "temperature": ("temperature", temperatures, {"units": "K", "long_name": "temperature of both surfaces"}),
+    }
+    attributes = {
+        MADE_AS: MADE,
+        "title": f"films of the point contacts of {request.bearing.title}, {request.oil.title}",
+        "bearing": json.dumps(request.bearing.record()),
+        "causes": json.dumps(CAUSES),
+        "estimated": request.bearing.estimated or "",
+        "lubricant": json.dumps(request.oil.record()),
+        "lubricant_verified": int(request.oil.verified),
+        "ellipticities": [contact.ellipticity for contact in contacts],
+        "film_table_of_points": table.attributes[CHECKSUM],
+        "software": version(),
+    }
+    return xr.Dataset(variables, coords=coordinates, attrs=attributes)
+
+
+def _held(oil: Lubricant) -> tuple[float, ...]:
+    """Temperatures at which the oil has a state; all of them where it has none."""
+    found = []
+    for temperature in TEMPERATURES:
+        try:
+            oil.at(temperature)
+        except InputError:
+            continue
+        found.append(temperature)
+    return tuple(found) or TEMPERATURES
+
+
+def usable(dataset: xr.Dataset) -> xr.DataArray:
+    """Tell which points have numbers.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        A map of points.
+    """
+    return dataset["status"].isin([int(each) for each in Status if each.usable])
+
+
+def reasons(dataset: xr.Dataset) -> npt.NDArray[np.str_]:
+    """Causes of the status in words, over `DIMS`.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        A map of points.
+    """
+    words: npt.NDArray[np.str_] = np.array(json.loads(dataset.attrs["causes"]))
+    return np.asarray(words[dataset["cause"].values])
+
+
+def write_points_map(dataset: xr.Dataset, path: Path) -> None:
+    """Write a map.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The map.
+    path : Path
+        File that is written.
+
+    Raises
+    ------
+    InputError
+        If it cannot be written, or something else stands there.
+    """
+    packed = {name: {"zlib": True, "complevel": 4} for name in dataset.data_vars}
+    with written_aside(path, KIND) as aside:
+        dataset.to_netcdf(aside, engine="netcdf4", mode="w", encoding=packed)
+
+
+def read_points_map(path: Path) -> xr.Dataset:
+    """Read a map.
+
+    Parameters
+    ----------
+    path : Path
+        File that is read.
+
+    Raises
+    ------
+    MapError
+        If it cannot be read, or lacks what such a map has.
+    """
+    try:
+        if damage := structure_problem(path):
+            raise OSError(damage)
+        with xr.open_dataset(path, engine="netcdf4") as file:
+            dataset = file.load()
+    except DAMAGE as error:
+        raise MapError(f"{path}: cannot be read ({error!s:.300}); make it again by `ehdmaps generate`") from error
+    wanted = {*NUMBERS, *(f"{name}_error" for name in NUMBERS), "status", "cause"}
+    lacks = [] if "causes" in dataset.attrs else ["causes"]
+    lacks += sorted(wanted - set(map(str, dataset.data_vars)))
+    shaped = all(dataset[name].dims == DIMS for name in wanted - set(lacks))
+    if dataset.attrs.get(MADE_AS) != MADE or lacks or not shaped:
+        what = f"lacks {', '.join(lacks[:3])}" if lacks else "has other dims, or is no such map"
+        raise MapError(f"{path}: {what}; expected a map of points; make it again by `ehdmaps generate`")
+    return dataset

@@ -1,0 +1,103 @@
+"""Maps of points: `ehdmaps generate`, `show`, `plot` and `export` of a ball bearing."""
+
+from __future__ import annotations
+
+import csv
+import math
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import ehdmaps
+from ehdmaps.errors import MapError
+from ehdmaps.jobs import cli
+from ehdmaps.jobs.points.points_map import PointsRequest, points_map, reasons, usable
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.point.ball_catalogue import ball_estimate
+from ehdmaps.physics.solids import STEEL
+from ehdmaps.table.points.file import shipped_point_table
+from ehdmaps.table.points.films import NUMBERS
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """The map of a 6208 with ISO VG 46, made once by the command."""
+    path = tmp_path_factory.mktemp("points") / "balls.nc"
+    assert cli.main(["generate", "6208, ISO VG 46", "-o", str(path)]) == 1  # points without a film
+    return path
+
+
+def run(capsys, *arguments):
+    status = cli.main([str(argument) for argument in arguments])
+    captured = capsys.readouterr()
+    return status, captured.out, captured.err
+
+
+def test_numbers_are_those_of_the_table(made):
+    """Any point of the file against the table: the same numbers and words."""
+    with xr.open_dataset(made) as data:
+        assert dict(data.sizes) == {"contact": 2, "load": 32, "entrainment_speed": 13, "temperature": 6}
+        outer, oil = ball_estimate("6208").contacts(STEEL)[1], Lubricant.named("ISO VG 46")
+        for i, j, k in ((14, 8, 2), (31, 1, 0), (3, 0, 1), (20, 12, 5)):
+            here = data.isel(contact=1, load=i, entrainment_speed=j, temperature=k)
+            point = (float(here[name]) for name in ("load", "entrainment_speed", "temperature"))
+            films = shipped_point_table().films(outer, oil, *point)
+            for name in NUMBERS:
+                np.testing.assert_array_equal(here[name], getattr(films, name))
+                np.testing.assert_array_equal(here[f"{name}_error"], films.errors[name])
+            assert reasons(data)[1, i, j, k] == films.reason
+        known = usable(data)
+        assert 0.4 < float(known.mean()) < 1.0
+        assert bool((data["stiffness"].notnull() == known).all())  # no number without a status, and none missing
+        assert bool((data["film_offset"].where(known, 1.0) >= 0.0).all())
+
+
+def test_it_is_shown_drawn_and_exported(made, tmp_path, capsys):
+    status, out, _ = run(capsys, "show", made)
+    assert status == 0 and "map of points: films of the point contacts of 6208, ISO VG 46" in out
+    assert "without: table of points: beyond its highest loads" in out
+    assert run(capsys, "plot", made, "-o", tmp_path / "page.svg")[0] == 0
+    assert (tmp_path / "page.svg").stat().st_size > 30_000
+    assert run(capsys, "export", made, "-o", tmp_path / "films.csv")[0] == 0
+    rows = list(csv.reader((tmp_path / "films.csv").read_text(encoding="utf-8").splitlines()[1:]))
+    assert len(rows) == 1 + 2 * 32 * 13 * 6
+    named = [dict(zip(rows[0], row, strict=True)) for row in rows[1:]]
+    film = rows[0].index("film_offset [m]")
+    assert all(bool(row[film]) != row[-1].startswith("table of points") for row in rows[1:])
+    assert {row["contact"] for row in named} == {"inner", "outer"}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("generate", "6208", "--solver", "hertz"), "--solver: is one of line contacts"),
+        (("export", "6208", "--to", "mat"), "--to: got 'mat' for point contacts; allowed: csv"),
+        (("generate", "6208", "--oil", "butter"), "--oil: "),
+        (("plot", "MADE", "--oil", "ISO VG 46"), "--oil: got 'ISO VG 46' beside a map"),
+        (("generate", "6208", "-o", "films.txt"), "allowed: a file that ends in .nc"),
+    ],
+)
+def test_what_it_does_not_take_is_refused(made, tmp_path, monkeypatch, capsys, arguments, words):
+    monkeypatch.chdir(tmp_path)
+    status, _, err = run(capsys, *(made if argument == "MADE" else argument for argument in arguments))
+    assert status == 2 and words in err
+    assert not list(tmp_path.iterdir())
+
+
+def test_it_is_no_map_of_lines_and_a_damaged_one_is_refused(made, tmp_path, capsys):
+    with pytest.raises(MapError, match="is a map of points; expected a map of line contacts"):
+        ehdmaps.open_map(made)
+    with xr.open_dataset(made) as data:
+        data.drop_vars("damping_error").to_netcdf(tmp_path / "lacks.nc")
+    status, _, err = run(capsys, "show", tmp_path / "lacks.nc")
+    assert status == 2 and "lacks damping_error; expected a map of points" in err
+
+
+def test_an_angular_contact_bearing_has_one_too():
+    request = PointsRequest.named("7208B")
+    assert request.file_name == "7208B_FVA3.nc"
+    data = points_map(request)
+    angle = math.radians(40.0)
+    assert ball_estimate("7208B").contact_angle == pytest.approx(angle)
+    assert float(usable(data).mean()) > 0.4
