@@ -156,9 +156,9 @@ def main() -> None:
         apart = np.sqrt(np.mean((parts[0] - parts[1]) ** 2) / np.mean(parts[1] ** 2))
         third = levels(parts[0], step) - levels(parts[1], step)
         print(
-            f"{DURATION:g} s in steps of {1e6 * step:g} us: S1 differs by {100.0 * apart:.2g} % of its rms, third octaves "
-            f"by {np.max(np.abs(third)):.2g} dB at most; mbs {seconds[0]:.2f} s, Exudyn {seconds[1]:.1f} s with "
-            f"{there.calls} calls",
+            f"{DURATION:g} s in steps of {1e6 * step:g} us: S1 differs by {100.0 * apart:.2g} % of its rms, "
+            f"third octaves by {np.max(np.abs(third)):.2g} dB at most; mbs {seconds[0]:.2f} s, "
+            f"Exudyn {seconds[1]:.1f} s with {there.calls} calls",
             flush=True,
         )
 
