@@ -488,7 +488,7 @@ DEEPEST_MEANT = -2.0
 
 
 class MeanPlanes(Enum):
-    """How the mean planes of rough surfaces stand; the value is what is said of it."""
+    """Places of the mean planes of rough surfaces to each other; the value is what is said of it."""
 
     APART = ""
     OVERLAP = OVERLAP
@@ -613,7 +613,7 @@ def sharing_effect(layer: RoughLayer, smooth: SmoothContact, speed: float, tempe
     layer : RoughLayer
         The contact with its rough surfaces.
     smooth : SmoothContact
-        Its film between smooth surfaces.
+        Film of the contact between smooth surfaces.
     speed, temperature : float
         u [m/s], >= 0, and T [K].
 
