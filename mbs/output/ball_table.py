@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ehdmaps.outputs import MARK, TABLE, write_text
 from ehdmaps.units import DAMPER, FILM, PRESSURE, RPM, SPRING, TEMPERATURE
 from mbs.bearings.balls.ball_point import SIDES, BallPoint
-from mbs.output.bearing_table import regime, shown, smallest, warning_lines
+from mbs.output.bearing_table import regime, shown, smallest, warning_lines, write_csv
 from mbs.output.files import described
 from mbs.scene.fields import DEGREE, FORCE, MICROMETRE
 
@@ -69,11 +68,18 @@ _ROW = (
     ("loaded_balls", "1", "balls that carry more than 1 % of the highest load"),
     ("film_parameter", "1", "Lambda, smallest film over the combined rms roughness"),
 )
+_ERRORS = (
+    ("film_offset_error", "1", "largest stated error of the film offset"),
+    ("central_film_error", "1", "largest stated error of the central film"),
+    ("minimum_film_error", "1", "largest stated error of the smallest film"),
+    ("damping_error", "1", "largest stated error of the damping"),
+)
 _SIDE = (
     ("hertz_pressure", "Pa", "largest Hertz pressure"),
     ("central_film", "m", "smallest central film"),
     ("minimum_film", "m", "smallest film"),
     ("contact_angle", "rad", "mean contact angle, by the loads"),
+    *_ERRORS,
 )
 
 
@@ -103,6 +109,7 @@ def _side_row(point: BallPoint) -> dict[str, tuple[float, float]]:
         "central_film": (smallest(point.central_film[0]), smallest(point.central_film[1])),
         "minimum_film": (smallest(point.minimum_film[0]), smallest(point.minimum_film[1])),
         "contact_angle": (point.balls.mean_angle(0), point.balls.mean_angle(1)),
+        **{name: (float(a), float(b)) for (name, _, _), (a, b) in zip(_ERRORS, point.film_errors.T, strict=True)},
     }
 
 
@@ -185,23 +192,7 @@ def write_ball_csv(dataset: xr.Dataset, path: str) -> None:
     InputError
         If it may not be replaced, or cannot be written.
     """
-    about = {key: value for key, value in dataset.attrs.items() if key != "warnings"}
-    lines = [
-        f"# table {MARK}: one ball bearing at operating points, SI",
-        *(f"# {key}: {value}" for key, value in about.items()),
-    ]
-    columns = ["load [N]", "speed [rad/s]", *(f"{name} [{unit}]" for name, unit, _ in _ROW)]
-    columns += [f"{name}_{side} [{unit}]" for name, unit, _ in _SIDE for side in SIDES]
-    lines.append(",".join([*columns, "outside"]))
-    for i, load in enumerate(dataset["load"].values):
-        for j, speed in enumerate(dataset["speed"].values):
-            here = dataset.isel(load=i, speed=j)
-            numbers = [load, speed, *(float(here[name]) for name, _, _ in _ROW)]
-            numbers += [float(here[name].sel(contact=side)) for name, _, _ in _SIDE for side in SIDES]
-            cause = str(here["outside"].values).replace('"', "'")
-            fields = ["" if math.isnan(number) else f"{number:.9g}" for number in numbers]
-            lines.append(",".join([*fields, f'"{cause}"' if cause else ""]))
-    write_text(path, "\n".join(lines) + "\n", TABLE)
+    write_csv(dataset, path, "ball bearing", _ROW, _SIDE)
 
 
 def ball_text(description: BallDescription, points: Points) -> list[str]:
@@ -272,6 +263,15 @@ def _page(point: BallPoint, description: BallDescription) -> list[str]:
         two("mean contact angle", "deg", "contact_angle", DEGREE.factor),
         two("smallest central film", FILM.unit, "central_film", 1e6),
         two("smallest film", FILM.unit, "minimum_film", 1e6),
+        *(
+            [
+                two("stated error of film offset", "%", "film_offset_error", 100.0),
+                two("stated error of smallest film", "%", "minimum_film_error", 100.0),
+                two("stated error of contact damping", "%", "damping_error", 100.0),
+            ]
+            if np.any(np.isfinite(point.film_errors))
+            else []
+        ),
         f"  Lambda {row['film_parameter']:.3g} (smallest film over {roughness} of roughness; "
         f"{regime(row['film_parameter'])})",
         f"  cage {RPM.text(point.cage_speed)}, centrifugal load of a ball {FORCE.text(point.centrifugal_load)}",

@@ -212,8 +212,25 @@ def _warm(state: BearingState | None) -> dict[str, float]:
     }
 
 
-def write_csv(dataset: xr.Dataset, path: str) -> None:
+Columns = Sequence[tuple[str, str, str]]
+"""Variables of a table: name, unit, meaning."""
+
+
+def write_csv(
+    dataset: xr.Dataset, path: str, what: str = "bearing", row: Columns = _ROW, side: Columns = _SIDE
+) -> None:
     """Write a row for each load and speed, in SI.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Points of a bearing over load and speed.
+    path : str
+        The file.
+    what : str
+        Kind of the bearing, in words.
+    row, side : sequence
+        Variables of a point, and those of its inner and outer contacts.
 
     Raises
     ------
@@ -222,17 +239,17 @@ def write_csv(dataset: xr.Dataset, path: str) -> None:
     """
     about = {key: value for key, value in dataset.attrs.items() if key != "warnings"}
     head = [
-        f"# table {MARK}: one bearing at operating points, SI",
+        f"# table {MARK}: one {what} at operating points, SI",
         *(f"# {key}: {value}" for key, value in about.items()),
     ]
-    columns = ["load [N]", "speed [rad/s]", *(f"{name} [{unit}]" for name, unit, _ in _ROW)]
-    columns += [f"{name}_{side} [{unit}]" for name, unit, _ in _SIDE for side in SIDES]
+    columns = ["load [N]", "speed [rad/s]", *(f"{name} [{unit}]" for name, unit, _ in row)]
+    columns += [f"{name}_{contact} [{unit}]" for name, unit, _ in side for contact in SIDES]
     lines = [*head, ",".join([*columns, "outside"])]
     for i, load in enumerate(dataset["load"].values):
         for j, speed in enumerate(dataset["speed"].values):
             here = dataset.isel(load=i, speed=j)
-            numbers = [load, speed, *(float(here[name]) for name, _, _ in _ROW)]
-            numbers += [float(here[name].sel(contact=side)) for name, _, _ in _SIDE for side in SIDES]
+            numbers = [load, speed, *(float(here[name]) for name, _, _ in row)]
+            numbers += [float(here[name].sel(contact=contact)) for name, _, _ in side for contact in SIDES]
             # Quoted: the cause has commas.
             cause = str(here["outside"].values).replace('"', "'")
             fields = ["" if math.isnan(number) else f"{number:.9g}" for number in numbers]

@@ -100,6 +100,8 @@ def test_laws_with_films_are_read(capsys, here, law) -> None:
     angles = [numbers(page, "mean contact angle")[0] for page in (out, dry)]
     assert 0.5 < angles[1] - angles[0] < 2.0
     assert min(numbers(out, "damping")) > 0.0 == max(numbers(dry, "damping"))
+    assert all(0.0 < error < 10.0 for error in numbers(out, "stated error of film offset"))
+    assert "stated error" not in dry
     still = run(capsys, *command, "--speed", "0 rpm", "--law", law)[1]
     assert max(numbers(still, "damping")) == 0.0
 

@@ -137,6 +137,14 @@ def test_read_films_are_those_of_solved_points(read_films) -> None:
         assert side.read_loads == side.loads.size and nearest[0] < 0.05
 
 
+def test_errors_at_loads_are_those_of_both_neighbours(read_films) -> None:
+    side = read_films.inner
+    between = float(np.sqrt(side.loads[5] * side.loads[6]))
+    np.testing.assert_array_equal(side.largest_errors(np.array([between])), side.errors[5:7].max(axis=0))
+    np.testing.assert_array_equal(side.largest_errors(np.array([1e9])), side.errors[-1])
+    assert np.all(np.isnan(side.largest_errors(np.array([]))))
+
+
 def test_read_films_are_those_of_the_table(read_films) -> None:
     """Away from both ends the table's own cubics, 1e-4; stiffness is the slope of the offset, 1e-3."""
     ellipse, side = ball_estimate("6208").contacts(STEEL)[0], read_films.inner

@@ -63,6 +63,9 @@ class BallPoint:
         Loads, contact angles, approaches.
     pressure, central_film, minimum_film : array (2, Z)
         Hertz pressure [Pa] and films [m] of the inner and outer contacts; NaN for films of contacts without load.
+    film_errors : array (2, 4)
+        Largest stated errors of film offset, central and smallest film, and damping, of the inner and outer contacts
+        that carry more than 1 % of the highest load; NaN where films come from formulas, or there are none.
     centrifugal_load : float
         Centrifugal load of a ball [N].
     problems, notes : tuple of str
@@ -82,6 +85,7 @@ class BallPoint:
     pressure: FloatArray
     central_film: FloatArray
     minimum_film: FloatArray
+    film_errors: FloatArray
     centrifugal_load: float
     problems: tuple[str, ...]
     notes: tuple[str, ...]
@@ -181,10 +185,13 @@ def ball_point(
     pressure = np.array([contact.max_pressure(balls.load[side]) for side, contact in enumerate(contacts)])
     u = _entrainment(force, balls, inner_speed, outer_speed)
     central, minimum = np.full((2, *pressure.shape), np.nan)
+    film_errors = np.full((2, 4), np.nan)
     if films is not None:
         for side, solved in enumerate(films.sides):
             carries = balls.load[side] > 0.0
             (_, central[side, carries], minimum[side, carries], _), _ = solved.read(balls.load[side][carries])
+            heavy = balls.load[side] > 0.01 * balls.load[side].max()
+            film_errors[side] = solved.largest_errors(balls.load[side][heavy])
     elif oil is not None and u > 0.0:
         state = oil.at(temperature)
         for side, contact in enumerate(contacts):
@@ -212,6 +219,7 @@ def ball_point(
         pressure=pressure,
         central_film=central,
         minimum_film=minimum,
+        film_errors=film_errors,
         centrifugal_load=centrifugal,
         problems=tuple(filter(None, [_overload(pressure), _shoulder(force, balls)])),
         notes=tuple(

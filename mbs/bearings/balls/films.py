@@ -80,6 +80,20 @@ class ContactFilms:
         values = np.exp(spline(inside) + slopes * (asked - inside)[:, None])
         return values.T, (values * slopes).T
 
+    def largest_errors(self, load: FloatArray) -> FloatArray:
+        """Largest errors at loads: of the films on both sides of each, (4,); NaN without loads.
+
+        Parameters
+        ----------
+        load : array (k,)
+            Loads [N], > 0.
+        """
+        if not load.size:
+            return np.full(self.errors.shape[1], math.nan)
+        above = np.searchsorted(self.loads, load)
+        beside = np.clip(np.r_[above - 1, above], 0, self.loads.size - 1)
+        return np.asarray(self.errors[beside].max(axis=0))
+
     def curve(self, load: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Offset, its slope and damping, see `mbs.bearings.balls.laws.FilmCurve`."""
         values, slopes = self.read(np.atleast_1d(load))
