@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import os
 from collections.abc import Mapping, Sequence
 from importlib import resources
 from os import PathLike, fspath
@@ -74,7 +75,7 @@ def read_job(
         text = (resources.files("ehdmaps.jobs") / "shipped" / f"{source}.toml").read_text(encoding="utf-8")
         return parse_job(text, source, f"{source} (shipped)", solver, to_run, finding_solids)
     path = Path(source)
-    if not path.exists():
+    if not os.path.exists(path):
         from ehdmaps.physics.point.ball_catalogue import ball_words  # for a message only
 
         if words := ball_words(source):
