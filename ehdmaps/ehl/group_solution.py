@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -79,7 +80,7 @@ class GroupSolution:
     """Film of one point in units of b, p_H, b^2/R and b/u, with estimated relative errors.
 
     The rolling force has the unit p_H b^2/R, the mass flow b^2/R times density at rest and u. Rises are those of the
-    highest temperatures in the film and of its surfaces [K], NaN of an isothermal film.
+    highest temperatures in the film and of its surfaces [K], NaN of an isothermal film; their errors are in K, too.
     Those of film offset, film compliance and loss are positive where the value is too large, the others always.
     `profile` is the fine solution and `rough` the coarse one, `linear` and `rough_linear` the equations about them;
     None where there is none.
@@ -108,6 +109,8 @@ class GroupSolution:
     max_pressure_error: float = math.nan
     rolling_force_error: float = math.nan
     mass_flow_error: float = math.nan
+    film_rise_error: float = math.nan
+    surface_rise_error: float = math.nan
     steps: int = 0
 
 
@@ -139,7 +142,7 @@ def assembled(
     starved = fine.layout.starved
     # the pressure rises from a meniscus with a kink, where sums are of second order
     by_offset = SECOND if starved else THIRD if _plug(fine) else _offset_share(M, fine.spike is not None)
-    by_response = SECOND if starved else response_share(M, L, fine.spike is not None)
+    by_response = SECOND if starved else max(response_share(M, L, fine.spike is not None), _sliding_share(fine))
     inlet = 0.0 if starved else 1.0 / resolution.inlet**2
     central, minimum = fine.central_and_minimum_film
     # the coarse grid of a starved contact has the same part of its own flooded flow; films go with the layer
@@ -161,7 +164,14 @@ def assembled(
     # parts of one complex number: where a spike between two nodes hides the error of the loss, the compliance shows it
     hidden = rough.compliance - response.compliance if fine.spike is not None or starved else 0.0
     hidden_too = rough.loss - response.loss if starved else 0.0
-    at_front = _front_error(fine, response)
+    fronts = [
+        _front_error(each, of, its) for each, of, its in ((fine, linear, response), (coarse, rough_linear, rough))
+    ]
+    at_front = _Front(*(max(values) for values in zip(*fronts, strict=True)))
+    # of the coarse grid half a cell, which is one of the fine grid
+    held = max(fronts[0].offset, 0.5 * fronts[1].offset)
+    by_front = held / abs(fine.film_offset)
+    film_error, surface_error = _rise_errors(fine, coarse)
     return GroupSolution(
         outcome=CONVERGED,
         profile=fine,
@@ -178,31 +188,74 @@ def assembled(
         mass_flow=fine.mass_flow,
         film_rise=math.nan if fine.warmth is None else float(np.max(fine.warmth.rises)),
         surface_rise=math.nan if fine.warmth is None else float(np.max(fine.warmth.rises[:, [0, -1]])),
-        film_offset_error=error(fine.film_offset, scale * coarse.film_offset, by_offset, FILM_LOST),
+        film_offset_error=error(fine.film_offset, scale * coarse.film_offset, by_offset, FILM_LOST, front=held),
         film_compliance_error=error(
             response.compliance, rough.compliance, by_response, COMPLIANCE_LOST, hidden_too, at_front.compliance
         ),
         loss_error=error(response.loss, rough.loss, by_response, LOSS_LOST, hidden, at_front.loss),
-        central_film_error=central_error + FILM_LOST * inlet,
-        minimum_film_error=minimum_error + FILM_LOST * inlet,
+        central_film_error=central_error + by_front + FILM_LOST * inlet,
+        minimum_film_error=minimum_error + by_front + FILM_LOST * inlet,
         max_pressure_error=_peak_error(fine, coarse),
         rolling_force_error=_rolling_error(fine, coarse) + ROLLING_GAINED * inlet,
         mass_flow_error=0.0 if starved else abs(error(fine.mass_flow, coarse.mass_flow, FOURTH, FILM_LOST)),
+        film_rise_error=film_error,
+        surface_rise_error=surface_error,
         steps=steps,
     )
 
 
-def _front_error(profile: Profile, response: Response) -> Response:
-    """Errors of the response by the front of an oil that yields; zero of others.
+class _Front(NamedTuple):
+    """Errors by the front of an oil that yields, without signs: of compliance, loss and film offset."""
+
+    compliance: float
+    loss: float
+    offset: float
+
+
+def _front_error(profile: Profile, linear: Linearisation | WarmLinearisation, response: Response) -> _Front:
+    """Errors by the front of an oil that yields; zero of others.
 
     The oil yields over many cells before the spike and stops within one: where that happens between two nodes is chance
-    on both grids, which may agree by chance. In the limit of fine grids the response does not depend on how the grid
-    moves: so what it changes where the grid stands still is what the front has not resolved.
+    on both grids, which may agree by chance. In the limit of fine grids neither film nor response depend on how the
+    grid stands: so what the response changes where the grid does not follow is what the front has not resolved. The
+    same over how far the front moves by load is what the film changes where the grid moves: a cell may be wrong.
     """
     if profile.spike is None or profile.problem.shear.form != LIMITING:
-        return Response(0.0, 0.0)
+        return _Front(0.0, 0.0, 0.0)
     standing = linearised_profile(profile, follows=False).slow_response()
-    return Response(standing.compliance - response.compliance, standing.loss - response.loss)
+    changed = abs(standing.compliance - response.compliance)
+    state = linear.static() if isinstance(linear, WarmLinearisation) else linear.solve(linear.unit)
+    moves, x, cell_at = abs(float(state[linear.height + 1])), profile.grid.x, profile.front_cell
+    cell = float(x[cell_at + 1] - x[cell_at])
+    return _Front(changed, abs(standing.loss - response.loss), changed * cell / moves if moves > 0.0 else 0.0)
+
+
+def _sliding_share(profile: Profile) -> float:
+    """Share of the difference of both grids that is left as error of the response where sliding makes the oil yield.
+
+    The ends of that are narrower than a cell: order two, and one where no heat smooths them. Zero of other films.
+    """
+    problem = profile.problem
+    if profile.spike is None or problem.shear.form != LIMITING or problem.slide == 0.0:
+        return 0.0
+    return FIRST_ORDER if profile.warmth is None else SECOND
+
+
+def _rise_errors(fine: Profile, coarse: Profile) -> tuple[float, float]:
+    """Errors of the highest temperatures of film and surfaces [K]; NaN of an isothermal film.
+
+    The difference of both grids to first order, and what may stand between two faces: how far the hottest one is above
+    the cooler one beside it.
+    """
+    if fine.warmth is None or coarse.warmth is None:
+        return math.nan, math.nan
+    errors = []
+    for here in (slice(None), [0, -1]):
+        hottest, rough = (each.warmth.rises[:, here].max(axis=1) for each in (fine, coarse) if each.warmth is not None)
+        at = int(np.argmax(hottest))
+        beside = min(hottest[max(at - 1, 0)], hottest[min(at + 1, hottest.size - 1)])
+        errors.append(float(FIRST_ORDER * abs(hottest[at] - rough.max()) + hottest[at] - beside))
+    return errors[0], errors[1]
 
 
 def _unresolved(profile: Profile) -> bool:

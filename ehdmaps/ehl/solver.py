@@ -583,6 +583,8 @@ def _in_si(
         mass_flow_error=groups.mass_flow_error,
         film_temperature=math.nan if math.isnan(groups.film_rise) else heat.temperature + groups.film_rise,
         surface_temperature=hottest,
+        film_temperature_error=groups.film_rise_error,
+        surface_temperature_error=groups.surface_rise_error,
         traction=profile.traction * stress * half,
         wall_stress=profile.wall_stress * stress,
         iterations=groups.steps,

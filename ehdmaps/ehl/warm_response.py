@@ -226,8 +226,8 @@ class WarmLinearisation:
                 heat[:, row, 0] -= 0.5 / speed * _from_inlet(wall, grid.face)
         return added, heat
 
-    def _static(self) -> FloatArray:
-        """State of a unit load."""
+    def static(self) -> FloatArray:
+        """State of a unit load: the film's unknowns, the spike's place where the grid follows it, temperatures."""
         unit = np.zeros(self.rows)
         unit[self.height] = 1.0
         return self.solve(unit, np.zeros((self.here.grid.face.size, POINTS + 2, 1)))
@@ -239,7 +239,7 @@ class WarmLinearisation:
 
     def slow_response(self) -> Response:
         """Film compliance and loss in the limit of slow motion."""
-        static = self._static()
+        static = self.static()
         slow = self._next(static)
         return Response(-float(static[self.height]) - DRY_COMPLIANCE, -float(slow[self.height]))
 
@@ -251,7 +251,7 @@ class WarmLinearisation:
         fastest : float
             Highest Omega = omega b/u.
         """
-        return arnoldi(self._next, self._static(), self.height, fastest)
+        return arnoldi(self._next, self.static(), self.height, fastest)
 
 
 def _from_inlet(values: FloatArray, x: FloatArray) -> FloatArray:

@@ -24,7 +24,7 @@ natural frequencies to the backbone, where the solver has it: complex, in units 
 omega sqrt(b^2 + 2 h R)/u with b and the film offset h of each point. Version 4 added the model errors of stiffness and
 damping, of a map whose films are corrected by a dearer solver. Version 5 added traction, wall stress and temperatures
 of films, where the solver finds them, and to the backbone the films of the outer contact, where heat makes them its
-own.
+own. Version 7 added the errors of temperatures.
 
 To add a variable, write one row in `TABLE` with ``since=`` the new version, and raise `SCHEMA_VERSION`. With
 ``required=False`` a map may lack it. It is then written, where `dataset` or `backbone` is given values for it, read,
@@ -43,7 +43,7 @@ import xarray as xr
 
 from ehdmaps.physics.solution import Status
 
-SCHEMA_VERSION = 6
+SCHEMA_VERSION = 7
 """Version of the table; files of this and of all lower versions are read."""
 
 DIMS = ("contact", "load", "entrainment_speed", "temperature")
@@ -275,6 +275,8 @@ TABLE = (
     _of_films("wall_stress", "Pa", "largest shear stress at a wall"),
     _of_films("film_temperature", "K", "highest temperature in the film"),
     _of_films("surface_temperature", "K", "highest temperature of the surfaces of the film"),
+    replace(_of_films("film_temperature_error", "K", "estimated numerical error of film_temperature"), since=7),
+    replace(_of_films("surface_temperature_error", "K", "estimated numerical error of surface_temperature"), since=7),
     Variable("status", "1", "how the point ended", "int8", flags=_STATUS),
     Variable("reason", "1", "cause of the status, in words", "str"),
     _error("film_offset_error", "film_offset"),

@@ -331,7 +331,15 @@ class OpenFoamSolver(ContactSolverDefaults):
             halved = replace(fine, columns=fine.columns // 2, rows=fine.rows // 2)
             name = _case_name(contact, point)
             grids = GridSolver(self.installed, self.keep_cases)
-            coarse = grids.solve(halved, name, False, end)
+            try:
+                coarse = grids.solve(halved, name, False, end)
+            except RunError:
+                if self.slide_to_roll == 0.0 or self.starter is None:
+                    raise
+                # the solver lets a film slide more and more, if it has the start of one that rolls
+                fine = self.parameters(contact, lubricant, point, frequencies, rolling_start=True)
+                halved = replace(fine, columns=fine.columns // 2, rows=fine.rows // 2)
+                coarse = grids.solve(halved, name, False, end)
             done = coarse.results.iterations
             stage = "fine grid"
             grid = grids.solve(fine, name, with_fields, end, coarse.start)
@@ -353,6 +361,7 @@ class OpenFoamSolver(ContactSolverDefaults):
         lubricant: Lubricant,
         point: OperatingPoint,
         frequencies: tuple[float, ...] = (),
+        rolling_start: bool = False,
     ) -> Parameters:
         """Return the parameters of a run on the fine grid, with the starter's start if there is one.
 
@@ -366,6 +375,8 @@ class OpenFoamSolver(ContactSolverDefaults):
             Load, speed and temperature.
         frequencies : tuple of float
             Frequencies of small oscillations [Hz]; the low-frequency limit comes first in any case.
+        rolling_start : bool
+            Whether the start is that of pure rolling.
         """
         state = lubricant.at(point.temperature)
         guess = self.starter and self.starter(
@@ -375,7 +386,7 @@ class OpenFoamSolver(ContactSolverDefaults):
             point.entrainment_speed,
             point.temperature,
             self.shear_law(),
-            self.slide_to_roll,
+            0.0 if rolling_start else self.slide_to_roll,
         )
         mesh = Mesh(film=_expected_film(contact, state, point), inlet_length=self.inlet_length)
         start = None
@@ -507,6 +518,8 @@ def _film(
         mass_flow_error=abs(error(flow, rough_flow)),
         film_temperature=results.film_temperature,
         surface_temperature=results.surface_temperature,
+        film_temperature_error=abs(results.film_temperature - rough.film_temperature) / 3.0,
+        surface_temperature_error=abs(results.surface_temperature - rough.surface_temperature) / 3.0,
         iterations=rough.iterations + results.iterations,
         solve_seconds=seconds,
         viscosity_extrapolated=results.max_pressure * (1.0 + largest_error) > state.fitted_pressure,

@@ -145,6 +145,8 @@ class FilmSolution:
         Largest shear stress at a wall [Pa]; NaN where the solver does not find it.
     film_temperature, surface_temperature : float
         Highest temperature in the film and of its surfaces [K]; NaN of an isothermal film.
+    film_temperature_error, surface_temperature_error : float
+        Their estimated numerical errors [K].
     iterations : int
         Newton steps (or the solver's own count), all grids together.
     solve_seconds : float
@@ -175,6 +177,8 @@ class FilmSolution:
     wall_stress: float = math.nan
     film_temperature: float = math.nan
     surface_temperature: float = math.nan
+    film_temperature_error: float = math.nan
+    surface_temperature_error: float = math.nan
     iterations: int = 0
     solve_seconds: float = 0.0
     viscosity_extrapolated: bool = False
@@ -260,6 +264,8 @@ class ContactSolution:
     wall_stress: float
     film_temperature: float
     surface_temperature: float
+    film_temperature_error: float
+    surface_temperature_error: float
     iterations: int
     solve_seconds: float
     viscosity_extrapolated: bool
@@ -549,6 +555,8 @@ def contact_solution(film: FilmSolution, contact: LineContact, point: OperatingP
         wall_stress=film.wall_stress,
         film_temperature=film.film_temperature,
         surface_temperature=film.surface_temperature,
+        film_temperature_error=film.film_temperature_error,
+        surface_temperature_error=film.surface_temperature_error,
         iterations=film.iterations,
         solve_seconds=film.solve_seconds,
         viscosity_extrapolated=film.viscosity_extrapolated,

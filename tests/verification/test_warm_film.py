@@ -128,6 +128,20 @@ def test_yielding_film() -> None:
     assert sliding.film_temperature > rolling.film_temperature + 10.0
 
 
+@pytest.mark.slow
+def test_errors_where_both_grids_agree_by_chance() -> None:
+    """What is stated bounds the distance to twice the cells; the film offsets of both grids are closer than that.
+
+    Temperatures are those of the hottest place, which a front makes.
+    """
+    solver = replace(LIMITING, slide_to_roll=0.22)
+    found, fine = (film(49.9e3, 1.51, 52.0, replace(solver, density=density)) for density in (6.5, 13.0))
+    assert abs(found.film_offset / fine.film_offset - 1.0) < abs(found.film_offset_error) < 1e-3
+    for name in ("film_temperature", "surface_temperature"):
+        stated = getattr(found, f"{name}_error")
+        assert abs(getattr(found, name) - getattr(fine, name)) < stated < 0.2 * (getattr(fine, name) - 325.15)
+
+
 def test_a_film_that_burns_says_so() -> None:
     """Full sliding under 1000 N/mm is solved, far above what steel and oil stand; in pure rolling nothing is said."""
     burning = film(1e6, 1.0, 60.0, replace(LIMITING, slide_to_roll=2.0))

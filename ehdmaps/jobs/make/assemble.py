@@ -16,7 +16,7 @@ from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.make.correction import Correction, Films, Place
 from ehdmaps.jobs.make.correction_design import places_of
 from ehdmaps.jobs.make.store import Arrays
-from ehdmaps.jobs.make.tasks import FOUND_BY_SOME, LineTask, solver_version, with_later_fields
+from ehdmaps.jobs.make.tasks import ERRORS_OF_SOME, FOUND_BY_SOME, LineTask, solver_version, with_later_fields
 from ehdmaps.maps import schema
 from ehdmaps.maps.records import MODEL_ERRORS, contacts_json, derived, record_json
 from ehdmaps.physics.contact import LineContact
@@ -254,7 +254,8 @@ def with_structure(
     values["loss_compliance_error"] = films["loss_compliance_error"] * np.copysign(1.0, films["film_compliance_error"])
     for name in ("film_offset_error", "film_compliance_error"):
         values[name] = np.abs(films[name])
-    unknown = [name for name in FOUND_BY_SOME if name in values and not np.any(np.isfinite(values[name]))]
+    some = (*FOUND_BY_SOME, *ERRORS_OF_SOME)
+    unknown = [name for name in some if name in values and not np.any(np.isfinite(values[name]))]
     return {entry.name: values[entry.name] for entry in schema.table() if entry.name in values.keys() - unknown}
 
 

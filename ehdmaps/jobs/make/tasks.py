@@ -50,7 +50,10 @@ FILM_FIELDS = tuple(field.name for field in fields(FilmSolution))
 FOUND_BY_SOME = ("traction", "wall_stress", "film_temperature", "surface_temperature")
 """Fields that only films with sliding, shear laws or heat have: a map without any value of one is made without it."""
 
-LATER_FIELDS = ("rolling_force", "mass_flow", "rolling_force_error", "mass_flow_error", *FOUND_BY_SOME)
+ERRORS_OF_SOME = ("film_temperature_error", "surface_temperature_error")
+"""Errors of some of these, likewise."""
+
+LATER_FIELDS = ("rolling_force", "mass_flow", "rolling_force_error", "mass_flow_error", *FOUND_BY_SOME, *ERRORS_OF_SOME)
 """Fields that came after maps had been made: results that lack them, and took days, are taken over without them."""
 
 

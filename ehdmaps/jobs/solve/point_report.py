@@ -12,6 +12,7 @@ import numpy as np
 from ehdmaps.ehl.solver import SuppliedFilm
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.make.report import ERRORS, FOUND_BY_SOME, NONE_STATED
+from ehdmaps.jobs.make.tasks import ERRORS_OF_SOME
 from ehdmaps.jobs.solvers import solver_words
 from ehdmaps.maps.rough_layer import (
     DEEPEST_MEANT,
@@ -62,6 +63,7 @@ _SOLUTION_FIELDS = (
     "rolling_force",
     "mass_flow",
     *(name for name, _, _ in FOUND_BY_SOME),
+    *ERRORS_OF_SOME,
     *ERRORS,
     "loss_compliance_error",
     "iterations",
@@ -302,6 +304,9 @@ def _rows(records: list[dict[str, Any]], length: float | None) -> Iterator[tuple
     for name in ERRORS:
         stated = [_stated(record, name) for record in records]
         yield f"error of {name.removesuffix('_error').replace('_', ' ')}", "", stated
+    for name in ERRORS_OF_SOME:
+        if any(record[name] is not None for record in records):
+            yield row(f"error of {name.removesuffix('_error').replace('_', ' ')}", name, Display("K"))
     yield row("time to solve", "solve_seconds", Display("ms", 1e3))
 
 

@@ -20,6 +20,11 @@ namespace Foam
 static constexpr scalar firstFactor = 64, firstRatio = 8, leastRatio = 1.1, roughly = 1e-3;
 static constexpr label roughIterations = 20;
 
+/*-  Where the film that slides is not met at once: from the one that rolls,
+     sliding by so large a part more, less where a stage fails
+*/
+static constexpr scalar firstSlide = 0.25, leastSlide = 1.0/256;
+
 } // End namespace Foam
 
 
@@ -54,7 +59,11 @@ Foam::solvedFilm Foam::steadyState
     } from;
     from.pressure = startPressure(dict, contact, x);
     from.central = dict.found("start") ? positive(dict.subDict("start"), "centralFilm") : filmScale;
+    const auto first(from);
     label iterations = 0;
+    // the part of the sliding of a stage, and its contact, which outlives what is found on it
+    scalar slid = 1;
+    std::unique_ptr<lineContact> slower;
     solvedFilm found;
 
     auto solve = [&](const word& type, const dictionary& law, const newtonControls& stageControls, const scalar heated = 0)
@@ -65,11 +74,23 @@ Foam::solvedFilm Foam::steadyState
         else stage.remove("heat");
         found.tangent.reset();
         found.contact.reset();
-        found.flow = filmFlow::New(type, stage, film, contact);
-        found.contact.reset(new slice(*found.flow, contact, x, filmScale));
+        found.flow.reset();
+        slower.reset();
+        if (slid < 1)
+        {
+            dictionary speeds(dict);
+            const scalar half = 0.5*slid*(contact.upperSpeed - contact.lowerSpeed);
+            speeds.set("lowerSpeed", contact.entrainment() - half);
+            speeds.set("upperSpeed", contact.entrainment() + half);
+            slower.reset(new lineContact(speeds));
+        }
+        const lineContact& here = slower ? *slower : contact;
+        found.flow = filmFlow::New(type, stage, film, here);
+        found.contact.reset(new slice(*found.flow, here, x, filmScale));
         Info<< type << ", " << law.get<word>("type");
         if (law.found("stress")) Info<< " " << law.get<scalar>("stress") << " Pa";
         if (heated > 0) Info<< ", " << heated << " of the heat";
+        if (slid < 1) Info<< ", " << slid << " of the sliding";
         Info<< endl;
         slice::unknowns start(found.contact->start(from.pressure, from.central));
         if (from.local.size() == start.local.size())
@@ -144,40 +165,77 @@ Foam::solvedFilm Foam::steadyState
         return law;
     };
 
-    if (!solve("thinFilm", shear, controls) && !newtonian)
+    const scalar heated = dict.found("heat") ? 1 : 0;
+    auto thin = [&]()
     {
-        dictionary newton(shear);
-        newton.set("type", word("Newtonian"));
-        if (!solve("thinFilm", newton, controls)) return found;
-        const newtonControls rough{roughly, min(controls.maxIterations, roughIterations)};
-        scalar reached = firstFactor, ratio = firstRatio;
-        while (reached > 1)
+        if (!solve("thinFilm", shear, controls) && !newtonian)
         {
-            const scalar next = max(scalar(1), reached/ratio);
-            if (solve("thinFilm", eased(next), next > 1 ? rough : controls))
+            dictionary newton(shear);
+            newton.set("type", word("Newtonian"));
+            if (!solve("thinFilm", newton, controls)) return false;
+            const newtonControls rough{roughly, min(controls.maxIterations, roughIterations)};
+            scalar reached = firstFactor, ratio = firstRatio;
+            while (reached > 1)
             {
-                reached = next;
+                const scalar next = max(scalar(1), reached/ratio);
+                if (solve("thinFilm", eased(next), next > 1 ? rough : controls))
+                {
+                    reached = next;
+                }
+                else if (ratio < leastRatio)
+                {
+                    return false;
+                }
+                else
+                {
+                    ratio = Foam::sqrt(ratio);
+                }
             }
-            else if (ratio < leastRatio)
+        }
+        if (found.result.end != outcome::converged) return false;
+        if (heated > 0 && !solve("thinFilm", shear, controls, heated))
+        {
+            // a little heat first: it thins the oil where most of it is made
+            for (scalar share = 1.0/64; share <= 1; share *= 4)
             {
-                return found;
+                if (!solve("thinFilm", shear, controls, share)) return false;
+            }
+        }
+        return true;
+    };
+    // up from the film that rolls, which is far from the one that slides
+    auto slide = [&]()
+    {
+        slid = 0;
+        if (!thin()) return false;
+        scalar reached = 0, step = firstSlide;
+        while (reached < 1)
+        {
+            slid = min(scalar(1), reached + step);
+            if (solve("thinFilm", shear, controls, heated))
+            {
+                reached = slid;
+                step *= 1.5;
             }
             else
             {
-                ratio = Foam::sqrt(ratio);
+                step *= 0.5;
+                if (step < leastSlide) return false;
             }
         }
-    }
-    if (found.result.end != outcome::converged) return found;
-    const scalar heated = dict.found("heat") ? 1 : 0;
-    if (heated > 0 && !solve("thinFilm", shear, controls, heated))
+        return true;
+    };
+    const bool slides = contact.upperSpeed != contact.lowerSpeed;
+    bool met = slides && solve("thinFilm", shear, controls)
+        && (heated == 0 || solve("thinFilm", shear, controls, heated));
+    if (slides && !met)
     {
-        // a little heat first: it thins the oil where most of it is made
-        for (scalar share = 1.0/64; share <= 1; share *= 4)
-        {
-            if (!solve("thinFilm", shear, controls, share)) return found;
-        }
+        from = first;
+        met = slide();
+        if (!met) from = first;
+        slid = 1;
     }
+    if (!met && !thin()) return found;
     if (flow == "thinFilm") return found;
 
     // where all stresses have no solution to be found, the thin film shows whether the law of shear is admissible

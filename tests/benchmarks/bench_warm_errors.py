@@ -1,0 +1,118 @@
+"""How often errors hold that `reynolds` states of films with heat, limiting stress and sliding.
+
+Run: python -m tests.benchmarks.bench_warm_errors [--points N] [--seed S] [--kind KIND]
+
+Random points of the inner contact of NU308, FVA 3: 5 to 300 N/mm and 0.5 to 8 m/s, both logarithmic, 40 to 100 degC,
+M above 0.5; slide-to-roll 0 (a third of the points) or 0.02 to 1, logarithmic. What is stated is compared with twice
+the density of cells and its longer inlet. The error of that reference is bounded by its own statement, which is shown
+as "references". Temperatures are the rises of the hottest place of the film and of the surfaces.
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+from typing import NamedTuple
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.ehl.solver import ReynoldsSolver
+from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.contact import OperatingPoint
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.moes import moes_groups
+from ehdmaps.physics.solids import STEEL
+from ehdmaps.physics.solution import ContactSolution, contact_solution
+
+CONTACT = BearingGeometry.named("NU308").contacts(STEEL, "iso16281")[0]
+OIL = Lubricant.named("FVA3")
+LOADS, SPEEDS, CELSIUS, SLIPS = (5e3, 3e5), (0.5, 8.0), (40.0, 100.0), (0.02, 1.0)
+LIGHTEST, REFERENCE = 0.5, 13.0
+KINDS = {
+    "thermal, limiting": {"physics": "thermal", "shear": "limiting"},
+    "thermal, eyring": {"physics": "thermal", "shear": "eyring"},
+    "isothermal, limiting": {"physics": "isothermal", "shear": "limiting"},
+}
+NAMES = ("film_offset", "stiffness", "damping", "central_film", "minimum_film", "rolling_force")
+RISES = ("film_temperature", "surface_temperature")
+
+
+class Place(NamedTuple):
+    """Load [N/m], speed [m/s], temperature [K] and slide-to-roll ratio."""
+
+    load: float
+    speed: float
+    temperature: float
+    slip: float
+
+
+def places(seed: int, count: int) -> list[Place]:
+    """Points of the ranges above."""
+    rng = np.random.default_rng(seed)
+    found: list[Place] = []
+    while len(found) < count:
+        load, speed, slip = (float(np.exp(rng.uniform(*np.log(ends)))) for ends in (LOADS, SPEEDS, SLIPS))
+        temperature = float(rng.uniform(*CELSIUS)) + 273.15
+        state = OIL.at(temperature)
+        alpha = state.pressure_viscosity.pressure_viscosity
+        M, _ = moes_groups(load, speed, state.viscosity, alpha, CONTACT.radius, CONTACT.reduced_modulus)
+        if M > LIGHTEST:
+            found.append(Place(load, speed, temperature, 0.0 if len(found) % 3 == 0 else slip))
+    return found
+
+
+def solved(place: Place, kind: str, density: float) -> ContactSolution:
+    """The contact at one place."""
+    solver = ReynoldsSolver(slide_to_roll=place.slip, density=density, **KINDS[kind])  # type: ignore[arg-type]
+    (film,) = solver.solve_line(CONTACT, OIL, (place.load,), place.speed, place.temperature)
+    return contact_solution(film, CONTACT, OperatingPoint(place.load, place.speed, place.temperature))
+
+
+def numbers(place: Place, found: ContactSolution) -> FloatArray:
+    """What is compared."""
+    rises = [getattr(found, name) - place.temperature for name in RISES]
+    return np.array([*(getattr(found, name) for name in NAMES), *rises])
+
+
+def stated(place: Place, found: ContactSolution) -> FloatArray:
+    """Relative errors that are stated of the same."""
+    rises = [getattr(found, f"{name}_error") / (getattr(found, name) - place.temperature) for name in RISES]
+    return np.abs([*(getattr(found, f"{name}_error") for name in NAMES), *rises])
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--points", type=int, default=30)
+    parser.add_argument("--seed", type=int, default=4, help="1 to 3 are those by which the estimates were chosen")
+    parser.add_argument("--kind", choices=KINDS, action="append")
+    options = parser.parse_args()
+    for kind in options.kind or KINDS:
+        started, rows, unsolved = time.perf_counter(), [], 0
+        for place in places(options.seed, options.points):
+            found, reference = (solved(place, kind, density) for density in (ReynoldsSolver().density, REFERENCE))
+            if not (found.status.usable and reference.status.usable):
+                unsolved += 1
+                continue
+            exact = numbers(place, reference)
+            error = np.abs(numbers(place, found) / exact - 1.0)
+            rows.append((error, stated(place, found), stated(place, reference)))
+        errors, bars, references = (np.array(part) for part in zip(*rows, strict=True))
+        seconds = time.perf_counter() - started
+        print(f"{kind}: {len(rows)} points of seed {options.seed}, {unsolved} not solved on both; {seconds:.0f} s")
+        print(f"  {'':20s}{'error: median':>16s}{'95 %':>10s}{'stated: median':>16s}{'held':>8s}{'references':>12s}")
+        for i, name in enumerate((*NAMES, *(f"{each} rise" for each in RISES))):
+            if not np.isfinite(errors[:, i]).all():
+                continue
+            print(
+                f"  {name.replace('_', ' '):26s}{np.median(errors[:, i]):10.1e}{np.quantile(errors[:, i], 0.95):10.1e}"
+                f"{np.median(bars[:, i]):16.1e}{100.0 * np.mean(errors[:, i] <= bars[:, i]):7.0f}%"
+                f"{np.median(references[:, i]):12.1e}"
+            )
+
+
+if __name__ == "__main__":
+    with threadpool_limits(1):
+        main()
