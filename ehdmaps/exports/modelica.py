@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from ehdmaps.errors import InputError
+from ehdmaps.exports.modelica_memory import memory_text
 from ehdmaps.exports.target import Target, origin
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.kernels.lines import line_approach
@@ -35,7 +36,7 @@ _WORDS = """
 """
 """Words of the language (Modelica Language Specification 3.5, section 2.3.3)."""
 
-_OWN = ("Table", "atRest", "force", "forceDerivative", "Example")
+_OWN = ("Table", "atRest", "force", "forceDerivative", "Example", "Film", "cellOf", "loadAt", "film", "ExampleMemory")
 """Names inside the package."""
 
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,62}")
@@ -203,7 +204,7 @@ end {name};
 """
 
 
-def package(law: LawAtPoint, name: str, lines: Iterable[str]) -> str:
+def package(law: LawAtPoint, name: str, lines: Iterable[str], memory: bool = False) -> str:
     """Return a law at one speed and temperature as a Modelica package.
 
     Parameters
@@ -214,6 +215,8 @@ def package(law: LawAtPoint, name: str, lines: Iterable[str]) -> str:
         Name of the package.
     lines : iterable of str
         Lines of its header; the first carries our mark.
+    memory : bool
+        Whether it has films with memory, too.
 
     Raises
     ------
@@ -235,7 +238,7 @@ def package(law: LawAtPoint, name: str, lines: Iterable[str]) -> str:
     # The mass oscillates at 1 kHz, and begins 1 % of its approach off its place.
     mass = float(stiffness) / (2.0e3 * math.pi) ** 2
     rows = ",\n      ".join("{" + ", ".join(_number(value) for value in row) + "}" for row in line.coefficients)
-    return _BODY.format(
+    text = _BODY.format(
         name=name,
         title="EHD contact law at one speed and temperature",
         lines="\n  // ".join(_comment(one) for one in lines),
@@ -253,6 +256,11 @@ def package(law: LawAtPoint, name: str, lines: Iterable[str]) -> str:
         mass=_number(mass),
         begin=_number(1.01 * begin),
     )
+    if memory:
+        words = {"nominal": f"{1.0 / line.inverse_scale:.1g}", "nominal_load": _number(load), "mass": _number(mass)}
+        end = text.rindex(f"end {name};")
+        text = f"{text[:end]}\n{memory_text(law, {**words, 'begin': _number(1.01 * begin)})}{text[end:]}"
+    return text
 
 
 def _number(value: float) -> str:
@@ -270,6 +278,10 @@ def _add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--speed", required=False, help='entrainment speed, such as "1.7 m/s"; a map of one has it')
     parser.add_argument("--temperature", help='of the raceways, such as "40 degC"; a map of one has it')
     parser.add_argument("--contact", metavar="NAME", help="series | inner | outer | line; default: series, of a line")
+    parser.add_argument(
+        "--films", choices=("slow", "memory"), default="slow",
+        help="films follow at once (the default), or also relax: function film, model ExampleMemory",
+    )  # fmt: skip
     parser.add_argument("--name", default="EhdContact", help="name of the package; EhdContact if left out")
 
 
@@ -292,9 +304,9 @@ def _write(emap: EHDMap, path: Path, output: Path | None, arguments: argparse.Na
         *origin(emap, path.name),
         f"contact: {kind}, entrainment speed {SPEED.text(speed)}, temperature {TEMPERATURE.text(temperature)}",
         "units: SI, per unit length of contact; approach and load are positive together",
-        "above the highest load of the map an assertion fails; films have stiffness and damping of slow motion",
+        "above the highest load of the map an assertion fails; function force: stiffness and damping of slow motion",
     )
-    write_text(output, package(law, arguments.name, header), PACKAGE)
+    write_text(output, package(law, arguments.name, header, arguments.films == "memory"), PACKAGE)
     return f"{output}: written"
 
 

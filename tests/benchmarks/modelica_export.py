@@ -5,8 +5,8 @@ python -m tests.benchmarks.modelica_export nu308.nc RUMOCA/bin/python
 
 rumoca takes some seconds for each simulation of the table: `tests/system/test_export_modelica_read.py` makes two short
 ones. Here the law is compared over the whole table at three rates, its derivative in time with the statements of the
-package run by Python, which the unit tests compare with difference quotients, the example with DOP853 on the law in
-Python, and an approach above the map has to stop the simulation.
+package run by Python, which the unit tests compare with difference quotients, the examples with DOP853 on the law in
+Python and with steps of its films, and an approach above the map has to stop the simulation.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from pathlib import Path
 
 import numpy as np
 from scipy.integrate import solve_ivp
+from scipy.interpolate import CubicSpline
 
 import ehdmaps
 from ehdmaps.jobs.cli import main as export
@@ -28,6 +29,10 @@ from tests.cases.modelica_text import functions
 SPEED, TEMPERATURE = 1.7, 313.15
 RATES = (0.0, 1e-3, -1.0)
 """Of the approach [m/s]: at rest, together, and parting so fast that the contact cannot follow."""
+
+FILMS = ("--films", "memory")
+STEPS = 8
+"""Steps of films in Python between two outputs of the example with memory."""
 
 SWEEP = """
   model Sweep
@@ -72,17 +77,18 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "law.mo"
         at = ("--speed", f"{SPEED} m/s", "--temperature", f"{TEMPERATURE} K")
-        assert export(["export", given.map, "--to", "modelica", *at, "-o", str(file)]) == 0
+        assert export(["export", given.map, "--to", "modelica", *at, *FILMS, "-o", str(file)]) == 0
         text = file.read_text()
     end = text.rindex("end EhdContact;")
     runs = [
         *(("Sweep", 0.999, 0.003, {"rate": rate}) for rate in RATES),
         ("Sweep", 1.2, 0.1, {}),
+        ("ExampleMemory", 1e-3, 2e-6, {}),
         ("Example", 0.01, 1e-4, {}),
     ]
     asked = json.dumps([text[:end] + SWEEP + text[end:], runs])
     done = subprocess.run([given.python, "-c", PROGRAM], input=asked, capture_output=True, text=True, check=True)
-    *sweeps, above, example = json.loads(done.stdout)
+    *sweeps, above, relaxing, example = json.loads(done.stdout)
     law = ehdmaps.open_map(given.map).law("series").at(SPEED, TEMPERATURE)
     derivative = functions(text)["forceDerivative"]
     (highest,) = (float(x) for x in re.findall(r"highestApproach.* = (\S+) ", text))
@@ -113,6 +119,16 @@ def main() -> None:
     difference = np.abs(np.array(example["approach"]) - solved.y[0])
     relative, swing = float(np.max(difference / solved.y[0])), float(np.ptp(solved.y[0]))
     print(f"example over 10 ms: {relative:.1e} of the approach, {difference.max() / swing:.1e} of its change")
+    memory, path = law.memory, CubicSpline(relaxing["time"], relaxing["approach"])
+    film, loads = memory.settled(path(0.0)), [relaxing["w"][0]]
+    each = (relaxing["time"][1] - relaxing["time"][0]) / STEPS
+    for index in range(1, STEPS * (len(relaxing["time"]) - 1) + 1):
+        load, _, film = memory.advance(film, path(index * each), each)
+        loads.append(float(load))
+    departs = np.abs(np.array(relaxing["w"]) - loads[::STEPS]).max() / np.ptp(relaxing["w"])
+    print(
+        f"example with memory over 1 ms: the load departs from steps of {1e6 * each:g} us by {departs:.1e} of its swing"
+    )
 
 
 if __name__ == "__main__":

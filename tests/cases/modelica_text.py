@@ -1,6 +1,7 @@
 """Functions of an exported Modelica package as Python functions: a second reader of its text.
 
-It knows what the package has: assignments, also of several results, branches, `assert`, and the constants of `Table`.
+It knows what the package has: assignments, also of several results, branches, loops, `assert`, and the constants of
+`Table` and `Film`.
 """
 
 from __future__ import annotations
@@ -23,12 +24,12 @@ def functions(text: str) -> dict[str, Callable[..., Any]]:
         The package.
     """
     known: dict[str, Any] = {
-        "table": _table(text), "check": _check, "integer": int, "max": max, "min": min,
+        "table": _table(text), "check": _check, "integer": int, "max": max, "min": min, "abs": abs,
         **{name: getattr(math, name) for name in ("floor", "log", "exp", "sqrt")},
     }  # fmt: skip
     names = []
     for name, head, body in _FUNCTION.findall(text):
-        inputs, outputs = (re.findall(rf"{kind} Real (\w+)", head) for kind in ("input", "output"))
+        inputs, outputs = (re.findall(rf"{kind} \w+ (\w+)", head) for kind in ("input", "output"))
         lines = [f"def {name}({', '.join(inputs)}):", *_lines(body), f"  return {', '.join(outputs)}"]
         exec("\n".join(lines), known)
         names.append(name)
@@ -38,10 +39,11 @@ def functions(text: str) -> dict[str, Callable[..., Any]]:
 def _table(text: str) -> dict[str, Any]:
     """Constants of the table, its cubics among them."""
     found: dict[str, Any] = {
-        name: float(value) for name, value in re.findall(r"constant \w+ (\w+)(?:\([^)]*\))? = ([-+.e\d]+)", text)
+        name: (int if kind == "Integer" else float)(value)
+        for kind, name, value in re.findall(r"constant (\w+) (\w+)(?:\([^)]*\))? = ([-+.e\d]+)", text)
     }
-    rows = text.split("cubic[")[1].split("{\n")[1].split('"', maxsplit=1)[0]
-    found["cubic"] = [[float(value) for value in row.split(",")] for row in re.findall(r"\{([^{}]+)\}", rows)]
+    for name, body in re.findall(r"constant Real (\w+)\[[^]]*\] = \{\n(.*?)\} \"", text, re.DOTALL):
+        found[name] = [[float(value) for value in row.split(",")] for row in re.findall(r"\{([^{}]+)\}", body + "}")]
     return found
 
 
@@ -55,16 +57,17 @@ def _lines(body: str) -> list[str]:
     """Statements as lines of Python."""
     found, depth = [], 1
     body = re.sub(r"//.*", "", body)
-    for statement in re.split(r"(?<=;)|(?<= then)(?=\n)|(?<= else)(?=\n)", body):
+    for statement in re.split(r"(?<=;)|(?<= then)(?=\n)|(?<= else)(?=\n)|(?<= loop)(?=\n)", body):
         words = " ".join(statement.split()).removesuffix(";")
         if not words or words.startswith("annotation"):
             continue
-        if words == "end if":
+        if words in ("end if", "end for"):
             depth -= 1
             continue
-        opens = words == "else" or words.endswith(" then")
+        opens = words == "else" or words.endswith((" then", " loop"))
         if words.startswith("else"):
             depth -= 1
+        words = re.sub(r"in (\d+):(\d+) loop", r"in range(\1, \2 + 1)", words)
         line = _expression(words.removesuffix(" then")) if opens else _assignment(words)
         found.append("  " * depth + line.replace("elseif", "elif") + (":" if opens else ""))
         depth += opens
@@ -81,7 +84,11 @@ def _assignment(words: str) -> str:
 
 def _expression(words: str) -> str:
     """An expression, or the beginning of a branch."""
-    words = re.sub(r"Table\.cubic\[cell, (\d)\]", lambda found: f"table['cubic'][cell - 1][{int(found[1]) - 1}]", words)
-    words = re.sub(r"Table\.(\w+)", r"table['\1']", words).replace("^", "**")
+    words = re.sub(
+        r"(?:Table|Film)\.(\w+)\[(\w+), (\d+)\]",
+        lambda found: f"table['{found[1]}'][{found[2]} - 1][{int(found[3]) - 1}]",
+        words,
+    )
+    words = re.sub(r"(?:Table|Film)\.(\w+)", r"table['\1']", words).replace("^", "**")
     branch = _BRANCH.fullmatch(words)
     return f"({branch[2]}) if {branch[1]} else ({branch[3]})" if branch else words

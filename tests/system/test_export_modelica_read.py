@@ -70,3 +70,12 @@ def test_rumoca_reads_the_package(small_map, tmp_path):
         method="DOP853", rtol=1e-11, atol=1e-18, t_eval=np.array(found.time),
     ).y[0]  # fmt: skip
     assert np.max(np.abs(np.array(found["approach"]) - solved)) < 1e-5 * np.ptp(solved)
+
+
+@pytest.mark.slow
+def test_rumoca_compiles_films_with_memory(small_map, tmp_path):
+    """The example with memory is a balanced model; `tests.benchmarks.modelica_export` runs it."""
+    file = tmp_path / "a.mo"
+    at = ("--speed", "0.7 m/s", "--temperature", "30 degC", "--films", "memory")
+    assert main(["export", small_map, "--to", "modelica", *at, "-o", str(file)]) == 0
+    assert rumoca.Session().loads(file.read_text(), model="EhdContact.ExampleMemory")

@@ -107,3 +107,26 @@ def test_what_is_refused(path, tmp_path, capsys, options, said):
     assert main(["export", str(path), "--to", "modelica", *options, "-o", str(tmp_path / "a.mo")]) == 2
     assert said in capsys.readouterr().err
     assert not (tmp_path / "a.mo").exists()
+
+
+def test_films_with_memory(path, tmp_path):
+    """Load and rate of the package beside a step of `FilmMemory` of 0.1 ns, of first order in it.
+
+    Films are squeezed and relieved by up to 5 % of their approach.
+    """
+    file = tmp_path / "a.mo"
+    assert main(["export", str(path), "--to", "modelica", *AT, "--films", "memory", "-o", str(file)]) == 0
+    film = functions(file.read_text())["film"]
+    memory, step = ehdmaps.open_map(path).law("series").at(0.7, 303.15).memory, 1e-10
+    for state in np.linspace(0.3e-6, 12e-6, 25).tolist():
+        for part in (-0.05, 0.02, 0.05):
+            approach = state * (1.0 + part)
+            w, rate = film(approach, state)
+            load, _, after = memory.advance(memory.settled(state), approach, step)
+            assert w == pytest.approx(float(load), rel=1e-5)
+            assert rate == pytest.approx((float(after.approach) - state) / step, rel=1e-3)
+    assert film(4e-6, 4e-6)[1] == pytest.approx(0.0, abs=1e-7)  # at rest; by what two cubics differ
+    gone = memory.table.lift_off - 1e-6
+    w, rate = film(gone, gone)
+    assert w == 0.0
+    assert rate == 0.0
