@@ -4,13 +4,15 @@ What steps resolve cannot be told from frequencies alone: contacts lift off, fil
 a run are made again, from the state that it had there, films included, with twice its step: the loudest one of each
 eighth of the run. Twice the step costs half, so that a fifth of the run is seen for a tenth of its steps: errors are
 large where a resonance is passed, and change their sign there, which two parts alone miss. The first quarter of a part
-is left out, in which films take another step. The largest error of all parts is stated, for each sensor.
+is left out, in which films take another step, and so is the first twentieth of the run, in which it swings in. The
+largest error of all parts is stated, for each sensor.
 
 A method of second order whose levels change by d with twice the step is d/3 away from its limit. Where signals are half
 as far apart as they are large, there is no order, and all of d counts. Where they still come apart at the end of the
 part, as with little damping, their levels are yet those of their common start, and a third of the distance of the
 signals themselves in the last quarter says by how much levels may differ; such errors are told as "up to". Levels that
-are more than 20 dB below the loudest ones count as these 20 dB.
+are more than 20 dB below the loudest ones of the whole run count as these 20 dB; a sensor that is so quiet in all parts
+is told as not judged.
 """
 
 from __future__ import annotations
@@ -42,6 +44,10 @@ PARTS = 8
 
 FEWEST = 200
 """Fewest steps of a part, for short runs."""
+
+SWINGING_IN = 0.05
+"""Part of a run at its start that is not judged: two of 40 windows, as many as levels within a tolerance may miss. A
+smooth machine is loudest there, by a ringing that its run was not made for."""
 
 NOTABLE = 1.0
 """Estimated error of a level from which on it is warned of [dB]."""
@@ -83,6 +89,8 @@ class StepCheck:
         Estimated error of each level, where signals still come apart that of their distance [dB].
     growing : array of bool, shape (parts, sensors)
         Whether the signals still come apart at the end of the part, so that the error is that of their distance.
+    floor : array, shape (sensors,)
+        Root mean square of each signal below which its levels are not judged.
     """
 
     duration: float
@@ -95,6 +103,7 @@ class StepCheck:
     by_level: FloatArray
     errors: FloatArray
     growing: BoolArray
+    floor: FloatArray
 
     @property
     def largest(self) -> FloatArray:
@@ -141,6 +150,8 @@ class StepCheck:
 
     def _size(self, sensor: int) -> str:
         """The error of a sensor in words."""
+        if np.all(self.with_step[:, sensor] < self.floor[sensor]):
+            return "not judged, 20 dB below its swinging in"
         at = int(np.argmax(self.errors[:, sensor]))
         return f"{'up to ' if self.growing[at, sensor] else ''}{self.errors[at, sensor]:.2g} dB"
 
@@ -186,18 +197,20 @@ def step_check(model: Model, course: RunUp, record: Recording, highest: float = 
         speed = SpeedProfile(Course(tuple(record.time.tolist()), tuple(record.speed.tolist())))
     coarser = dataclasses.replace(settings, step=2.0 * step, sample=2.0 * step)
     speeds, found = [], []
-    chosen, largest = _chosen(record, step, rows, highest)
+    chosen = _chosen(record, step, rows, highest)
+    floor = QUIET * window_sizes(up_to(record.signals, step, highest), total // rows).max(axis=0)
     for mark, seen in chosen:
         begin = mark.stepped(2.0)
         try:
             again = run_system(model.system, speed, rows * step, coarser, sensors=sensors, begin=begin).signals
         except EhdmapsError:
             return None
-        found.append(_compared(seen[::2], up_to(again, 2.0 * step, highest), QUIET * largest))
+        found.append(_compared(seen[::2], up_to(again, 2.0 * step, highest), floor))
         first = round(mark.time / step)
         speeds.append((float(record.signal_speed[first]), float(record.signal_speed[first + rows])))
     names, units = tuple(sensor.name for sensor in sensors), tuple(Reference.of(sensor).unit for sensor in sensors)
-    return StepCheck(rows * step, step, tuple(speeds), names, units, *map(np.array, zip(*found, strict=True)))
+    columns = (*map(np.array, zip(*found, strict=True)), floor)
+    return StepCheck(rows * step, step, tuple(speeds), names, units, *columns)
 
 
 def up_to(signals: FloatArray, step: float, highest: float) -> FloatArray:
@@ -289,14 +302,11 @@ def _compared(
     return *sizes, by_level, np.where(growing, np.maximum(by_level, by_distance), by_level), growing
 
 
-def _chosen(
-    record: Recording, step: float, rows: int, highest: float
-) -> tuple[list[tuple[Mark, FloatArray]], FloatArray]:
-    """Marks from which the loudest part of each stretch is made again, with the signals there; the largest sizes."""
+def _chosen(record: Recording, step: float, rows: int, highest: float) -> list[tuple[Mark, FloatArray]]:
+    """Marks from which the loudest part of each stretch is made again, with the signals there."""
     begins = {round(mark.time / step): mark for mark in record.marks}
     fitting = [first for first in begins if first + rows < record.signal_time.size]
-    # A run swings in at its start, which is one window of many.
-    fitting = [first for first in fitting if first >= rows] or fitting
+    fitting = [first for first in fitting if first >= SWINGING_IN * record.signal_time.size] or fitting
     seen = [up_to(record.signals[first : first + rows + 1], step, highest) for first in fitting]
     sizes = np.array([np.std(part, axis=0) for part in seen])
     largest = sizes.max(axis=0)
@@ -305,4 +315,4 @@ def _chosen(
     count = min(PARTS, len(fitting), max(record.signal_time.size // (5 * rows), 1))
     stretches = np.array_split(np.arange(len(fitting)), count)
     places = [int(stretch[np.argmax(loudness[stretch])]) for stretch in stretches]
-    return [(begins[fitting[place]], seen[place]) for place in places], largest
+    return [(begins[fitting[place]], seen[place]) for place in places]

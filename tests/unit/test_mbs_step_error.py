@@ -10,7 +10,7 @@ import pytest
 from ehdmaps.errors import InputError
 from mbs import assemble, parse_scene, read_scene, runup
 from mbs.analyses.campbell import campbell
-from mbs.analyses.step_error import FEWEST, NOTABLE, PART, PARTS, _compared, step_check, up_to
+from mbs.analyses.step_error import FEWEST, NOTABLE, PART, PARTS, SWINGING_IN, _compared, step_check, up_to
 from mbs.model.drive import DrivenSpeed
 from mbs.scene.changes import with_duration, with_step
 from mbs.settings import CampbellSettings
@@ -106,7 +106,7 @@ class TestEstimate:
         found = ran(swinging, 2e-5).steps
         first, last = swinging.run_up.speed.at(0.0)[0], swinging.run_up.speed.at(1.0)[0]
         places = (np.array(found.speeds)[:, 0] - first) / (last - first)
-        assert places.min() >= PART
+        assert places.min() >= SWINGING_IN
         # One in each eighth, to a mark.
         assert np.floor(PARTS * (places + 1e-3)).tolist() == pytest.approx(np.arange(PARTS), abs=1.0)
         assert len(set(places)) == PARTS
@@ -144,6 +144,17 @@ class TestEstimate:
         assert found.growing[:, 0].any()
         (line,) = found.lines
         assert "up to" in line and "signals still come apart at the end of a part" in line
+
+    def test_a_sensor_that_is_loud_only_as_it_swings_in_is_not_judged(self, swinging):
+        found = ran(swinging, 8e-5)
+        loud_at_first = found.record.signals * np.where(found.record.signal_time < 0.05, 100.0, 1.0)[:, None]
+        record = dataclasses.replace(found.record, signals=loud_at_first)
+        check = step_check(found.model, found.course, record)
+        # Its 20 dB on both sides are the same.
+        np.testing.assert_array_equal(check.by_level, 0.0)
+        assert check.lines[0].startswith(
+            "estimated error of the step of 80 us: S1 not judged, 20 dB below its swinging in; by twice the step"
+        )
 
     def test_where_nothing_can_be_compared_nothing_is_said(self, swinging):
         found = ran(with_duration(swinging, 0.02), 2e-5)
