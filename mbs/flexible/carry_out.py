@@ -32,6 +32,7 @@ from mbs.flexible.matrix_files import (
     read_mesh_nodes,
     without_fixed,
 )
+from mbs.flexible.nastran_files import read_nastran
 from mbs.flexible.number_table import LONGEST_FILE
 from mbs.flexible.plan import CylinderSurface, NodeList, PlannedInterface, ReductionPlan
 from mbs.flexible.reduced_body import ReducedBody
@@ -61,6 +62,8 @@ def read_model(plan: ReductionPlan) -> FiniteElementModel:
     InputError
         With file and line.
     """
+    if plan.form == "nastran":
+        return read_nastran(plan.stiffness, plan.mass, plan.mesh, plan.names, plan.units)
     nodes = read_mesh_nodes(plan.mesh)
     if plan.form == "abaqus":
         stiffness, mass = (read_abaqus_matrix(path, plan.dofs) for path in (plan.stiffness, plan.mass))
@@ -220,6 +223,7 @@ def plan_key(plan: ReductionPlan) -> str:
     # The ending of a mesh says its format, and its name stands in the result.
     settings = (
         plan.form,
+        plan.names,
         plan.units,
         plan.cutoff,
         plan.mesh.name,

@@ -30,7 +30,7 @@ MOST_FREEDOMS = 300_000
 _OVERREACH = 1.0 + 1e-6
 """Square of an entry over the product of its diagonals, which is at most 1 but for rounding."""
 
-_ASYMMETRY = 1e-9
+ASYMMETRY = 1e-9
 """Of the largest entry; text files of 10 digits and more stay below it."""
 
 
@@ -188,7 +188,7 @@ def _matrix_problems(name: str, matrix: sparse.csc_array) -> list[str]:
         ]
     largest = float(np.max(np.abs(matrix.data), initial=0.0))
     apart = float(np.max(np.abs((matrix - matrix.T).data), initial=0.0))
-    if apart > _ASYMMETRY * largest:
+    if apart > ASYMMETRY * largest:
         return [
             f"finite-element body, {name}: is not symmetric: entries differ by {apart:.3g} where the largest is "
             f"{largest:.3g}; allowed: symmetric matrices, without friction, follower loads or gyroscopic terms"
@@ -196,7 +196,7 @@ def _matrix_problems(name: str, matrix: sparse.csc_array) -> list[str]:
     diagonal = matrix.diagonal()
     triplets = sparse.coo_array(matrix)
     between = diagonal[triplets.row] * diagonal[triplets.col]
-    if np.any(diagonal < 0.0) or np.any(triplets.data**2 > between * _OVERREACH + (_ASYMMETRY * largest) ** 2):
+    if np.any(diagonal < 0.0) or np.any(triplets.data**2 > between * _OVERREACH + (ASYMMETRY * largest) ** 2):
         return [
             f"finite-element body, {name}: has a negative diagonal, or entries larger than their diagonals allow, so "
             "some motion would have negative energy; allowed: positive semi-definite matrices; check signs and files"
@@ -293,7 +293,7 @@ def extent(model: FiniteElementModel) -> Extent:
     for row, (node, direction) in enumerate(zip(model.nodes.tolist(), model.directions.tolist(), strict=True)):
         if model.has_position(node):
             motion[row] = lever_arm(model.position(node).tolist())[direction]
-        else:  # it moves along as the others do; of its turn nothing is known
+        elif direction < 3:  # it moves along as the others do; of its turn nothing is known
             motion[row, direction] = 1.0
     inertia = motion.T @ (model.mass @ motion)
     masses = np.diag(inertia)[:3]

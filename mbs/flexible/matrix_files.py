@@ -28,6 +28,9 @@ import re
 import subprocess
 import sys
 import tempfile
+import textwrap
+from collections.abc import Sequence
+from io import BytesIO
 from pathlib import Path
 from typing import NamedTuple
 
@@ -332,18 +335,22 @@ _NO_PACKAGE = 3
 """Exit status of the process that reads, where meshio or a package that it needs is not installed."""
 
 # meshio prints what went wrong, and leaves the program.
-_READ = f"""
+_AROUND = """
 import os, sys
 output = os.fdopen(os.dup(1), "wb")
 os.dup2(2, 1)
 try:
-    import meshio, numpy
-    numpy.save(output, numpy.asarray(meshio.read(sys.argv[1]).points, dtype=float))
+{}
 except ImportError as error:
     sys.stderr.write(str(error))
-    sys.exit({_NO_PACKAGE})
+    sys.exit({})
 except (Exception, SystemExit) as error:
     sys.stderr.write(f" {{error}}")
+"""
+
+_READ = """
+import meshio, numpy
+numpy.save(output, numpy.asarray(meshio.read(sys.argv[1]).points, dtype=float))
 """
 
 
@@ -426,13 +433,53 @@ def _meshio_nodes(path: Path) -> NodePositions:
 
 
 def _meshio_points(path: Path) -> FloatArray:
-    """Points that meshio finds, in a process of its own: some of its readers never end where a file was cut off."""
-    seconds = SHORTEST_READ + path.stat().st_size / BYTES_PER_SECOND
+    """Points that meshio finds; some of its readers never end where a file was cut off."""
+    content, words = run_apart(_READ, [str(path.absolute())], path.stat().st_size, "flexible", "meshio", str(path))
+    try:
+        return np.asarray(np.load(BytesIO(content), allow_pickle=False), dtype=np.float64)
+    except (OSError, ValueError, EOFError) as error:
+        raise InputError(
+            f"{path}: cannot be read as a mesh ({words:.120}); allowed: a format that meshio reads; was it cut off?"
+        ) from error
+
+
+def run_apart(
+    code: str, arguments: Sequence[str], length: int, extra: str, package: str, where: str
+) -> tuple[bytes, str]:
+    """Read files with another package in a process of its own.
+
+    Parameters
+    ----------
+    code : str
+        Python that imports the package, and writes what it finds in sys.argv[1:] to the binary file `output`.
+    arguments : sequence of str
+        What sys.argv[1:] is.
+    length : int
+        Bytes of the files; the time that it may take grows with them.
+    extra, package : str
+        As of `ehdmaps.extras.needs`.
+    where : str
+        With what a message on a missing package begins.
+
+    Returns
+    -------
+    content : bytes
+        What was written.
+    words : str
+        What went wrong, as the package says.
+
+    Raises
+    ------
+    DependencyError
+        If the package cannot be loaded.
+    """
+    seconds = SHORTEST_READ + length / BYTES_PER_SECOND
+    script = _AROUND.format(textwrap.indent(code.strip(), "    "), _NO_PACKAGE)
     with tempfile.TemporaryFile() as output:
         try:
             process = subprocess.run(
                 # -P: nothing is imported from the folder in which we are.
-                [sys.executable, "-P", "-c", _READ, str(path.absolute())],
+                [sys.executable, "-P", "-c", script, *arguments],
                 stdin=subprocess.DEVNULL,
                 stdout=output,
                 stderr=subprocess.PIPE,
@@ -441,17 +488,12 @@ def _meshio_points(path: Path) -> FloatArray:
             )
             words = " ".join(process.stderr.decode("utf-8", "replace").split())
             if process.returncode == _NO_PACKAGE:
-                with needs("flexible", "meshio", f"{path}: reading this format"):
+                with needs(extra, package, f"{where}: reading this format"):
                     raise ImportError(f"{words:.120}")
         except subprocess.TimeoutExpired:
             words = f"it did not end within {seconds:.3g} s"
         output.seek(0)
-        try:
-            return np.asarray(np.load(output, allow_pickle=False), dtype=np.float64)
-        except (OSError, ValueError, EOFError) as error:
-            raise InputError(
-                f"{path}: cannot be read as a mesh ({words:.120}); allowed: a format that meshio reads; was it cut off?"
-            ) from error
+        return output.read(), words
 
 
 _REFUSED = ("RIGIDBODY", "TRANSFORM", "MPC", "DISTRIBUTINGCOUPLING", "KINEMATIC", "DISTRIBUTING", "COUPLING")

@@ -140,7 +140,10 @@ def attach(body: Body, parts: Sequence[Attached]) -> Body:
     return replace(body, mass=mass, gyroscopic=gyroscopic)
 
 
-FORMATS = ("calculix", "matrix-market", "abaqus")
+FORMATS = ("calculix", "matrix-market", "abaqus", "nastran")
+
+NASTRAN_NAMES = ("KAAX", "MAAX")
+"""Names of stiffness and mass as Nastran gives them to a reduced part."""
 
 UNIT_SYSTEMS = ("SI", "mm-t-s")
 """N, m, kg, s; or N, mm, tonne, s, as finite-element models are often made."""
@@ -260,6 +263,8 @@ class ReductionPlan:
         Places where the body is observed.
     source : Path or None
         The file that says all this, if it is one of its own.
+    names : (str, str)
+        Names of stiffness and mass in their files, of the format nastran.
     """
 
     form: str
@@ -272,6 +277,7 @@ class ReductionPlan:
     interfaces: Mapping[str, PlannedInterface] = field(hash=False)
     points: Mapping[str, PlannedPoint] = field(default_factory=dict, hash=False)
     source: Path | None = None
+    names: tuple[str, str] = NASTRAN_NAMES
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "interfaces", MappingProxyType(dict(self.interfaces)))

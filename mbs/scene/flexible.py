@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,6 +20,7 @@ from mbs.flexible.plan import (
     AXES,
     FORMATS,
     KINDS,
+    NASTRAN_NAMES,
     TOLERANCE,
     UNIT_SYSTEMS,
     Attached,
@@ -137,16 +139,21 @@ def read_reduction(
     """
     before = len(section.problems)
     files: dict[str, Path | None] = {}
-    form = None
+    form, names = None, NASTRAN_NAMES
     matrices = section.table("matrices", f"{section.where} matrices", required)
     if matrices:
         form = matrices.choice("format", FORMATS, required=True)
-        # Only Abaqus may name the degrees of freedom in the matrix itself.
-        needed = ("stiffness", "mass") if form == "abaqus" else ("stiffness", "mass", "dofs")
+        # Abaqus and Nastran name the degrees of freedom in the matrix itself; Abaqus may.
+        needed = ("stiffness", "mass") if form in ("abaqus", "nastran") else ("stiffness", "mass", "dofs")
         files = {key: fields.file_path(matrices, key, folder) for key in needed}
         if form == "abaqus":
             files["dofs"] = fields.file_path(matrices, "dofs", folder) if "dofs" in matrices else None
-        matrices.close(("dofs",))
+        if form == "nastran":
+            names = (
+                _entry_name(matrices, "stiffness_name", NASTRAN_NAMES[0]),
+                _entry_name(matrices, "mass_name", NASTRAN_NAMES[1]),
+            )
+        matrices.close(("dofs", "stiffness_name", "mass_name"))
     mesh = fields.file_path(section, "mesh", folder)
     units = section.choice("units", UNIT_SYSTEMS) if "units" in section else "SI"
     cutoff = section.quantity("cutoff", "Hz", 1.0, 1e6, HERTZ, required=True)
@@ -172,7 +179,18 @@ def read_reduction(
         return None
     if stiffness is None or mass is None or mesh is None:
         return None
-    return ReductionPlan(form, stiffness, mass, mesh, files.get("dofs"), units, cutoff, interfaces, points)
+    return ReductionPlan(form, stiffness, mass, mesh, files.get("dofs"), units, cutoff, interfaces, points, names=names)
+
+
+def _entry_name(section: Table, key: str, otherwise: str) -> str:
+    """Read the name of a DMIG entry, which Nastran writes in capitals."""
+    name = section.get(key)
+    if key not in section:
+        return otherwise
+    if not (isinstance(name, str) and re.fullmatch(r"[A-Za-z][A-Za-z0-9]{0,7}", name)):
+        section.note(key, f"got {short(name)}; allowed: a name of a DMIG, such as {otherwise!r}")
+        return otherwise
+    return name.upper()
 
 
 def _interface(section: Table) -> PlannedInterface | None:

@@ -103,6 +103,9 @@ plane = { diameter = "1 mm", tolerance = "1 mm" }
 nodes = [1]
 [flexible.points]
 PLACE = ["0 mm", "0 mm", "0 mm"]
+[[flexible]]
+name = "NAME"
+matrices = { format = "nastran" }
 [[springs]]
 name = "NAME"
 on = "NAME"

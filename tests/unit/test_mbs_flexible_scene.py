@@ -105,7 +105,7 @@ class TestScene:
         ("changes", "message"),
         [
             ({"matrices": None}, "[[flexible]] housing matrices: missing; allowed: reduced, or matrices"),
-            ({"matrices": {"format": "nastran"}}, "format: got 'nastran'; allowed: 'calculix'"),
+            ({"matrices": {"format": "ansys"}}, "format: got 'ansys'; allowed: 'calculix'"),
             ({"matrices": {"format": "calculix", "stiffness": 5}}, "stiffness: got 5; allowed: the path of a file"),
             ({"matrices": {"format": "abaqus", "stiffness": "a", "mass": "b", "mess": 1}}, "mess: unknown key"),
             ({"mesh": None}, "mesh: missing"),

@@ -1,0 +1,202 @@
+"""Matrices of Nastran: DMIG entries of bulk data or punch files, as pyNastran reads them.
+
+KAAX, MAAX      names of EXTSEOUT(DMIGPCH) for stiffness and mass of a reduced part; any others can be named
+GRID            nodes, in any rectangular, cylindrical or spherical system; displacements along the basic system
+SPOINT          generalised coordinates of a part with modes; they have component 0
+
+pyNastran runs in a process of its own: a file that leads it astray ends there.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy import sparse
+
+from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.errors import InputError
+from ehdmaps.units import short
+from mbs.flexible.finite_elements import ASYMMETRY, MOST_FREEDOMS, FiniteElementModel, named
+from mbs.flexible.matrix_files import Labelled, NodePositions, assemble_model, run_apart
+from mbs.flexible.number_table import check_file, check_last_line
+
+_SYMMETRIC, _SQUARE = 6, 1
+"""Forms of a DMIG: one half of a symmetric matrix, or all of a square one."""
+
+_MODAL = 3
+"""Direction given to a generalised coordinate: like a rotation it has no length, so units of its rows are the same."""
+
+# What pip installs with pyNastran 1.4 is a numpy below 2; of what newer ones lack it needs in1d alone.
+_READ = """
+import numpy
+if not hasattr(numpy, "in1d"):
+    numpy.in1d = numpy.isin
+from pyNastran.bdf.bdf import BDF
+CARDS = {"GRID", "GRDSET", "DMIG", "CORD1R", "CORD1C", "CORD1S", "CORD2R", "CORD2C", "CORD2S"}
+found = {}
+mesh, *matrices = sys.argv[1:]
+models = {}
+def model_of(path):
+    if path not in models:
+        with open(path, encoding="latin-1") as file:
+            punch = not any(line.lstrip().upper().startswith("BEGIN") for line in file)
+        model = models[path] = BDF(debug=None)
+        model.cards_to_read = set(CARDS)
+        model.read_bdf(path, validate=False, xref=False, punch=punch, read_includes=False, encoding="latin-1")
+    return models[path]
+model = model_of(mesh)
+grids = sorted(model.nodes)
+found["turned"] = numpy.array([n for n in grids if model.nodes[n].cd not in (0, None)], dtype=numpy.int64)
+found["default"] = numpy.array(model.grdset is not None)
+found["numbers"] = numpy.array(grids, dtype=numpy.int64)
+found["positions"] = numpy.array([model.nodes[n].get_position_no_xref(model) for n in grids], dtype=float)
+for which, path, name in zip(("k", "m"), matrices[::2], matrices[1::2]):
+    entries = model_of(path).dmig
+    found[which + "_names"] = numpy.array(sorted(entries), dtype=str)
+    if name in entries:
+        entry = entries[name]
+        found[which + "_kind"] = numpy.array([entry.matrix_form, entry.tin], dtype=numpy.int64)
+        for part, values in (("_columns", entry.GCj), ("_rows", entry.GCi)):
+            found[which + part] = numpy.array(values, dtype=numpy.int64).reshape(-1, 2)
+        found[which + "_values"] = numpy.array(entry.Real, dtype=float)
+numpy.savez(output, **found)
+"""
+
+
+def read_nastran(
+    stiffness: Path, mass: Path, mesh: Path, names: tuple[str, str] = ("KAAX", "MAAX"), units: str = "SI"
+) -> FiniteElementModel:
+    """Read a body from DMIG entries and GRIDs; the three files may be one.
+
+    Parameters
+    ----------
+    stiffness, mass : Path
+        Bulk data or punch files with the DMIG entries.
+    mesh : Path
+        Bulk data with the GRIDs.
+    names : (str, str)
+        Names of the DMIG entries of stiffness and mass.
+    units : {"SI", "mm-t-s"}
+        Units of all of them.
+
+    Raises
+    ------
+    InputError
+        With file and entry; DependencyError without pyNastran.
+    """
+    for path in dict.fromkeys((stiffness, mass, mesh)):
+        check_file(path)
+        check_last_line(path)
+        _check_whole(path)
+    parts = _entries(mesh, (stiffness, names[0]), (mass, names[1]))
+    nodes = _nodes(mesh, parts)
+    k, m = (
+        _labelled(f"{path}, DMIG {name}", parts, which, nodes, mesh)
+        for which, path, name in (("k", stiffness, names[0]), ("m", mass, names[1]))
+    )
+    return assemble_model(k, m, nodes, units)
+
+
+def _check_whole(path: Path) -> None:
+    """Refuse bulk data that goes on in another file."""
+    with path.open(encoding="latin-1") as file:
+        for number, line in enumerate(file, start=1):
+            if line.lstrip()[:7].upper() == "INCLUDE":
+                raise InputError(f"{path}, line {number}: got {short(line.strip())}; allowed: bulk data in one file")
+
+
+def _entries(mesh: Path, *matrices: tuple[Path, str]) -> Mapping[str, Any]:
+    """What pyNastran finds in the files."""
+    given = [str(mesh.absolute()), *(text for path, name in matrices for text in (str(path.absolute()), name))]
+    paths = dict.fromkeys([mesh, *(path for path, _ in matrices)])
+    shown = ", ".join(str(path) for path in paths)
+    content, words = run_apart(_READ, given, sum(path.stat().st_size for path in paths), "nastran", "pyNastran", shown)
+    try:
+        with np.load(io.BytesIO(content), allow_pickle=False) as parts:
+            return dict(parts)
+    except (OSError, ValueError, EOFError) as error:
+        raise InputError(
+            f"{shown}: cannot be read as bulk data ({words:.200}); allowed: GRID and DMIG entries that pyNastran "
+            "reads; was it cut off?"
+        ) from error
+
+
+def _nodes(mesh: Path, parts: Mapping[str, Any]) -> NodePositions:
+    """The GRIDs, whose displacements are along the basic system."""
+    numbers, positions = parts["numbers"], parts["positions"]
+    if numbers.size == 0:
+        raise InputError(f"{mesh}: got no GRID; allowed: bulk data with the nodes of the matrices")
+    if parts["default"]:
+        raise InputError(f"{mesh}: got a GRDSET; allowed: each GRID with what it needs")
+    if parts["turned"].size:
+        raise InputError(
+            f"{mesh}: got GRID {named(parts['turned'])} with displacements in a system of their own (CD); allowed: in "
+            "the basic system, CD left out or 0"
+        )
+    return NodePositions(numbers, positions)
+
+
+def _labelled(where: str, parts: Mapping[str, Any], which: str, nodes: NodePositions, mesh: Path) -> Labelled:
+    """One of the two matrices."""
+    if f"{which}_kind" not in parts:
+        there = ", ".join(parts[f"{which}_names"].tolist()) or "none"
+        raise InputError(f"{where}: got none of this name; allowed: a DMIG of the file: {there:.200}")
+    form, kind = parts[f"{which}_kind"].tolist()
+    if form not in (_SYMMETRIC, _SQUARE):
+        raise InputError(f"{where}: got a matrix of form {form}; allowed: 6, symmetric, or 1, square")
+    if kind not in (1, 2):
+        raise InputError(f"{where}: got complex entries (TIN {kind}); allowed: real ones, TIN 1 or 2")
+    values: FloatArray = parts[f"{which}_values"]
+    if values.size == 0 or not np.all(np.isfinite(values)):
+        raise InputError(f"{where}: got no entries, or some that are no finite numbers; allowed: finite numbers")
+    keys = np.stack([_keys(where, parts[f"{which}_{part}"], nodes, mesh) for part in ("rows", "columns")])
+    labels, places = np.unique(keys, return_inverse=True)
+    rows, columns = places.reshape(keys.shape)
+    if labels.size > MOST_FREEDOMS:
+        raise InputError(f"{where}: got {labels.size} degrees of freedom; allowed: at most {MOST_FREEDOMS}")
+    # In one half a pair is the same either way round.
+    low, high = (np.minimum(rows, columns), np.maximum(rows, columns)) if form == _SYMMETRIC else (rows, columns)
+    _, first, counts = np.unique(low * labels.size + high, return_index=True, return_counts=True)
+    if np.any(counts > 1):
+        k = int(first[np.argmax(counts > 1)])
+        raise InputError(
+            f"{where}: got the entry of {_freedom(labels[rows[k]])} and {_freedom(labels[columns[k]])} twice; allowed: "
+            f"each once{', in one half' if form == _SYMMETRIC else ''}"
+        )
+    matrix = sparse.csc_array((values, (low, high)), shape=(labels.size, labels.size))
+    if form == _SYMMETRIC:
+        diagonal = sparse.dia_array((matrix.diagonal()[None, :], [0]), shape=matrix.shape)
+        matrix = sparse.csc_array(matrix + matrix.T - diagonal)
+    apart = sparse.coo_array(abs(matrix - matrix.T))
+    if apart.nnz and np.max(apart.data) > ASYMMETRY * np.max(np.abs(values)):
+        k = int(np.argmax(apart.data))
+        raise InputError(
+            f"{where}: is not symmetric: the entries of {_freedom(labels[apart.row[k]])} and "
+            f"{_freedom(labels[apart.col[k]])} differ by {apart.data[k]:.3g}; allowed: symmetric matrices"
+        )
+    return Labelled(matrix, labels // 6, labels % 6)
+
+
+def _keys(where: str, labels: IntArray, nodes: NodePositions, mesh: Path) -> IntArray:
+    """Node and direction of rows or columns as one number each."""
+    points, components = labels.T
+    known = np.isin(points, nodes.numbers)
+    lost = np.unique(points[(components > 0) & ~known])
+    if lost.size:
+        raise InputError(
+            f"{where}: got {named(lost)} without a GRID in {mesh}; allowed: nodes of the mesh, which has "
+            f"{nodes.numbers.size}; name the bulk data that has them"
+        )
+    scalar = np.unique(points[(components == 0) & known])
+    if scalar.size:
+        raise InputError(f"{where}: got component 0 of GRID {named(scalar)}; allowed: 1 to 6, and 0 of an SPOINT alone")
+    return np.asarray(6 * points + np.where(components == 0, _MODAL, components - 1), dtype=np.int64)
+
+
+def _freedom(key: int) -> str:
+    """A degree of freedom in words."""
+    return f"node {key // 6} direction {key % 6 + 1}"
