@@ -453,20 +453,20 @@ def run_apart(
     code : str
         Python that imports the package, and writes what it finds in sys.argv[1:] to the binary file `output`.
     arguments : sequence of str
-        What sys.argv[1:] is.
+        Content of sys.argv[1:].
     length : int
         Bytes of the files; the time that it may take grows with them.
     extra, package : str
-        As of `ehdmaps.extras.needs`.
+        Names of the extra and of the package, for `ehdmaps.extras.needs`.
     where : str
-        With what a message on a missing package begins.
+        Begin of a message on a missing package.
 
     Returns
     -------
     content : bytes
-        What was written.
+        Content of `output`.
     words : str
-        What went wrong, as the package says.
+        Complaints of the package.
 
     Raises
     ------

@@ -110,7 +110,7 @@ def _check_whole(path: Path) -> None:
 
 
 def _entries(mesh: Path, *matrices: tuple[Path, str]) -> Mapping[str, Any]:
-    """What pyNastran finds in the files."""
+    """Nodes and entries that pyNastran finds in the files."""
     given = [str(mesh.absolute()), *(text for path, name in matrices for text in (str(path.absolute()), name))]
     paths = dict.fromkeys([mesh, *(path for path, _ in matrices)])
     shown = ", ".join(str(path) for path in paths)
