@@ -45,9 +45,17 @@ def test_one_row_serves_four_types():
     assert designated("NU 308 ECP") is BEARINGS["NU308"]
 
 
-@pytest.mark.parametrize("text", ["NU210M", "NU 210 W", "6210", "NN3010"])
-def test_other_designs_are_refused(text):
-    with pytest.raises(InputError, match="bearing designation: got"):
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("NU210M", "got"),
+        ("NU 210 W", "got"),
+        ("NN3010", "got"),
+        ("6210", "6210 is a ball bearing: its contacts are points"),
+    ],
+)
+def test_other_designs_are_refused(text, words):
+    with pytest.raises(InputError, match=f"bearing designation: {words}"):
         designated(text)
 
 
