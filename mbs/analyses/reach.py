@@ -60,12 +60,17 @@ def source_of(model: Model) -> str:
     return "the map" if model.law.startswith(("map ", "maps ")) else "the table of the film formula"
 
 
+BALL_LOADS = "the loads that the film table of points holds"
+"""What is left by balls that carry more."""
+
 SPEED_TABLE = "its table of speeds"
 """What is left by a bearing or spring of matrices over speed."""
 
 
 def sources_of(model: Model) -> dict[str, str]:
-    """Source that each element reads, in words: `source_of` the laws of bearings, `SPEED_TABLE` of matrices over speed.
+    """Source that each element reads, in words.
+
+    `source_of` the laws of bearings, `SPEED_TABLE` of matrices over speed, `BALL_LOADS` of ball bearings.
 
     Parameters
     ----------
@@ -74,7 +79,9 @@ def sources_of(model: Model) -> dict[str, str]:
     """
     elements = [entry.element for entry in model.system.elements]
     source = source_of(model)
-    return {entry.name: SPEED_TABLE if isinstance(entry, MatrixElement) else source for entry in elements}
+    kinds = {entry.name: BALL_LOADS for entry in model.balls}
+    kinds |= {entry.name: SPEED_TABLE for entry in elements if isinstance(entry, MatrixElement)}
+    return {entry.name: kinds.get(entry.name, source) for entry in elements}
 
 
 def fade_of(model: Model) -> Fade | None:
@@ -158,6 +165,7 @@ _ADVICE = {
     "the map": "make a map that reaches there",
     SPEED_TABLE: "give it these speeds too",
     POINTS: "add points that reach there",
+    BALL_LOADS: "smaller loads or more speed lie inside",
 }
 
 
@@ -192,7 +200,7 @@ def outside_lines(
         left = words.format(count).replace("the map", source)
         axis = f" ({axes[name]})" if name in axes else ""
         held = "it is held at its edge" if source == SPEED_TABLE else "the law is held at its edge"
-        if source == POINTS:
+        if source in (POINTS, BALL_LOADS):
             held = "the law goes on straight"
         advice = _ADVICE.get(source, "a map may reach there, `mbs plan` writes its job")
         lines.append(f"warning: {begin}{name}: {left}{axis}, where {held}; {advice}")

@@ -63,6 +63,10 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             *_matrix(f"K [{STIFFNESSES}]", SPRING.factor * stiffness),
             *_matrix(f"C [{DAMPINGS}]", DAMPER.factor * damping),
         ]
+    if model.balls:
+        from mbs.output.ball_table import ball_lines
+
+        lines += ball_lines(model, balance)
     if model.gears:
         from mbs.output.results import gear_lines
 

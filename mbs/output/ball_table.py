@@ -10,13 +10,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ehdmaps.units import DAMPER, FILM, PRESSURE, RPM, SPRING, TEMPERATURE
-from mbs.bearings.balls.ball_point import SIDES, BallPoint
+from mbs.bearings.balls.ball_element import MachineBalls
+from mbs.bearings.balls.ball_point import SIDES, STATIC_LIMIT, BallPoint
 from mbs.output.bearing_table import regime, shown, smallest, warning_lines, write_csv
 from mbs.output.files import described
 from mbs.scene.fields import DEGREE, FORCE, MICROMETRE
 
 if TYPE_CHECKING:
     import xarray as xr
+
+    from mbs.model.equilibrium import Equilibrium
+    from mbs.scene.assembly import Model
 
 Points = Sequence[Sequence[BallPoint]]
 """By load, then by speed."""
@@ -324,3 +328,55 @@ def _table(points: list[BallPoint], description: BallDescription) -> list[str]:
 def _clean(angle: float) -> float:
     """Zero in place of round-off."""
     return 0.0 if abs(angle) < 1e-9 else angle
+
+
+_WAYS = ("x", "y", "z")
+
+
+def ball_lines(model: Model, balance: Equilibrium) -> list[str]:
+    """Lines on each ball bearing: its load, contact angles, loads of the balls, stiffness and damping.
+
+    Parameters
+    ----------
+    model : Model
+        Scene with its law.
+    balance : Equilibrium
+        Equilibrium of its system.
+    """
+    lines = []
+    for index, connected in enumerate(model.system.elements):
+        element = connected.element
+        if not isinstance(element, MachineBalls):
+            continue
+        at = element.settled(connected.transform @ balance.displacement, balance.operation)
+        force, loads = balance.forces[index], at.balls.load
+        angles = [math.degrees(at.balls.mean_angle(side)) for side in (0, 1)]
+        parts = (
+            ", ".join(f"{axis} {factor * matrix[k, k]:.5g}" for k, axis in enumerate(_WAYS)) + f" {unit}"
+            for matrix, factor, unit in (
+                (balance.element_stiffness[index], SPRING.factor, SPRING.unit),
+                (balance.element_damping[index], DAMPER.factor, DAMPER.unit),
+            )
+        )
+        pressures = [
+            float(np.max(contact.max_pressure(loads[side])))
+            for side, contact in enumerate(element.force.geometry.contacts(element.force.material))
+        ]
+        lines += [
+            f"{element.name}: {force[0]:.5g} N along x, {math.hypot(force[1], force[2]):.5g} N across it on the inner "
+            f"ring; contact angle {angles[0]:.4g} deg inner, {angles[1]:.4g} outer",
+            f"  {np.count_nonzero(loads[0] > 0.0)} of {loads.shape[1]} balls loaded, {loads[0].min():.4g} to "
+            f"{loads[0].max():.5g} N at the inner raceway; Hertz pressure up to {PRESSURE.value(pressures[0]):.4g} "
+            f"inner, {PRESSURE.text(pressures[1])} outer",
+            "  K " + "; C ".join(parts),
+        ]
+        if not np.any(loads[0] > 0.0):
+            lines.append(
+                f"warning: {element.name}: no ball carries load: nothing holds the shaft there, preload is lost"
+            )
+        if max(pressures) > STATIC_LIMIT:
+            lines.append(
+                f"warning: {element.name}: Hertz pressure above {PRESSURE.text(STATIC_LIMIT)}, the static limit of ISO "
+                "76: elastic contacts no longer hold"
+            )
+    return lines

@@ -36,7 +36,8 @@ def clearance_text(model: Model) -> str:
     """
     if model.states:
         return span([1e6 * state.clearance.operating for state in model.states], MICROMETRE.unit)
-    clearances = sorted({entry.geometry.diametral_clearance for entry in model.scene.bearings})
+    found = {entry.geometry.diametral_clearance for entry in model.scene.bearings}
+    clearances = sorted(found | {entry.geometry.clearance for entry in model.scene.balls})
     words = " stated" if any(entry.changes_in_operation for entry in model.scene.bearings) else ""
     return ", ".join(MICROMETRE.text(value) for value in clearances) + words
 
@@ -111,9 +112,11 @@ def heading(model: Model, speed: float | None = None) -> list[str]:
 def _estimated(model: Model) -> list[str]:
     """A line for each kind of bearing whose inner geometry is an estimate."""
     kinds: dict[tuple[str, str], list[str]] = {}
-    for entry in model.scene.bearings:
-        if entry.geometry.estimated:
-            kinds.setdefault((entry.geometry.name, entry.geometry.estimated), []).append(entry.name)
+    entries = [(entry.geometry.name, entry.geometry.estimated, entry.name) for entry in model.scene.bearings]
+    entries += [(entry.geometry.name, entry.geometry.estimated, entry.name) for entry in model.scene.balls]
+    for name, estimated, bearing in entries:
+        if estimated:
+            kinds.setdefault((name, estimated), []).append(bearing)
     return [f"  {name} ({', '.join(bearings)}): {words}" for (name, words), bearings in kinds.items()]
 
 

@@ -226,7 +226,12 @@ def _dry_model(scene: Scene, settings: PlanSettings) -> Model:
         model = assemble(_dry_scene(scene), "hertz", clearance=settings.clearance)
     except InputError as error:
         problems += error.problems
-    if not scene.bearings:
+    if scene.balls and not scene.bearings:
+        problems.append(
+            "got ball bearings alone, and maps are of line contacts; allowed: --law table, which reads their films "
+            "from the film table of points; leave --auto out"
+        )
+    elif not scene.bearings:
         problems.append("got no bearing; allowed: at least one [[bearings]], which is what a map is for")
     if warm := [entry.name for entry in scene.bearings if entry.thermal is not None]:
         problems.append(

@@ -6,7 +6,7 @@ The modules in the order of the data:
 reader         a scene file becomes a `Scene`; nothing is computed
 fields         how the values of a file are read: places, vectors, directions
 flexible, ...  one kind of table each, how it is read and built: shafts and bodies of finite elements,
-               `bearings` with `profiles`, `gears`, `matrices`, loads that turn (`turning`)
+               `bearings` with `profiles`, `balls`, `gears`, `matrices`, loads that turn (`turning`)
 specs          what a scene says of bodies and bearings: plain frozen values
 scene          the scene itself; it may be made of specs, without a file
 kinds          the machine elements that a scene may have, one row each

@@ -24,6 +24,7 @@ from mbs.model.relaxation import Films
 from mbs.model.system import Places, System
 from mbs.model.turning import TurningLoad
 from mbs.scene import kinds
+from mbs.scene.balls.element import ball_law_words
 from mbs.scene.bodies import build_bodies
 from mbs.scene.contact_laws import NO_LAW, ContactLaws, choose_law, supply_words, surface_label
 from mbs.scene.kinds import ElementKind
@@ -35,6 +36,7 @@ from mbs.scene.turning import turning_loads, with_places
 
 if TYPE_CHECKING:
     from ehdmaps.maps.emap import EHDMap
+    from mbs.bearings.balls.ball_element import MachineBalls
     from mbs.gears.gear import GearMesh
 
 
@@ -132,6 +134,8 @@ class Model:
         Oil of each bearing by its name, that of its map where there is one; empty for laws without films.
     chosen : mapping of str to str
         What was chosen of the scene beside its law, see `mbs.scene.choices`.
+    balls : tuple of MachineBalls
+        Ball bearings in the order of the scene.
     """
 
     scene: Scene
@@ -148,6 +152,7 @@ class Model:
     surface: Surface | None = None
     oils: Mapping[str, Lubricant] = field(default_factory=dict)
     chosen: Mapping[str, str] = field(default_factory=dict)
+    balls: tuple[MachineBalls, ...] = ()
 
     @property
     def warnings(self) -> list[str]:
@@ -215,7 +220,7 @@ def assemble(
     ('dry Hertz', 8)
     """
     maps = _opened(emap)
-    if law == TABLE_LAW and maps is None:
+    if law == TABLE_LAW and maps is None and (scene.bearings or not scene.balls):
         law, maps = "map", table_maps(scene)
     problems: list[str] = []
     if clearance is not None:
@@ -244,17 +249,20 @@ def assemble(
     if problems:
         raise InputError(problems)
     bearings = tuple(_shown(built, "bearings", BearingElement))
+    of_balls = {spec.name for spec in scene.balls}
+    words = ([laws.words] if bearings else []) + ([ball_law_words(laws)] if scene.balls else [])
     return Model(
         scene=scene,
         system=system,
-        law=laws.words if bearings else "none",
+        law="; ".join(words) or "none",
         bearings=bearings,
         gears=cast("tuple[GearMesh, ...]", tuple(part.shown for part in built["gears"])),
         films={
             entry.name: laws.films(entry.bearing, laws.supply(spec))
             for entry, spec in zip(bearings, scene.bearings, strict=True)
         },
-        label=laws.label if bearings else NO_LAW,
+        label=laws.label if bearings or scene.balls else NO_LAW,
+        balls=tuple(cast("MachineBalls", part.element) for part in built[""] if part.element.name in of_balls),
         memory=laws.memory,
         supplies=laws.supplies,
         surface=laws.surface,
@@ -323,6 +331,12 @@ def _with_clearance(scene: Scene, clearance: float, problems: list[str]) -> Scen
         except InputError as error:
             problems += [f"--clearance: {problem}" for problem in error.problems]
             changed.append(entry)
+    try:
+        scene = scene.with_balls(
+            lambda entry: dataclasses.replace(entry, geometry=dataclasses.replace(entry.geometry, clearance=clearance))
+        )
+    except InputError as error:
+        problems += [f"--clearance: {problem}" for problem in error.problems]
     return scene.with_bearings(changed)
 
 

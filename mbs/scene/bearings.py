@@ -14,11 +14,12 @@ from ehdmaps.units import LENGTH, PRESSURE, TEMPERATURE, Display, short
 from mbs.bearings.bearing import MOST_COUPLED
 from mbs.bearings.thermal import EXPANSIONS, STEEL_EXPANSION, GivenTemperatures, HeatPaths, Mounting, Seat
 from mbs.scene import fields
+from mbs.scene.balls.reading import is_ball, read_ball
 from mbs.scene.fields import DEGREE, MICROMETRE
 from mbs.scene.matrices import MatrixSpec, read_table_bearing
 from mbs.scene.profiles import read_profile
 from mbs.scene.shafts.standing import read_rings
-from mbs.scene.specs import BearingSpec
+from mbs.scene.specs import BallSpec, BearingSpec
 
 if TYPE_CHECKING:
     from mbs.scene.surroundings import Built, Surroundings
@@ -126,8 +127,8 @@ def _expansion(table: Table) -> float | None:
     return table.quantity("expansion", "1/K", *EXPANSIONS, EXPANSION)
 
 
-def read_bearing(section: Table, name: str) -> BearingSpec | MatrixSpec | None:
-    """Read a bearing of rollers, or one by matrices with kind = "table"; None where a problem was noted.
+def read_bearing(section: Table, name: str) -> BearingSpec | BallSpec | MatrixSpec | None:
+    """Read a bearing of rollers or balls, or one by matrices with kind = "table"; None where a problem was noted.
 
     Parameters
     ----------
@@ -138,6 +139,8 @@ def read_bearing(section: Table, name: str) -> BearingSpec | MatrixSpec | None:
     """
     if section.choice("kind", ("rollers", "table")) == "table":
         return read_table_bearing(section, name)
+    if is_ball(section):
+        return read_ball(section, name)
     inner, outer = read_rings(section, name)
     geometry = _geometry(section)
     profile = read_profile(section, geometry)

@@ -24,7 +24,8 @@ def with_loads(scene: Scene, factor: float) -> Scene:
 
 def with_start_angle(scene: Scene, angle: float) -> Scene:
     """The scene with all cages at another angle [rad]."""
-    return scene.with_bearings(dataclasses.replace(entry, start_angle=angle) for entry in scene.bearings)
+    changed = scene.with_bearings(dataclasses.replace(entry, start_angle=angle) for entry in scene.bearings)
+    return changed.with_balls(lambda entry: dataclasses.replace(entry, start_angle=angle))
 
 
 def with_slices(scene: Scene, slices: int) -> Scene:

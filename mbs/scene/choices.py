@@ -280,7 +280,7 @@ def named_law(name: str, scene: Scene) -> LawChoice:
     from mbs.scene.contact_laws import law_label
     from mbs.scene.map_set import TABLE_LAW, table_maps
 
-    if name != TABLE_LAW:
+    if name != TABLE_LAW or (scene.balls and not scene.bearings):
         return LawChoice(law_label(name), name)
     return map_law(table_maps(scene))
 
@@ -651,7 +651,7 @@ def _with_label(subject: Subject) -> Subject:
     """A subject whose law is not called dry where the scene has no roller bearing."""
     from mbs.scene.contact_laws import NO_LAW
 
-    if subject.scene.bearings or subject.law.has_films:
+    if subject.scene.bearings or subject.scene.balls or subject.law.has_films:
         return subject
     return dataclasses.replace(subject, law=dataclasses.replace(subject.law, label=NO_LAW))
 

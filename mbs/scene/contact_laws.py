@@ -128,7 +128,7 @@ TABLE_FORM = "table:FILE.csv"
 NO_LAW = "no contact law"
 """Label of a law in a scene without roller bearings."""
 
-_LABELS = {"hertz": "dry Hertz", "formula": "film formula"}
+_LABELS = {"hertz": "dry Hertz", "formula": "film formula", TABLE_LAW: "film table"}
 
 
 def choose_law(name: str | None, maps: MapSet | None) -> str:

@@ -13,8 +13,10 @@ from typing import TYPE_CHECKING, Any
 from ehdmaps.jobs.table import Table
 from mbs.gears.pair import GearPair
 from mbs.scene import bearings, gears
+from mbs.scene.balls.element import ball_problems, build_ball
+from mbs.scene.balls.reading import read_ball
 from mbs.scene.matrices import MatrixSpec, build_matrices, matrix_problems, read_spring
-from mbs.scene.specs import BearingSpec
+from mbs.scene.specs import BallSpec, BearingSpec
 from mbs.scene.surroundings import Built, Surroundings
 
 if TYPE_CHECKING:
@@ -79,6 +81,15 @@ KINDS = (
         places=lambda spec: (spec.on, spec.against),
         problems=matrix_problems,
         build=build_matrices,
+    ),
+    ElementKind(
+        key="",
+        word="ball bearing",
+        spec=BallSpec,
+        read=read_ball,
+        places=lambda spec: (spec.inner, spec.outer),
+        problems=ball_problems,
+        build=build_ball,
     ),
 )
 """All kinds, in the order of the elements of a system."""

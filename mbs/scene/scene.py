@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -15,7 +15,7 @@ from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.surface import Surface
 from mbs.gears.pair import GearPair
 from mbs.model.elements import Input, Load, Sensor, Spring
-from mbs.scene.specs import ORIGIN, BearingSpec, BodySpec, ElementSpec, FlexibleSpec, ShaftSpec, Triple
+from mbs.scene.specs import ORIGIN, BallSpec, BearingSpec, BodySpec, ElementSpec, FlexibleSpec, ShaftSpec, Triple
 from mbs.scene.turning import OrderLoad, Unbalance
 from mbs.settings import CampbellSettings, RunUp, SweepRange
 
@@ -141,6 +141,11 @@ class Scene:
         return tuple(entry for entry in self.elements if isinstance(entry, BearingSpec))
 
     @property
+    def balls(self) -> tuple[BallSpec, ...]:
+        """The ball bearings among the machine elements."""
+        return tuple(entry for entry in self.elements if isinstance(entry, BallSpec))
+
+    @property
     def gears(self) -> tuple[GearPair, ...]:
         """The gear pairs among the machine elements."""
         return tuple(entry for entry in self.elements if isinstance(entry, GearPair))
@@ -172,4 +177,9 @@ class Scene:
         """The scene with other bearings, each in the place of the one in the same order."""
         others = iter(tuple(bearings))
         changed = [next(others) if isinstance(entry, BearingSpec) else entry for entry in self.elements]
+        return dataclasses.replace(self, elements=changed)
+
+    def with_balls(self, change: Callable[[BallSpec], BallSpec]) -> Scene:
+        """The scene with each ball bearing changed."""
+        changed = [change(entry) if isinstance(entry, BallSpec) else entry for entry in self.elements]
         return dataclasses.replace(self, elements=changed)

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Protocol
 from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.oil_supply import OilSupply
+from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.physics.surface import CrownedProfile, TabulatedProfile
 from mbs.bearings.thermal import GivenTemperatures, HeatPaths, Mounting
 from mbs.model.body import Body, Inertia, rigid_problems
@@ -244,6 +245,32 @@ class BearingSpec:
     def changes_in_operation(self) -> bool:
         """True where its temperatures and its clearance in operation are others than the scene states."""
         return self.thermal is not None or self.mounting is not None
+
+
+@dataclass(frozen=True)
+class BallSpec:
+    """A ball bearing between two places.
+
+    Attributes
+    ----------
+    name : str
+        Name of the bearing.
+    inner, outer : str
+        Places of its rings.
+    geometry : BallGeometry
+        Grooves, balls, and the clearance of the scene.
+    start_angle : float
+        Angle of the first ball from y [rad].
+    axial_offset : float
+        Way of the inner ring along x against the outer one where both places have not moved [m].
+    """
+
+    name: str
+    inner: str
+    outer: str
+    geometry: BallGeometry
+    start_angle: float = 0.0
+    axial_offset: float = 0.0
 
 
 def _freeze(spec: object, *names: str) -> None:

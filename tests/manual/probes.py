@@ -147,6 +147,9 @@ shaft = "NAME"
 position = "0 mm"
 diametral_clearance = "0 mm"
 [[bearings]]
+name = "NAME"
+bearing = "6208"
+[[bearings]]
 name = "TABLE"
 kind = "table"
 speeds = ["0 rpm", "1 rpm"]

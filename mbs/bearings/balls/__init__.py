@@ -4,6 +4,7 @@
 `laws`                 contact laws of both raceways: Hertz, with a damper, or a film over it
 `ball_kernel`          the balance of each ball, and the sums over balls: force, stiffness, damping
 `ball_bearing`         the force element; loads and contact angles of the balls
+`ball_element`         a bearing in a machine: films of its speed, the cage that its balls ask for
 `films`                films of both contacts at one speed, solved at some loads, and the law that they make
 `ball_point`           an operating point: equilibrium, speed of the cage, pressures, films
 =====================  ================================================================================================

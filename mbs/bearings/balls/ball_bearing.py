@@ -277,6 +277,24 @@ class BallForce:
         raise AnalysisError(f"ball bearing {self.geometry.name}: no balance of a ball was found at {pose.tolist()}")
 
 
+def rolling_cage(force: BallForce, balls: BallLoads, inner_speed: float, outer_speed: float) -> float:
+    """Speed of the cage by pure rolling at the mean contact angles of both sides [rad/s].
+
+    Parameters
+    ----------
+    force : BallForce
+        The bearing.
+    balls : BallLoads
+        Loads and contact angles.
+    inner_speed, outer_speed : float
+        Speeds of the rings [rad/s].
+    """
+    ratio = force.geometry.ball_diameter / force.geometry.pitch_diameter
+    inner = 1.0 - ratio * math.cos(balls.mean_angle(0))
+    outer = 1.0 + ratio * math.cos(balls.mean_angle(1))
+    return (inner_speed * inner + outer_speed * outer) / (inner + outer)
+
+
 def _six(values: npt.ArrayLike, name: str) -> FloatArray:
     """Six numbers."""
     try:

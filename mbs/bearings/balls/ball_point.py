@@ -20,7 +20,7 @@ from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.film_formulas import hamrock_dowson_central, hamrock_dowson_minimum
 from ehdmaps.units import PRESSURE
-from mbs.bearings.balls.ball_bearing import BallElement, BallForce, BallLoads
+from mbs.bearings.balls.ball_bearing import BallElement, BallForce, BallLoads, rolling_cage
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import Load, Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
@@ -176,7 +176,7 @@ def ball_point(
         balance = _balance(System([ring], loads=loads, elements=[element]), start, given, force)
         pose[[0, 1, 2, 4, 5][: len(free)]] = start = balance.displacement
         balls = element.balls(pose, Operation())
-        before, cage = cage, _rolling(force, balls, inner_speed, outer_speed)
+        before, cage = cage, rolling_cage(force, balls, inner_speed, outer_speed)
         if abs(cage - before) <= _CAGE_ERROR * max(abs(inner_speed), abs(outer_speed)):
             break
     else:
@@ -259,14 +259,6 @@ def _balance(system: System, start: FloatArray | None, load: FloatArray, force: 
                 "the tangent of its contact angle"
             )
         raise AnalysisError(f"{words}: {error.__cause__ or error}") from error
-
-
-def _rolling(force: BallForce, balls: BallLoads, inner_speed: float, outer_speed: float) -> float:
-    """Speed of the cage by pure rolling at the mean contact angles of both sides [rad/s]."""
-    ratio = force.geometry.ball_diameter / force.geometry.pitch_diameter
-    inner = 1.0 - ratio * math.cos(balls.mean_angle(0))
-    outer = 1.0 + ratio * math.cos(balls.mean_angle(1))
-    return (inner_speed * inner + outer_speed * outer) / (inner + outer)
 
 
 def _entrainment(force: BallForce, balls: BallLoads, inner_speed: float, outer_speed: float) -> float:

@@ -1,0 +1,147 @@
+"""A ball bearing in a machine: quasi-static at the speed that the system has, with the cage that its balls ask for.
+
+The cage's angle goes evenly, by pure rolling at the nominal contact angle. Its speed, by which the balls have their
+centrifugal load and gyroscopic moment, is that of pure rolling at the mean contact angles of the pose. Films have the
+stiffness and damping of slow motion at any frequency: they have no memory.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import OrderedDict
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import AnalysisError, SolverError
+from ehdmaps.units import RPM
+from mbs.bearings.balls.ball_bearing import BallElement, BallForce, BallLoads, rolling_cage
+from mbs.model.elements import Forces, Operation
+
+CAGE_ERROR = 1e-8
+"""Change of the speed of the cage, over the faster ring's, at which it is found."""
+
+MOST_TURNS = 40
+MOST_SPEEDS = 64
+"""Speeds whose films are kept."""
+
+
+class Settled(NamedTuple):
+    """A bearing at a pose, with its cage.
+
+    Attributes
+    ----------
+    force : BallForce
+        The force with the films of the speed.
+    pose : array, shape (6,)
+        Pose of the inner ring in the outer one [m, rad].
+    conditions : dict
+        Angle of the cage [rad] and speeds [rad/s], by the names that the force takes.
+    balls : BallLoads
+        Loads, contact angles, approaches.
+    """
+
+    force: BallForce
+    pose: FloatArray
+    conditions: dict[str, Any]
+    balls: BallLoads
+
+
+@dataclass(frozen=True, eq=False)
+class MachineBalls(BallElement):
+    """A ball bearing of a scene.
+
+    Attributes
+    ----------
+    axial_offset : float
+        Way of the inner ring along x against the outer one where both places have not moved [m]: preload by
+        displacement.
+    films : callable or None
+        Force with the films at two speeds of the rings [rad/s]; None for the dry law.
+    """
+
+    axial_offset: float = 0.0
+    films: Callable[[float, float], BallForce] | None = None
+    _made: OrderedDict[float, BallForce] = field(default_factory=OrderedDict, repr=False)
+
+    def force_at(self, operation: Operation) -> BallForce:
+        """The force at a speed; dry where nothing rolls.
+
+        Raises
+        ------
+        AnalysisError
+            Where the film table has no films for a contact at that speed.
+        """
+        speed = abs(operation.speed)
+        if self.films is None or speed * abs(self.inner_spin - self.outer_spin) == 0.0:
+            return self.force
+        if speed not in self._made:
+            try:
+                self._made[speed] = self.films(self.inner_spin * speed, self.outer_spin * speed)
+            except SolverError as error:
+                raise AnalysisError(
+                    f"bearing {self.name!r}: no films at {RPM.text(speed)} of the system ({error}); take speeds, "
+                    "temperature and oil that the film table of points holds, or dry contacts: --law 'hertz:1.25e-5 s'"
+                ) from error
+            if len(self._made) > MOST_SPEEDS:
+                self._made.popitem(last=False)
+        return self._made[speed]
+
+    def settled(self, displacement: FloatArray, operation: Operation) -> Settled:
+        """Find the speed of the cage at a displacement (6,) of the inner ring against the outer one.
+
+        Raises
+        ------
+        AnalysisError
+            Where no steady speed of the cage is found.
+        """
+        force, pose = self.force_at(operation), displacement.copy()
+        pose[0] += self.axial_offset
+        conditions = self.conditions(operation)
+        inner, outer = conditions["inner_speed"], conditions["outer_speed"]
+        for _ in range(MOST_TURNS):
+            balls = force.balls(pose, **conditions)
+            before = conditions["cage_speed"]
+            if self.cage_spin is not None:
+                return Settled(force, pose, conditions, balls)
+            cage = rolling_cage(force, balls, inner, outer)
+            if abs(cage - before) <= CAGE_ERROR * max(abs(inner), abs(outer)):
+                return Settled(force, pose, conditions, balls)
+            conditions = {**conditions, "cage_speed": cage}
+        raise AnalysisError(f"bearing {self.name!r}: no steady speed of the cage was found in {MOST_TURNS} turns")
+
+    def balls(self, displacement: FloatArray, operation: Operation) -> BallLoads:
+        """See `BallElement.balls`."""
+        return self.settled(displacement, operation).balls
+
+    def advance(
+        self, states: Any, displacement: FloatArray, velocity: FloatArray, operation: Operation
+    ) -> tuple[Forces, Any]:
+        """The same at the end of a step in time: dry contacts alone, see `Element.advance`.
+
+        Raises
+        ------
+        AnalysisError
+            With films, which have no memory.
+        """
+        if self.films is not None:
+            raise AnalysisError(
+                f"bearing {self.name!r}: ball bearings have no films in time yet: they would need a memory; take dry "
+                "contacts with a damper, --law 'hertz:1.25e-5 s', or sweep and critical over speed"
+            )
+        return super().advance(states, displacement, velocity, operation)
+
+    def evaluate(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> Forces:
+        """Force on the inner ring, stiffness and damping; whether loads are beyond those of the films.
+
+        Parameters
+        ----------
+        displacement, velocity, operation
+            What `Element.evaluate` takes.
+        """
+        at = self.settled(displacement, operation)
+        force, stiffness, damping = at.force(at.pose, velocity, **at.conditions)
+        largest = at.force.law.loads[1]
+        outside = math.isfinite(largest) and bool(at.balls.load.max() > largest)
+        return Forces(force, stiffness, damping, outside)

@@ -1,0 +1,133 @@
+"""Ball bearings of a scene: the law in force, what is wrong about it, and the element."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+from ehdmaps.errors import InputError
+from ehdmaps.units import TEMPERATURE
+from mbs.scene.specs import BallSpec
+
+if TYPE_CHECKING:
+    from mbs.bearings.balls.ball_bearing import BallForce
+    from mbs.scene.contact_laws import ContactLaws
+    from mbs.scene.surroundings import Built, Surroundings
+
+
+FILMS = ("table", "map")
+"""Laws with which ball bearings have films, from the film table of points."""
+
+
+def ball_problems(spec: BallSpec, surroundings: Surroundings) -> list[str]:
+    """Problems with a ball bearing: it has one body only, or no law of balls is in force.
+
+    Parameters
+    ----------
+    spec : BallSpec
+        The bearing.
+    surroundings : Surroundings
+        What it is built into.
+    """
+    problems = []
+    if spec.inner.partition(":")[0] == spec.outer.partition(":")[0]:
+        problems.append(f"bearing {spec.name!r}: got {spec.inner} and {spec.outer}; allowed: rings on two bodies")
+    return problems + ball_law_problems(spec.name, surroundings.laws)
+
+
+def ball_law_problems(name: str, laws: ContactLaws) -> list[str]:
+    """In what the law in force is none for a ball bearing.
+
+    Parameters
+    ----------
+    name : str
+        Name of the bearing.
+    laws : ContactLaws
+        Laws in force.
+    """
+    from mbs.scene.contact_laws import HERTZ_FORMS, hertz_damper
+
+    if laws.chosen in FILMS:
+        oil, kelvin = laws.scene.lubricant, laws.scene.temperature
+        if oil is None:
+            return [f"bearing {name!r}: films of ball bearings need the oil of the scene; add [lubricant]"]
+        try:
+            oil.at(kelvin)
+        except InputError as error:
+            return [f"bearing {name!r}, {TEMPERATURE.text(kelvin)}: {problem}" for problem in error.problems]
+        return []
+    try:
+        damper = hertz_damper(laws.chosen)
+    except InputError:
+        return []  # said of the law itself
+    if damper is not None:
+        return []
+    return [
+        f"bearing {name!r}: got the law {laws.chosen!r:.60} for a ball bearing; allowed: hertz, {HERTZ_FORMS}, table "
+        "(films from the film table of points)"
+    ]
+
+
+def ball_law_words(laws: ContactLaws) -> str:
+    """Law of the ball bearings of a scene, for people.
+
+    Parameters
+    ----------
+    laws : ContactLaws
+        Laws in force, without problems.
+    """
+    from mbs.scene.contact_laws import hertz_damper
+
+    if laws.chosen in FILMS:
+        return (
+            f"ball bearings with films from the film table of points, {laws.lubricant.title}, flooded, quasi-static: "
+            "their damping is that of slow motion at any frequency, without memory"
+        )
+    damper = hertz_damper(laws.chosen)
+    words = f", {damper.words} of each contact" if damper is not None and damper.words else ""
+    return f"ball bearings dry Hertz{words}"
+
+
+def build_ball(spec: BallSpec, surroundings: Surroundings) -> Built:
+    """The element of a ball bearing.
+
+    Parameters
+    ----------
+    spec : BallSpec
+        The bearing; its places exist.
+    surroundings : Surroundings
+        What it is built into.
+    """
+    from mbs.bearings.balls.ball_bearing import BallForce
+    from mbs.bearings.balls.ball_element import MachineBalls
+    from mbs.bearings.balls.laws import dry_law
+    from mbs.scene.contact_laws import Damper, hertz_damper
+    from mbs.scene.surroundings import Built
+
+    laws = surroundings.laws
+    has_films = laws.chosen in FILMS
+    damper = (None if has_films else hertz_damper(laws.chosen)) or Damper()
+    law = dry_law(spec.geometry, damping=damper.constant, damping_time=damper.time)
+    element = MachineBalls(
+        name=spec.name,
+        inner=spec.inner,
+        outer=spec.outer,
+        force=BallForce(spec.geometry, law),
+        inner_spin=surroundings.places.spin(spec.inner),
+        outer_spin=surroundings.places.spin(spec.outer),
+        start_angle=spec.start_angle,
+        axial_offset=spec.axial_offset,
+        films=partial(_with_films, spec, laws, surroundings.temperature) if has_films else None,
+    )
+    return Built(element, element)
+
+
+def _with_films(
+    spec: BallSpec, laws: ContactLaws, temperature: float, inner_speed: float, outer_speed: float
+) -> BallForce:
+    """The force with films that are read at two speeds of the rings."""
+    from mbs.bearings.balls.ball_bearing import BallForce
+    from mbs.bearings.balls.films import ball_films
+
+    u = spec.geometry.entrainment_speed(inner_speed, outer_speed)
+    return BallForce(spec.geometry, ball_films(spec.geometry, laws.lubricant, u, temperature, solves=False).law)
