@@ -334,6 +334,8 @@ class ContactLaws:
 
     def _memory_problems(self) -> list[str]:
         """Reasons why films cannot relax."""
+        if self.chosen == TABLE_LAW:
+            return ["--films: got 'memory' with ball bearings alone, whose films have none yet; leave it out"]
         if not self._has_films:
             got = f"--films: got 'memory' with the law {self.chosen!r:.60}"
             return [f"{got}; allowed: the laws map and formula, which have films"]

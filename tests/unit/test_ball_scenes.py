@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from mbs import assemble, parse_scene, read_scene
 from mbs.bearings.balls.ball_bearing import BallForce
@@ -186,5 +187,9 @@ def test_wrong_bearings_and_laws_are_all_said():
         parse_scene(text(left='diametral_clearance = "9 mm"'), "rotor", "rotor.toml")
     with pytest.raises(InputError, match=r"films of ball bearings need the oil of the scene; add \[lubricant\]"):
         model("table")
+    with pytest.raises(InputError, match=r"'memory' with ball bearings alone, whose films have none yet"):
+        assemble(read_scene("electric_drive"), "table", films="memory")
+    with pytest.raises(InputError, match=r"'drive': got oil layer 5 um; films of ball bearings are flooded"):
+        assemble(read_scene("electric_drive"), "table", supply=OilSupply(5e-6))
     with pytest.raises(InputError, match=r"got the law 'formula' for a ball bearing; allowed: hertz"):
         assemble(read_scene("electric_drive"), "formula")

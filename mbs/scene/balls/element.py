@@ -51,6 +51,12 @@ def ball_law_problems(name: str, laws: ContactLaws) -> list[str]:
         oil, kelvin = laws.scene.lubricant, laws.scene.temperature
         if oil is None:
             return [f"bearing {name!r}: films of ball bearings need the oil of the scene; add [lubricant]"]
+        supply = laws.asked_supply or laws.scene.supply
+        if supply is not None and not supply.flooded:
+            return [
+                f"bearing {name!r}: got {supply.label}; films of ball bearings are flooded; allowed: no [supply] and "
+                "no --supply, or dry contacts"
+            ]
         try:
             oil.at(kelvin)
         except InputError as error:
