@@ -1,5 +1,7 @@
 """Bearing in Exudyn, the multibody program: a connector between two markers that calls our force element.
 
+`add_system` adds a whole machine that vibrates about an equilibrium.
+
 Exudyn has finite rotations and calls a Python function for the force of a connector. Here that function takes the pose
 of the inner ring in the frame of the outer one, counts the angle through which it has turned, and asks `BearingForce`.
 With `films` "memory" the films of all slices go on from step to step: what was found last at a time is taken as the
@@ -12,7 +14,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -21,6 +23,10 @@ from ehdmaps.errors import InputError
 from ehdmaps.maps.kernels.memory import FilmState
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.laws import DryLaw
+
+if TYPE_CHECKING:
+    from mbs.model.elements import Operation
+    from mbs.model.system import System
 
 _SAME_SPEED = 1e-4
 """Change of the entrainment speed, as a part of it, up to which the law is not prepared anew; films go with its power
@@ -169,3 +175,45 @@ class _Moment:
     time: float = -math.inf
     angle: float = 0.0
     films: FilmState | None = None
+
+
+def add_system(there: Any, system: System, operation: Operation, start: FloatArray) -> Any:
+    """Add a system of ours to one of Exudyn: its matrices, and a function for bearings, meshes and all other elements.
+
+    Parameters
+    ----------
+    there : exudyn.MainSystem
+        The system of Exudyn.
+    system : System
+        The system with its n coordinates.
+    operation : Operation
+        Speed and angle of the shafts; they stay. Films follow at once.
+    start : array, shape (n,)
+        Coordinates at the begin [m, rad]; the system rests there.
+
+    Returns
+    -------
+    NodeIndex
+        The node with the n coordinates.
+    """
+    from exudyn.utilities import NodeGenericODE2, ObjectGenericODE2
+
+    def summed(q: Any, v: Any, name: str) -> FloatArray:
+        """Force, stiffness or damping of all elements, in the coordinates."""
+        total = np.zeros((system.size,) if name == "force" else (system.size, system.size))
+        found = system.evaluate(np.array(q), np.array(v), operation)
+        for connected, element in zip(system.elements, found, strict=True):
+            part = connected.transform.T @ getattr(element, name)
+            total += part if name == "force" else part @ connected.transform
+        return total
+
+    still = np.zeros(system.size)
+    node = there.AddNode(NodeGenericODE2("", still, start, still, system.size))
+    damping = system.damping + operation.speed * system.gyroscopic
+    box: Any = ObjectGenericODE2("", [node], system.mass, system.stiffness, damping)
+    box.forceUserFunction = lambda _, t, item, q, v: system.loads(t) + summed(q, v, "force")
+    box.jacobianUserFunction = lambda _, t, item, q, v, by_q, by_v: (
+        by_q * summed(q, v, "stiffness") + by_v * summed(q, v, "damping")
+    )
+    there.AddObject(box)
+    return node
