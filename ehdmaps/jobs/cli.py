@@ -297,10 +297,9 @@ def _add_table(top: Program) -> None:
     parts = table.add_subparsers(dest="part", required=True, metavar="PART")
     make = parts.add_parser("make", help="solve it anew; minutes of one core")
     make.add_argument("-o", "--output", metavar="FILE.nc", help="default: film_table.nc, or point_table.nc")
+    make.add_argument("--points", action="store_true", help="the table of point contacts, not that of lines")
     show = parts.add_parser("show", help="nodes, provenance and errors")
-    show.add_argument("file", metavar="FILE.nc", nargs="?", help="default: the table that is shipped")
-    for part in (make, show):
-        part.add_argument("--points", action="store_true", help="the table of point contacts, not that of lines")
+    show.add_argument("file", metavar="FILE.nc", nargs="?", help="default: the tables that are shipped")
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -632,7 +632,7 @@ def combinations(
     problems : list of str
         What is wrong is appended.
     """
-    found = [Combination(_with_label(subject)) for subject in subjects]
+    found = [Combination(subject if subjects[1:] else _with_label(subject)) for subject in subjects]
     for choice in CHOICES.values():
         several = values.get(choice.name, ()) if choice.name not in LAWS else ()
         if choice.name == SUPPLY.name and not several:
@@ -648,7 +648,7 @@ def combinations(
 
 
 def _with_label(subject: Subject) -> Subject:
-    """A subject whose law is not called dry where the scene has no roller bearing."""
+    """A subject whose law is not called dry where the scene has no roller bearing; several laws keep their names."""
     from mbs.scene.contact_laws import NO_LAW
 
     if subject.scene.bearings or subject.scene.balls or subject.law.has_films:

@@ -1,4 +1,4 @@
-"""`ehdmaps table --points`: make the table of point contacts, or tell what it holds."""
+"""Make the film table of point contacts, or tell what it holds, for `ehdmaps table`."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ehdmaps.outputs import Output, check_outputs, dataset_kind, written_aside
+from ehdmaps.outputs import MADE_AS, Output, check_outputs, dataset_kind, written_aside
 from ehdmaps.program import tell
 from ehdmaps.table.nodes import decoded
 from ehdmaps.table.points.file import KIND, read_point_table, shipped_point_table, write_point_table
@@ -39,15 +39,32 @@ def make(path: Path) -> tuple[str, int]:
     return f"{path}: written\n{_shown(table)}", 0
 
 
-def show(given: str | None) -> tuple[str, int]:
-    """Describe a file, or the table that is shipped.
+def is_one(path: Path) -> bool:
+    """Tell whether a file is a table of points; False where it cannot be read.
 
     Parameters
     ----------
-    given : str, optional
+    path : Path
         The file.
     """
-    return _shown(shipped_point_table() if given is None else read_point_table(Path(given))), 0
+    from netCDF4 import Dataset
+
+    try:
+        with Dataset(path) as file:
+            return getattr(file, MADE_AS, "") == KIND
+    except OSError:
+        return False
+
+
+def shown(path: Path | None = None) -> str:
+    """Nodes, provenance, holes and errors of a file, or of the table that is shipped.
+
+    Parameters
+    ----------
+    path : Path, optional
+        The file.
+    """
+    return _shown(shipped_point_table() if path is None else read_point_table(path))
 
 
 def _shown(table: PointTable) -> str:

@@ -1,4 +1,4 @@
-"""`ehdmaps table`: make the film table, or tell what it holds."""
+"""`ehdmaps table`: make the film table, or tell what it holds; and that of points."""
 
 from __future__ import annotations
 
@@ -15,15 +15,17 @@ _TOLD_EVERY = 20
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
-    """Make a table, or show one."""
-    given = arguments.output if arguments.part == "make" else arguments.file
-    if arguments.points:
-        from ehdmaps.jobs.commands.point_table import make, show
+    """Make a table, or show one; without a file, those that are shipped."""
+    from ehdmaps.jobs.commands import point_table
 
-        return make(Path(given or "point_table.nc")) if arguments.part == "make" else show(given)
+    if arguments.part == "make" and arguments.points:
+        return point_table.make(Path(arguments.output or "point_table.nc"))
     if arguments.part == "make":
-        return _make(Path(given or "film_table.nc"))
-    return _shown(shipped_tables() if given is None else read_tables(Path(given))), 0
+        return _make(Path(arguments.output or "film_table.nc"))
+    if arguments.file is None:
+        return f"{_shown(shipped_tables())}\n\n{point_table.shown()}", 0
+    path = Path(arguments.file)
+    return point_table.shown(path) if point_table.is_one(path) else _shown(read_tables(path)), 0
 
 
 def _make(path: Path) -> tuple[str, int]:
