@@ -6,7 +6,7 @@ import dataclasses
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, get_args
 
@@ -31,7 +31,7 @@ from mbs.scene.map_set import TABLE_LAW, speeds_of_laws
 
 if TYPE_CHECKING:
     from ehdmaps.maps.emap import EHDMap
-    from ehdmaps.maps.law import LawKind
+    from ehdmaps.maps.law import ContactLaw, LawKind
     from mbs.scene.map_set import MapSet
     from mbs.scene.scene import Scene
     from mbs.scene.specs import BearingSpec
@@ -497,12 +497,20 @@ class BearingLaws:
         surface = self.given.surface
         if (emap := self.given.map_of(self.bearing.geometry)) is not None:
             return emap.law(kind, outside="clamp", supply=self.supply, surface=surface)
-        return laws.formula(
-            self.bearing,
-            self.given.lubricant,
-            entrainment_speed=speeds_of_laws(self.bearing.geometry, self.given.scene),
-            kind=kind,
-            outside="clamp",
-            supply=self.supply,
-            surface=surface,
-        )
+        speeds = speeds_of_laws(self.bearing.geometry, self.given.scene)
+        return _of_formula(self.bearing, self.given.lubricant, speeds, kind, self.supply, surface).again()
+
+
+@lru_cache(maxsize=8)
+def _of_formula(
+    bearing: Bearing,
+    lubricant: Lubricant,
+    speeds: tuple[float, float],
+    kind: LawKind,
+    supply: OilSupply,
+    surface: Surface | None,
+) -> ContactLaw:
+    """Law of the film formula, made once for all models with such bearings."""
+    return laws.formula(
+        bearing, lubricant, entrainment_speed=speeds, kind=kind, outside="clamp", supply=supply, surface=surface
+    )

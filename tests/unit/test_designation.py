@@ -285,5 +285,7 @@ def test_every_command_of_mbs(words, folder, monkeypatch):
     text = text.replace('{ name = "NU308", diametral_clearance = "0 um" }', '"NU 2210 ECP"').replace(
         'name = "FVA3" ', 'name = "ISO VG 68"'
     )
-    (folder / "scene.toml").write_text(text.replace('duration = "0.2 s"', 'duration = "0.1 s"'))
+    (folder / "scene.toml").write_text(
+        text.replace('duration = "0.2 s"', 'duration = "0.06 s"').replace("slices = 41", "slices = 11")
+    )
     run(mbs_main, words)
