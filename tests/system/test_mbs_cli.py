@@ -257,7 +257,7 @@ def test_scenes_without_what_an_analysis_needs(here, capsys):
 
 
 def test_what_a_scene_lacks_is_said_before_laws_are_made(here, capsys, monkeypatch):
-    monkeypatch.setattr("mbs.bearings.laws.formula", lambda *_, **__: pytest.fail("a law was made"))
+    monkeypatch.setattr("mbs.scene.contact_laws._of_formula", lambda *_: pytest.fail("a law was made"))
     text = read_scene("nu308_rigid").text.replace('"acceleration"', '"velocity"')
     (here / "a.toml").write_text(text[: text.index("[[inputs]]")])
     (here / "b.toml").write_text(text)
