@@ -221,7 +221,7 @@ def test_bad_input_lists_every_problem_and_writes_nothing(here, capsys, formula_
         assert words in err
     assert not list(here.iterdir())
     for arguments, words in (
-        (["statics", "nowhere"], "shipped system: gearbox, n1014_rigid, n1014_testrig, "),
+        (["statics", "nowhere"], "shipped system: electric_drive, gearbox, n1014_rigid, n1014_testrig, "),
         (["statics", "nu308_rigid", "--law", "map"], "got 'map' without a map"),
         (["statics", "nu308_rigid", "--map", "nu.nc"], "--map: nu.nc: cannot be read"),
         (["statics", "nu308_rigid", "--clearance", "1 m"], "allowed: within 1e+04 um either way"),
