@@ -93,7 +93,54 @@ SHEAR_FORMS: Mapping[int, str] = {NEWTONIAN: "Newtonian", EYRING: "Eyring", CARR
 NEWTON = ShearLaw()
 """The law of an oil that does not care about shear."""
 
-HEADER = "FoamFile { version 2.0; format ascii; class dictionary; object ehlProperties; }"
+HEADER = """FoamFile
+{
+    version     2.0;
+    format      ascii;
+    class       dictionary;
+    object      ehlProperties;
+}
+
+// All values in SI"""
+
+NOTES: Mapping[str, str] = {
+    "reducedRadius": "R [m]",
+    "reducedModulus": "E' [Pa]",
+    "load": "per length [N/m]",
+    "lowerSpeed": "of the surfaces, in +x [m/s]",
+    "upperSpeed": "[m/s]",
+    "viscosity": "at ambient pressure [Pa s]",
+    "pressureViscosity": "there [1/Pa]",
+    "pressureScale": "[Pa]",
+    "density": "at ambient pressure [kg/m^3]",
+    "stress": "[Pa]",
+    "pressureRange": "from full film to no liquid [Pa]",
+    "columns": "cells along the film",
+    "rows": "and across it",
+    "film": "expected film, h R/b^2",
+    "inletLength": "in sqrt(2 h R), from the Hertz zone",
+    "outletLength": "in widths of the exit zone",
+    "spikePosition": "in half-widths b from the centre",
+    "spikeWidth": "[b], 0: no spike",
+    "temperature": "of the surfaces, and of the oil that comes in [K]",
+    "oilConductivity": "[W/(m K)]",
+    "oilHeatCapacity": "[J/(kg K)]",
+    "solidConductivity": "[W/(m K)]",
+    "solidHeatCapacity": "[J/(kg K)]",
+    "solidDensity": "[kg/m^3]",
+    "first": "[K]",
+    "step": "[K]",
+    "x": "from the contact centre [m]",
+    "pressure": "[Pa]",
+    "centralFilm": "[m]",
+    "frequencies": "[Hz], 0 is the low-frequency limit",
+    "frequency": "[Hz]",
+    "amplitude": "of the load",
+}
+"""What is said behind an entry of the file."""
+
+NUMBERS_A_LINE = 5
+"""Of a long list."""
 
 
 @dataclass(frozen=True)
@@ -159,14 +206,14 @@ class Heat:
 
 @dataclass(frozen=True)
 class Oscillation:
-    """A small oscillation of the approach, integrated in time.
+    """A small oscillation of the load, integrated in time.
 
     Attributes
     ----------
     frequency : float
         [Hz].
     amplitude : float
-        Amplitude as a share of the central film.
+        Amplitude as a share of the load.
     steps_per_cycle, cycles : int
         Steps and cycles of the time integration.
     """
@@ -256,11 +303,11 @@ class Parameters:
         yield _entry("lowerSpeed", self.lower_speed)
         yield _entry("upperSpeed", self.upper_speed)
         isotherm = [_entry(key, value) for key, value in _numbers(self.oil).items()]
-        yield from _block("viscosity", [f"type {self.oil.pressure_viscosity.case_name};", *isotherm])
-        yield from _block("density", [f"type {_density(self.oil)};", _entry("density", self.oil.density)])
+        yield from _block("viscosity", [_line("type", self.oil.pressure_viscosity.case_name), *isotherm])
+        yield from _block("density", [_line("type", _density(self.oil)), _entry("density", self.oil.density)])
         yield from _block("shear", _shear(self.shear))
         yield from _block("cavitation", [_entry("pressureRange", self.cavitation_range)])
-        yield f"flow {_word('flow', self.flow, FLOWS)};"
+        yield _line("flow", _word("flow", self.flow, FLOWS))
         yield _count("columns", self.columns)
         yield _count("rows", self.rows)
         mesh = [
@@ -299,8 +346,8 @@ def _heat(heat: Heat) -> list[str]:
     states = heat.oil.states
     numbers = [_numbers(state) for state in states]
     lists = [_list(key, [each[key] for each in numbers]) for key in numbers[0]]
-    viscosity = [f"type {states[0].pressure_viscosity.case_name};", *lists]
-    density = [f"type {_density(states[0])};", _list("density", [state.density for state in states])]
+    viscosity = [_line("type", states[0].pressure_viscosity.case_name), *lists]
+    density = [_line("type", _density(states[0])), _list("density", [state.density for state in states])]
     oil = [_entry("first", heat.oil.first), _entry("step", STEP)]
     oil += [*_block("viscosity", viscosity), *_block("density", density)]
     data = {_camel(field.name): getattr(heat.data, field.name) for field in fields(heat.data)}
@@ -327,7 +374,7 @@ def _density(oil: LubricantState) -> str:
 
 def _shear(law: ShearLaw) -> list[str]:
     """The law of shear under its name, with the numbers that it has."""
-    entries = [f"type {_word('shear', law.form, SHEAR_FORMS)};"]
+    entries = [_line("type", _word("shear", law.form, SHEAR_FORMS))]
     if law.form != NEWTONIAN:
         entries.append(_entry("stress", law.stress))
     if law.form == LIMITING:
@@ -344,8 +391,15 @@ def _camel(name: str) -> str:
 
 
 def _block(name: str, entries: Sequence[str]) -> Iterator[str]:
-    """A sub-dictionary."""
-    yield f"{name} {{ {' '.join(entries)} }}"
+    """A sub-dictionary, a line at a time."""
+    yield from (name, "{", *(f"    {line}" for entry in entries for line in entry.split("\n")), "}")
+
+
+def _line(key: str, value: str) -> str:
+    """An entry with its note."""
+    note = NOTES.get(key, "")
+    entry = f"{key:<20}{value};"
+    return f"{entry:<45}// {note}" if note else entry
 
 
 def _entry(key: str, value: object) -> str:
@@ -353,29 +407,34 @@ def _entry(key: str, value: object) -> str:
     # repr of a float is exact and has no character that a dictionary could take for anything else
     if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(value):
         raise InputError(f"ehlProperties, {key}: got {value!r:.60}; allowed: a finite number")
-    return f"{key} {float(value)!r};"
+    return _line(key, repr(float(value)))
 
 
 def _count(key: str, value: object) -> str:
     """A key and its whole number."""
     if isinstance(value, bool) or not isinstance(value, int) or value < 1:
         raise InputError(f"ehlProperties, {key}: got {value!r:.60}; allowed: a whole number >= 1")
-    return f"{key} {int(value)!r};"
+    return _line(key, repr(int(value)))
 
 
 def _switch(key: str, value: object) -> str:
     """A key and true or false."""
     if not isinstance(value, bool):
         raise InputError(f"ehlProperties, {key}: got {value!r:.60}; allowed: true or false")
-    return f"{key} {'true' if value else 'false'};"
+    return _line(key, "true" if value else "false")
 
 
 def _list(key: str, values: ArrayLike) -> str:
-    """A key and its list of numbers."""
+    """A key and its list of numbers, a long one over many lines."""
     array = np.asarray(values)
     if array.ndim != 1 or (array.size and array.dtype.kind not in "iuf") or not np.isfinite(array.astype(float)).all():
         raise InputError(f"ehlProperties, {key}: got {array.ravel()[:3]!r:.60}; allowed: a list of finite numbers")
-    return f"{key} ({' '.join(map(repr, array.astype(float).tolist()))});"
+    numbers = [repr(number) for number in array.astype(float).tolist()]
+    if len(numbers) <= NUMBERS_A_LINE:
+        return _line(key, f"({' '.join(numbers)})")
+    starts = range(0, len(numbers), NUMBERS_A_LINE)
+    lines = (f"    {' '.join(numbers[start : start + NUMBERS_A_LINE])}" for start in starts)
+    return "\n".join((f"{key:<45}// {NOTES[key]}" if key in NOTES else key, "(", *lines, ");"))
 
 
 def _word(key: str, value: object, table: Mapping[Any, str]) -> str:

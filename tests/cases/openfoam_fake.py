@@ -23,7 +23,7 @@ with open(folder / "log", "a") as log:
 
 
 def number(key):
-    return float(re.search(rf"\\b{key} ([-+0-9.e]+);", text)[1])
+    return float(re.search(rf"\\b{key} +([-+0-9.e]+);", text)[1])
 
 
 print("fake ehlFoam\\nCreate mesh for time = 0", flush=True)
@@ -56,12 +56,12 @@ if mode[0] == "garbage":
     (case / "results").write_bytes(bytes(range(256)) * 10)
     sys.exit(0)
 
-columns, rows = int(re.search(r"\\bcolumns (\\d+);", text)[1]), int(re.search(r"\\brows (\\d+);", text)[1])
+columns, rows = int(re.search(r"\\bcolumns +(\\d+);", text)[1]), int(re.search(r"\\brows +(\\d+);", text)[1])
 R, E, load = number("reducedRadius"), number("reducedModulus"), number("load")
 speed = 0.5 * (number("lowerSpeed") + number("upperSpeed"))
 h = 3.0 * R * (0.1 * speed / (E * R)) ** 0.7 * (load / (E * R)) ** -0.1 * 1000
 grid = 1.0 + 4.0 / columns**2 + 1.0 / rows**2
-frequencies = [float(word) for word in re.search(r"response \\{ frequencies \\(([^)]*)\\)", text)[1].split()]
+frequencies = [float(word) for word in re.search(r"\\bfrequencies[^(]*\\(([^)]*)\\)", text)[1].split()]
 
 
 def listed(values):
@@ -69,7 +69,7 @@ def listed(values):
 
 
 status = mode[0] if mode[0] in ("stagnated", "diverged") else "converged"
-begun = re.search(r"start \\{ x \\(([^)]*)\\)", text)
+begun = re.search(r"\\bx +//[^(]*\\(([^)]*)\\)", text)
 grid_name = f"{columns}x{rows}" + (f"<{len(begun[1].split())}" if begun else "")
 with open(folder / "grids", "a") as grids:
     grids.write(grid_name + "\\n")
@@ -104,11 +104,11 @@ gap = h if "steep" in mode else 1e-2 * h  # thin where a Hertz pressure's edges 
 table = [row % (v, 1e8 * math.sqrt(max(0, 1 - (v / b) ** 2)), gap, 1e-3, 880.0, 1.0) for v in x]
 head = "# x pressure film flux density liquid_fraction\\n"
 (case / "film.dat").write_text(head + "".join(table[: 3 if mode[0] == "cut" else None]))
-if "flow fullStress" in text:
+if "fullStress;" in text:
     (case / "thinFilm.dat").write_text(head + "".join(table))
 if mode[0] == "table":
     (case / "film.dat").write_text("# x pressure\\nwhat is this\\n")
-if "writeFields true" in text:
+if re.search("writeFields +true", text):
     mesh, last = case / "constant" / "polyMesh", case / "1"
     mesh.mkdir(exist_ok=True)
     last.mkdir(exist_ok=True)

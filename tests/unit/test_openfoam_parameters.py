@@ -3,6 +3,7 @@
 import math
 import re
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from ehdmaps.physics.heat import HeatData
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.rheology import ShearLaw, shear_law
 
+TEMPLATE = Path(__file__).parents[2] / "openfoam_cases" / "lineContact"
 OIL = Lubricant.named("FVA3").at(313.15)
 GOOD = Parameters(
     reduced_radius=5.5e-3,
@@ -97,11 +99,11 @@ def test_an_oscillation(tmp_path):
 @pytest.mark.parametrize(
     ("oil", "words"),
     [
-        (Lubricant.barus(viscosity=0.1, pressure_viscosity=2e-8, density=880.0), "type Barus;"),
-        (Lubricant.roelands(viscosity=0.1, roelands_z=0.6, density=880.0), "type Roelands; .* exponent 0.6;"),
+        (Lubricant.barus(viscosity=0.1, pressure_viscosity=2e-8, density=880.0), "type +Barus;"),
+        (Lubricant.roelands(viscosity=0.1, roelands_z=0.6, density=880.0), r"type +Roelands;(.*\n)*? +exponent +0.6;"),
         (
             Lubricant.barus(viscosity=0.1, pressure_viscosity=2e-8, density=880.0, density_law="incompressible"),
-            "density { type incompressible; density 880.0; }",
+            r"density\n{\n +type +incompressible;\n +density +880.0; ",
         ),
     ],
 )
@@ -196,4 +198,24 @@ def test_only_lists_of_finite_numbers_get_in(value):
 
 def test_the_file_has_no_character_that_could_do_more():
     text = replace(GOOD, oscillation=Oscillation(1000.0)).text()
-    assert re.fullmatch(r"[A-Za-z0-9_ {}();.+\n-]*", text)
+    assert re.fullmatch(r"[A-Za-z0-9_ {}();.+\n-]*", re.sub(r"// [][A-Za-z0-9 /(),.:'^+-]*\n", "\n", text))
+
+
+def test_the_file_reads_as_the_case_by_hand():
+    """One entry a line, of 130 letters at most, with the units of the case that runs by hand."""
+    heat = Heat(333.15, HeatData(), isotherms(Lubricant.named("FVA3"), 333.15))
+    many = replace(GOOD, heat=heat, start=Start(np.linspace(-1e-4, 1e-4, 400), np.full(400, 1e8 / 3.0), 1e-7))
+    text = many.text()
+    assert max(map(len, text.split("\n"))) <= 130
+    assert not re.search(r";.*;|\{.*\S|\S.*\{", text)
+
+    def units(of):
+        """Unit behind each entry, the first of a name."""
+        found = re.findall(r"^[ /]*(\w+) .*// [^\[\n]*(\[.*?\])(?:$|,)", of, re.MULTILINE)
+        return {key: unit for key, unit in reversed(found)}
+
+    by_hand = units((TEMPLATE / "constant" / "ehlProperties").read_text())
+    written = units(text)
+    shared = by_hand.keys() & written.keys()
+    assert len(shared) >= 15
+    assert {key: written[key] for key in shared} == {key: by_hand[key] for key in shared}

@@ -414,9 +414,10 @@ def test_settings_out_of_range(fake, name):
 
 def test_a_shear_law_with_its_stress(fake):
     solver = OpenFoamSolver(shear="eyring", shear_stress=5e6)
-    assert "shear { type Eyring; stress 5000000.0; }" in solver.parameters(CONTACT, OIL, POINT).text()
+    assert re.search(r"shear\n{\n +type +Eyring;\n +stress +5000000.0;", solver.parameters(CONTACT, OIL, POINT).text())
     usual = OpenFoamSolver(shear="limiting")
-    assert "shear { type limiting; stress 2000000.0; ratio 0.05; }" in usual.parameters(CONTACT, OIL, POINT).text()
+    numbers = r"type +limiting;\n +stress +2000000.0; .*\n +ratio +0.05;"
+    assert re.search(numbers, usual.parameters(CONTACT, OIL, POINT).text())
     assert usual.settings()["shear_stress"] == 2e6 and "limiting_ratio" not in usual.settings()
     assert OpenFoamSolver(shear="limiting", limiting_ratio=0.07).settings()["limiting_ratio"] == 0.07
 
