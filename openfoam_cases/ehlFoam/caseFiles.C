@@ -32,7 +32,7 @@ static void refuseSchemes(const dictionary& schemes, const word& group, const wo
 } // End namespace Foam
 
 
-void Foam::refuseUnread(const Time& runTime, const fvMesh& mesh)
+void Foam::refuseUnread(const Time& runTime, const fvMesh& mesh, const bool written)
 {
     const fileName start(runTime.path()/runTime.timeName());
     const fileNameList fields(readDir(start, fileName::FILE));
@@ -43,11 +43,11 @@ void Foam::refuseUnread(const Time& runTime, const fvMesh& mesh)
             << ", allowed are none: the boundary conditions are those of the contact, in constant/ehlProperties."
             << nl << "    Remove the file; a film to start from is the entry start there" << exit(FatalError);
     }
-    if (runTime.controlDict().found("functions"))
+    if (!written && runTime.controlDict().found("functions"))
     {
         FatalIOErrorInFunction(runTime.controlDict())
-            << "functions: ehlFoam has no loop over time in which it could run them." << nl
-            << "    Remove them, and run postProcess on the time 1 that it writes" << exit(FatalIOError);
+            << "functions: got them with writeFields false, allowed are function objects with writeFields true, in "
+            << "constant/ehlProperties: they run on the fields that are written" << exit(FatalIOError);
     }
     const fvSchemes& schemes = mesh;
     refuseSchemes(schemes.schemesDict(), "ddtSchemes", "steadyState");

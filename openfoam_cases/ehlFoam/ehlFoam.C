@@ -113,7 +113,8 @@ int main(int argc, char* argv[])
     const scalarField frequencies(askedFrequencies(dict));
     const scalar filmScale = positive(meshDict, "film")*contact.filmUnit();
     filmMesh film(runTime, columns, rows, dict.lookupOrDefault<scalar>("lowerShare", 0.5));
-    refuseUnread(runTime, film.mesh());
+    const bool written = dict.lookupOrDefault<bool>("writeFields", true);
+    refuseUnread(runTime, film.mesh(), written);
     Info<< "b " << contact.halfWidth << " m, p_H " << contact.pressure << " Pa, film expected "
         << filmScale << " m, " << columns << " x " << rows << " cells" << nl << endl;
 
@@ -128,12 +129,15 @@ int main(int argc, char* argv[])
     reportFilm(results, s, solved);
     reportHeat(runTime, results, s, solved);
     writeTable(runTime.path()/"film.dat", s, s.film(solved.state));
-    if (dict.lookupOrDefault<bool>("writeFields", true))
+    if (written)
     {
         runTime.setTime(1, 1);
         film.write();
         s.flow().write();
         s.flow().writeWallStress();
+        // those of controlDict, on these fields
+        runTime.functionObjects().execute();
+        runTime.functionObjects().end();
     }
 
     // how it moves: linear response, and the check in time

@@ -7,6 +7,7 @@ import shutil
 import subprocess
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from ehdmaps.openfoam.fields import read_fields, write_fields
@@ -101,7 +102,7 @@ def test_bad_entry(name: str, installed: Installation, template_copy: Path, good
 # what a case may have for other programs of OpenFOAM, where it is added, and what the message says
 UNREAD = {
     "fields with boundary conditions": ("0/p", "", "fields of the start: got .*/0/p\", allowed are none"),
-    "function objects": ("system/controlDict", "functions { }", "functions: ehlFoam has no loop over time"),
+    "function objects": ("system/controlDict", "functions { }", "functions: got them with writeFields false"),
     "interpolation": (
         "system/fvSchemes", "interpolationSchemes { default cubic; }",
         'interpolationSchemes, default: got "cubic", allowed is default linear',
@@ -125,6 +126,49 @@ def test_what_would_not_be_read_is_refused(name: str, installed: Installation, t
         assert re.search(message, _fatal(installed, template_copy, good))
     finally:
         path.unlink() if before is None else path.write_text(before)
+
+
+FUNCTIONS = """
+functions
+{
+    walls
+    {
+        type            surfaceFieldValue;
+        libs            (fieldFunctionObjects);
+        regionType      patch;
+        name            lower;
+        fields          (p);
+        operation       areaIntegrate;
+        writeFields     false;
+    }
+}
+"""
+
+
+def test_function_objects_run_on_the_fields(installed: Installation, template_copy: Path, good: str) -> None:
+    """One of OpenFOAM's own finds the load on the lower surface."""
+    control = template_copy / "system" / "controlDict"
+    before = control.read_text()
+    (template_copy / "constant" / "ehlProperties").write_text(
+        _replaced(good, r"writeFields +false", "writeFields true")
+    )
+    control.write_text(before + FUNCTIONS)
+    try:
+        ended = openfoam_runs.program(installed, installed.solver, template_copy)
+    finally:
+        control.write_text(before)
+    assert ended.returncode == 0, ended.stdout[-500:]
+    (table,) = (template_copy / "postProcessing" / "walls").rglob("*.dat")
+    time, force = map(float, table.read_text().splitlines()[-1].split())
+    assert time == 1.0
+    depth = 1e-6
+    load = re.search(r"\nload +([^;]*);", good)
+    assert load is not None
+    assert force / depth == pytest.approx(float(load[1]), rel=1e-3)  # oil upstream of the inlet carries 2e-4
+    fields = read_fields(template_copy)
+    widths = np.ptp(fields.points[fields.quads][:, :, 0], axis=1)
+    # faces are larger than their projections by half of the square of the surface's slope; 10 digits of the points
+    assert force / depth == pytest.approx(float(fields.p @ widths) / ROWS, rel=1e-5)
 
 
 def test_numbers_that_overflow_are_a_status(installed: Installation, template_copy: Path, good: str) -> None:

@@ -165,11 +165,14 @@ Foam::scalarField Foam::filmFlow::columnFlux(const surfaceScalarField& massFlux)
 
 void Foam::filmFlow::writeWallStress() const
 {
-    volScalarField stress
+    volScalarField& stress = regIOobject::store
     (
-        IOobject("wallShear", film_.mesh().time().timeName(), film_.mesh()),
-        film_.mesh(),
-        dimensionedScalar("wallShear", dimPressure, 0)
+        new volScalarField
+        (
+            IOobject("wallShear", film_.mesh().time().timeName(), film_.mesh()),
+            film_.mesh(),
+            dimensionedScalar("wallShear", dimPressure, 0)
+        )
     );
     for (const label side : {0, 1})
     {

@@ -403,10 +403,13 @@ Foam::scalar Foam::thinFilm::cellShearRate(const label column, const label row) 
 void Foam::thinFilm::write()
 {
     const fvMesh& mesh = film_.mesh();
-    volVectorField U
+    volVectorField& U = regIOobject::store
     (
-        IOobject("U", mesh.time().timeName(), mesh, IOobject::NO_READ, IOobject::AUTO_WRITE),
-        (couette_ + u_)*vector(1, 0, 0)
+        new volVectorField
+        (
+            IOobject("U", mesh.time().timeName(), mesh, IOobject::NO_READ, IOobject::AUTO_WRITE),
+            (couette_ + u_)*vector(1, 0, 0)
+        )
     );
     // across the film: what continuity asks for, from the lower surface upwards
     const scalarField lack(fvc::surfaceIntegrate(flux_)().primitiveField()*mesh.V());
