@@ -228,7 +228,7 @@ SOLVERS: Mapping[str, SolverEntry] = {
             Whole(
                 "columns", 40, 4000, "cells along the film; even, as half of them are the grid of the error estimate"
             ),
-            Whole("rows", 4, 64, "cells across the film; even"),
+            Whole("rows", 4, 64, "cells across the film; even; 24 for pictures"),
             physics_option(ISOTHERMAL, THERMAL),
             *SHEAR_OPTIONS,
             Number("inlet_length", 5.0, 1e5, "length of the inlet over sqrt(2 h R)"),
