@@ -9,6 +9,8 @@ would not see a change of its function, and would fail where its module cannot b
 
 from __future__ import annotations
 
+from mbs.bearings.balls.ball_block import BALLS
+from mbs.bearings.balls.ball_element import MachineBalls
 from mbs.bearings.bearing_block import BEARINGS, ROLLERS
 from mbs.bearings.bearing_element import BearingElement, MemoryBearing, MemoryRollers, RollerElement
 from mbs.bearings.memory_block import MEMORY_BEARINGS, MEMORY_ROLLERS
@@ -24,6 +26,7 @@ KINDS: dict[type, Kind] = {
     MemoryBearing: MEMORY_BEARINGS,
     RollerElement: ROLLERS,
     MemoryRollers: MEMORY_ROLLERS,
+    MachineBalls: BALLS,
     GearMesh: GEAR_MESHES,
     MatrixElement: MATRICES,
 }

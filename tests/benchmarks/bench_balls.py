@@ -1,15 +1,19 @@
-"""Speed of the ball bearing's force with stiffness and damping, beside the error of its stiffness.
+"""Speed of the ball bearing's force with stiffness and damping, beside the error of its stiffness; and in runs in time.
 
-Run: python -m tests.benchmarks.bench_balls
+Run: python -m tests.benchmarks.bench_balls [--runs]
 
 A 6208 of 9 balls under combined displacements, dry with a damper. Compiled is what a compiled integrator pays a call,
 processor time; the ring stands, or moves by up to a micrometre a call. The error is that of the stiffness against
 central differences of 2 nm.
+
+--runs: a stiff rotor on two 6208, on two NU208 of 21 slices whose rings tilt, and without bearings but springs, in the
+same run-up in steps of 20 us: processor time of a step by the best of three, and what a bearing adds to it.
 """
 
 from __future__ import annotations
 
 import math
+import sys
 import time
 
 import numpy as np
@@ -19,10 +23,60 @@ from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.ball_kernel import ball_force
 from mbs.bearings.balls.laws import dry_law
+from mbs.model.equilibrium import equilibrium
+from mbs.model.profiles import SpeedProfile
+from mbs.scene.assembly import assemble
+from mbs.scene.reader import parse_scene
+from mbs.settings import Settings
+from mbs.transient.run import run
 
 POSE = np.array([20e-6, 15e-6, 3e-6, 0.0, 1e-4, 2e-4])
 STEP = np.array([1e-6, 1e-6, 1e-6, 0.0, 1e-5, 1e-5])
 TIMES = 20000
+RPM = math.pi / 30.0
+MACHINE = """
+schema = 1
+[operation]
+speed = "600 rpm"
+temperature = "80 degC"
+gravity = ["0 m/s^2", "-9.81 m/s^2", "0 m/s^2"]
+[lubricant]
+name = "ISO VG 32"
+[[bodies]]
+name = "rotor"
+freedoms = ["x", "y", "z", "theta_y", "theta_z"]
+spin = 1
+mass = "20 kg"
+polar_inertia = "0.05 kg m^2"
+transverse_inertia = "0.2 kg m^2"
+frames = { left = ["-100 mm", "0 mm", "0 mm"], right = ["100 mm", "0 mm", "0 mm"] }
+[[springs]]
+name = "axial"
+on = "rotor"
+stiffness = { x = "1e6 N/m" }
+[[unbalances]]
+name = "residual"
+on = "rotor"
+moment = "50 g mm"
+"""
+BEARING = """
+[[bearings]]
+name = "{name}"
+inner = "rotor:{name}"
+outer = "ground"
+{bearing}
+"""
+SPRING = """
+[[springs]]
+name = "{name}"
+on = "rotor:{name}"
+stiffness = { y = "1e8 N/m", z = "1e8 N/m" }
+"""
+BALLS = 'bearing = "6208"\ndiametral_clearance = "-5 um"'
+ROLLERS = (
+    'geometry = { estimate = "NU208", basic_static_rating = "53 kN", diametral_clearance = "-5 um" }\nslices = 21\n'
+    'start_angle = "3 deg"'
+)
 
 
 @njit
@@ -50,14 +104,41 @@ def stiffness_error(force: BallForce, speed: float) -> float:
     )
 
 
+def run_cost(part: str, law: str) -> float:
+    """Processor time of a step of a run-up [s], between springs or two bearings with a law."""
+    parts = [part.replace("{name}", name) for name in ("left", "right")]
+    model = assemble(parse_scene(MACHINE + "".join(parts), "rotor", "rotor.toml"), law)
+    start = equilibrium(model.system, model.operation).displacement
+    speed, best = SpeedProfile.ramp(600.0 * RPM, 6000.0 * RPM, 0.2), math.inf
+    for _ in range(3):
+        begin = time.process_time()
+        done = run(model.system, speed, 0.2, Settings(step=2e-5, sample=1e-3), displacement=start)
+        best = min(best, (time.process_time() - begin) / done.steps)
+        assert done.compiled == done.steps
+    return best
+
+
+def runs() -> None:
+    """Print the cost of bearings in runs."""
+    bare = run_cost(SPRING, "hertz")
+    print(f"a step of a run-up, us; what a bearing adds to the {1e6 * bare:.1f} us of the rotor between springs")
+    for name, lines in (("6208", BALLS), ("NU208", ROLLERS)):
+        for law in ("hertz:1.25e-5 s", "table"):
+            cost = run_cost(BEARING.replace("{bearing}", lines), law)
+            print(f"  {name:6s} {law:16s} {1e6 * cost:7.1f} {0.5e6 * (cost - bare):7.1f}")
+
+
 def main() -> None:
     """Print the table."""
+    if "--runs" in sys.argv:
+        runs()
+        return
     geometry = ball_estimate("6208")
     force = BallForce(geometry, dry_law(geometry, damping_time=1.25e-5))
     print(f"{geometry.name}, {geometry.balls} balls, f + K + C, us a call; error of K against differences")
     print(f"{'rpm':>8s} {'stands':>8s} {'moves':>8s} {'error':>9s}")
     for rpm in (0.0, 3e3, 15e3):
-        speed = rpm * math.pi / 30.0
+        speed = rpm * RPM
         force(POSE, inner_speed=speed)
         numbers, arrays = force.kernel_arguments(inner_speed=speed)
         found = []

@@ -32,6 +32,7 @@ from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.physics.solids import STEEL, Material
 from mbs.bearings.balls.ball_kernel import NO_BALANCE, NOT_FINITE, TOO_FAR, BallShape, ball_force, load_approach
+from mbs.bearings.balls.ball_speed import ball_loads, rolling
 from mbs.bearings.balls.laws import BallLaw
 from mbs.model.elements import ElementDefaults, Excitation, Forces, Operation, Port
 
@@ -88,6 +89,15 @@ class BallForce:
     compiled : bool
         Whether the compiled kernel is called, or the same in Python.
 
+    Attributes
+    ----------
+    shape : BallShape
+        Lengths for compiled code.
+    masses : array (4,)
+        What `mbs.bearings.balls.ball_speed.ball_loads` takes.
+    directions : (array (Z,), array (Z,))
+        Directions of the balls in the cage, y and z.
+
     Notes
     -----
     An object is for one thread: it keeps the places of the balls as a start for the next call.
@@ -107,8 +117,10 @@ class BallForce:
             most_travel=distance,
             most_tilt=distance / geometry.inner_groove_radius,
         )
-        places = 2.0 * math.pi * np.arange(geometry.balls) / geometry.balls
-        self._cos, self._sin, self._places = np.cos(places), np.sin(places), places
+        mass, diameter, pitch = geometry.ball_mass(material), geometry.ball_diameter, geometry.pitch_diameter
+        self.masses = np.array([0.5 * mass * pitch, 0.1 * mass * diameter * pitch, diameter, diameter / pitch])
+        self._places = 2.0 * math.pi * np.arange(geometry.balls) / geometry.balls
+        self.directions = np.cos(self._places), np.sin(self._places)
         self._kernel = ball_force if compiled else in_python(ball_force)
         self._centres = np.full((geometry.balls, 2), np.nan)
         self._balls = np.zeros((geometry.balls, _COLUMNS))
@@ -118,11 +130,7 @@ class BallForce:
     def speed_loads(
         self, inner_speed: float, outer_speed: float, cage_speed: float | None = None
     ) -> tuple[float, float]:
-        """Centrifugal load F_c of a ball, and factor G of its gyroscopic moment G sin(alpha_o).
-
-        F_c = m (d_m/2) w_c^2 and G = J w_c (w_c - w_o) d_m/Dw, J = m Dw^2/10; [N], [N m]. The traction of rings that
-        turn against each other, with a cage that is slow, would drive an idle ball out of its groove: G is at least
-        -F_c Dw/4, by which it stays.
+        """Centrifugal load of a ball [N], and factor of its gyroscopic moment [N m], see `ball_loads`.
 
         Parameters
         ----------
@@ -145,11 +153,8 @@ class BallForce:
         cage = geometry.cage_speed(inner_speed, outer_speed) if cage_speed is None else cage_speed
         if not abs(cage) <= FASTEST:
             raise InputError(f"ball bearing, cage_speed: got {cage!r} rad/s; allowed: at most {FASTEST:g} rad/s")
-        mass, ratio = geometry.ball_mass(self.material), geometry.pitch_diameter / geometry.ball_diameter
-        inertia = 0.1 * mass * geometry.ball_diameter**2
-        centrifugal = 0.5 * mass * geometry.pitch_diameter * cage**2
-        least = -0.25 * geometry.ball_diameter * centrifugal
-        return centrifugal, max(inertia * cage * (cage - outer_speed) * ratio, least)
+        found: tuple[float, float] = ball_loads(self.masses, cage, outer_speed)
+        return found
 
     def __call__(
         self,
@@ -243,7 +248,7 @@ class BallForce:
         traction = 2.0 * moment / self.geometry.ball_diameter
         numbers = np.array([cage_angle, centrifugal, traction, self._rest[1]], dtype=np.float64)
         laws = self.law.inner, self.law.outer
-        return numbers, (self._cos, self._sin, self.shape, *laws, *self._out, self._centres, self._balls)
+        return numbers, (*self.directions, self.shape, *laws, *self._out, self._centres, self._balls)
 
     def _evaluated(
         self, pose: npt.ArrayLike, cage_angle: float, inner_speed: float, outer_speed: float, cage_speed: float | None
@@ -289,10 +294,8 @@ def rolling_cage(force: BallForce, balls: BallLoads, inner_speed: float, outer_s
     inner_speed, outer_speed : float
         Speeds of the rings [rad/s].
     """
-    ratio = force.geometry.ball_diameter / force.geometry.pitch_diameter
-    inner = 1.0 - ratio * math.cos(balls.mean_angle(0))
-    outer = 1.0 + ratio * math.cos(balls.mean_angle(1))
-    return (inner_speed * inner + outer_speed * outer) / (inner + outer)
+    angles = balls.mean_angle(0), balls.mean_angle(1)
+    return float(rolling(force.masses[3], angles, inner_speed, outer_speed))
 
 
 def _six(values: npt.ArrayLike, name: str) -> FloatArray:
@@ -343,11 +346,11 @@ class BallElement(ElementDefaults):
     @property
     def excitation(self) -> Excitation | None:
         """The passing of the balls; None for a cage that stands."""
-        order = self.force.geometry.balls * abs(self._cage)
+        order = self.force.geometry.balls * abs(self.cage_turn)
         return Excitation(order, HARMONICS, rank=1) if order > 0.0 else None
 
     @cached_property
-    def _cage(self) -> float:
+    def cage_turn(self) -> float:
         """Speed of the cage as a multiple of the system's."""
         rolling = self.force.geometry.cage_speed(self.inner_spin, self.outer_spin)
         return rolling if self.cage_spin is None else self.cage_spin
@@ -355,10 +358,10 @@ class BallElement(ElementDefaults):
     def conditions(self, operation: Operation) -> dict[str, float]:
         """Angle of the cage and speeds, by the names that the force takes."""
         return {
-            "cage_angle": self.start_angle + self._cage * operation.angle,
+            "cage_angle": self.start_angle + self.cage_turn * operation.angle,
             "inner_speed": self.inner_spin * operation.speed,
             "outer_speed": self.outer_spin * operation.speed,
-            "cage_speed": self._cage * operation.speed,
+            "cage_speed": self.cage_turn * operation.speed,
         }
 
     def balls(self, displacement: FloatArray, operation: Operation) -> BallLoads:

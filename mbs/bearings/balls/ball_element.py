@@ -1,8 +1,8 @@
 """A ball bearing in a machine: quasi-static at the speed that the system has, with the cage that its balls ask for.
 
 The cage's angle goes evenly, by pure rolling at the nominal contact angle. Its speed, by which the balls have their
-centrifugal load and gyroscopic moment, is that of pure rolling at the mean contact angles of the pose. Films have the
-stiffness and damping of slow motion at any frequency: they have no memory.
+centrifugal load and gyroscopic moment, is that of pure rolling at the mean contact angles of the pose; in time the cage
+follows a step later. Films have the stiffness and damping of slow motion at any frequency: they have no memory.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, SolverError
 from ehdmaps.units import RPM
 from mbs.bearings.balls.ball_bearing import BallElement, BallForce, BallLoads, rolling_cage
+from mbs.bearings.balls.laws import BallLaw
 from mbs.model.elements import Forces, Operation
 
 CAGE_ERROR = 1e-8
@@ -58,32 +59,45 @@ class MachineBalls(BallElement):
         Way of the inner ring along x against the outer one where both places have not moved [m]: preload by
         displacement.
     films : callable or None
-        Force with the films at two speeds of the rings [rad/s]; None for the dry law.
+        Law with the films at two speeds of the rings [rad/s]; None for the dry law. Bearings whose `films` are equal
+        share them.
     """
 
     axial_offset: float = 0.0
-    films: Callable[[float, float], BallForce] | None = None
+    films: Callable[[float, float], BallLaw] | None = None
     _made: OrderedDict[float, BallForce] = field(default_factory=OrderedDict, repr=False)
 
-    def force_at(self, operation: Operation) -> BallForce:
-        """The force at a speed; dry where nothing rolls.
+    @property
+    def film_key(self) -> tuple[object, ...]:
+        """Key that bearings with the same law at all speeds have in common."""
+        law = (id(self.force.law),) if self.films is None else (self.films,)
+        return (*law, self.inner_spin, self.outer_spin)
+
+    def law_at(self, speed: float) -> BallLaw:
+        """The law at a speed of the system [rad/s]; dry where nothing rolls.
 
         Raises
         ------
         AnalysisError
             Where the film table has no films for a contact at that speed.
         """
+        if self.films is None or abs(speed) * abs(self.inner_spin - self.outer_spin) == 0.0:
+            return self.force.law
+        try:
+            return self.films(self.inner_spin * abs(speed), self.outer_spin * abs(speed))
+        except SolverError as error:
+            raise AnalysisError(
+                f"bearing {self.name!r}: no films at {RPM.text(abs(speed))} of the system ({error}); take speeds, "
+                "temperature and oil that the film table of points holds, or dry contacts: --law 'hertz:1.25e-5 s'"
+            ) from error
+
+    def force_at(self, operation: Operation) -> BallForce:
+        """The force at a speed; errors as of `law_at`."""
         speed = abs(operation.speed)
-        if self.films is None or speed * abs(self.inner_spin - self.outer_spin) == 0.0:
+        if self.films is None:
             return self.force
         if speed not in self._made:
-            try:
-                self._made[speed] = self.films(self.inner_spin * speed, self.outer_spin * speed)
-            except SolverError as error:
-                raise AnalysisError(
-                    f"bearing {self.name!r}: no films at {RPM.text(speed)} of the system ({error}); take speeds, "
-                    "temperature and oil that the film table of points holds, or dry contacts: --law 'hertz:1.25e-5 s'"
-                ) from error
+            self._made[speed] = BallForce(self.force.geometry, self.law_at(speed), self.force.material)
             if len(self._made) > MOST_SPEEDS:
                 self._made.popitem(last=False)
         return self._made[speed]
@@ -118,19 +132,27 @@ class MachineBalls(BallElement):
     def advance(
         self, states: Any, displacement: FloatArray, velocity: FloatArray, operation: Operation
     ) -> tuple[Forces, Any]:
-        """The same at the end of a step in time: dry contacts alone, see `Element.advance`.
+        """The same at the end of a step in time, with the cage of the step before, see `Element.advance`.
 
-        Raises
-        ------
-        AnalysisError
-            With films, which have no memory.
+        Parameters
+        ----------
+        states : float or None
+            Speed of the cage by that of the system after the last step; None for the steady one.
+        displacement, velocity, operation
+            What `Element.advance` takes.
         """
-        if self.films is not None:
-            raise AnalysisError(
-                f"bearing {self.name!r}: ball bearings have no films in time yet: they would need a memory; take dry "
-                "contacts with a damper, --law 'hertz:1.25e-5 s', or sweep and critical over speed"
-            )
-        return super().advance(states, displacement, velocity, operation)
+        if states is None:
+            at = self.settled(displacement, operation)
+            force, pose, conditions = at.force, at.pose, at.conditions
+        else:
+            force, pose = self.force_at(operation), displacement.copy()
+            pose[0] += self.axial_offset
+            conditions = {**self.conditions(operation), "cage_speed": states * operation.speed}
+        balls = force.balls(pose, **conditions)
+        answer = self._answer(force, pose, velocity, conditions, balls)
+        if self.cage_spin is not None:
+            return answer, self.cage_spin
+        return answer, rolling_cage(force, balls, self.inner_spin, self.outer_spin)
 
     def evaluate(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> Forces:
         """Force on the inner ring, stiffness and damping; whether loads are beyond those of the films.
@@ -141,7 +163,13 @@ class MachineBalls(BallElement):
             What `Element.evaluate` takes.
         """
         at = self.settled(displacement, operation)
-        force, stiffness, damping = at.force(at.pose, velocity, **at.conditions)
-        largest = at.force.law.loads[1]
-        outside = math.isfinite(largest) and bool(at.balls.load.max() > largest)
-        return Forces(force, stiffness, damping, outside)
+        return self._answer(at.force, at.pose, velocity, at.conditions, at.balls)
+
+    @staticmethod
+    def _answer(
+        force: BallForce, pose: FloatArray, velocity: FloatArray, conditions: dict[str, Any], balls: BallLoads
+    ) -> Forces:
+        """Force, stiffness, damping, and whether loads are beyond those of the films."""
+        at_rest, stiffness, damping = force(pose, velocity, **conditions)
+        largest = force.law.loads[1]
+        return Forces(at_rest, stiffness, damping, math.isfinite(largest) and bool(balls.load.max() > largest))

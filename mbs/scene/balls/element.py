@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from functools import partial
+import dataclasses
+import functools
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ehdmaps.errors import InputError
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.units import TEMPERATURE
 from mbs.scene.specs import BallSpec
 
 if TYPE_CHECKING:
-    from mbs.bearings.balls.ball_bearing import BallForce
+    from mbs.bearings.balls.laws import BallLaw
     from mbs.scene.contact_laws import ContactLaws
     from mbs.scene.surroundings import Built, Surroundings
 
@@ -123,17 +127,31 @@ def build_ball(spec: BallSpec, surroundings: Surroundings) -> Built:
         outer_spin=surroundings.places.spin(spec.outer),
         start_angle=spec.start_angle,
         axial_offset=spec.axial_offset,
-        films=partial(_with_films, spec, laws, surroundings.temperature) if has_films else None,
+        films=_TableFilms(_contacts_of(spec.geometry), laws.lubricant, surroundings.temperature) if has_films else None,
     )
     return Built(element, element)
 
 
-def _with_films(
-    spec: BallSpec, laws: ContactLaws, temperature: float, inner_speed: float, outer_speed: float
-) -> BallForce:
-    """The force with films that are read at two speeds of the rings."""
-    from mbs.bearings.balls.ball_bearing import BallForce
+def _contacts_of(geometry: BallGeometry) -> BallGeometry:
+    """The geometry without what its films do not depend on: clearance, and which way it stands."""
+    return dataclasses.replace(geometry, clearance=0.0, contact_angle=abs(geometry.contact_angle))
+
+
+@dataclass(frozen=True)
+class _TableFilms:
+    """Law of a geometry with the films of two speeds of the rings, read from the film table of points."""
+
+    geometry: BallGeometry
+    oil: Lubricant
+    temperature: float
+
+    def __call__(self, inner_speed: float, outer_speed: float) -> BallLaw:
+        return _film_law(self, self.geometry.entrainment_speed(inner_speed, outer_speed))
+
+
+@functools.lru_cache(maxsize=64)
+def _film_law(films: _TableFilms, u: float) -> BallLaw:
+    """The law at an entrainment speed [m/s]; alike bearings read it once."""
     from mbs.bearings.balls.films import ball_films
 
-    u = spec.geometry.entrainment_speed(inner_speed, outer_speed)
-    return BallForce(spec.geometry, ball_films(spec.geometry, laws.lubricant, u, temperature, solves=False).law)
+    return ball_films(films.geometry, films.oil, u, films.temperature, solves=False).law

@@ -1,0 +1,476 @@
+"""Ball bearings in compiled runs: the kernel of a bearing alone, with the speed of the cage that its balls ask for.
+
+The cage follows a step later: its speed, by which balls have their centrifugal load and gyroscopic moment, is that of
+pure rolling at the contact angles of the step before. Films change with the speed: their laws are made at nodes that
+lie evenly in its logarithm, on one grid of approaches, and blended straight between two nodes.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from ehdmaps.arrays import BoolArray, FloatArray, IntArray
+from ehdmaps.compiled import njit
+from ehdmaps.errors import EhdmapsError
+from mbs.bearings.balls.ball_bearing import NEGLIGIBLE
+from mbs.bearings.balls.ball_element import MachineBalls
+from mbs.bearings.balls.ball_kernel import NO_BALANCE, BallShape, NormalLaw, ball_force, contact, load_approach
+from mbs.bearings.balls.ball_speed import ball_loads, mean_angles, rolling
+from mbs.bearings.balls.laws import NODES, BallLaw
+from mbs.bearings.speed_tables import Course, CourseOfFilms, FilmBlock, Made, Prepared, SpeedWindow, course_of, shared
+from mbs.model.blocks import FOUND, NO_SOLUTION, Answers, Kind, Member, Moment
+
+FELT = np.array([0, 1, 2, 4, 5])
+"""Displacements of its port that a ball bearing feels."""
+
+STEP = 0.02
+"""Distance of the nodes in ln of the speed: blends are wrong by some 1e-5 of load and stiffness, see the tests."""
+
+SLOTS = 32
+"""How many laws are held."""
+
+_LOWEST = 1.0
+"""Speed at which nodes change from even in its logarithm to even in the speed [rad/s]; no film is read that low."""
+
+_WIDENED = 3.0
+"""Factor by which a grid goes beyond the speeds for which it is made."""
+
+_LAW_NUMBERS = len(NormalLaw._fields) - 1
+_REST_STEPS = 20
+
+
+class BallFilmTables(NamedTuple):
+    """Laws at nodes over the speed, and those in use; a film is that of both contacts of bearings that are alike.
+
+    Attributes
+    ----------
+    tables, numbers : array (films, slots, 2, rows, 4), (films, slots, 2, 7)
+        Numbers of `NormalLaw` of the inner and the outer contact; without rows for dry contacts.
+    most, lengths : array (films, slots)
+        Highest load for which the law was made [N]; rows that it has, none where it is dry.
+    table, current, highest, length : array (films, 2, rows, 4), (films, 2, 7), (films,), (films,)
+        The laws in use.
+    in_use : array (films, 2)
+        Node and weight of those.
+    """
+
+    tables: FloatArray
+    numbers: FloatArray
+    most: FloatArray
+    lengths: IntArray
+    table: FloatArray
+    current: FloatArray
+    highest: FloatArray
+    length: IntArray
+    in_use: FloatArray
+
+
+class Balls(NamedTuple):
+    """Ball bearings as arrays, one row a bearing; rows of balls are as long as the longest.
+
+    Attributes
+    ----------
+    firsts, places, films_of, counts : array (bearings,), of int
+        First of what each feels, its place among all elements, its film, and how many balls it has.
+    starts, turns, offsets : array (bearings,)
+        Angle of the first ball [rad], cage angle by that of the system, axial offset [m].
+    spins : array (bearings, 2)
+        Speeds of the rings by that of the system.
+    given : array (bearings,), of bool
+        Whether the speed of the cage is given.
+    shapes : array (bearings, 7)
+        `BallShape` in its order.
+    masses : array (bearings, 4)
+        What `ball_loads` takes.
+    cos, sin : array (bearings, Z)
+        Directions of the balls in the cage.
+    centres, rows : array (bearings, Z, 2), (bearings, Z, 16)
+        Places of the balls, and what `place_ball` writes of each, at the last answer.
+    cages : array (bearings,)
+        Speed of the cage by that of the system, of the step before.
+    rests : array (bearings,)
+        Approach at the outer raceway under the centrifugal load alone [m].
+    films : BallFilmTables
+        Laws of the contacts.
+    course : Course
+        Places of the steps on the tables.
+    """
+
+    firsts: IntArray
+    places: IntArray
+    films_of: IntArray
+    counts: IntArray
+    starts: FloatArray
+    turns: FloatArray
+    offsets: FloatArray
+    spins: FloatArray
+    given: BoolArray
+    shapes: FloatArray
+    masses: FloatArray
+    cos: FloatArray
+    sin: FloatArray
+    centres: FloatArray
+    rows: FloatArray
+    cages: FloatArray
+    rests: FloatArray
+    films: BallFilmTables
+    course: Course
+
+
+@njit(error_model="numpy")
+def _blend(films: BallFilmTables, film: int, node: int, weight: float) -> None:
+    """Bring the laws in use to a place between two nodes."""
+    if films.in_use[film, 0] == node and films.in_use[film, 1] == weight:
+        return
+    films.in_use[film, 0], films.in_use[film, 1] = node, weight
+    other = (node + 1) % films.numbers.shape[1] if weight > 0.0 else node
+    low, high = films.numbers[film, node].reshape(-1), films.numbers[film, other].reshape(-1)
+    current = films.current[film].reshape(-1)
+    for i in range(current.size):
+        current[i] = low[i] + weight * (high[i] - low[i])
+    films.highest[film] = min(films.most[film, node], films.most[film, other])
+    films.length[film] = films.lengths[film, node]
+    if films.length[film] == 0:
+        return
+    low, high = films.tables[film, node].reshape(-1), films.tables[film, other].reshape(-1)
+    table = films.table[film].reshape(-1)
+    for i in range(table.size):
+        table[i] = low[i] + weight * (high[i] - low[i])
+
+
+@njit(error_model="numpy")
+def _law_of(films: BallFilmTables, film: int, side: int) -> NormalLaw:
+    """The law in use of a side."""
+    n = films.current[film, side]
+    return NormalLaw(n[0], n[1], n[2], n[3], n[4], n[5], n[6], films.table[film, side, : films.length[film]])
+
+
+@njit(error_model="numpy")
+def rest_approach(law: NormalLaw, load: float, start: float) -> float:
+    """Approach at which a contact carries a load >= 0 [m], from a start near it.
+
+    Parameters
+    ----------
+    law : NormalLaw
+        Law of the contact.
+    load : float
+        Load [N].
+    start : float
+        Approach to begin with [m].
+    """
+    if load <= 0.0:
+        return 0.0
+    if law.table.shape[0] > 0:
+        for _ in range(_REST_STEPS):
+            found, k, _c = contact(law, start)
+            if not (found > 0.0 and k > 0.0):
+                break
+            short = math.log(load / found)
+            if abs(short) <= 1e-12:
+                return start
+            start += short * found / k
+    approach: float = load_approach(law, load)
+    return approach
+
+
+@njit(error_model="numpy")
+def _on_ring(balls: Balls, b: int, moment: Moment, motion: FloatArray, answers: Answers) -> int:
+    """Write the answer of a bearing; status as of `ball_force`."""
+    i, z, film, x, y = balls.firsts[b], balls.counts[b], balls.films_of[b], motion[0], motion[1]
+    pose, numbers = np.empty(6), np.empty(4)
+    force, stiffness, damping = np.empty(6), np.empty((6, 6)), np.empty((6, 6))
+    pose[0], pose[1], pose[2], pose[3] = x[i] + balls.offsets[b], x[i + 1], x[i + 2], 0.0
+    pose[4], pose[5] = x[i + 3], x[i + 4]
+    s = balls.shapes[b]
+    shape = BallShape(s[0], s[1], s[2], s[3], s[4], s[5], s[6])
+    inner, outer = _law_of(balls.films, film, 0), _law_of(balls.films, film, 1)
+    cage, ring = balls.cages[b] * moment.speed, balls.spins[b, 1] * moment.speed
+    centrifugal, factor = ball_loads(balls.masses[b], cage, ring)
+    rest = rest_approach(outer, centrifugal, balls.rests[b])
+    balls.rests[b] = rest
+    if inner.table.shape[0] == 0 and rest < NEGLIGIBLE:
+        centrifugal = factor = 0.0
+    numbers[0] = balls.starts[b] + balls.turns[b] * moment.angle
+    numbers[1], numbers[2], numbers[3] = centrifugal, 2.0 * factor / balls.masses[b, 2], rest
+    centres, rows = balls.centres[b, :z], balls.rows[b, :z]
+    found = NO_BALANCE
+    for _ in range(2):
+        found = ball_force(
+            pose, numbers, balls.cos[b, :z], balls.sin[b, :z], shape, inner, outer, force, stiffness, damping,
+            centres, rows,
+        )  # fmt: skip
+        if found != NO_BALANCE:
+            break
+        centres[:] = math.nan  # once more, from nothing
+    if found < 0:
+        centres[:] = math.nan
+        return found
+    for p in range(FELT.size):
+        row = FELT[p]
+        total = force[row]
+        for q in range(FELT.size):
+            column = FELT[q]
+            total -= damping[row, column] * y[i + q]
+            answers.slopes[i + p, i + q] = moment.by_q * stiffness[row, column] + moment.by_v * damping[row, column]
+        answers.force[i + p] = total
+    return found
+
+
+@njit(error_model="numpy")
+def balls_answer(balls: Balls, moment: Moment, motion: FloatArray, answers: Answers) -> int:
+    """Forces and slopes of all ball bearings; see `mbs.model.blocks.Kind`.
+
+    Parameters
+    ----------
+    balls : Balls
+        The bearings, with the tables of their laws.
+    moment : Moment
+        Step, angle, speed, weights of the slopes.
+    motion : array (2, m)
+        Displacements and their rates, among what all elements feel.
+    answers : Answers
+        Answers of all elements, filled.
+    """
+    course, films = balls.course, balls.films
+    for film in range(films.highest.size):
+        _blend(films, film, course.nodes[moment.step, film], course.weights[moment.step, film])
+    for b in range(balls.firsts.size):
+        if _on_ring(balls, b, moment, motion, answers) < 0:
+            return NO_SOLUTION
+        largest = 0.0
+        for j in range(balls.counts[b]):
+            largest = max(largest, balls.rows[b, j, 10], balls.rows[b, j, 11])
+        if largest > films.highest[balls.films_of[b]]:
+            answers.outside[balls.places[b]] += 1
+    return FOUND
+
+
+@njit(error_model="numpy")
+def balls_accept(balls: Balls, moment: Moment) -> None:
+    """Take note of the cage's speed that the contact angles of a step ask for, which was made.
+
+    Parameters
+    ----------
+    balls, moment
+        The same as of `balls_answer`, of which this was the last one.
+    """
+    for b in range(balls.firsts.size):
+        if not balls.given[b]:
+            angles = mean_angles(balls.rows[b, : balls.counts[b]])
+            balls.cages[b] = rolling(balls.masses[b, 3], angles, balls.spins[b, 0], balls.spins[b, 1])
+
+
+@njit(error_model="numpy")
+def on_grid(law: NormalLaw, grid: NormalLaw, out: FloatArray) -> None:
+    """Write the table of a law on another grid of approaches.
+
+    Parameters
+    ----------
+    law : NormalLaw
+        Law with a film.
+    grid : NormalLaw
+        Grid: its centre, scale, first node and step.
+    out : array (nodes, 4)
+        Table, written.
+    """
+    rows = out.shape[0]
+    for i in range(rows):
+        z = grid.first + grid.step * i
+        load, k, c = contact(law, grid.centre + grid.scale * math.sinh(z))
+        out[i, 0] = 2.0 / 3.0 * math.log(load / law.coefficient)
+        out[i, 1] = 2.0 / 3.0 * k / load * grid.scale * math.cosh(z) * grid.step
+        out[i, 2] = math.log(c)
+    for i in range(rows):
+        low, high = max(i - 1, 0), min(i + 1, rows - 1)
+        out[i, 3] = (out[high, 2] - out[low, 2]) / (high - low)
+
+
+def _sides(law: BallLaw) -> tuple[NormalLaw, NormalLaw]:
+    """Inner and outer."""
+    return law.inner, law.outer
+
+
+class _Laws:
+    """Laws of one film at the nodes of a window of speeds.
+
+    Parameters
+    ----------
+    element : MachineBalls
+        One of the bearings with the film.
+    """
+
+    def __init__(self, element: MachineBalls) -> None:
+        self._element = element
+        self.varies = element.films is not None and element.inner_spin != element.outer_spin
+        self._window = SpeedWindow(STEP, SLOTS, _LOWEST, self.varies)
+        self._grids: tuple[NormalLaw, ...] = ()
+        self._reach = math.inf, 0.0
+
+    def law(self, speed: float) -> BallLaw:
+        """The law at a speed [rad/s]."""
+        return self._element.law_at(speed)
+
+    def begin(self, speeds: FloatArray) -> None:
+        """Choose the grid of approaches for some speeds and those near: that of the laws at both ends.
+
+        Parameters
+        ----------
+        speeds : array (n,)
+            Speeds [rad/s].
+        """
+        low, high = float(np.abs(speeds).min()), float(np.abs(speeds).max())
+        if not self.varies or low == high or (self._reach[0] <= low and high <= self._reach[1]):
+            return
+        for widened in (_WIDENED, 1.0):  # speeds to come need not have films
+            reach = low / widened, high * widened
+            try:
+                ends = self.law(reach[0]), self.law(reach[1])
+            except EhdmapsError:
+                continue  # the step that asks for it will be told why
+            if not (ends[0].dry or ends[1].dry):
+                self._grids = tuple(_over(*pair) for pair in zip(*map(_sides, ends), strict=True))
+                self._reach, self._window = reach, SpeedWindow(STEP, SLOTS, _LOWEST)
+                return
+
+    def places(self, speeds: FloatArray) -> tuple[IntArray, FloatArray]:
+        """Nodes and weights of speeds [rad/s]."""
+        return self._window.places(speeds)
+
+    def prepare(
+        self, films: BallFilmTables, film: int, speeds: FloatArray, nodes: IntArray, weights: FloatArray
+    ) -> Prepared:
+        """Make the laws for the first of some speeds, see `SpeedWindow.prepare`."""
+
+        def make(slot: int, speed: float, alone: bool) -> Made:
+            return self._made(films, film, slot, speed, alone)
+
+        return self._window.prepare(speeds, nodes, weights, make)
+
+    def _made(self, films: BallFilmTables, film: int, slot: int, speed: float, alone: bool) -> Made:
+        """Write the laws of a node."""
+        try:
+            law = self.law(speed)
+        except EhdmapsError:
+            return Made(sound=False)
+        films.most[film, slot], films.lengths[film, slot] = law.loads[1], 0 if law.dry else NODES
+        for side, one in enumerate(_sides(law)):
+            numbers, table = films.numbers[film, slot, side], films.tables[film, slot, side]
+            if alone or law.dry:
+                numbers[:] = one[:_LAW_NUMBERS]
+                table[: one.table.shape[0]] = one.table
+            elif self._grids:
+                numbers[:] = self._grids[side][:_LAW_NUMBERS]
+                on_grid(one, self._grids[side], table)
+            else:
+                return Made(sound=False)
+        return Made(sound=True, kind=int(law.dry))
+
+
+def _over(slow: NormalLaw, fast: NormalLaw) -> NormalLaw:
+    """Grid of approaches that holds those of two laws."""
+    ends = []
+    for law in (slow, fast):
+        z = law.first + law.step * np.array([0.0, law.table.shape[0] - 1.0])
+        ends.append(law.centre + law.scale * np.sinh(z))
+    centre, scale = 0.5 * (slow.centre + fast.centre), math.sqrt(slow.scale * fast.scale)
+    first = math.asinh((min(end[0] for end in ends) - centre) / scale)
+    last = math.asinh((max(end[1] for end in ends) - centre) / scale)
+    return fast._replace(centre=centre, scale=scale, first=first, step=(last - first) / (NODES - 1))
+
+
+class BallBlock(FilmBlock[Balls]):
+    """The ball bearings of a run; see `mbs.model.blocks.StatefulBlock`.
+
+    Parameters
+    ----------
+    members : sequence of Member
+        Bearings of the class `MachineBalls`.
+    """
+
+    def __init__(self, members: Sequence[Member]) -> None:
+        elements: list[MachineBalls] = [member.element for member in members]
+        films_of, firsts = shared(one.film_key for one in elements)
+        self._laws = [_Laws(elements[first]) for first in firsts]
+        arrays = _gather(members, films_of, self._laws)
+        films = arrays.films
+
+        def make(film: int, speeds: FloatArray, nodes: IntArray, weights: FloatArray) -> Prepared:
+            return self._laws[film].prepare(films, film, speeds, nodes, weights)
+
+        super().__init__(CourseOfFilms([one.places for one in self._laws], make), arrays)
+
+    def begin(self, speeds: FloatArray) -> None:
+        """Find the places of the speeds [rad/s] on the tables, and the grids of these."""
+        for one in self._laws:
+            one.begin(speeds)
+        super().begin(speeds)
+
+    def states(self) -> Sequence[float]:
+        """Speeds of the cages by that of the system."""
+        found: list[float] = self._arrays.cages.tolist()
+        return found
+
+    def resume(self, states: Sequence[float]) -> None:
+        """Go on with cages that `MachineBalls.advance` gave.
+
+        Parameters
+        ----------
+        states : sequence of float
+            Their speeds by that of the system.
+        """
+        self._arrays.cages[:] = states
+
+
+def _gather(members: Sequence[Member], films_of: list[int], laws: Sequence[_Laws]) -> Balls:
+    """Arrays of some bearings."""
+    elements: list[MachineBalls] = [member.element for member in members]
+    count, most = len(elements), max((one.force.geometry.balls for one in elements), default=0)
+    rows, slots = (NODES, SLOTS) if any(one.varies for one in laws) else (0, 1)
+    films = BallFilmTables(
+        tables=np.zeros((len(laws), slots, 2, rows, 4)),
+        numbers=np.zeros((len(laws), slots, 2, _LAW_NUMBERS)),
+        most=np.zeros((len(laws), slots)),
+        lengths=np.zeros((len(laws), slots), dtype=np.int64),
+        table=np.zeros((len(laws), 2, rows, 4)),
+        current=np.zeros((len(laws), 2, _LAW_NUMBERS)),
+        highest=np.zeros(len(laws)),
+        length=np.zeros(len(laws), dtype=np.int64),
+        in_use=np.full((len(laws), 2), -1.0),
+    )
+    cos, sin = np.zeros((2, count, most))
+    for b, one in enumerate(elements):
+        cos[b, : one.force.geometry.balls], sin[b, : one.force.geometry.balls] = one.force.directions
+    return Balls(
+        firsts=np.array([member.first for member in members], dtype=np.int64),
+        places=np.array([member.place for member in members], dtype=np.int64),
+        films_of=np.array(films_of, dtype=np.int64),
+        counts=np.array([one.force.geometry.balls for one in elements], dtype=np.int64),
+        starts=np.array([one.start_angle for one in elements], dtype=np.float64),
+        turns=np.array([one.cage_turn for one in elements], dtype=np.float64),
+        offsets=np.array([one.axial_offset for one in elements], dtype=np.float64),
+        spins=np.array([(one.inner_spin, one.outer_spin) for one in elements], dtype=np.float64).reshape(count, 2),
+        given=np.array([one.cage_spin is not None for one in elements], dtype=np.bool_),
+        shapes=np.array([one.force.shape for one in elements], dtype=np.float64).reshape(count, 7),
+        masses=np.array([one.force.masses for one in elements], dtype=np.float64).reshape(count, 4),
+        cos=cos,
+        sin=sin,
+        centres=np.full((count, most, 2), np.nan),
+        rows=np.zeros((count, most, 16)),
+        cages=np.array([one.cage_turn for one in elements], dtype=np.float64),
+        rests=np.zeros(count),
+        films=films,
+        course=course_of(0, len(laws)),
+    )
+
+
+def _feels(element: MachineBalls) -> FloatArray:
+    """Rows of what a bearing feels of its port."""
+    return np.asarray(np.eye(6)[FELT])
+
+
+BALLS = Kind(arrays=Balls, answer=balls_answer, feels=_feels, gather=BallBlock, accept=balls_accept, rare=True)
+"""For `mbs.transient.kinds`."""

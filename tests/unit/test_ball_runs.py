@@ -1,0 +1,123 @@
+"""Ball bearings in runs in time: compiled code against the element in Python, and their work on closed paths."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+from mbs import assemble, parse_scene, read_scene
+from mbs.bearings.balls.ball_bearing import BallForce
+from mbs.bearings.balls.ball_block import FELT, BallBlock, balls_accept, balls_answer
+from mbs.model.blocks import FOUND, Answers, Member, Moment
+from mbs.model.elements import Operation
+from mbs.model.equilibrium import equilibrium
+from mbs.model.profiles import SpeedProfile
+from mbs.settings import Settings
+from mbs.transient.run import Options, run
+from tests.unit.test_ball_scenes import LAW, text
+
+RPM = math.pi / 30.0
+PLACE = np.array([95e-6, -3e-6, 1e-6, 0.0, 2e-5, -4e-5])
+RATE = np.array([1e-3, -2e-3, 1e-3, 0.0, 0.1, 0.2])
+
+
+def drive(law):
+    return assemble(read_scene("electric_drive"), law)
+
+
+def answers(block, speeds, step, angle, place=PLACE, rate=RATE):
+    """Force, by_q K + by_v C and whether outside, of the only bearing of a block at a step of some speeds."""
+    arrays, sound = block.prepare(step, step + 1)
+    assert sound[0]
+    found = Answers(np.zeros(5), np.zeros((5, 5)), np.zeros(1, dtype=np.int64))
+    moment = Moment(0, 0.0, float(speeds[step]), angle, 1.0, 1e3)
+    assert balls_answer(arrays, moment, np.array([place[FELT], rate[FELT]]), found) == FOUND
+    balls_accept(arrays, moment)
+    return found
+
+
+@pytest.mark.parametrize(("law", "rpm"), [(LAW, 0.0), (LAW, 12e3), (LAW, -12e3), ("table", 6e3)])
+def test_compiled_block_is_the_element(law, rpm):
+    """Both end in the balance of the same balls, to 1e-13 of its forces: some 1e-9 where it is stiff across them."""
+    element = drive(law).balls[1]
+    block, speeds = BallBlock([Member(element, 0, 0)]), np.array([rpm * RPM])
+    block.begin(speeds)
+    block.resume([0.41])
+    found = answers(block, speeds, 0, 0.3)
+    theirs, cage = element.advance(0.41, PLACE, RATE, Operation(float(speeds[0]), 0.3))
+    slopes = theirs.stiffness + 1e3 * theirs.damping
+    np.testing.assert_allclose(found.force, theirs.force[FELT], rtol=1e-9, atol=1e-9 * np.abs(theirs.force).max())
+    np.testing.assert_allclose(found.slopes, slopes[np.ix_(FELT, FELT)], rtol=1e-8, atol=1e-9 * np.abs(slopes).max())
+    assert block.states() == pytest.approx([cage], rel=1e-10)
+    assert bool(found.outside[0]) is theirs.outside
+
+
+def test_films_are_blended_over_the_speed():
+    """Straight in ln g between nodes that are 2 % of the speed apart: g = approach + h, h with some u^0.67, is wrong by
+    at most (0.67 * 0.02)^2/8 = 2e-5 of itself, and the load by 1.5 times as much."""
+    element = drive("table").balls[0]
+    block, speeds = BallBlock([Member(element, 0, 0)]), np.linspace(100.0, 1300.0, 240)
+    block.begin(speeds)
+    block.resume([0.4])
+    worst = 0.0
+    for step in (3, 80, 160, 238):
+        found = answers(block, speeds, step, 0.3)
+        block.resume([0.4])
+        theirs, _ = element.advance(0.4, PLACE, RATE, Operation(float(speeds[step]), 0.3))
+        worst = max(worst, float(np.max(np.abs(found.force - theirs.force[FELT])) / np.max(np.abs(theirs.force))))
+    assert 1e-12 < worst < 3e-5
+
+
+@pytest.mark.parametrize("law", ["hertz", "table"])
+def test_no_closed_path_gives_energy(law):
+    """Balls lift off on the way and come back; the trapezoidal rule's error at 4000 places bounds what is left. With
+    dampers the same path takes energy."""
+    element = drive(law).balls[0]
+    force = BallForce(element.force.geometry, element.law_at(6000.0 * RPM))
+    turn = np.linspace(0.0, 2.0 * math.pi, 4001)
+    path = np.zeros((turn.size, 6))
+    path[:, 0], path[:, 1], path[:, 2] = 60e-6 * np.cos(turn), 14e-6 * np.sin(2 * turn + 0.3), 8e-6 * np.sin(turn)
+    path[:, 4], path[:, 5] = 2e-4 * np.sin(turn + 1.0), 1e-4 * np.cos(2 * turn)
+    answers = [force(pose, inner_speed=600.0, cage_speed=0.0) for pose in path]
+    loads = np.array([force.balls(pose, cage_speed=0.0).load[0] for pose in path[::100]])
+    assert np.all(loads.min(axis=0) < 1e-2 * loads.max())
+    work = 0.5 * (np.array([f for f, _, _ in answers[1:]]) + [f for f, _, _ in answers[:-1]]) * np.diff(path, axis=0)
+    assert abs(work.sum()) < 1e-6 * np.abs(work.sum(axis=1)).sum()
+    if law == "table":
+        assert all(np.linalg.eigvalsh(C + C.T)[0] > -1e-9 * np.abs(C).max() for _, _, C in answers[::50])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("law", [LAW, "table"])
+def test_run_is_the_same_in_python(law):
+    """Both make the same steps to Newton's tolerance, 1e-10 of the forces."""
+    oil = read_scene("electric_drive").lubricant
+    machine = assemble(dataclasses.replace(parse_scene(text(), "rotor", "rotor.toml"), lubricant=oil), law)
+    rest = equilibrium(machine.system, machine.operation)
+    speed, settings = SpeedProfile.constant(machine.operation.speed), Settings(step=2e-5, sample=1e-4)
+    start = rest.displacement * 1.01
+    ours, theirs = (
+        run(machine.system, speed, 2e-3, settings, displacement=start, options=Options(states=True, compiled=compiled))
+        for compiled in (True, False)
+    )
+    assert ours.compiled == ours.steps == theirs.steps == 100
+    moved = np.ptp(theirs.states.displacement, axis=0)
+    difference = np.abs(ours.states.displacement - theirs.states.displacement)
+    assert np.all(difference <= 1e-6 * moved.max() + 1e-13)
+    for one, other in zip(ours.forces, theirs.forces, strict=True):
+        np.testing.assert_allclose(one, other, atol=1e-6 * np.abs(other).max())
+
+
+@pytest.mark.slow
+def test_run_up_with_films_stays_compiled():
+    """The shipped drive through a third of its speeds."""
+    machine = drive("table")
+    rest = equilibrium(machine.system, Operation(600.0 * RPM))
+    speed = SpeedProfile.ramp(600.0 * RPM, 4000.0 * RPM, 0.02)
+    done = run(machine.system, speed, 0.02, Settings(step=2e-5, sample=1e-3), displacement=rest.displacement)
+    assert done.compiled == done.steps and not done.notes
+    axial = done.forces[[entry.element.name for entry in machine.system.elements].index("drive")][:, 0]
+    assert np.all((axial > -320.0) & (axial < -250.0))
