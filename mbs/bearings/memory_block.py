@@ -299,6 +299,7 @@ class MemoryBlock(FilmBlock[MemoryBearings]):
         course = CourseOfFilms(
             [table.places for table in tables],
             lambda film, *places: tables[film].prepare(*places, films, film),
+            in_turns=True,
         )
         arrays = MemoryBearings(
             rings=rings,

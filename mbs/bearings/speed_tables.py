@@ -320,8 +320,8 @@ MOST_KEPT = 8
 
 MOVED = 1.0 / 64.0
 """Part of the distance of two tables by which the speed may move meanwhile, 6e-5 of the speed for films with memory:
-their load then lags behind by some 1e-5, as much as their parabolas are wrong. Slices are read in turns, so that more
-would shake the machine at an eighth of the rate of the steps, the more the faster a run-up begins."""
+load by load that is some 1e-5, as much as their parabolas are wrong. Slices are read in turns, so that more would shake
+the machine at an eighth of the rate of the steps, the more the faster a run-up begins."""
 
 
 Places = tuple[IntArray, FloatArray]
@@ -337,14 +337,17 @@ class CourseOfFilms:
         Nodes and weights of speeds (n,) [rad/s], a function for each film.
     prepare : callable
         Function that makes the tables of a film, by its index, for the first of some speeds, their nodes and weights.
+    in_turns : bool
+        Whether what is read from the tables is kept for some steps, see `Course.kept`. Their places then lie ahead.
     """
 
     def __init__(
         self,
         places: Sequence[Callable[[FloatArray], Places]],
         prepare: Callable[[int, FloatArray, IntArray, FloatArray], Prepared],
+        in_turns: bool = False,
     ) -> None:
-        self._place, self._prepare = places, prepare
+        self._place, self._prepare, self._in_turns = places, prepare, in_turns
         self._places: list[Places] = []
         self._speeds = np.zeros(0)
         self._kept = np.zeros(0, dtype=np.int64)
@@ -353,7 +356,10 @@ class CourseOfFilms:
         """Find the places of the speeds [rad/s] on the tables."""
         self._speeds = speeds
         self._places = [place(speeds) for place in self._place]
-        self._kept = _kept(self._places, speeds.size)
+        self._kept = np.ones(speeds.size, dtype=np.int64)
+        if self._in_turns:
+            self._kept = _kept(self._places, speeds.size)
+            self._places = [_ahead(*places, self._kept) for places in self._places]
 
     def prepare(self, first: int, last: int) -> tuple[Course, BoolArray]:
         """Have the tables of the next steps made, as many as are held at once, and say which steps have one.
@@ -397,6 +403,22 @@ def _kept(places: Sequence[Places], steps: int) -> IntArray:
     return np.concatenate([kept[:1], kept])
 
 
+def _ahead(nodes: IntArray, weights: FloatArray, kept: IntArray) -> Places:
+    """Places moved ahead by as many steps as what is read there will be old, on the mean of all slices.
+
+    A table is mixed every `kept` steps. Slices read it in turns meanwhile, and keep that as long: the mean age is
+    `kept` - 1 steps at every step. Without this all loads would lag behind, and a machine gets a kick where `kept`
+    changes.
+    """
+    if nodes.size < 2:
+        return nodes, weights
+    place = nodes + weights
+    moved = np.diff(place)
+    place += (kept - 1) * np.append(moved, moved[-1])
+    nodes = np.floor(place).astype(np.int64)
+    return nodes, place - nodes
+
+
 def shared(keys: Iterable[tuple[object, ...]]) -> tuple[list[int], list[int]]:
     """Number of the film of each bearing, by what makes films alike; and which bearing is the first with each film."""
     numbers: dict[tuple[object, ...], int] = {}
@@ -437,5 +459,6 @@ class FilmBlock(Generic[ArraysOfFilms]):
             Steps of those that `begin` was told.
         """
         course, sound = self._course.prepare(first, last)
-        self._arrays.films.in_use[:] = -1.0
+        # To be mixed anew at its next turn: a turn of its own would be a kick.
+        self._arrays.films.in_use[:, 1] = math.nan
         return self._arrays._replace(course=course), sound
