@@ -152,7 +152,7 @@ def bearing_point(
         damping=balance.element_damping[0][1:3, 1:3],
         rollers=rollers,
         contacts=contacts,
-        loss=rolling_loss(contacts, rollers.load, force.bearing.slice_length, u, speed),
+        loss=rolling_loss(force.bearing, films, contacts, rollers, u, speed, temperature),
         problems=tuple(filter(None, problems)),
         notes=tuple(filter(None, notes)),
     )

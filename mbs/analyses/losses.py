@@ -72,4 +72,4 @@ def _of_bearing(
     except InputError:  # the oil has no viscosity at this temperature, where a law is held at its edge
         contacts = bearing_contacts(DryContacts(bearing.bearing.geometry.contacts(STEEL, "iso16281")), *at)
     ring_speed = (bearing.inner_spin - bearing.outer_spin) * operation.speed
-    return contacts, rolling_loss(contacts, rollers.load, bearing.bearing.slice_length, u, ring_speed)
+    return contacts, rolling_loss(bearing.bearing, films, contacts, rollers, u, ring_speed, *at[2:])

@@ -57,6 +57,9 @@ class Bearing:
     coupled : bool
         Whether the slices of a roller know of their neighbours, see `mbs.bearings.special_kernels`; else each bears
         its load alone.
+    pocket_clearance : float, optional
+        Clearance of a roller in its pocket of the cage [m], > 0: rolling torques are those of rollers that films and
+        pockets turn, see `mbs.bearings.roller_spin`. None for rollers that roll without slip.
 
     Raises
     ------
@@ -75,6 +78,7 @@ class Bearing:
     slices: int = 41
     material: Material = STEEL
     coupled: bool = False
+    pocket_clearance: float | None = None
 
     def __post_init__(self) -> None:
         count = self.slices
@@ -82,6 +86,10 @@ class Bearing:
             raise InputError(f"bearing, slices: got {count!r}; allowed: a whole number from 1 to {MOST_SLICES}")
         if self.coupled and count > MOST_COUPLED:
             raise InputError(f"bearing, slices: got {count} that are coupled; allowed: at most {MOST_COUPLED}")
+        if self.pocket_clearance is not None and not 0.0 < self.pocket_clearance < math.inf:
+            raise InputError(
+                f"bearing, pocket_clearance: got {self.pocket_clearance!r} m; allowed: finite and > 0, or None"
+            )
         _ = self.profile_depths
 
     @classmethod

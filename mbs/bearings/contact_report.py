@@ -7,11 +7,10 @@ torque M of one ring against the other,
 
     M |omega_i - omega_o| = sum over rollers, slices and both contacts of F u l.
 
-Rollers are taken to roll without slip. A roller turns against the rolling forces of both its contacts by tractions of
-the same size, which need some slip: of a loaded roller a few thousandths of u, whose power is that small a part. An
-idle roller in thick films would need a slip as large as u. Held by its cage, and driven by its films alone, it turns
-at 0.11 of the speed of rolling and takes 0.55 of the power (rigid surfaces): what is found for idle rollers is about
-twice too much.
+Rollers are taken to roll without slip where no clearance of the cage's pockets is known. A roller turns against the
+rolling forces of both its contacts by tractions of the same size, which need some slip: of a loaded roller a few
+thousandths of u, whose power is that small a part. An idle roller in thick films needs a slip as large as u, by which
+it takes about half of the power, see `mbs.bearings.roller_spin`.
 
 Left out: sliding at flanges and in the cage, seals, churning of the oil, tractions by skew and by larger slip, elastic
 hysteresis. The films are those of the map: isothermal and fully flooded.
@@ -335,11 +334,14 @@ class RollingLoss:
         Speed of one ring against the other, without sign [rad/s].
     idle : float
         Part of the power of rollers that carry less than `IDLE` of the highest roller load; NaN without power.
+    slowest : float
+        Speed of the slowest roller over that of rolling.
     """
 
     power: FloatArray
     ring_speed: float
     idle: float
+    slowest: float = 1.0
 
     @property
     def total(self) -> float:
@@ -353,26 +355,45 @@ class RollingLoss:
 
 
 def rolling_loss(
-    contacts: BearingContacts, roller_load: FloatArray, slice_length: float, entrainment_speed: float, ring_speed: float
+    bearing: Bearing,
+    films: FilmSource,
+    contacts: BearingContacts,
+    rollers: RollerLoads,
+    entrainment_speed: float,
+    ring_speed: float,
+    temperature: float,
+    centrifugal_load: float = 0.0,
 ) -> RollingLoss:
-    """Compute the cost of rolling at given contacts.
+    """Compute the cost of rolling at given contacts, of rollers that turn as the clearance of their pockets says.
 
     Parameters
     ----------
+    bearing : Bearing
+        The bearing.
+    films : FilmSource
+        What knows the oil.
     contacts : BearingContacts
         Contacts with their rolling forces.
-    roller_load : array (Z,)
-        Load of each roller [N].
-    slice_length : float
-        Length of a slice [m].
+    rollers : RollerLoads
+        Loads on the inner raceway.
     entrainment_speed, ring_speed : float
         u [m/s], and speed of one ring against the other [rad/s], of either sign.
+    temperature, centrifugal_load : float
+        T [K], and q [N/m], which the outer raceway carries besides.
     """
+    u, slowest = abs(entrainment_speed), 1.0
     force = np.stack([side.rolling_force.sum(axis=1) for side in contacts.sides])
-    power = force * slice_length * abs(entrainment_speed)
+    power = force * bearing.slice_length * u
+    if bearing.pocket_clearance is not None and films.lubricant is not None and np.all(np.isfinite(force)) and u > 0.0:
+        from mbs.bearings.roller_spin import driven_rollers
+
+        inner = rollers.load_per_length
+        loads = inner, np.maximum(inner + centrifugal_load, 0.0)
+        driven = driven_rollers(bearing, contacts.sides, loads, films.lubricant.at(temperature), u)
+        power, slowest = driven.power, float(driven.spin.min())
     total = float(power.sum())
-    idle = float(power[:, roller_load < IDLE * np.max(roller_load)].sum()) / total if total > 0.0 else math.nan
-    return RollingLoss(power, abs(ring_speed), idle)
+    idle = float(power[:, rollers.load < IDLE * np.max(rollers.load)].sum()) / total if total > 0.0 else math.nan
+    return RollingLoss(power, abs(ring_speed), idle, slowest)
 
 
 SHARE = 0.01

@@ -84,7 +84,10 @@ def loss_words(loss: RollingLoss) -> str:
     words = f"rolling torque {1e3 * loss.torque:.4g} N mm, power {loss.total:.4g} W"
     if not loss.total:
         return words
-    return f"{words}, {loss.idle:.0%} of it in idle rollers (films only: no flanges, cage, seals, churning)"
+    words = f"{words}, {loss.idle:.0%} of it in idle rollers"
+    if loss.slowest == 1.0:
+        return f"{words} (films only: no flanges, cage, seals, churning)"
+    return f"{words}, the slowest at {loss.slowest:.2g} of rolling (films and pockets: no flanges, seals, churning)"
 
 
 def flooded_note(torque: float, supplies: Iterable[OilSupply]) -> list[str]:

@@ -157,6 +157,7 @@ def read_bearing(section: Table, name: str) -> BearingSpec | BallSpec | MatrixSp
         section.note("slices_coupled", "got true with rollers = 'bodies'; allowed: with rollers = 'massless'")
     elif coupled and slices > MOST_COUPLED:
         section.note("slices", f"got {slices} with slices_coupled; allowed: at most {MOST_COUPLED}")
+    pocket = section.quantity("pocket_clearance", "m", 1e-6, 0.01, MICROMETRE)
     thermal, mounting = read_thermal(section), read_mounting(section)
     supply = section.optional("supply", f"{section.where} supply", read_supply)
     if inner is None or outer is None or geometry is None:
@@ -175,6 +176,7 @@ def read_bearing(section: Table, name: str) -> BearingSpec | BallSpec | MatrixSp
         mounting,
         supply,
         coupled is True,
+        pocket,
     )
 
 
@@ -243,7 +245,13 @@ def build_bearing(spec: BearingSpec, surroundings: Surroundings) -> Built:
     from mbs.bearings.bearing_force import BearingForce
     from mbs.scene.surroundings import Built
 
-    bearing = Bearing(spec.geometry, spec.profile, spec.slices, coupled=spec.slices_coupled)
+    bearing = Bearing(
+        spec.geometry,
+        spec.profile,
+        spec.slices,
+        coupled=spec.slices_coupled,
+        pocket_clearance=spec.pocket_clearance,
+    )
     laws = surroundings.laws.of(bearing, surroundings.laws.supply(spec))
     memory = surroundings.laws.memory == "memory"
     kind = BearingElement

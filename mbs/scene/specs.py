@@ -225,6 +225,8 @@ class BearingSpec:
         Oil supply of this bearing; None for that of the scene.
     slices_coupled : bool
         Whether the slices of a roller know of their neighbours.
+    pocket_clearance : float or None
+        Clearance of a roller in its pocket of the cage [m]; None for rollers that roll without slip.
     """
 
     name: str
@@ -240,6 +242,7 @@ class BearingSpec:
     mounting: Mounting | None = None
     supply: OilSupply | None = None
     slices_coupled: bool = False
+    pocket_clearance: float | None = None
 
     @property
     def changes_in_operation(self) -> bool:

@@ -3,7 +3,8 @@
 Run: python -m tests.benchmarks.bench_supply map.nc [--beside]
 
 The map is that of the job nu308 (`ehdmaps generate nu308`). 923 N on the inner ring, 40 degC. Preload is the load of
-the rollers against that load at 2500 rpm. The last row is the rolling moment of SKF's catalogue formula.
+the rollers against that load at 2500 rpm. Then two rows of rollers that turn as films and the pockets of the cage make
+them, with the clearance of these. The last row is the rolling moment of SKF's catalogue formula.
 
 With --beside the numbers of another program stand at the end of the rows. It has films, statics and sums of its own,
 and took the film as r times that of the flooded contact, which loads the last fifth of a layer without any change of
@@ -14,6 +15,7 @@ from __future__ import annotations
 
 import argparse
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -28,6 +30,7 @@ from tests.cases.catalogue import skf_rolling_moment
 
 LOAD, WARM, RPM = 923.0, 313.15, math.pi / 30.0
 SPEEDS = (500.0, 1500.0, 2500.0)
+POCKET = 0.2e-3
 LAYERS = (10e-6, 5e-6, 2e-6, 1e-6, 0.7e-6, 0.5e-6)
 
 REFERENCE = {
@@ -98,6 +101,13 @@ def main() -> None:
                 " ".join(f"{1e3 * point.loss.torque:5.0f}" for point in found) if supply else "-",
             )
             print(row + (f"   {REFERENCE.get((clearance, label), '')}" if arguments.beside else ""), flush=True)
+    turned = [
+        points(emap, replace(Bearing.named("NU308", clearance=30e-6), pocket_clearance=POCKET), supply)
+        for supply in (FLOODED, OilSupply(5e-6))
+    ]
+    for name, found in zip(("flooded", "5 um"), turned, strict=True):
+        torques = " ".join(f"{1e3 * point.loss.torque:5.0f}" for point in found)
+        print(_row(f"30 um, {name}, {1e3 * POCKET:g} mm", "", "", "", "", "", torques))
     state = emap.lubricant.at(WARM)
     moments = (skf_rolling_moment(n, 1e6 * state.viscosity / state.density, LOAD) for n in SPEEDS)
     print(_row("catalogue formula", "", "", "", "", "", " ".join(f"{moment:5.0f}" for moment in moments)))
