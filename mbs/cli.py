@@ -45,12 +45,12 @@ def parser() -> argparse.ArgumentParser:
     """Return the parser of all commands."""
     top = Program(
         prog="mbs",
-        description="Statics, modes, linear analysis, speed sweeps and run-ups of systems with cylindrical roller "
+        description="Statics, modes, linear analysis, speed sweeps and run-ups of systems with roller and ball "
         "bearings, and modal identification.",
         epilog="SCENE is a scene file or the name of a shipped system: n1014_rigid, n1014_testrig, nu308_rigid, "
-        "nu308_flexible, gearbox, two_stage, nu2210_shaft, overhung_rotor, electric_drive. Exit status: 0 done; "
-        "1 done outside the map, or no result from valid input; 2 bad input, nothing written; 130 stopped with Ctrl-C, "
-        "143 by SIGTERM.",
+        "nu308_flexible, gearbox, two_stage, nu2210_shaft, overhung_rotor, electric_drive, spindle. Exit status: 0 "
+        "done; 1 done outside the map, or no result from valid input; 2 bad input, nothing written; 130 stopped with "
+        "Ctrl-C, 143 by SIGTERM.",
         renamed=_RENAMED,
     )
     add_choices(top.shared, OPTIONS, "scene", several=True)

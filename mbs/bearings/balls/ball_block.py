@@ -18,11 +18,11 @@ from ehdmaps.compiled import njit
 from ehdmaps.errors import EhdmapsError
 from mbs.bearings.balls.ball_bearing import NEGLIGIBLE
 from mbs.bearings.balls.ball_element import MachineBalls
-from mbs.bearings.balls.ball_kernel import NO_BALANCE, BallShape, NormalLaw, ball_force, contact, load_approach
+from mbs.bearings.balls.ball_kernel import NO_BALANCE, TOO_FAR, BallShape, NormalLaw, ball_force, contact, load_approach
 from mbs.bearings.balls.ball_speed import ball_loads, mean_angles, rolling
 from mbs.bearings.balls.laws import NODES, BallLaw
 from mbs.bearings.speed_tables import Course, CourseOfFilms, FilmBlock, Made, Prepared, SpeedWindow, course_of, shared
-from mbs.model.blocks import FOUND, NO_SOLUTION, Answers, Kind, Member, Moment
+from mbs.model.blocks import FOUND, IN_PYTHON, NO_SOLUTION, Answers, Kind, Member, Moment
 
 FELT = np.array([0, 1, 2, 4, 5])
 """Displacements of its port that a ball bearing feels."""
@@ -186,6 +186,8 @@ def _on_ring(balls: Balls, b: int, moment: Moment, motion: FloatArray, answers: 
     pose[0], pose[1], pose[2], pose[3] = x[i] + balls.offsets[b], x[i + 1], x[i + 2], 0.0
     pose[4], pose[5] = x[i + 3], x[i + 4]
     s = balls.shapes[b]
+    if s[0] * (s[0] + pose[0]) < 0.0:  # an angular contact bearing beyond its middle, where it has no raceway
+        return TOO_FAR
     shape = BallShape(s[0], s[1], s[2], s[3], s[4], s[5], s[6])
     inner, outer = _law_of(balls.films, film, 0), _law_of(balls.films, film, 1)
     cage, ring = balls.cages[b] * moment.speed, balls.spins[b, 1] * moment.speed
@@ -239,8 +241,9 @@ def balls_answer(balls: Balls, moment: Moment, motion: FloatArray, answers: Answ
     for film in range(films.highest.size):
         _blend(films, film, course.nodes[moment.step, film], course.weights[moment.step, film])
     for b in range(balls.firsts.size):
-        if _on_ring(balls, b, moment, motion, answers) < 0:
-            return NO_SOLUTION
+        found = _on_ring(balls, b, moment, motion, answers)
+        if found < 0:
+            return IN_PYTHON if found == TOO_FAR else NO_SOLUTION
         largest = 0.0
         for j in range(balls.counts[b]):
             largest = max(largest, balls.rows[b, j, 10], balls.rows[b, j, 11])

@@ -13,6 +13,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, SolverError
 from ehdmaps.units import RPM
@@ -140,7 +142,13 @@ class MachineBalls(BallElement):
             Speed of the cage by that of the system after the last step; None for the steady one.
         displacement, velocity, operation
             What `Element.advance` takes.
+
+        Raises
+        ------
+        AnalysisError
+            Where the rings have come apart.
         """
+        self._check_apart(displacement, operation)
         if states is None:
             at = self.settled(displacement, operation)
             force, pose, conditions = at.force, at.pose, at.conditions
@@ -153,6 +161,18 @@ class MachineBalls(BallElement):
         if self.cage_spin is not None:
             return answer, self.cage_spin
         return answer, rolling_cage(force, balls, self.inner_spin, self.outer_spin)
+
+    def _check_apart(self, displacement: FloatArray, operation: Operation) -> None:
+        """Refuse rings that nothing holds together any more; of angular contact bearings those beyond their middle."""
+        shape, pose = self.force.shape, displacement.copy()
+        pose[0] += self.axial_offset
+        beyond = shape.axial * (shape.axial + pose[0]) < 0.0
+        if beyond or np.any(np.abs(pose[:3]) > shape.most_travel) or np.any(np.abs(pose[4:]) > shape.most_tilt):
+            raise AnalysisError(
+                f"bearing {self.name!r}: its rings are apart by {1e6 * pose[0]:.4g} um along and "
+                f"{1e6 * float(np.hypot(pose[1], pose[2])):.4g} um across at {operation.time:.6g} s, where no raceway "
+                "is: preload is lost; take more preload, a stop, or smaller loads"
+            )
 
     def evaluate(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> Forces:
         """Force on the inner ring, stiffness and damping; whether loads are beyond those of the films.

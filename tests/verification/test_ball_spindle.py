@@ -1,0 +1,176 @@
+"""The shipped motor spindle: against ROSS with the same tables, and preload and speed by Harris' equations."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq, root
+
+from ehdmaps.errors import AnalysisError
+from ehdmaps.physics.point.ball_catalogue import ball_estimate
+from ehdmaps.physics.solids import STEEL
+from mbs import assemble, read_scene
+from mbs.linearised.critical import order_responses
+from mbs.linearised.modes import modes
+from mbs.model.elements import Operation
+from mbs.model.equilibrium import equilibrium
+from mbs.model.profiles import SpeedProfile
+from mbs.scene.matrices import MatrixSpec
+from mbs.scene.specs import ShaftSpec
+from mbs.settings import Settings
+from mbs.transient.run import run
+
+RPM = math.pi / 30.0
+ROSS = tomllib.loads((Path(__file__).parents[1] / "references" / "ross_spindle.toml").read_text(encoding="utf-8"))
+
+
+@pytest.fixture(scope="module")
+def scene():
+    return read_scene("spindle")
+
+
+@pytest.fixture(scope="module")
+def machine(scene):
+    return assemble(dataclasses.replace(scene, gravity=(0.0, 0.0, 0.0)), "hertz")
+
+
+class TestRoss:
+    """ROSS 2.3.0 with the tables of the four bearings: `tests.benchmarks.ross_spindle`."""
+
+    @pytest.fixture(scope="class")
+    @staticmethod
+    def on_tables(scene):
+        speeds, elements = np.array(ROSS["speeds"]), []
+        for ball in scene.balls:
+            whole = np.zeros((2, speeds.size, 6, 6))
+            for part, key in zip(whole, ("stiffness", "damping"), strict=True):
+                part[:, 1:3, 1:3] = ROSS["tables"][ball.name][key]
+            # what only ROSS does not have: something that holds the shaft along its axis
+            whole[0, :, 0, 0] = 1e8
+            elements.append(MatrixSpec(ball.name, ball.inner, whole[0], whole[1], ball.outer, speeds))
+        bodies = [
+            dataclasses.replace(body, cutoff=40e3, largest_element=0.01, damping_ratio=0.0)
+            if isinstance(body, ShaftSpec)
+            else body
+            for body in scene.bodies
+        ]
+        return assemble(dataclasses.replace(scene, elements=elements, bodies=bodies), "hertz")
+
+    def test_eigenvalues(self, on_tables):
+        """Modes above 40 kHz are left out, which is 1e-5 at 750 Hz, and 1.6e-4 at the last two, of 2.8 kHz."""
+        for speed, pairs in zip(ROSS["speeds"], ROSS["ross"]["eigenvalues"], strict=True):
+            wanted = np.array(pairs) @ np.array([1, 1j])
+            found = modes(equilibrium(on_tables.system, Operation(speed))).eigenvalues
+            nearest = found[np.argmin(np.abs(found[:, None] - wanted), axis=0)]
+            assert len(set(nearest.tolist())) == wanted.size
+            assert np.max(np.abs(nearest / wanted - 1.0)[:4]) < 5e-5
+            assert np.max(np.abs(nearest / wanted - 1.0)) < 2e-4
+
+    def test_unbalance(self, on_tables):
+        (response,) = order_responses(lambda speed: on_tables.system, np.array(ROSS["speeds"]))
+        moved = response.motion @ on_tables.system.relative("shaft:motor")[1:3].T
+        wanted = np.array(ROSS["ross"]["moved"]) @ np.array([1, 1j]) * 15e-6
+        np.testing.assert_allclose(np.abs(moved), np.abs(wanted), rtol=1e-4)
+
+
+def harris(name: str, axial: float, speed: float) -> tuple[float, float]:
+    """Axial force of a bearing [N] and its stiffness [N/m] under an axial displacement, by Harris' equations.
+
+    Groove centres, two contact angles, centrifugal load, and a gyroscopic moment of a ball that rolls on the outer
+    raceway without drilling there; the cage by pure rolling at both contact angles. Laws of the contacts are those of
+    the product: Hertz is checked elsewhere.
+    """
+    g = ball_estimate(name)
+    diameter, pitch, mass = g.ball_diameter, g.pitch_diameter, g.ball_mass(STEEL)
+    ci, co = (contact.coefficient for contact in g.contacts(STEEL))
+    li, lo = (g.inner_conformity - 0.5) * diameter, (g.outer_conformity - 0.5) * diameter
+    distance = li + lo
+
+    def forces(u: float) -> tuple[float, float]:
+        a1, a2 = distance * math.sin(g.contact_angle) + u, distance * math.cos(g.contact_angle)
+
+        def state(x):
+            ri, ro = math.hypot(a1 - x[0], a2 - x[1]), math.hypot(*x)
+            ai, ao = math.atan2(a1 - x[0], a2 - x[1]), math.atan2(x[0], x[1])
+            qi, qo = ci * max(ri - li, 0.0) ** 1.5, co * max(ro - lo, 0.0) ** 1.5
+            ratio = diameter / pitch
+            at_inner, at_outer = 1.0 - ratio * math.cos(ai), 1.0 + ratio * math.cos(ao)
+            cage = speed * at_inner / (at_inner + at_outer)
+            # spin of the ball in the frame of the cage: along the outer contact that of the ring, across it rolling
+            normal, across = -cage * math.sin(ao), -cage * (pitch + diameter * math.cos(ao)) / diameter
+            spin = normal * math.cos(ao) - across * math.sin(ao)
+            traction = 2.0 * 0.1 * mass * diameter**2 * cage * spin / diameter
+            out = 0.5 * mass * pitch * cage**2
+            return (
+                qi * math.sin(ai) - qo * math.sin(ao) - traction * math.cos(ao),
+                qi * math.cos(ai) - qo * math.cos(ao) + traction * math.sin(ao) + out,
+                g.balls * qi * math.sin(ai),
+            )
+
+        start = np.array([a1, a2]) * lo / distance
+        found = root(lambda x: state(start + 1e-6 * x)[:2], [0.0, 0.0], method="lm", tol=1e-14)
+        assert np.max(np.abs(found.fun)) < 1e-8
+        return state(start + 1e-6 * found.x)[2]
+
+    step = 2e-8
+    return forces(axial), (forces(axial + step) - forces(axial - step)) / (2.0 * step)
+
+
+def statics(machine, rpm):
+    """Axial force, stiffness and displacement of each bearing by its name."""
+    rest, found = equilibrium(machine.system, Operation(rpm * RPM)), {}
+    for index, entry in enumerate(machine.system.elements):
+        place = entry.transform @ rest.displacement
+        answer = entry.element.evaluate(place, np.zeros(6), rest.operation)
+        found[entry.element.name] = abs(rest.forces[index][0]), answer.stiffness[0, 0], place[0]
+    return found
+
+
+class TestPreload:
+    """Without weight: pairs are preloaded by displacement at the nose and by force at the other end."""
+
+    @pytest.mark.parametrize("rpm", [0.0, 5000.0, 10000.0])
+    def test_preload_and_stiffness(self, machine, rpm):
+        """Forces by the oracle's displacements; of the nose's, the 40 mm of the shaft between its bearings take F L/EA.
+        The equilibrium is left with 1e-10 of the forces, and the balance of the balls 1e-8 of the axial one."""
+        found = statics(machine, rpm)
+        force, stiffness, way = found["front"]
+        inside, _, other = found["front_inside"]
+        shortened = force * 40e-3 / (210e9 * math.pi / 4.0 * (70e-3**2 - 30e-3**2))
+        assert way - other == pytest.approx(-shortened, rel=1e-3)
+        wanted, slope = harris("7014C", 12e-6 + way, rpm * RPM)
+        assert force == pytest.approx(wanted, rel=1e-6)
+        assert harris("7014C", -other, rpm * RPM)[0] == pytest.approx(inside, rel=1e-6)
+        # the product holds the speed of the cage in its derivative, the oracle does not
+        assert stiffness == pytest.approx(slope, rel=3e-3)
+        rear, stiffness, _ = found["rear"]
+        u = brentq(lambda u: harris("7012C", u, rpm * RPM)[0] - rear, -1e-5, 1e-4, xtol=1e-13)
+        assert stiffness == pytest.approx(harris("7012C", u, rpm * RPM)[1], rel=3e-3)
+
+    def test_trends(self, machine):
+        """Speed raises what a displacement makes, and not what springs make; both pairs soften radially."""
+        slow, fast = statics(machine, 500.0), statics(machine, 10000.0)
+        assert fast["front"][0] > 2.0 * slow["front"][0]
+        assert fast["rear"][0] == pytest.approx(slow["rear"][0], rel=0.05)
+        assert fast["rear"][1] < 0.5 * slow["rear"][1]
+
+
+@pytest.mark.slow
+def test_loss_of_preload_in_a_run_is_said(scene):
+    """Springs that pull where they should press: the rings of the sleeve come apart, and the run says so."""
+    loads = [dataclasses.replace(load, force=-load.force) for load in scene.loads]
+    machine = assemble(dataclasses.replace(scene, loads=loads), "hertz:1.25e-5 s")
+    rest = equilibrium(assemble(scene, "hertz").system, Operation(1000.0 * RPM))
+    with pytest.raises(AnalysisError, match=r"bearing 'rear.*preload is lost; take more preload"):
+        run(
+            machine.system,
+            SpeedProfile.constant(1000.0 * RPM),
+            0.02,
+            Settings(step=2e-5, sample=1e-3),
+            displacement=rest.displacement,
+        )
