@@ -6,6 +6,7 @@ weighted with the mass (modal assurance); a mode without a partner is said to be
 
 from __future__ import annotations
 
+import math
 import time
 from dataclasses import dataclass
 
@@ -195,7 +196,7 @@ def linear_look(model: Model, angle: float = 0.0) -> LinearLook:
     ]
     if not all(load > 0.0 for load in loads):
         raise AnalysisError("a bearing carries no load at its equilibrium, so that nothing can be compared with it")
-    levels = 20.0 * np.log10(np.maximum(responses, 1e-300)).reshape(frequencies.size, -1)
+    levels = 20.0 * np.log10(np.maximum(responses, 1e-300)).reshape(frequencies.size, math.prod(responses.shape[1:]))
     return LinearLook(balance, found, frequencies, np.asarray(levels), np.array(loads), seconds)
 
 

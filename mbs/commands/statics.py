@@ -95,8 +95,8 @@ def _slow(model: Model, balance: Equilibrium) -> list[str]:
 def _asked(arguments: argparse.Namespace) -> Model:
     """The model, whose rollers are drawn if asked for."""
     model = load_model(arguments)
-    if arguments.plot and not model.bearings:
-        raise InputError(f"--plot: {model.scene.name} has no bearing whose rollers could be drawn; leave it out")
+    if arguments.plot and not model.bearings and not model.balls:
+        raise InputError(f"--plot: {model.scene.name} has no bearing of rollers or balls to draw; leave it out")
     return model
 
 

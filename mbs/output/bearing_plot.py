@@ -257,7 +257,7 @@ _RPM = 30.0 / np.pi
 def statics_figure(
     model: Model, balance: Equilibrium, contacts: Sequence[BearingContacts], warnings: Sequence[str] = ()
 ) -> Figure:
-    """Load of each roller around each bearing, with its pressures and films, and what is to be warned of.
+    """Load of each roller or ball around each bearing, with pressures, films, contact angles, and warnings.
 
     Parameters
     ----------
@@ -270,19 +270,29 @@ def statics_figure(
     warnings : sequence of str
         What is to be warned of, written on the page.
     """
-    figure, axes = page(model, f"{model.scene.speed * _RPM:.4g} rpm", len(model.bearings))
-    for panel, bearing, state in zip(axes, model.bearings, contacts, strict=False):
+    count, elements = len(model.bearings) + len(model.balls), []
+    figure, axes = page(model, f"{model.scene.speed * _RPM:.4g} rpm", count)
+    for bearing, state in zip(model.bearings, contacts, strict=False):
         motion = model.system.relative(bearing.inner, bearing.outer) @ balance.displacement
         rollers = bearing.rollers(motion, balance.operation)
-        panel.bar(np.degrees(rollers.angle), rollers.load, width=0.6 * 360.0 / rollers.angle.size, color=COLOURS[0])
-        panel.set_title(f"{bearing.name}\n{_contact_words(state)}", fontsize=9)
+        elements.append((bearing.name, _contact_words(state), rollers.angle, rollers.load))
+    for ball in model.balls:
+        motion = model.system.relative(ball.inner, ball.outer) @ balance.displacement
+        loads = ball.balls(motion, balance.operation)
+        angles = " and ".join(f"{math.degrees(loads.mean_angle(side)):.3g}" for side in (0, 1))
+        words = f"contact angles {angles}\N{DEGREE SIGN}, inner and outer"
+        elements.append((ball.name, words, loads.angle, loads.load[0]))
+    for panel, (name, words, angle, load) in zip(axes, elements, strict=False):
+        panel.bar(np.degrees(angle), load, width=0.6 * 360.0 / angle.size, color=COLOURS[0])
+        panel.set_title(f"{name}\n{words}", fontsize=9)
         panel.set_xlim(-200, 200)
         panel.set_xticks(np.arange(-180, 181, 90))
         grid(panel)
-    for panel in axes[len(model.bearings) :]:
+    for panel in axes[count:]:
         panel.set_visible(False)
-    figure.supylabel("load of the roller, N", fontsize=10)
-    words = "angle of the roller from y towards z, degrees"
+    kinds = ["roller"] * bool(model.bearings) + ["ball"] * bool(model.balls)
+    figure.supylabel(f"load of the {' or '.join(kinds)}, N", fontsize=10)
+    words = f"angle of the {' or '.join(kinds)} from y towards z, degrees"
     wrapped = [part for line in warnings for part in textwrap.wrap(f"warning: {line}", 110)]
     if wrapped:
         for panel in axes:

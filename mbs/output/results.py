@@ -11,6 +11,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from ehdmaps.arrays import ComplexArray, FloatArray
+from mbs.bearings.balls.ball_bearing import BallElement
 from mbs.bearings.bearing_element import RingElement, error_words, ring_matrices
 from mbs.bearings.films import SIDES
 from mbs.bearings.thermal import BearingHeat, BearingState
@@ -158,7 +159,10 @@ def with_states(dataset: xr.Dataset, states: _States, dims: tuple[str, ...] = ()
         name: ((*dims, "bearing"), np.array(_values(states, read)), {"units": unit, "long_name": words})
         for name, unit, words, read in rows
     }
-    return dataset.assign_coords(bearing=names).assign(variables)
+    added = xr.Dataset(variables, coords={"bearing": names})
+    if "bearing" in dataset.coords:  # ball bearings have no states
+        return dataset.assign(added.reindex(bearing=dataset["bearing"]).data_vars)
+    return dataset.assign_coords(bearing=names).assign(added.data_vars)
 
 
 def _values(states: Any, read: Callable[[BearingState], float]) -> Any:
@@ -313,7 +317,7 @@ def statics_dataset(
         **_by_kind(balance.system, balance.displacement, (), "displacement"),
         **_ring_variables(balance.system, balance.forces, ()),
     }
-    bearings = balance.system.select(RingElement)
+    bearings = _bearings(balance.system)
     pairs = [ring_matrices(balance.element_stiffness[i], balance.element_damping[i]) for i in bearings]
     for index, (name, unit) in enumerate((("stiffness", "N/m"), ("damping", "N s/m"))):
         rings = [pair[index] for pair in pairs]
@@ -333,18 +337,18 @@ def statics_dataset(
     if contacts:
         coordinates["contact"] = list(SIDES)
         for name, unit, words in _CONTACTS:
-            values = np.stack([getattr(state, name) for state in contacts])
+            values = _of_rollers(balance.system, [getattr(state, name) for state in contacts])
             variables[name] = (("bearing", "contact"), values, {"units": unit, "long_name": words})
     if losses:
         known = "none without a map with rolling forces"
         variables["rolling_torque"] = (
             "bearing",
-            np.array([loss.torque for loss in losses]),
+            _of_rollers(balance.system, [loss.torque for loss in losses]),
             {"units": "N m", "long_name": f"torque that rolling takes; {known}"},
         )
         variables["rolling_power"] = (
             "bearing",
-            np.array([loss.total for loss in losses]),
+            _of_rollers(balance.system, [loss.total for loss in losses]),
             {"units": "W", "long_name": f"power that the films of all rollers take; {known}"},
         )
     attributes = {**_operation(balance), "warnings": "\n".join(warnings)}
@@ -525,7 +529,7 @@ def _ring_variables(
     system: System, forces: Sequence[FloatArray], dims: tuple[str, ...]
 ) -> dict[str, tuple[tuple[str, ...], FloatArray, dict[str, str]]]:
     """Force and moment of the bearings on their inner rings."""
-    bearings = system.select(RingElement)
+    bearings = _bearings(system)
     if not bearings:
         return {}
     rings = np.stack([forces[i][..., :6] for i in bearings], axis=len(dims))
@@ -539,9 +543,22 @@ def _ring_variables(
     }
 
 
+def _bearings(system: System) -> tuple[int, ...]:
+    """Indices of the bearings among the elements, of rollers and of balls."""
+    return tuple(sorted(system.select(RingElement) + system.select(BallElement)))
+
+
 def _bearing_names(system: System) -> npt.NDArray[np.str_]:
     """Names of the bearings; texts also where there is none."""
-    return np.array([system.elements[i].element.name for i in system.select(RingElement)], dtype=np.str_)
+    return np.array([system.elements[i].element.name for i in _bearings(system)], dtype=np.str_)
+
+
+def _of_rollers(system: System, values: Sequence[npt.ArrayLike]) -> FloatArray:
+    """Values of the roller bearings among those of all bearings; NaN for ball bearings."""
+    rows = np.asarray(values, dtype=np.float64)
+    whole = np.full((len(_bearings(system)), *rows.shape[1:]), np.nan)
+    whole[[i for i, index in enumerate(_bearings(system)) if index in system.select(RingElement)]] = rows
+    return whole
 
 
 def _operation(balance: Equilibrium, film_share: float = 0.0) -> dict[str, Any]:

@@ -228,8 +228,8 @@ def _dry_model(scene: Scene, settings: PlanSettings) -> Model:
         problems += error.problems
     if scene.balls and not scene.bearings:
         problems.append(
-            "got ball bearings alone, and maps are of line contacts; allowed: --law table, which reads their films "
-            "from the film table of points; leave --auto out"
+            "got ball bearings alone, and maps are of line contacts: there is no map to plan or to choose; allowed: "
+            "analyses without --auto, with --law table, which reads their films from the film table of points"
         )
     elif not scene.bearings:
         problems.append("got no bearing; allowed: at least one [[bearings]], which is what a map is for")

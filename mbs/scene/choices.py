@@ -115,6 +115,9 @@ LACKS = {
 }
 """What is said where no law is concerned."""
 
+BALLS_LACK = "with ball bearings alone; allowed: none of it: their films are of one oil, flooded, and have no memory"
+"""What is said of the same where balls have films."""
+
 
 @dataclass(frozen=True)
 class SceneChoice(Choice[Subject]):
@@ -640,8 +643,9 @@ def combinations(
         if not several:
             continue
         if choice.concerned in LACKS and not any(choice.concerns(one.subject) for one in found):
-            got = ", ".join(map(choice.text, several))
-            problems.append(f"--{choice.name}: got {got} {LACKS[choice.concerned]}")
+            got, scene = ", ".join(map(choice.text, several)), found[0].subject.scene
+            lacks = BALLS_LACK if scene.balls and not scene.bearings else LACKS[choice.concerned]
+            problems.append(f"--{choice.name}: got {got} {lacks}")
             continue
         found = [entry for one in found for entry in _each(one, choice, several, problems)]
     return found

@@ -229,7 +229,7 @@ class TestWithoutBearings:
     def test_there_are_no_rollers_to_draw(self, here, capsys):
         status, _, err = run(capsys, "statics", "springs.toml", "-o", "a.nc", "--plot", "a.png")
         assert status == 2
-        assert "--plot: springs has no bearing whose rollers could be drawn" in err
+        assert "--plot: springs has no bearing of rollers or balls to draw" in err
         assert not (here / "a.nc").exists()
 
     def test_level_of_a_sine(self, here, capsys):

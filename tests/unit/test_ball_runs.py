@@ -8,7 +8,8 @@ import math
 import numpy as np
 import pytest
 
-from mbs import assemble, parse_scene, read_scene
+from ehdmaps.errors import AnalysisError
+from mbs import assemble, parse_scene, read_scene, statics
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.ball_block import FELT, BallBlock, balls_accept, balls_answer
 from mbs.model.blocks import FOUND, Answers, Member, Moment
@@ -17,6 +18,7 @@ from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import SpeedProfile
 from mbs.settings import Settings
 from mbs.transient.run import Options, run
+from tests.cases import commands
 from tests.unit.test_ball_scenes import LAW, text
 
 RPM = math.pi / 30.0
@@ -121,3 +123,107 @@ def test_run_up_with_films_stays_compiled():
     assert done.compiled == done.steps and not done.notes
     axial = done.forces[[entry.element.name for entry in machine.system.elements].index("drive")][:, 0]
     assert np.all((axial > -320.0) & (axial < -250.0))
+
+
+ONE = """
+schema = 1
+[operation]
+speed = "{speed}"
+temperature = "60 degC"
+[[bodies]]
+name = "rotor"
+freedoms = ["x", "y", "z", "theta_y", "theta_z"]
+spin = {spins[0]}
+mass = "2 kg"
+polar_inertia = "0.002 kg m^2"
+transverse_inertia = "0.002 kg m^2"
+[[bodies]]
+name = "ring"
+freedoms = ["x"]
+spin = {spins[1]}
+mass = "1 kg"
+[[springs]]
+name = "seat"
+on = "ring"
+stiffness = {{ x = "1e8 N/m" }}
+[[loads]]
+name = "load"
+on = "rotor"
+force = {force}
+moment = {moment}
+[[bearings]]
+name = "only"
+bearing = "6208"
+inner = "rotor"
+outer = "ring"
+{clearance}
+"""
+NONE, NO_MOMENT = ["0 N"] * 3, ["0 N m"] * 3
+LOOSE = 'diametral_clearance = "15 um"'
+
+
+@pytest.mark.parametrize(
+    ("speed", "spins", "force", "moment", "clearance", "angle"),
+    [
+        ("3000 rpm", (1, 0), ["2 kN", "0 N", "0 N"], NO_MOMENT, "", 0.0),
+        ("3000 rpm", (1, 0), NONE, ["0 N m", "5 N m", "2 N m"], LOOSE, 0.0),
+        ("0 rpm", (1, 0), NONE, NO_MOMENT, LOOSE, 0.0),
+        ("20000 rpm", (0, 1), ["200 N", "1 kN", "0 N"], NO_MOMENT, LOOSE, 0.0),
+        ("1e5 rpm", (1, 0), ["1 kN", "500 N", "0 N"], NO_MOMENT, LOOSE, 0.0),
+        ("10000 rpm", (1, 0), ["2 kN", "500 N", "0 N"], NO_MOMENT, "", 60.0),
+        ("10000 rpm", (1, 0), ["-2 kN", "500 N", "0 N"], NO_MOMENT, "", 60.0),
+        ("3000 rpm", (1, 0), ["0 N", "10 MN", "0 N"], NO_MOMENT, "", 0.0),
+    ],
+    ids=["axial", "moment", "none", "outer", "fast", "steep", "wrong way", "crushed"],
+)
+def test_extremes_have_a_value_or_a_refusal(speed, spins, force, moment, clearance, angle):
+    """Equilibrium, where loads are in balance to 1e-8, and a step in compiled code at it; or an error of this package."""
+    given = ONE.format(speed=speed, spins=spins, force=force, moment=moment, clearance=clearance).replace("'", '"')
+    scene = parse_scene(given, "one", "one.toml")
+    elements = [
+        dataclasses.replace(e, geometry=dataclasses.replace(e.geometry, contact_angle=math.radians(angle)))
+        for e in scene.elements
+        if hasattr(e, "geometry")
+    ]
+    machine = assemble(dataclasses.replace(scene, elements=elements), LAW)
+    element, refused = machine.balls[0], force[0] == "-2 kN" or force[1] == "10 MN"
+    if refused:
+        with pytest.raises(AnalysisError, match=r"no equilibrium"):
+            equilibrium(machine.system, machine.operation)
+        return
+    found = equilibrium(machine.system, machine.operation)
+    asked = np.asarray(machine.scene.loads[0].force)
+    np.testing.assert_allclose(found.forces[0], -asked, atol=1e-8 * np.abs(asked).max() + 1e-12)
+    place = machine.system.relative("rotor", "ring") @ found.displacement
+    block, speeds = BallBlock([Member(element, 0, 0)]), np.array([machine.operation.speed])
+    block.begin(speeds)
+    block.resume([element.advance(None, place, np.zeros(6), machine.operation)[1]])
+    compiled = answers(block, speeds, 0, 0.0, place, np.zeros(6))
+    np.testing.assert_allclose(compiled.force, -asked[FELT], atol=1e-6 * np.abs(asked).max() + 1e-12)
+    assert np.all(np.isfinite(compiled.slopes))
+
+
+def test_balls_are_in_results_and_pictures():
+    """Of statics: forces of both bearings are the preload and the weight, and each has a panel with nine bars."""
+    done = statics(drive("table"))
+    data = done.dataset
+    assert data["bearing"].values.tolist() == ["drive", "end"]
+    assert float(data["bearing_force"].sum("bearing").values[0]) == pytest.approx(0.0, abs=1e-6)
+    assert data["bearing_damping"].values[0, 1, 1] > 10.0
+    panels = [axes for axes in done.plot().axes if axes.get_visible()]
+    assert [len(axes.patches) for axes in panels] == [9, 9]
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("tradeoff",), "neither maps, memory nor slices to choose; allowed: laws side by side"),
+        (("plan",), "there is no map to plan or to choose; allowed: analyses without --auto, with --law table"),
+        (("statics", "--auto"), "there is no map to plan or to choose"),
+        (("modes", "--films", "memory"), "their films are of one oil, flooded, and have no memory"),
+        (("statics", "--supply", "5 um"), "their films are of one oil, flooded, and have no memory"),
+    ],
+)
+def test_what_balls_do_not_take_says_what_does(capsys, words, said):
+    status, _, err = commands.run(capsys, words[0], "electric_drive", *words[1:])
+    assert status == 2 and said in " ".join(err.split())
