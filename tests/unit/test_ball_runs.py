@@ -177,7 +177,7 @@ LOOSE = 'diametral_clearance = "15 um"'
     ids=["axial", "moment", "none", "outer", "fast", "steep", "wrong way", "crushed"],
 )
 def test_extremes_have_a_value_or_a_refusal(speed, spins, force, moment, clearance, angle):
-    """Equilibrium, where loads are in balance to 1e-8, and a step in compiled code at it; or an error of this package."""
+    """Loads are in balance to 1e-8, and compiled code answers there; or an error of this package."""
     given = ONE.format(speed=speed, spins=spins, force=force, moment=moment, clearance=clearance).replace("'", '"')
     scene = parse_scene(given, "one", "one.toml")
     elements = [
