@@ -3,12 +3,13 @@
 A line has no side flow: what passes through the contact in the steady state is the layer, or the flow m of the flooded
 contact where that is less. With r = min(1, h_oil/m) at equal load, speed and temperature the film is
 
-    h = r h_flooded F(r),        c = b/(S + s)^2,        s = s_flooded s(r)^n,        b = b_flooded b(r)^n,
+    h = r h_flooded F(r),    c = l/(S + s)^2,    s = s_flooded s(r)^n + s_e,    l = l_flooded l(r)^n + s_e b/u,
 
-S the compliance of the structure, s and b the compliance and the loss compliance of the film with the meniscus where it
-is: at the frequencies of noise it has no time to move. F, s(r) and b(r) are of the starved contact between rigid
+S the compliance of the structure, s and l the compliance and the loss compliance of the film with the meniscus where it
+is: at the frequencies of noise it has no time to move. F, s(r) and l(r) are of the starved contact between rigid
 surfaces (`ehdmaps.physics.oil_supply`), n = -d ln(h)/d ln(w) of the flooded film is one for light loads and near zero
-in a loaded contact, which keeps b: numerically it is 0.95 to 3.3 times that of the flooded one, at r = 0.9 to 0.4.
+in a loaded contact. There it is s_e that counts (`edge_compliance`): a heavier load moves the edge of the contact, at
+the half-width b, to the meniscus.
 
 F runs from 1 to 1.2257 as r goes to zero: the film of a lightly loaded contact goes to the layer itself, and the load
 to nothing. A gap wider than the layer is dry.
@@ -36,7 +37,8 @@ from ehdmaps.maps.contact_curve import FilmSamples, Tail, dry_slope
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.rolling_film import FlowFilm, RollingFilm
 from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.oil_supply import CORNER, RIGID_FLOW, compliance_ratio, damping_ratio, film_ratio
+from ehdmaps.physics.hertz import half_width
+from ehdmaps.physics.oil_supply import CORNER, RIGID_FLOW, compliance_ratio, damping_ratio, edge_compliance, film_ratio
 
 ROUNDED = 0.2
 """Cube root of the flow ratio r below which sqrt(r) is rounded."""
@@ -71,7 +73,7 @@ def oil_layer(
         Films of the contact, which the flow follows outside the map.
     """
     flow = None if rolling is None else rolling.flow_film(contact.name, tail.load, speeds, temperatures, field)
-    return OilLayer(contact, thickness, tail, flow)
+    return OilLayer(contact, thickness, tail, flow, speeds)
 
 
 @dataclass(frozen=True)
@@ -88,12 +90,15 @@ class OilLayer:
         Film of the contact below the first known load.
     flow : FlowFilm, optional
         Mass flow of the flooded contact from the first known load on. None where the map holds none.
+    speeds : array (n_u,)
+        Entrainment speeds [m/s].
     """
 
     contact: LineContact
     thickness: float
     tail: Tail
     flow: FlowFilm | None
+    speeds: FloatArray
 
     def __call__(self, film: FilmSamples) -> FilmSamples:
         """Film on the layer, at the same loads.
@@ -118,11 +123,19 @@ class OilLayer:
         own = np.maximum(-film.slope, 0.0)
         exponent = np.clip(-film.root * log_slope / 3.0, 0.0, 1.0)
         s = layered.root_ratio
-        raised = (damping_ratio(s) * s**-1.5) ** (0.5 * exponent)
         held = (compliance_ratio(s) * s**2) ** exponent
-        # (c/w) D^2, with c/w of the flooded contact and what the layer makes of it.
-        raised *= (dry + own) / (dry / held + own) * (dry - slope) / (dry - film.slope)
-        return FilmSamples(film.root, layered.offset, slope, film.loss * raised**2)
+        edge, time = self._edge(film.load, layered, exponent)
+        edge *= 3.0 * film.root**2  # by g, as the slopes
+        # (c/w) D^2 is 9 g l where D is that of c
+        raised = (damping_ratio(s) * s**-1.5) ** exponent * (held * (dry + own) / (dry - film.slope)) ** 2
+        loss = film.loss * raised + 3.0 * edge * time / film.root
+        return FilmSamples(film.root, layered.offset, slope, loss * ((dry - slope) / (dry + own * held + edge)) ** 2)
+
+    def _edge(self, load: FloatArray, layered: _Layered, exponent: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Compliance by the moving edge [m2/N], and half the time through the Hertz zone [s], at loads > 0."""
+        half = np.asarray(half_width(load, self.contact.radius, self.contact.reduced_modulus))
+        edge = edge_compliance(layered.root_ratio, exponent, layered.offset, load, half, self.contact.radius)
+        return edge, half / self.speeds[:, None]
 
     def _below(self, film: FilmSamples) -> FilmSamples:
         """Film below the first known load."""
@@ -147,13 +160,13 @@ class OilLayer:
         dry = dry_slope(self.contact, root)
         of_fade = film.loss / (dry - film.slope) ** 2
         of_hyperbola = unit * np.sqrt(load / tail.load)
-        of_layer = unit * self._raised(root, strength, layered) ** 2
+        of_layer = unit * self._raised(root, strength, layered, unit) ** 2
         both = (of_layer / of_fade) ** CORNER + 1.0 - (of_hyperbola / of_fade) ** CORNER
         ratio = of_fade * both ** (1.0 / CORNER)
         return FilmSamples(root, offset, slope, ratio * (dry - slope) ** 2)
 
-    def _raised(self, root: FloatArray, strength: FloatArray, layered: _Layered) -> FloatArray:
-        """Root of c/w on the layer over that of the hyperbola, times (w/w1)^(1/4): finite without load."""
+    def _raised(self, root: FloatArray, strength: FloatArray, layered: _Layered, unit: FloatArray) -> FloatArray:
+        """Root of c/w on the layer over that of the hyperbola, `unit` (w/w1)^(1/2), times (w/w1)^(1/4): finite."""
         tail, s, held = self.tail, np.maximum(layered.root_ratio, 1e-30), np.maximum(root, 0.0)
         exponent = np.minimum(tail.strength / strength, 1.0)
         own = 3.0 * tail.strength
@@ -161,7 +174,18 @@ class OilLayer:
         light = damping_ratio(layered.root_ratio) ** (0.5 * exponent) * s ** (0.75 * (1.0 - exponent))
         light *= (layered.per_root * np.cbrt(tail.load)) ** -0.75
         stiff = np.where(dry > 0.0, dry * (compliance_ratio(layered.root_ratio) * s**2) ** -exponent, 0.0)
-        raised: FloatArray = light * (dry + own) / (stiff + own)
+
+        # what the edge adds to compliance and loss, over those of the held film; nothing without load
+        load = np.maximum(held, 1e-9 * np.cbrt(tail.load)) ** 3
+        edge, time = self._edge(load, layered, exponent)
+        kept = (compliance_ratio(layered.root_ratio) * s**2) ** exponent
+        compliance = tail.strength / load**2
+        flooded = unit * np.sqrt(load / tail.load) * load * (self.contact.structural_compliance(load) + compliance) ** 2
+        more = edge / (compliance * kept)
+        lost = edge * time / (flooded * (damping_ratio(layered.root_ratio) * s**-1.5) ** exponent * kept**2)
+        there = root > 0.0
+        more, lost = np.where(there, more, 0.0), np.where(there, lost, 0.0)
+        raised: FloatArray = light * (dry + own) / (stiff + own * (1.0 + more)) * np.sqrt(1.0 + lost)
         return raised
 
     def _flow_per_film(self, film: FilmSamples) -> tuple[FloatArray, FloatArray]:

@@ -244,15 +244,47 @@ def loaded_rolling_ratio(root: FloatArray) -> FloatArray:
     >>> [round(float(force), 2) for force in loaded_rolling_ratio(np.sqrt([0.0, 0.25, 0.5, 0.9, 1.0]))]
     [0.0, 0.02, 0.08, 0.38, 1.0]
     """
-    ratios, forces = _grubin()
+    ratios, forces, _ = _grubin()
     flow = np.clip(np.asarray(root, dtype=np.float64), 0.0, 1.0) ** 2
     found: FloatArray = np.interp(flow, ratios, forces)
     return found
 
 
+def edge_compliance(
+    root: FloatArray, exponent: FloatArray, film: FloatArray, load: FloatArray, half: FloatArray, radius: float
+) -> FloatArray:
+    """Film compliance that a loaded contact has besides, as a heavier load moves its edge to the held meniscus [m2/N].
+
+    With the gap m + kappa y^1.5 at y before the Hertz zone, kappa = 2 sqrt(2 b)/(3 R), the meniscus at y = X l,
+    l = (m/kappa)^(2/3), and r of X as of `loaded_rolling_ratio`, A = d ln r/d ln X: at a held meniscus, with kappa as
+    it is, dX/X = -db/(X l) - (2/3) dm/m with db/b = dw/(2 w), so that the film falls by
+
+        (h/w) A b/(2 X l)/(1 + 2 A/3),
+
+    which is taken times 1 - n: rigid surfaces have no edge. The loss of what the moved edge lets through is that times
+    b/u, half the time it takes through the zone.
+
+    Parameters
+    ----------
+    root : array
+        s, as of `film_ratio`.
+    exponent : array
+        n = -d ln(h)/d ln(w) of the flooded film, 0 to 1.
+    film, load, half : array
+        Film h on the layer [m], w [N/m], > 0, and half-width b of the dry contact [m].
+    radius : float
+        R [m].
+    """
+    ratios, _, edges = _grubin()
+    moved = np.interp(np.clip(np.asarray(root, dtype=np.float64), 0.0, 1.0) ** 2, ratios, edges)
+    length = (1.5 * film * radius / np.sqrt(2.0 * half)) ** (2.0 / 3.0)
+    found: FloatArray = (1.0 - exponent) * film / load * half / length * moved
+    return found
+
+
 @cache
-def _grubin() -> tuple[FloatArray, FloatArray]:
-    """r and the ratio of the forces of Grubin's inlet, rising, from a meniscus at the contact to one far away."""
+def _grubin() -> tuple[FloatArray, FloatArray, FloatArray]:
+    """r, ratio of the forces, and A/(2 X (1 + 2 A/3)) of Grubin's inlet, for menisci from the contact to far away."""
     t = np.concatenate((np.linspace(0.0, 2.0, 4001)[:-1], np.geomspace(2.0, 1e4, 8001)))  # x = t^2
     inlet = _integral(2.0 * t**4 / (1.0 + t**3) ** 3, t)
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -260,7 +292,10 @@ def _grubin() -> tuple[FloatArray, FloatArray]:
     ratios = (inlet / inlet[-1]) ** 0.75
     with np.errstate(invalid="ignore", divide="ignore"):
         forces = np.where(t > 0.0, ratios ** (-1.0 / 3.0) * inlet * _integral(part, t), 0.0)
-    return ratios, forces / forces[-1]
+        steep = 0.75 * t**5 / (1.0 + t**3) ** 3 / inlet  # X J'/J over 4/3
+        edges = steep / (2.0 * t**2 * (1.0 + 2.0 * steep / 3.0))
+    edges[0] = edges[1]  # it grows without bound towards a meniscus at the contact, where no film is left
+    return ratios, forces / forces[-1], edges
 
 
 def _integral(values: FloatArray, places: FloatArray) -> FloatArray:

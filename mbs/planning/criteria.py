@@ -33,7 +33,7 @@ from ehdmaps.physics.heat import inlet_shear_heating_factor, thermal_loading, vi
 from ehdmaps.physics.hertz import half_width, max_pressure, natural_time
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import dowson_groups, film_from_moes, moes_groups
-from ehdmaps.physics.oil_supply import CORNER, compliance_ratio, damping_ratio, film_ratio, passing
+from ehdmaps.physics.oil_supply import CORNER, compliance_ratio, damping_ratio, edge_compliance, film_ratio, passing
 from ehdmaps.physics.surface import Surface
 
 TOUCHING = 3.0
@@ -171,10 +171,13 @@ def supply_effect(state: ClosedContact, layer: float) -> FloatArray:
     capped = 1.0 - passed**CORNER  # -d ln(r)/d ln(flow)
     following = passed * (ratio - capped * (ratio + 0.5 * root * slope))
     held = (compliance_ratio(root) * root**2) ** exponent
-    lost = (damping_ratio(root) * root**-1.5) ** exponent * held**2
+    lost = state.loss * (damping_ratio(root) * root**-1.5) ** exponent * held**2
+    half = np.asarray(half_width(state.load, state.contact.radius, state.contact.reduced_modulus))
+    edge = edge_compliance(root, exponent, passed * ratio * state.film, state.load, half, state.contact.radius)
     flooded = state.solids + state.film_compliance
     k = flooded / (state.solids + state.film_compliance * np.maximum(following, 0.0))
-    c = lost * (flooded / (state.solids + state.film_compliance * held)) ** 2
+    c = (lost + edge * half / state.speed) / state.loss
+    c *= (flooded / (state.solids + state.film_compliance * held + edge)) ** 2
     return np.asarray(np.maximum(np.abs(k - 1.0), np.abs(c - 1.0)))
 
 

@@ -260,7 +260,7 @@ class LayerRule:
         tail = Tail(
             point.load * one, full.film_offset * one, full.film_compliance * one, slow * one, one, contact.radius
         )
-        layer = OilLayer(contact, self.supply.oil_layer, tail, flow)
+        layer = OilLayer(contact, self.supply.oil_layer, tail, flow, np.array([point.entrainment_speed]))
         return _sampled(layer(_samples(full, point.load)), full, question)
 
 
