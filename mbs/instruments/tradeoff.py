@@ -128,8 +128,8 @@ def tradeoff(
     if scene.balls and not scene.bearings:
         raise InputError(
             f"{scene.name}: got ball bearings alone, which have neither maps, memory nor slices to choose; allowed: "
-            "laws side by side, such as mbs sweep or campbell with --law hertz --law table, and mbs runup, which states "
-            "the error of its step"
+            "laws side by side, such as mbs sweep or campbell with --law hertz --law table, and mbs runup, which "
+            "states the error of its step"
         )
     settings = settings or TradeoffSettings(scene.campbell)
     maps = [law for law in laws if law.maps is not None]

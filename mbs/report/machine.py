@@ -195,8 +195,15 @@ def in_short(found: Examination) -> Iterator[str]:
             yield f"{words}."
         else:
             yield "The law knows no film: contacts are dry."
-    else:
-        yield "The scene has no roller bearing."
+    elif not model.balls:
+        yield "The scene has no bearing of rollers or balls."
+    for ball in model.balls:
+        motion = model.system.relative(ball.inner, ball.outer) @ balance.displacement
+        loads = ball.balls(motion, balance.operation)
+        yield (
+            f"Ball bearing {ball.name} has {np.count_nonzero(loads.load[0] > 0.0)} of {loads.angle.size} balls loaded, "
+            f"up to {shown(FORCE, float(loads.load[0].max()))} on one."
+        )
     if isinstance(found.modes, str):
         yield f"There are no modes: {found.modes}"
     else:

@@ -14,6 +14,7 @@ from ehdmaps.program import plain
 from ehdmaps.report.page import Markup, Section, document, joined, pairs, sentences, tag
 from ehdmaps.units import RPM
 from mbs.analyses.sensors import excited_orders
+from mbs.report.balls import balls
 from mbs.report.bearings import bearings
 from mbs.report.campbell import campbell, lines_of, mode_table, saved_campbell
 from mbs.report.examination import Examination, highest_of
@@ -58,6 +59,8 @@ def scene_report(
     ]
     if found.model.bearings:
         sections.append(Section("bearings", "Bearings in operation", list(bearings(found))))
+    if found.model.balls:
+        sections.append(Section("balls", "Ball bearings in operation", list(balls(found))))
     for index, one in enumerate(used):
         sections += map_sections(one, f"map-{index}", len(used) > 1)
     if not used:

@@ -214,6 +214,13 @@ def test_balls_are_in_results_and_pictures():
     assert [len(axes.patches) for axes in panels] == [9, 9]
 
 
+def test_report_has_the_balls(capsys, tmp_path):
+    assert commands.run(capsys, "report", "electric_drive", "-o", str(tmp_path / "page.html"))[0] == 0
+    page = (tmp_path / "page.html").read_text(encoding="utf-8")
+    assert page.count("Balls, from y towards z") == 2
+    assert "Ball bearing drive has 9 of 9 balls loaded" in page
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [

@@ -1,0 +1,88 @@
+"""Each ball bearing of a report: loads and contact angles of its balls, pressures, stiffness and damping."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.figures import typeset
+from ehdmaps.report.chart import number, shown
+from ehdmaps.report.page import Markup, joined, pairs, table, tag
+from ehdmaps.units import DAMPER, PRESSURE, SPRING
+from mbs.bearings.balls.ball_element import MachineBalls
+from mbs.output.state_text import DAMPINGS, STIFFNESSES
+from mbs.report.examination import Examination
+from mbs.scene.fields import FORCE
+
+_SHOWN = (0, 1, 2, 4, 5)
+_NAMES = ("x", "y", "z", "θy", "θz")
+_ROUND_OFF = 1e-8
+
+
+def balls(found: Examination) -> Iterator[Markup]:
+    """Yield what is said of each ball bearing.
+
+    Parameters
+    ----------
+    found : Examination
+        What was found.
+    """
+    balance = found.statics.balance
+    for index, connected in enumerate(found.model.system.elements):
+        element = connected.element
+        if not isinstance(element, MachineBalls):
+            continue
+        at = element.settled(connected.transform @ balance.displacement, balance.operation)
+        force, loads, angles = balance.forces[index], at.balls.load, np.degrees(at.balls.contact_angle)
+        contacts = element.force.geometry.contacts(element.force.material)
+        pressures = np.array([contact.max_pressure(load) for contact, load in zip(contacts, loads, strict=True)])
+        means = [number(_clean(math.degrees(at.balls.mean_angle(side)))) for side in (0, 1)]
+        peaks = [number(PRESSURE.value(float(side.max()))) for side in pressures]
+        rows = [
+            (
+                "force on the inner ring",
+                f"{number(force[0], 4)} N along x, {shown(FORCE, math.hypot(*force[1:3]))} across",
+            ),
+            ("mean contact angle", f"{means[0]} inner, {means[1]} ° outer"),
+            ("loaded balls", f"{np.count_nonzero(loads[0] > 0.0)} of {loads.shape[1]}"),
+            ("highest ball load", shown(FORCE, float(loads[0].max()))),
+            ("Hertz pressure", f"{peaks[0]} inner, {peaks[1]} {PRESSURE.unit} outer"),
+        ]
+        each = [
+            (
+                f"{_clean(math.degrees(float(at.balls.angle[j]))):.4g}",
+                *(number(float(side[j]), 4) for side in loads),
+                *(number(_clean(float(side[j]))) for side in angles),
+                *(number(PRESSURE.value(float(side[j]))) for side in pressures),
+            )
+            for j in np.argsort(at.balls.angle)
+        ]
+        places = ("angle, °", "load inner, N", "outer, N", "contact angle inner, °", "outer, °")
+        heads = (*places, "Hertz pressure inner, GPa", "outer, GPa")
+        matrices = ("Stiffness K", balance.element_stiffness), ("Damping C", balance.element_damping)
+        yield joined(
+            tag("h3", f"Bearing {element.name}, {element.force.geometry.name}"),
+            pairs((name, typeset(value)) for name, value in rows),
+            table(heads, each, "Balls, from y towards z", ()),
+            tag("div", *(_matrix(words, of_all[index]) for words, of_all in matrices), class_="matrices"),
+        )
+
+
+def _matrix(words: str, matrix: FloatArray) -> Markup:
+    """A matrix on the inner ring, without the turning about its axis."""
+    units, display = (STIFFNESSES, SPRING) if words.startswith("S") else (DAMPINGS, DAMPER)
+    values = display.factor * matrix
+    scale = np.sqrt(np.abs(np.diag(values)))
+    rows = [
+        (_NAMES[i], *(f"{_clean(float(values[row, k]), float(scale[row] * scale[k])):.4g}" for k in _SHOWN))
+        for i, row in enumerate(_SHOWN)
+    ]
+    return table(("", *_NAMES), rows, f"{words} in {typeset(units)}")
+
+
+def _clean(value: float, scale: float = 1.0) -> float:
+    """Zero in place of what is left by round-off."""
+    return 0.0 if abs(value) < _ROUND_OFF * scale else value
