@@ -22,7 +22,7 @@ from mbs.bearings.force_at_point import Arrays, RollerLoads
 from mbs.bearings.laws import DryLaw, FlatLaw
 from mbs.bearings.slices import approaches_of_arrays
 from mbs.model.body import Body
-from mbs.model.elements import ElementDefaults, Excitation, Forces, Operation, Port, Powers
+from mbs.model.elements import Excitation, Forces, OnRings, Operation, Port, Powers
 from mbs.model.relaxation import Films, Relaxation
 
 if TYPE_CHECKING:
@@ -58,8 +58,8 @@ class RingForce(Protocol):
         ...
 
 
-class RingElement(ElementDefaults):
-    """Element that is listed as a bearing: its first six displacements are those of an inner ring.
+class RingElement(OnRings):
+    """Element that is listed as a roller bearing: its first six displacements are those of an inner ring.
 
     `mbs.model.system.System.select` finds bearings by this class; a bearing of your own inherits from it.
     """
@@ -478,6 +478,8 @@ def error_words(system: System, film_share: float = 0.0) -> str:
     if "" in words:
         return NO_MAP
     stated = "; ".join(sorted(words))
+    if len(bearings) < len(system.select(OnRings)):
+        stated += "; without those of ball bearings"
     if film_share == 0.0:
         return f"{stated}; how films relax is not in it"
     films = f"what one relaxation time of a slice leaves out ({100.0 * film_share:.2g} % of the median band)"

@@ -18,9 +18,8 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 
 from ehdmaps.arrays import ComplexArray, FloatArray
-from mbs.bearings.bearing_element import RingElement
 from mbs.linearised.dynamic import dynamic_stiffness
-from mbs.model.elements import Element
+from mbs.model.elements import Element, OnRings
 from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.model.relaxation import Relaxation
 from mbs.model.system import Connected, System
@@ -108,7 +107,7 @@ def over_pitch(balance: Equilibrium, count: int) -> tuple[Equilibrium, ...]:
         If there is no equilibrium at an angle.
     """
     system, operation = balance.system, balance.operation
-    turn = max((pitch(system.elements[index].element) for index in system.select(RingElement)), default=0.0)
+    turn = max((pitch(system.elements[index].element) for index in system.select(OnRings)), default=0.0)
     equilibria = [balance]
     for part in range(1, count):
         at = operation._replace(angle=operation.angle + turn * part / count)

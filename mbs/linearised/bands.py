@@ -38,6 +38,7 @@ from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
 from mbs.bearings.bearing_element import RingElement, ring_following
 from mbs.bearings.roller_contacts import ContactGroup
 from mbs.linearised.film_part import FilmPart, film_part
+from mbs.model.elements import OnRings
 from mbs.model.equilibrium import Equilibrium
 
 if TYPE_CHECKING:
@@ -269,13 +270,13 @@ class LawBands:
     def of_bearings(self) -> FloatArray:
         """Bands of k [N/m] and c [N s/m] of each bearing along its force, either way, shape (2, bearings).
 
-        Those of `mbs.linearised.sweep.along_load`; NaN for a bearing without force.
+        Those of `mbs.linearised.sweep.along_load`; NaN for a bearing without force, and for balls.
         """
         balance, bands = self._balance, []
-        for index in balance.system.select(RingElement):
+        for index in balance.system.select(OnRings):
             radial = balance.forces[index][1:3]
             load = float(np.linalg.norm(radial))
-            if load == 0.0:
+            if load == 0.0 or not isinstance(balance.system.elements[index].element, RingElement):
                 bands.append([np.nan, np.nan])
                 continue
             stiffness, damping = balance.element_stiffness[index], balance.element_damping[index]

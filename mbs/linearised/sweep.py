@@ -18,7 +18,7 @@ import numpy as np
 
 from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
 from ehdmaps.errors import AnalysisError, InputError
-from mbs.bearings.bearing_element import RingElement, ring_matrices
+from mbs.bearings.bearing_element import ring_matrices
 from mbs.linearised.averaged import AveragedEquilibrium, PitchSpread, averaged, over_pitch, pitch_spread, steady_system
 from mbs.linearised.bands import film_share, law_bands
 from mbs.linearised.dynamic import LostMode
@@ -26,7 +26,7 @@ from mbs.linearised.linear import checked_response, peak_places, with_peaks
 from mbs.linearised.modes import StateModes, UndampedModes, energy_shares, state_modes, undamped_modes
 from mbs.linearised.sweep_result import BearingSweep, ComplexSweep, ResponseSweep, Sweep, UndampedSweep, straightened
 from mbs.linearised.tracking import Match, ModeSet, compose, match, numbers, tracks
-from mbs.model.elements import Input, Operation, Sensor
+from mbs.model.elements import Input, OnRings, Operation, Sensor
 from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.model.system import System
 from mbs.settings import MOST_SPEEDS
@@ -186,7 +186,7 @@ def bridge(first: Point, last: Point, at: Callable[[float, FloatArray | None], P
 
 def bearing_parts(balance: Equilibrium) -> IntArray:
     """Indices of the parts of the stiffness that are bearings, shape (bearings,)."""
-    bearings = {balance.system.elements[index].element.name for index in balance.system.select(RingElement)}
+    bearings = {balance.system.elements[index].element.name for index in balance.system.select(OnRings)}
     return np.array([index for index, name in enumerate(balance.parts) if name in bearings], dtype=np.int64)
 
 
@@ -196,7 +196,7 @@ def along_load(balance: Equilibrium) -> FloatArray:
     Rollers that are bodies follow in equilibrium. NaN for stiffness and damping of a bearing without force.
     """
     rows = []
-    for index in balance.system.select(RingElement):
+    for index in balance.system.select(OnRings):
         radial = balance.forces[index][1:3]
         load = float(np.linalg.norm(radial))
         direction = np.array([0.0, *(radial / load if load > 0.0 else radial * np.nan), 0.0, 0.0, 0.0])

@@ -11,9 +11,8 @@ import numpy as np
 
 from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.maps.kernels.film_response import FilmResponse, by_powers
-from mbs.bearings.bearing_element import RingElement
 from mbs.linearised.dynamic import element_dynamic_stiffness
-from mbs.model.elements import Input
+from mbs.model.elements import Input, OnRings
 from mbs.model.equilibrium import Equilibrium
 from mbs.model.relaxation import NOTABLE, Films
 
@@ -195,7 +194,7 @@ def dynamic_loads(
         return ()
     s = np.asarray(2j * np.pi * frequencies, dtype=np.complex128)
     motion = motion * np.array([entry.amplitude for entry in inputs])
-    for index in balance.system.select(RingElement):
+    for index in balance.system.select(OnRings):
         connected = balance.system.elements[index]
         ports = np.einsum("mn,fni->fmi", connected.transform, motion)
         force = element_dynamic_stiffness(balance, index, s) @ ports

@@ -257,6 +257,10 @@ class ElementDefaults:
         return None
 
 
+class OnRings(ElementDefaults):
+    """Element whose first six displacements are those of an inner ring: a bearing of rollers or of balls."""
+
+
 @dataclass(frozen=True, eq=False)
 class Spring:
     """A linear spring and damper between two places.

@@ -11,13 +11,12 @@ import numpy.typing as npt
 import xarray as xr
 
 from ehdmaps.arrays import ComplexArray, FloatArray
-from mbs.bearings.balls.ball_bearing import BallElement
 from mbs.bearings.bearing_element import RingElement, error_words, ring_matrices
 from mbs.bearings.films import SIDES
 from mbs.bearings.thermal import BearingHeat, BearingState
 from mbs.gears.gear import GearMesh
 from mbs.model.body import FREEDOMS
-from mbs.model.elements import Input, Sensor
+from mbs.model.elements import Input, OnRings, Sensor
 from mbs.model.equilibrium import Equilibrium
 from mbs.model.system import System
 from mbs.scene.assembly import Model
@@ -545,7 +544,7 @@ def _ring_variables(
 
 def _bearings(system: System) -> tuple[int, ...]:
     """Indices of the bearings among the elements, of rollers and of balls."""
-    return tuple(sorted(system.select(RingElement) + system.select(BallElement)))
+    return system.select(OnRings)
 
 
 def _bearing_names(system: System) -> npt.NDArray[np.str_]:

@@ -34,7 +34,7 @@ from ehdmaps.physics.solids import STEEL, Material
 from mbs.bearings.balls.ball_kernel import NO_BALANCE, NOT_FINITE, TOO_FAR, BallShape, ball_force, load_approach
 from mbs.bearings.balls.ball_speed import ball_loads, rolling
 from mbs.bearings.balls.laws import BallLaw
-from mbs.model.elements import ElementDefaults, Excitation, Forces, Operation, Port
+from mbs.model.elements import Excitation, Forces, OnRings, Operation, Port
 
 FASTEST = 2e4
 """Largest accepted speed of a ring [rad/s]; 1e5 rpm is half of it."""
@@ -310,7 +310,7 @@ def _six(values: npt.ArrayLike, name: str) -> FloatArray:
 
 
 @dataclass(frozen=True, eq=False)
-class BallElement(ElementDefaults):
+class BallElement(OnRings):
     """A ball bearing between an inner and an outer ring.
 
     Attributes
