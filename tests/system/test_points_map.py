@@ -72,7 +72,10 @@ def test_it_is_shown_drawn_and_exported(made, tmp_path, capsys):
     ("arguments", "words"),
     [
         (("generate", "6208", "--solver", "hertz"), "--solver: is one of line contacts"),
-        (("export", "6208", "--to", "mat"), "--to: got 'mat' for point contacts; allowed: csv"),
+        (
+            ("export", "6208", "--to", "mat"),
+            "--to: got 'mat' for point contacts; allowed: csv; K and C of the bearing: mbs bearing -o",
+        ),
         (("generate", "6208", "--oil", "butter"), "--oil: "),
         (("plot", "MADE", "--oil", "ISO VG 46"), "--oil: got 'ISO VG 46' beside a map"),
         (("generate", "6208", "-o", "films.txt"), "allowed: a file that ends in .nc"),

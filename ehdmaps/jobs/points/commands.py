@@ -45,7 +45,10 @@ def run(arguments: argparse.Namespace, source: str) -> tuple[str, int]:
     options = [name for name in _OF_LINES if getattr(arguments, name, None) not in (None, False)]
     problems = [f"--{name.replace('_', '-')}: is one of line contacts; allowed: without it" for name in options]
     if arguments.command == "export" and arguments.to != "csv":
-        problems.append(f"--to: got {short(arguments.to)} for point contacts; allowed: csv")
+        problems.append(
+            f"--to: got {short(arguments.to)} for point contacts; allowed: csv; K and C of the bearing: mbs bearing -o "
+            "k.csv"
+        )
     request = None
     if not os.path.exists(source):
         try:
