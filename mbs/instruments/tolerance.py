@@ -2,7 +2,7 @@
 
 A trial is the whole ramp in a small part of its time, so that all resonances are passed. Trials with twice and four
 times the step of the scene are held side by side, and one with its slices beside one with about twice as many. Where
-that keeps the tolerance the settings stay; else a trial with the step itself is made, the step is halved, and slices are
+that keeps the tolerance the settings stay; else one with the step itself is made, the step is halved, and slices are
 doubled. Then the run is made. It states the error of its step itself, from parts of it (`mbs.analyses.step_error`), and
 that is what confirms the choice, at no cost but that of any run. Where it does not, the run is made again with a
 shorter step.
