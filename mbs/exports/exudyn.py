@@ -13,6 +13,7 @@ Source of the interface: Exudyn's manual, ObjectConnectorRigidBodySpringDamper, 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -25,7 +26,7 @@ from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.laws import DryLaw
 
 if TYPE_CHECKING:
-    from mbs.model.elements import Operation
+    from mbs.model.elements import Forces, Operation
     from mbs.model.system import System
 
 _SAME_SPEED = 1e-4
@@ -144,6 +145,8 @@ class ExudynBearing:
         rate = np.array([*velocity, 0.0, turning[1] - turning[0] * lean_y, turning[2] - turning[0] * lean_z])
         if time > self._last.time:
             self._begin = self._last
+        elif time <= self._begin.time:
+            self._begin = _Moment()  # another solution has begun
         # The rotation is known but for full turns.
         angle = self._begin.angle + math.remainder(float(rotation[0]) - self._begin.angle, 2.0 * math.pi)
         cage = self.start_angle + self.force.bearing.cage_angle(angle)
@@ -177,7 +180,7 @@ class _Moment:
     films: FilmState | None = None
 
 
-def add_system(there: Any, system: System, operation: Operation, start: FloatArray) -> Any:
+def add_system(there: Any, system: System, operation: Operation, start: FloatArray, in_time: bool = False) -> Any:
     """Add a system of ours to one of Exudyn: its matrices, and a function for bearings, meshes and all other elements.
 
     Parameters
@@ -187,9 +190,12 @@ def add_system(there: Any, system: System, operation: Operation, start: FloatArr
     system : System
         The system with its n coordinates.
     operation : Operation
-        Speed and angle of the shafts; they stay. Films follow at once.
+        Speed of the shafts, which stays, and their angle at time 0.
     start : array, shape (n,)
         Coordinates at the begin [m, rad]; the system rests there.
+    in_time : bool
+        False for statics and modes: the angle stays, films follow at once. True for a solution in time: shafts and
+        cages turn, and films with memory go from step to step, as of `ExudynBearing`.
 
     Returns
     -------
@@ -198,22 +204,49 @@ def add_system(there: Any, system: System, operation: Operation, start: FloatArr
     """
     from exudyn.utilities import NodeGenericODE2, ObjectGenericODE2
 
-    def summed(q: Any, v: Any, name: str) -> FloatArray:
-        """Force, stiffness or damping of all elements, in the coordinates."""
-        total = np.zeros((system.size,) if name == "force" else (system.size, system.size))
-        found = system.evaluate(np.array(q), np.array(v), operation)
-        for connected, element in zip(system.elements, found, strict=True):
-            part = connected.transform.T @ getattr(element, name)
-            total += part if name == "force" else part @ connected.transform
-        return total
-
+    elements = _Elements(system, operation, in_time)
     still = np.zeros(system.size)
     node = there.AddNode(NodeGenericODE2("", still, start, still, system.size))
     damping = system.damping + operation.speed * system.gyroscopic
     box: Any = ObjectGenericODE2("", [node], system.mass, system.stiffness, damping)
-    box.forceUserFunction = lambda _, t, item, q, v: system.loads(t) + summed(q, v, "force")
+    box.forceUserFunction = lambda _, t, item, q, v: system.loads(t) + elements.summed(t, q, v, "force")
     box.jacobianUserFunction = lambda _, t, item, q, v, by_q, by_v: (
-        by_q * summed(q, v, "stiffness") + by_v * summed(q, v, "damping")
+        by_q * elements.summed(t, q, v, "stiffness") + by_v * elements.summed(t, q, v, "damping")
     )
     there.AddObject(box)
     return node
+
+
+class _Elements:
+    """Forces of the elements of a system at the times that Exudyn asks for; of its steps the last answer counts."""
+
+    def __init__(self, system: System, operation: Operation, in_time: bool) -> None:
+        self._system, self._operation, self._in_time = system, operation, in_time
+        self._begin, self._states = -math.inf, [None] * len(system.elements)
+        self._time, self._tried = -math.inf, list(self._states)
+
+    def summed(self, time: float, q: Any, v: Any, name: str) -> FloatArray:
+        """Force, stiffness or damping of all elements, in the coordinates."""
+        size = self._system.size
+        total = np.zeros((size,) if name == "force" else (size, size))
+        for connected, element in zip(self._system.elements, self._found(time, np.array(q), np.array(v)), strict=True):
+            part = connected.transform.T @ getattr(element, name)
+            total += part if name == "force" else part @ connected.transform
+        return total
+
+    def _found(self, time: float, q: FloatArray, v: FloatArray) -> Sequence[Forces]:
+        """Answers of all elements."""
+        if not self._in_time:
+            return self._system.evaluate(q, v, self._operation)
+        if time > self._time:
+            self._begin, self._states = self._time, self._tried
+        elif time <= self._begin:
+            self._begin, self._states = -math.inf, [None] * len(self._states)  # another solution has begun
+        angle = self._operation.angle + self._operation.speed * time
+        here = self._operation._replace(angle=angle, time=time)
+        found = [
+            each.element.advance(before, each.transform @ q, each.transform @ v, here)
+            for each, before in zip(self._system.elements, self._states, strict=True)
+        ]
+        self._time, self._tried = time, [state for _, state in found]
+        return [forces for forces, _ in found]

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from ehdmaps.errors import InputError
-from mbs.exports.exudyn import ExudynBearing
+from mbs.exports.exudyn import ExudynBearing, add_system
 from mbs.linearised.modes import undamped_modes
 from mbs.model.elements import Load, Operation
 from mbs.model.equilibrium import equilibrium
@@ -188,3 +188,35 @@ def test_an_angle_is_counted_through_full_turns_and_a_retried_step_is_not_a_step
     pose = np.array([*y, 0.0, 0.0, 0.0])
     wanted, _, _ = bearing.force(pose, np.zeros(6), cage_angle=bearing.bearing.cage_angle(30.0))
     np.testing.assert_allclose(found, -wanted, rtol=1e-9, atol=1e-9 * np.abs(wanted).max())
+
+
+@pytest.mark.slow
+def test_a_whole_machine_goes_on_in_time_as_ours_and_begins_anew():
+    """2 ms at 500 rpm from a place 1 % away, films with memory, twice: the Newton methods, 1e-8 of the forces.
+
+    Films that follow at once are another machine: by more than 1e-3 of what moves.
+    """
+    ran = {}
+    for films in ("memory", "slow"):
+        system = assemble(SCENE, "formula", clearance=10e-6, films=films).system
+        start, step = 1.01 * equilibrium(system, Operation(SPEED)).displacement, 5e-5
+        run = integrate(system, SpeedProfile.constant(SPEED), 40 * step, Settings(step, step, 0.6), start)
+        ran[films] = run.states.displacement[1:]
+    system = assemble(SCENE, "formula", clearance=10e-6, films="memory").system
+    there = exu.SystemContainer().AddSystem()
+    node = add_system(there, system, Operation(SPEED), start, in_time=True)
+    kind = exu.OutputVariableType.Coordinates
+    sensor = there.AddSensor(exu.utilities.SensorNode(nodeNumber=node, storeInternal=True, outputVariableType=kind))
+    there.Assemble()
+    settings = exu.SimulationSettings()
+    settings.solutionSettings.writeSolutionToFile = False
+    settings.timeIntegration.numberOfSteps, settings.timeIntegration.endTime = 40, 40 * step
+    settings.timeIntegration.generalizedAlpha.spectralRadius = 0.6
+    settings.timeIntegration.newton.relativeTolerance = 1e-10
+    settings.solutionSettings.sensorsWritePeriod = step
+    for _ in range(2):
+        assert there.SolveDynamic(settings)
+        theirs = np.asarray(there.GetSensorStoredData(sensor))[1:, 1:]
+        moved = np.max(np.abs(ran["memory"] - start))
+        assert np.max(np.abs(theirs - ran["memory"])) < 1e-5 * moved
+    assert np.max(np.abs(ran["slow"] - ran["memory"])) > 1e-3 * moved
