@@ -12,10 +12,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from scipy.interpolate import CubicSpline
+from scipy.interpolate import CubicSpline, PPoly
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import SolverError
@@ -72,13 +73,18 @@ class ContactFilms:
         load : array (k,)
             Loads [N], > 0.
         """
-        places, logs = np.log(self.loads), np.log(self.values)
-        spline = CubicSpline(places, logs, axis=0)
+        spline, slope = self._splines
         asked = np.log(load)
-        inside = np.clip(asked, places[0], places[-1])
-        slopes = spline(inside, 1)
+        inside = np.clip(asked, spline.x[0], spline.x[-1])
+        slopes = slope(inside)
         values = np.exp(spline(inside) + slopes * (asked - inside)[:, None])
         return values.T, (values * slopes).T
+
+    @cached_property
+    def _splines(self) -> tuple[PPoly, PPoly]:
+        """Logarithms of the values over that of the load, and their slopes."""
+        spline = CubicSpline(np.log(self.loads), np.log(self.values), axis=0)
+        return spline, spline.derivative()
 
     def largest_errors(self, load: FloatArray) -> FloatArray:
         """Largest errors at loads: of the films on both sides of each, (4,); NaN without loads.
