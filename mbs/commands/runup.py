@@ -284,12 +284,23 @@ def _report(found: RunUpResult) -> list[str]:
             f"{size[-1]:.5g} N at the end; largest change from sample to sample {_changes(size, result.speed, fade)}; "
             f"{outside[bearing.name]} calls outside {end}"
         )
+    names = [entry.element.name for entry in model.system.elements]
+    lines += [_ball_line(ball.name, result.forces[names.index(ball.name)]) for ball in model.balls]
     lines += drive_lines(result.drive) + energy_lines(result.energy)
     lines += fade_lines(model, result.speed, "the run")
     fastest = float(np.abs(result.speed).max())
     lines += outside_lines(outside, "{} calls outside the map", axes_outside(model, fastest), sources=sources_of(model))
     # The equilibria of this line are no part of the run, whose calls were counted above.
     return lines + film_course(model, (float(result.speed[0]), float(result.speed[-1])))
+
+
+def _ball_line(name: str, force: FloatArray) -> str:
+    """Line on the forces (samples, 6) of a ball bearing on its inner ring."""
+    along, across = force[:, 0], np.hypot(force[:, 1], force[:, 2])
+    return (
+        f"{name}: {along[0]:.5g} N along x at the beginning, {along.min():.5g} to {along.max():.5g} N, "
+        f"{along[-1]:.5g} N at the end; {across.min():.5g} to {across.max():.5g} N across it"
+    )
 
 
 def _looks_at(scene: Scene) -> Looked:

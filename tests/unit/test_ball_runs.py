@@ -121,7 +121,8 @@ def test_run_up_with_films_stays_compiled():
     speed = SpeedProfile.ramp(600.0 * RPM, 4000.0 * RPM, 0.02)
     done = run(machine.system, speed, 0.02, Settings(step=2e-5, sample=1e-3), displacement=rest.displacement)
     assert done.compiled == done.steps and not done.notes
-    axial = done.forces[[entry.element.name for entry in machine.system.elements].index("drive")][:, 0]
+    names = [entry.element.name for entry in machine.system.elements]
+    axial = done.forces[names.index("drive")][:, 0]
     assert np.all((axial > -320.0) & (axial < -250.0))
 
 
@@ -214,6 +215,7 @@ def test_balls_are_in_results_and_pictures():
     assert [len(axes.patches) for axes in panels] == [9, 9]
 
 
+@pytest.mark.slow
 def test_report_has_the_balls(capsys, tmp_path):
     assert commands.run(capsys, "report", "electric_drive", "-o", str(tmp_path / "page.html"))[0] == 0
     page = (tmp_path / "page.html").read_text(encoding="utf-8")
@@ -234,3 +236,22 @@ def test_report_has_the_balls(capsys, tmp_path):
 def test_what_balls_do_not_take_says_what_does(capsys, words, said):
     status, _, err = commands.run(capsys, words[0], "electric_drive", *words[1:])
     assert status == 2 and said in " ".join(err.split())
+
+
+@pytest.mark.slow
+def test_passing_balls_shake_at_their_order():
+    """At a steady speed without unbalance all that moves is the cage: the force varies at multiples of Z times its
+    speed, here in 16 whole periods, so that lines beside them hold what settles and no leakage."""
+    loose = 'diametral_clearance = "12 um"'
+    machine = assemble(parse_scene(text(left=loose, right=loose), "rotor", "rotor.toml"), LAW)
+    speed, order, count = 150.0, machine.balls[0].excitation.order, 256
+    period = 2.0 * math.pi / (order * speed)
+    rest = equilibrium(machine.system, Operation(speed))
+    settings = Settings(step=period / 128, sample=period / 16)
+    course = SpeedProfile.constant(speed)
+    done = run(machine.system, course, 0.2 + 16 * period, settings, displacement=rest.displacement)
+    names = [entry.element.name for entry in machine.system.elements]
+    force = done.forces[names.index("left")][-count:, 2]
+    lines = np.abs(np.fft.rfft(force - force.mean()))
+    assert np.argmax(lines) == 16
+    assert lines[16] > 10.0 * np.delete(lines, [16, 32, 48, 64, 80, 96, 112, 128]).max()
