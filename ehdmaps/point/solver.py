@@ -31,7 +31,7 @@ ELLIPTICITIES = (0.2, 40.0)
 LOAD_NUMBERS = (0.05, 3e4)
 """Moes' M that are solved: below, the solids hardly deform; above, the film is below what the grids resolve."""
 
-LARGEST_OIL_NUMBER = 30.0
+LARGEST_OIL_NUMBER = 65.0
 """Moes' L above which no solve is tried."""
 
 
@@ -361,6 +361,8 @@ def _in_si(
         notes.append(THICK_NOTE)
     if found.loss < 0.0:
         notes.append("negative damping of an isothermal, Newtonian film")
+    if errors.minimum_film > MOST_ERROR:
+        notes.append(f"minimum film not resolved: both grids differ by {100.0 * errors.minimum_film:.0f} %")
     if found.minimum_film * film < CONTINUUM:
         notes.append(NO_CONTINUUM)
     approach = float(ellipse.approach(load)) - found.film_offset * film

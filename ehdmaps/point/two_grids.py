@@ -133,16 +133,24 @@ class PointGroups:
 
     @property
     def worst(self) -> tuple[str, float]:
-        """Number with the largest stated error of film, film offset and stiffness, and that; inf without a solution."""
+        """Number with the largest stated error of central film, film offset and stiffness, and that; inf without any.
+
+        The smallest film, that of a narrow strip in heavy contacts, and damping stand for themselves.
+        """
         if self.errors is None:
             return "", math.inf
         errors = {
-            "film": max(self.errors.central_film, self.errors.minimum_film),
+            "central film": self.errors.central_film,
             "film offset": self.errors.film_offset,
             "stiffness": self.errors.stiffness,
         }
         name = max(errors, key=lambda key: errors[key])
         return name, errors[name] if math.isfinite(errors[name]) else math.inf
+
+    @property
+    def resolved(self) -> bool:
+        """Whether both grids tell the same of the smallest film too."""
+        return self.errors is not None and max(self.worst[1], self.errors.minimum_film) <= MOST_ERROR
 
 
 def solve_groups(
@@ -162,11 +170,11 @@ def solve_groups(
         Whether finer grids are tried, at ten times the cost.
     """
     found = _solved_on(problem, resolution, previous)
-    if found.worst[1] <= MOST_ERROR or not finer:
+    if not finer or found.resolved:
         return found
     better = _solved_on(problem, resolution.finer, None)
     steps = found.steps + better.steps
-    return replace(better if better.worst[1] < found.worst[1] else found, steps=steps)
+    return replace(found if better.numbers is None else better, steps=steps)
 
 
 def _solved_on(problem: PointProblem, resolution: Resolution, previous: PointGroups | None) -> PointGroups:

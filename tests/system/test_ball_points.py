@@ -6,6 +6,7 @@ import pytest
 
 from ehdmaps.jobs import cli
 
+_OVER = ("_over_frequency", "_error_over_frequency")
 POINT = ["--load", "100 N", "--speed", "3000 rpm", "--temperature", "60 degC"]
 
 
@@ -38,12 +39,19 @@ def test_plain_values_have_the_same_numbers(capsys):
 
 def test_films_are_read_from_the_table(capsys):
     """The same numbers as solved ones, within the errors that both state."""
-    read, solved = (json.loads(run(capsys, "6208", *POINT, "--json", *more)[1]) for more in (["--films", "table"], []))
+    over = ["--frequency", "100 Hz", "10 kHz", "4"]
+    read, solved = (
+        json.loads(run(capsys, "6208", *POINT, *over, "--json", *more)[1]) for more in (["--films", "table"], [])
+    )
     for one, other in zip(read, solved, strict=True):
         assert one["status"] == "converged" and one["M"] == pytest.approx(other["M"], rel=1e-12)
         for name in ("approach", "film_offset", "central_film", "minimum_film", "stiffness", "damping"):
             error = one[f"{name}_error"] + other[f"{name}_error"]
             assert abs(one[name] / other[name] - 1.0) < error < 0.3, name
+        for name in ("stiffness", "damping"):
+            values, errors = ([each[f"{name}{end}"] for each in (one, other)] for end in _OVER)
+            for a, b, x, y in zip(*values, *errors, strict=True):
+                assert abs(a / b - 1.0) < x + y < 0.4, name
 
 
 def test_no_load_is_told_and_ends_with_status_one(capsys):
@@ -57,7 +65,11 @@ def test_no_load_is_told_and_ends_with_status_one(capsys):
     [
         (["--length", "1 mm"], "--length: is one of line contacts"),
         (["--films", "guessed"], "--films: got 'guessed'; allowed: solved, table"),
-        (["--films", "table", "--frequency", "1 kHz"], "--frequency: stands beside --films table"),
+        (
+            ["--films", "table", "--frequency", "90 kHz"],
+            "--frequency: got 90000 Hz; allowed beside --films table",
+        ),
+        (["--films", "table", "--plot", "film.png"], "--plot: stands beside --films table"),
         (["--solver", "openfoam"], "--solver: got 'openfoam'; allowed: reynolds"),
         (["--frequency", "10 Hz", "1 Hz", "3"], "--frequency: got 10 Hz 1 Hz 3; allowed"),
         (["--oil", "butter"], "--oil: "),

@@ -24,7 +24,7 @@ def make(path: Path) -> tuple[str, int]:
     path : Path
         The file.
     """
-    from ehdmaps.jobs.make.point_table import make_point_table
+    from ehdmaps.jobs.make.points.table import make_point_table
 
     kind = dataset_kind("a film table of points of ehdmaps", KIND, (".nc",))
     check_outputs([Output("-o", path, kind)])
@@ -76,9 +76,12 @@ def _shown(table: PointTable) -> str:
         ("alpha", 1e9 * np.exp(axes.alpha), " 1/GPa"), ("bend", axes.bend, ""),
     )  # fmt: skip
     lines.append(", ".join(f"{name} {x[0]:.3g} to {x[-1]:.3g}{unit} ({x.size})" for name, x, unit in ends))
-    holes = np.any(codes == HOLE, axis=-1)
-    lines.append(f"{holes.size} cells, {np.count_nonzero(holes)} of them holes: a corner has no solution")
-    errors = 100.0 * decoded(codes[~holes])
+    holes, continued = codes[..., 0] == HOLE, table.nodes.continued
+    lines.append(
+        f"{holes.size} cells, {np.count_nonzero(holes)} of them holes: a corner has no solution; "
+        f"{np.count_nonzero(continued)} of heavy contacts, continued from lighter loads, not in the errors below"
+    )
+    errors = 100.0 * decoded(codes[~holes & ~continued])
     for name in (*(field.name for field in FILMS), SLOPE):
         column = errors[:, ERRORS.index(name)]
         lines.append(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,9 +22,14 @@ from ehdmaps.physics.catalogue import designated
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import OilSupply
+from ehdmaps.physics.point.ball_catalogue import ball_estimate, plain_ball_designation
+from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.physics.solution import ContactSolver
 from ehdmaps.physics.surface import Surface
+
+if TYPE_CHECKING:
+    from ehdmaps.table.points.law import PointLaw
 
 LOADS, SPEEDS, TEMPERATURES = (100.0, 1e6), (0.05, 10.0), (293.15, 393.15)
 """Ranges of a law for which nothing else is said: those of the shipped jobs [N/m], [m/s], [K]."""
@@ -118,7 +124,7 @@ def job_map(job: Job, source: str) -> EHDMap:
 
 
 def law(
-    of: BearingGeometry | LineContact | str,
+    of: BearingGeometry | BallGeometry | LineContact | str,
     lubricant: Lubricant | str,
     kind: LawKind | None = None,
     loads: tuple[float, float] = LOADS,
@@ -130,16 +136,17 @@ def law(
     structural_law: StructuralLaw = "iso16281",
     material: Material = STEEL,
     solver: ContactSolver | None = None,
-) -> ContactLaw:
+) -> ContactLaw | PointLaw:
     """Make a contact law without a map, in about a second.
 
-    Films come from the film table; where it does not serve, all are solved.
+    Films come from the film table; where it does not serve, all are solved. The law of a ball bearing has the load of
+    one ball [N], and reads the film table of points alone: of what follows it takes kind and material.
 
     Parameters
     ----------
-    of : BearingGeometry, LineContact or str
-        A bearing, or one contact; or the designation of a bearing, "NU210", whose inner geometry is estimated where it
-        is not known.
+    of : BearingGeometry, BallGeometry, LineContact or str
+        A bearing, or one contact; or the designation of a bearing, "NU210" or "6208", whose inner geometry is estimated
+        where it is not known.
     lubricant : Lubricant or str
         The oil, or its name or class: "FVA3", "ISO VG 46".
     kind : {"series", "inner", "outer", "line"}, optional
@@ -167,8 +174,15 @@ def law(
     >>> import ehdmaps
     >>> nu308 = ehdmaps.law(ehdmaps.BearingGeometry.named("NU308"), ehdmaps.Lubricant.named("FVA3"))  # doctest: +SKIP
     """
-    of = designated(of) if isinstance(of, str) else of
+    if isinstance(of, str):
+        of = ball_estimate(of) if plain_ball_designation(of) else designated(of)
     lubricant = Lubricant.named(lubricant) if isinstance(lubricant, str) else lubricant
+    if isinstance(of, BallGeometry):
+        if supply is not None or surface is not None or solver is not None:
+            raise InputError("contact law of a ball: got a supply, a surface or a solver; allowed: none of them")
+        from ehdmaps.table.points.law import PointLaw
+
+        return PointLaw(of, lubricant, "series" if kind is None else kind, material)
     allowed: tuple[LawKind, ...] = ("series", "inner", "outer") if isinstance(of, BearingGeometry) else ("line",)
     chosen = kind or allowed[0]
     if chosen not in allowed:

@@ -4,16 +4,21 @@ from __future__ import annotations
 
 import argparse
 import os
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from ehdmaps.errors import InputError
+from ehdmaps.exports.mat import KIND as MATLAB
+from ehdmaps.exports.mat import ascii_text, write_matlab
 from ehdmaps.jobs.points.asked import MADE
 from ehdmaps.jobs.points.points_map import (
     DIMS,
     KIND,
+    SIDES,
     PointsRequest,
     points_map,
     read_points_map,
@@ -22,14 +27,18 @@ from ehdmaps.jobs.points.points_map import (
     write_points_map,
 )
 from ehdmaps.outputs import FIGURE, MARK, TABLE, Output, check_outputs, write_figure, write_text
+from ehdmaps.physics.contact import OIL_TEMPERATURES
 from ehdmaps.table.points.films import NUMBERS
-from ehdmaps.units import short
+from ehdmaps.units import SPEED, TEMPERATURE, quantity, short
 
 _OF_LINES = (
     *("solver", "workers", "fresh", "fresh_films", "law_tolerance", "keep_cases"),
     *("structural_law", "supply", "roughness"),
 )
 """Options of maps of line contacts."""
+
+EXPORTS = ("csv", "mat")
+_POINT, _FASTEST = ("speed", "temperature", "contact"), 1e3
 
 
 def run(arguments: argparse.Namespace, source: str) -> tuple[str, int]:
@@ -44,10 +53,11 @@ def run(arguments: argparse.Namespace, source: str) -> tuple[str, int]:
     """
     options = [name for name in _OF_LINES if getattr(arguments, name, None) not in (None, False)]
     problems = [f"--{name.replace('_', '-')}: is one of line contacts; allowed: without it" for name in options]
-    if arguments.command == "export" and arguments.to != "csv":
+    exported = arguments.command == "export"
+    if exported and arguments.to not in EXPORTS:
         problems.append(
-            f"--to: got {short(arguments.to)} for point contacts; allowed: csv; K and C of the bearing: mbs bearing -o "
-            "k.csv"
+            f"--to: got {short(arguments.to)} for point contacts; allowed: {', '.join(EXPORTS)}; K and C of the bearing: "
+            "mbs bearing -o k.csv"
         )
     request = None
     if not os.path.exists(source):
@@ -55,8 +65,16 @@ def run(arguments: argparse.Namespace, source: str) -> tuple[str, int]:
             request = PointsRequest.named(source, arguments.oil)
         except InputError as error:
             problems += error.problems
+        if exported and request is not None:
+            request = _narrowed(request, arguments, problems)
     elif arguments.oil is not None:
         problems.append(f"--oil: got {short(arguments.oil)} beside a map; allowed: with --bearing")
+    elif exported:
+        for option in _POINT:
+            if getattr(arguments, option, None) is not None:
+                problems.append(
+                    f"--{option}: stands beside a map of points; allowed: with --bearing, read at that point"
+                )
     if problems:
         raise InputError(problems)
     name = Path(source if request is None else request.file_name)
@@ -69,19 +87,73 @@ def run(arguments: argparse.Namespace, source: str) -> tuple[str, int]:
         write_points_map(dataset, path)
         return f"{path}: written\n{described(dataset)}", 0 if bool(usable(dataset).all()) else 1
     kind, ending = {"plot": (FIGURE, ".png"), "export": (TABLE, ".csv"), "show": (None, "")}[arguments.command]
+    if exported and arguments.to == "mat":
+        kind, ending = MATLAB, ".mat"
     path = output or name.with_suffix(ending)
     if kind is not None:
         check_outputs([Output("-o", path, kind)], [] if request is not None else [name])
     dataset = read_points_map(name) if request is None else points_map(request)
+    if exported and request is not None and (side := getattr(arguments, "contact", None)) is not None:
+        dataset = dataset.sel(contact=[side])
     if kind is None:
         return described(dataset), 0
     if kind is FIGURE:
         from ehdmaps.jobs.points.points_plot import RESOLUTION, points_map_figure
 
         write_figure(points_map_figure(dataset), path, RESOLUTION)
+    elif kind is MATLAB:
+        write_matlab(path, {"map": matlab_struct(dataset)}, "export it as csv")
     else:
         write_text(path, table(dataset), TABLE)
     return f"{path}: written", 0
+
+
+def _narrowed(request: PointsRequest, arguments: argparse.Namespace, problems: list[str]) -> PointsRequest:
+    """The request at the speed and temperature that were given, with so many loads."""
+    chosen: dict[str, Any] = {}
+    for name, field, unit, low, high, display in (
+        ("speed", "speeds", "m/s", 0.0, _FASTEST, SPEED),
+        ("temperature", "temperatures", "K", *OIL_TEMPERATURES, TEMPERATURE),
+    ):
+        text = getattr(arguments, name, None)
+        if text is None:
+            continue
+        try:
+            value = quantity(text, unit)
+        except InputError as error:
+            problems.append(f"--{name}: {error.problems[0]}")
+            continue
+        if not low <= value <= high:
+            problems.append(f"--{name}: got {text!r:.60}; allowed: {display.text(low)} to {display.text(high)}")
+        chosen[field] = (value,)
+    contact = getattr(arguments, "contact", None)
+    if contact not in (None, *SIDES):
+        problems.append(f"--contact: got {short(contact)} for point contacts; allowed: {', '.join(SIDES)}")
+    if getattr(arguments, "points", None) is not None and chosen:
+        chosen["loads"] = arguments.points
+        if arguments.points < 2:
+            problems.append(f"--points: got {arguments.points}; allowed: 2 to 1024")
+    return replace(request, **chosen)
+
+
+def matlab_struct(dataset: xr.Dataset) -> dict[str, Any]:
+    """A map as nested structs: axes, a struct a contact with arrays over load, speed, temperature, units, meaning.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        A map of points.
+    """
+    names = [*NUMBERS, *(f"{name}_error" for name in NUMBERS), "status", "cause"]
+    content: dict[str, Any] = {axis: dataset[axis].values.astype(float)[:, None] for axis in DIMS[1:]}
+    for side in dataset[DIMS[0]].values:
+        content[str(side)] = {name: dataset[name].sel(contact=side).values.astype(float) for name in names}
+    described = [*DIMS[1:], *names]
+    content["units"] = {name: ascii_text(dataset[name].attrs.get("units", "1")) for name in described}
+    content["meaning"] = {name: ascii_text(dataset[name].attrs["long_name"]) for name in described}
+    lines = [dataset.attrs["title"], dataset.attrs["estimated"], f"causes: {dataset.attrs['causes']}"]
+    content["header"] = np.array([ascii_text(line) for line in lines if line], dtype=object)[:, None]
+    return content
 
 
 def described(dataset: xr.Dataset) -> str:

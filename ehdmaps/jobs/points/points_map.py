@@ -66,10 +66,17 @@ class PointsRequest:
         The bearing.
     oil : Lubricant
         The oil.
+    loads : int
+        How many loads.
+    speeds, temperatures : tuple of float
+        Entrainment speeds [m/s], and temperatures [K]; those at which the oil has a state where they are left out.
     """
 
     bearing: BallGeometry
     oil: Lubricant
+    loads: int = LOADS
+    speeds: tuple[float, ...] = SPEEDS
+    temperatures: tuple[float, ...] = ()
 
     @classmethod
     def named(cls, bearing: str, oil: str | None = None) -> PointsRequest:
@@ -124,8 +131,8 @@ def points_map(request: PointsRequest) -> xr.Dataset:
     """
     contacts = request.bearing.contacts(STEEL)
     heaviest = float((HIGHEST_PRESSURE / contacts[0].max_pressure(1.0)) ** 3)
-    loads = np.geomspace(LIGHTEST, heaviest, LOADS)
-    speeds, temperatures = np.array(SPEEDS), np.array(_held(request.oil))
+    loads = np.geomspace(LIGHTEST, heaviest, request.loads)
+    speeds, temperatures = np.array(request.speeds), np.array(request.temperatures or _held(request.oil))
     table = shipped_point_table()
     films = [
         table.films(contact, request.oil, loads[:, None, None], speeds[:, None], temperatures) for contact in contacts

@@ -24,7 +24,7 @@ from ehdmaps.physics.point.ellipse import Ellipse
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.solution import Status
 from ehdmaps.physics.spectrum import HIGHEST_FREQUENCY, LOWEST_FREQUENCY, MOST_FREQUENCIES
-from ehdmaps.point.solver import PointSolution, solve
+from ehdmaps.point.solver import PointResponse, PointSolution, solve
 from ehdmaps.program import tell
 from ehdmaps.units import DAMPER, FILM, LENGTH, PRESSURE, RPM, SPEED, SPRING, TEMPERATURE, Display, quantity, short
 
@@ -93,11 +93,18 @@ def _contact(request: _Request, ellipse: Ellipse) -> PointSolution:
     """One contact, as the request asks."""
     point = (request.oil, request.load, request.speed, request.temperature)
     if request.films == TABLE:
-        return read_point(ellipse, *point)
+        return read_point(ellipse, *point, request.frequencies)
     return solve(ellipse, *point, request.frequencies)
 
 
-def read_point(ellipse: Ellipse, oil: Lubricant, load: float, speed: float, temperature: float) -> PointSolution:
+def read_point(
+    ellipse: Ellipse,
+    oil: Lubricant,
+    load: float,
+    speed: float,
+    temperature: float,
+    frequencies: FloatArray | None = None,
+) -> PointSolution:
     """A point as the table of points has it, with the words of a solution.
 
     Parameters
@@ -108,14 +115,33 @@ def read_point(ellipse: Ellipse, oil: Lubricant, load: float, speed: float, temp
         The oil.
     load, speed, temperature : float
         F [N], u [m/s], T [K].
+    frequencies : ndarray, optional
+        Frequencies of the response [Hz].
+
+    Raises
+    ------
+    InputError
+        If a frequency is above those of the table.
     """
     from ehdmaps.table.points.file import shipped_point_table
     from ehdmaps.table.points.films import NUMBERS as KNOWN
+    from ehdmaps.table.points.response import read_response
 
     seconds = stopwatch()
     films = shipped_point_table().films(ellipse, oil, [load], speed, temperature)
     numbers = {name: float(getattr(films, name)[0]) for name in KNOWN}
     numbers |= {f"{name}_error": float(films.errors[name][0]) for name in KNOWN}
+    response = None
+    if frequencies is not None and films.usable[0]:
+        found = read_response(films, frequencies)
+        if not np.all(np.isfinite(found.stiffness)):
+            highest = float(films.frequencies[0, -1])
+            raise InputError(
+                f"--frequency: got {frequencies[-1]:.5g} Hz; allowed beside --films {TABLE}: up to {highest:.5g} Hz at "
+                f"this load and speed, or --films {SOLVED}"
+            )
+        dynamic = found.stiffness + 2j * math.pi * frequencies * found.damping
+        response = PointResponse(frequencies, dynamic, found.stiffness_error, found.damping_error)
     return PointSolution(
         Status(int(films.status[0])),
         str(films.reason[0]),
@@ -123,6 +149,7 @@ def read_point(ellipse: Ellipse, oil: Lubricant, load: float, speed: float, temp
         **numbers,  # type: ignore[arg-type]
         solve_seconds=seconds(),
         viscosity_extrapolated=bool(films.viscosity_extrapolated[0]),
+        response=response,
     )
 
 
@@ -176,9 +203,8 @@ def _read(arguments: argparse.Namespace) -> _Request:
     films = SOLVED if arguments.films is None else arguments.films
     if films not in (SOLVED, TABLE):
         problems.append(f"--films: got {short(films)}; allowed: {SOLVED}, {TABLE}")
-    for name in ("frequency", "plot") if films == TABLE else ():
-        if getattr(arguments, name) is not None:
-            problems.append(f"--{name}: stands beside --films {TABLE}, which has no field; allowed: --films {SOLVED}")
+    if films == TABLE and arguments.plot is not None:
+        problems.append(f"--plot: stands beside --films {TABLE}, which has no field; allowed: --films {SOLVED}")
     problems += output_problems([Output("--plot", arguments.plot, FIGURE)])
     if oil is not None and math.isfinite(temperature):
         try:

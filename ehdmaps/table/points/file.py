@@ -19,7 +19,7 @@ from ehdmaps.table.points.nodes import ERRORS, FIELDS, PointNodes
 SHIPPED = "point_table.nc"
 """Name of the shipped file in this package."""
 
-KIND, FORMAT = "film table of points", "1"
+KIND, FORMAT = "film table of points", "2"
 
 AXES = {
     "zeta": ("ln(M/M_knee(L, kappa)), see ehdmaps.table.points.coordinates", "1"),
@@ -63,9 +63,10 @@ def read_point_table(path: Path) -> PointTable:
                 raise MapError(f"{path}: holds other numbers than this version reads; make it again")
             axes = PointAxes(*(np.asarray(file[name][:], dtype=float) for name in AXES))
             values, codes = (np.moveaxis(file[name][:], 0, -1) for name in ("values", "error_codes"))
+            continued = np.asarray(file["continued"][:], dtype=bool)
     except (OSError, KeyError, IndexError, AttributeError) as error:
         raise MapError(f"{path}: cannot be read as a {KIND} ({error}); make it again") from None
-    table = PointTable(PointNodes(axes, values, codes), attributes)
+    table = PointTable(PointNodes(axes, values, codes, continued), attributes)
     if attributes.get(CHECKSUM) != content_sha256(table):
         raise MapError(f"{path}: was changed since it was made: its content does not match {CHECKSUM}; make it again")
     return table
@@ -96,7 +97,7 @@ def write_point_table(path: Path, table: PointTable) -> None:
             variable[:] = places
             variable.setncatts({"long_name": meaning, "units": unit})
         for name, kind, array, first, suffix, meaning in (
-            ("values", "f4", nodes.values, "field", "", "logarithms of reduced films, see ehdmaps.table.points.nodes"),
+            ("values", "f4", nodes.values, "field", "", "forms of reduced films, see ehdmaps.table.points.nodes"),
             ("error_codes", "u1", nodes.codes, "error", "_cell", "their errors, see ehdmaps.table.nodes.encoded"),
         ):
             variable = file.createVariable(
@@ -105,6 +106,9 @@ def write_point_table(path: Path, table: PointTable) -> None:
             )  # fmt: skip
             variable[:] = np.moveaxis(array, -1, 0)
             variable.setncattr("long_name", meaning)
+        marks = file.createVariable("continued", "u1", [f"{axis}_cell" for axis in AXES], compression="zlib")
+        marks[:] = nodes.continued
+        marks.setncattr("long_name", "1 where a number goes on from lighter loads")
 
 
 def content_sha256(table: PointTable) -> str:
@@ -116,7 +120,7 @@ def content_sha256(table: PointTable) -> str:
         The table.
     """
     digest = hashlib.sha256(f"{KIND} {FORMAT}".encode())
-    for array in (*table.nodes.axes.all, table.nodes.values, table.nodes.codes):
+    for array in (*table.nodes.axes.all, table.nodes.values, table.nodes.codes, table.nodes.continued):
         digest.update(str(array.shape).encode())
         digest.update(np.ascontiguousarray(array, dtype=array.dtype.newbyteorder("<")).tobytes())
     return digest.hexdigest()

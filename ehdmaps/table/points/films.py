@@ -35,6 +35,7 @@ _FAR_FROM_KNEE = np.inf
 CAUSES = (
     "",
     THICK_NOTE,
+    "table of points: heavier than what was solved; numbers go on from lighter loads, and errors grow",
     "no entrainment: dry contact",
     "no load: the bodies do not meet, no film to read",
     "table of points: the oil has no state at this temperature",
@@ -51,8 +52,8 @@ CAUSES = (
 )
 """Causes of a status in words, by their number; empty for a plain film."""
 
-_NONE, _THICK, _DRY, _NO_LOAD, _NO_STATE, _LAW, _ABSURD, _PRESSURE = range(8)
-_KAPPA, _L, _OIL, _HEAVY, _LIGHT, _HOLE, _TOO_THICK = range(8, len(CAUSES))
+_NONE, _THICK, _CONTINUED, _DRY, _NO_LOAD, _NO_STATE, _LAW, _ABSURD, _PRESSURE = range(9)
+_KAPPA, _L, _OIL, _HEAVY, _LIGHT, _HOLE, _TOO_THICK = range(9, len(CAUSES))
 
 NUMBERS = (
     *("approach", "film_offset", "stiffness", "damping", "film_compliance", "loss_compliance"),
@@ -174,16 +175,17 @@ class PointTable:
             bend, other = (bend_of(alpha, z) for z in (exponent, beside))
         cause = self._refused(ellipse, oil.compressible, (F, u, alpha, bend), (M, L, zeta), unit)
         good = np.flatnonzero(cause == _NONE)
-        found, hole = self._numbers(ellipse, F[good], u[good], PointUnits(*(x[good] for x in unit)), (
+        found, hole, continued = self._numbers(ellipse, F[good], u[good], PointUnits(*(x[good] for x in unit)), (
             zeta[good], np.log(L[good]), np.log(kappa[good]), np.log(alpha[good]), bend[good], other[good],
         ))  # fmt: skip
         thickness = found["film_offset"] / ellipse.rolling_radius
         tests = (
             (hole, _HOLE), (thickness > THICKEST_FILM, _TOO_THICK), (thickness > THIN_FILM_LIMIT, _THICK),
+            (continued, _CONTINUED),
         )  # fmt: skip
         cause[good] = np.select([test for test, _ in tests], [code for _, code in tests], _NONE)
         status = np.where(cause > _DRY, int(Status.OUTSIDE_VALIDITY), int(Status.CONVERGED)).astype(np.int8)
-        status[(cause == _THICK) | (cause == _DRY)] = int(Status.ASYMPTOTE)
+        status[(cause > _NONE) & (cause <= _DRY)] = int(Status.ASYMPTOTE)
         count, whole = len(NATURAL_FREQUENCIES), {}
         for name, values in found.items():
             place = np.full((F.size, *values.shape[1:]), np.nan)
@@ -248,8 +250,8 @@ class PointTable:
 
     def _numbers(
         self, ellipse: Ellipse, load: FloatArray, speed: FloatArray, unit: PointUnits, place: tuple[FloatArray, ...]
-    ) -> tuple[dict[str, FloatArray], BoolArray]:
-        """Numbers of points that are read with their errors, and which of them are holes."""
+    ) -> tuple[dict[str, FloatArray], BoolArray, BoolArray]:
+        """Numbers of points that are read with their errors, which of them are holes, and which are continued."""
         *along, bend, other = place
         zeta, size, shape, alpha = along
         here = self.nodes.place(zeta, size, shape, (alpha, bend))
@@ -298,11 +300,12 @@ class PointTable:
         found |= {
             "frequencies": turning,
             "response_stiffness": np.exp(dynamic[:, 0::2]) * unit.stiffness[:, None],
-            "response_damping": np.exp(dynamic[:, 1::2]) * unit.damping[:, None],
+            "response_damping": dynamic[:, 1::2] * damping[:, None],
             "response_stiffness_error": errors[:, first : len(FIELDS) : 2],
-            "response_damping_error": errors[:, first + 1 : len(FIELDS) : 2],
+            "response_damping_error": errors[:, first + 1 : len(FIELDS) : 2] / np.abs(dynamic[:, 1::2])
+            + wrong["damping"][:, None],
         }
-        return found, hole
+        return found, hole, np.asarray(self.nodes.continued.ravel()[here.cell])
 
     def loads(self, ellipse: Ellipse, lubricant: Lubricant, entrainment_speed: float, temperature: float) -> FloatArray:
         """Loads of the nodes along zeta at a speed and a temperature [N]: between them a cubic is what the table reads.

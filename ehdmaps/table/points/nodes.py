@@ -2,7 +2,8 @@
 
 Cubic splines along zeta, ln L and ln kappa, linear between the oils. A cell is a hole where one of its corners has no
 solution; what the splines run over there is no film, and is never given out. Below the lowest zeta all numbers go on as
-powers of M, those of a rigid contact; above the highest one there is none.
+powers of M, those of a rigid contact. Under heavy loads, where grids do not resolve them, they go on from lighter ones,
+and cells say so; above the highest zeta there is none.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import BSpline
 
-from ehdmaps.arrays import ByteArray, FloatArray, IndexArray
+from ehdmaps.arrays import BoolArray, ByteArray, FloatArray, IndexArray
 from ehdmaps.table.fields import NATURAL_FREQUENCIES, Field
 from ehdmaps.table.interpolation import DEGREE, cell_of, lagrange_weights, spline_weights
 from ehdmaps.table.nodes import CODES, decoded
@@ -32,9 +33,10 @@ FILMS = (
 RESPONSES = tuple(
     Field(f"{part}_{natural:g}", 0.0, slope)
     for natural in NATURAL_FREQUENCIES
-    for part, slope in (("stiffness", 3.0), ("damping", 2.0))
+    for part, slope in (("stiffness", 3.0), ("damping", 0.0))
 )
-"""k and c at the natural frequencies omega sqrt(a^2 + 2 h Rx)/u, as logarithms."""
+"""k at the natural frequencies omega sqrt(a^2 + 2 h Rx)/u as a logarithm, c over that of slow motion as it is: it turns
+negative where L is large."""
 
 FIELDS = FILMS + RESPONSES
 
@@ -45,7 +47,7 @@ ERRORS = (*(field.name for field in FIELDS), SLOPE)
 """What errors are held of."""
 
 HOLE = CODES
-"""Code of a cell without films."""
+"""Code of the film offset in a cell without films; of another number it is the largest error."""
 
 _OFFSET = FIELDS.index(FILMS[0])
 
@@ -87,15 +89,18 @@ class PointNodes:
     axes : PointAxes
         The nodes.
     values : ndarray of float32, shape (n_zeta, n_size, n_shape, n_alpha, n_bend, fields)
-        Logarithms of `FIELDS` there.
+        Forms of `FIELDS` there.
     codes : ndarray of uint8, shape (cells along each axis, errors)
         Their errors in each cell in the order of `ERRORS`, see `ehdmaps.table.nodes.encoded`; `HOLE` where a corner has
         no solution.
+    continued : ndarray of bool, shape (cells along each axis)
+        Cells with a number that goes on from lighter loads.
     """
 
     axes: PointAxes
     values: npt.NDArray[np.float32]
     codes: ByteArray
+    continued: BoolArray
 
     def place(self, zeta: FloatArray, size: FloatArray, shape: FloatArray, oil: tuple[FloatArray, FloatArray]) -> (
         PointPlace
@@ -127,7 +132,7 @@ class PointNodes:
         )
 
     def read(self, place: PointPlace, fields: tuple[Field, ...] = FILMS) -> tuple[FloatArray, FloatArray]:
-        """Logarithms of reduced numbers and their slopes by zeta, both (n, fields); in holes they mean nothing.
+        """Forms of reduced numbers and their slopes by zeta, both (n, fields); in holes they mean nothing.
 
         Parameters
         ----------
@@ -169,7 +174,7 @@ class PointNodes:
         lighter = np.flatnonzero(place.below < 0.0)
         if lighter.size:
             found[lighter] += self._bent[None, :] * -place.below[lighter, None]
-        return found, np.any(codes == HOLE, axis=1)
+        return found, codes[:, _OFFSET] == HOLE
 
     @cached_property
     def _bent(self) -> FloatArray:

@@ -1,0 +1,9 @@
+"""Making of the film table of points.
+
+==========  ======================================================================================================
+lines       films along loads, solved from light to heavy, in the forms of the table
+heavy       numbers beyond the loads that grids resolve, and by how much they may be wrong
+errors      what is read between nodes against what is solved; stated errors scaled by finer solutions
+table       nodes, the middles of cells, finer points: the table
+==========  ======================================================================================================
+"""
