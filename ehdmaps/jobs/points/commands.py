@@ -56,8 +56,8 @@ def run(arguments: argparse.Namespace, source: str) -> tuple[str, int]:
     exported = arguments.command == "export"
     if exported and arguments.to not in EXPORTS:
         problems.append(
-            f"--to: got {short(arguments.to)} for point contacts; allowed: {', '.join(EXPORTS)}; K and C of the bearing: "
-            "mbs bearing -o k.csv"
+            f"--to: got {short(arguments.to)} for point contacts; allowed: {', '.join(EXPORTS)}; K and C of the "
+            "bearing: mbs bearing -o k.csv"
         )
     request = None
     if not os.path.exists(source):
