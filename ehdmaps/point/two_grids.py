@@ -149,7 +149,7 @@ class PointGroups:
 
     @property
     def resolved(self) -> bool:
-        """Whether both grids tell the same of the smallest film too."""
+        """True where both grids tell the same, of the smallest film too."""
         return self.errors is not None and max(self.worst[1], self.errors.minimum_film) <= MOST_ERROR
 
 

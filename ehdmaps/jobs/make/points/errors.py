@@ -149,7 +149,7 @@ def error_scales(
     place : ndarray, shape (5, n)
         Coordinates of the finer points.
     finer : list of SolvedPoint or None
-        These.
+        Films on finer grids at these places.
     """
     known = np.array([point is not None for point in finer], dtype=bool)
     if not np.any(known):

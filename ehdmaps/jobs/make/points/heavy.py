@@ -51,7 +51,7 @@ class Continued(NamedTuple):
     growth : ndarray, shape (n_zeta, ..., errors)
         What continuing adds to that.
     continued : ndarray of bool, shape (n_zeta, ...)
-        Where a number is not the one that was solved.
+        Nodes with a number that is not the one that was solved.
     rates : ndarray, shape (fields,)
         Growth of the errors by a unit of zeta.
     """

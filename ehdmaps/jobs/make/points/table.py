@@ -165,7 +165,7 @@ def make_point_table(axes: PointAxes = AXES, progress: _Progress = lambda done, 
 def provenance(
     axes: PointAxes, films: int, heavy: BoolArray, rates: FloatArray, scales: FloatArray, finer: int
 ) -> dict[str, str]:
-    """What a table says of itself.
+    """Attributes of a table: how it was made.
 
     Parameters
     ----------
