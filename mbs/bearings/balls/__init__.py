@@ -5,7 +5,7 @@
 `ball_kernel`          the balance of each ball, and the sums over balls: force, stiffness, damping
 `ball_bearing`         the force element; loads and contact angles of the balls
 `ball_element`         a bearing in a machine: films of its speed, the cage that its balls ask for
-`ball_speed`           speed of the cage by contact angles, and loads of the balls by that
+`ball_speed`           speed of the cage by contact angles, loads of the balls by that, their work
 `ball_block`           ball bearings in compiled runs
 `films`                films of both contacts at one speed, solved at some loads, and the law that they make
 `ball_point`           an operating point: equilibrium, speed of the cage, pressures, films

@@ -225,6 +225,11 @@ class BallForce:
         rows = self._balls.T.copy()
         return BallLoads(angle, rows[10:12], rows[12:14], rows[14:16])
 
+    @property
+    def last_balls(self) -> FloatArray:
+        """Rows that `place_ball` wrote of each ball at the last call, shape (Z, 16)."""
+        return self._balls
+
     def kernel_arguments(
         self,
         *,

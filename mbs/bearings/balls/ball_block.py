@@ -17,9 +17,9 @@ from ehdmaps.arrays import BoolArray, FloatArray, IntArray
 from ehdmaps.compiled import njit
 from ehdmaps.errors import EhdmapsError
 from mbs.bearings.balls.ball_bearing import NEGLIGIBLE
-from mbs.bearings.balls.ball_element import MachineBalls
+from mbs.bearings.balls.ball_element import BallStates, MachineBalls
 from mbs.bearings.balls.ball_kernel import NO_BALANCE, TOO_FAR, BallShape, NormalLaw, ball_force, contact, load_approach
-from mbs.bearings.balls.ball_speed import ball_loads, mean_angles, rolling
+from mbs.bearings.balls.ball_speed import ball_loads, dry_energy, mean_angles, rolling, speed_work, turned_by
 from mbs.bearings.balls.laws import NODES, BallLaw
 from mbs.bearings.speed_tables import Course, CourseOfFilms, FilmBlock, Made, Prepared, SpeedWindow, course_of, shared
 from mbs.model.blocks import FOUND, IN_PYTHON, NO_SOLUTION, Answers, Kind, Member, Moment
@@ -94,6 +94,10 @@ class Balls(NamedTuple):
         Speed of the cage by that of the system, of the step before.
     rests : array (bearings,)
         Approach at the outer raceway under the centrifugal load alone [m].
+    loads, powers : array (bearings, 2)
+        F_c and 2 G/Dw of the last answer [N]; what it dissipates, and what the turning cage brings in [W].
+    last, times, works : array (bearings, Z, 4), (bearings,), (bearings,)
+        What `speed_work` keeps of the last step, its time [s], and its work by that time [W].
     films : BallFilmTables
         Laws of the contacts.
     course : Course
@@ -117,6 +121,11 @@ class Balls(NamedTuple):
     rows: FloatArray
     cages: FloatArray
     rests: FloatArray
+    loads: FloatArray
+    powers: FloatArray
+    last: FloatArray
+    times: FloatArray
+    works: FloatArray
     films: BallFilmTables
     course: Course
 
@@ -196,8 +205,9 @@ def _on_ring(balls: Balls, b: int, moment: Moment, motion: FloatArray, answers: 
     balls.rests[b] = rest
     if inner.table.shape[0] == 0 and rest < NEGLIGIBLE:
         centrifugal = factor = 0.0
+    balls.loads[b, 0], balls.loads[b, 1] = centrifugal, 2.0 * factor / balls.masses[b, 2]
     numbers[0] = balls.starts[b] + balls.turns[b] * moment.angle
-    numbers[1], numbers[2], numbers[3] = centrifugal, 2.0 * factor / balls.masses[b, 2], rest
+    numbers[1], numbers[2], numbers[3] = balls.loads[b, 0], balls.loads[b, 1], rest
     centres, rows = balls.centres[b, :z], balls.rows[b, :z]
     found = NO_BALANCE
     for _ in range(2):
@@ -211,14 +221,19 @@ def _on_ring(balls: Balls, b: int, moment: Moment, motion: FloatArray, answers: 
     if found < 0:
         centres[:] = math.nan
         return found
+    dissipated = 0.0
     for p in range(FELT.size):
         row = FELT[p]
         total = force[row]
         for q in range(FELT.size):
             column = FELT[q]
-            total -= damping[row, column] * y[i + q]
+            slowed = damping[row, column] * y[i + q]
+            total -= slowed
+            dissipated += y[i + p] * slowed
             answers.slopes[i + p, i + q] = moment.by_q * stiffness[row, column] + moment.by_v * damping[row, column]
         answers.force[i + p] = total
+    balls.powers[b, 0] = dissipated
+    balls.powers[b, 1] = turned_by(pose, force) * balls.turns[b] * moment.speed
     return found
 
 
@@ -265,6 +280,24 @@ def balls_accept(balls: Balls, moment: Moment) -> None:
         if not balls.given[b]:
             angles = mean_angles(balls.rows[b, : balls.counts[b]])
             balls.cages[b] = rolling(balls.masses[b, 3], angles, balls.spins[b, 0], balls.spins[b, 1])
+
+
+@njit(error_model="numpy")
+def balls_powers(balls: Balls, moment: Moment, motion: FloatArray, answers: Answers, out: FloatArray) -> None:
+    """Write what contacts dissipate, and what cage and speed bring in; see `mbs.model.blocks.Kind`.
+
+    Parameters
+    ----------
+    balls, moment, motion, answers
+        The same as of `balls_answer`, of which this was the last one.
+    out : array (elements, 3)
+        Powers of all elements; written.
+    """
+    for b in range(balls.firsts.size):
+        z, h = balls.counts[b], moment.time - balls.times[b]
+        work = speed_work(balls.rows[b, :z], balls.loads[b], balls.shapes[b, 4], balls.last[b, :z])
+        balls.times[b], balls.works[b] = moment.time, work / h if h > 0.0 else 0.0
+        out[balls.places[b], 0], out[balls.places[b], 1] = balls.powers[b, 0], balls.powers[b, 1] + balls.works[b]
 
 
 @njit(error_model="numpy")
@@ -412,20 +445,32 @@ class BallBlock(FilmBlock[Balls]):
             one.begin(speeds)
         super().begin(speeds)
 
-    def states(self) -> Sequence[float]:
-        """Speeds of the cages by that of the system."""
-        found: list[float] = self._arrays.cages.tolist()
-        return found
+    def states(self) -> Sequence[BallStates]:
+        """States of each bearing after the last step."""
+        arrays = self._arrays
+        return [
+            BallStates(
+                cage=float(arrays.cages[b]),
+                time=float(arrays.times[b]),
+                last=arrays.last[b, :z].copy(),
+                dissipated=float(arrays.powers[b, 0]),
+                driven=float(arrays.powers[b, 1] + arrays.works[b]),
+                stored=dry_energy(arrays.rows[b, :z]),
+            )
+            for b, z in enumerate(arrays.counts.tolist())
+        ]
 
-    def resume(self, states: Sequence[float]) -> None:
-        """Go on with cages that `MachineBalls.advance` gave.
+    def resume(self, states: Sequence[BallStates]) -> None:
+        """Go on with states that `MachineBalls.advance` gave.
 
         Parameters
         ----------
-        states : sequence of float
-            Their speeds by that of the system.
+        states : sequence of BallStates
+            States of each bearing.
         """
-        self._arrays.cages[:] = states
+        for b, one in enumerate(states):
+            self._arrays.cages[b], self._arrays.times[b] = one.cage, one.time
+            self._arrays.last[b, : one.last.shape[0]] = one.last
 
 
 def _gather(members: Sequence[Member], films_of: list[int], laws: Sequence[_Laws]) -> Balls:
@@ -465,6 +510,11 @@ def _gather(members: Sequence[Member], films_of: list[int], laws: Sequence[_Laws
         rows=np.zeros((count, most, 16)),
         cages=np.array([one.cage_turn for one in elements], dtype=np.float64),
         rests=np.zeros(count),
+        loads=np.zeros((count, 2)),
+        powers=np.zeros((count, 2)),
+        last=np.zeros((count, most, 4)),
+        times=np.zeros(count),
+        works=np.zeros(count),
         films=films,
         course=course_of(0, len(laws)),
     )
@@ -475,5 +525,13 @@ def _feels(element: MachineBalls) -> FloatArray:
     return np.asarray(np.eye(6)[FELT])
 
 
-BALLS = Kind(arrays=Balls, answer=balls_answer, feels=_feels, gather=BallBlock, accept=balls_accept, rare=True)
+BALLS = Kind(
+    arrays=Balls,
+    answer=balls_answer,
+    feels=_feels,
+    gather=BallBlock,
+    accept=balls_accept,
+    powers=balls_powers,
+    rare=True,
+)
 """For `mbs.transient.kinds`."""

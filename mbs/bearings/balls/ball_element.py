@@ -19,8 +19,9 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, SolverError
 from ehdmaps.units import RPM
 from mbs.bearings.balls.ball_bearing import BallElement, BallForce, BallLoads, rolling_cage
+from mbs.bearings.balls.ball_speed import dry_energy, speed_work, turned_by
 from mbs.bearings.balls.laws import BallLaw
-from mbs.model.elements import Forces, Operation
+from mbs.model.elements import Forces, Operation, Powers
 
 CAGE_ERROR = 1e-8
 """Change of the speed of the cage, over the faster ring's, at which it is found."""
@@ -49,6 +50,31 @@ class Settled(NamedTuple):
     pose: FloatArray
     conditions: dict[str, Any]
     balls: BallLoads
+
+
+class BallStates(NamedTuple):
+    """States of a bearing after a step in time.
+
+    Attributes
+    ----------
+    cage : float
+        Speed of the cage by that of the system, which the contact angles ask for.
+    time : float
+        End of the step [s].
+    last : array, shape (Z, 4)
+        What `mbs.bearings.balls.ball_speed.speed_work` keeps of it.
+    dissipated, driven : float
+        What contacts take up, and what cage and speed bring in [W].
+    stored : float
+        Energy of the contacts, which are dry [J].
+    """
+
+    cage: float
+    time: float
+    last: FloatArray
+    dissipated: float
+    driven: float
+    stored: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,8 +164,8 @@ class MachineBalls(BallElement):
 
         Parameters
         ----------
-        states : float or None
-            Speed of the cage by that of the system after the last step; None for the steady one.
+        states : BallStates or None
+            States after the last step; None for the steady speed of the cage.
         displacement, velocity, operation
             What `Element.advance` takes.
 
@@ -155,12 +181,34 @@ class MachineBalls(BallElement):
         else:
             force, pose = self.force_at(operation), displacement.copy()
             pose[0] += self.axial_offset
-            conditions = {**self.conditions(operation), "cage_speed": states * operation.speed}
+            conditions = {**self.conditions(operation), "cage_speed": states.cage * operation.speed}
         balls = force.balls(pose, **conditions)
+        numbers, _ = force.kernel_arguments(**conditions)
+        last, rows = np.zeros((balls.angle.size, 4)) if states is None else states.last.copy(), force.last_balls
+        work = speed_work(rows, numbers[1:3], force.shape.outer_arm, last)
+        stored, h = dry_energy(rows), 0.0 if states is None else operation.time - states.time
         answer = self._answer(force, pose, velocity, conditions, balls)
-        if self.cage_spin is not None:
-            return answer, self.cage_spin
-        return answer, rolling_cage(force, balls, self.inner_spin, self.outer_spin)
+        slowed = answer.damping @ velocity
+        turning = turned_by(pose, answer.force + slowed) * self.cage_turn * operation.speed
+        cage = self.cage_spin
+        return answer, BallStates(
+            cage=rolling_cage(force, balls, self.inner_spin, self.outer_spin) if cage is None else cage,
+            time=operation.time,
+            last=last,
+            dissipated=float(velocity @ slowed),
+            driven=turning + (work / h if h > 0.0 else 0.0),
+            stored=stored,
+        )
+
+    def powers(
+        self, states: Any, force: FloatArray, displacement: FloatArray, velocity: FloatArray, operation: Operation
+    ) -> Powers | None:
+        """Power that contacts dissipate, and that cage and speed bring in; None with films, see `Element.powers`."""
+        return None if self.films is not None else Powers(states.dissipated, states.driven)
+
+    def stored(self, states: Any, displacement: FloatArray, operation: Operation) -> float | None:
+        """Energy of its dry contacts [J]; None with films, see `Element.stored`."""
+        return None if self.films is not None else float(states.stored)
 
     def _check_apart(self, displacement: FloatArray, operation: Operation) -> None:
         """Refuse rings that nothing holds together any more; of angular contact bearings those beyond their middle."""

@@ -1,4 +1,11 @@
-"""Speed of the cage of a ball bearing by its contact angles, and loads of the balls by that speed, compiled."""
+"""Speed of the cage of a ball bearing by its contact angles, loads of the balls by it, and their work, compiled.
+
+Contacts at rest store U, the sum of the integrals of their loads over the approaches. With the balance of each ball
+
+    dU/dt = Q_i e_i . dd/dt + (F_c (0, 1) + T) . dv/dt,
+
+T the traction: the first part is the work of the ring and of the turning cage, the second one that of speed.
+"""
 
 from __future__ import annotations
 
@@ -60,3 +67,47 @@ def rolling(ratio: float, angles: tuple[float, float], inner: float, outer: floa
     """
     at_inner, at_outer = 1.0 - ratio * math.cos(angles[0]), 1.0 + ratio * math.cos(angles[1])
     return (inner * at_inner + outer * at_outer) / (at_inner + at_outer)
+
+
+@njit(error_model="numpy")
+def speed_work(balls: FloatArray, loads: FloatArray, arm: float, last: FloatArray) -> float:
+    """Work of the centrifugal loads and tractions on the balls since the last call [J], by the trapezoidal rule.
+
+    Parameters
+    ----------
+    balls : array (Z, 16)
+        What `place_ball` writes of each ball.
+    loads : array (2,)
+        F_c, and 2 G/Dw [N].
+    arm : float
+        Distance of the outer groove's centre and the centre of a ball that touches it [m].
+    last : array (Z, 4)
+        Centres [m] and forces [N] of the last call, axial and radial; written.
+    """
+    work = 0.0
+    for j in range(balls.shape[0]):
+        reach, sin, cos = arm + balls[j, 15], math.sin(balls[j, 13]), math.cos(balls[j, 13])
+        x, r = reach * sin, reach * cos
+        along, outward = -loads[1] * sin * cos, loads[0] + loads[1] * sin * sin
+        work += 0.5 * ((along + last[j, 2]) * (x - last[j, 0]) + (outward + last[j, 3]) * (r - last[j, 1]))
+        last[j, 0], last[j, 1], last[j, 2], last[j, 3] = x, r, along, outward
+    return work
+
+
+@njit(error_model="numpy")
+def turned_by(pose: FloatArray, force: FloatArray) -> float:
+    """Moment that the bearing asks of its cage [N m], by pose and force at rest of its inner ring, (6,) each."""
+    radial: float = pose[1] * force[2] - pose[2] * force[1]
+    tilts: float = pose[4] * force[5] - pose[5] * force[4]
+    return radial + tilts
+
+
+def dry_energy(balls: FloatArray) -> float:
+    """Energy of dry contacts [J], 2/5 F times the approach of each.
+
+    Parameters
+    ----------
+    balls : array (Z, 16)
+        What `place_ball` writes of each ball.
+    """
+    return 0.4 * float((balls[:, 10:12] * balls[:, 14:16].clip(min=0.0)).sum())
