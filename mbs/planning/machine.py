@@ -32,6 +32,7 @@ from mbs.planning.plan import PlanResult
 from mbs.planning.verdicts import SHARES, Range, Verdict, beside, percent, up_to
 from mbs.scene.assembly import Model, assemble
 from mbs.scene.fields import HERTZ, MICROMETRE
+from mbs.scene.map_set import TABLE_LAW
 from mbs.scene.specs import BearingSpec, FlexibleSpec
 
 WARMER = 10.0
@@ -138,7 +139,7 @@ def _along_loads(forces: Sequence[FloatArray], matrices: Sequence[FloatArray]) -
 
 
 def centrifugal_verdict(found: PlanResult, tolerance: float) -> Verdict:
-    """Judge the centrifugal load of the rollers: by equilibria with it and without, on films of the closed formula.
+    """Judge the centrifugal load of the rollers: by equilibria with it and without, on films of the table.
 
     Parameters
     ----------
@@ -170,7 +171,7 @@ def _moving(found: PlanResult, centrifugal: bool) -> FloatArray:
     """Stiffness and damping of each bearing along its load at the highest speed, (2, bearings)."""
     scene = found.model.scene
     loaded = (dataclasses.replace(entry, centrifugal=centrifugal, slices_coupled=False) for entry in scene.bearings)
-    model = held(assemble(scene.with_bearings(loaded), "formula"))
+    model = held(assemble(scene.with_bearings(loaded), TABLE_LAW))
     balance = equilibrium(model.system, Operation(found.speeds[1], 0.0))
     bearings = len(model.bearings)
     parts = (balance.element_stiffness[:bearings], balance.element_damping[:bearings])
