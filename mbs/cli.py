@@ -331,7 +331,9 @@ def _bearing(top: Program) -> None:
     command.add_argument(
         "--coupled", action="store_true", help="slices know of their neighbours: the elasticity of three dimensions"
     )
-    command.add_argument("-o", "--output", metavar="OUT.nc", help="result as netCDF, or a row a point as .csv")
+    command.add_argument(
+        "-o", "--output", metavar="OUT.nc", help="result as netCDF, a row a point as .csv, or balls for ROSS as .toml"
+    )
     command.add_argument("--plot", metavar="FIG.png", help="figure; also .pdf, .svg")
 
 

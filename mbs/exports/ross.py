@@ -47,15 +47,45 @@ def _text(table: LinearTable, header: tuple[str, ...], arguments: argparse.Names
         )
     if problems:
         raise InputError(problems)
-    name = re.sub(r"[^A-Za-z0-9]+", "_", table.request.bearing.geometry.name).strip("_") or "bearing"
-    axes = _axes(table, arguments.ross)
+    return ross_text(
+        table.request.bearing.geometry.name,
+        _axes(table, arguments.ross),
+        (table.stiffness, table.damping),
+        header,
+        int(node),
+    )
+
+
+def ross_text(
+    bearing: str,
+    axes: dict[str, FloatArray],
+    matrices: tuple[FloatArray, FloatArray],
+    header: tuple[str, ...],
+    node: int = 0,
+) -> str:
+    """Write the element of a bearing.
+
+    Parameters
+    ----------
+    bearing : str
+        Its name.
+    axes : dict of str to array
+        Axes of the tables by their names in ROSS [rad/s]; empty for numbers.
+    matrices : (array, array), shape (..., 6, 6)
+        K [N/m, N, N m] and C of x (axial), y, z and the rotations about them, over the axes.
+    header : tuple of str
+        Lines that say where these come from.
+    node : int
+        Node of the rotor.
+    """
+    name = re.sub(r"[^A-Za-z0-9]+", "_", bearing).strip("_") or "bearing"
     lines = [f"# {line}" for line in (*header, *_NOTES)]
-    lines += ["", f"[BearingElement_{name}]", f"n = {int(node)}", f'tag = "{name} at {int(node)}"', "scale_factor = 1"]
+    lines += ["", f"[BearingElement_{name}]", f"n = {node}", f'tag = "{name} at {node}"', "scale_factor = 1"]
     lines += [f"{key} = {_array(values)}" for key, values in axes.items()]
     shape = [axis.size for axis in axes.values()]
-    for letter, matrices in (("k", table.stiffness), ("c", table.damping)):
+    for letter, matrix in zip("kc", matrices, strict=True):
         for term in _TERMS:
-            values = matrices[:, :, AXES[term[0]], AXES[term[1]]]
+            values = matrix[..., AXES[term[0]], AXES[term[1]]]
             lines.append(f"{letter}{term} = {_array(values.reshape(shape))}")
     return "\n".join(lines) + "\n"
 

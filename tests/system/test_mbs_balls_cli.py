@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import csv
 import math
+import tomllib
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -171,3 +173,33 @@ def test_all_problems_at_once(capsys, here) -> None:
     status, _, err = run(capsys, "7208", "--load", "x", "--speed", "y", "--axial", "z")
     assert status == 2
     assert "4 problems" in err
+
+
+def test_a_bearing_for_ross_has_the_matrices_of_the_result(capsys, here) -> None:
+    """x and y of ROSS are y and z of the bearing; written digits, no error."""
+    ask = (
+        "7208B",
+        "--load",
+        "1 kN",
+        "--axial",
+        "3 kN",
+        "--speed",
+        "1000 rpm",
+        "9000 rpm",
+        "3",
+        "--law",
+        "hertz:1e-5 s",
+    )
+    for file in ("b.toml", "b.nc", "b.toml"):  # its own file may be replaced
+        assert run(capsys, *ask, "-o", file)[0] == 0
+    element = tomllib.loads(Path("b.toml").read_text())["BearingElement_7208B"]
+    with xr.open_dataset("b.nc") as result:
+        assert element["frequency"] == pytest.approx(result["speed"].values, rel=1e-11)
+        for name, letter in (("stiffness_matrix", "k"), ("damping_matrix", "c")):
+            matrix = result[name][0].values
+            for term, row, column in (("xx", 1, 1), ("xy", 1, 2), ("yx", 2, 1), ("yy", 2, 2), ("zz", 0, 0)):
+                expected = matrix[:, row, column]
+                assert element[letter + term] == pytest.approx(expected, rel=1e-11, abs=1e-3)
+        assert np.ptp(element["kxx"]) > 0.1 * element["kxx"][0]
+    status, _, err = run(capsys, "6208", "--load", "1 kN", "--load", "2 kN", "--speed", "0 rpm", "-o", "b.toml")
+    assert status == 2 and "-o: got b.toml for 2 loads; allowed: one, or a file .nc or .csv" in err

@@ -9,14 +9,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ehdmaps.errors import InputError
-from ehdmaps.outputs import Output, output_problems
+from ehdmaps.outputs import MARK, Kind, Output, output_problems, write_text
 from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.program import tell
 from ehdmaps.units import RPM, TEMPERATURE
+from ehdmaps.version import version
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.ball_point import BallPoint, ball_point
 from mbs.bearings.balls.laws import dry_law
@@ -29,7 +32,7 @@ from mbs.commands.one_bearing.values import (
     read_one,
     read_values,
 )
-from mbs.output.ball_table import BallDescription, ball_dataset, ball_text, write_ball_csv
+from mbs.output.ball_table import BallDescription, ball_dataset, ball_heading, ball_text, write_ball_csv
 from mbs.output.bearing_table import result_kind
 from mbs.output.files import write_dataset
 from mbs.scene.contact_laws import HERTZ_FORMS, Damper, hertz_damper
@@ -117,7 +120,10 @@ def read_balls(arguments: argparse.Namespace) -> BallRequest:
             geometry = dataclasses.replace(geometry, clearance=float(clearance))
         except InputError as error:
             problems += [f"--clearance: {problem}" for problem in error.problems]
-    problems += output_problems((Output("-o", arguments.output, result_kind(arguments.output)),), [])
+    kind = _kind(arguments.output)
+    problems += output_problems((Output("-o", arguments.output, kind),), [])
+    if _is_for_ross(arguments.output) and len(loads) > 1:
+        problems.append(f"-o: got {arguments.output} for {len(loads)} loads; allowed: one, or a file .nc or .csv")
     if problems or geometry is None or damper is None or oil is None:
         raise InputError(tuple(dict.fromkeys(problems)))
     roughness = chosen["roughness"].roughness if "roughness" in chosen else ROUGHNESS
@@ -163,11 +169,12 @@ def run_balls(arguments: argparse.Namespace) -> tuple[str, int]:
     points = ball_points(request)
     lines = ball_text(request.description, points)
     if arguments.output:
-        dataset = ball_dataset(request.description, points)
-        if Path(arguments.output).suffix.lower() == ".csv":
-            write_ball_csv(dataset, arguments.output)
+        if _is_for_ross(arguments.output):
+            write_text(Path(arguments.output), _for_ross(request, points[0]), _kind(arguments.output))
+        elif Path(arguments.output).suffix.lower() == ".csv":
+            write_ball_csv(ball_dataset(request.description, points), arguments.output)
         else:
-            write_dataset(dataset, Path(arguments.output))
+            write_dataset(ball_dataset(request.description, points), Path(arguments.output))
         lines.append(f"{arguments.output}: written")
     return "\n".join(lines), 1 if any(point.problems for row in points for point in row) else 0
 
@@ -191,6 +198,39 @@ def ball_points(request: BallRequest) -> list[list[BallPoint]]:
         ]
         for load in request.loads
     ]
+
+
+def _is_for_ross(path: str | None) -> bool:
+    """Whether a result is to be a bearing for ROSS."""
+    return path is not None and Path(path).suffix.lower() == ".toml"
+
+
+def _kind(path: str | None) -> Kind:
+    """Kind of the file of a result: that of roller bearings, or a bearing for ROSS."""
+    if _is_for_ross(path):
+        from mbs.exports.ross import KIND  # with what a bearing of rollers needs
+
+        return KIND
+    kind = result_kind(path)
+    return dataclasses.replace(kind, endings=(*kind.endings, ".toml")) if ".nc" in kind.endings else kind
+
+
+def _for_ross(request: BallRequest, points: list[BallPoint]) -> str:
+    """The bearing over speed for ROSS."""
+    from ehdmaps.exports.target import BEARING_AXES
+    from mbs.exports.ross import ross_text
+
+    header = (
+        f"{MARK} {version()}",
+        *BEARING_AXES,
+        *(line.strip() for line in ball_heading(request.description, points[0])),
+        f"linear around: radial {FORCE.text(request.loads[0])}, axial {FORCE.text(request.axial)} on the inner ring",
+        "K and C of slow motion; the outer ring turns with " + RPM.text(request.outer_speed),
+        *dict.fromkeys(line for point in points for line in (*point.problems, *point.notes)),
+    )
+    matrices = np.array([[point.stiffness, point.damping] for point in points])
+    axes = {"frequency": np.array(request.speeds)} if len(points) > 1 else {}
+    return ross_text(request.force.geometry.name, axes, (matrices[:, 0], matrices[:, 1]), header)
 
 
 def _at_speed(request: BallRequest, speed: float) -> tuple[BallForce, BallFilms | None]:
