@@ -18,7 +18,7 @@ from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.exports.linear_table import add_arguments, linear_table
-from mbs.exports.ross import BEYOND
+from mbs.exports.ross_element import BEYOND
 from mbs.linearised.linear import frequency_response
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import Input, Load, Operation, Sensor

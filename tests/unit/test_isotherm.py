@@ -228,9 +228,9 @@ def test_every_law_has_a_class_that_reads_its_numbers(law):
     wanted = set(re.findall(r'\(dict, "(\w+)"\)', source))
     state = dataclasses.replace(OWN.at(313.15), pressure_viscosity=law)
     text = Parameters(5e-3, 2.3e11, 1e4, 1.0, 1.0, state, 500.0, Mesh(0.2), 40, 4).text()
-    (block,) = re.findall(r"^viscosity \{ type (\w+); (.*) \}$", text, flags=re.MULTILINE)
+    (block,) = re.findall(r"^viscosity\s*\{\s*type\s+(\w+);(.*?)\}", re.sub("//.*", "", text), re.MULTILINE | re.DOTALL)
     assert block[0] == law.case_name
-    assert wanted == set(re.findall(r"(\w+) [^;]+;", block[1]))
+    assert wanted == set(re.findall(r"(\w+)\s+[^;]+;", block[1]))
 
 
 def test_every_law_of_a_job_file_is_looked_at_here():

@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+import re
 
 import numpy as np
 import pytest
@@ -56,7 +57,8 @@ def test_openfoam_is_told_an_isoviscous_oil_and_no_exponent_zero():
     def text(state):
         return Parameters(5e-3, 2.3e11, 1e4, 1.0, 1.0, state, 500.0, Mesh(0.2), 40, 4).text()
 
-    assert "type Barus; viscosity 0.05; pressureViscosity 0.0;" in text(Lubricant.roelands(**DATA).at(313.15))
+    told = " ".join(re.sub("//.*", "", text(Lubricant.roelands(**DATA).at(313.15))).split())
+    assert "type Barus; viscosity 0.05; pressureViscosity 0.0;" in told
     state = BARUS.at(313.15)
     assert math.isinf(state.pressure_viscosity.pressure_scale)
     odd = dataclasses.replace(state, pressure_viscosity=PressureViscosity(2e-8, 0.0, 1.96e8))

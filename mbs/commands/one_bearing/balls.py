@@ -208,7 +208,7 @@ def _is_for_ross(path: str | None) -> bool:
 def _kind(path: str | None) -> Kind:
     """Kind of the file of a result: that of roller bearings, or a bearing for ROSS."""
     if _is_for_ross(path):
-        from mbs.exports.ross import KIND  # with what a bearing of rollers needs
+        from mbs.exports.ross_element import KIND
 
         return KIND
     kind = result_kind(path)
@@ -218,7 +218,7 @@ def _kind(path: str | None) -> Kind:
 def _for_ross(request: BallRequest, points: list[BallPoint]) -> str:
     """The bearing over speed for ROSS."""
     from ehdmaps.exports.target import BEARING_AXES
-    from mbs.exports.ross import ross_text
+    from mbs.exports.ross_element import ross_text
 
     header = (
         f"{MARK} {version()}",
