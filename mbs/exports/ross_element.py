@@ -42,7 +42,7 @@ def ross_text(
     Parameters
     ----------
     bearing : str
-        Its name.
+        Name of the bearing.
     axes : dict of str to array
         Axes of the tables by their names in ROSS [rad/s]; empty for numbers.
     matrices : (array, array), shape (..., 6, 6)

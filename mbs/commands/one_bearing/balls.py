@@ -201,7 +201,7 @@ def ball_points(request: BallRequest) -> list[list[BallPoint]]:
 
 
 def _is_for_ross(path: str | None) -> bool:
-    """Whether a result is to be a bearing for ROSS."""
+    """Test whether a result is to be a bearing for ROSS."""
     return path is not None and Path(path).suffix.lower() == ".toml"
 
 
