@@ -332,7 +332,10 @@ def _bearing(top: Program) -> None:
         "--coupled", action="store_true", help="slices know of their neighbours: the elasticity of three dimensions"
     )
     command.add_argument(
-        "-o", "--output", metavar="OUT.nc", help="result as netCDF, a row a point as .csv, or balls for ROSS as .toml"
+        "-o",
+        "--output",
+        metavar="OUT.nc",
+        help="result as netCDF, a row a point as .csv; balls also .toml | .bdf | .inp | .txt",
     )
     command.add_argument("--plot", metavar="FIG.png", help="figure; also .pdf, .svg")
 

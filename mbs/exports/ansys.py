@@ -12,7 +12,8 @@ import argparse
 
 from ehdmaps.errors import InputError
 from ehdmaps.outputs import Kind, has_mark
-from mbs.exports.linear_table import LinearTable, target
+from mbs.exports.linear_bearing import Format, LinearBearing
+from mbs.exports.linear_table import target
 
 KIND = Kind("a bearing file for Ansys made by ehdmaps", (".txt",), has_mark)
 
@@ -21,26 +22,31 @@ _FASTEST = 99999.9999
 """Speed that fits its field [rad/s]."""
 
 
-def _text(table: LinearTable, header: tuple[str, ...], _: argparse.Namespace) -> str:
+def _text(bearing: LinearBearing, header: tuple[str, ...], _: argparse.Namespace) -> str:
     """Write the file; what does not fit its three titles stands behind the numbers, which Ansys does not read."""
     problems = []
-    if table.frequencies.size > 1:
+    if bearing.frequencies.size > 1:
         problems.append(
-            f"--frequency: got {table.frequencies.size} values; allowed: one, since Ansys' file has speeds only"
+            f"--frequency: got {bearing.frequencies.size} values; allowed: one, since Ansys' file has speeds only"
         )
-    if table.speeds[-1] > _FASTEST:
-        problems.append(f"--speed: got {table.speeds[-1]:.6g} rad/s; allowed: up to {_FASTEST:.6g} rad/s")
+    if bearing.speeds[-1] > _FASTEST:
+        problems.append(f"--speed: got {bearing.speeds[-1]:.6g} rad/s; allowed: up to {_FASTEST:.6g} rad/s")
     if problems:
         raise InputError(problems)
-    bearing = table.request.bearing.geometry.name
-    titles = (header[0], f"bearing {bearing}; 1 is y, 2 is z, both radial; N/m, N s/m, rad/s", "the rest: at the end")
+    titles = (
+        header[0],
+        f"bearing {bearing.name}; 1 is y, 2 is z, both radial; N/m, N s/m, rad/s",
+        "the rest: at the end",
+    )
     lines = [title[:_TITLE] for title in titles]
-    lines.append(f"{table.speeds.size:10d}{0:10d}{0:10d}")
-    for index, speed in enumerate(table.speeds):
+    lines.append(f"{bearing.speeds.size:10d}{0:10d}{0:10d}")
+    for index, speed in enumerate(bearing.speeds):
         lines.append(f"{index + 1:10d}{speed:10.4f}")
-        for matrix in (table.stiffness[index, 0], table.damping[index, 0]):
+        for matrix in (bearing.stiffness[index, 0], bearing.damping[index, 0]):
             lines.append("".join(f"{matrix[i, j]:15.7E}" for i in (1, 2) for j in (1, 2)))
-    return "\n".join([*lines, "", *header]) + "\n"
+    left_out = ("left out: stiffness and damping along the axis and of tilts",) if bearing.axial else ()
+    return "\n".join([*lines, "", *header, *left_out]) + "\n"
 
 
-TARGET = target(KIND, "bearing characteristics over speed of Mechanical APDL", "", _text)
+FORMAT = Format(KIND, "bearing characteristics over speed of Mechanical APDL", "", _text)
+TARGET = target(FORMAT)

@@ -1,11 +1,12 @@
 """Targets `calculix` and `abaqus`: a bearing as springs and dashpots, to be included in a deck of CalculiX or Abaqus.
 
-Both have springs and dashpots along lines between nodes. Three lines in the radial plane, along y, along z and
-between them, carry any symmetric stiffness and damping of the plane:
+Both have springs and dashpots along lines between nodes. Lines along the axes and halfway between them carry any
+symmetric stiffness and damping; in the plane
 
     K = (Kyy - Kyz) y y' + (Kzz - Kyz) z z' + 2 Kyz d d',    d = (y + z)/sqrt(2),
 
-and the same for C. Nodes of solids do not turn, so that tilting has no place here. Dashpots may depend on frequency in
+and the same for C. Bearings that are stiff along their axis have six lines, others the three of the radial plane.
+Nodes of solids do not turn, so that tilting has no place here. Dashpots may depend on frequency in
 both programs; springs may in Abaqus, in steady-state dynamics by direct solution or subspace projection, and may not in
 CalculiX. Sources: CalculiX CrunchiX USER'S MANUAL 2.20, and Abaqus Keywords Reference, *SPRING, *DASHPOT.
 """
@@ -13,7 +14,6 @@ CalculiX. Sources: CalculiX CrunchiX USER'S MANUAL 2.20, and Abaqus Keywords Ref
 from __future__ import annotations
 
 import argparse
-import math
 import re
 
 import numpy as np
@@ -21,13 +21,15 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.outputs import Kind, has_mark
-from mbs.exports.linear_table import LinearTable, one_speed, target, whole
+from mbs.exports.linear_bearing import Format, LinearBearing, refuse_speeds, whole
+from mbs.exports.linear_table import target
 
 KIND = Kind("a bearing for CalculiX made by ehdmaps", (".inp",), has_mark)
 ABAQUS_KIND = Kind("a bearing for Abaqus made by ehdmaps", (".inp",), has_mark)
 
-_LINES = ("Y", "Z", "D")
-_DIRECTIONS = ((0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (0.0, math.sqrt(0.5), math.sqrt(0.5)))
+_LINES = {"Y": (1, 1), "Z": (2, 2), "D": (1, 2), "X": (0, 0), "XY": (0, 1), "XZ": (0, 2)}
+"""Lines, and the two axes between which each goes; the first three lie in the radial plane."""
+
 _LENGTH = 0.1
 """Distance of the ground nodes from the bearing [m]; only directions matter."""
 
@@ -43,56 +45,61 @@ def _add_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def _calculix(table: LinearTable, header: tuple[str, ...], arguments: argparse.Namespace) -> str:
+def _calculix(bearing: LinearBearing, header: tuple[str, ...], arguments: argparse.Namespace) -> str:
     """Write the deck for CalculiX."""
-    k = table.stiffness[0]
+    k = bearing.stiffness[0]
     spread = float(np.ptp(np.diagonal(k, axis1=1, axis2=2)[:, 1:3], axis=0).max() / np.max(np.abs(k[0])))
     notes = (
-        f"springs: at {table.frequencies[0]:.6g} Hz, the first frequency; over the frequencies K changes by "
+        f"springs: at {bearing.frequencies[0]:.6g} Hz, the first frequency; over the frequencies K changes by "
         f"{spread:.2%}; dashpots: over frequency",
         "CalculiX holds the dashpots at their ends beyond the frequencies above: stay within",
         "beams beside these springs: *STEADY STATE DYNAMICS of CalculiX 2.20 gave zeros with B31 and wrong values with "
         "B32R, where *STATIC was right; make the shaft of solids",
     )
-    return _deck(table, (*header, *notes), arguments, table.frequencies[:1])
+    return _deck(bearing, (*header, *notes), arguments, bearing.frequencies[:1])
 
 
-def _abaqus(table: LinearTable, header: tuple[str, ...], arguments: argparse.Namespace) -> str:
+def _abaqus(bearing: LinearBearing, header: tuple[str, ...], arguments: argparse.Namespace) -> str:
     """Write the deck for Abaqus."""
     notes = (
         "springs and dashpots over frequency: for *STEADY STATE DYNAMICS, DIRECT or SUBSPACE PROJECTION",
         "Abaqus holds them at their ends beyond the frequencies above: stay within",
     )
-    return _deck(table, (*header, *notes), arguments, table.frequencies)
+    return _deck(bearing, (*header, *notes), arguments, bearing.frequencies)
 
 
-def _deck(table: LinearTable, header: tuple[str, ...], arguments: argparse.Namespace, of_springs: FloatArray) -> str:
+def _deck(
+    bearing: LinearBearing, header: tuple[str, ...], arguments: argparse.Namespace, of_springs: FloatArray
+) -> str:
     """Write nodes, springs at some of the frequencies, dashpots at all."""
     problems: list[str] = []
-    one_speed(table, problems)
+    refuse_speeds(bearing, problems)
     node = whole("--node", arguments.node, problems)
     first = whole("--first-id", arguments.first_id, problems)
     place = _place(arguments.at, problems)
     if problems:
         raise InputError(problems)
-    k, c = table.stiffness[0], table.damping[0]
-    unsymmetric = max(abs(float(m[1, 2] - m[2, 1])) for m in (*k, *c)) / float(np.max(np.abs(c)))
-    name = re.sub(r"[^A-Z0-9]+", "_", table.request.bearing.geometry.name.upper()).strip("_")[:20] or "BEARING"
+    k, c = bearing.stiffness[0], bearing.damping[0]
+    lines_at = dict(list(_LINES.items())[: 6 if bearing.axial else 3])
+    name = re.sub(r"[^A-Z0-9]+", "_", bearing.name.upper()).strip("_")[:20] or "BEARING"
     notes = (
-        f"left out: tilting of the ring, and the unsymmetric part of K and C ({unsymmetric:.1e})",
+        f"left out: tilting of the ring, and the unsymmetric part of K ({_unsymmetric(k):.1e}) and C "
+        f"({_unsymmetric(c):.1e})",
         "a housing: take the *BOUNDARY away and tie the nodes of the set to it",
     )
     lines = [f"** {line}" for line in (*header, *notes)]
     lines += [f"*NODE, NSET=EHD_{name}_GROUND"]
-    for index, direction in enumerate(_DIRECTIONS):
-        x, y, z = (p - _LENGTH * d for p, d in zip(place, direction, strict=True))
+    for index, axes in enumerate(lines_at.values()):
+        along = np.eye(3)[list(axes)].sum(axis=0)
+        x, y, z = np.array(place) - _LENGTH * along / np.linalg.norm(along)
         lines.append(f"{first + index}, {_decimal(x)}, {_decimal(y)}, {_decimal(z)}")
     for kind, offset, card, matrices, frequencies in (
         ("SPRINGA", 0, "SPRING", k, of_springs),
-        ("DASHPOTA", len(_LINES), "DASHPOT", c, table.frequencies),
+        ("DASHPOTA", len(lines_at), "DASHPOT", c, bearing.frequencies),
     ):
-        rows = _rows(matrices, frequencies, always=card == "DASHPOT")
-        for index, (line, numbers) in enumerate(zip(_LINES, rows, strict=True)):
+        values = np.array([_along_lines(matrix, lines_at) for matrix in matrices[: frequencies.size]]).T
+        rows = _rows(values, frequencies, always=card == "DASHPOT")
+        for index, (line, numbers) in enumerate(zip(lines_at, rows, strict=True)):
             group = f"EHD_{name}_{card[0]}{line}"
             lines += [
                 f"*ELEMENT, TYPE={kind}, ELSET={group}",
@@ -105,9 +112,8 @@ def _deck(table: LinearTable, header: tuple[str, ...], arguments: argparse.Names
     return "\n".join(lines) + "\n"
 
 
-def _rows(matrices: FloatArray, frequencies: FloatArray, always: bool) -> list[list[str]]:
-    """Lines of data of each of the three lines between nodes: value and frequency, which a single value may lack."""
-    values = np.array([_along_lines(matrix) for matrix in matrices[: frequencies.size]]).T
+def _rows(values: FloatArray, frequencies: FloatArray, always: bool) -> list[list[str]]:
+    """Lines of data of each of the lines between nodes: value and frequency, which a single value may lack."""
     if frequencies.size == 1 and not always:
         return [[_decimal(value)] for (value,) in values]
     return [
@@ -115,10 +121,16 @@ def _rows(matrices: FloatArray, frequencies: FloatArray, always: bool) -> list[l
     ]
 
 
-def _along_lines(matrix: FloatArray) -> tuple[float, float, float]:
-    """Values of the three lines that make the radial part of a matrix (6, 6)."""
-    across = 0.5 * float(matrix[1, 2] + matrix[2, 1])
-    return float(matrix[1, 1]) - across, float(matrix[2, 2]) - across, 2.0 * across
+def _along_lines(matrix: FloatArray, lines: dict[str, tuple[int, int]]) -> list[float]:
+    """Values of the lines that make the symmetric part of a matrix (6, 6)."""
+    part = 0.5 * (matrix[:3, :3] + matrix[:3, :3].T)
+    return [float(2.0 * part[i, i] - part[i].sum() if i == j else 2.0 * part[i, j]) for i, j in lines.values()]
+
+
+def _unsymmetric(matrices: FloatArray) -> float:
+    """Largest difference between terms that symmetry makes alike, over the largest term."""
+    part = matrices[..., :3, :3]
+    return float(np.max(np.abs(part - np.swapaxes(part, -1, -2))) / max(np.max(np.abs(part)), 1e-300))
 
 
 def _decimal(value: float) -> str:
@@ -138,13 +150,21 @@ def _place(text: str, problems: list[str]) -> tuple[float, ...]:
     return place
 
 
-TARGET = target(
+FORMAT = Format(
     KIND,
     "springs and dashpots over frequency, to be included in a deck",
     "CalculiX",
     _calculix,
     _add_arguments,
+    one_speed=True,
 )
-ABAQUS = target(
-    ABAQUS_KIND, "springs and dashpots, both over frequency, to be included in a deck", "", _abaqus, _add_arguments
+ABAQUS_FORMAT = Format(
+    ABAQUS_KIND,
+    "springs and dashpots, both over frequency, to be included in a deck",
+    "",
+    _abaqus,
+    _add_arguments,
+    one_speed=True,
 )
+TARGET = target(FORMAT)
+ABAQUS = target(ABAQUS_FORMAT)

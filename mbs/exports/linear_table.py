@@ -10,7 +10,6 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -20,7 +19,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.exports.target import BEARING_AXES, Target, origin
 from ehdmaps.maps.emap import EHDMap, open_map
-from ehdmaps.outputs import Kind, Output, check_outputs, write_text
+from ehdmaps.outputs import Output, check_outputs, write_text
 from ehdmaps.units import RPM, TEMPERATURE, Display, quantity
 from mbs.analyses.bearing_point import RING, ring_at_rest
 from mbs.analyses.film_errors import film_error
@@ -29,6 +28,7 @@ from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.contact_report import axes_left
 from mbs.commands.bearing import BearingRequest, read_request
 from mbs.commands.one_bearing.values import read_values
+from mbs.exports.linear_bearing import Format, LinearBearing
 from mbs.linearised.bands import law_bands
 from mbs.linearised.dynamic import element_dynamic_stiffness
 from mbs.linearised.validity import FilmError
@@ -52,8 +52,8 @@ _BEYOND = "the export refuses points"
 
 
 @dataclass(frozen=True, eq=False)
-class LinearTable:
-    """A bearing, linear around its rest under a load.
+class LinearTable(LinearBearing):
+    """A bearing of a map, linear around its rest under a load.
 
     Attributes
     ----------
@@ -63,14 +63,8 @@ class LinearTable:
         Angle of the first roller from y towards z [rad].
     films : {"slow", "memory"}
         Whether the films relax.
-    speeds : array, shape (n,)
-        Speeds of the inner ring [rad/s].
-    frequencies : array, shape (m,)
-        Frequencies of the oscillation [Hz]; zero is slow motion.
     displacement : array, shape (n, 2)
         Place of the inner ring at rest, y and z [m].
-    stiffness, damping : array, shape (n, m, 6, 6)
-        K and C of the inner ring against the outer one: x (axial), y, z [m], rotations about them [rad].
     bands : array, shape (n, 2)
         Errors of k and c of slow motion along the load that the map states, as parts of k and c; NaN where it states
         none.
@@ -81,11 +75,7 @@ class LinearTable:
     request: BearingRequest
     cage_angle: float
     films: Films
-    speeds: FloatArray
-    frequencies: FloatArray
     displacement: FloatArray
-    stiffness: FloatArray
-    damping: FloatArray
     bands: FloatArray
     film_errors: tuple[FilmError, ...]
 
@@ -101,7 +91,7 @@ class LinearTable:
         bearing, emap = request.bearing, request.emap
         direction = math.degrees(math.atan2(request.direction[1], request.direction[0]))
         point = (
-            f"bearing: {bearing.geometry.name}, {bearing.slices} slices",
+            f"bearing: {self.name}, {bearing.slices} slices",
             f"linear around: load {FORCE.text(request.loads[0])} on the inner ring, "
             f"{direction:.6g} deg from y towards z; "
             f"diametral clearance {MICROMETRE.text(bearing.geometry.diametral_clearance)}; "
@@ -240,6 +230,7 @@ def linear_table(path: Path, arguments: argparse.Namespace) -> LinearTable:
             ]
         )
     return LinearTable(
+        name=request.bearing.geometry.name,
         request=request,
         cage_angle=cage_angle,
         films=films,
@@ -314,70 +305,24 @@ _UNASKED = {
 """Options of `mbs bearing` that this table has not."""
 
 
-def target(
-    kind: Kind,
-    summary: str,
-    read_back_by: str,
-    text: Callable[[LinearTable, tuple[str, ...], argparse.Namespace], str],
-    own_arguments: Callable[[argparse.ArgumentParser], None] = lambda parser: None,
-) -> Target:
-    """Make the target of a format of one text file.
+def target(format_: Format) -> Target:
+    """Make the target of `ehdmaps export` for a format.
 
     Parameters
     ----------
-    kind : Kind
-        Kind of the file; its first ending is that of the default name.
-    summary : str
-        What it is, in half a line.
-    read_back_by : str
-        Program that reads it back in the tests, or empty.
-    text : callable
-        Takes table, lines of the header and arguments; returns the file.
-    own_arguments : callable, optional
-        Adds the options that this format has besides those of the table.
+    format_ : Format
+        The format.
     """
 
     def add(parser: argparse.ArgumentParser) -> None:
-        own_arguments(parser)
+        format_.add_arguments(parser)
         add_arguments(parser)
 
     def write(emap: EHDMap, path: Path, output: Path | None, arguments: argparse.Namespace) -> str:
-        output = output or path.with_suffix(kind.endings[0])
-        check_outputs([Output("-o", output, kind)], [path])
+        output = output or path.with_suffix(format_.kind.endings[0])
+        check_outputs([Output("-o", output, format_.kind)], [path])
         table = linear_table(path, arguments)
-        write_text(output, text(table, table.header(path), arguments), kind)
+        write_text(output, format_.text(table, table.header(path), arguments), format_.kind)
         return f"{output}: written"
 
-    return Target(summary, f"MAP{kind.endings[0]}", read_back_by, add, write)
-
-
-def one_speed(table: LinearTable, problems: list[str]) -> None:
-    """Note a problem where a format of one speed is given several.
-
-    Parameters
-    ----------
-    table : LinearTable
-        The table.
-    problems : list of str
-        Takes what is wrong.
-    """
-    if table.speeds.size > 1:
-        problems.append(f"--speed: got {table.speeds.size} values; allowed: one; export a file for each speed")
-
-
-def whole(option: str, text: str, problems: list[str]) -> int:
-    """Read the number of a node or element.
-
-    Parameters
-    ----------
-    option : str
-        Name of the option.
-    text : str
-        What was given.
-    problems : list of str
-        Takes what is wrong.
-    """
-    if text.isascii() and text.isdigit() and len(text) < 9 and int(text) > 0:
-        return int(text)
-    problems.append(f"{option}: got {text!r:.60}; allowed: a whole number from 1 to 99999999")
-    return 1
+    return Target(format_.summary, f"MAP{format_.kind.endings[0]}", format_.read_back_by, add, write)

@@ -12,7 +12,8 @@ import numpy as np
 
 from ehdmaps.outputs import Kind, has_mark
 from ehdmaps.units import RPM
-from mbs.exports.linear_table import LinearTable, target
+from mbs.exports.linear_bearing import Format, LinearBearing
+from mbs.exports.linear_table import target
 
 KIND = Kind("matrices of a bearing made by ehdmaps", (".csv",), has_mark)
 
@@ -25,21 +26,22 @@ COLUMNS = (
 )
 
 
-def _text(table: LinearTable, header: tuple[str, ...], _: argparse.Namespace) -> str:
+def _text(bearing: LinearBearing, header: tuple[str, ...], _: argparse.Namespace) -> str:
     """Write a row for each speed and frequency."""
-    errors = table.dynamic_error()
+    errors = bearing.dynamic_error()
     lines = [f"# {line}" for line in header]
     lines += [
         "# columns 1 to 9, as rotor programs take them: speed, Kxx Kxy Kyx Kyy, Cxx Cxy Cyx Cyy; x there is y, y is z",
         "# |dZ/Z|: estimated error of the dynamic stiffness along the load at the frequency",
         ",".join(COLUMNS),
     ]
-    for index, speed in enumerate(table.speeds):
-        for at, frequency in enumerate(table.frequencies):
-            terms = [matrices[index, at, 1:3, 1:3].ravel() for matrices in (table.stiffness, table.damping)]
+    for index, speed in enumerate(bearing.speeds):
+        for at, frequency in enumerate(bearing.frequencies):
+            terms = [matrices[index, at, 1:3, 1:3].ravel() for matrices in (bearing.stiffness, bearing.damping)]
             row = [RPM.value(float(speed)), *np.concatenate(terms), frequency, errors[index, at]]
             lines.append(",".join(f"{value:.12g}" for value in row))
     return "\n".join(lines) + "\n"
 
 
-TARGET = target(KIND, "K and C over speed and frequency as columns, with errors, for other rotor programs", "", _text)
+FORMAT = Format(KIND, "K and C over speed and frequency as columns, with errors, for other rotor programs", "", _text)
+TARGET = target(FORMAT)

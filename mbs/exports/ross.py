@@ -9,11 +9,32 @@ from __future__ import annotations
 
 import argparse
 import math
+import re
+
+import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from mbs.exports.linear_table import LinearTable, target
-from mbs.exports.ross_element import KIND, ross_text
+from ehdmaps.outputs import Kind, has_mark
+from mbs.exports.linear_bearing import Format, LinearBearing
+from mbs.exports.linear_table import target
+
+KIND = Kind("a bearing for ROSS made by ehdmaps", (".toml",), has_mark)
+
+AXES = {"x": 1, "y": 2, "z": 0}
+"""Place in our displacements (x axial, y, z) of each axis of ROSS."""
+
+_TERMS = ("xx", "xy", "yx", "yy", "zz")
+
+BEYOND = "ROSS extrapolates beyond the tables: its responses and Campbell diagrams warn of it, run_modal does not"
+"""What ROSS 2.3 and 3.1 do there, for the file and the page."""
+
+_NOTES = (
+    "ROSS: x is y of the bearing, y is z of it, z is the axis; there is no place for the tilting of the ring",
+    f"{BEYOND}; stay within the speeds and frequencies above",
+    "read by: ross.BearingElement.load(FILE)",
+)
+
 
 _VERSIONS = ("2", "3")
 
@@ -24,7 +45,7 @@ def _add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--node", metavar="N", default="0", help="node of the rotor at which the bearing is (0)")
 
 
-def _text(table: LinearTable, header: tuple[str, ...], arguments: argparse.Namespace) -> str:
+def _text(bearing: LinearBearing, header: tuple[str, ...], arguments: argparse.Namespace) -> str:
     """Write the element."""
     problems = []
     if arguments.ross not in _VERSIONS:
@@ -32,35 +53,47 @@ def _text(table: LinearTable, header: tuple[str, ...], arguments: argparse.Names
     node = arguments.node
     if not (node.isascii() and node.isdigit() and len(node) < 7):
         problems.append(f"--node: got {node!r:.60}; allowed: a whole number from 0 to 999999")
-    if arguments.ross == "2" and table.frequencies.size > 1:
+    if arguments.ross == "2" and bearing.frequencies.size > 1:
         problems.append(
-            f"--frequency: got {table.frequencies.size} values; ROSS 2 takes one; allowed: one, or --ross 3"
+            f"--frequency: got {bearing.frequencies.size} values; ROSS 2 takes one; allowed: one, or --ross 3"
         )
     if problems:
         raise InputError(problems)
-    return ross_text(
-        table.request.bearing.geometry.name,
-        _axes(table, arguments.ross),
-        (table.stiffness, table.damping),
-        header,
-        int(node),
-    )
+    name = re.sub(r"[^A-Za-z0-9]+", "_", bearing.name).strip("_") or "bearing"
+    axes = _axes(bearing, arguments.ross)
+    lines = [f"# {line}" for line in (*header, *_NOTES)]
+    lines += ["", f"[BearingElement_{name}]", f"n = {int(node)}", f'tag = "{name} at {int(node)}"', "scale_factor = 1"]
+    lines += [f"{key} = {_array(values)}" for key, values in axes.items()]
+    shape = [axis.size for axis in axes.values()]
+    for letter, matrix in (("k", bearing.stiffness), ("c", bearing.damping)):
+        for term in _TERMS:
+            values = matrix[..., AXES[term[0]], AXES[term[1]]]
+            lines.append(f"{letter}{term} = {_array(values.reshape(shape))}")
+    return "\n".join(lines) + "\n"
 
 
-def _axes(table: LinearTable, version: str) -> dict[str, FloatArray]:
+def _axes(bearing: LinearBearing, version: str) -> dict[str, FloatArray]:
     """Axes of the tables by their names in ROSS [rad/s]; none of a single value."""
     axes = {}
-    if table.speeds.size > 1:
-        axes["frequency" if version == "2" else "speed"] = table.speeds
-    if table.frequencies.size > 1:
-        axes["frequency"] = 2.0 * math.pi * table.frequencies
+    if bearing.speeds.size > 1:
+        axes["frequency" if version == "2" else "speed"] = bearing.speeds
+    if bearing.frequencies.size > 1:
+        axes["frequency"] = 2.0 * math.pi * bearing.frequencies
     return axes
 
 
-TARGET = target(
+def _array(values: FloatArray) -> str:
+    """Write numbers with all their digits, nested as ROSS nests them."""
+    if np.ndim(values) == 0:
+        return repr(float(values))
+    return "[" + ", ".join(_array(value) for value in values) + "]"
+
+
+FORMAT = Format(
     KIND,
     "stiffness and damping of the bearing over speed, for ross.BearingElement.load",
     "ROSS (tests.benchmarks.ross_export)",
     _text,
     _add_arguments,
 )
+TARGET = target(FORMAT)

@@ -202,4 +202,4 @@ def test_a_bearing_for_ross_has_the_matrices_of_the_result(capsys, here) -> None
                 assert element[letter + term] == pytest.approx(expected, rel=1e-11, abs=1e-3)
         assert np.ptp(element["kxx"]) > 0.1 * element["kxx"][0]
     status, _, err = run(capsys, "6208", "--load", "1 kN", "--load", "2 kN", "--speed", "0 rpm", "-o", "b.toml")
-    assert status == 2 and "-o: got b.toml for 2 loads; allowed: one, or a file .nc or .csv" in err
+    assert status == 2 and "-o: got b.toml for 2 loads and 1 speeds; allowed: one load, or a file .nc or .csv" in err

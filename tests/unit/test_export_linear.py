@@ -1,6 +1,8 @@
 """Bearings at rest under a load for ROSS, CalculiX, Nastran and Ansys: the numbers in files, and what is refused."""
 
+import importlib.util
 import re
+import shutil
 import subprocess
 import tomllib
 from argparse import ArgumentParser
@@ -8,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from ehdmaps.jobs.cli import main
 from ehdmaps.jobs.make.generate import generate
@@ -17,8 +20,10 @@ from ehdmaps.physics.closed_form import FormulaSolver
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
+from mbs.cli import main as bearing_main
 from mbs.exports.linear_table import add_arguments, linear_table
-from mbs.exports.ross_element import BEYOND
+from mbs.exports.ross import BEYOND
+from mbs.flexible.nastran_files import read_nastran
 from mbs.linearised.linear import frequency_response
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import Input, Load, Operation, Sensor
@@ -223,6 +228,71 @@ def test_calculix_answers_as_linear_analysis_does(path, force, tmp_path):
     balance = equilibrium(system, Operation(SPEED))
     ours = frequency_response(balance, [Input("y", "ring", np.eye(6)[1])], sensors, frequencies)[:, :, 0]
     np.testing.assert_allclose(answer, ours, rtol=1e-5, atol=1e-5 * np.abs(ours).max())
+
+
+BALLS = ("7208B", "--load", "1 kN", "--direction", "20 deg", "--axial", "2 kN", "--law", "hertz:1.25e-5 s")
+
+
+@pytest.fixture(scope="module")
+def balls(tmp_path_factory):
+    """Files of an angular contact bearing for Nastran, CalculiX and Ansys, and K and C of the result."""
+    folder = tmp_path_factory.mktemp("balls")
+    for ending in ("bdf", "inp", "txt", "nc"):
+        assert bearing_main(["bearing", *BALLS, "--speed", "6000 rpm", "-o", str(folder / f"b.{ending}")]) == 0
+    with xr.open_dataset(folder / "b.nc") as result:
+        matrices = [result[name].values[0, 0] for name in ("stiffness_matrix", "damping_matrix")]
+    return folder, matrices
+
+
+@pytest.mark.slow
+def test_calculix_answers_along_all_axes_of_a_ball_bearing(balls, tmp_path):
+    """Receptances of a mass on it by the symmetric parts of K and C: 1e-5 is the last digit that ccx prints."""
+    ccx = needed_calculix()
+    folder, matrices = balls
+    k, c = (0.5 * (matrix + matrix.T)[:3, :3] for matrix in matrices)
+    free, modes = ("*BOUNDARY\n1, 1, 1\n", "*BOUNDARY\n"), ("\n2\n*END STEP", "\n3\n*END STEP")
+    deck = machine("b.inp").replace(*free).replace(*modes)
+    shutil.copy(folder / "b.inp", tmp_path)
+    for axis in (1, 2, 3):
+        (tmp_path / "machine.inp").write_text(deck.replace("1, 2, 1000.", f"1, {axis}, 1000."), encoding="ascii")
+        subprocess.run([ccx, "machine"], cwd=tmp_path, check=True, capture_output=True, timeout=120)
+        lines = (tmp_path / "machine.dat").read_text(encoding="ascii").splitlines()
+        heads = [i for i, line in enumerate(lines) if "displacements" in line]
+        values = np.array([lines[i + 2].split()[1:4] for i in heads], dtype=float)
+        frequencies = np.array([lines[i].split()[-1] for i in heads[::2]], dtype=float)
+        s = 2j * np.pi * frequencies[:, None, None]
+        ours = np.linalg.inv(k + s * c + s**2 * MASS * np.eye(3))[:, :, axis - 1]
+        answer = 1e-3 * (values[::2] + 1j * values[1::2])
+        np.testing.assert_allclose(answer, ours, rtol=1e-5, atol=1e-5 * np.abs(ours).max())
+
+
+@pytest.mark.skipif(importlib.util.find_spec("pyNastran") is None, reason="needs pyNastran")
+def test_nastran_has_the_matrices_of_a_ball_bearing_whole(balls, tmp_path):
+    """By pyNastran: ten digits of the fields, and the unsymmetric part, which the file says it leaves out."""
+    folder, matrices = balls
+    mesh = tmp_path / "grid.bdf"
+    mesh.write_text("GRID,1,,0.,0.,0.\n")
+    read = read_nastran(folder / "b.bdf", folder / "b.bdf", mesh, ("K900001", "B900001"))
+    for found, expected in zip((read.stiffness, read.mass), matrices, strict=True):
+        places = np.ix_([0, 1, 2, 4, 5], [0, 1, 2, 4, 5])
+        symmetric = 0.5 * (expected + expected.T)[places]
+        np.testing.assert_allclose(found.toarray(), symmetric, rtol=1e-9, atol=1e-12 * np.abs(symmetric).max())
+
+
+def test_ansys_has_the_radial_part_of_a_ball_bearing_and_says_what_is_left_out(balls):
+    """To the eight digits of its fields."""
+    folder, matrices = balls
+    lines = (folder / "b.txt").read_text(encoding="utf-8").splitlines()
+    for line, matrix in zip(lines[5:7], matrices, strict=True):
+        np.testing.assert_allclose(np.array(line.split(), dtype=float), matrix[1:3, 1:3].ravel(), rtol=1e-7, atol=1e-6)
+    assert lines[-1] == "left out: stiffness and damping along the axis and of tilts"
+
+
+def test_a_deck_of_a_ball_bearing_is_of_one_speed(capsys, tmp_path):
+    out = tmp_path / "b.inp"
+    ask = ["bearing", *BALLS, "--speed", "0 rpm", "6000 rpm", "2", "-o", str(out)]
+    assert bearing_main(ask) == 2 and not out.exists()
+    assert "for 1 loads and 2 speeds; allowed: one load, one speed, or a file .nc or .csv" in capsys.readouterr().err
 
 
 def machine(name):

@@ -40,12 +40,16 @@ from mbs.scene.fields import FORCE, MICROMETRE
 
 if TYPE_CHECKING:
     from mbs.bearings.balls.films import BallFilms
+    from mbs.exports.linear_bearing import Format
 
 CELSIUS_40, ROUGHNESS = 313.15, 0.3e-6
 """Assumed where nothing is given: the temperature of the raceways [K], the combined rms roughness [m]."""
 
 FILMS, TABLE = "films", "table"
 """Laws of contacts with films at each speed: read from the table of points, and solved where it has none; or read."""
+
+LINEAR = (".toml", ".bdf", ".inp", ".txt")
+"""Endings of files for linear programs: ROSS, Nastran, CalculiX or Abaqus, Ansys; see `mbs.exports.linear_bearing`."""
 
 _TAKEN = ("law", "clearance", "temperature", "roughness")
 """Choices that ball bearings take."""
@@ -120,10 +124,15 @@ def read_balls(arguments: argparse.Namespace) -> BallRequest:
             geometry = dataclasses.replace(geometry, clearance=float(clearance))
         except InputError as error:
             problems += [f"--clearance: {problem}" for problem in error.problems]
-    kind = _kind(arguments.output)
+    program = _format(arguments.output)
+    kind = _kind(arguments.output, program)
     problems += output_problems((Output("-o", arguments.output, kind),), [])
-    if _is_for_ross(arguments.output) and len(loads) > 1:
-        problems.append(f"-o: got {arguments.output} for {len(loads)} loads; allowed: one, or a file .nc or .csv")
+    if program is not None and (len(loads) > 1 or (len(speeds) > 1 and program.one_speed)):
+        problems.append(
+            f"-o: got {arguments.output} for {len(loads)} loads and {len(speeds)} speeds; allowed: one load"
+            + (", one speed" if program.one_speed else "")
+            + ", or a file .nc or .csv"
+        )
     if problems or geometry is None or damper is None or oil is None:
         raise InputError(tuple(dict.fromkeys(problems)))
     roughness = chosen["roughness"].roughness if "roughness" in chosen else ROUGHNESS
@@ -169,8 +178,9 @@ def run_balls(arguments: argparse.Namespace) -> tuple[str, int]:
     points = ball_points(request)
     lines = ball_text(request.description, points)
     if arguments.output:
-        if _is_for_ross(arguments.output):
-            write_text(Path(arguments.output), _for_ross(request, points[0]), _kind(arguments.output))
+        program = _format(arguments.output)
+        if program is not None:
+            write_text(Path(arguments.output), _linear(request, points[0], program), program.kind)
         elif Path(arguments.output).suffix.lower() == ".csv":
             write_ball_csv(ball_dataset(request.description, points), arguments.output)
         else:
@@ -200,25 +210,28 @@ def ball_points(request: BallRequest) -> list[list[BallPoint]]:
     ]
 
 
-def _is_for_ross(path: str | None) -> bool:
-    """Test whether a result is to be a bearing for ROSS."""
-    return path is not None and Path(path).suffix.lower() == ".toml"
+def _format(path: str | None) -> Format | None:
+    """Format of a linear program, where the ending of a name asks for one."""
+    ending = Path(path or "").suffix.lower()
+    if ending not in LINEAR:
+        return None
+    from mbs.exports.linear_bearing import format_of
+
+    return format_of(ending)
 
 
-def _kind(path: str | None) -> Kind:
-    """Kind of the file of a result: that of roller bearings, or a bearing for ROSS."""
-    if _is_for_ross(path):
-        from mbs.exports.ross_element import KIND
-
-        return KIND
+def _kind(path: str | None, program: Format | None) -> Kind:
+    """Kind of the file of a result: that of roller bearings, or that of a linear program."""
+    if program is not None:
+        return program.kind
     kind = result_kind(path)
-    return dataclasses.replace(kind, endings=(*kind.endings, ".toml")) if ".nc" in kind.endings else kind
+    return dataclasses.replace(kind, endings=(*kind.endings, *LINEAR)) if ".nc" in kind.endings else kind
 
 
-def _for_ross(request: BallRequest, points: list[BallPoint]) -> str:
-    """The bearing over speed for ROSS."""
+def _linear(request: BallRequest, points: list[BallPoint], program: Format) -> str:
+    """Text of the bearing over speed for a linear program."""
     from ehdmaps.exports.target import BEARING_AXES
-    from mbs.exports.ross_element import ross_text
+    from mbs.exports.linear_bearing import LinearBearing
 
     header = (
         f"{MARK} {version()}",
@@ -228,9 +241,10 @@ def _for_ross(request: BallRequest, points: list[BallPoint]) -> str:
         "K and C of slow motion; the outer ring turns with " + RPM.text(request.outer_speed),
         *dict.fromkeys(line for point in points for line in (*point.problems, *point.notes)),
     )
-    matrices = np.array([[point.stiffness, point.damping] for point in points])
-    axes = {"frequency": np.array(request.speeds)} if len(points) > 1 else {}
-    return ross_text(request.force.geometry.name, axes, (matrices[:, 0], matrices[:, 1]), header)
+    matrices = np.array([[point.stiffness, point.damping] for point in points])[:, None]
+    speeds = np.array(request.speeds)
+    bearing = LinearBearing(request.force.geometry.name, speeds, np.zeros(1), matrices[:, :, 0], matrices[:, :, 1])
+    return program.plain(bearing, header)
 
 
 def _at_speed(request: BallRequest, speed: float) -> tuple[BallForce, BallFilms | None]:

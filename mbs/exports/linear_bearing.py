@@ -1,0 +1,142 @@
+"""A bearing that is linear around a load, and the formats of linear programs that take it."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib import import_module
+
+import numpy as np
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.outputs import Kind
+
+
+@dataclass(frozen=True, eq=False)
+class LinearBearing:
+    """Stiffness and damping of a bearing over speed and frequency.
+
+    Attributes
+    ----------
+    name : str
+        Name of the bearing.
+    speeds : array, shape (n,)
+        Speeds of the inner ring [rad/s].
+    frequencies : array, shape (m,)
+        Frequencies of the oscillation [Hz]; zero is slow motion.
+    stiffness, damping : array, shape (n, m, 6, 6)
+        K and C of the inner ring against the outer one: x (axial), y, z [m], rotations about them [rad].
+    """
+
+    name: str
+    speeds: FloatArray
+    frequencies: FloatArray
+    stiffness: FloatArray
+    damping: FloatArray
+
+    @property
+    def axial(self) -> bool:
+        """True for a bearing that is stiff along its axis."""
+        return bool(np.any(self.stiffness[..., 0, 0]))
+
+    def dynamic_error(self) -> FloatArray:
+        """Estimated |dZ/Z| along the load at each frequency, shape (n, m); NaN where it is not known."""
+        return np.full((self.speeds.size, self.frequencies.size), np.nan)
+
+
+Text = Callable[[LinearBearing, tuple[str, ...], argparse.Namespace], str]
+"""Bearing, lines of the header and options of the format to the text of its file."""
+
+
+def no_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add nothing: the format has no options of its own."""
+
+
+@dataclass(frozen=True)
+class Format:
+    """Format of one text file.
+
+    Attributes
+    ----------
+    kind : Kind
+        Kind of the file; its first ending is that of the default name.
+    summary : str
+        What it is, in half a line.
+    read_back_by : str
+        Program that reads it back in the tests, or empty.
+    text : callable
+        Writes the file, see `Text`.
+    add_arguments : callable
+        Adds the options that the format has.
+    one_speed : bool
+        Whether a file has one speed only.
+    """
+
+    kind: Kind
+    summary: str
+    read_back_by: str
+    text: Text
+    add_arguments: Callable[[argparse.ArgumentParser], None] = no_arguments
+    one_speed: bool = False
+
+    def plain(self, bearing: LinearBearing, header: tuple[str, ...]) -> str:
+        """Text of the file with the defaults of all options.
+
+        Parameters
+        ----------
+        bearing : LinearBearing
+            The bearing.
+        header : tuple of str
+            Lines that say where it comes from.
+
+        Raises
+        ------
+        InputError
+            For several speeds or frequencies where the format has one.
+        """
+        parser = argparse.ArgumentParser()
+        self.add_arguments(parser)
+        return self.text(bearing, header, parser.parse_args([]))
+
+
+ENDINGS = {".toml": "ross", ".bdf": "nastran", ".inp": "calculix", ".txt": "ansys"}
+"""Modules of the formats by the endings of their files."""
+
+
+def format_of(ending: str) -> Format:
+    """Format of the files with an ending of `ENDINGS`."""
+    found: Format = import_module(f"mbs.exports.{ENDINGS[ending]}").FORMAT
+    return found
+
+
+def refuse_speeds(bearing: LinearBearing, problems: list[str]) -> None:
+    """Note a problem where a format of one speed is given several.
+
+    Parameters
+    ----------
+    bearing : LinearBearing
+        The bearing.
+    problems : list of str
+        Takes what is wrong.
+    """
+    if bearing.speeds.size > 1:
+        problems.append(f"--speed: got {bearing.speeds.size} values; allowed: one; export a file for each speed")
+
+
+def whole(option: str, text: str, problems: list[str]) -> int:
+    """Read the number of a node or element.
+
+    Parameters
+    ----------
+    option : str
+        Name of the option.
+    text : str
+        What was given.
+    problems : list of str
+        Takes what is wrong.
+    """
+    if text.isascii() and text.isdigit() and len(text) < 9 and int(text) > 0:
+        return int(text)
+    problems.append(f"{option}: got {text!r:.60}; allowed: a whole number from 1 to 99999999")
+    return 1
