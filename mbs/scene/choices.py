@@ -23,6 +23,7 @@ from ehdmaps.errors import EhdmapsError, InputError
 from ehdmaps.units import RPM, TEMPERATURE, Display, quantity
 from mbs.model.relaxation import DEFAULT_FILMS, FILM_WORDS, Films
 from mbs.scene.fields import DEGREE, HERTZ, MICROMETRE
+from mbs.scene.map_set import TABLE_LAW
 
 if TYPE_CHECKING:
     from ehdmaps.physics.oil_supply import OilSupply
@@ -75,6 +76,11 @@ class LawChoice:
         """Tell whether it knows an oil."""
         return self.name in ("map", "formula") or (self.name is None and self.maps is not None)
 
+    @property
+    def may_relax(self) -> bool:
+        """Tell whether it has films that may relax; of ball bearings alone, too."""
+        return self.has_films or self.name == TABLE_LAW
+
 
 @dataclass(frozen=True, eq=False)
 class Subject:
@@ -106,16 +112,18 @@ class Subject:
         return dataclasses.replace(model, chosen=self.chosen)
 
 
-Concerned = Literal["all", "films", "maps", "oil", "first"]
-"""Whom a choice concerns: all; laws with films, or of maps; those for which oil has a temperature; the reference."""
+Concerned = Literal["all", "films", "relaxing", "maps", "oil", "first"]
+"""Whom a choice concerns: all; laws with films of rollers, with films that may relax, or of maps; those for which oil
+has a temperature; the reference."""
 
 LACKS = {
     "films": "without a law that has films; allowed: with --map, --law table or formula",
+    "relaxing": "without a law that has films; allowed: with --map, --law table or formula",
     "maps": "without a map; allowed: with --map MAP.nc, made by `ehdmaps generate`, or --law table",
 }
 """What is said where no law is concerned."""
 
-BALLS_LACK = "with ball bearings alone; allowed: none of it: their films are of one oil, flooded, and have no memory"
+BALLS_LACK = "with ball bearings alone; allowed: none of it: their films are of one oil, flooded"
 """What is said of the same where balls have films."""
 
 
@@ -127,7 +135,7 @@ class SceneChoice(Choice[Subject]):
     ----------
     example : str
         A value that may be varied, for people; empty where it cannot be.
-    concerned : {"all", "films", "maps", "oil", "first"}
+    concerned : {"all", "films", "relaxing", "maps", "oil", "first"}
         Which of several laws it concerns.
     option : bool
         Whether the commands on scenes have it as an option; else `mbs variants --vary` alone.
@@ -154,6 +162,8 @@ class SceneChoice(Choice[Subject]):
         if self.concerned == "oil":
             # Rings of other temperatures have another clearance.
             return subject.law.has_films or any(entry.changes_in_operation for entry in subject.scene.bearings)
+        if self.concerned == "relaxing":
+            return subject.law.may_relax
         return self.concerned != "films" or subject.law.has_films
 
     def chosen(self, subject: Subject, value: Any) -> Subject:
@@ -281,7 +291,7 @@ def named_law(name: str, scene: Scene) -> LawChoice:
         If the film table does not serve the scene. What else is wrong about a law is said by `assemble`.
     """
     from mbs.scene.contact_laws import law_label
-    from mbs.scene.map_set import TABLE_LAW, table_maps
+    from mbs.scene.map_set import table_maps
 
     if name != TABLE_LAW or (scene.balls and not scene.bearings):
         return LawChoice(law_label(name), name)
@@ -359,7 +369,7 @@ def _with_structure(subject: Subject, name: str) -> Subject:
 def _with_films(subject: Subject, kind: str) -> Subject:
     """A subject with other films; a law without films stays as it is."""
     law = subject.law
-    if not law.has_films:
+    if not law.may_relax:
         return subject
     return dataclasses.replace(subject, law=dataclasses.replace(law, films="memory" if kind == "memory" else "slow"))
 
@@ -450,7 +460,7 @@ _ROWS = (
         _films,
         _with_films,
         example="slow",
-        concerned="films",
+        concerned="relaxing",
         called=_films_words,
         usual=lambda kind: kind == DEFAULT_FILMS,
     ),
@@ -644,7 +654,8 @@ def combinations(
             continue
         if choice.concerned in LACKS and not any(choice.concerns(one.subject) for one in found):
             got, scene = ", ".join(map(choice.text, several)), found[0].subject.scene
-            lacks = BALLS_LACK if scene.balls and not scene.bearings else LACKS[choice.concerned]
+            of_rollers = scene.balls and not scene.bearings and choice.concerned != "relaxing"
+            lacks = BALLS_LACK if of_rollers else LACKS[choice.concerned]
             problems.append(f"--{choice.name}: got {got} {lacks}")
             continue
         found = [entry for one in found for entry in _each(one, choice, several, problems)]
@@ -676,7 +687,7 @@ def _each(one: Combination, choice: SceneChoice, several: Sequence[Any], problem
             told = (words,) if len(several) > 1 else ()
             found.append(Combination(subject, (*one.words, *told), {**one.values, choice.name: value}))
             continue
-        if words and subject.law.has_films and (len(several) > 1 or not choice.usual(value)):
+        if words and subject.law.may_relax and (len(several) > 1 or not choice.usual(value)):
             law = dataclasses.replace(subject.law, label=f"{subject.law.label}, {words}")
             subject = dataclasses.replace(subject, law=law)
         found.append(Combination(subject, one.words, one.values))

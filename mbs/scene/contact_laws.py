@@ -334,8 +334,8 @@ class ContactLaws:
 
     def _memory_problems(self) -> list[str]:
         """Reasons why films cannot relax."""
-        if self.chosen == TABLE_LAW:
-            return ["--films: got 'memory' with ball bearings alone, whose films have none yet; leave it out"]
+        if self.chosen == TABLE_LAW:  # of ball bearings alone
+            return []
         if not self._has_films:
             got = f"--films: got 'memory' with the law {self.chosen!r:.60}"
             return [f"{got}; allowed: the laws map and formula, which have films"]
@@ -434,7 +434,7 @@ class ContactLaws:
     @property
     def _film_words(self) -> str:
         """Kind of films that the law has, where it has films."""
-        return f", {FILM_WORDS[self.memory]}" if self._has_films else ""
+        return f", {FILM_WORDS[self.memory]}" if self._has_films or self.chosen == TABLE_LAW else ""
 
     @property
     def _has_films(self) -> bool:

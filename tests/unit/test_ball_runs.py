@@ -241,8 +241,8 @@ def test_report_has_the_balls(capsys, tmp_path):
         (("tradeoff",), "neither maps, memory nor slices to choose; allowed: laws side by side"),
         (("plan",), "there is no map to plan or to choose; allowed: analyses without --auto, with --law table"),
         (("statics", "--auto"), "there is no map to plan or to choose"),
-        (("modes", "--films", "memory"), "their films are of one oil, flooded, and have no memory"),
-        (("statics", "--supply", "5 um"), "their films are of one oil, flooded, and have no memory"),
+        (("modes", "--law", "hertz", "--films", "memory"), "without a law that has films; allowed: with --map, --law"),
+        (("statics", "--supply", "5 um"), "with ball bearings alone; allowed: none of it: their films are of one oil"),
     ],
 )
 def test_what_balls_do_not_take_says_what_does(capsys, words, said):

@@ -155,9 +155,9 @@ class TestExtremes:
         np.testing.assert_allclose(outward[1] - outward[0], load, rtol=1e-6)
 
 
-def test_films_are_damping_without_memory():
+def test_films_are_in_statics_and_time():
     machine = assemble(read_scene("electric_drive"), "table")
-    assert "without memory" in machine.law
+    assert "films with memory in linear analyses, in time stiffness and damping of slow motion" in machine.law
     assert machine.label == "film table"
     found = equilibrium(machine.system, machine.operation)
     dry = assemble(machine.scene, "hertz")
@@ -187,8 +187,6 @@ def test_wrong_bearings_and_laws_are_all_said():
         parse_scene(text(left='diametral_clearance = "9 mm"'), "rotor", "rotor.toml")
     with pytest.raises(InputError, match=r"films of ball bearings need the oil of the scene; add \[lubricant\]"):
         model("table")
-    with pytest.raises(InputError, match=r"'memory' with ball bearings alone, whose films have none yet"):
-        assemble(read_scene("electric_drive"), "table", films="memory")
     with pytest.raises(InputError, match=r"'drive': got oil layer 5 um; films of ball bearings are flooded"):
         assemble(read_scene("electric_drive"), "table", supply=OilSupply(5e-6))
     with pytest.raises(InputError, match=r"got the law 'formula' for a ball bearing; allowed: hertz"):

@@ -2,7 +2,8 @@
 
 The cage's angle goes evenly, by pure rolling at the nominal contact angle. Its speed, by which the balls have their
 centrifugal load and gyroscopic moment, is that of pure rolling at the mean contact angles of the pose; in time the cage
-follows a step later. Films have the stiffness and damping of slow motion at any frequency: they have no memory.
+follows a step later. In time films have the stiffness and damping of slow motion; small oscillations about rest see
+films that relax, see `mbs.bearings.balls.relaxing`.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from mbs.bearings.balls.ball_bearing import BallElement, BallForce, BallLoads, r
 from mbs.bearings.balls.ball_speed import dry_energy, speed_work, turned_by
 from mbs.bearings.balls.laws import BallLaw
 from mbs.model.elements import Forces, Operation, Powers
+from mbs.model.relaxation import Films, Relaxation
 
 CAGE_ERROR = 1e-8
 """Change of the speed of the cage, over the faster ring's, at which it is found."""
@@ -89,10 +91,13 @@ class MachineBalls(BallElement):
     films : callable or None
         Law with the films at two speeds of the rings [rad/s]; None for the dry law. Bearings whose `films` are equal
         share them.
+    memory : {"slow", "memory"}
+        Whether small oscillations see the films of slow motion at any frequency, or films that relax.
     """
 
     axial_offset: float = 0.0
     films: Callable[[float, float], BallLaw] | None = None
+    memory: Films = "slow"
     _made: OrderedDict[float, BallForce] = field(default_factory=OrderedDict, repr=False)
 
     @property
@@ -152,6 +157,17 @@ class MachineBalls(BallElement):
                 return Settled(force, pose, conditions, balls)
             conditions = {**conditions, "cage_speed": cage}
         raise AnalysisError(f"bearing {self.name!r}: no steady speed of the cage was found in {MOST_TURNS} turns")
+
+    def relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
+        """Relaxation of the films of both contacts of all balls, where they relax, see `Element.relaxation`."""
+        if self.memory == "slow" or self.films is None:
+            return None
+        from mbs.bearings.balls.relaxing import ball_relaxation
+
+        at = self.settled(displacement, operation)
+        numbers, _ = at.force.kernel_arguments(**at.conditions)
+        law = at.force.law
+        return ball_relaxation(law, at.force.shape, at.force.last_balls, float(numbers[2]), at.balls.angle)
 
     def balls(self, displacement: FloatArray, operation: Operation) -> BallLoads:
         """See `BallElement.balls`."""

@@ -26,6 +26,7 @@ from ehdmaps.physics.point.ellipse import Ellipse
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.table.points.file import shipped_point_table
 from mbs.bearings.balls.laws import BallLaw, film_normal_law
+from mbs.bearings.balls.response import ContactResponse
 
 LOADS_PER_DECADE = 3
 FEWEST = 4
@@ -190,7 +191,13 @@ def ball_films(
         film_normal_law(contact, side.curve, (low, _BEYOND * high))
         for contact, side in zip(contacts, films, strict=True)
     )
-    return BallFilms(films[0], films[1], BallLaw(f"films of {oil.title}", inner, outer, (low, high)))
+    responses = tuple(
+        ContactResponse(contact, oil, entrainment_speed, temperature, side.loads)
+        for contact, side in zip(contacts, films, strict=True)
+        if side.read_loads
+    )
+    known = responses if len(responses) == len(films) else ()
+    return BallFilms(films[0], films[1], BallLaw(f"films of {oil.title}", inner, outer, (low, high), known))
 
 
 class _Point(NamedTuple):

@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -23,6 +24,9 @@ from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.physics.point.ellipse import Ellipse
 from ehdmaps.physics.solids import STEEL, Material
 from mbs.bearings.balls.ball_kernel import NormalLaw, empty_table
+
+if TYPE_CHECKING:
+    from mbs.bearings.balls.response import ContactResponse
 
 NODES = 400
 
@@ -39,12 +43,15 @@ class BallLaw:
         Laws for the kernel.
     loads : (float, float)
         Lowest and highest load for which both were made [N]; 0 and infinity for dry contacts.
+    responses : tuple of ContactResponse
+        Films of the inner and of the outer contact over frequency; none where they are not known.
     """
 
     name: str
     inner: NormalLaw
     outer: NormalLaw
     loads: tuple[float, float] = (0.0, math.inf)
+    responses: tuple[ContactResponse, ...] = ()
 
     @property
     def dry(self) -> bool:

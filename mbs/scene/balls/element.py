@@ -89,9 +89,10 @@ def ball_law_words(laws: ContactLaws) -> str:
     from mbs.scene.contact_laws import hertz_damper
 
     if laws.chosen in FILMS:
+        own = "films with memory in linear analyses, in time" if laws.memory == "memory" else "slow films:"
         return (
-            f"ball bearings with films from the film table of points, {laws.lubricant.title}, flooded, quasi-static: "
-            "their damping is that of slow motion at any frequency, without memory"
+            f"ball bearings with films from the film table of points, {laws.lubricant.title}, flooded, {own} stiffness "
+            "and damping of slow motion at any frequency"
         )
     damper = hertz_damper(laws.chosen)
     words = f", {damper.words} of each contact" if damper is not None and damper.words else ""
@@ -128,6 +129,7 @@ def build_ball(spec: BallSpec, surroundings: Surroundings) -> Built:
         start_angle=spec.start_angle,
         axial_offset=spec.axial_offset,
         films=_TableFilms(_contacts_of(spec.geometry), laws.lubricant, surroundings.temperature) if has_films else None,
+        memory=laws.memory if has_films else "slow",
     )
     return Built(element, element)
 
