@@ -23,6 +23,7 @@ solution            `FilmSolution`, `ContactSolution`, `Status`, the Protocol `C
 spectrum            film compliance and dynamic stiffness over frequency
 closed_form         the solvers `hertz` and `formula`; how thick and how thin a film may be
 point               point contacts: dry ellipses; balls
+rollers             rollers by both ratings of a catalogue; needle and tapered roller bearings
 ==================  ====================================================================================
 
 Nothing is imported here: take the names from their modules.

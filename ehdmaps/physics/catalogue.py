@@ -26,12 +26,16 @@ from typing import NamedTuple
 
 from ehdmaps.errors import InputError, closest, short
 from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
+from ehdmaps.physics.rollers.needle_catalogue import (
+    needle_boundary,
+    needle_designations,
+    needle_estimate,
+    plain_needle_designation,
+)
+from ehdmaps.physics.rollers.ratings import RATING
 
 FILLED = 0.8
 """Share of the pitch circle that rollers take: gives the published number for NU308, NU205, NU206, NU2205, N204."""
-
-RATING = 44e6
-"""Factor of ISO 76 for radial roller bearings [N/m2]."""
 
 INNER_SHARE, OUTER_SHARE = 0.244, 0.219
 """Ring thickness below the raceway over the section (D - d): means of the table below."""
@@ -139,7 +143,8 @@ def estimate(designation: str, basic_static_rating: float | None = None) -> Bear
     ----------
     designation : str
         N, NU, NJ or NUP of series 10, 2, 22, 3, 23 with bores of 20 to 100 mm, such as "NU206"; they differ in their
-        ribs alone. Blanks and the suffixes of today's design do not matter: "NU 206 ECP".
+        ribs alone. Blanks and the suffixes of today's design do not matter: "NU 206 ECP". Or what
+        `needle_estimate` takes.
     basic_static_rating : float, optional
         C0 [N] of the bearing's catalogue; without it that of the table here, and where it has none, the roller length
         is a share of the width.
@@ -160,6 +165,8 @@ def estimate(designation: str, basic_static_rating: float | None = None) -> Bear
     >>> nu206.rollers, round(1e3 * nu206.roller_diameter, 2), round(1e3 * nu206.roller_length, 2)
     (13, 9.0, 9.39)
     """
+    if plain_needle_designation(designation):
+        return needle_estimate(designation, basic_static_rating)
     entry = _looked_up(designation)
     name = plain_designation(designation)
     rating = tabulated_rating(designation) if basic_static_rating is None else basic_static_rating
@@ -204,7 +211,7 @@ def plain_designation(designation: str) -> str:
     ('NU210', '')
     """
     match = _matched(designation)
-    return "".join(match.groups()) if match else ""
+    return "".join(match.groups()) if match else plain_needle_designation(designation)
 
 
 def tabulated_rating(designation: str) -> float | None:
@@ -313,7 +320,7 @@ def static_rating(geometry: BearingGeometry) -> float:
 
 
 def designations() -> tuple[str, ...]:
-    """Designations that `estimate` knows, written with NU."""
+    """Designations of cylindrical roller bearings that `estimate` knows, written with NU."""
     return tuple(f"NU{series}{code}" for series, code in _entries())
 
 
@@ -331,7 +338,10 @@ def boundary(designation: str) -> Catalogue | None:
     0.07
     """
     match = _matched(designation)
-    return _entries().get((match.group(2), match.group(3))) if match else None
+    if match is None:
+        needle = needle_boundary(designation)
+        return None if needle is None else Catalogue("", *needle, math.nan, math.nan)
+    return _entries().get((match.group(2), match.group(3)))
 
 
 def _entries() -> dict[tuple[str, str], Catalogue]:
@@ -354,10 +364,12 @@ def _looked_up(designation: str) -> Catalogue:
 
         if words := ball_words(designation):
             raise InputError(f"bearing designation: {words}")
+        near = closest(designation.upper(), (*designations(), *needle_designations()))
         raise InputError(
-            f"bearing designation: got {short(designation)}{closest(designation.upper(), designations())}; allowed: "
+            f"bearing designation: got {short(designation)}{near}; allowed: "
             f"{', '.join(BEARINGS)}, and N, NU, NJ or NUP of series 10, 2, 22, 3, 23 with bores of 20 mm (25 mm in "
-            "series 10) to 100 mm, such as 'NU206'; give others by bore, outside_diameter, width and "
+            "series 10) to 100 mm, such as 'NU206'; needles such as 'NA4908', 'K40x48x20'; give "
+            "others by bore, outside_diameter, width and "
             "basic_static_rating"
         )
     return entry

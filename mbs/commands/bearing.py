@@ -21,6 +21,7 @@ from ehdmaps.physics.catalogue import designated, designations, plain_designatio
 from ehdmaps.physics.contact import OIL_TEMPERATURES
 from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
+from ehdmaps.physics.rollers.needle_catalogue import needle_designations
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.physics.surface import SMOOTH, Surface
 from ehdmaps.units import RPM, TEMPERATURE, closest, short
@@ -331,7 +332,7 @@ def _bearing(source: str, problems: list[str]) -> _Given | None:
 
     allowed = "a designation such as NU308 or NU210, or a TOML file with [bearing], such as a job"
     if source not in shipped_jobs() and not is_file:
-        near = closest(source.upper(), (*BEARINGS, *designations()))
+        near = closest(source.upper(), (*BEARINGS, *designations(), *needle_designations()))
         problems.append(f"BEARING: got {short(source)}{near}; allowed: {allowed}")
         return None
     try:
