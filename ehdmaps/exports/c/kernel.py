@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from importlib.resources import files
 from typing import Literal
 
-from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.exports.c.locked_table import locked_table
+from ehdmaps.exports.c.text import array, comment, define, number, renamed, template
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.kernels import locked_film
 from ehdmaps.maps.kernels.tables import HALF_SPACE, ApproachTable, LawTable
@@ -20,7 +19,6 @@ from ehdmaps.physics.bearing import BearingGeometry
 
 ProfileName = Literal["iso", "straight"]
 
-_WIDTH = 118
 _LEAST_SLICES = 201
 _NAME = re.compile(r"[a-z][a-z0-9_]*")
 _ALL, _WRONG = 127, 127 - (1 + 2 + 4)
@@ -101,7 +99,7 @@ def kernel_files(emap: EHDMap, options: KernelOptions, header: Sequence[str]) ->
         raise InputError(f"export c, centrifugal: got the law {kind!r}; allowed: the law 'series' of a bearing's map")
     law = emap.law(kind, options.outside)
     bearing = emap.bearing if kind == "series" else None
-    banner = _comment(header)
+    banner = comment(header)
     heads, bodies = ["law", "film"], ["law", "cells", "film"]
     if bearing is not None:
         heads += ["bearing", "film_bearing"]
@@ -124,37 +122,12 @@ def kernel_files(emap: EHDMap, options: KernelOptions, header: Sequence[str]) ->
     texts = {"ehd.h": "\n".join(top), "ehd.c": "\n".join(source)}
     if bearing is not None:
         texts["ehd.f90"] = "".join(f"! {line}".rstrip() + "\n" for line in header) + "\n" + _template("interface.f90")
-    return {name.replace("ehd", options.prefix): _renamed(text, options.prefix) for name, text in texts.items()}
+    return {name.replace("ehd", options.prefix): renamed(text, options.prefix) for name, text in texts.items()}
 
 
 def _template(name: str) -> str:
     """Text of a template."""
-    return (files("ehdmaps.exports.c") / name).read_text(encoding="utf-8")
-
-
-def _renamed(text: str, prefix: str) -> str:
-    """A text with another prefix of all public names and files."""
-    return re.sub(r"\bEHD_", f"{prefix.upper()}_", re.sub(r"\behd([_.]|$)", rf"{prefix}\1", text, flags=re.M))
-
-
-def _comment(lines: Iterable[str]) -> str:
-    """Lines as a comment, whatever they hold."""
-    safe = (line.replace("*/", "* /").replace("/*", "/ *").rstrip() for line in lines)
-    return "/*\n" + "".join(f" * {line}".rstrip() + "\n" for line in safe) + " */\n"
-
-
-def _number(value: float) -> str:
-    """A number with all its digits, as C has it."""
-    if math.isinf(value):
-        return "INFINITY" if value > 0.0 else "-INFINITY"
-    text = repr(float(value))
-    return text if any(mark in text for mark in ".en") else f"{text}.0"
-
-
-def _define(name: str, value: float | str, words: str) -> str:
-    """A constant with what it is."""
-    text = value if isinstance(value, str) else str(value) if isinstance(value, int) else _number(value)
-    return f"#define {name} {f'({text})' if text.startswith('-') else text} /* {words} */\n"
+    return template("ehdmaps.exports.c", name)
 
 
 def _public_numbers(law: ContactLaw, bearing: BearingGeometry | None, options: KernelOptions) -> str:
@@ -163,30 +136,30 @@ def _public_numbers(law: ContactLaw, bearing: BearingGeometry | None, options: K
     refused = _ALL if law.outside == "error" else _WRONG
     tables = (law.table.own, law.table.inner, law.table.outer) if options.centrifugal else (table.own,)
     lines = [
-        _define("EHD_REFUSED", refused, f"parts of a status that refuse: the policy is {law.outside!r}"),
-        _define("EHD_HAS_CENTRIFUGAL", int(options.centrifugal), "whether centrifugal loads are taken"),
-        _define("EHD_CONTACTS", len(law.contacts), "contacts in series: " + ", ".join(c.name for c in law.contacts)),
-        _define("EHD_HIGHEST_LOAD", table.highest_load, "highest mapped load [N/m]"),
-        _define("EHD_LOWEST_SPEED", law.speed_range[0], "lowest mapped speed [m/s]"),
-        _define("EHD_HIGHEST_SPEED", table.counted_speed, "highest mapped entrainment speed [m/s]"),
-        _define("EHD_LOWEST_TEMPERATURE", table.counted_cold, "lowest mapped temperature [K]"),
-        _define("EHD_HIGHEST_TEMPERATURE", table.counted_hot, "highest mapped temperature [K]"),
-        _define("EHD_MOST_CELLS", max(_places(entry) - 3 for entry in tables), "cells of a line"),
+        define("EHD_REFUSED", refused, f"parts of a status that refuse: the policy is {law.outside!r}"),
+        define("EHD_HAS_CENTRIFUGAL", int(options.centrifugal), "whether centrifugal loads are taken"),
+        define("EHD_CONTACTS", len(law.contacts), "contacts in series: " + ", ".join(c.name for c in law.contacts)),
+        define("EHD_HIGHEST_LOAD", table.highest_load, "highest mapped load [N/m]"),
+        define("EHD_LOWEST_SPEED", law.speed_range[0], "lowest mapped speed [m/s]"),
+        define("EHD_HIGHEST_SPEED", table.counted_speed, "highest mapped entrainment speed [m/s]"),
+        define("EHD_LOWEST_TEMPERATURE", table.counted_cold, "lowest mapped temperature [K]"),
+        define("EHD_HIGHEST_TEMPERATURE", table.counted_hot, "highest mapped temperature [K]"),
+        define("EHD_MOST_CELLS", max(_places(entry) - 3 for entry in tables), "cells of a line"),
     ]
     if bearing is not None:
         clearance = bearing.diametral_clearance if options.clearance is None else options.clearance
         lines += [
             "\n",
-            _define("EHD_ROLLERS", bearing.rollers, "number of rollers"),
-            _define("EHD_ROLLER_LENGTH", bearing.roller_length, "[m]"),
-            _define("EHD_ROLLER_DIAMETER", bearing.roller_diameter, "[m]"),
-            _define("EHD_ISO_PROFILE", int(options.profile == "iso"), "1: profile of ISO/TS 16281, 0: straight"),
-            _define("EHD_CLEARANCE", clearance, "diametral clearance of the export [m]"),
-            _define("EHD_SLICES", options.slices, "slices of a roller of the export"),
-            _define("EHD_MOST_SLICES", max(options.slices, _LEAST_SLICES), "room for slices"),
-            _define("EHD_CAGE_INNER", 0.5 * (1.0 - bearing.gamma), "turns of the cage for each of the inner ring"),
-            _define("EHD_CAGE_OUTER", 0.5 * (1.0 + bearing.gamma), "turns of the cage for each of the outer ring"),
-            _define("EHD_ENTRAINMENT", bearing.entrainment_speed(1.0, 0.0), "entrainment speed [m/rad], see below"),
+            define("EHD_ROLLERS", bearing.rollers, "number of rollers"),
+            define("EHD_ROLLER_LENGTH", bearing.roller_length, "[m]"),
+            define("EHD_ROLLER_DIAMETER", bearing.roller_diameter, "[m]"),
+            define("EHD_ISO_PROFILE", int(options.profile == "iso"), "1: profile of ISO/TS 16281, 0: straight"),
+            define("EHD_CLEARANCE", clearance, "diametral clearance of the export [m]"),
+            define("EHD_SLICES", options.slices, "slices of a roller of the export"),
+            define("EHD_MOST_SLICES", max(options.slices, _LEAST_SLICES), "room for slices"),
+            define("EHD_CAGE_INNER", 0.5 * (1.0 - bearing.gamma), "turns of the cage for each of the inner ring"),
+            define("EHD_CAGE_OUTER", 0.5 * (1.0 + bearing.gamma), "turns of the cage for each of the outer ring"),
+            define("EHD_ENTRAINMENT", bearing.entrainment_speed(1.0, 0.0), "entrainment speed [m/rad], see below"),
         ]
     return "".join(lines)
 
@@ -195,15 +168,15 @@ def _private_numbers(law: ContactLaw, centrifugal: bool) -> str:
     """Constants and tables that only the functions read."""
     table: LawTable = law.table if centrifugal else law.plain_table
     rows = "".join(
-        f"    {{{int(kind == HALF_SPACE)}, {_number(a)}, {_number(b)}}},\n" for kind, a, b in table.structure.tolist()
+        f"    {{{int(kind == HALF_SPACE)}, {number(a)}, {number(b)}}},\n" for kind, a, b in table.structure.tolist()
     )
     parts = [
-        _define("FILM_SPEED", table.film_speed, "speed below which films fade [m/s]")
-        + _define("LOWEST_SPEED", table.lowest_speed, "speeds of the table [m/s]")
-        + _define("HIGHEST_SPEED", table.highest_speed, "beyond it the law is held")
-        + _define("LOWEST_TEMPERATURE", table.lowest_temperature, "temperatures of the table [K]")
-        + _define("HIGHEST_TEMPERATURE", table.highest_temperature, "beyond them the law is held")
-        + _define("HELD_LOAD", table.held_load, "load above which the law is its tangent [N/m]"),
+        define("FILM_SPEED", table.film_speed, "speed below which films fade [m/s]")
+        + define("LOWEST_SPEED", table.lowest_speed, "speeds of the table [m/s]")
+        + define("HIGHEST_SPEED", table.highest_speed, "beyond it the law is held")
+        + define("LOWEST_TEMPERATURE", table.lowest_temperature, "temperatures of the table [K]")
+        + define("HIGHEST_TEMPERATURE", table.highest_temperature, "beyond them the law is held")
+        + define("HELD_LOAD", table.held_load, "load above which the law is its tangent [N/m]"),
         f"static const structure STRUCTURE[EHD_CONTACTS] = {{\n{rows}}};\n",
         _table("OWN", table.own, "the law"),
     ]
@@ -217,27 +190,27 @@ def _film_numbers(law: ContactLaw) -> str:
     table, film = locked_table(law), locked_film.film_of(law.contacts, 0.0)
     speeds, temperatures, loads = table.speeds, table.temperatures, table.loads
     rows = ",\n".join(
-        "    {" + ",\n     ".join("{" + ", ".join(map(_number, line)) + "}" for line in part) + "}"
+        "    {" + ",\n     ".join("{" + ", ".join(map(number, line)) + "}" for line in part) + "}"
         for part in table.factors.tolist()
     )
     return "\n".join(
         (
-            _define("FILM_PI", math.pi, "pi")
-            + _define("FILM_RADIUS", film.radius, "mean reduced radius of the contacts [m]")
-            + _define("FILM_MODULUS", film.modulus, "E' [Pa]")
-            + _define("LOCKED", locked_film.LOCKED, "closed formula of the locked film")
-            + _define("LOCKED_BY_LOAD", locked_film.LOCKED_BY_LOAD, "its part that goes with the film's exponent")
-            + _define("MOST_LOCKED", locked_film.MOST_LOCKED, "most of the structure's compliance that it takes off")
-            + _define("LONGEST", locked_film.LONGEST, "longest relaxation time, in natural times")
-            + _define("FACTOR_SPEEDS", speeds.count, "places of ln u")
-            + _define("FACTOR_LOG_SPEED", speeds.start, "the first one")
-            + _define("FACTOR_SPEED_STEP", speeds.per_step, "inverse distance of two")
-            + _define("FACTOR_TEMPERATURES", temperatures.count, "places of 1/(T - COLDEST)")
-            + _define("FACTOR_COLD", temperatures.start, "the first one")
-            + _define("FACTOR_COLD_STEP", temperatures.per_step, "inverse distance of two")
-            + _define("FACTOR_LOADS", loads.count, "places of ln of the load")
-            + _define("FACTOR_LOG_LOAD", loads.start, "the first one")
-            + _define("FACTOR_LOAD_STEP", loads.per_step, "inverse distance of two"),
+            define("FILM_PI", math.pi, "pi")
+            + define("FILM_RADIUS", film.radius, "mean reduced radius of the contacts [m]")
+            + define("FILM_MODULUS", film.modulus, "E' [Pa]")
+            + define("LOCKED", locked_film.LOCKED, "closed formula of the locked film")
+            + define("LOCKED_BY_LOAD", locked_film.LOCKED_BY_LOAD, "its part that goes with the film's exponent")
+            + define("MOST_LOCKED", locked_film.MOST_LOCKED, "most of the structure's compliance that it takes off")
+            + define("LONGEST", locked_film.LONGEST, "longest relaxation time, in natural times")
+            + define("FACTOR_SPEEDS", speeds.count, "places of ln u")
+            + define("FACTOR_LOG_SPEED", speeds.start, "the first one")
+            + define("FACTOR_SPEED_STEP", speeds.per_step, "inverse distance of two")
+            + define("FACTOR_TEMPERATURES", temperatures.count, "places of 1/(T - COLDEST)")
+            + define("FACTOR_COLD", temperatures.start, "the first one")
+            + define("FACTOR_COLD_STEP", temperatures.per_step, "inverse distance of two")
+            + define("FACTOR_LOADS", loads.count, "places of ln of the load")
+            + define("FACTOR_LOG_LOAD", loads.start, "the first one")
+            + define("FACTOR_LOAD_STEP", loads.per_step, "inverse distance of two"),
             "/* Factors of the closed formula of the locked film. */\n"
             f"static const double FACTORS[FACTOR_SPEEDS][FACTOR_TEMPERATURES][FACTOR_LOADS] = {{\n{rows}}};\n",
         )
@@ -253,26 +226,14 @@ def _table(name: str, table: ApproachTable, words: str) -> str:
     """A table with its axes."""
     speeds, temperatures, _ = table.coefficients.shape
     sizes = f"{speeds} speeds, {temperatures} temperatures, {_places(table)} places"
-    axes = ", ".join(_number(value) for value in table[2:])
+    axes = ", ".join(number(value) for value in table[2:])
     return "\n".join(
         (
             f"/* Coefficients of {words}, over {sizes}. */",
-            _array(f"{name}_COEFFICIENTS", table.coefficients),
+            array(f"{name}_COEFFICIENTS", table.coefficients),
             f"/* Offset and inverse scale of {words}. */",
-            _array(f"{name}_PLACE", table.place),
+            array(f"{name}_PLACE", table.place),
             f"static const axes {name} = {{\n    {speeds}, {temperatures}, {_places(table)}, {axes},\n"
             f"    {name}_COEFFICIENTS, {name}_PLACE}};\n",
         )
     )
-
-
-def _array(name: str, values: FloatArray) -> str:
-    """An array of doubles."""
-    lines, line = [], "   "
-    for text in map(_number, values.reshape(-1).tolist()):
-        if len(line) + len(text) + 2 > _WIDTH:
-            lines.append(line)
-            line = "   "
-        line += f" {text},"
-    lines.append(line)
-    return f"static const double {name}[{values.size}] = {{\n" + "\n".join(lines) + "};\n"

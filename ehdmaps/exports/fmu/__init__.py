@@ -5,7 +5,8 @@
 | `variables` | inputs, parameters and outputs of the unit, and what it says of itself |
 | `description` | the model description of FMI 2.0 and of FMI 3.0 |
 | `binaries` | compiling the sources for the platforms for which a compiler is there |
-| `target` | the sources, binaries and texts in one file |
+| `unit` | the sources, binaries and texts in one file |
+| `target` | the unit of a map |
 
 The files `*.c` and `component.h` are the unit; the folder `headers` has those of the standard, with their licence.
 """

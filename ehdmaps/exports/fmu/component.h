@@ -21,6 +21,7 @@ enum {
     VARIABLES
 };
 
+#define FIRST_INPUT POSE_Y
 #define FIRST_OUTPUT FORCE_Y
 #define OUTPUTS (VARIABLES - FIRST_OUTPUT)
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from xml.etree import ElementTree
 
-from ehdmaps.exports.fmu.variables import LAG, NOMINAL_STATE, UNITS, VARIABLES, Variable
+from ehdmaps.exports.fmu.variables import LAG, NOMINAL_STATE, UNITS, Variable
 
 KIND = {"2": "2.0", "3": "3.0"}
 """Versions of the standard."""
@@ -49,7 +49,12 @@ class Identity:
 
 
 def model_description(
-    fmi: str, identity: Identity, sources: tuple[str, ...], start: Mapping[str, float], films: Sequence[str] = ()
+    fmi: str,
+    identity: Identity,
+    variables: Sequence[Variable],
+    sources: tuple[str, ...],
+    start: Mapping[str, float],
+    films: Sequence[str] = (),
 ) -> str:
     """Text of modelDescription.xml.
 
@@ -59,6 +64,8 @@ def model_description(
         Version of the standard.
     identity : Identity
         The unit.
+    variables : sequence of Variable
+        Variables of the unit, in the order of their value references.
     sources : tuple of str
         Files to be compiled; only FMI 2.0 names them here.
     start : mapping of str to float
@@ -98,16 +105,16 @@ def model_description(
             files = ElementTree.SubElement(interface, "SourceFiles")
             for source in sources:
                 ElementTree.SubElement(files, "File", name=source)
-    _units(root)
+    _units(root, {variable.unit for variable in variables})
     log = ElementTree.SubElement(root, "LogCategories")
     for category, words in (
-        ("logStatusWarning", "held at the edge of the map"),
-        ("logStatusDiscard", "outside the map, refused"),
+        ("logStatusWarning", "outside of what the law was made for, held"),
+        ("logStatusDiscard", "outside of what the law was made for, refused"),
         ("logStatusError", "wrong calls"),
     ):
         ElementTree.SubElement(log, "Category", name=category, description=words)
     ElementTree.SubElement(root, "DefaultExperiment", startTime="0", stopTime="1")
-    entries = _entries(films)
+    entries = _entries(variables, films)
     _variables(root, fmi, start, entries)
     _structure(root, fmi, entries)
     ElementTree.indent(root)
@@ -133,10 +140,12 @@ def build_description(identity: Identity, sources: tuple[str, ...]) -> str:
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + ElementTree.tostring(root, encoding="unicode") + "\n"
 
 
-def _units(root: ElementTree.Element) -> None:
-    """Add the units."""
+def _units(root: ElementTree.Element, used: Collection[str]) -> None:
+    """Add the units that variables have."""
     definitions = ElementTree.SubElement(root, "UnitDefinitions")
     for name, exponents in UNITS.items():
+        if name not in used:
+            continue
         unit = ElementTree.SubElement(definitions, "Unit", name=name)
         ElementTree.SubElement(unit, "BaseUnit", {base: str(power) for base, power in exponents.items()})
 
@@ -150,12 +159,12 @@ class _Entry:
     state: int | None = None
 
 
-def _entries(films: Sequence[str]) -> list[_Entry]:
+def _entries(variables: Sequence[Variable], films: Sequence[str]) -> list[_Entry]:
     """All variables, in the order of their references: those of the bearing, states of films, their rates."""
     words = "Approach at which the film of a slice would be in equilibrium"
-    first = len(VARIABLES)
+    first = len(variables)
     return [
-        *(_Entry(reference, variable) for reference, variable in enumerate(VARIABLES)),
+        *(_Entry(reference, variable) for reference, variable in enumerate(variables)),
         *(_Entry(first + n, Variable(name, "local", "m", words)) for n, name in enumerate(films)),
         *(
             _Entry(first + len(films) + n, Variable(f"der({name})", "local", "m/s", f"Rate of {name}"), first + n)

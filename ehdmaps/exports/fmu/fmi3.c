@@ -173,20 +173,20 @@ fmi3Status fmi3SetClock(fmi3Instance c, const reference r[], size_t n, const fmi
 fmi3Status fmi3GetNumberOfVariableDependencies(fmi3Instance c, reference variable, size_t *count) {
     const size_t states = variable >= FIRST_RATE ? 1 : FILMS;
     (void)c;
-    *count = component_is_unknown(variable) ? FIRST_OUTPUT - POSE_Y + states : 0;
+    *count = component_is_unknown(variable) ? FIRST_OUTPUT - FIRST_INPUT + states : 0;
     return fmi3OK;
 }
 
 fmi3Status fmi3GetVariableDependencies(fmi3Instance c, reference variable, size_t own[], reference others[],
                                        size_t theirs[], fmi3DependencyKind kinds[], size_t count) {
-    const size_t inputs = FIRST_OUTPUT - POSE_Y;
+    const size_t inputs = FIRST_OUTPUT - FIRST_INPUT;
     const reference state = variable >= FIRST_RATE ? variable - FILMS : FIRST_STATE;
     size_t known = 0;
     fmi3GetNumberOfVariableDependencies(c, variable, &known);
     if (count != known) return refuse(c, "another number of dependencies than there are");
     for (size_t i = 0; i < count; i++) {
         own[i] = theirs[i] = 0;
-        others[i] = i < inputs ? (reference)(POSE_Y + i) : (reference)(state + i - inputs);
+        others[i] = i < inputs ? (reference)(FIRST_INPUT + i) : (reference)(state + i - inputs);
         kinds[i] = fmi3Dependent;
     }
     return fmi3OK;

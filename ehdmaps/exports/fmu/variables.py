@@ -54,7 +54,8 @@ VARIABLES = (
     Variable("moment.z", "output", "N.m", "Moment on the inner ring about z, about its centre"),
 )
 
-UNITS = {
+UNITS: dict[str, dict[str, int]] = {
+    "1": {},
     "s": {"s": 1},
     "m": {"m": 1},
     "rad": {"rad": 1},

@@ -57,7 +57,7 @@ def run(arguments: argparse.Namespace, source: str) -> tuple[str, int]:
     if exported and arguments.to not in EXPORTS:
         problems.append(
             f"--to: got {short(arguments.to)} for point contacts; allowed: {', '.join(EXPORTS)}; K and C of the "
-            "bearing: mbs bearing -o k.csv"
+            "bearing: mbs bearing -o k.csv; the bearing itself: -o NAME.c, NAME.fmu"
         )
     request = None
     if not os.path.exists(source):

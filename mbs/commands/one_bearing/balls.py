@@ -9,20 +9,18 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from ehdmaps.errors import InputError
-from ehdmaps.outputs import MARK, Kind, Output, output_problems, write_text
+from ehdmaps.outputs import output_problems
 from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.program import tell
 from ehdmaps.units import RPM, TEMPERATURE
-from ehdmaps.version import version
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.ball_point import BallPoint, ball_point
-from mbs.bearings.balls.laws import dry_law
+from mbs.bearings.balls.laws import BallLaw, dry_law
+from mbs.commands.one_bearing.ball_files import BallExport, ball_outputs, count_problems, is_export, write_export
 from mbs.commands.one_bearing.values import (
     LOADS,
     MOST_POINTS,
@@ -32,24 +30,19 @@ from mbs.commands.one_bearing.values import (
     read_one,
     read_values,
 )
-from mbs.output.ball_table import BallDescription, ball_dataset, ball_heading, ball_text, write_ball_csv
-from mbs.output.bearing_table import result_kind
+from mbs.output.ball_table import BallDescription, ball_dataset, ball_text, write_ball_csv
 from mbs.output.files import write_dataset
 from mbs.scene.contact_laws import HERTZ_FORMS, Damper, hertz_damper
 from mbs.scene.fields import FORCE, MICROMETRE
 
 if TYPE_CHECKING:
     from mbs.bearings.balls.films import BallFilms
-    from mbs.exports.linear_bearing import Format
 
 CELSIUS_40, ROUGHNESS = 313.15, 0.3e-6
 """Assumed where nothing is given: the temperature of the raceways [K], the combined rms roughness [m]."""
 
 FILMS, TABLE = "films", "table"
 """Laws of contacts with films at each speed: read from the table of points, and solved where it has none; or read."""
-
-LINEAR = (".toml", ".bdf", ".inp", ".txt")
-"""Endings of files for linear programs: ROSS, Nastran, CalculiX or Abaqus, Ansys; see `mbs.exports.linear_bearing`."""
 
 _TAKEN = ("law", "clearance", "temperature", "roughness")
 """Choices that ball bearings take."""
@@ -124,15 +117,8 @@ def read_balls(arguments: argparse.Namespace) -> BallRequest:
             geometry = dataclasses.replace(geometry, clearance=float(clearance))
         except InputError as error:
             problems += [f"--clearance: {problem}" for problem in error.problems]
-    program = _format(arguments.output)
-    kind = _kind(arguments.output, program)
-    problems += output_problems((Output("-o", arguments.output, kind),), [])
-    if program is not None and (len(loads) > 1 or (len(speeds) > 1 and program.one_speed)):
-        problems.append(
-            f"-o: got {arguments.output} for {len(loads)} loads and {len(speeds)} speeds; allowed: one load"
-            + (", one speed" if program.one_speed else "")
-            + ", or a file .nc or .csv"
-        )
+    problems += output_problems(ball_outputs(arguments.output), [])
+    problems += count_problems(arguments.output, len(loads), len(speeds))
     if problems or geometry is None or damper is None or oil is None:
         raise InputError(tuple(dict.fromkeys(problems)))
     roughness = chosen["roughness"].roughness if "roughness" in chosen else ROUGHNESS
@@ -178,15 +164,20 @@ def run_balls(arguments: argparse.Namespace) -> tuple[str, int]:
     points = ball_points(request)
     lines = ball_text(request.description, points)
     if arguments.output:
-        program = _format(arguments.output)
-        if program is not None:
-            write_text(Path(arguments.output), _linear(request, points[0], program), program.kind)
-        elif Path(arguments.output).suffix.lower() == ".csv":
-            write_ball_csv(ball_dataset(request.description, points), arguments.output)
-        else:
-            write_dataset(ball_dataset(request.description, points), Path(arguments.output))
-        lines.append(f"{arguments.output}: written")
+        lines.append(_written(arguments.output, request, points))
     return "\n".join(lines), 1 if any(point.problems for row in points for point in row) else 0
+
+
+def _written(path: str, request: BallRequest, points: list[list[BallPoint]]) -> str:
+    """Write the file of -o, and return what was written in words."""
+    if is_export(path):
+        return write_export(path, _exported(request, points[0]))
+    dataset = ball_dataset(request.description, points)
+    if Path(path).suffix.lower() == ".csv":
+        write_ball_csv(dataset, path)
+    else:
+        write_dataset(dataset, Path(path))
+    return f"{path}: written"
 
 
 def ball_points(request: BallRequest) -> list[list[BallPoint]]:
@@ -210,41 +201,13 @@ def ball_points(request: BallRequest) -> list[list[BallPoint]]:
     ]
 
 
-def _format(path: str | None) -> Format | None:
-    """Format of a linear program, where the ending of a name asks for one."""
-    ending = Path(path or "").suffix.lower()
-    if ending not in LINEAR:
-        return None
-    from mbs.exports.linear_bearing import format_of
+def _exported(request: BallRequest, points: list[BallPoint]) -> BallExport:
+    """Request and points that a file for another program is made of."""
 
-    return format_of(ending)
+    def films(entrainment_speed: float) -> BallLaw:
+        return _films(request, entrainment_speed).law
 
-
-def _kind(path: str | None, program: Format | None) -> Kind:
-    """Kind of the file of a result: that of roller bearings, or that of a linear program."""
-    if program is not None:
-        return program.kind
-    kind = result_kind(path)
-    return dataclasses.replace(kind, endings=(*kind.endings, *LINEAR)) if ".nc" in kind.endings else kind
-
-
-def _linear(request: BallRequest, points: list[BallPoint], program: Format) -> str:
-    """Text of the bearing over speed for a linear program."""
-    from ehdmaps.exports.target import BEARING_AXES
-    from mbs.exports.linear_bearing import LinearBearing
-
-    header = (
-        f"{MARK} {version()}",
-        *BEARING_AXES,
-        *(line.strip() for line in ball_heading(request.description, points[0])),
-        f"linear around: radial {FORCE.text(request.loads[0])}, axial {FORCE.text(request.axial)} on the inner ring",
-        "K and C of slow motion; the outer ring turns with " + RPM.text(request.outer_speed),
-        *dict.fromkeys(line for point in points for line in (*point.problems, *point.notes)),
-    )
-    matrices = np.array([[point.stiffness, point.damping] for point in points])[:, None]
-    speeds = np.array(request.speeds)
-    bearing = LinearBearing(request.force.geometry.name, speeds, np.zeros(1), matrices[:, :, 0], matrices[:, :, 1])
-    return program.plain(bearing, header)
+    return BallExport(request.force, request.description, points, request.outer_speed, films if request.films else None)
 
 
 def _at_speed(request: BallRequest, speed: float) -> tuple[BallForce, BallFilms | None]:
@@ -253,11 +216,17 @@ def _at_speed(request: BallRequest, speed: float) -> tuple[BallForce, BallFilms 
     u = geometry.entrainment_speed(speed, request.outer_speed)
     if not request.films or u == 0.0:
         return request.force, None
-    from mbs.bearings.balls.films import ball_films  # with the table of point contacts
-
-    films = ball_films(geometry, request.oil, u, request.description.temperature, solves=request.films == FILMS)
+    films = _films(request, u)
     tell(f"{RPM.text(speed)}: films {films.words}")
     return BallForce(geometry, films.law), films
+
+
+def _films(request: BallRequest, entrainment_speed: float) -> BallFilms:
+    """Films of an entrainment speed [m/s]."""
+    from mbs.bearings.balls.films import ball_films  # with the table of point contacts
+
+    temperature, solves = request.description.temperature, request.films == FILMS
+    return ball_films(request.force.geometry, request.oil, entrainment_speed, temperature, solves=solves)
 
 
 def _geometry(source: str, problems: list[str]) -> BallGeometry | None:

@@ -1,0 +1,114 @@
+/* ---------------------------------------------------------------------------------------------------------------------
+ * A ball bearing: from the pose and velocity of its inner ring to force, stiffness and damping, all in SI units.
+ *
+ * Frame O is the one of the outer ring, in the middle of its groove; x is the axis of the bearing; it does not spin. A
+ * pose is x y z theta_x theta_y theta_z of the inner ring in O [m], [rad]; a velocity is its rate; a force is what acts
+ * on the inner ring [N], [N m], about its centre. theta_x has no force. The outer ring gets the opposite. In the pose
+ * zero angular contact bearings without clearance just touch.
+ *
+ * Ball j stands at cage_angle + 2 pi j/EHD_BALLS, from y towards z. Each ball is in balance with both raceways, its
+ * centrifugal load and its gyroscopic moment, which traction at the outer raceway holds. Balls have no inertia beside
+ * that; films have no memory.
+ *
+ * Nothing here allocates, keeps a state of its own, reads or writes a file. All functions may be called from several
+ * threads at once, each with structures of its own.
+ * ------------------------------------------------------------------------------------------------------------------ */
+
+/* What a call found: a sum of these, 0 where all is well. */
+enum {
+    EHD_OK = 0,
+    EHD_ABOVE_LOAD = 1,    /* more load than films were made for: they go on straight in the logarithms */
+    EHD_OUTSIDE_SPEED = 2, /* slower or faster than films were made for: those at the end of the speeds are held */
+    EHD_NOT_FINITE = 8,    /* an argument is NaN or infinite */
+    EHD_TOO_FAR = 32,      /* a pose beyond reason, or an angular contact bearing beyond its middle: it has no raceway */
+    EHD_BAD_ARGUMENT = 64, /* a null pointer, a clearance, or a speed beyond 20 000 rad/s */
+    EHD_NO_BALANCE = 128   /* no balance of a ball, or no steady speed of the cage, was found */
+};
+
+#define EHD_REFUSED (EHD_NOT_FINITE | EHD_TOO_FAR | EHD_BAD_ARGUMENT | EHD_NO_BALANCE)
+
+/* Whether a status refuses: all results of such a call are NaN. The other ones tell. */
+#define EHD_REFUSES(status) (((status) & EHD_REFUSED) != 0)
+
+/* What does not change of a bearing; made by ehd_bearing_make. */
+typedef struct ehd_bearing {
+    double clearance;
+    int mirrored;
+    double axial, radial;                    /* inner groove's centre against the outer one, rings in the middle [m] */
+    double arm;                              /* distance of the inner groove's centre from the axis [m] */
+    double most_travel, most_tilt;           /* largest accepted displacement [m] and tilt [rad] */
+    double cosine[EHD_BALLS], sine[EHD_BALLS]; /* directions of the balls in the cage */
+} ehd_bearing;
+
+/* Law of a contact: F = coefficient g^(3/2), g the approach where it is dry, else from a table over
+ * z = asinh((approach - centre)/scale): ln g and its slope by node, ln c and its slope. A dry contact with load has
+ * c = damping + damping_time k. */
+typedef struct ehd_contact {
+    double coefficient, damping, damping_time, centre, scale, first, step;
+    double table[EHD_ROWS + 1][4];
+} ehd_contact;
+
+/* The laws of both contacts at one entrainment speed; made by ehd_prepare. All zero before the first call. */
+typedef struct ehd_law {
+    int made, status;
+    double u;       /* entrainment speed [m/s] */
+    double highest; /* load up to which films were made [N] */
+    ehd_contact inner, outer;
+} ehd_law;
+
+/* A ball in balance. */
+typedef struct ehd_ball {
+    double centre[2];                      /* from the outer groove's centre: axial, radial [m]; start of the next call */
+    double force[2];                       /* on the ball, of the inner ring: axial, radial [N] */
+    double stiffness[4], damping[4];       /* of the inner groove's centre, by rows [N/m], [N s/m] */
+    double inner_load, outer_load;         /* [N] */
+    double inner_angle, outer_angle;       /* contact angles [rad] */
+    double inner_approach, outer_approach; /* below zero a gap, or a film [m] */
+} ehd_ball;
+
+/* The balls of a bearing. All zero before the first call: they start from nothing. Answers hang on where they started
+ * by what Newton's method leaves, 1e-13 of the load. */
+typedef struct ehd_balls {
+    double rest; /* approach at the outer raceway under the centrifugal load alone [m] */
+    ehd_ball ball[EHD_BALLS];
+} ehd_balls;
+
+/* Force on the inner ring, and its derivatives at speeds that are held: stiffness = -dforce/dpose at rest, damping =
+ * -dforce/dvelocity, by rows; and the speed of the cage by which that is [rad/s]. */
+typedef struct ehd_bearing_force {
+    double force[6], stiffness[6][6], damping[6][6];
+    double cage_speed;
+} ehd_bearing_force;
+
+/* Make a bearing.
+ *
+ * clearance: diametral clearance in force [m], < 0 for preload; EHD_CLEARANCE is the one of the export. mirrored: 0, or
+ * 1 for an angular contact bearing that stands the other way round, and carries an axial force on the inner ring in -x. */
+int ehd_bearing_make(ehd_bearing *bearing, double clearance, int mirrored);
+
+/* Laws at an entrainment speed [m/s], which is EHD_ENTRAINMENT |inner_speed - outer_speed|. Films are cubics of ln u
+ * between the speeds of the table, and are held beyond. Does nothing where the speed is that of the last call. */
+int ehd_prepare(ehd_law *law, double u);
+
+/* Speed or angle of the cage in pure rolling at the nominal contact angle, by those of the rings. */
+double ehd_cage(double inner, double outer);
+
+/* Force, stiffness and damping at speeds of the rings and of the cage [rad/s] and a prepared law. velocity may be a null
+ * pointer: at rest. The force is linear in it. */
+int ehd_bearing_at(const ehd_bearing *bearing, const ehd_law *law, ehd_balls *balls, const double pose[6],
+                   const double velocity[6], double cage_angle, double cage_speed, double outer_speed,
+                   ehd_bearing_force *result);
+
+/* The same with the law of the speeds of the rings, and with a cage that turns as pure rolling at the mean contact
+ * angles asks for, found to 1e-8 of the faster ring's speed. */
+int ehd_bearing_call(const ehd_bearing *bearing, ehd_law *law, ehd_balls *balls, const double pose[6],
+                     const double velocity[6], double cage_angle, double inner_speed, double outer_speed,
+                     ehd_bearing_force *result);
+
+/* Sizes in bytes, for callers in other languages. */
+size_t ehd_bearing_size(void);
+size_t ehd_law_size(void);
+size_t ehd_balls_size(void);
+
+/* Name of the gravest part of a status, for messages; never null. */
+const char *ehd_status_text(int status);

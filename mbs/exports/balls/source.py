@@ -1,0 +1,182 @@
+"""A ball bearing in C: templates, in which its mathematics is, and the numbers of one bearing."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import InputError
+from ehdmaps.exports.c.text import comment, define, number, renamed, template
+from ehdmaps.outputs import Kind, has_mark, write_text
+from mbs.bearings.balls.ball_bearing import BallForce
+from mbs.bearings.balls.ball_kernel import NormalLaw
+from mbs.exports.balls.speed_laws import SpeedLaws
+
+SOURCE = Kind("a ball bearing in C made by ehdmaps", (".c",), has_mark)
+HEADER = Kind("the header of a ball bearing in C made by ehdmaps", (".h",), has_mark)
+
+_BODIES = ("ball_law", "ball_balance", "ball_bearing")
+_INCLUDES = ("float.h", "math.h", "stddef.h", "string.h")
+_WORDS = re.compile(r"[^a-z0-9_]+")
+
+
+def prefix_of(path: str | Path) -> str:
+    """Prefix of all names in the sources of a file, by its own: `front.c` has `front_bearing_call`.
+
+    Parameters
+    ----------
+    path : str or Path
+        File of the source.
+    """
+    name = _WORDS.sub("_", Path(path).stem.lower())
+    return name if name[:1].isalpha() else f"ball_{name}"
+
+
+def header_of(path: str | Path) -> Path:
+    """File of the header beside a source.
+
+    Parameters
+    ----------
+    path : str or Path
+        File of the source.
+    """
+    return Path(path).with_suffix(".h")
+
+
+def write_source(path: str | Path, force: BallForce, laws: SpeedLaws, header: Sequence[str]) -> str:
+    """Write source and header, and return what was written in words.
+
+    Parameters
+    ----------
+    path : str or Path
+        File of the source; the header goes beside it.
+    force : BallForce
+        Geometry and material.
+    laws : SpeedLaws
+        Laws of the contacts.
+    header : sequence of str
+        Lines that say where it comes from.
+
+    Raises
+    ------
+    InputError
+        If a file may not be replaced or cannot be written.
+    """
+    texts = source_texts(force, laws, header, prefix_of(path), header_of(path).name)
+    write_text(header_of(path), texts["h"], HEADER)
+    write_text(path, texts["c"], SOURCE)
+    return f"{path}, {header_of(path)}: written (C99, names begin with {prefix_of(path)}_)"
+
+
+def source_texts(
+    force: BallForce, laws: SpeedLaws, header: Sequence[str], prefix: str = "ehd", include: str = "ball_bearing.h"
+) -> dict[str, str]:
+    """Texts of the header, `h`, and of the source, `c`.
+
+    Parameters
+    ----------
+    force : BallForce
+        Geometry and material.
+    laws : SpeedLaws
+        Laws of the contacts.
+    header : sequence of str
+        Lines that say where it comes from, put first.
+    prefix : str
+        What all public names begin with, in lower case.
+    include : str
+        Name of the header.
+
+    Raises
+    ------
+    InputError
+        For a bearing that is mirrored already: the source does that.
+    """
+    if force.geometry.contact_angle < 0.0:
+        raise InputError(
+            "export of a ball bearing, contact angle: got one below zero; allowed: >= 0; the source mirrors it"
+        )
+    banner, guard = comment(header), "EHD_BALL_BEARING_H"
+    top = [
+        banner, f"#ifndef {guard}\n#define {guard}\n\n#include <stddef.h>\n",
+        _public_numbers(force, laws),
+        '#ifdef __cplusplus\nextern "C" {\n#endif\n',
+        template("mbs.exports.balls", "ball_bearing.h"),
+        f"#ifdef __cplusplus\n}}\n#endif\n\n#endif /* {guard} */\n",
+    ]  # fmt: skip
+    source = [
+        banner, "".join(f"#include <{name}>\n" for name in _INCLUDES) + "\n#include \"@HEADER@\"\n",
+        _private_numbers(force, laws),
+        *(template("mbs.exports.balls", f"{body}.c") for body in _BODIES),
+    ]  # fmt: skip
+    texts = {"h": "\n".join(top), "c": "\n".join(source)}
+    return {name: renamed(text, prefix).replace("@HEADER@", include) for name, text in texts.items()}
+
+
+def _public_numbers(force: BallForce, laws: SpeedLaws) -> str:
+    """Constants that callers may read."""
+    geometry = force.geometry
+    slow, fast = (laws.speeds[0], laws.speeds[-1]) if laws.speeds.size else (0.0, math.inf)
+    return "".join(
+        (
+            define("EHD_BALLS", geometry.balls, "number of balls"),
+            define("EHD_BALL_DIAMETER", geometry.ball_diameter, "[m]"),
+            define("EHD_PITCH_DIAMETER", geometry.pitch_diameter, "[m]"),
+            define("EHD_CONTACT_ANGLE", geometry.contact_angle, "nominal [rad]"),
+            define("EHD_CLEARANCE", geometry.clearance, "diametral clearance of the export [m]"),
+            define("EHD_CAGE_INNER", 0.5 * (1.0 - geometry.gamma), "turns of the cage for each of the inner ring"),
+            define("EHD_CAGE_OUTER", 0.5 * (1.0 + geometry.gamma), "turns of the cage for each of the outer ring"),
+            define("EHD_ENTRAINMENT", geometry.entrainment_speed(1.0, 0.0), "entrainment speed [m/rad], see below"),
+            define("EHD_SPEEDS", int(laws.speeds.size), "entrainment speeds of the films; 0 for dry contacts"),
+            define("EHD_LOWEST_SPEED", float(slow), "the first of them [m/s]"),
+            define("EHD_HIGHEST_SPEED", float(fast), "the last of them [m/s]"),
+            define("EHD_ROWS", int(laws.tables.shape[2]), "nodes of approaches of a film; 0 for dry contacts"),
+        )
+    )
+
+
+def _private_numbers(force: BallForce, laws: SpeedLaws) -> str:
+    """Constants and tables that only the functions read."""
+    geometry, shape, masses = force.geometry, force.shape, force.masses.tolist()
+    parts = [
+        define("GROOVE_DISTANCE", geometry.groove_distance, "of the grooves' centres where balls just touch [m]")
+        + define("INNER_ARM", shape.inner_arm, "of the inner groove's centre and the centre of a ball that touches [m]")
+        + define("OUTER_ARM", shape.outer_arm, "the same of the outer one [m]")
+        + define("CENTRIFUGAL", masses[0], "centrifugal load of a ball over the square of the cage's speed [kg m]")
+        + define("GYROSCOPIC", masses[1], "the same of its gyroscopic moment [kg m2]"),
+        _contact("INNER", laws.inner) + _contact("OUTER", laws.outer),
+    ]
+    if not laws.dry:
+        parts.append(
+            define("MOST_LOAD", laws.highest, "load up to which films were made [N]")
+            + define("FIRST_LOG_SPEED", math.log(laws.speeds[0]), "ln of the first speed")
+            + define("SPEEDS_PER_LOG", laws.per_log, "speeds in a unit of ln u")
+        )
+        for side, name in enumerate(("INNER", "OUTER")):
+            places, tables = laws.places[:, side], laws.tables[:, side]
+            parts += [
+                f"/* Centre and scale at each speed. */\nstatic const double {name}_PLACE[EHD_SPEEDS][2] = {{\n"
+                + "".join(f"    {{{number(c)}, {number(s)}}},\n" for c, s in places.tolist())
+                + "};\n",
+                f"/* By speed and node: ln g and its slope, ln c and its slope. */\n"
+                f"static const double {name}_TABLE[EHD_SPEEDS][EHD_ROWS][4] = {{\n"
+                + "".join(_table(table) for table in tables)
+                + "};\n",
+            ]
+    return "\n".join(parts)
+
+
+def _table(table: FloatArray) -> str:
+    """A table at one speed."""
+    lines = ",\n".join("    {" + ", ".join(map(number, row)) + "}" for row in table.tolist())
+    return f"    {{\n{lines}}},\n"
+
+
+def _contact(name: str, law: NormalLaw) -> str:
+    """Numbers of a contact, without its table."""
+    values = ", ".join(
+        map(number, (law.coefficient, law.damping, law.damping_time, law.centre, law.scale, law.first, law.step))
+    )
+    return f"static const ehd_contact {name} = {{{values}, {{{{0.0}}}}}};\n"

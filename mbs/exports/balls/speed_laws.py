@@ -1,0 +1,189 @@
+"""Laws of ball contacts over the entrainment speed: one table of approaches and speeds, as programs in C read it.
+
+A law at one speed is a table over z = asinh((approach - centre)/scale). Here centre and scale go with the film offset
+h of the speed at one load, centre = -h and scale = h/2, so that the same nodes of z are the same places of all films,
+and ln g and ln c change evenly with ln u. Between speeds that are even in ln u all is a polynomial through the four
+nearest ones.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ehdmaps.arrays import FloatArray
+from mbs.bearings.balls.ball_block import on_grid
+from mbs.bearings.balls.ball_kernel import NormalLaw, contact, load_approach
+from mbs.bearings.balls.laws import NODES, BallLaw
+
+STEP = 0.2
+"""Largest distance of two speeds in ln u: with it loads are right within some 1e-4 between them."""
+
+NEIGHBOURS = 4
+"""Most speeds of the table that a place between them takes; as in `ball_law.c`."""
+
+LIGHT = 1e-2
+"""Part of the highest load from which on the error between speeds is stated."""
+
+_SCALE = 0.5
+_BEYOND = 3.0
+
+
+@dataclass(frozen=True, eq=False)
+class SpeedLaws:
+    """Laws of both contacts over the speed.
+
+    Attributes
+    ----------
+    inner, outer : NormalLaw
+        Coefficient and nodes of z, which all speeds share; the table is that of the first speed.
+    speeds : array (n,)
+        Entrainment speeds, even in the logarithm [m/s]; none for dry contacts.
+    tables : array (n, 2, nodes, 4)
+        Tables of the inner and the outer contact.
+    places : array (n, 2, 2)
+        Their centres and scales [m].
+    highest : float
+        Load up to which all of them were made [N].
+    """
+
+    inner: NormalLaw
+    outer: NormalLaw
+    speeds: FloatArray
+    tables: FloatArray
+    places: FloatArray
+    highest: float
+
+    @property
+    def dry(self) -> bool:
+        """True where contacts have no films."""
+        return self.speeds.size == 0
+
+    @cached_property
+    def per_log(self) -> float:
+        """Speeds in a unit of ln u; 0 where there is one."""
+        count = self.speeds.size
+        return float((count - 1) / math.log(self.speeds[-1] / self.speeds[0])) if count > 1 else 0.0
+
+    def at(self, entrainment_speed: float) -> BallLaw:
+        """Laws at a speed, as the C has them.
+
+        Parameters
+        ----------
+        entrainment_speed : float
+            Speed [m/s], of either sign; held at the ends of the table.
+        """
+        if self.dry:
+            return BallLaw("dry", self.inner, self.outer)
+        speed = min(max(abs(entrainment_speed), float(self.speeds[0])), float(self.speeds[-1]))
+        first, weights = _weights(math.log(speed / self.speeds[0]) * self.per_log, self.speeds.size)
+        chosen = slice(first, first + weights.size)
+        tables, places = (np.tensordot(weights, one[chosen], 1) for one in (self.tables, self.places))
+        inner, outer = (
+            side._replace(centre=float(place[0]), scale=float(place[1]), table=np.ascontiguousarray(table))
+            for side, table, place in zip((self.inner, self.outer), tables, places, strict=True)
+        )
+        return BallLaw("films", inner, outer, (0.0, self.highest))
+
+
+def dry_speed_laws(law: BallLaw) -> SpeedLaws:
+    """Laws without films.
+
+    Parameters
+    ----------
+    law : BallLaw
+        The dry law.
+    """
+    return SpeedLaws(law.inner, law.outer, np.zeros(0), np.zeros((0, 2, 0, 4)), np.zeros((0, 2, 2)), math.inf)
+
+
+def film_speed_laws(films: Callable[[float], BallLaw], slowest: float, fastest: float) -> SpeedLaws:
+    """Laws with films from one speed to another.
+
+    Parameters
+    ----------
+    films : callable
+        Law with the films of an entrainment speed [m/s].
+    slowest, fastest : float
+        Entrainment speeds [m/s], > 0. Where they are alike the law is that of the speed, on its own nodes.
+
+    Raises
+    ------
+    SolverError
+        If a speed has no films.
+    """
+    count = 1 if fastest == slowest else max(NEIGHBOURS, 1 + math.ceil(math.log(fastest / slowest) / STEP))
+    speeds = np.geomspace(slowest, fastest, count)
+    laws = [films(float(speed)) for speed in speeds]
+    lowest, highest = max(law.loads[0] for law in laws), min(law.loads[1] for law in laws)
+    inner, inner_tables, inner_places = _side([law.inner for law in laws], lowest, highest)
+    outer, outer_tables, outer_places = _side([law.outer for law in laws], lowest, highest)
+    return SpeedLaws(
+        inner,
+        outer,
+        speeds,
+        np.stack((inner_tables, outer_tables), axis=1),
+        np.stack((inner_places, outer_places), axis=1),
+        highest,
+    )
+
+
+def error_between(laws: SpeedLaws, films: Callable[[float], BallLaw]) -> tuple[float, float, float]:
+    """Largest relative errors of load, stiffness and damping in the middles between the speeds of a table.
+
+    Loads are from `LIGHT` of the highest one to that.
+
+    Parameters
+    ----------
+    laws : SpeedLaws
+        The table, with films.
+    films : callable
+        What it was made of.
+    """
+    worst = np.zeros(3)
+    for speed in np.sqrt(laws.speeds[1:] * laws.speeds[:-1]).tolist():
+        found, wanted = laws.at(speed), films(speed)
+        for name in ("inner", "outer"):
+            one, other = getattr(found, name), getattr(wanted, name)
+            for load in np.geomspace(LIGHT, 1.0, 25) * laws.highest:
+                approach = load_approach(other, float(load))
+                ratio = np.array(contact(one, approach)) / np.array(contact(other, approach))
+                worst = np.maximum(worst, np.abs(ratio - 1.0))
+    load, stiffness, damping = worst.tolist()
+    return load, stiffness, damping
+
+
+def _weights(place: float, speeds: int) -> tuple[int, FloatArray]:
+    """First neighbour of a place in steps, and the weights of the polynomial through it and the next ones."""
+    count = min(speeds, NEIGHBOURS)
+    first = min(max(math.floor(place) - (count // 2 - 1), 0), speeds - count)
+    weights = np.ones(count)
+    for i in range(count):
+        for k in range(count):
+            if k != i:
+                weights[i] *= (place - first - k) / (i - k)
+    return first, weights
+
+
+def _side(laws: list[NormalLaw], lowest: float, highest: float) -> tuple[NormalLaw, FloatArray, FloatArray]:
+    """Nodes, tables and places of one contact at all speeds."""
+    if len(laws) == 1:
+        return laws[0], laws[0].table[None], np.array([[laws[0].centre, laws[0].scale]])
+    middle, ends = math.sqrt(lowest * highest), (lowest, _BEYOND * highest)
+    offsets = [(middle / law.coefficient) ** (2.0 / 3.0) - load_approach(law, middle) for law in laws]
+    places = np.array([[-offset, _SCALE * offset] for offset in offsets])
+    reach = [
+        math.asinh((load_approach(law, load) - centre) / scale)
+        for law, (centre, scale) in zip(laws, places.tolist(), strict=True)
+        for load in ends
+    ]
+    first, tables = min(reach), np.zeros((len(laws), NODES, 4))
+    step = (max(reach) - first) / (NODES - 1)
+    grids = [law._replace(centre=c, scale=s, first=first, step=step) for law, (c, s) in zip(laws, places, strict=True)]
+    for law, grid, table in zip(laws, grids, tables, strict=True):
+        on_grid(law, grid, table)
+    return grids[0]._replace(table=tables[0]), tables, places

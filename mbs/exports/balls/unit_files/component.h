@@ -1,0 +1,87 @@
+/* ---------------------------------------------------------------------------------------------------------------------
+ * A ball bearing as a component of a simulation, whatever the version of the interface: variables by number, the force
+ * that follows from them, its directional derivatives. There are no states.
+ * ------------------------------------------------------------------------------------------------------------------ */
+#ifndef COMPONENT_H
+#define COMPONENT_H
+
+#include "ball_bearing.h"
+#include "identity.h"
+
+/* The variables, by their value references. */
+enum {
+    TIME = 0,
+    POSE_X, POSE_Y, POSE_Z, POSE_THETA_Y, POSE_THETA_Z,                     /* of the inner ring [m], [rad] */
+    VELOCITY_X, VELOCITY_Y, VELOCITY_Z, VELOCITY_THETA_Y, VELOCITY_THETA_Z, /* their rates */
+    INNER_ANGLE, OUTER_ANGLE,                                               /* spins of the rings [rad] */
+    INNER_SPEED, OUTER_SPEED,                                               /* their rates [rad/s] */
+    CLEARANCE,                                                              /* diametral [m]; a parameter */
+    MIRRORED,                                                               /* 0 or 1; a parameter */
+    FORCE_X, FORCE_Y, FORCE_Z, MOMENT_Y, MOMENT_Z,                          /* on the inner ring [N], [N m] */
+    VARIABLES
+};
+
+#define FIRST_INPUT POSE_X
+#define FIRST_OUTPUT FORCE_X
+#define OUTPUTS (VARIABLES - FIRST_OUTPUT)
+
+/* Films have no memory. */
+#define FILMS 0
+#define FIRST_STATE VARIABLES
+#define FIRST_RATE VARIABLES
+#define REFERENCES VARIABLES
+#define NOMINAL_STATE 1.0
+
+/* All that a component has to remember. */
+typedef struct snapshot {
+    double values[VARIABLES];
+} snapshot;
+
+/* What a component remembers, and what it has found from it. */
+typedef struct component {
+    snapshot now;
+    int stale;  /* whether outputs are older than inputs */
+    int status; /* of the last call, see ball_bearing.h */
+    int made;   /* whether the bearing is that of the parameters */
+    ehd_bearing bearing;
+    ehd_law law;
+    ehd_balls balls;
+    ehd_bearing_force result;
+} component;
+
+/* A component with the values at its start; null without memory. */
+component *component_make(void);
+
+/* Go back to the start. */
+void component_reset(component *of);
+
+/* Go back, or on, to a state that was kept. */
+void component_restore(component *of, const snapshot *kept);
+
+/* The start is over. */
+int component_begin(component *of);
+
+/* A step of co-simulation over a time [s]: the inputs of now are those of its end. Returns the status. */
+int component_step(component *of, double step);
+
+/* Bring the outputs up to date. Returns the status; outputs are NaN where it refuses. */
+int component_update(component *of);
+
+/* Whether a value may be set, and is finite; sets it. */
+int component_set(component *of, unsigned reference, double value);
+
+/* Whether a value is there; gives it. Outputs want component_update first. */
+int component_get(const component *of, unsigned reference, double *value);
+
+/* Whether a variable has derivatives: outputs. */
+int component_is_unknown(unsigned reference);
+
+/* Derivative of an output by an input. By pose and velocity it is -K and -C, at speeds that are held, that of the cage
+ * included; by spins, speeds and clearance it is a quotient of differences. Returns a status; the derivative is NaN where
+ * that refuses, and zero by variables that have no part in it. */
+int component_derivative(component *of, unsigned unknown, unsigned known, double *derivative);
+
+/* What to say of a status, with the values that led to it; into a text of so many characters. */
+void component_message(const component *of, int status, char *text, size_t size);
+
+#endif
