@@ -19,6 +19,7 @@
 `bearing_block`        compiled runs with slow films or dry contacts
 `memory_kernel`        slices whose films have a memory: one step in time
 `memory_block`         compiled runs with such films
+`tapered`              tapered roller bearings: five freedoms, rollers between cup, cone and rib
 `balls`                ball bearings: five freedoms, two contact angles a ball, the speed of the balls
 =====================  ================================================================================================
 

@@ -34,7 +34,7 @@ from ehdmaps.physics.approach import ISO_LINE_CONSTANT, STEEL_REDUCED_MODULUS, S
 from ehdmaps.physics.contact import LineContact, unilateral_force
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
-from ehdmaps.physics.solids import reduced_modulus
+from ehdmaps.physics.solids import Material, reduced_modulus
 from ehdmaps.physics.surface import SMOOTH, Surface
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.slice_table import CELLS, POWER, ROWS, LawNumbers, fixed_tuple, tabulate, write_film
@@ -240,11 +240,23 @@ def hertz(bearing: Bearing, damping: float = 0.0, damping_time: float = 0.0) -> 
     >>> round(float(law.load(10e-6)), 1)
     2392.6
     """
-    length_mm = 1e3 * bearing.geometry.roller_length
-    stiffer = reduced_modulus(bearing.material, bearing.material) / STEEL_REDUCED_MODULUS
-    coefficient = ISO_LINE_CONSTANT * length_mm ** (8.0 / 9.0) * 1e3**_EXPONENT * stiffer
+    coefficient = roller_coefficient(bearing.geometry.roller_length, bearing.material)
     c, time = _number("hertz", "damping", damping), _number("hertz", "damping_time", damping_time)
     return PowerLaw("hertz", "series", coefficient, _EXPONENT, 0.5 * c, time)
+
+
+def roller_coefficient(length: float, material: Material) -> float:
+    """Load of a dry roller at a total approach of 1 m after ISO 16281 [N/m^(10/9)], see `hertz`.
+
+    Parameters
+    ----------
+    length : float
+        Effective length of the roller [m].
+    material : Material
+        Material of rollers and rings.
+    """
+    stiffer = reduced_modulus(material, material) / STEEL_REDUCED_MODULUS
+    return ISO_LINE_CONSTANT * (1e3 * length) ** (8.0 / 9.0) * 1e3**_EXPONENT * stiffer
 
 
 def constant(stiffness: float, damping: float = 0.0) -> PowerLaw:

@@ -1,0 +1,7 @@
+"""Tapered roller bearings: five freedoms, quasi-static, rollers between cup, cone and rib in slices.
+
+=====================  ================================================================================================
+`tapered_kernel`       the balance of each roller, and the sums over rollers: force, stiffness, damping
+`tapered_bearing`      the force element; loads of the rollers
+=====================  ================================================================================================
+"""

@@ -1,0 +1,390 @@
+"""A tapered roller bearing as a force element with five freedoms: force, stiffness, damping by the pose of its ring.
+
+Frame O sits in the plane of the middles of the rollers, x along the axis. Pose and signs are those of
+`mbs.bearings.balls.ball_bearing`; the pose zero has all contacts just touch, without clearance: what presses or loosens
+them is an axial displacement. A positive contact angle carries +x.
+
+Quasi-static and dry: each roller is in balance between cup, cone and rib with its centrifugal load and gyroscopic
+moment, moves along and across the contacts and tilts in its plane. Both raceways carry after ISO/TS 16281, in slices,
+half of the total approach each, with the profile on each side; the rib is a contact of Hertz. Speeds are held in the
+derivatives. Left out: friction, skewing, the cage, how slices of a roller press on each other, bending of the rings.
+
+References
+----------
+ISO/TS 16281:2008. J. M. de Mul, J. M. Vree, D. A. Maas, Journal of Tribology 111 (1989) 149.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.compiled import in_python
+from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
+from ehdmaps.physics.solids import STEEL, Material
+from ehdmaps.physics.surface import iso_profile
+from mbs.bearings.laws import roller_coefficient
+from mbs.bearings.tapered.tapered_kernel import (
+    COLUMNS,
+    NOT_FINITE,
+    TOO_FAR,
+    RollerLaws,
+    TaperedShape,
+    roller_work,
+    tapered_force,
+)
+from mbs.model.elements import Excitation, Forces, OnRings, Operation, Port
+
+FASTEST = 2e4
+"""Largest accepted speed of a ring [rad/s]."""
+
+SLICES, MOST_SLICES = 21, 1000
+
+HARMONICS = 3
+"""Multiples of the passing frequency of the rollers that are worth following."""
+
+FARTHEST = 0.1
+"""Largest accepted displacement over the roller's diameter: bodies are linear."""
+
+
+@dataclass(frozen=True, eq=False)
+class TaperedLoads:
+    """State of all rollers at one pose.
+
+    Attributes
+    ----------
+    angle : array (Z,)
+        Angles of the rollers in O, from y towards z, within -pi to pi [rad].
+    load : array (3, Z)
+        Loads of cone, cup and rib [N].
+    centre : array (2, Z)
+        Places along the roller where cone and cup carry, from its middle towards the apex [m].
+    slices : array (2, Z, n)
+        Loads per length of the slices of cone and cup [N/m].
+    """
+
+    angle: FloatArray
+    load: FloatArray
+    centre: FloatArray
+    slices: FloatArray
+
+
+class TaperedForce:
+    """Force, stiffness and damping of a tapered roller bearing.
+
+    Parameters
+    ----------
+    geometry : TaperedGeometry
+        Geometry of the bearing.
+    damping : float
+        Constant damping of each contact of a roller while it carries load [N s/m], >= 0.
+    damping_time : float
+        Damping over stiffness of each contact [s], >= 0.
+    profile : {"iso", "straight"}
+        Profile of the rollers.
+    slices : int
+        Slices of a roller.
+    material : Material
+        Material of rollers and rings; its density gives them mass.
+    compiled : bool
+        Whether the compiled kernel is called, or the same in Python.
+
+    Raises
+    ------
+    InputError
+        For damping, profile or slices that are none.
+
+    Notes
+    -----
+    An object is for one thread: it keeps the places of the rollers as a start for the next call.
+
+    Examples
+    --------
+    >>> force = TaperedForce(TaperedGeometry("32208", 10e-3, 15e-3, 60e-3, 17, math.radians(14.0)))
+    >>> f, K, C = force([10e-6, 0.0, 0.0, 0.0, 0.0, 0.0])
+    >>> bool(f[0] < 0.0), bool(K[1, 1] > 5.0 * K[0, 0])
+    (True, True)
+    """
+
+    def __init__(
+        self,
+        geometry: TaperedGeometry,
+        damping: float = 0.0,
+        damping_time: float = 0.0,
+        *,
+        profile: str = "iso",
+        slices: int = SLICES,
+        material: Material = STEEL,
+        compiled: bool = True,
+    ) -> None:
+        problems = [
+            f"tapered bearing, {name}: got {value!r:.60} {unit}; allowed: finite and >= 0"
+            for name, value, unit in (("damping", damping, "N s/m"), ("damping_time", damping_time, "s"))
+            if not (isinstance(value, int | float) and math.isfinite(value) and value >= 0.0)
+        ]
+        if profile not in ("iso", "straight"):
+            problems.append(f"tapered bearing, profile: got {profile!r:.60}; allowed: iso, straight")
+        if not isinstance(slices, int) or isinstance(slices, bool) or not 2 <= slices <= MOST_SLICES:
+            problems.append(
+                f"tapered bearing, slices: got {slices!r:.60}; allowed: a whole number from 2 to {MOST_SLICES}"
+            )
+        if problems:
+            raise InputError(problems)
+        self.geometry, self.material = geometry, material
+        self.damping, self.damping_time, self.profile = float(damping), float(damping_time), profile
+        length, diameter, half = geometry.roller_length, geometry.roller_diameter, geometry.half_cone_angle
+        self.positions = ((np.arange(slices) + 0.5) / slices - 0.5) * length
+        depths = iso_profile(self.positions, diameter, length) if profile == "iso" else np.zeros(slices)
+        places = 2.0 * math.pi * np.arange(geometry.rollers) / geometry.rollers
+        way = -1.0 if geometry.contact_angle < 0.0 else 1.0
+        phi, theta = geometry.rib_angle, geometry.axis_angle
+        rib = geometry.rib_contact(material)
+        reach = 0.0 if rib is None else (geometry.end_sphere - 0.5 * length) * math.sin(phi)
+        self.shape = TaperedShape(
+            pitch_radius=0.5 * geometry.pitch_diameter,
+            cup=(way * math.sin(geometry.cup_angle), math.cos(geometry.cup_angle)),
+            cone=(way * math.sin(geometry.cone_angle), math.cos(geometry.cone_angle)),
+            rib=(way * math.cos(theta - phi), -math.sin(theta - phi)),
+            rib_lever=way * reach,
+            levers=way * (self.positions / math.cos(half) - 0.5 * diameter * math.sin(half)),
+            profile=depths,
+            cos=np.cos(places),
+            sin=np.sin(places),
+            most_travel=FARTHEST * diameter,
+            most_tilt=2.0 * FARTHEST * diameter / geometry.pitch_diameter,
+        )
+        # each raceway takes half of the total approach at the same load
+        single = 2.0 ** (10.0 / 9.0) * roller_coefficient(length, material)
+        self.laws = RollerLaws(single, single, 0.0 if rib is None else rib.coefficient, self.damping, self.damping_time)
+        self._angles, self._way = places, way
+        self._kernel = tapered_force if compiled else in_python(tapered_force)
+        self._places = np.full((geometry.rollers, 3), np.nan)
+        self._rollers = np.zeros((geometry.rollers, COLUMNS))
+        self._out = np.zeros(6), np.zeros((6, 6)), np.zeros((6, 6))
+        self._work = roller_work()
+
+    def speed_loads(
+        self, inner_speed: float, outer_speed: float = 0.0, cage_speed: float | None = None
+    ) -> tuple[float, float]:
+        """Centrifugal load of a roller [N], and its gyroscopic moment from the axis outwards [N m].
+
+        Parameters
+        ----------
+        inner_speed, outer_speed : float
+            Speeds of the rings [rad/s].
+        cage_speed : float, optional
+            Speed of the cage [rad/s]; that of pure rolling if left out.
+
+        Raises
+        ------
+        InputError
+            For speeds that are no finite numbers, or beyond `FASTEST`.
+        """
+        geometry = self.geometry
+        cage = geometry.cage_speed(inner_speed, outer_speed) if cage_speed is None else cage_speed
+        if not all(abs(speed) <= FASTEST for speed in (inner_speed, outer_speed, cage)):
+            raise InputError(
+                f"tapered bearing, speeds: got {inner_speed!r}, {outer_speed!r} and {cage!r} rad/s; allowed: finite "
+                f"numbers, at most {FASTEST:g} rad/s either way"
+            )
+        mass, diameter = geometry.roller_mass(self.material), geometry.roller_diameter
+        along = 0.125 * mass * diameter**2
+        across = 0.5 * along + mass * geometry.roller_length**2 / 12.0
+        sine, cosine = math.sin(geometry.axis_angle), math.cos(geometry.axis_angle)
+        spin = geometry.roller_speed(inner_speed, outer_speed) + cage * cosine
+        moment = cage * sine * (along * spin - across * cage * cosine)
+        return 0.5 * mass * geometry.pitch_diameter * cage**2, self._way * moment
+
+    def __call__(
+        self,
+        pose: npt.ArrayLike,
+        velocity: npt.ArrayLike | None = None,
+        *,
+        cage_angle: float = 0.0,
+        inner_speed: float = 0.0,
+        outer_speed: float = 0.0,
+        cage_speed: float | None = None,
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Force on the inner ring, and its derivatives.
+
+        Parameters
+        ----------
+        pose, velocity : array (6,)
+            Pose and velocity of the inner ring in O [m], [rad], [m/s], [rad/s]; at rest if there is no velocity.
+            Damping is that of small velocities: the force is linear in them.
+        cage_angle : float
+            Angle of the first roller, from y towards z [rad].
+        inner_speed, outer_speed : float
+            Speeds of the rings [rad/s].
+        cage_speed : float, optional
+            Speed of the cage [rad/s]; that of pure rolling if left out.
+
+        Returns
+        -------
+        f, K, C : arrays (6,), (6, 6), (6, 6)
+            Force and moments [N], [N m] in O about the centre of the inner ring, K = -df/dpose at rest,
+            C = -df/dvelocity.
+
+        Raises
+        ------
+        InputError
+            For values that are no finite numbers, and poses or speeds beyond reason.
+        AnalysisError
+            Where the balance of a roller is not found.
+        """
+        self._evaluated(pose, cage_angle, inner_speed, outer_speed, cage_speed)
+        force, stiffness, damping = (array.copy() for array in self._out)
+        if velocity is not None:
+            rate = _six(velocity, "velocity")
+            if not np.all(np.isfinite(rate)):
+                raise InputError(f"tapered bearing, velocity: got {rate.tolist()}; allowed: finite numbers")
+            force -= damping @ rate
+        return force, stiffness, damping
+
+    def rollers(
+        self,
+        pose: npt.ArrayLike,
+        *,
+        cage_angle: float = 0.0,
+        inner_speed: float = 0.0,
+        outer_speed: float = 0.0,
+        cage_speed: float | None = None,
+    ) -> TaperedLoads:
+        """Loads of all rollers; arguments and errors as of a call.
+
+        Parameters
+        ----------
+        pose : array (6,)
+            Pose of the inner ring in O.
+        cage_angle, inner_speed, outer_speed, cage_speed : float
+            Angle of the cage [rad] and speeds [rad/s], see `TaperedForce.__call__`.
+        """
+        self._evaluated(pose, cage_angle, inner_speed, outer_speed, cage_speed)
+        rows, shape = self._rollers.T.copy(), self.shape
+        angle = np.angle(np.exp(1j * (self._angles + cage_angle)))
+        place, ring = rows[9:12], rows[12:15]
+        slices = np.zeros((2, angle.size, self.positions.size))
+        for side, (normal, moved) in enumerate(((shape.cone, ring - place), (shape.cup, place))):
+            approach = normal[0] * moved[0] + normal[1] * moved[1]
+            depth = approach[:, None] + moved[2][:, None] * shape.levers - shape.profile
+            each = (self.laws.cone, self.laws.cup)[side] / self.geometry.roller_length
+            slices[side] = each * np.maximum(depth, 0.0) ** (10.0 / 9.0)
+        half, diameter = self.geometry.half_cone_angle, self.geometry.roller_diameter
+        centre = (self._way * rows[6:8] + 0.5 * diameter * math.sin(half)) * math.cos(half)
+        return TaperedLoads(angle, rows[3:6], np.where(rows[3:5] > 0.0, centre, 0.0), slices)
+
+    def _evaluated(
+        self, pose: npt.ArrayLike, cage_angle: float, inner_speed: float, outer_speed: float, cage_speed: float | None
+    ) -> None:
+        """Call the kernel, which writes into the arrays of this object."""
+        place = _six(pose, "pose")
+        centrifugal, moment = self.speed_loads(inner_speed, outer_speed, cage_speed)
+        loads = np.array([0.0, centrifugal, moment])
+        arguments: tuple[Any, ...] = (loads, self.shape, self.laws, *self._out, self._places, self._rollers, self._work)
+        found = self._kernel(place, float(cage_angle), *arguments)
+        if found < 0:
+            self._places[:] = np.nan
+            self._refuse(found, place, cage_angle)
+
+    def _refuse(self, found: int, pose: FloatArray, cage_angle: float) -> None:
+        """Say what is wrong."""
+        if found == NOT_FINITE:
+            raise InputError(
+                f"tapered bearing, pose: got {pose.tolist()} and the cage angle {cage_angle!r}; allowed: finite numbers"
+            )
+        if found == TOO_FAR:
+            raise InputError(
+                f"tapered bearing, pose: got x, y, z = {pose[0]:.6g}, {pose[1]:.6g}, {pose[2]:.6g} m, theta_y, theta_z "
+                f"= {pose[4]:.6g}, {pose[5]:.6g} rad; allowed: within {self.shape.most_travel:.6g} m and "
+                f"{self.shape.most_tilt:.6g} rad; check units and the step of the solver"
+            )
+        raise AnalysisError(
+            f"tapered bearing {self.geometry.name}: no balance of a roller was found at {pose.tolist()}"
+        )
+
+
+def _six(values: npt.ArrayLike, name: str) -> FloatArray:
+    """Six numbers."""
+    try:
+        array = np.ascontiguousarray(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise InputError(f"tapered bearing, {name}: got {values!r:.80}; allowed: six real numbers") from None
+    if array.shape != (6,):
+        raise InputError(f"tapered bearing, {name}: got an array of shape {array.shape}; allowed: (6,)")
+    return array
+
+
+@dataclass(frozen=True, eq=False)
+class TaperedElement(OnRings):
+    """A tapered roller bearing between an inner and an outer ring.
+
+    Attributes
+    ----------
+    name : str
+        Name for messages and results.
+    inner, outer : str
+        Places in the plane of the middles of the rollers.
+    force : TaperedForce
+        The force.
+    inner_spin, outer_spin : float
+        Speeds of the rings as multiples of the system's.
+    start_angle : float
+        Angle of the first roller from y at the beginning [rad].
+    axial_offset : float
+        Way of the inner ring along x against the outer one where both places have not moved [m]: preload by
+        displacement, or play.
+    """
+
+    name: str
+    inner: str
+    outer: str
+    force: TaperedForce
+    inner_spin: float = 1.0
+    outer_spin: float = 0.0
+    start_angle: float = 0.0
+    axial_offset: float = 0.0
+
+    @property
+    def ports(self) -> tuple[Port, ...]:
+        """Displacement of the inner ring against the outer one."""
+        return (Port(self.inner, self.outer),)
+
+    @property
+    def excitation(self) -> Excitation | None:
+        """The passing of the rollers; None for a cage that stands."""
+        order = self.force.geometry.rollers * abs(self.cage_turn)
+        return Excitation(order, HARMONICS, rank=1) if order > 0.0 else None
+
+    @cached_property
+    def cage_turn(self) -> float:
+        """Speed of the cage as a multiple of the system's."""
+        return self.force.geometry.cage_speed(self.inner_spin, self.outer_spin)
+
+    def conditions(self, operation: Operation) -> dict[str, float]:
+        """Angle of the cage and speeds, by the names that the force takes."""
+        return {
+            "cage_angle": self.start_angle + self.cage_turn * operation.angle,
+            "inner_speed": self.inner_spin * operation.speed,
+            "outer_speed": self.outer_spin * operation.speed,
+        }
+
+    def pose(self, displacement: FloatArray) -> FloatArray:
+        """Pose of the inner ring in the outer one by their displacement (6,)."""
+        pose = displacement.copy()
+        pose[0] += self.axial_offset
+        return pose
+
+    def rollers(self, displacement: FloatArray, operation: Operation) -> TaperedLoads:
+        """Loads of all rollers at rest at the displacement (6,) of the inner ring against the outer one."""
+        return self.force.rollers(self.pose(displacement), **self.conditions(operation))
+
+    def evaluate(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> Forces:
+        """Force on the inner ring, stiffness and damping, see `Element.evaluate`."""
+        return Forces(*self.force(self.pose(displacement), velocity, **self.conditions(operation)))

@@ -1,0 +1,456 @@
+"""Compiled sums over the rollers of a tapered roller bearing: force, stiffness, damping, and the place of each roller.
+
+All of a roller happens in the plane of the bearing's axis and the roller, where it has three freedoms: V = (axial,
+radial, rotation from the axis outwards), of its middle. D = (axial, radial, rotation) is what the inner ring does to
+the middle of the roller, as a rigid body. Displacements are small against the roller, so that normals stand still. A
+contact with the normal e (axial, radial) and the lever b about the middle of the roller has the approach
+
+    n.V at the cup,     n.(D - V) at the cone and at the rib,     n = (e, b),
+
+less the depth of its profile. With A and B the sums of k n n' over the contacts with the inner ring and with the outer
+one, and M = A + B, the roller is in balance where
+
+    sum Q n (cup) - sum Q n (cone, rib) = F,
+
+F its centrifugal load and gyroscopic moment: the minimum of a convex potential, found by Newton's method, with shorter
+steps where they lead beyond the minimum along them. Slow motion has
+
+    stiffness  A - A M^-1 A,        damping  (1 - S)' A_c (1 - S) + S' B_c S,     S = M^-1 A,
+
+with the dampers' sums A_c and B_c. Slices of a line carry q = C g^(10/9)/n each, the rib Q = C g^(3/2).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.compiled import njit
+from mbs.bearings.slices import power
+
+NOT_FINITE, TOO_FAR, NO_BALANCE = -1, -2, -3
+"""What `tapered_force` finds instead of an answer."""
+
+COLUMNS = 24
+"""Numbers that are kept of a roller, see `place_roller`."""
+
+_STEPS, _CUTS = 80, 40
+_BALANCE, _ROUGH = 1e-13, 1e-9
+_NOTHING = 1e-10
+"""Load [N] that is none."""
+
+_SOFT = 1e-13
+"""Stiffness, over that of a contact, that holds rollers which nothing holds."""
+
+
+class TaperedShape(NamedTuple):
+    """Numbers of a bearing that do not change.
+
+    Attributes
+    ----------
+    pitch_radius : float
+        Distance of the middles of rollers from the axis [m].
+    cup, cone, rib : (float, float)
+        Normals of the contacts: axial, radial.
+    rib_lever : float
+        Lever of the rib's normal about the middle of the roller [m].
+    levers, profile : array (n,)
+        Levers of the slices of both lines, and depths of the profile on one side [m].
+    cos, sin : array (Z,)
+        Directions of the rollers in the cage, y and z.
+    most_travel, most_tilt : float
+        Largest accepted displacement [m] and tilt [rad] of the ring.
+    """
+
+    pitch_radius: float
+    cup: tuple[float, float]
+    cone: tuple[float, float]
+    rib: tuple[float, float]
+    rib_lever: float
+    levers: FloatArray
+    profile: FloatArray
+    cos: FloatArray
+    sin: FloatArray
+    most_travel: float
+    most_tilt: float
+
+
+class RollerLaws(NamedTuple):
+    """Laws of the contacts of a roller.
+
+    Attributes
+    ----------
+    cup, cone : float
+        C of the whole roller [N/m^(10/9)].
+    rib : float
+        C of the rib [N/m^1.5]; 0 for none.
+    damping : float
+        Constant damping of each contact while it carries load [N s/m]; of lines, for the whole roller.
+    damping_time : float
+        Damping over stiffness of each contact [s].
+    """
+
+    cup: float
+    cone: float
+    rib: float
+    damping: float
+    damping_time: float
+
+
+@njit(error_model="numpy")
+def _line(
+    coefficient: float,
+    normal: tuple[float, float],
+    x: float,
+    r: float,
+    turn: float,
+    shape: TaperedShape,
+    laws: RollerLaws,
+    sums: FloatArray,
+) -> None:
+    """Sums of a line at a relative displacement: Q, Q b; k, k b, k b b; the same of c; into `sums` (8,)."""
+    sums[:] = 0.0
+    count = shape.levers.size
+    approach = normal[0] * x + normal[1] * r
+    each, damper = coefficient / count, laws.damping / count
+    for i in range(count):
+        lever = shape.levers[i]
+        g = approach + turn * lever - shape.profile[i]
+        if g <= 0.0:
+            continue
+        root = each * power(g, 1.0 / 9.0)
+        q, k = root * g, (10.0 / 9.0) * root
+        c = damper + laws.damping_time * k
+        sums[0] += q
+        sums[1] += q * lever
+        sums[2] += k
+        sums[3] += k * lever
+        sums[4] += k * lever * lever
+        sums[5] += c
+        sums[6] += c * lever
+        sums[7] += c * lever * lever
+
+
+@njit(error_model="numpy")
+def _add(normal: tuple[float, float], sums: FloatArray, first: int, matrix: FloatArray) -> None:
+    """Add k n n' of a contact to a matrix (3, 3): sums [first] k, k b, k b b."""
+    k, kb, kbb = sums[first], sums[first + 1], sums[first + 2]
+    ex, er = normal
+    matrix[0, 0] += k * ex * ex
+    matrix[0, 1] += k * ex * er
+    matrix[1, 0] += k * ex * er
+    matrix[1, 1] += k * er * er
+    matrix[0, 2] += kb * ex
+    matrix[2, 0] += kb * ex
+    matrix[1, 2] += kb * er
+    matrix[2, 1] += kb * er
+    matrix[2, 2] += kbb
+
+
+@njit(error_model="numpy")
+def _solve(m: FloatArray, b: FloatArray, out: FloatArray) -> None:
+    """Solve M out = b for a symmetric positive M (3, 3), by its Cholesky factors."""
+    l00 = math.sqrt(m[0, 0])
+    l10, l20 = m[1, 0] / l00, m[2, 0] / l00
+    l11 = math.sqrt(max(m[1, 1] - l10 * l10, 1e-30 * m[1, 1]))
+    l21 = (m[2, 1] - l20 * l10) / l11
+    l22 = math.sqrt(max(m[2, 2] - l20 * l20 - l21 * l21, 1e-30 * m[2, 2]))
+    y0 = b[0] / l00
+    y1 = (b[1] - l10 * y0) / l11
+    y2 = (b[2] - l20 * y0 - l21 * y1) / l22
+    out[2] = y2 / l22
+    out[1] = (y1 - l21 * out[2]) / l11
+    out[0] = (y0 - l10 * out[1] - l20 * out[2]) / l00
+
+
+class RollerWork(NamedTuple):
+    """Work space of a roller.
+
+    Attributes
+    ----------
+    cup, cone, rib : array (8,)
+        Sums of the contacts, see `_line`.
+    inner, whole, damped_inner, damped_outer : array (3, 3)
+        A, M, A_c, B_c.
+    rest, step, trial : array (3,)
+        Force that is left, Newton's step, a place.
+    share : array (3, 3)
+        S = M^-1 A.
+    plane : array (2, 3, 3)
+        Stiffness and damping of the roller.
+    """
+
+    cup: FloatArray
+    cone: FloatArray
+    rib: FloatArray
+    inner: FloatArray
+    whole: FloatArray
+    damped_inner: FloatArray
+    damped_outer: FloatArray
+    rest: FloatArray
+    step: FloatArray
+    trial: FloatArray
+    share: FloatArray
+    plane: FloatArray
+
+
+def roller_work() -> RollerWork:
+    """Work space for one bearing."""
+    vectors = [np.zeros(8) for _ in range(3)]
+    squares = [np.zeros((3, 3)) for _ in range(4)]
+    return RollerWork(*vectors, *squares, *(np.zeros(3) for _ in range(3)), np.zeros((3, 3)), np.zeros((2, 3, 3)))
+
+
+@njit(error_model="numpy")
+def _state(
+    d: tuple[float, float, float],
+    v: FloatArray,
+    loads: FloatArray,
+    shape: TaperedShape,
+    laws: RollerLaws,
+    w: RollerWork,
+) -> float:
+    """Contacts at a place of the roller; the force that is left in `w.rest`, and the sum of the sizes of its parts."""
+    _line(laws.cup, shape.cup, v[0], v[1], v[2], shape, laws, w.cup)
+    x, r, turn = d[0] - v[0], d[1] - v[1], d[2] - v[2]
+    _line(laws.cone, shape.cone, x, r, turn, shape, laws, w.cone)
+    w.rib[:] = 0.0
+    g = shape.rib[0] * x + shape.rib[1] * r + turn * shape.rib_lever
+    if g > 0.0 and laws.rib > 0.0:
+        root = laws.rib * math.sqrt(g)
+        k, b = 1.5 * root, shape.rib_lever
+        c = laws.damping + laws.damping_time * k
+        w.rib[0], w.rib[1], w.rib[2], w.rib[3], w.rib[4] = root * g, root * g * b, k, k * b, k * b * b
+        w.rib[5], w.rib[6], w.rib[7] = c, c * b, c * b * b
+    for i in range(2):
+        w.rest[i] = loads[i] + w.cone[0] * shape.cone[i] + w.rib[0] * shape.rib[i] - w.cup[0] * shape.cup[i]
+    w.rest[2] = loads[2] + w.cone[1] + w.rib[1] - w.cup[1]
+    return w.cup[0] + w.cone[0] + w.rib[0] + abs(loads[0]) + abs(loads[1]) + abs(loads[2]) / shape.levers[-1]
+
+
+@njit(error_model="numpy")
+def _left(w: RollerWork, length: float) -> float:
+    """Size of the force that is left [N]; moments over half of the length of the roller."""
+    return max(abs(w.rest[0]), abs(w.rest[1]), abs(w.rest[2]) / length)
+
+
+@njit(error_model="numpy")
+def place_roller(
+    d: tuple[float, float, float],
+    loads: FloatArray,
+    shape: TaperedShape,
+    laws: RollerLaws,
+    place: FloatArray,
+    w: RollerWork,
+    out: FloatArray,
+) -> bool:
+    """Find the balance of a roller; tell whether it was found.
+
+    Parameters
+    ----------
+    d : (float, float, float)
+        Displacement of the inner ring at the middle of the roller, axial and radial [m], and its rotation [rad].
+    loads : array (3,)
+        Loads F on the roller: axial, radial [N], moment [N m].
+    shape, laws : TaperedShape, RollerLaws
+        Lengths, and laws of the contacts.
+    place : array (3,)
+        V at the beginning, and then where it is; NaN for a start from nothing.
+    w : RollerWork
+        Work space; stiffness and damping in `plane`.
+    out : array (24,)
+        Written: forces on the inner ring without their sign, axial, radial [N], moment about the middle of the roller
+        [N m]; loads of cone, cup, rib [N]; where along the roller the lines carry, cone and cup [m]; the approach of
+        the rib [m]; V; D.
+    """
+    length = abs(shape.levers[-1])
+    hard = laws.cup + laws.cone
+    soft = _SOFT * 0.2 * hard
+    best = math.inf
+    for start in range(2):
+        for i in range(3):
+            # every contact shares the approach in halves: rings that press have rollers that are pressed
+            w.trial[i] = place[i] if start == 0 else 0.5 * d[i]
+        if not abs(w.trial[0]) + abs(w.trial[1]) + abs(w.trial[2]) < math.inf:
+            continue
+        size = _state(d, w.trial, loads, shape, laws, w)
+        error = _left(w, length) / (size + _NOTHING)
+        if error < best:
+            best = error
+            out[9], out[10], out[11] = w.trial[0], w.trial[1], w.trial[2]
+    place[:] = out[9:12]
+    found = False
+    size = _state(d, place, loads, shape, laws, w)
+    for _ in range(_STEPS):
+        left = _left(w, length)
+        found = left <= _ROUGH * size + 10.0 * _NOTHING
+        if left <= _BALANCE * size + _NOTHING:
+            break
+        _matrices(shape, w)
+        for i in range(3):
+            w.whole[i, i] += soft * (1.0 if i < 2 else length * length)
+        _solve(w.whole, w.rest, w.step)
+        # no further than makes sense: a roller that nothing holds would go anywhere
+        reach = max(abs(w.step[0]), abs(w.step[1]), abs(w.step[2]) * length)
+        most = 1e-5 + abs(d[0]) + abs(d[1]) + abs(d[2]) * length
+        part = min(1.0, most / reach)
+        slope = w.rest[0] * w.step[0] + w.rest[1] * w.step[1] + w.rest[2] * w.step[2]
+        for _ in range(_CUTS):
+            for i in range(3):
+                w.trial[i] = place[i] + part * w.step[i]
+            size = _state(d, w.trial, loads, shape, laws, w)
+            here = w.rest[0] * w.step[0] + w.rest[1] * w.step[1] + w.rest[2] * w.step[2]
+            if here >= -0.5 * slope or abs(here) <= _BALANCE * size * reach:
+                break
+            part *= min(max(slope / (slope - here), 0.1), 0.9)
+        if part * reach <= 1e-16 * most:
+            break
+        place[:] = w.trial
+    _matrices(shape, w)
+    _answer(soft, length, w)
+    out[0] = w.cone[0] * shape.cone[0] + w.rib[0] * shape.rib[0]
+    out[1] = w.cone[0] * shape.cone[1] + w.rib[0] * shape.rib[1]
+    out[2] = w.cone[1] + w.rib[1]
+    out[3], out[4], out[5] = w.cone[0], w.cup[0], w.rib[0]
+    out[6] = w.cone[1] / w.cone[0] if w.cone[0] > 0.0 else 0.0
+    out[7] = w.cup[1] / w.cup[0] if w.cup[0] > 0.0 else 0.0
+    out[8] = shape.rib[0] * (d[0] - place[0]) + shape.rib[1] * (d[1] - place[1]) + shape.rib_lever * (d[2] - place[2])
+    out[9:12] = place
+    out[12], out[13], out[14] = d
+    return found
+
+
+@njit(error_model="numpy")
+def _matrices(shape: TaperedShape, w: RollerWork) -> None:
+    """A, M = A + B, and the dampers' sums, from the sums of the contacts."""
+    w.inner[:] = 0.0
+    w.damped_inner[:] = 0.0
+    w.damped_outer[:] = 0.0
+    _add(shape.cone, w.cone, 2, w.inner)
+    _add(shape.rib, w.rib, 2, w.inner)
+    _add(shape.cone, w.cone, 5, w.damped_inner)
+    _add(shape.rib, w.rib, 5, w.damped_inner)
+    _add(shape.cup, w.cup, 5, w.damped_outer)
+    w.whole[:] = w.inner
+    _add(shape.cup, w.cup, 2, w.whole)
+
+
+@njit(error_model="numpy")
+def _answer(soft: float, length: float, w: RollerWork) -> None:
+    """Stiffness and damping of a roller in balance."""
+    w.plane[:] = 0.0
+    if w.cone[0] + w.rib[0] <= 0.0:
+        return
+    for i in range(3):
+        w.whole[i, i] += soft * (1.0 if i < 2 else length * length)
+    for j in range(3):
+        for i in range(3):
+            w.rest[i] = w.inner[i, j]
+        _solve(w.whole, w.rest, w.step)
+        for i in range(3):
+            w.share[i, j] = w.step[i]
+    # A - A M^-1 A = S' B without the difference of nearly equal numbers, B = M - A
+    for i in range(3):
+        for j in range(3):
+            stiffness = 0.0
+            damping = 0.0
+            for m in range(3):
+                stiffness += w.share[m, i] * (w.whole[m, j] - w.inner[m, j])
+                for n in range(3):
+                    here = (1.0 if m == i else 0.0) - w.share[m, i]
+                    there = (1.0 if n == j else 0.0) - w.share[n, j]
+                    damping += here * w.damped_inner[m, n] * there
+                    damping += w.share[m, i] * w.damped_outer[m, n] * w.share[n, j]
+            w.plane[0, i, j] = stiffness
+            w.plane[1, i, j] = damping
+
+
+@njit(error_model="numpy")
+def tapered_force(
+    pose: FloatArray,
+    cage_angle: float,
+    loads: FloatArray,
+    shape: TaperedShape,
+    laws: RollerLaws,
+    force: FloatArray,
+    stiffness: FloatArray,
+    damping: FloatArray,
+    places: FloatArray,
+    rollers: FloatArray,
+    w: RollerWork,
+) -> int:
+    """Force on the inner ring at rest, and its derivatives; the number of loaded rollers, or what is wrong.
+
+    Parameters
+    ----------
+    pose : array (6,)
+        Pose of the inner ring in O [m], [rad].
+    cage_angle : float
+        Angle of the first roller [rad].
+    loads : array (3,)
+        Loads on each roller: axial, radial [N], moment [N m].
+    shape, laws : TaperedShape, RollerLaws
+        Lengths, and laws of the contacts.
+    force, stiffness, damping : array (6,), (6, 6), (6, 6)
+        Written: force [N], [N m], and -df/dpose, -df/dvelocity.
+    places : array (Z, 3)
+        Places of the rollers of the last call, or NaN; written.
+    rollers : array (Z, 24)
+        Written: see `place_roller`.
+    w : RollerWork
+        Work space.
+    """
+    total = abs(cage_angle)
+    for value in pose:
+        total += abs(value)
+    for value in loads:
+        total += abs(value)
+    if not total < math.inf:
+        return NOT_FINITE
+    far, tilt = shape.most_travel, shape.most_tilt
+    if not (abs(pose[0]) <= far and abs(pose[1]) <= far and abs(pose[2]) <= far):
+        return TOO_FAR
+    if not (abs(pose[4]) <= tilt and abs(pose[5]) <= tilt):
+        return TOO_FAR
+    force[:] = 0.0
+    stiffness[:] = 0.0
+    damping[:] = 0.0
+    turn_c, turn_s = math.cos(cage_angle), math.sin(cage_angle)
+    loaded = 0
+    radius = shape.pitch_radius
+    for j in range(shape.cos.size):
+        c, s = turn_c * shape.cos[j] - turn_s * shape.sin[j], turn_s * shape.cos[j] + turn_c * shape.sin[j]
+        turn = pose[5] * c - pose[4] * s
+        d = (pose[0] - radius * turn, pose[1] * c + pose[2] * s, turn)
+        out = rollers[j]
+        if not place_roller(d, loads, shape, laws, places[j], w, out):
+            return NO_BALANCE
+        if out[3] + out[5] <= 0.0:
+            continue
+        loaded += 1
+        # D by the pose: axial (1, 0, 0, 0, R s, -R c), radial (0, c, s, 0, 0, 0), rotation (0, 0, 0, 0, -s, c)
+        for m in range(3):
+            for a in range(6):
+                left = _by_pose(m, a, c, s, radius)
+                if left == 0.0:
+                    continue
+                force[a] -= left * out[m]
+                for n in range(3):
+                    for b in range(6):
+                        right = _by_pose(n, b, c, s, radius)
+                        stiffness[a, b] += left * w.plane[0, m, n] * right
+                        damping[a, b] += left * w.plane[1, m, n] * right
+    return loaded
+
+
+@njit(error_model="numpy")
+def _by_pose(m: int, a: int, c: float, s: float, radius: float) -> float:
+    """Derivative of entry m of D by entry a of the pose."""
+    if m == 0:
+        return 1.0 if a == 0 else (radius * s if a == 4 else (-radius * c if a == 5 else 0.0))
+    if m == 1:
+        return c if a == 1 else (s if a == 2 else 0.0)
+    return -s if a == 4 else (c if a == 5 else 0.0)

@@ -1,0 +1,215 @@
+"""Tapered roller bearings against vectors in space, the cylindrical element, closed forms and rigid bodies."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.optimize import root
+
+from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.rollers.tapered_catalogue import tapered_boundary, tapered_estimate
+from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
+from mbs.bearings import laws
+from mbs.bearings.bearing import Bearing
+from mbs.bearings.bearing_force import BearingForce
+from mbs.bearings.tapered.tapered_bearing import TaperedForce
+
+GEOMETRY = tapered_estimate("32208")
+FORCE = TaperedForce(GEOMETRY)
+POSE = np.array([15e-6, 8e-6, -4e-6, 0.0, 2e-4, -3e-4])
+FREE = (0, 1, 2, 4, 5)
+
+
+def in_space(force: TaperedForce, pose: np.ndarray, centrifugal: float, moment: float) -> np.ndarray:
+    """Force and moments on the inner ring, all contacts by points and normals in space, rollers balanced by scipy."""
+    geometry, total = force.geometry, np.zeros(6)
+    theta, beta, half = geometry.axis_angle, geometry.half_cone_angle, 0.5 * geometry.roller_diameter
+    single = force.laws.cup / force.positions.size
+    for j in range(geometry.rollers):
+        angle = 2.0 * math.pi * j / geometry.rollers
+        out = np.array([0.0, math.cos(angle), math.sin(angle)])
+        x = np.array([1.0, 0.0, 0.0])
+        across = np.cross(x, out)  # rotation from the axis outwards is about this
+        axis, upwards = math.cos(theta) * x - math.sin(theta) * out, math.sin(theta) * x + math.cos(theta) * out
+        middle = 0.5 * geometry.pitch_diameter * out
+        surface = half - force.positions * math.tan(beta)
+        cup = middle + force.positions[:, None] * axis + surface[:, None] * upwards
+        cone = middle + force.positions[:, None] * axis - surface[:, None] * upwards
+        to_cup = math.sin(geometry.cup_angle) * x + math.cos(geometry.cup_angle) * out
+        from_cone = math.sin(geometry.cone_angle) * x + math.cos(geometry.cone_angle) * out
+        # the sphere's centre, and from it the point that leans on the rib
+        centre = middle + (geometry.end_sphere - 0.5 * geometry.roller_length) * axis
+        rib_normal = math.cos(geometry.rib_angle) * axis + math.sin(geometry.rib_angle) * upwards
+        rib = centre - geometry.end_sphere * rib_normal
+        tilt = np.array([0.0, pose[4], pose[5]])
+
+        def moved(points: np.ndarray, v: np.ndarray) -> np.ndarray:
+            return v[0] * x + v[1] * out + np.cross(v[2] * across, points - middle)  # noqa: B023
+
+        def loads(v: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+            ring = pose[:3] + np.cross(tilt, cone) - moved(cone, v)  # noqa: B023
+            at_rib = pose[:3] + np.cross(tilt, rib) - moved(rib, v)  # noqa: B023
+            gaps = moved(cup, v) @ to_cup - force.shape.profile, ring @ from_cone - force.shape.profile  # noqa: B023
+            lines = [single * np.maximum(gap, 0.0) ** (10.0 / 9.0) for gap in gaps]
+            return lines[0], lines[1], force.laws.rib * max(float(at_rib @ rib_normal), 0.0) ** 1.5  # noqa: B023
+
+        def left(v: np.ndarray) -> np.ndarray:
+            outer, inner, end = loads(1e-6 * v)
+            forces = inner[:, None] * from_cone, -outer[:, None] * to_cup, (end * rib_normal)[None]  # noqa: B023
+            points = cone, cup, rib[None]  # noqa: B023
+            both = sum(part.sum(axis=0) for part in forces) + centrifugal * out  # noqa: B023
+            turning = sum(np.cross(p - middle, f).sum(axis=0) for p, f in zip(points, forces, strict=True))  # noqa: B023
+            return np.array([both @ x, both @ out, (turning @ across + moment) / half])  # noqa: B023
+
+        # a start is no answer: what is left of the balance is asked below
+        start = 1e6 * force._rollers[j, 9:12] + 0.01
+        found = root(left, start, method="hybr", options={"xtol": 1e-14, "maxfev": 2000})
+        outer, inner, end = loads(1e-6 * found.x)
+        assert np.max(np.abs(left(found.x))) < 1e-5 * (1.0 + float(outer.sum()))
+        for point, push in [*zip(cone, inner[:, None] * from_cone, strict=True), (rib, end * rib_normal)]:
+            total[:3] -= push
+            total[3:] -= np.cross(point, push)
+    total[3] = 0.0
+    return total
+
+
+@pytest.mark.parametrize("speed", [0.0, 1000.0])
+def test_contacts_in_space_give_the_same_force(speed) -> None:
+    """Points, normals, cross products and a general solver in place of levers and Newton's method in the plane."""
+    loads = FORCE.speed_loads(speed)
+    found, _, _ = FORCE(POSE, inner_speed=speed)
+    expected = in_space(FORCE, POSE, *loads)
+    scale = np.array([1.0, 1.0, 1.0, 1.0, 0.03, 0.03]) * float(np.linalg.norm(expected[:3]))
+    assert np.max(np.abs(found - expected) / scale) < 1e-7  # the balance of rollers by scipy
+
+
+def test_without_an_angle_it_is_the_cylindrical_element() -> None:
+    plain = BearingGeometry("plain", 50e-3, 70e-3, 10e-3, 15e-3, 17, 0.0)
+    for profile in ("iso", "straight"):
+        force = TaperedForce(TaperedGeometry("plain", 10e-3, 15e-3, 60e-3, 17, 0.0), profile=profile, slices=41)
+        bearing = Bearing(plain, profile, 41)
+        f, K, _ = force(POSE)
+        g, L, _ = BearingForce(bearing, laws.hertz(bearing))(POSE)
+        # round-off of sums and of powers; rollers are balanced to 1e-13 of their load
+        assert np.max(np.abs(f - g)) < 3e-12 * float(np.linalg.norm(g))
+        assert np.max(np.abs(K - L)) < 3e-11 * float(np.max(np.abs(L)))
+
+
+@pytest.mark.parametrize("speed", [0.0, 1200.0])
+def test_stiffness_is_the_derivative_of_the_force(speed) -> None:
+    _, stiffness, _ = FORCE(POSE, inner_speed=speed)
+    size = np.array([1.0, 1.0, 1.0, 1.0, 0.03, 0.03])
+    quotient = np.zeros((6, 6))
+    for i in FREE:
+        step = np.zeros(6)
+        step[i] = 1e-9 / size[i]
+        ahead, behind = (FORCE(POSE + sign * step, inner_speed=speed)[0] for sign in (1.0, -1.0))
+        quotient[:, i] = (behind - ahead) / (2e-9 / size[i])
+    scale = np.outer(size, size) * float(np.max(np.abs(stiffness[:3, :3])))
+    assert np.max(np.abs(quotient - stiffness) / scale) < 3e-5  # slices that begin to carry within the step
+    assert np.max(np.abs(stiffness - stiffness.T) / scale) < 1e-12  # a potential
+
+
+def test_dampers_in_proportion_to_the_stiffness_act_as_one() -> None:
+    _, stiffness, damping = TaperedForce(GEOMETRY, damping_time=1.25e-5)(POSE, inner_speed=500.0)
+    # what holds rollers that nothing holds is 1e-13 of the stiffness of contacts
+    assert np.max(np.abs(damping - 1.25e-5 * stiffness)) < 1e-9 * 1.25e-5 * float(np.max(np.abs(stiffness)))
+
+
+def test_constant_dampers_take_the_power_of_their_rates() -> None:
+    """One roller after another in a pure axial pose: both lines and the rib by the compliance of the roller."""
+    force = TaperedForce(GEOMETRY, damping=300.0, profile="straight")
+    pose = np.array([20e-6, 0.0, 0.0, 0.0, 0.0, 0.0])
+    _, _, damping = force(pose)
+    force(pose)
+    places = force._rollers[0, 9:12].copy()
+    force(pose + np.array([1e-9, 0.0, 0.0, 0.0, 0.0, 0.0]))
+    rate = (force._rollers[0, 9:12] - places) / 1e-9
+    shape, power = force.shape, 0.0
+    for normal, levers, moves in (
+        (shape.cup, shape.levers, rate),
+        (shape.cone, shape.levers, np.array([1.0, 0.0, 0.0]) - rate),
+        (shape.rib, np.array([shape.rib_lever]), np.array([1.0, 0.0, 0.0]) - rate),
+    ):
+        speed = normal[0] * moves[0] + normal[1] * moves[1] + levers * moves[2]
+        power += 300.0 * float(np.mean(speed**2))
+    assert damping[0, 0] == pytest.approx(GEOMETRY.rollers * power, rel=1e-4)  # difference quotient of the place
+
+
+def test_an_axial_load_is_shared_by_the_closed_form() -> None:
+    """Three forces on a roller: those of cone and rib follow from that of the cup, and so does the approach."""
+    force = TaperedForce(GEOMETRY, profile="straight")
+    f, K, _ = force([20e-6, 0.0, 0.0, 0.0, 0.0, 0.0])
+    shape, law = force.shape, force.laws
+    shares = np.linalg.solve(np.array([shape.cone, shape.rib]).T, np.array(shape.cup))
+    cup = -f[0] / (GEOMETRY.rollers * shape.cup[0])
+    line = (np.array([cup, shares[0] * cup]) / law.cup) ** 0.9
+    rib = (shares[1] * cup / law.rib) ** (2.0 / 3.0)
+    # rollers tilt until the lines of the three forces meet, 0.13 mm beside their middles: 5e-4 of the approach
+    approach = line[0] + shares[0] * line[1] + shares[1] * rib
+    assert approach == pytest.approx(shape.cup[0] * 20e-6, rel=1e-3)
+    slope = 0.9 * (line[0] + shares[0] * line[1]) / cup + 2.0 / 3.0 * shares[1] * rib / cup
+    assert K[0, 0] == pytest.approx(GEOMETRY.rollers * shape.cup[0] ** 2 / slope, rel=2e-3)
+    loads = force.rollers([20e-6, 0.0, 0.0, 0.0, 0.0, 0.0]).load
+    assert loads[0] == pytest.approx(shares[0] * cup, rel=1e-9) and loads[2] == pytest.approx(shares[1] * cup, rel=1e-9)
+
+
+@pytest.mark.parametrize("name", ["30206", "32208", "31308", "32010"])
+def test_the_induced_axial_load_is_that_of_the_catalogue(name) -> None:
+    """Half of the rollers loaded: Sjoevall's integrals, and Fa = 0.5 Fr/Y of catalogues."""
+    geometry = dataclasses.replace(tapered_estimate(name), roller_diameter=0.5e-3, rollers=181)
+    force = TaperedForce(geometry, profile="straight")
+    sine, cosine = force.shape.cup
+    radial = 4e-6
+    f, _, _ = force([0.0, radial, 0.0, 0.0, 0.0, 0.0])
+    power = 10.0 / 9.0
+    ja, jr = (quad(lambda a, n=n: math.cos(a) ** (power + n), -0.5 * math.pi, 0.5 * math.pi)[0] for n in (0, 1))
+    ratio = f[0] / f[1] / (sine / cosine)
+    assert ja / jr == pytest.approx(1.2597, abs=0.003)  # 0.3090/0.2453 of tables for a power of 1.11
+    assert ratio == pytest.approx(ja / jr, rel=3e-3)  # the rib, whose law has another power
+    entry = tapered_boundary(name)
+    # factors of catalogues: 1.25 tan(alpha), 1 % less than the integrals
+    assert f[0] / f[1] == pytest.approx(0.5 / entry.thrust_factor, rel=0.015)
+
+
+def test_the_gyroscopic_moment_is_that_of_a_rigid_body() -> None:
+    """Rate of the angular momentum of a roller that goes round, in space."""
+    inner, outer = 900.0, -200.0
+    _, moment = FORCE.speed_loads(inner, outer)
+    mass, theta = GEOMETRY.roller_mass(FORCE.material), GEOMETRY.axis_angle
+    along = 0.125 * mass * GEOMETRY.roller_diameter**2
+    across = 0.5 * along + mass * GEOMETRY.roller_length**2 / 12.0
+    cage, spin = GEOMETRY.cage_speed(inner, outer), GEOMETRY.roller_speed(inner, outer)
+
+    def momentum(time: float) -> np.ndarray:
+        angle = cage * time
+        out = np.array([0.0, math.cos(angle), math.sin(angle)])
+        axis = math.cos(theta) * np.array([1.0, 0.0, 0.0]) - math.sin(theta) * out
+        turning = np.array([cage, 0.0, 0.0]) + spin * axis
+        return across * turning + (along - across) * float(turning @ axis) * axis
+
+    rate = (momentum(1e-7) - momentum(-1e-7)) / 2e-7
+    about = np.cross([1.0, 0.0, 0.0], [0.0, 1.0, 0.0])
+    assert moment == pytest.approx(-float(rate @ about), rel=1e-6)  # difference quotient
+
+
+def test_a_mirrored_bearing_carries_the_other_way() -> None:
+    turned = TaperedForce(dataclasses.replace(GEOMETRY, contact_angle=-GEOMETRY.contact_angle))
+    sign = np.array([-1.0, 1.0, 1.0, 1.0, -1.0, -1.0])  # x, and rotations that take x along
+    f, K, _ = FORCE(POSE, inner_speed=800.0)
+    g, L, _ = turned(sign * POSE, inner_speed=800.0)
+    assert np.max(np.abs(g - sign * f)) < 1e-9 * float(np.linalg.norm(f))  # round-off of the balance
+    assert np.max(np.abs(L - np.outer(sign, sign) * K)) < 1e-9 * float(np.max(np.abs(K)))
+    one, other = FORCE.rollers(POSE), turned.rollers(sign * POSE)
+    assert np.max(np.abs(one.centre - other.centre)) < 1e-12 and np.max(np.abs(one.load - other.load)) < 1e-6
+
+
+def test_python_and_compiled_code_agree() -> None:
+    plain = TaperedForce(GEOMETRY, 10.0, 1e-5, slices=5, compiled=False)
+    fast = TaperedForce(GEOMETRY, 10.0, 1e-5, slices=5)
+    for one, other in zip(plain(POSE, inner_speed=700.0), fast(POSE, inner_speed=700.0), strict=True):
+        assert np.max(np.abs(one - other)) < 1e-9 * float(np.max(np.abs(other)))  # ways of the balance
