@@ -133,7 +133,7 @@ def arnoldi(step: Callable[[FloatArray], FloatArray], static: FloatArray, height
     basis[0] = static / norm
     count = 0
     while count < most:
-        _orthogonalised(step(basis[count]), basis, hessenberg, count)
+        orthogonalised(step(basis[count]), basis, hessenberg, count)
         count += 1
         if _residual(hessenberg, count, fastest) < LITTLE_RESIDUAL or hessenberg[count, count - 1] < _TINY:
             break
@@ -162,13 +162,25 @@ def _space(linear: Arrays, fastest: float) -> tuple[float, FloatArray, FloatArra
 
 @njit
 def _extend(linear: Arrays, basis: FloatArray, hessenberg: FloatArray, count: int) -> None:
-    """Add T times the last vector to the basis, orthogonal to all before it; twice, for round-off."""
-    _orthogonalised(solved(linear.lu, storage(linear, basis[count])), basis, hessenberg, count)
+    """Add T times the last vector to the basis, orthogonal to all before it."""
+    orthogonalised(solved(linear.lu, storage(linear, basis[count])), basis, hessenberg, count)
 
 
 @njit
-def _orthogonalised(vector: FloatArray, basis: FloatArray, hessenberg: FloatArray, count: int) -> None:
-    """Add a vector to the basis, orthogonal to all before it."""
+def orthogonalised(vector: FloatArray, basis: FloatArray, hessenberg: FloatArray, count: int) -> None:
+    """Add a vector to the basis, orthogonal to all before it; twice, for round-off.
+
+    Parameters
+    ----------
+    vector : ndarray, shape (size,)
+        The vector; it is changed.
+    basis : ndarray, shape (at least count + 2, size)
+        Vectors so far; it comes after them.
+    hessenberg : ndarray, shape (at least count + 2, at least count + 1)
+        What is along each, and its length; the column has to be zero.
+    count : int
+        Index of the last vector.
+    """
     for _ in range(2):
         along = basis[: count + 1] @ vector
         for i in range(count + 1):

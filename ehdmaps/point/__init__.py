@@ -6,6 +6,7 @@
 | `tail` | pressure and load of the far inlet, as closed forms |
 | `grid` | a graded tensor grid of half a contact; deflection of the half-spaces on it |
 | `reynolds` | the discrete equations with their exact derivatives, as bands; the dense Jacobian |
+| `equations` | the linear equations of a step, and their solution by factors of their own or of a step nearby |
 | `newton` | Newton, with the nodes that cavitate chosen in each step |
 | `linearisation` | the equations to first order with the oil that the film stores: slow motion, and any frequency |
 | `two_grids` | the ways to a solution, both grids, extrapolation and errors |

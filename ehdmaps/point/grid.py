@@ -35,6 +35,7 @@ _EDGE, _CORE = 0.55, 1.1
 _MOST_KERNELS = 12
 _BESIDE = 1e-3
 _SAMPLES = 20001
+_TOUCHING = 1e-14
 
 
 @dataclass(frozen=True)
@@ -192,7 +193,9 @@ def _size_across(ellipticity: float, edge: float) -> Callable[[FloatArray], Floa
 
 def _graded(size: Callable[[FloatArray], FloatArray], low: float, high: float, cells: int) -> FloatArray:
     """Nodes of so many cells from low to high, each as large as its place asks for, up to one factor."""
-    fine = np.unique(np.r_[np.linspace(low, high, _SAMPLES), np.linspace(max(low, -3.0), min(high, 3.0), _SAMPLES)])
+    fine = np.r_[np.linspace(low, high, _SAMPLES), np.linspace(max(low, -3.0), min(high, 3.0), _SAMPLES)]
+    fine.sort(kind="stable")  # two rising parts: one pass
+    fine = fine[np.r_[True, np.diff(fine) > 0.0]]
     density = 1.0 / size(fine)
     count = np.r_[0.0, np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(fine))]
     nodes = np.interp(np.linspace(0.0, count[-1], cells + 1), count, fine)
@@ -207,52 +210,73 @@ def _widths(nodes: FloatArray) -> FloatArray:
 
 
 @njit(fastmath=True)
-def _fourfold(x: float, y: float) -> float:
-    """Value of G at a distance."""
-    along, across = abs(x), abs(y)
-    square = along * along + across * across
-    r = math.sqrt(square)
-    value = -square * r / 6.0
-    if along > 1e-14 and across > 1e-14:
-        value += (
-            0.5 * along * across * (along * math.log((across + r) / along) + across * math.log((along + r) / across))
-        )
-    return value
-
-
-@njit(fastmath=True)
 def _kernel(x: FloatArray, y: FloatArray, factor: float) -> FloatArray:
     """Deflection at each node by the hat of each node and by its image in the other half, times a factor.
 
-    Hats at the ends of the grid are half ones: beyond, they fall to zero over a small part of a cell.
+    Hats at the ends of the grid are half ones: beyond, they fall to zero over a small part of a cell. G is even in both
+    distances: each pair of places along, and of places across, is looked at once.
     """
     n, m = x.size, y.size
-    rows, columns = n + 2, 2 * m + 1
-    along, across = np.empty(rows), np.empty(columns)
-    for i in range(n):
-        along[i + 1] = x[i]
+    along, across = np.empty(n + 2), np.empty(m + 1)
+    along[1 : n + 1], across[:m] = x, y
     along[0] = x[0] - _BESIDE * (x[1] - x[0])
-    along[rows - 1] = x[n - 1] + _BESIDE * (x[n - 1] - x[n - 2])
+    along[n + 1] = x[n - 1] + _BESIDE * (x[n - 1] - x[n - 2])
+    across[m] = y[m - 1] + _BESIDE * (y[m - 1] - y[m - 2])
+    apart, logs = np.empty((2, m, m + 1)), np.zeros((2, m, m + 1))  # |y_j - y_s|, y_j + y_s
     for j in range(m):
-        across[m + j] = y[j]
-        across[m - j] = -y[j]
-    across[columns - 1] = y[m - 1] + _BESIDE * (y[m - 1] - y[m - 2])
-    across[0] = -across[columns - 1]
-    kernel = np.zeros((n * m, n * m))
-    table, second = np.empty((rows, columns)), np.zeros((rows, columns))
+        for s in range(m + 1):
+            apart[0, j, s], apart[1, j, s] = abs(y[j] - across[s]), y[j] + across[s]
+            for half in range(2):
+                if apart[half, j, s] > _TOUCHING:
+                    logs[half, j, s] = math.log(apart[half, j, s])
+    whole = np.empty(2 * m + 1)
+    whole[m:] = across
+    whole[: m + 1] = -across[::-1]
+    rates = 1.0 / np.diff(whole)
+    table, line = np.empty((m, 2 * m + 1)), np.empty(2 * m + 1)
+    second = np.empty((n, n + 2, m, m))  # second differences across
+    for i in range(n):
+        for k in range(n + 2):
+            if 0 < k <= i:  # seen from there
+                second[i, k] = second[k - 1, i + 1]
+                continue
+            _fourfold(abs(x[i] - along[k]), apart, logs, table)
+            for j in range(m):
+                values, out = table[j], second[i, k, j]
+                for s in range(1, 2 * m):
+                    line[s] = (values[s - 1] - values[s]) * rates[s - 1] + (values[s + 1] - values[s]) * rates[s]
+                out[0] = line[m]
+                for node in range(1, m):
+                    out[node] = line[m + node] + line[m - node]
+    kernel = np.empty((n * m, n * m))
     for i in range(n):
         for j in range(m):
-            for k in range(rows):
-                for s in range(columns):
-                    table[k, s] = _fourfold(x[i] - along[k], y[j] - across[s])
-            for k in range(1, rows - 1):
-                before, behind = along[k] - along[k - 1], along[k + 1] - along[k]
-                for s in range(columns):
-                    second[k, s] = (table[k - 1, s] - table[k, s]) / before + (table[k + 1, s] - table[k, s]) / behind
-            for s in range(1, columns - 1):
-                before, behind = across[s] - across[s - 1], across[s + 1] - across[s]
-                node = abs(s - m)
-                for k in range(1, rows - 1):
-                    value = (second[k, s - 1] - second[k, s]) / before + (second[k, s + 1] - second[k, s]) / behind
-                    kernel[i * m + j, (k - 1) * m + node] += factor * value
+            row = kernel[i * m + j]
+            for k in range(1, n + 1):
+                before, behind = factor / (along[k] - along[k - 1]), factor / (along[k + 1] - along[k])
+                first, own, last = second[i, k - 1, j], second[i, k, j], second[i, k + 1, j]
+                for node in range(m):
+                    row[(k - 1) * m + node] = (first[node] - own[node]) * before + (last[node] - own[node]) * behind
     return kernel
+
+
+@njit(fastmath=True)
+def _fourfold(distance: float, apart: FloatArray, logs: FloatArray, table: FloatArray) -> None:
+    """Values of G at a distance along and all distances across, those to the other half first, into a table."""
+    m, square = apart.shape[1], distance * distance
+    own = math.log(distance) if distance > _TOUCHING else 0.0
+    for j in range(m):
+        for half in range(2):
+            for s in range(m + 1):
+                if s < j:
+                    value = table[s, m - j if half else m + j]
+                else:
+                    far = apart[half, j, s]
+                    r = math.sqrt(square + far * far)
+                    value = -r * r * r / 6.0
+                    if distance > _TOUCHING and far > _TOUCHING:
+                        turned = distance * (math.log(far + r) - own) + far * (
+                            math.log(distance + r) - logs[half, j, s]
+                        )
+                        value += 0.5 * distance * far * turned
+                table[j, m - s if half else m + s] = value

@@ -8,15 +8,18 @@ that k = 1/A and c = B/A^2 in units of p_H Rx and p_H Rx a/u; over frequency the
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 
 from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.ehl.spectrum import FilmSpace, arnoldi
-from ehdmaps.point.newton import Factors, PointState
-from ehdmaps.point.reynolds import Balance
+from ehdmaps.point.equations import Equations, Factors
+from ehdmaps.point.newton import PointState
+
+LEFT = 1e-10
+"""What solves with factors of another step leave of a response."""
 
 
 class SlowResponse(NamedTuple):
@@ -42,14 +45,14 @@ class Tangent:
     ----------
     state : PointState
         The state.
-    found : Balance
+    equations : Equations
         Equations of the solution.
     factors : Factors
-        Factors of their derivatives.
+        Factors of them, or of a step nearby.
     """
 
     state: PointState
-    found: Balance
+    equations: Equations
     factors: Factors
 
     @classmethod
@@ -61,14 +64,33 @@ class Tangent:
         state : PointState
             A state with status CONVERGED.
         """
-        assert state.found is not None and state.factors is not None
-        return cls(state, state.found, state.factors)
+        assert state.equations is not None and state.factors is not None
+        return cls(state, state.equations, state.factors)
+
+    def exact(self) -> Tangent:
+        """The same with factors of its own equations, in double precision: for many solves."""
+        if self.factors.double and self.factors.found is self.equations.found:
+            return self
+        factors = self.equations.factorised(double=True)
+        assert factors is not None  # they were solved in the last step
+        return replace(self, factors=factors)
+
+    def solved(self, right: FloatArray) -> FloatArray:
+        """J^-1 of a right-hand side, shape (k + 1,).
+
+        Parameters
+        ----------
+        right : ndarray, shape (k + 1,)
+            Right-hand side: free nodes, then the load.
+        """
+        found = self.equations.solved(right, self.factors, LEFT)
+        return self.exact().solved(right) if found is None else found
 
     def static(self) -> FloatArray:
         """Change of free pressures and H0 by the load, shape (k + 1,)."""
-        load = np.zeros(self.factors.scale.size)
+        load = np.zeros(np.count_nonzero(self.state.free) + 1)
         load[-1] = 1.0
-        return self.factors.solved(load)
+        return self.solved(load)
 
     def stored(self, change: FloatArray) -> FloatArray:
         """S z: what each equation asks for where pressures and H0 change at a rate, shape (k + 1,).
@@ -80,7 +102,7 @@ class Tangent:
         change : ndarray, shape (k + 1,)
             Rates of free pressures and H0.
         """
-        state, found = self.state, self.found
+        state, found = self.state, self.equations.found
         grid, wedge = state.grid, state.problem.wedge
         pressure = np.zeros(grid.shape)
         pressure[state.free] = change[:-1]
@@ -97,7 +119,7 @@ class Tangent:
         change : ndarray, shape (k + 1,)
             Rates of free pressures and H0.
         """
-        return self.factors.solved(self.stored(change))
+        return self.solved(self.stored(change))
 
     def slow(self) -> SlowResponse:
         """Response to slow motion."""
@@ -119,7 +141,7 @@ class Tangent:
             Omega = omega a/u, > 0.
         """
         wanted = np.ascontiguousarray(frequencies, dtype=float)
-        found = self._space(float(np.max(wanted))).motions(wanted)
+        found = self.exact()._space(float(np.max(wanted))).motions(wanted)
         return np.asarray(found * (1.0 - 1j * wanted * self.squeezed))
 
     @property

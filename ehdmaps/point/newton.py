@@ -8,21 +8,26 @@ whose steps end as fast as Newton's. Steps are limited in ln(eta), and leave a p
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import LinAlgWarning, lu_factor, lu_solve
 
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.physics.solution import Status
+from ehdmaps.point.equations import Equations, Factors, own_slopes
 from ehdmaps.point.grid import PointGrid
 from ehdmaps.point.problem import PointProblem, start_film
-from ehdmaps.point.reynolds import Balance, balance, changed, jacobian
+from ehdmaps.point.reynolds import Balance, balance, changed
 
 TOLERANCE = 1e-5
 """Size of the last full step that ends a solve: pressures by their largest, films by the film."""
+
+NEAR = 0.03
+"""Size of a full step, measured likewise, after which its factors serve the next one too."""
+
+STEP_LEFT = 1e-4
+"""What a solve with factors of another step leaves of a step."""
 
 LOG_VISCOSITY_STEP = 5.0
 """Largest change of ln(eta) in one step."""
@@ -35,34 +40,11 @@ LEAST_STEP = 1e-3
 
 MOST_STEPS = 60
 
+_MOST_ABOUT = 0.1
+"""Largest pressure of a rigid paraboloid that a start takes: solids give way to higher ones [p_H]."""
+
 _LEAST_FILM = 1e-4
 """Film to which a start is lifted that touches, over that of the start's guess."""
-
-
-@dataclass(frozen=True, eq=False)
-class Factors:
-    """LU factors of the equations of free nodes, rows scaled.
-
-    Attributes
-    ----------
-    factors : tuple of ndarray
-        Factors as `scipy.linalg.lu_factor` gives them.
-    scale : ndarray, shape (k + 1,)
-        What rows were multiplied by.
-    """
-
-    factors: tuple[FloatArray, FloatArray]
-    scale: FloatArray
-
-    def solved(self, right: FloatArray) -> FloatArray:
-        """Solve for one right-hand side, shape (k + 1,).
-
-        Parameters
-        ----------
-        right : ndarray, shape (k + 1,)
-            Right-hand side: free nodes, then the load.
-        """
-        return np.asarray(lu_solve(self.factors, right * self.scale, check_finite=False))
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,10 +67,10 @@ class PointState:
         Newton steps.
     free : ndarray of bool, shape (n, m)
         Nodes with a pressure.
-    found : Balance or None
+    equations : Equations or None
         Equations of the last step; None where there is none.
     factors : Factors or None
-        Their factors.
+        Factors of them, or of a step nearby.
     """
 
     problem: PointProblem
@@ -99,7 +81,7 @@ class PointState:
     status: Status
     steps: int
     free: BoolArray
-    found: Balance | None
+    equations: Equations | None
     factors: Factors | None
 
     @property
@@ -123,7 +105,7 @@ def newton(problem: PointProblem, grid: PointGrid, pressure: FloatArray, height:
         H0 to start from.
     """
     pressure, wedge, peak = pressure.copy(), problem.wedge, float(np.max(pressure))
-    free, found, factors = grid.inner, None, None
+    free, equations, factors, near = (pressure > 0.0) | grid.tail.far, None, None, False
     status, steps = Status.STAGNATED, 0
     for _ in range(MOST_STEPS):
         steps += 1
@@ -136,18 +118,21 @@ def newton(problem: PointProblem, grid: PointGrid, pressure: FloatArray, height:
             lift = _LEAST_FILM - lowest
             height, film = height + lift, film + lift
         found = balance(grid.x, grid.y, pressure, film, wedge, problem.isotherm, grid.tail.far, grid.tail.rolling)
-        free = _with_pressure(grid, found, pressure)
+        before, free = free, _with_pressure(grid, found, pressure)
         tail, tail_slope = grid.tail.loads(height)
         drop = np.where(free, 0.0, -pressure)
         right = np.empty(np.count_nonzero(free) + 1)
         missing = found.residual + (changed(found, drop, grid.deflection(drop)) if np.any(drop) else 0.0)
         right[:-1] = -missing[free]
         right[-1] = problem.load - float(np.sum(grid.weights * (pressure + drop))) - wedge * tail
-        factors = factorised(jacobian(found, grid.kernel, free, grid.weights, wedge * tail_slope))
-        if factors is None:
-            status = Status.DIVERGED
-            break
-        move = factors.solved(right)
+        equations = Equations(grid, found, free, wedge * tail_slope)
+        move = equations.solved(right, factors, STEP_LEFT) if factors is not None and near else None
+        if move is None:
+            factors = equations.factorised()
+            if factors is None:
+                status = Status.DIVERGED
+                break
+            move = factors.solved(right)
         step = drop
         step[free] = move[:-1]
         if not np.all(np.isfinite(move)):
@@ -164,15 +149,19 @@ def newton(problem: PointProblem, grid: PointGrid, pressure: FloatArray, height:
         height += length * float(move[-1])
         peak = max(float(np.max(pressure)), 1e-300)
         thickness = float(np.max(np.abs(change[free] / film[free])))
-        if length == 1.0 and max(size, thickness) < TOLERANCE:
+        near = length == 1.0 and max(size, thickness) < NEAR
+        if length == 1.0 and max(size, thickness) < TOLERANCE and np.array_equal(free, before):
             status = Status.CONVERGED
             break
     film = grid.deflection(pressure) + grid.parabola + height
-    return PointState(problem, grid, pressure, film, height, status, steps, free, found, factors)
+    return PointState(problem, grid, pressure, film, height, status, steps, free, equations, factors)
 
 
 def starts(problem: PointProblem, grid: PointGrid, thickness: tuple[float, ...]) -> Iterator[tuple[FloatArray, float]]:
-    """Pressures of Hertz, each with a film of so many times what a formula gives, and its H0.
+    """Pressures to start from, each with a film of so many times what a formula gives, and its H0.
+
+    Under the contact they are those of Hertz, about it those of a rigid paraboloid in the gap that these leave, so that
+    nearly all nodes with a pressure have one from the first step on.
 
     Parameters
     ----------
@@ -183,37 +172,20 @@ def starts(problem: PointProblem, grid: PointGrid, thickness: tuple[float, ...])
     thickness : tuple of float
         Factors on the film.
     """
-    pressure = grid.hertz_pressure()
-    touching = float(np.min((grid.deflection(pressure) + grid.parabola)[pressure > 0.0]))
+    hertz = grid.hertz_pressure()
+    gap = grid.deflection(hertz) + grid.parabola
+    inside, unknown = hertz > 0.0, grid.inner | grid.tail.far
+    touching = float(np.min(gap[inside]))
     for factor in thickness:
-        yield pressure, factor * start_film(problem) - touching
-
-
-def factorised(matrix: FloatArray) -> Factors | None:
-    """Factorise a matrix with its rows scaled to a largest entry of one; None where it is singular.
-
-    Parameters
-    ----------
-    matrix : ndarray, shape (k, k)
-        It is overwritten.
-    """
-    largest = np.max(np.abs(matrix), axis=1)
-    if not (np.all(np.isfinite(largest)) and np.all(largest > 0.0)):
-        return None
-    scale = 1.0 / largest
-    matrix *= scale[:, None]
-    with warnings.catch_warnings():
-        warnings.simplefilter("error", LinAlgWarning)
-        try:
-            return Factors(lu_factor(matrix, overwrite_a=True, check_finite=False), scale)
-        except LinAlgWarning:
-            return None
+        film = factor * start_film(problem)
+        about = problem.wedge * grid.tail.about / np.maximum(gap - touching + film, film) ** 2
+        pressure = np.where(unknown, np.maximum(hertz, np.minimum(about, _MOST_ABOUT)), 0.0)
+        yield pressure, film - float(np.min((grid.deflection(pressure) + grid.parabola)[inside]))
 
 
 def _with_pressure(grid: PointGrid, found: Balance, pressure: FloatArray) -> BoolArray:
     """Nodes to which their own equation, all others held, gives a pressure; and those of the far tail."""
-    own = found.by_pressure[:, :, 0] + found.by_film[:, :, 0] * np.diagonal(grid.kernel).reshape(grid.shape)
-    asked = pressure - found.residual / np.maximum(own, 1e-300)
+    asked = pressure - found.residual / own_slopes(grid, found)
     return np.asarray((grid.inner & (asked > 0.0)) | grid.tail.far)
 
 

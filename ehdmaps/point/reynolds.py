@@ -177,6 +177,7 @@ def balance(
     return Balance(residual, by_pressure, by_film, rho, rise, slope)
 
 
+@njit
 def changed(found: Balance, pressure: FloatArray, film: FloatArray) -> FloatArray:
     """Change of the residual by changes of pressure and film, to first order, all of shape (n, m).
 
@@ -187,18 +188,29 @@ def changed(found: Balance, pressure: FloatArray, film: FloatArray) -> FloatArra
     pressure, film : ndarray, shape (n, m)
         Changes of both.
     """
+    n, m = pressure.shape
+    total = np.empty((n, m))
     bands, gaps = found.by_pressure, found.by_film
-    total = bands[:, :, 0] * pressure + gaps[:, :, 0] * film
-    for band, back in ((1, 1), (5, 2), (6, 3)):
-        total[back:] += bands[back:, :, band] * pressure[:-back] + gaps[back:, :, band] * film[:-back]
-    total[:-1] += bands[:-1, :, 2] * pressure[1:] + gaps[:-1, :, 2] * film[1:]
-    total[:, 1:] += bands[:, 1:, 3] * pressure[:, :-1] + gaps[:, 1:, 3] * film[:, :-1]
-    total[:, :-1] += bands[:, :-1, 4] * pressure[:, 1:] + gaps[:, :-1, 4] * film[:, 1:]
-    return np.asarray(total)
+    for i in range(n):
+        for j in range(m):
+            value = bands[i, j, 0] * pressure[i, j] + gaps[i, j, 0] * film[i, j]
+            for band, back in ((1, 1), (5, 2), (6, 3)):
+                if i >= back:
+                    value += bands[i, j, band] * pressure[i - back, j] + gaps[i, j, band] * film[i - back, j]
+            if i < n - 1:
+                value += bands[i, j, 2] * pressure[i + 1, j] + gaps[i, j, 2] * film[i + 1, j]
+            if j > 0:
+                value += bands[i, j, 3] * pressure[i, j - 1] + gaps[i, j, 3] * film[i, j - 1]
+            if j < m - 1:
+                value += bands[i, j, 4] * pressure[i, j + 1] + gaps[i, j, 4] * film[i, j + 1]
+            total[i, j] = value
+    return total
 
 
 @njit(error_model="numpy")
-def jacobian(found: Balance, kernel: FloatArray, free: BoolArray, weights: FloatArray, tail_slope: float) -> FloatArray:
+def jacobian(
+    found: Balance, kernel: FloatArray, free: BoolArray, weights: FloatArray, tail_slope: float
+) -> tuple[FloatArray, FloatArray]:
     """Derivatives of the equations of free nodes, and of the load, by their pressures and H0.
 
     Parameters
@@ -216,40 +228,50 @@ def jacobian(found: Balance, kernel: FloatArray, free: BoolArray, weights: Float
 
     Returns
     -------
-    ndarray, shape (k + 1, k + 1)
-        The last row is the load, the last column H0.
+    matrix : ndarray, shape (k + 1, k + 1)
+        The last row is the load, the last column H0. Rows are scaled to a largest entry of one.
+    scale : ndarray, shape (k + 1,)
+        What they were multiplied by; infinite for a row of zeros.
     """
     n, m = free.shape
+    last = n * m - 1
+    nodes = np.flatnonzero(free)
+    count = nodes.size
     place = np.full(n * m, -1)
-    count = 0
-    for i in range(n):
-        for j in range(m):
-            if free[i, j]:
-                place[i * m + j] = count
-                count += 1
     moved = np.empty((n * m, count))  # of the kernel, what free pressures move
+    for c in range(count):
+        place[nodes[c]] = c
     for node in range(n * m):
-        for other in range(n * m):
-            if place[other] >= 0:
-                moved[node, place[other]] = kernel[node, other]
+        line, whole = moved[node], kernel[node]
+        for c in range(count):
+            line[c] = whole[nodes[c]]
     offsets = (0, -m, m, -1, 1, -2 * m, -3 * m)
-    matrix = np.zeros((count + 1, count + 1))
-    for i in range(n):
-        for j in range(m):
-            row = place[i * m + j]
-            if row < 0:
-                continue
-            out = matrix[row]
-            for k in range(BANDS):
-                node, slope = i * m + j + offsets[k], found.by_film[i, j, k]
-                if slope != 0.0:
-                    line = moved[node]
-                    for c in range(count):
-                        out[c] += slope * line[c]
-                    out[count] += slope
-                slope = found.by_pressure[i, j, k]
-                if slope != 0.0 and place[node] >= 0:
-                    out[place[node]] += slope
-            matrix[count, row] = weights[i, j]
+    matrix, scale = np.empty((count + 1, count + 1)), np.empty(count + 1)
+    for row in range(count):
+        own, out = nodes[row], matrix[row]
+        i, j = divmod(own, m)
+        slopes = found.by_film[i, j]
+        s0, s1, s2, s3, s4, s5, s6 = slopes[0], slopes[1], slopes[2], slopes[3], slopes[4], slopes[5], slopes[6]
+        # where there is no such node its slope is zero
+        h0, h1, h2 = moved[own], moved[max(own - m, 0)], moved[min(own + m, last)]
+        h3, h4 = moved[max(own - 1, 0)], moved[min(own + 1, last)]
+        h5, h6 = moved[max(own - 2 * m, 0)], moved[max(own - 3 * m, 0)]
+        for c in range(count):
+            out[c] = s0 * h0[c] + s1 * h1[c] + s2 * h2[c] + s3 * h3[c] + s4 * h4[c] + s5 * h5[c] + s6 * h6[c]
+        out[count] = s0 + s1 + s2 + s3 + s4 + s5 + s6
+        for k in range(BANDS):
+            slope = found.by_pressure[i, j, k]
+            if slope != 0.0 and place[own + offsets[k]] >= 0:
+                out[place[own + offsets[k]]] += slope
+    for c in range(count):
+        matrix[count, c] = weights[nodes[c] // m, nodes[c] % m]
     matrix[count, count] = tail_slope
-    return matrix
+    for row in range(count + 1):
+        out, largest = matrix[row], 0.0
+        for c in range(count + 1):
+            largest = max(largest, abs(out[c]))
+        scale[row] = 1.0 / largest
+        if largest > 0.0:
+            for c in range(count + 1):
+                out[c] *= scale[row]
+    return matrix, scale

@@ -28,9 +28,9 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.linalg import solve_banded
 
 from ehdmaps.arrays import BoolArray, FloatArray
+from ehdmaps.compiled import njit
 
 _ANGLES = 3000
 
@@ -60,6 +60,8 @@ class Tail(NamedTuple):
         Nodes at the end of the grid with such a pressure.
     rolling, squeezing : ndarray, shape (n, m)
         r R and S at these nodes, zero at the others.
+    about : ndarray, shape (n, m)
+        r R at all nodes.
     load : tuple of float
         Expansion of the load of rolling in powers of H0: constant, linear, quadratic.
     squeeze : float
@@ -71,6 +73,7 @@ class Tail(NamedTuple):
     far: BoolArray
     rolling: FloatArray
     squeezing: FloatArray
+    about: FloatArray
     load: tuple[float, float, float]
     squeeze: float
     deflection: float
@@ -113,18 +116,14 @@ def similarity(curvature_ratio: float) -> Similarity:
     stiff = _bend(angle, curvature_ratio) ** 3 / 8.0
     faces = _bend(np.arange(1, _ANGLES) * step, curvature_ratio) ** 3 / 8.0 / step
     between = np.r_[faces, 0.0] + np.r_[0.0, faces]
-    low, high = _ANGLES // 2, _ANGLES - 1  # the first angle without pressure lies between
-    while True:
-        end = (low + high) // 2
-        free = np.arange(_ANGLES) < end
-        f = _solved(between + 9.0 * stiff * step, faces, np.cos(angle) * step, free)
-        if high - low <= 1:
-            break
-        if faces[end - 1] * f[end - 1] + math.cos(angle[end]) * step > 0.0:  # there would be a pressure
-            low = end
-        else:
-            high = end
-    g = _solved(between + 8.0 * stiff * step, faces, np.full(_ANGLES, step), free)
+    ahead = np.cos(angle) * step
+    own, right = _eliminated(between + 9.0 * stiff * step, faces, ahead)
+    end = _ANGLES // 2 + 1  # at the first angle without pressure none would follow
+    while end < _ANGLES - 1 and faces[end - 1] * right[end - 1] / own[end - 1] + ahead[end] > 0.0:
+        end += 1
+    f = _solved(own, faces, right, end - 1)
+    squeezed, same = _eliminated(between + 8.0 * stiff * step, faces, np.full(_ANGLES, step))
+    g = _solved(squeezed, faces, same, end - 1)
     quarter = 0.25 * _bend(angle, curvature_ratio) ** 2
     return Similarity(angle, f * quarter, g * quarter)
 
@@ -144,7 +143,8 @@ def far_tail(x: FloatArray, y: FloatArray, curvature_ratio: float) -> Tail:
     edge = np.zeros(place.shape, dtype=bool)
     edge[0] = edge[:, -1] = True
     edge[-1] = False
-    rolling = np.where(edge, np.interp(place, shape.angle, shape.rolling), 0.0)
+    about = np.interp(place, shape.angle, shape.rolling) * np.hypot(x[:, None], y[None, :])
+    rolling = np.where(edge, about, 0.0)
     squeezing = np.where(edge, np.interp(place, shape.angle, shape.squeezing), 0.0)
     ahead, aside = np.cos(shape.angle), np.sin(shape.angle)
     distance = np.minimum(np.where(ahead > 0.0, -x[0], -x[-1]) / ahead, y[-1] / aside)
@@ -158,8 +158,9 @@ def far_tail(x: FloatArray, y: FloatArray, curvature_ratio: float) -> Tail:
     )
     return Tail(
         far=rolling > 0.0,
-        rolling=rolling * np.hypot(x[:, None], y[None, :]),
+        rolling=rolling,
         squeezing=squeezing,
+        about=about,
         load=load,
         squeeze=-float(np.sum(squeezed / (2.0 * distance**2))),
         deflection=float(np.sum(flux / (2.0 * distance**2))),
@@ -172,10 +173,21 @@ def _bend(angle: Any, curvature_ratio: float) -> FloatArray:
     return np.asarray(np.cos(angle) ** 2 + curvature_ratio * np.sin(angle) ** 2)
 
 
-def _solved(own: FloatArray, faces: FloatArray, right: FloatArray, free: BoolArray) -> FloatArray:
-    """Solve the three-band equations of the free angles, the others zero."""
-    bands = np.zeros((3, own.size))
-    bands[0, 1:] = np.where(free[:-1], -faces, 0.0)
-    bands[1] = np.where(free, own, 1.0)
-    bands[2, :-1] = np.where(free[1:], -faces, 0.0)
-    return np.asarray(solve_banded((1, 1), bands, np.where(free, right, 0.0)))
+@njit
+def _eliminated(own: FloatArray, faces: FloatArray, right: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Pivots and right-hand sides of three-band equations, each without the angle before: the same for any end."""
+    own, right = own.copy(), right.copy()
+    for i in range(1, own.size):
+        factor = faces[i - 1] / own[i - 1]
+        own[i] -= factor * faces[i - 1]
+        right[i] += factor * right[i - 1]
+    return own, right
+
+
+@njit
+def _solved(own: FloatArray, faces: FloatArray, right: FloatArray, end: int) -> FloatArray:
+    """Solve eliminated equations of the angles before an end, the others zero."""
+    found = np.zeros(own.size)
+    for i in range(end - 1, -1, -1):
+        found[i] = (right[i] + faces[min(i, faces.size - 1)] * found[min(i + 1, own.size - 1)]) / own[i]
+    return found

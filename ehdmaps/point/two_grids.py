@@ -172,7 +172,7 @@ def solve_groups(
     found = _solved_on(problem, resolution, previous)
     if not finer or found.resolved:
         return found
-    better = _solved_on(problem, resolution.finer, None)
+    better = _solved_on(problem, resolution.finer, replace(found, coarse=found.fine))
     steps = found.steps + better.steps
     return replace(found if better.numbers is None else better, steps=steps)
 
@@ -305,7 +305,7 @@ def _carried_over(state: PointState, grid: PointGrid) -> tuple[FloatArray, float
     """Pressure and H0 of a state on another grid."""
     if state.grid is grid:
         return state.pressure, state.height
-    spline = RectBivariateSpline(state.grid.x, state.grid.y, state.pressure, kx=1, ky=1)
+    spline = RectBivariateSpline(state.grid.x, state.grid.y, state.pressure)
     pressure = np.maximum(spline(grid.x, grid.y), 0.0)
     pressure[~(grid.inner | grid.tail.far)] = 0.0
     return np.asarray(pressure), state.height

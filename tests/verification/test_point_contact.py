@@ -225,7 +225,8 @@ def in_motion(state, frequency, steps, amplitude=2e-3):
             by_film = np.where(grid.tail.far, 1.5 / dt * grid.tail.squeezing * wedge / film**2, 0.0)
             by_film += np.where(grid.inner & ~grid.tail.far, 1.5 / dt * grid.areas * found.density, 0.0)
             by_pressure = np.where(grid.inner & ~grid.tail.far, 1.5 / dt * grid.areas * found.density_slope * film, 0.0)
-            bands = jacobian(found, kernel, np.ones(grid.shape, dtype=bool), grid.weights, 0.0)[:-1, :-1]
+            scaled, scale = jacobian(found, kernel, np.ones(grid.shape, dtype=bool), grid.weights, 0.0)
+            bands = (scaled / scale[:, None])[:-1, :-1]
             matrix = bands + by_film.ravel()[:, None] * kernel + np.diag(by_pressure.ravel())
             asked = pressure - residual / np.diagonal(matrix).reshape(grid.shape).clip(1e-300)
             free = ((grid.inner & (asked > 0.0)) | grid.tail.far).ravel()
