@@ -20,7 +20,7 @@ from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
-from scipy.linalg.lapack import dgetrf, dgetrs, sgetrf, sgetrs
+from scipy.linalg.lapack import dgesv, dgetrf, dgetrs, sgetrf, sgetrs
 
 from ehdmaps.arrays import BoolArray, FloatArray, IndexArray
 from ehdmaps.ehl.spectrum import orthogonalised
@@ -122,8 +122,10 @@ class Equations:
         pressure = np.zeros(self.grid.shape)
         pressure[self.free] = change[:-1]
         film = self.grid.deflection(pressure) + change[-1]
-        load = float(np.vdot(self.grid.weights, pressure)) + self.tail_slope * change[-1]
-        return np.asarray(np.r_[changed(self.found, pressure, film)[self.free], load])
+        done = np.empty(change.size)
+        done[:-1] = changed(self.found, pressure, film)[self.free]
+        done[-1] = np.vdot(self.grid.weights, pressure) + self.tail_slope * change[-1]
+        return done
 
     def solved(self, right: FloatArray, factors: Factors, tolerance: float) -> FloatArray | None:
         """Solution for a right-hand side, shape (k + 1,); None where these factors do not lead there.
@@ -160,11 +162,10 @@ class Equations:
         basis[0] = start / norm
         for k in range(MOST_VECTORS):
             orthogonalised(self._nearly(self.applied(basis[k]), factors), basis, hessenberg, k)
-            small, first = hessenberg[: k + 1, : k + 1], np.zeros(k + 1)
+            first = np.zeros(k + 1)
             first[0] = norm
-            try:
-                shares = np.linalg.solve(small, first)
-            except np.linalg.LinAlgError:
+            shares, info = dgesv(hessenberg[: k + 1, : k + 1], first)[2:]
+            if info:
                 continue
             if hessenberg[k + 1, k] * abs(shares[k]) <= tolerance * norm:
                 return np.asarray(shares @ basis[: k + 1])
@@ -174,12 +175,14 @@ class Equations:
         """Solution by the factors of other equations; a node that was not free then by its own equation alone."""
         if np.array_equal(self.free, factors.free):
             return factors.solved(right)
-        whole = np.zeros(self.grid.shape)
+        whole, other = np.zeros(self.grid.shape), np.empty(factors.scale.size)
         whole[self.free] = right[:-1]
-        found = factors.solved(np.r_[whole[factors.free], right[-1]])
-        pressure = whole / self.own
-        pressure[factors.free] = found[:-1]
-        return np.asarray(np.r_[pressure[self.free], found[-1]])
+        other[:-1], other[-1] = whole[factors.free], right[-1]
+        other = factors.solved(other)
+        pressure, found = whole / self.own, np.empty(right.size)
+        pressure[factors.free] = other[:-1]
+        found[:-1], found[-1] = pressure[self.free], other[-1]
+        return found
 
     @cached_property
     def own(self) -> FloatArray:

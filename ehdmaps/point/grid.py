@@ -222,32 +222,40 @@ def _kernel(x: FloatArray, y: FloatArray, factor: float) -> FloatArray:
     along[0] = x[0] - _BESIDE * (x[1] - x[0])
     along[n + 1] = x[n - 1] + _BESIDE * (x[n - 1] - x[n - 2])
     across[m] = y[m - 1] + _BESIDE * (y[m - 1] - y[m - 2])
-    apart, logs = np.empty((2, m, m + 1)), np.zeros((2, m, m + 1))  # |y_j - y_s|, y_j + y_s
+    pairs = m * (m + 3) // 2
+    apart, place = np.empty(2 * pairs), np.empty((m, 2 * m + 1), dtype=np.int64)  # distances across, and where they are
+    pair = 0
     for j in range(m):
-        for s in range(m + 1):
-            apart[0, j, s], apart[1, j, s] = abs(y[j] - across[s]), y[j] + across[s]
-            for half in range(2):
-                if apart[half, j, s] > _TOUCHING:
-                    logs[half, j, s] = math.log(apart[half, j, s])
+        for s in range(j, m + 1):
+            apart[pair], apart[pairs + pair] = across[s] - y[j], across[s] + y[j]
+            place[j, m - s] = pairs + pair
+            place[j, m + s] = pair
+            if s < m:
+                place[s, m - j] = pairs + pair
+                place[s, m + j] = pair
+            pair += 1
+    logs, values = np.log(np.maximum(apart, _TOUCHING)), np.empty(2 * pairs)
     whole = np.empty(2 * m + 1)
     whole[m:] = across
     whole[: m + 1] = -across[::-1]
     rates = 1.0 / np.diff(whole)
-    table, line = np.empty((m, 2 * m + 1)), np.empty(2 * m + 1)
+    line, bent = np.empty(2 * m + 1), np.empty(2 * m + 1)
     second = np.empty((n, n + 2, m, m))  # second differences across
     for i in range(n):
         for k in range(n + 2):
             if 0 < k <= i:  # seen from there
                 second[i, k] = second[k - 1, i + 1]
                 continue
-            _fourfold(abs(x[i] - along[k]), apart, logs, table)
+            _fourfold(abs(x[i] - along[k]), apart, logs, values)
             for j in range(m):
-                values, out = table[j], second[i, k, j]
+                out = second[i, k, j]
+                for s in range(2 * m + 1):
+                    line[s] = values[place[j, s]]
                 for s in range(1, 2 * m):
-                    line[s] = (values[s - 1] - values[s]) * rates[s - 1] + (values[s + 1] - values[s]) * rates[s]
-                out[0] = line[m]
+                    bent[s] = (line[s - 1] - line[s]) * rates[s - 1] + (line[s + 1] - line[s]) * rates[s]
+                out[0] = bent[m]
                 for node in range(1, m):
-                    out[node] = line[m + node] + line[m - node]
+                    out[node] = bent[m + node] + bent[m - node]
     kernel = np.empty((n * m, n * m))
     for i in range(n):
         for j in range(m):
@@ -261,22 +269,14 @@ def _kernel(x: FloatArray, y: FloatArray, factor: float) -> FloatArray:
 
 
 @njit(fastmath=True)
-def _fourfold(distance: float, apart: FloatArray, logs: FloatArray, table: FloatArray) -> None:
-    """Values of G at a distance along and all distances across, those to the other half first, into a table."""
-    m, square = apart.shape[1], distance * distance
-    own = math.log(distance) if distance > _TOUCHING else 0.0
-    for j in range(m):
-        for half in range(2):
-            for s in range(m + 1):
-                if s < j:
-                    value = table[s, m - j if half else m + j]
-                else:
-                    far = apart[half, j, s]
-                    r = math.sqrt(square + far * far)
-                    value = -r * r * r / 6.0
-                    if distance > _TOUCHING and far > _TOUCHING:
-                        turned = distance * (math.log(far + r) - own) + far * (
-                            math.log(distance + r) - logs[half, j, s]
-                        )
-                        value += 0.5 * distance * far * turned
-                table[j, m - s if half else m + s] = value
+def _fourfold(distance: float, apart: FloatArray, logs: FloatArray, values: FloatArray) -> None:
+    """Values of G at a distance along and some across, whose logarithms are known."""
+    touching = distance < _TOUCHING
+    own, square = 0.0 if touching else math.log(distance), distance * distance
+    for k in range(apart.size):
+        far = apart[k]
+        r = math.sqrt(square + far * far)
+        values[k] = -r * r * r / 6.0
+        if not touching:
+            turned = distance * (math.log(far + r) - own) + far * (math.log(distance + r) - logs[k])
+            values[k] += 0.5 * distance * far * turned

@@ -107,9 +107,9 @@ def newton(problem: PointProblem, grid: PointGrid, pressure: FloatArray, height:
     pressure, wedge, peak = pressure.copy(), problem.wedge, float(np.max(pressure))
     free, equations, factors, near = (pressure > 0.0) | grid.tail.far, None, None, False
     status, steps = Status.STAGNATED, 0
+    film = grid.deflection(pressure) + grid.parabola + height
     for _ in range(MOST_STEPS):
         steps += 1
-        film = grid.deflection(pressure) + grid.parabola + height
         lowest = float(np.min(film))
         if not math.isfinite(lowest):
             status = Status.DIVERGED
@@ -145,15 +145,19 @@ def newton(problem: PointProblem, grid: PointGrid, pressure: FloatArray, height:
         pressure = pressure + length * step
         if length == 1.0:
             pressure[~free] = 0.0
-        pressure = np.maximum(pressure, 0.0)
         height += length * float(move[-1])
+        if float(np.min(pressure)) < 0.0:
+            pressure = np.maximum(pressure, 0.0)
+            after = grid.deflection(pressure) + grid.parabola + height
+        else:
+            after = film + length * change
         peak = max(float(np.max(pressure)), 1e-300)
         thickness = float(np.max(np.abs(change[free] / film[free])))
+        film = after
         near = length == 1.0 and max(size, thickness) < NEAR
         if length == 1.0 and max(size, thickness) < TOLERANCE and np.array_equal(free, before):
             status = Status.CONVERGED
             break
-    film = grid.deflection(pressure) + grid.parabola + height
     return PointState(problem, grid, pressure, film, height, status, steps, free, equations, factors)
 
 
