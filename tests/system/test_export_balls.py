@@ -39,7 +39,8 @@ OUTPUTS = ("force.x", "force.y", "force.z", "moment.y", "moment.z")
 POSE = ["pose.x", "pose.y", "pose.z", "pose.theta_y", "pose.theta_z"]
 VELOCITY = [name.replace("pose", "velocity") for name in POSE]
 FREE = [0, 1, 2, 4, 5]
-DAMPER = 1.25e-5
+DAMPER, OUTER = 1.25e-5, -0.1
+"""Damping over stiffness [s]; turns of the outer ring by those of the inner one."""
 
 
 def films(geometry):
@@ -76,7 +77,7 @@ def assert_same(found, wanted, arm):
 @pytest.mark.parametrize("mirrored", [False, True])
 @pytest.mark.parametrize("name", ["6208", "7208B"])
 def test_kernel_is_that_of_python(exported, name, mirrored):
-    """At random poses and velocities, with clearance and preload, from rest to where balls leave the inner raceway."""
+    """At random poses and velocities, with clearance and preload, at rest and fast, with rings against each other."""
     nominal, laws, kernel = exported[name]
     rng = np.random.default_rng(4)
     scale = np.array([15e-6, 15e-6, 15e-6, 0.0, 5e-4, 5e-4])
@@ -85,7 +86,7 @@ def test_kernel_is_that_of_python(exported, name, mirrored):
     for clearance in (20e-6, 0.0, -10e-6):
         assert kernel.make(clearance, mirrored) == 0
         geometry = dataclasses.replace(nominal, clearance=clearance, contact_angle=way * nominal.contact_angle)
-        for inner, outer in ((0.0, 0.0), (300.0, 0.0), (900.0, -80.0), (0.0, 700.0)):
+        for inner, outer in ((0.0, 0.0), (300.0, 0.0), (900.0, -80.0), (0.0, 700.0), (850.0, -700.0)):
             u, cage = geometry.entrainment_speed(inner, outer), 1.05 * geometry.cage_speed(inner, outer)
             kernel.prepare(u)
             force = BallForce(geometry, laws.at(u))
@@ -178,8 +179,9 @@ def unpacked(units, tmp_path_factory):
 
 
 def element_of(geometry):
-    """The bearing of the units in a machine at 6000 rpm, whose angle the test gives."""
-    return MachineBalls("b", "i", "o", BallForce(geometry, dry_law(geometry, damping_time=DAMPER)))
+    """The bearing of the units in a machine."""
+    force = BallForce(geometry, dry_law(geometry, damping_time=DAMPER))
+    return MachineBalls("b", "i", "o", force, outer_spin=OUTER)
 
 
 @pytest.mark.parametrize("fmi", ["2", "3"])
@@ -205,7 +207,8 @@ def test_unit(units, unpacked, fmi):
     operation = Operation(6000.0 * RPM, angle=0.7)
     wanted = element.evaluate(pose, 100.0 * velocity, operation)
     unit.put(model, [*POSE, *VELOCITY], [*pose[FREE], *100.0 * velocity[FREE]])
-    unit.put(model, ["spin.inner", "speed.inner"], [operation.angle, operation.speed])
+    turning = np.array([operation.angle, operation.speed])
+    unit.put(model, ["spin.inner", "speed.inner", "spin.outer", "speed.outer"], [*turning, *OUTER * turning])
     np.testing.assert_allclose(unit.get(model, OUTPUTS), wanted.force[FREE], rtol=1e-8, atol=1e-5)
     for matrix, names in ((wanted.stiffness, POSE), (wanted.damping, VELOCITY)):
         found = np.array([unit.derivatives(model, name, OUTPUTS) for name in names]).T
@@ -251,7 +254,9 @@ def test_pair_in_o_arrangement(unpacked):
             # the plain one, which takes +x, stands at -x: lines of contact meet the axis far outside
             arm = -way * half
             pose = np.array([x + way * preload, y + arm * about_z, z - arm * about_y, 0.0, about_y, about_z])
-            unit.put(model, [*POSE, "speed.inner"], [*pose[FREE], operation.speed])
+            unit.put(
+                model, [*POSE, "speed.inner", "speed.outer"], [*pose[FREE], operation.speed, OUTER * operation.speed]
+            )
             at = elements[way].evaluate(pose, np.zeros(6), operation).force[FREE]
             for side, force in enumerate((unit.get(model, OUTPUTS), at)):
                 sums[side] += force

@@ -10,6 +10,14 @@
  * centrifugal load and its gyroscopic moment, which traction at the outer raceway holds. Balls have no inertia beside
  * that; films have no memory.
  *
+ *     static ehd_law law;     // all zero before the first call
+ *     static ehd_balls balls; // the same
+ *     ehd_bearing bearing;
+ *     ehd_bearing_force result;
+ *     ehd_bearing_make(&bearing, EHD_CLEARANCE, 0);
+ *     int status = ehd_bearing_call(&bearing, &law, &balls, pose, velocity, cage_angle, inner_speed, outer_speed, &result);
+ *     if (EHD_REFUSES(status)) puts(ehd_status_text(status)); // result is NaN
+ *
  * Nothing here allocates, keeps a state of its own, reads or writes a file. All functions may be called from several
  * threads at once, each with structures of its own.
  * ------------------------------------------------------------------------------------------------------------------ */
