@@ -210,7 +210,9 @@ def read_request(arguments: argparse.Namespace) -> BearingRequest:
         Output("--plot", arguments.plot, FIGURE),
     )
     read = (arguments.bearing, chosen.get("map"), table_path(law))
-    problems += output_problems(outputs, [path for path in read if path])
+    beside = _elsewhere(arguments)
+    wrong = output_problems(outputs, [path for path in read if path])
+    problems += [problem + beside if problem.startswith("-o: ") else problem for problem in wrong]
     if problems or bearing is None or given is None or oil is None:
         raise InputError(tuple(dict.fromkeys(problems)))
     if law == TABLE_LAW:
@@ -247,6 +249,14 @@ def read_request(arguments: argparse.Namespace) -> BearingRequest:
             state=state,
         ),
     )
+
+
+def _elsewhere(arguments: argparse.Namespace) -> str:
+    """Command that writes a bearing of rollers where -o has a file of balls alone; empty for other files."""
+    ending = Path(arguments.output or "").suffix.lower()
+    if ending not in (".c", ".fmu"):
+        return ""
+    return f"; a bearing of rollers as {ending}: `ehdmaps export BEARING --to {ending[1:]}`"
 
 
 def _refuse_axial(arguments: argparse.Namespace, problems: list[str]) -> None:

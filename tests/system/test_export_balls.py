@@ -15,6 +15,7 @@ from fmpy.validation import validate_fmu
 
 from ehdmaps.errors import InputError
 from ehdmaps.exports.fmu.binaries import platforms
+from ehdmaps.jobs.cli import main as export
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from mbs.bearings.balls.ball_bearing import BallForce
@@ -283,6 +284,14 @@ def test_two_files_of_a_source(tmp_path, monkeypatch, capsys):
     assert sorted(path.name for path in Path().iterdir()) == ["b.h"]
     assert main(["bearing", "7208B", *LOAD, "--load", "1 kN", *FAST, "-o", "c.c"]) == 2
     assert "-o: got c.c for 2 loads and 1 speeds; allowed: one load" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("ending", ["c", "fmu"])
+def test_rollers_are_exported_by_another_command(ending, capsys):
+    assert main(["bearing", "NU308", "--load", "1 kN", "--speed", "0 rpm", "-o", f"x.{ending}"]) == 2
+    assert f"a bearing of rollers as .{ending}: `ehdmaps export BEARING --to {ending}`" in capsys.readouterr().err
+    assert export(["export", "6208", "--to", ending]) == 2
+    assert "the bearing itself: -o NAME.c, NAME.fmu" in capsys.readouterr().err
 
 
 def test_mirrored_bearings_are_not_exported_twice():
