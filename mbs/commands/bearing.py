@@ -79,6 +79,9 @@ MOST_SLICES = 1000
 _BALLS = re.compile(r"\s*[67]\d{3}(?!\d)")
 """Beginning of the designation of a ball bearing."""
 
+_TAPERED = re.compile(r"\s*(?:HR ?)?3[0-3][0-9][ -]?\d\d(?!\d)", re.IGNORECASE)
+"""Beginning of the designation of a tapered roller bearing."""
+
 MOST_SLICES_IN_ALL = 5_000_000
 """Of all rollers at all points: half a gigabyte."""
 
@@ -508,6 +511,10 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         from mbs.commands.one_bearing.balls import run_balls  # with kernels that others do not need
 
         return run_balls(arguments)
+    if _TAPERED.match(arguments.bearing) and not os.path.isfile(arguments.bearing):
+        from mbs.commands.one_bearing.tapered import run_tapered  # with kernels that others do not need
+
+        return run_tapered(arguments)
     request = read_request(arguments)
     points = _points(request)
     lines = bearing_text(request.description, points, _corner_points(request, points))

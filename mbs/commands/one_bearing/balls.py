@@ -21,6 +21,7 @@ from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.ball_point import BallPoint, ball_point
 from mbs.bearings.balls.laws import BallLaw, dry_law
 from mbs.commands.one_bearing.ball_files import BallExport, ball_outputs, count_problems, is_export, write_export
+from mbs.commands.one_bearing.shared import CELSIUS_40, ROUGHNESS, read_damper, read_oil, refuse_others
 from mbs.commands.one_bearing.values import (
     LOADS,
     MOST_POINTS,
@@ -32,14 +33,11 @@ from mbs.commands.one_bearing.values import (
 )
 from mbs.output.ball_table import BallDescription, ball_dataset, ball_text, write_ball_csv
 from mbs.output.files import write_dataset
-from mbs.scene.contact_laws import HERTZ_FORMS, Damper, hertz_damper
+from mbs.scene.contact_laws import Damper
 from mbs.scene.fields import FORCE, MICROMETRE
 
 if TYPE_CHECKING:
     from mbs.bearings.balls.films import BallFilms
-
-CELSIUS_40, ROUGHNESS = 313.15, 0.3e-6
-"""Assumed where nothing is given: the temperature of the raceways [K], the combined rms roughness [m]."""
 
 FILMS, TABLE = "films", "table"
 """Laws of contacts with films at each speed: read from the table of points, and solved where it has none; or read."""
@@ -96,7 +94,7 @@ def read_balls(arguments: argparse.Namespace) -> BallRequest:
     problems: list[str] = []
     geometry = _geometry(arguments.bearing, problems)
     chosen = read_choices(arguments, problems)
-    _refuse_others(arguments, list(chosen), problems)
+    refuse_others(arguments, list(chosen), _TAKEN, "ball bearing", problems)
     axial = read_one("--axial", arguments.axial, "N", (-LOADS[1], LOADS[1]), FORCE, 0.0, problems)
     least = 0.0 if axial else LOADS[0]
     loads = read_values("--load", arguments.load, "N", (least, LOADS[1]), FORCE, problems)
@@ -108,9 +106,10 @@ def read_balls(arguments: argparse.Namespace) -> BallRequest:
     way = read_direction(arguments.direction, problems)
     law = chosen.get("law")
     films = law if law in (FILMS, TABLE) else ""
-    damper = Damper() if films else _damper(chosen.get("law"), problems)
+    more = f", {FILMS}, {TABLE}; maps are of line contacts"
+    damper = Damper() if films else read_damper(chosen.get("law"), "ball bearing", more, problems)
     temperature = float(chosen.get("temperature", CELSIUS_40))
-    oil = _oil(arguments.oil, temperature, problems)
+    oil = read_oil(arguments.oil, temperature, problems)
     clearance = chosen.get("clearance")
     if geometry is not None and clearance is not None:
         try:
@@ -236,46 +235,3 @@ def _geometry(source: str, problems: list[str]) -> BallGeometry | None:
     except InputError as error:
         problems += [f"BEARING: {problem}" for problem in error.problems]
         return None
-
-
-def _refuse_others(arguments: argparse.Namespace, chosen: list[str], problems: list[str]) -> None:
-    """Note options that are for roller bearings."""
-    given = [f"--{name}" for name in chosen if name not in _TAKEN]
-    given += [
-        f"--{side}-ring-temperature"
-        for side in ("inner", "outer")
-        if getattr(arguments, f"{side}_ring_temperature") is not None
-    ]
-    given += ["--profile"] * (arguments.profile != "iso") + ["--slices"] * (arguments.slices != "41")
-    given += ["--coupled"] * bool(arguments.coupled) + ["--plot"] * (arguments.plot is not None)
-    if given:
-        allowed = ", ".join(f"--{name}" for name in (*_TAKEN, "oil", "axial", "outer-speed", "tilts", "direction"))
-        problems.append(f"{', '.join(given)}: not for ball bearings; allowed: {allowed} and -o; leave it out")
-
-
-def _damper(law: str | None, problems: list[str]) -> Damper | None:
-    """Damper of the law hertz."""
-    try:
-        damper = Damper() if law is None else hertz_damper(law)
-    except InputError as error:
-        problems += error.problems
-        return None
-    if damper is None:
-        problems.append(
-            f"--law: got {law!r:.60} for a ball bearing; allowed: hertz, {HERTZ_FORMS}, {FILMS}, {TABLE}; maps are of "
-            "line contacts"
-        )
-    return damper
-
-
-def _oil(name: str | None, temperature: float, problems: list[str]) -> Lubricant | None:
-    """The oil, which must suit the temperature."""
-    option = "--oil"
-    try:
-        oil = Lubricant.named(DEFAULT_OIL if name is None else name)
-        option = "--temperature"
-        oil.at(temperature)
-    except InputError as error:
-        problems += [f"{option}: {problem}" for problem in error.problems]
-        return None
-    return oil

@@ -1,0 +1,311 @@
+"""One tapered roller bearing at an operating point: where its inner ring comes to rest, what its rollers feel there.
+
+The outer ring is held, the inner one moves along x, y and z, and tilts if it may. Contacts are dry. Films of the lines
+are those of formulas at the load, radius and speed of each slice; that of the rib is the formula of Hamrock and Dowson,
+whose ellipses are not longer along the motion, as the rib's are: an order of magnitude. Films move nothing.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.physics.hertz import max_pressure
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.point.film_formulas import hamrock_dowson_central
+from ehdmaps.physics.rollers.tapered_catalogue import tapered_ratings
+from ehdmaps.units import PRESSURE
+from mbs.bearings.films import FormulaFilms
+from mbs.bearings.tapered.reference_load import reference_load
+from mbs.bearings.tapered.tapered_bearing import TaperedElement, TaperedForce, TaperedLoads
+from mbs.model.body import Inertia, rigid_body
+from mbs.model.elements import Load, Operation
+from mbs.model.equilibrium import equilibrium
+from mbs.model.system import System
+
+STATIC_LIMIT = 4.0e9
+"""Hertz pressure of the static load rating of roller bearings after ISO 76 [Pa]."""
+
+SIDES = ("inner", "outer")
+
+RIB_FRICTION = 0.05
+"""Coefficient of friction at the rib, assumed: mixed friction with an oil film."""
+
+_RING = "inner ring"
+
+
+@dataclass(frozen=True, eq=False)
+class TaperedPoint:
+    """A tapered roller bearing in equilibrium.
+
+    Attributes
+    ----------
+    force : TaperedForce
+        Geometry and laws.
+    load : array (3,)
+        Load on the inner ring, x, y and z [N].
+    inner_speed, outer_speed, cage_speed : float
+        [rad/s].
+    entrainment_speed : float
+        Speed of both surfaces against the cage in the middle of a roller [m/s].
+    pose : array (6,)
+        Pose of the inner ring in the outer one.
+    stiffness, damping : array (6, 6)
+        -d force/d pose and -d force/d velocity.
+    rollers : TaperedLoads
+        Loads of rollers and slices.
+    pressure, central_film, minimum_film : array (2, Z)
+        Largest Hertz pressure of the slices of cone and cup [Pa], and their smallest films [m]; NaN for films of
+        contacts without load, or without an oil.
+    rib_pressure, rib_film : array (Z,)
+        Hertz pressure [Pa] and central film [m] at the rib.
+    sliding_speed : float
+        Sliding speed at the rib [m/s].
+    rib_power : float
+        Power that all ribs take with the friction `RIB_FRICTION` [W].
+    centrifugal_load : float
+        Centrifugal load of a roller [N].
+    equivalent_load, life : float
+        P_ref of ISO/TS 16281 [N], and L10r in millions of turns.
+    problems, notes : tuple of str
+        Why the laws do not hold at the point; what else is to be known.
+    """
+
+    force: TaperedForce
+    load: FloatArray
+    inner_speed: float
+    outer_speed: float
+    cage_speed: float
+    entrainment_speed: float
+    pose: FloatArray
+    stiffness: FloatArray
+    damping: FloatArray
+    rollers: TaperedLoads
+    pressure: FloatArray
+    central_film: FloatArray
+    minimum_film: FloatArray
+    rib_pressure: FloatArray
+    rib_film: FloatArray
+    sliding_speed: float
+    rib_power: float
+    centrifugal_load: float
+    equivalent_load: float
+    life: float
+    problems: tuple[str, ...]
+    notes: tuple[str, ...]
+
+    @property
+    def size(self) -> float:
+        """Size of the radial load [N]."""
+        return math.hypot(self.load[1], self.load[2])
+
+    @property
+    def axial(self) -> float:
+        """Axial load [N]."""
+        return float(self.load[0])
+
+    @property
+    def loaded(self) -> int:
+        """Number of rollers that carry more than 1 % of the highest load of the cone."""
+        cone = self.rollers.load[0]
+        return int(np.count_nonzero(cone > 0.01 * cone.max()))
+
+    @property
+    def axes(self) -> FloatArray:
+        """Unit vectors along and across the radial load, (2, 3); along y without one."""
+        y, z = (self.load[1:] / self.size) if self.size > 0.0 else (1.0, 0.0)
+        return np.array([[0.0, y, z], [0.0, -z, y]])
+
+    def along_across(self, matrix: FloatArray) -> tuple[float, float, float]:
+        """Entries of a matrix (6, 6) along the radial load, across it, and along the axis."""
+        along, across = self.axes
+        part = matrix[:3, :3]
+        return float(along @ part @ along), float(across @ part @ across), float(part[0, 0])
+
+    @property
+    def smallest_film(self) -> float:
+        """Smallest of all films of the raceways [m]; NaN where none is known."""
+        known = self.minimum_film[np.isfinite(self.minimum_film)]
+        return float(known.min()) if known.size else math.nan
+
+
+@dataclass(frozen=True, eq=False)
+class _Held(TaperedElement):
+    """A bearing whose rings turn at speeds of their own [rad/s], whatever the system does."""
+
+    def conditions(self, operation: Operation) -> dict[str, float]:
+        """Speeds as they are."""
+        return {"inner_speed": self.inner_spin, "outer_speed": self.outer_spin}
+
+
+def tapered_point(
+    force: TaperedForce,
+    load: Sequence[float],
+    inner_speed: float,
+    outer_speed: float = 0.0,
+    *,
+    tilts: bool = False,
+    oil: Lubricant | None = None,
+    temperature: float = 313.15,
+) -> TaperedPoint:
+    """Equilibrium of a tapered roller bearing.
+
+    Parameters
+    ----------
+    force : TaperedForce
+        Geometry and laws.
+    load : (float, float, float)
+        Load on the inner ring, x, y and z [N]; x with the sign of the contact angle.
+    inner_speed, outer_speed : float
+        Speeds of the rings [rad/s].
+    tilts : bool
+        Whether the inner ring tilts freely, without a moment; else it is held.
+    oil : Lubricant, optional
+        Oil of the films; no films without one.
+    temperature : float
+        Temperature of the raceways, and so of the oil [K].
+
+    Raises
+    ------
+    InputError
+        For loads that are no finite numbers, or all zero.
+    AnalysisError
+        Where no equilibrium is found.
+    """
+    given = np.array(load, dtype=np.float64)
+    if given.shape != (3,) or not np.all(np.isfinite(given)) or not np.any(given):
+        raise InputError(f"tapered point, load: got {load!r} N; allowed: three finite numbers, x, y, z, not all zero")
+    free = ["x", "y", "z", "theta_y", "theta_z"] if tilts else ["x", "y", "z"]
+    ring = rigid_body(_RING, [Inertia(1.0, 1.0, 1.0)], free)
+    loads = [Load("load", _RING, np.array([*given, 0.0, 0.0, 0.0]))]
+    element = _Held("bearing", _RING, "ground", force, inner_speed, outer_speed)
+    geometry = force.geometry
+    start = np.zeros(len(free))
+    start[:3] = (
+        1e-5 * math.copysign(1.0, geometry.contact_angle),
+        *(2e-6 * given[1:] / max(np.abs(given).max(), 1e-300)),
+    )
+    try:
+        balance = equilibrium(System([ring], loads=loads, elements=[element]), Operation(), start)
+    except AnalysisError as error:
+        radial = math.hypot(*given[1:])
+        words = f"no equilibrium of {geometry.name} under {given[0]:.4g} N axial, {radial:.4g} N radial"
+        least = math.tan(geometry.cup_angle) * radial
+        if math.copysign(given[0], given[0] * geometry.contact_angle) < least:
+            way = "positive" if geometry.contact_angle > 0.0 else "negative"
+            words += (
+                f"; a tapered roller bearing falls apart without a {way} axial load above Fr tan(alpha) = "
+                f"{least:.4g} N; half of its rollers carry at 0.5 Fr/Y = {1.25 * least:.4g} N"
+            )
+        raise AnalysisError(f"{words}: {error.__cause__ or error}") from error
+    pose = np.zeros(6)
+    pose[[0, 1, 2, 4, 5][: len(free)]] = balance.displacement
+    rollers = element.rollers(pose, Operation())
+    speed = geometry.entrainment_speed(inner_speed, outer_speed)
+    pressure, central, minimum = _lines(force, rollers, speed, oil, temperature)
+    rib, slides = geometry.rib_contact(force.material), geometry.rib_speeds(inner_speed, outer_speed)
+    rib_pressure, rib_film = np.zeros(rollers.angle.size), np.full(rollers.angle.size, np.nan)
+    if rib is not None:
+        rib_pressure = np.asarray(rib.max_pressure(rollers.load[2]))
+        mean, carries = 0.5 * abs(slides[0] + slides[1]), rollers.load[2] > 0.0
+        if oil is not None and mean > 0.0:
+            state = oil.at(temperature)
+            rib_film[carries] = rib.rolling_radius * hamrock_dowson_central(
+                state.viscosity * mean / (rib.reduced_modulus * rib.rolling_radius),
+                rollers.load[2][carries] / (rib.reduced_modulus * rib.rolling_radius**2),
+                state.pressure_viscosity.pressure_viscosity * rib.reduced_modulus,
+                rib.ellipticity,
+            )
+    length = geometry.roller_length / force.positions.size
+    gamma = geometry.roller_diameter * math.cos(geometry.cup_angle) / geometry.pitch_diameter
+    turns = abs(inner_speed) >= abs(outer_speed)
+    equivalent, life = reference_load(
+        rollers.slices * length, tapered_ratings(geometry)[0], gamma, geometry.cup_angle, inner_turns=turns
+    )
+    centrifugal, _ = force.speed_loads(inner_speed, outer_speed)
+    return TaperedPoint(
+        force=force,
+        load=given,
+        inner_speed=inner_speed,
+        outer_speed=outer_speed,
+        cage_speed=geometry.cage_speed(inner_speed, outer_speed),
+        entrainment_speed=speed,
+        pose=pose,
+        stiffness=balance.element_stiffness[0],
+        damping=balance.element_damping[0],
+        rollers=rollers,
+        pressure=pressure,
+        central_film=central,
+        minimum_film=minimum,
+        rib_pressure=rib_pressure,
+        rib_film=rib_film,
+        sliding_speed=abs(slides[0] - slides[1]),
+        rib_power=RIB_FRICTION * float(rollers.load[2].sum()) * abs(slides[0] - slides[1]),
+        centrifugal_load=centrifugal,
+        equivalent_load=equivalent,
+        life=life,
+        problems=tuple(filter(None, [_overload(pressure)])),
+        notes=tuple(filter(None, [_slack(rollers), _edges(force, rollers)])),
+    )
+
+
+def _lines(
+    force: TaperedForce, rollers: TaperedLoads, speed: float, oil: Lubricant | None, temperature: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Largest Hertz pressures and smallest films of the slices, each with its own radius and speed, (2, Z) each."""
+    geometry = force.geometry
+    contacts = geometry.contacts(force.material)
+    pressure = np.zeros((2, rollers.angle.size))
+    central, minimum = np.full((2, 2, rollers.angle.size), np.nan)
+    for side, contact in enumerate(contacts):
+        for index, place in enumerate(force.positions.tolist()):
+            radius = geometry.radius_at(place, side)
+            loads = rollers.slices[side, :, index]
+            at_slice = np.asarray(max_pressure(loads, radius, contact.reduced_modulus))
+            pressure[side] = np.maximum(pressure[side], at_slice)
+            if oil is not None and speed > 0.0:
+                local = tuple(dataclasses.replace(each, radius=radius) for each in contacts)
+                share = 1.0 - place / geometry.apex_distance
+                state = FormulaFilms(local, oil).state(side, loads, speed * share, temperature)
+                central[side] = np.fmin(central[side], state.central_film)
+                minimum[side] = np.fmin(minimum[side], state.minimum_film)
+    return pressure, central, minimum
+
+
+def _overload(pressure: FloatArray) -> str:
+    """A sentence where a pressure is beyond the static limit; empty otherwise."""
+    side, roller = np.unravel_index(int(np.argmax(pressure)), pressure.shape)
+    if pressure[side, roller] <= STATIC_LIMIT:
+        return ""
+    return (
+        f"Hertz pressure of {PRESSURE.text(float(pressure[side, roller]))} ({SIDES[side]} raceway) is above "
+        f"{PRESSURE.text(STATIC_LIMIT)}, the static limit of ISO 76: permanent deformation; elastic contacts no longer "
+        "hold"
+    )
+
+
+def _slack(rollers: TaperedLoads) -> str:
+    """A sentence where less than half of the rollers carry load."""
+    cone = rollers.load[0]
+    share = np.count_nonzero(cone > 0.01 * cone.max()) / cone.size
+    if share >= 0.45:
+        return ""
+    return (
+        f"{100.0 * share:.3g} % of the rollers carry load, less than half: the axial load is below 0.5 Fr/Y, which a "
+        "mounted bearing gets from the other one"
+    )
+
+
+def _edges(force: TaperedForce, rollers: TaperedLoads) -> str:
+    """A sentence where loads crowd at an end of the rollers."""
+    carries = rollers.load[:2] > 0.01 * rollers.load[:2].max()
+    off = float(np.max(np.abs(np.where(carries, rollers.centre, 0.0)))) / force.geometry.roller_length
+    if off < 1.0 / 6.0:
+        return ""
+    return f"loads lie {100.0 * off:.3g} % of the length beside the middle of rollers: they crowd at an end"

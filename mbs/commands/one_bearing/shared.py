@@ -1,0 +1,96 @@
+"""Options that bearings of balls and of tapered rollers have in common: refusals, the damper of the law, the oil."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+
+from ehdmaps.errors import InputError
+from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
+from mbs.scene.contact_laws import HERTZ_FORMS, Damper, hertz_damper
+
+CELSIUS_40, ROUGHNESS = 313.15, 0.3e-6
+"""Assumed where nothing is given: the temperature of the raceways [K], the combined rms roughness [m]."""
+
+
+def refuse_others(
+    arguments: argparse.Namespace,
+    chosen: Sequence[str],
+    taken: Sequence[str],
+    kind: str,
+    problems: list[str],
+    own: Sequence[str] = (),
+) -> None:
+    """Note options that are for cylindrical roller bearings.
+
+    Parameters
+    ----------
+    arguments : Namespace
+        Options as they were parsed.
+    chosen, taken : sequence of str
+        Choices that were given, and those that the bearing takes.
+    kind : str
+        Kind of the bearing, in words.
+    problems : list of str
+        What is wrong; added to.
+    own : sequence of str
+        Further options that the bearing takes: profile, slices.
+    """
+    given = [f"--{name}" for name in chosen if name not in taken]
+    given += [
+        f"--{side}-ring-temperature"
+        for side in ("inner", "outer")
+        if getattr(arguments, f"{side}_ring_temperature") is not None
+    ]
+    for name, usual in (("profile", "iso"), ("slices", "41")):
+        given += [f"--{name}"] * (name not in own and getattr(arguments, name) != usual)
+    given += ["--coupled"] * bool(arguments.coupled) + ["--plot"] * (arguments.plot is not None)
+    if given:
+        names = (*taken, *own, "oil", "axial", "outer-speed", "tilts", "direction")
+        allowed = ", ".join(f"--{name}" for name in names)
+        problems.append(f"{', '.join(given)}: not for {kind}s; allowed: {allowed} and -o; leave it out")
+
+
+def read_damper(law: str | None, kind: str, more: str, problems: list[str]) -> Damper | None:
+    """Damper of the law hertz; None where a problem was noted.
+
+    Parameters
+    ----------
+    law : str or None
+        Law as it was typed.
+    kind, more : str
+        Kind of the bearing, and what else is allowed, in words.
+    problems : list of str
+        What is wrong; added to.
+    """
+    try:
+        damper = Damper() if law is None else hertz_damper(law)
+    except InputError as error:
+        problems += error.problems
+        return None
+    if damper is None:
+        problems.append(f"--law: got {law!r:.60} for a {kind}; allowed: hertz, {HERTZ_FORMS}{more}")
+    return damper
+
+
+def read_oil(name: str | None, temperature: float, problems: list[str]) -> Lubricant | None:
+    """The oil, which must suit the temperature; None where a problem was noted.
+
+    Parameters
+    ----------
+    name : str or None
+        Name as it was typed; None for the usual oil.
+    temperature : float
+        Temperature of the raceways [K].
+    problems : list of str
+        What is wrong; added to.
+    """
+    option = "--oil"
+    try:
+        oil = Lubricant.named(DEFAULT_OIL if name is None else name)
+        option = "--temperature"
+        oil.at(temperature)
+    except InputError as error:
+        problems += [f"{option}: {problem}" for problem in error.problems]
+        return None
+    return oil

@@ -1,0 +1,181 @@
+"""`mbs bearing` of a tapered roller bearing, by its designation; every problem at once."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+from ehdmaps.errors import InputError
+from ehdmaps.outputs import Output, output_problems
+from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
+from ehdmaps.physics.rollers.tapered_catalogue import tapered_estimate
+from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
+from ehdmaps.units import RPM, TEMPERATURE
+from mbs.bearings.tapered.tapered_bearing import MOST_SLICES, SLICES, TaperedForce
+from mbs.bearings.tapered.tapered_point import TaperedPoint, tapered_point
+from mbs.commands.one_bearing.shared import CELSIUS_40, ROUGHNESS, read_damper, read_oil, refuse_others
+from mbs.commands.one_bearing.tapered_table import TaperedDescription, tapered_dataset, tapered_text, write_tapered_csv
+from mbs.commands.one_bearing.values import (
+    LOADS,
+    MOST_POINTS,
+    SPEEDS,
+    read_choices,
+    read_direction,
+    read_one,
+    read_values,
+    read_whole,
+)
+from mbs.output.bearing_table import result_kind
+from mbs.output.files import write_dataset
+from mbs.scene.fields import FORCE, MICROMETRE
+
+_TAKEN = ("law", "temperature", "roughness")
+"""Choices that tapered roller bearings take."""
+
+_KIND = "tapered roller bearing"
+
+
+@dataclass(frozen=True, eq=False)
+class TaperedRequest:
+    """Request to be answered.
+
+    Attributes
+    ----------
+    force : TaperedForce
+        Geometry and laws.
+    oil : Lubricant
+        Oil of the films.
+    loads : tuple of float
+        Sizes of the radial load on the inner ring [N].
+    axial : float
+        Axial load on the inner ring [N].
+    way : (float, float)
+        Direction of the radial load, y and z; a unit vector.
+    speeds : tuple of float
+        Speeds of the inner ring [rad/s].
+    outer_speed : float
+        Speed of the outer ring [rad/s].
+    description : TaperedDescription
+        The same in words.
+    """
+
+    force: TaperedForce
+    oil: Lubricant
+    loads: tuple[float, ...]
+    axial: float
+    way: tuple[float, float]
+    speeds: tuple[float, ...]
+    outer_speed: float
+    description: TaperedDescription
+
+
+def read_tapered(arguments: argparse.Namespace) -> TaperedRequest:
+    """Read the bearing and all options.
+
+    Raises
+    ------
+    InputError
+        With every problem.
+    """
+    problems: list[str] = []
+    geometry = _geometry(arguments.bearing, problems)
+    chosen = read_choices(arguments, problems)
+    refuse_others(arguments, list(chosen), _TAKEN, _KIND, problems, ("profile", "slices"))
+    axial = read_one("--axial", arguments.axial, "N", (-LOADS[1], LOADS[1]), FORCE, 0.0, problems)
+    least = 0.0 if axial else LOADS[0]
+    loads = read_values("--load", arguments.load, "N", (least, LOADS[1]), FORCE, problems)
+    if geometry is not None and not axial > 0.0:
+        problems.append(
+            f"--axial: got {FORCE.text(axial)}; allowed: above zero: the rings of a single {_KIND} fall apart without; "
+            f"half of its rollers carry at {1.25 * math.tan(geometry.cup_angle):.3g} of the radial load"
+        )
+    speeds = read_values("--speed", arguments.speed, "rad/s", SPEEDS, RPM, problems)
+    limits = (-SPEEDS[1], SPEEDS[1])
+    outer = read_one("--outer-speed", arguments.outer_speed, "rad/s", limits, RPM, 0.0, problems)
+    if len(loads) * len(speeds) > MOST_POINTS:
+        problems.append(f"--load, --speed: got {len(loads) * len(speeds)} points; allowed: at most {MOST_POINTS}")
+    way = read_direction(arguments.direction, problems)
+    damper = read_damper(chosen.get("law"), _KIND, "; films of tapered rollers move nothing yet", problems)
+    profile = arguments.profile
+    if profile not in ("iso", "straight"):
+        problems.append(f"--profile: got {profile!r:.60} for a {_KIND}; allowed: iso, straight")
+    slices = SLICES if arguments.slices == "41" else read_whole("--slices", arguments.slices, 2, MOST_SLICES, problems)
+    temperature = float(chosen.get("temperature", CELSIUS_40))
+    oil = read_oil(arguments.oil, temperature, problems)
+    problems += output_problems((Output("-o", arguments.output, result_kind(arguments.output)),), [])
+    if problems or geometry is None or damper is None or oil is None or slices is None:
+        raise InputError(tuple(dict.fromkeys(problems)))
+    roughness = chosen["roughness"].roughness if "roughness" in chosen else ROUGHNESS
+    assumed = [
+        *([f"temperature {TEMPERATURE.text(CELSIUS_40)}"] if "temperature" not in chosen else []),
+        *(
+            [f"combined rms roughness {MICROMETRE.text(ROUGHNESS)} (for Lambda only)"]
+            if "roughness" not in chosen
+            else []
+        ),
+        *([f"oil {DEFAULT_OIL}"] if arguments.oil is None else []),
+    ]
+    return TaperedRequest(
+        force=TaperedForce(geometry, damper.constant, damper.time, profile=profile, slices=slices),
+        oil=oil,
+        loads=loads,
+        axial=axial,
+        way=way,
+        speeds=speeds,
+        outer_speed=outer,
+        description=TaperedDescription(
+            law="dry, ISO/TS 16281, rib Hertz" + (f", {damper.words} of each contact" if damper.words else ""),
+            films=f"films by the formulas of Moes and Dowson-Higginson, {oil.title}"
+            + ("" if oil.verified else " (unverified data of the oil)"),
+            direction=math.degrees(math.atan2(way[1], way[0])),
+            temperature=temperature,
+            roughness=roughness,
+            tilts=arguments.tilts,
+            assumed=tuple(assumed),
+        ),
+    )
+
+
+def run_tapered(arguments: argparse.Namespace) -> tuple[str, int]:
+    """Compute all points, describe and write them; status 1 where one is outside of what the laws hold for."""
+    request = read_tapered(arguments)
+    points = tapered_points(request)
+    lines = tapered_text(request.description, points)
+    if arguments.output:
+        dataset = tapered_dataset(request.description, points)
+        if Path(arguments.output).suffix.lower() == ".csv":
+            write_tapered_csv(dataset, arguments.output)
+        else:
+            write_dataset(dataset, Path(arguments.output))
+        lines.append(f"{arguments.output}: written")
+    return "\n".join(lines), 1 if any(point.problems for row in points for point in row) else 0
+
+
+def tapered_points(request: TaperedRequest) -> list[list[TaperedPoint]]:
+    """Points at every load and every speed."""
+    return [
+        [
+            tapered_point(
+                request.force,
+                (request.axial, load * request.way[0], load * request.way[1]),
+                speed,
+                request.outer_speed,
+                tilts=request.description.tilts,
+                oil=request.oil,
+                temperature=request.description.temperature,
+            )
+            for speed in request.speeds
+        ]
+        for load in request.loads
+    ]
+
+
+def _geometry(source: str, problems: list[str]) -> TaperedGeometry | None:
+    """The bearing of a designation."""
+    try:
+        return tapered_estimate(source)
+    except InputError as error:
+        problems += [f"BEARING: {problem}" for problem in error.problems]
+        return None

@@ -1,0 +1,130 @@
+"""`mbs bearing` of tapered roller bearings as a newcomer meets it, and the point behind it."""
+
+from __future__ import annotations
+
+import csv
+import math
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.rollers.tapered_catalogue import tapered_boundary, tapered_estimate
+from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
+from mbs.bearings.tapered.reference_load import reference_load
+from mbs.bearings.tapered.tapered_bearing import TaperedForce
+from mbs.bearings.tapered.tapered_point import STATIC_LIMIT, tapered_point
+from tests.cases import commands
+
+RPM = math.pi / 30.0
+LOADED = ("32208", "--load", "5 kN", "--axial", "2 kN", "--speed", "3000 rpm")
+FORCE = TaperedForce(tapered_estimate("32208"))
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def run(capsys, *arguments):
+    return commands.run(capsys, "bearing", *arguments)
+
+
+def test_one_point(capsys, here) -> None:
+    status, out, err = run(capsys, *LOADED)
+    assert (status, err) == (0, "")
+    point = tapered_point(FORCE, (2000.0, 5000.0, 0.0), 3000.0 * RPM, oil=Lubricant.named("FVA3"))
+    line = next(line for line in out.splitlines() if line.startswith("  stiffness"))
+    numbers = [float(word) for word in line[42:].split()]
+    assert numbers == pytest.approx([1e-6 * point.stiffness[i, i] for i in (1, 2, 0)], rel=1e-4)  # digits shown
+    for words in ("inner geometry estimated", "assumed: temperature 40 degC", "slides with 1.37 m/s", "L10r"):
+        assert words in out
+    assert f"{point.loaded} of 17 rollers carry more than 1 %" in out
+
+
+def test_tables_hold_the_balance(capsys, here) -> None:
+    """Loads of all rollers are the load on the ring: of the equilibrium, 1e-9."""
+    command = ("HR 32208 J", "--load", "5 kN", "--axial", "2 kN", "--speed", "1000 rpm", "6000 rpm", "2")
+    assert run(capsys, *command, "--law", "hertz:1e-5 s", "--slices", "9", "-o", "out.nc")[0] == 0
+    with xr.open_dataset("out.nc") as data:
+        cup = data["roller_load"].sel(contact="outer").values[0, 0]
+        angle, alpha = data["roller"].values, FORCE.geometry.cup_angle
+        centrifugal = float(data["centrifugal_load"][0, 0])
+        assert np.sum(cup * math.sin(alpha)) == pytest.approx(2000.0, rel=1e-8)
+        radial = (cup * math.cos(alpha) - centrifugal) * np.cos(angle)
+        assert np.sum(radial) == pytest.approx(5000.0, rel=1e-8)
+        stiffness, damping = (data[f"{name}_matrix"].values for name in ("stiffness", "damping"))
+        assert np.max(np.abs(damping - 1e-5 * stiffness)) < 1e-9 * 1e-5 * np.max(stiffness)
+    status, out, _ = run(capsys, *command, "-o", "out.csv")
+    assert status == 0 and "P_ref" in out
+    with open("out.csv", encoding="utf-8") as file:
+        rows = list(csv.reader(line for line in file if not line.startswith("#")))
+    assert "equivalent_load" in ",".join(rows[0]) and len(rows) == 3
+
+
+@pytest.mark.parametrize(
+    ("command", "words"),
+    [
+        (("32208", "--load", "5 kN", "--speed", "0 rpm"), "--axial: got 0 N; allowed: above zero"),
+        ((*LOADED, "--clearance", "5 um", "--plot", "a.png"), "--clearance, --plot: not for tapered roller bearings"),
+        ((*LOADED, "--law", "films"), "films of tapered rollers move nothing yet"),
+        (
+            (*LOADED, "--profile", "a.csv"),
+            "--profile: got 'a.csv' for a tapered roller bearing; allowed: iso, straight",
+        ),
+        (("32299", *LOADED[1:]), "BEARING: tapered bearing designation: got '32299'"),
+        (
+            ("32208", *LOADED[1:5], "--speed", "0 rpm", "9 rpm", "400", "--load", "1 N", "2 N", "2"),
+            "--load, --speed: got 1200 points",
+        ),
+    ],
+)
+def test_refusals(capsys, here, command, words) -> None:
+    status, _, err = run(capsys, *command)
+    assert status == 2 and words in err
+
+
+def test_no_equilibrium_and_overload_are_said() -> None:
+    with pytest.raises(
+        AnalysisError, match=r"falls apart without a positive axial load above Fr tan.alpha. = 1233 N; .* 1542 N: "
+    ):
+        tapered_point(FORCE, (0.0, 5000.0, 0.0), 0.0)
+    with pytest.raises(InputError, match=r"tapered point, load: got .*; allowed: three finite numbers"):
+        tapered_point(FORCE, (0.0, 0.0, 0.0), 0.0)
+    with pytest.raises(
+        AnalysisError, match=r"no equilibrium of 32208 under 1e\+07 N axial, 0 N radial: tapered bearing"
+    ):
+        tapered_point(FORCE, (1e7, 0.0, 0.0), 0.0)
+    point = tapered_point(FORCE, (1e5, 2e5, 0.0), 0.0)
+    assert point.pressure.max() > STATIC_LIMIT and "the static limit of ISO 76" in point.problems[0]
+    little = tapered_point(FORCE, (1350.0, 5000.0, 0.0), 0.0)
+    assert "less than half" in " ".join(little.notes) and little.life > 0.0
+    free = tapered_point(FORCE, (2000.0, 5000.0, 0.0), 0.0, tilts=True)
+    assert "crowd at an end" in " ".join(free.notes)
+
+
+def test_the_reference_load_is_that_of_a_public_code() -> None:
+    """minzhun/ISO16281, RollerBearing(1, 12, 9.0, 43.5, 13.6, 0.0, 0.0, 1, 40), straight, 3 kN, C = 40 kN, no edges."""
+    force = TaperedForce(TaperedGeometry("x", 9e-3, 13.6e-3, 43.5e-3, 12, 0.0), profile="straight", slices=40)
+    pose = [0.0, 5.024242357274666e-6, 0.0, 0.0, 0.0, 0.0]
+    assert force(pose)[0][1] == pytest.approx(-3000.0, rel=1e-9)  # digits of its displacement
+    slices = force.rollers(pose).slices * 13.6e-3 / 40
+    load, life = reference_load(slices, 40e3, 9.0 / 43.5, 0.0)
+    assert load == pytest.approx(1435.1519996562806, rel=1e-9)
+    assert life == pytest.approx(65645.8036738807, rel=1e-9)
+    assert reference_load(slices, 40e3, 9.0 / 43.5, 0.0, inner_turns=False)[1] < life
+    assert reference_load(0.0 * slices, 40e3, 9.0 / 43.5, 0.0) == (0.0, math.inf)
+
+
+def test_factors_of_catalogues_come_near_the_lives_of_slices() -> None:
+    """Pure axial load against half of the rollers loaded: 0.377/tan(alpha) by mean loads, Y = 0.4/tan(alpha)."""
+    force = TaperedForce(tapered_estimate("32208"), profile="straight")
+    thrust = tapered_boundary("32208").thrust_factor
+    half = tapered_point(force, (0.5 * 5000.0 / thrust, 5000.0, 0.0), 300.0)
+    axial = tapered_point(force, (5000.0, 0.0, 0.0), 300.0)
+    equal = 5000.0 * (half.life / axial.life) ** 0.25 / 5000.0  # lives go with the fourth power of lines
+    assert equal == pytest.approx(0.377 / math.tan(force.geometry.cup_angle), rel=0.03)  # rounding of both factors
+    assert equal == pytest.approx(thrust, rel=0.08)  # catalogues are on the safe side
