@@ -122,9 +122,7 @@ FAULTS = (
     Fault("energy over a step, factor two", "mbs/transient/run_kernel.py", "0.5 * h * (energies", "h * (energies"),
     Fault("highest order, unit left out", "mbs/spectral/orders.py", "signal.highest * _TURN /", "signal.highest /"),
     Fault("ROSS, hertz for rad/s", "mbs/exports/ross.py", "2.0 * math.pi * bearing.frequencies", "bearing.frequencies"),
-    Fault(
-        "CalculiX, stiffness across, factor two", "mbs/exports/calculix.py", "across = 0.5 * float(", "across = float("
-    ),
+    Fault("CalculiX, stiffness across, factor two", "mbs/exports/calculix.py", "part = 0.5 * (", "part = ("),
 )
 """Twenty faults, over physics, ehl, maps, table, bearings, transient, spectral and exports."""
 
