@@ -104,6 +104,8 @@ static int law_at(ehd_law *law, double u) {
     return EHD_OK;
 }
 #else
+#define SAME_SPEED 1e-5 /* part of a speed within which it is that of the table: as typed with six digits */
+
 /* Most speeds of the table that a place between them takes. */
 #define NEIGHBOURS 4
 
@@ -142,7 +144,7 @@ static int law_at(ehd_law *law, double u) {
     side_at(&law->inner, INNER_TABLE + first, INNER_PLACE + first, &INNER, count, weight);
     side_at(&law->outer, OUTER_TABLE + first, OUTER_PLACE + first, &OUTER, count, weight);
     law->highest = MOST_LOAD;
-    return fabs(u - held) > 1e-9 * held ? EHD_OUTSIDE_SPEED : EHD_OK;
+    return fabs(u - held) > SAME_SPEED * held ? EHD_OUTSIDE_SPEED : EHD_OK;
 }
 #endif
 
