@@ -67,6 +67,10 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         from mbs.output.ball_table import ball_lines
 
         lines += ball_lines(model, balance)
+    if model.scene.tapered:
+        from mbs.commands.one_bearing.tapered_table import tapered_lines
+
+        lines += tapered_lines(model, balance)
     if model.gears:
         from mbs.output.results import gear_lines
 

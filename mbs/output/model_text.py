@@ -114,6 +114,7 @@ def _estimated(model: Model) -> list[str]:
     kinds: dict[tuple[str, str], list[str]] = {}
     entries = [(entry.geometry.name, entry.geometry.estimated, entry.name) for entry in model.scene.bearings]
     entries += [(entry.geometry.name, entry.geometry.estimated, entry.name) for entry in model.scene.balls]
+    entries += [(entry.geometry.name, entry.geometry.estimated, entry.name) for entry in model.scene.tapered]
     for name, estimated, bearing in entries:
         if estimated:
             kinds.setdefault((name, estimated), []).append(bearing)

@@ -195,7 +195,7 @@ def in_short(found: Examination) -> Iterator[str]:
             yield f"{words}."
         else:
             yield "The law knows no film: contacts are dry."
-    elif not model.balls:
+    elif not (model.balls or model.scene.tapered):
         yield "The scene has no bearing of rollers or balls."
     for ball in model.balls:
         motion = model.system.relative(ball.inner, ball.outer) @ balance.displacement

@@ -32,6 +32,7 @@ from mbs.scene.map_set import TABLE_LAW, MapSet, table_maps
 from mbs.scene.oils import oil_warnings
 from mbs.scene.scene import Scene
 from mbs.scene.surroundings import Built, Surroundings
+from mbs.scene.tapered.element import tapered_law_words
 from mbs.scene.turning import turning_loads, with_places
 
 if TYPE_CHECKING:
@@ -220,7 +221,7 @@ def assemble(
     ('dry Hertz', 8)
     """
     maps = _opened(emap)
-    if law == TABLE_LAW and maps is None and (scene.bearings or not scene.balls):
+    if law == TABLE_LAW and maps is None and (scene.bearings or not (scene.balls or scene.tapered)):
         law, maps = "map", table_maps(scene)
     problems: list[str] = []
     if clearance is not None:
@@ -251,6 +252,7 @@ def assemble(
     bearings = tuple(_shown(built, "bearings", BearingElement))
     of_balls = {spec.name for spec in scene.balls}
     words = ([laws.words] if bearings else []) + ([ball_law_words(laws)] if scene.balls else [])
+    words += [tapered_law_words(laws)] if scene.tapered else []
     return Model(
         scene=scene,
         system=system,
@@ -261,7 +263,7 @@ def assemble(
             entry.name: laws.films(entry.bearing, laws.supply(spec))
             for entry, spec in zip(bearings, scene.bearings, strict=True)
         },
-        label=laws.label if bearings or scene.balls else NO_LAW,
+        label=laws.label if bearings or scene.balls or scene.tapered else NO_LAW,
         balls=tuple(cast("MachineBalls", part.element) for part in built[""] if part.element.name in of_balls),
         memory=laws.memory,
         supplies=laws.supplies,

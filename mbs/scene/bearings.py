@@ -19,7 +19,8 @@ from mbs.scene.fields import DEGREE, MICROMETRE
 from mbs.scene.matrices import MatrixSpec, read_table_bearing
 from mbs.scene.profiles import read_profile
 from mbs.scene.shafts.standing import read_rings
-from mbs.scene.specs import BallSpec, BearingSpec
+from mbs.scene.specs import BallSpec, BearingSpec, TaperedSpec
+from mbs.scene.tapered.reading import is_tapered, read_tapered
 
 if TYPE_CHECKING:
     from mbs.scene.surroundings import Built, Surroundings
@@ -127,7 +128,7 @@ def _expansion(table: Table) -> float | None:
     return table.quantity("expansion", "1/K", *EXPANSIONS, EXPANSION)
 
 
-def read_bearing(section: Table, name: str) -> BearingSpec | BallSpec | MatrixSpec | None:
+def read_bearing(section: Table, name: str) -> BearingSpec | BallSpec | TaperedSpec | MatrixSpec | None:
     """Read a bearing of rollers or balls, or one by matrices with kind = "table"; None where a problem was noted.
 
     Parameters
@@ -141,6 +142,8 @@ def read_bearing(section: Table, name: str) -> BearingSpec | BallSpec | MatrixSp
         return read_table_bearing(section, name)
     if is_ball(section):
         return read_ball(section, name)
+    if is_tapered(section):
+        return read_tapered(section, name)
     inner, outer = read_rings(section, name)
     geometry = _geometry(section)
     profile = read_profile(section, geometry)

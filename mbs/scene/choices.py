@@ -293,7 +293,7 @@ def named_law(name: str, scene: Scene) -> LawChoice:
     from mbs.scene.contact_laws import law_label
     from mbs.scene.map_set import table_maps
 
-    if name != TABLE_LAW or (scene.balls and not scene.bearings):
+    if name != TABLE_LAW or ((scene.balls or scene.tapered) and not scene.bearings):
         return LawChoice(law_label(name), name)
     return map_law(table_maps(scene))
 
@@ -666,7 +666,7 @@ def _with_label(subject: Subject) -> Subject:
     """A subject whose law is not called dry where the scene has no roller bearing; several laws keep their names."""
     from mbs.scene.contact_laws import NO_LAW
 
-    if subject.scene.bearings or subject.scene.balls or subject.law.has_films:
+    if subject.scene.bearings or subject.scene.balls or subject.scene.tapered or subject.law.has_films:
         return subject
     return dataclasses.replace(subject, law=dataclasses.replace(subject.law, label=NO_LAW))
 

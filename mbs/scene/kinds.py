@@ -16,8 +16,10 @@ from mbs.scene import bearings, gears
 from mbs.scene.balls.element import ball_problems, build_ball
 from mbs.scene.balls.reading import read_ball
 from mbs.scene.matrices import MatrixSpec, build_matrices, matrix_problems, read_spring
-from mbs.scene.specs import BallSpec, BearingSpec
+from mbs.scene.specs import BallSpec, BearingSpec, TaperedSpec
 from mbs.scene.surroundings import Built, Surroundings
+from mbs.scene.tapered.element import build_tapered, tapered_problems
+from mbs.scene.tapered.reading import read_tapered
 
 if TYPE_CHECKING:
     pass
@@ -90,6 +92,15 @@ KINDS = (
         places=lambda spec: (spec.inner, spec.outer),
         problems=ball_problems,
         build=build_ball,
+    ),
+    ElementKind(
+        key="",
+        word="tapered roller bearing",
+        spec=TaperedSpec,
+        read=read_tapered,
+        places=lambda spec: (spec.inner, spec.outer),
+        problems=tapered_problems,
+        build=build_tapered,
     ),
 )
 """All kinds, in the order of the elements of a system."""

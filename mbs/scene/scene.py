@@ -15,7 +15,17 @@ from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.surface import Surface
 from mbs.gears.pair import GearPair
 from mbs.model.elements import Input, Load, Sensor, Spring
-from mbs.scene.specs import ORIGIN, BallSpec, BearingSpec, BodySpec, ElementSpec, FlexibleSpec, ShaftSpec, Triple
+from mbs.scene.specs import (
+    ORIGIN,
+    BallSpec,
+    BearingSpec,
+    BodySpec,
+    ElementSpec,
+    FlexibleSpec,
+    ShaftSpec,
+    TaperedSpec,
+    Triple,
+)
 from mbs.scene.turning import OrderLoad, Unbalance
 from mbs.settings import CampbellSettings, RunUp, SweepRange
 
@@ -144,6 +154,11 @@ class Scene:
     def balls(self) -> tuple[BallSpec, ...]:
         """The ball bearings among the machine elements."""
         return tuple(entry for entry in self.elements if isinstance(entry, BallSpec))
+
+    @property
+    def tapered(self) -> tuple[TaperedSpec, ...]:
+        """The tapered roller bearings among the machine elements."""
+        return tuple(entry for entry in self.elements if isinstance(entry, TaperedSpec))
 
     @property
     def gears(self) -> tuple[GearPair, ...]:

@@ -15,6 +15,7 @@ from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.point.ball_geometry import BallGeometry
+from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from ehdmaps.physics.surface import CrownedProfile, TabulatedProfile
 from mbs.bearings.thermal import GivenTemperatures, HeatPaths, Mounting
 from mbs.model.body import Body, Inertia, rigid_problems
@@ -272,6 +273,32 @@ class BallSpec:
     inner: str
     outer: str
     geometry: BallGeometry
+    start_angle: float = 0.0
+    axial_offset: float = 0.0
+
+
+@dataclass(frozen=True)
+class TaperedSpec:
+    """A tapered roller bearing between two places, which are the middles of its rollers.
+
+    Attributes
+    ----------
+    name : str
+        Name of the bearing.
+    inner, outer : str
+        Places of its rings.
+    geometry : TaperedGeometry
+        Cones, rollers and rib; which way it stands by the sign of its contact angle.
+    start_angle : float
+        Angle of the first roller from y [rad].
+    axial_offset : float
+        Way of the inner ring along x against the outer one where both places have not moved [m].
+    """
+
+    name: str
+    inner: str
+    outer: str
+    geometry: TaperedGeometry
     start_angle: float = 0.0
     axial_offset: float = 0.0
 

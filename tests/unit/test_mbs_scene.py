@@ -35,7 +35,7 @@ from mbs.scene.kinds import KINDS, ElementKind
 from mbs.scene.matrices import MatrixSpec
 from mbs.scene.reader import parse_scene, read_scene, shipped_systems
 from mbs.scene.scene import Scene
-from mbs.scene.specs import BallSpec, BearingSpec, FlexibleSpec, RigidSpec, ShaftSpec
+from mbs.scene.specs import BallSpec, BearingSpec, FlexibleSpec, RigidSpec, ShaftSpec, TaperedSpec
 from mbs.scene.surroundings import Built
 
 SCENE = """
@@ -559,5 +559,5 @@ class TestKinds:
             assemble(own_scene(elements=[Coupling("c", "shaft", "ground", 1.0)]))
 
     def test_rows_are_told_by_their_keys_and_classes(self):
-        assert [kind.key for kind in KINDS] == ["bearings", "gears", "", ""]
-        assert [kind.spec for kind in KINDS] == [BearingSpec, GearPair, MatrixSpec, BallSpec]
+        assert [kind.key for kind in KINDS] == ["bearings", "gears", "", "", ""]
+        assert [kind.spec for kind in KINDS] == [BearingSpec, GearPair, MatrixSpec, BallSpec, TaperedSpec]

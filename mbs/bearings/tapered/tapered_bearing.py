@@ -385,6 +385,29 @@ class TaperedElement(OnRings):
         """Loads of all rollers at rest at the displacement (6,) of the inner ring against the outer one."""
         return self.force.rollers(self.pose(displacement), **self.conditions(operation))
 
+    def advance(
+        self, states: Any, displacement: FloatArray, velocity: FloatArray, operation: Operation
+    ) -> tuple[Forces, Any]:
+        """The same at the end of a step in time, see `Element.advance`.
+
+        Parameters
+        ----------
+        states, displacement, velocity, operation
+            What `Element.advance` takes; there are no states.
+
+        Raises
+        ------
+        AnalysisError
+            Where the rings have come apart.
+        """
+        try:
+            return self.evaluate(displacement, velocity, operation), None
+        except InputError as error:
+            raise AnalysisError(
+                f"bearing {self.name!r}: its rings are apart at {operation.time:.6g} s ({error}): preload is lost; "
+                "take more preload, or smaller loads"
+            ) from error
+
     def evaluate(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> Forces:
         """Force on the inner ring, stiffness and damping, see `Element.evaluate`."""
         return Forces(*self.force(self.pose(displacement), velocity, **self.conditions(operation)))

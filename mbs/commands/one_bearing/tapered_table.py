@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ehdmaps.units import DAMPER, FILM, PRESSURE, RPM, SPRING, TEMPERATURE
+from mbs.bearings.tapered.tapered_bearing import TaperedElement
 from mbs.bearings.tapered.tapered_point import RIB_FRICTION, SIDES, TaperedPoint
 from mbs.output.bearing_table import regime, shown, smallest, warning_lines, write_csv
 from mbs.output.files import described
@@ -17,6 +18,9 @@ from mbs.scene.fields import DEGREE, FORCE, MICROMETRE
 
 if TYPE_CHECKING:
     import xarray as xr
+
+    from mbs.model.equilibrium import Equilibrium
+    from mbs.scene.assembly import Model
 
 Points = Sequence[Sequence[TaperedPoint]]
 """By load, then by speed."""
@@ -305,4 +309,44 @@ def _table(points: list[TaperedPoint], description: TaperedDescription) -> list[
             f"{shown(1e6 * point.smallest_film, 4):>9s} {shown(row['film_parameter'], 3):>7s} "
             f"{row['equivalent_load']:9.5g}{' !' if point.problems else ''}"
         )
+    return lines
+
+
+_WAYS = ("x", "y", "z")
+
+
+def tapered_lines(model: Model, balance: Equilibrium) -> list[str]:
+    """Lines on each tapered roller bearing: its load, loads of the rollers, stiffness and damping.
+
+    Parameters
+    ----------
+    model : Model
+        Scene with its law.
+    balance : Equilibrium
+        Equilibrium of its system.
+    """
+    lines = []
+    for index, connected in enumerate(model.system.elements):
+        element = connected.element
+        if not isinstance(element, TaperedElement):
+            continue
+        rollers = element.rollers(connected.transform @ balance.displacement, balance.operation)
+        force, cone = balance.forces[index], rollers.load[0]
+        parts = (
+            ", ".join(f"{axis} {factor * matrix[k, k]:.5g}" for k, axis in enumerate(_WAYS)) + f" {unit}"
+            for matrix, factor, unit in (
+                (balance.element_stiffness[index], SPRING.factor, SPRING.unit),
+                (balance.element_damping[index], DAMPER.factor, DAMPER.unit),
+            )
+        )
+        lines += [
+            f"{element.name}: {force[0]:.5g} N along x, {math.hypot(force[1], force[2]):.5g} N across it on the inner "
+            f"ring; {np.count_nonzero(cone > 0.0)} of {cone.size} rollers loaded, {cone.min():.4g} to "
+            f"{cone.max():.5g} N at the inner raceway, rib up to {rollers.load[2].max():.4g} N",
+            "  K " + "; C ".join(parts),
+        ]
+        if not np.any(cone > 0.0):
+            lines.append(
+                f"warning: {element.name}: no roller carries load: nothing holds the shaft there, preload is lost"
+            )
     return lines

@@ -1,0 +1,170 @@
+"""Pairs of tapered roller bearings in scenes: O and X arrangement, preload by displacement and by force."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.physics.rollers.tapered_catalogue import mirrored, tapered_estimate
+from mbs import assemble, parse_scene
+from mbs.bearings.tapered.tapered_bearing import TaperedForce
+from mbs.bearings.tapered.tapered_point import tapered_point
+from mbs.commands.one_bearing.tapered_table import tapered_lines
+from mbs.linearised.modes import modes
+from mbs.model.elements import Operation
+from mbs.model.equilibrium import equilibrium
+from mbs.scene.matrices import MatrixSpec
+
+GEOMETRY = tapered_estimate("32208")
+HALF, MASS, INERTIA, SPEED = 60e-3, 20.0, 0.2, 500.0
+
+
+def text(left="", right="", outer="ground", more="", bearing="32208"):
+    """A stiff rotor on two bearings, which has no polar inertia: modes are those of springs."""
+    return f"""
+schema = 1
+[operation]
+speed = "{SPEED} rad/s"
+temperature = "60 degC"
+[[bodies]]
+name = "rotor"
+freedoms = ["x", "y", "z", "theta_y", "theta_z"]
+spin = 1
+mass = "{MASS} kg"
+polar_inertia = "0 kg m^2"
+transverse_inertia = "{INERTIA} kg m^2"
+frames = {{ left = ["-60 mm", "0 mm", "0 mm"], right = ["60 mm", "0 mm", "0 mm"] }}
+[[bearings]]
+name = "left"
+bearing = "{bearing}"
+inner = "rotor:left"
+outer = "ground"
+{left}
+[[bearings]]
+name = "right"
+bearing = "HR {bearing} J"
+inner = "rotor:right"
+outer = "{outer}"
+{right}
+{more}
+"""
+
+
+RING = """
+[[bodies]]
+name = "ring"
+freedoms = ["x"]
+position = ["60 mm", "0 mm", "0 mm"]
+mass = "0.2 kg"
+[[springs]]
+name = "guide"
+on = "ring"
+stiffness = { x = "1e3 N/m" }
+[[loads]]
+name = "preload"
+on = "ring"
+force = ["1500 N", "0 N", "0 N"]
+"""
+WEIGHT = """
+[[loads]]
+name = "weight"
+on = "rotor"
+force = ["0 N", "-4000 N", "0 N"]
+"""
+O_PAIR = {"left": 'axial_offset = "15 um"', "right": 'axial_offset = "-15 um"\nmirrored = true'}
+X_PAIR = {"left": 'axial_offset = "-15 um"\nmirrored = true', "right": 'axial_offset = "15 um"'}
+
+
+def model(law="hertz:1.25e-5 s", **keys):
+    return assemble(parse_scene(text(**keys), "rotor", "rotor.toml"), law)
+
+
+@pytest.mark.parametrize(("pair", "way"), [(O_PAIR, 1.0), (X_PAIR, -1.0)])
+def test_modes_of_a_preloaded_pair_are_those_of_its_springs(pair, way) -> None:
+    """Two springs each way; against tilts they stand in the pressure centres, outside of an O, inside of an X pair."""
+    machine = model("hertz", **pair)
+    balance = equilibrium(machine.system, machine.operation)
+    forces, stiffness, _ = TaperedForce(GEOMETRY)([15e-6, 0.0, 0.0, 0.0, 0.0, 0.0], inner_speed=SPEED)
+    assert balance.forces[0][0] == pytest.approx(way * forces[0], rel=1e-9)
+    found = np.sort(np.abs(modes(balance).eigenvalues))
+    axial, radial = (math.sqrt(2.0 * stiffness[i, i] / MASS) for i in (0, 1))
+    for value in (axial, radial, radial):
+        assert np.min(np.abs(found - value)) < 1e-8 * value  # round-off of the balance of rollers
+    span = HALF + way * GEOMETRY.pressure_centre
+    tilt = math.sqrt(2.0 * stiffness[1, 1] * span**2 / INERTIA)
+    # lines hold tilts of their own: K L^2/12 of 15 mm beside K span^2
+    own = GEOMETRY.roller_length**2 / 12.0 / span**2
+    assert np.min(np.abs(found / tilt - 1.0)) < own
+
+
+def test_preload_by_force_gives_both_bearings_that_force() -> None:
+    """Modes, too, are those on tables of the bearings alone under the loads that they have."""
+    right = "mirrored = true"
+    machine = model(right=right, outer="ring", more=RING + WEIGHT)
+    balance = equilibrium(machine.system, machine.operation)
+    place = balance.displacement[machine.system.coordinates.index("ring.x")]
+    axial = 1500.0 - 1e3 * place
+    # the right inner ring is pushed along -x by it, the left one along +x: each force is against its push
+    tables = []
+    for index, (name, on, against, geometry, way) in enumerate(
+        (("left", "rotor:left", "ground", GEOMETRY, -1.0), ("right", "rotor:right", "ring", mirrored(GEOMETRY), 1.0))
+    ):
+        assert way * balance.forces[index][0] == pytest.approx(axial, rel=1e-8)  # of the equilibrium, 1e-10
+        alone = tapered_point(
+            TaperedForce(geometry, damping_time=1.25e-5), (-way * axial, *(-balance.forces[index][1:3])), SPEED
+        )
+        tables.append(MatrixSpec(name, on, alone.stiffness[None], alone.damping[None], against))
+    other = assemble(dataclasses.replace(machine.scene, elements=tables), "hertz")
+    ours, theirs = (modes(found).eigenvalues for found in (balance, equilibrium(other.system, other.operation)))
+    assert ours.size == theirs.size
+    for value in ours:
+        # both arrangements of rollers and rings are alike, so that nothing tilts; equilibria to 1e-10 of the loads
+        assert np.min(np.abs(theirs - value)) < 1e-6 * abs(value)
+    lines = "\n".join(tapered_lines(machine, balance))
+    assert "left: -1" in lines and "17 of 17 rollers loaded" in lines and "N s/mm" in lines
+    assert "tapered roller bearings dry Hertz, c = 12.5 us times k" in machine.law
+
+
+def test_runs_in_time_stay_in_the_equilibrium_and_say_where_rings_come_apart() -> None:
+    machine = model(**O_PAIR)
+    element = machine.system.elements[0].element
+    away = np.array([-2e-3, 0.0, 0.0, 0.0, 0.0, 0.0])
+    with pytest.raises(AnalysisError, match=r"bearing 'left': its rings are apart at 0.25 s .* preload is lost"):
+        element.advance(None, away, np.zeros(6), Operation(SPEED, 0.0, 0.25))
+    force, states = element.advance(None, np.zeros(6), np.zeros(6), Operation(SPEED, 0.0, 0.25))
+    assert states is None and force.force[0] < 0.0
+    loose = model(left='axial_offset = "-15 um"', right='axial_offset = "15 um"\nmirrored = true')
+    rest = equilibrium(machine.system, machine.operation)
+    assert "no roller carries load" in "\n".join(tapered_lines(loose, dataclasses.replace(rest, system=loose.system)))
+
+
+@pytest.mark.parametrize(
+    ("keys", "law", "words"),
+    [
+        ({"bearing": "32299"}, "hertz", "bearing: got '32299'"),
+        ({"left": "mirrored = 1"}, "hertz", "mirrored: got 1; allowed: true, false"),
+        ({"outer": "rotor:left"}, "hertz", "got rotor:right and rotor:left; allowed: rings on two bodies"),
+        ({}, "table", "got the law 'table' for a tapered roller bearing; allowed: hertz"),
+        ({}, "formula", "got the law 'formula' for a tapered roller bearing"),
+        ({"left": 'diametral_clearance = "5 um"'}, "hertz", "diametral_clearance"),
+    ],
+)
+def test_refusals(keys, law, words) -> None:
+    with pytest.raises(InputError) as caught:
+        model(law, **keys)
+    assert words in str(caught.value)
+
+
+def test_tapered_rollers_stay_dry_beside_films_of_balls() -> None:
+    oil = '[lubricant]\nname = "ISO VG 15"\n'
+    scene = (
+        text(**O_PAIR)
+        .replace('bearing = "HR 32208 J"', 'bearing = "7208B"')
+        .replace("[operation]", oil + "[operation]")
+    )
+    machine = assemble(parse_scene(scene, "rotor", "rotor.toml"), "table")
+    assert "tapered roller bearings dry and without damping: they have no films" in machine.law
