@@ -32,9 +32,9 @@ def main() -> None:
         films = table.films(contact, oil, load, speed, kelvin)
         if not np.all(films.usable):
             continue
-        springs = ContactResponse(contact, oil, speed, kelvin, load).springs(load)
+        response = ContactResponse(load, films)
         dry = films.stiffness[0] / contact.stiffness(load[0])
-        rows.append((dry, springs.misfit[0], springs.stated[0]))
+        rows.append((dry, response.misfit[0], response.stated[0]))
     dry, misfit, stated = np.array(rows).T
     print("k / dry k     contacts   |dZ/Z| median, 95 %, largest   stated by the table median, 95 %")
     for low, high in ((0.0, 0.2), (0.2, 0.5), (0.5, 0.8), (0.8, 0.95), (0.95, np.inf)):

@@ -7,7 +7,8 @@ processor time; the ring stands, or moves by up to a micrometre a call. The erro
 central differences of 2 nm.
 
 --runs: a stiff rotor on two 6208, on two NU208 of 21 slices whose rings tilt, and without bearings but springs, in the
-same run-up in steps of 20 us: processor time of a step by the best of three, and what a bearing adds to it.
+same run-up in steps of 20 us: processor time of a step by the best of three, and what a bearing adds to it. Balls with
+slow films and with memory also at one speed, where no films are read on the way.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from __future__ import annotations
 import math
 import sys
 import time
+from typing import get_args
 
 import numpy as np
 from numba import njit
@@ -25,6 +27,7 @@ from mbs.bearings.balls.ball_kernel import ball_force
 from mbs.bearings.balls.laws import dry_law
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import SpeedProfile
+from mbs.model.relaxation import Films
 from mbs.scene.assembly import assemble
 from mbs.scene.reader import parse_scene
 from mbs.settings import Settings
@@ -80,13 +83,13 @@ ROLLERS = (
 
 
 @njit
-def many(times, step, pose, numbers, cos, sin, shape, inner, outer, force, stiffness, damping, centres, balls):
+def many(times, step, pose, numbers, cos, sin, shape, inner, outer, force, stiffness, damping, centres, balls, held):
     """Call the kernel many times from compiled code, at poses around one."""
     place = pose.copy()
     for i in range(times):
         for m in range(6):
             place[m] = pose[m] + step[m] * math.sin(0.01 * i)
-        ball_force(place, numbers, cos, sin, shape, inner, outer, force, stiffness, damping, centres, balls)
+        ball_force(place, numbers, cos, sin, shape, inner, outer, force, stiffness, damping, centres, balls, held)
 
 
 def stiffness_error(force: BallForce, speed: float) -> float:
@@ -104,12 +107,14 @@ def stiffness_error(force: BallForce, speed: float) -> float:
     )
 
 
-def run_cost(part: str, law: str) -> float:
-    """Processor time of a step of a run-up [s], between springs or two bearings with a law."""
+def run_cost(part: str, law: str, films: Films | None = None) -> float:
+    """Processor time of a step of a run-up [s], between springs or two bearings with a law; at one speed with films."""
     parts = [part.replace("{name}", name) for name in ("left", "right")]
-    model = assemble(parse_scene(MACHINE + "".join(parts), "rotor", "rotor.toml"), law)
+    model = assemble(parse_scene(MACHINE + "".join(parts), "rotor", "rotor.toml"), law, films=films)
     start = equilibrium(model.system, model.operation).displacement
     speed, best = SpeedProfile.ramp(600.0 * RPM, 6000.0 * RPM, 0.2), math.inf
+    if films is not None:  # without the time in which films are read
+        speed = SpeedProfile.constant(model.operation.speed)
     for _ in range(3):
         begin = time.process_time()
         done = run(model.system, speed, 0.2, Settings(step=2e-5, sample=1e-3), displacement=start)
@@ -126,6 +131,9 @@ def runs() -> None:
         for law in ("hertz:1.25e-5 s", "table"):
             cost = run_cost(BEARING.replace("{bearing}", lines), law)
             print(f"  {name:6s} {law:16s} {1e6 * cost:7.1f} {0.5e6 * (cost - bare):7.1f}")
+    for films in get_args(Films):
+        cost = run_cost(BEARING.replace("{bearing}", BALLS), "table", films)
+        print(f"  6208   {films + ', steady':16s} {1e6 * cost:7.1f} {0.5e6 * (cost - bare):7.1f}")
 
 
 def main() -> None:

@@ -10,6 +10,7 @@ import pytest
 from ehdmaps.compiled import in_python
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
+from ehdmaps.table.points.file import shipped_point_table
 from ehdmaps.table.points.response import read_response
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.ball_kernel import contact
@@ -100,8 +101,9 @@ def test_balls_in_line_are_two_contacts_in_series():
     np.testing.assert_allclose(balls.load[1], load, rtol=1e-9)
     np.testing.assert_allclose(balls.contact_angle[1], angle, rtol=1e-9)
     compliance = np.zeros(frequencies.size, dtype=np.complex128)
-    for response in force.law.responses:
-        read = read_response(response.films(load[0]), frequencies)
+    speed = force.geometry.entrainment_speed(1000.0 * math.pi / 30.0, 0.0)
+    for ellipse in force.geometry.contacts(force.material):
+        read = read_response(shipped_point_table().films(ellipse, OIL, load[0], speed, KELVIN), frequencies)
         compliance += 1.0 / (read.stiffness + s * read.damping)
     lengths = sum(
         arm + balls.approach[side][0] for side, arm in enumerate((force.shape.inner_arm, force.shape.outer_arm))

@@ -157,7 +157,7 @@ class TestExtremes:
 
 def test_films_are_in_statics_and_time():
     machine = assemble(read_scene("electric_drive"), "table")
-    assert "films with memory in linear analyses, in time stiffness and damping of slow motion" in machine.law
+    assert machine.law.endswith("flooded, films with memory")
     assert machine.label == "film table"
     found = equilibrium(machine.system, machine.operation)
     dry = assemble(machine.scene, "hertz")

@@ -31,7 +31,15 @@ from ehdmaps.compiled import in_python
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.physics.solids import STEEL, Material
-from mbs.bearings.balls.ball_kernel import NO_BALANCE, NOT_FINITE, TOO_FAR, BallShape, ball_force, load_approach
+from mbs.bearings.balls.ball_kernel import (
+    NO_BALANCE,
+    NOT_FINITE,
+    TOO_FAR,
+    BallShape,
+    ball_force,
+    load_approach,
+    nothing_held,
+)
 from mbs.bearings.balls.ball_speed import ball_loads, rolling
 from mbs.bearings.balls.laws import BallLaw
 from mbs.model.elements import Excitation, Forces, OnRings, Operation, Port
@@ -97,6 +105,9 @@ class BallForce:
         What `mbs.bearings.balls.ball_speed.ball_loads` takes.
     directions : (array (Z,), array (Z,))
         Directions of the balls in the cage, y and z.
+    held : array (Z, 2, HELD), or none (0, 2, HELD)
+        What the films of both contacts of each ball hold over a step, see `mbs.bearings.balls.ball_memory`; none where
+        they have no memory.
 
     Notes
     -----
@@ -126,6 +137,7 @@ class BallForce:
         self._balls = np.zeros((geometry.balls, _COLUMNS))
         self._out = np.zeros(6), np.zeros((6, 6)), np.zeros((6, 6))
         self._rest = (0.0, 0.0)
+        self.held = nothing_held()
 
     def speed_loads(
         self, inner_speed: float, outer_speed: float, cage_speed: float | None = None
@@ -253,7 +265,7 @@ class BallForce:
         traction = 2.0 * moment / self.geometry.ball_diameter
         numbers = np.array([cage_angle, centrifugal, traction, self._rest[1]], dtype=np.float64)
         laws = self.law.inner, self.law.outer
-        return numbers, (*self.directions, self.shape, *laws, *self._out, self._centres, self._balls)
+        return numbers, (*self.directions, self.shape, *laws, *self._out, self._centres, self._balls, self.held)
 
     def _evaluated(
         self, pose: npt.ArrayLike, cage_angle: float, inner_speed: float, outer_speed: float, cage_speed: float | None

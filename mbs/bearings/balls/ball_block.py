@@ -7,6 +7,7 @@ lie evenly in its logarithm, on one grid of approaches, and blended straight bet
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -18,7 +19,17 @@ from ehdmaps.compiled import njit
 from ehdmaps.errors import EhdmapsError
 from mbs.bearings.balls.ball_bearing import NEGLIGIBLE
 from mbs.bearings.balls.ball_element import BallStates, MachineBalls
-from mbs.bearings.balls.ball_kernel import NO_BALANCE, TOO_FAR, BallShape, NormalLaw, ball_force, contact, load_approach
+from mbs.bearings.balls.ball_kernel import (
+    HELD,
+    NO_BALANCE,
+    TOO_FAR,
+    BallShape,
+    NormalLaw,
+    ball_force,
+    contact,
+    load_approach,
+)
+from mbs.bearings.balls.ball_memory import SPRINGS, FilmsOfBalls, go_on, hold, springs_at
 from mbs.bearings.balls.ball_speed import ball_loads, dry_energy, mean_angles, rolling, speed_work, turned_by
 from mbs.bearings.balls.laws import NODES, BallLaw
 from mbs.bearings.speed_tables import Course, CourseOfFilms, FilmBlock, Made, Prepared, SpeedWindow, course_of, shared
@@ -48,14 +59,16 @@ class BallFilmTables(NamedTuple):
 
     Attributes
     ----------
-    tables, numbers : array (films, slots, 2, rows, 4), (films, slots, 2, 7)
+    tables, numbers : array (films, slots, 2, rows, 4), (films, slots, 2, 10)
         Numbers of `NormalLaw` of the inner and the outer contact; without rows for dry contacts.
     most, lengths : array (films, slots)
         Highest load for which the law was made [N]; rows that it has, none where it is dry.
-    table, current, highest, length : array (films, 2, rows, 4), (films, 2, 7), (films,), (films,)
+    table, current, highest, length : array (films, 2, rows, 4), (films, 2, 10), (films,), (films,)
         The laws in use.
     in_use : array (films, 2)
         Node and weight of those.
+    springs : array (films, slots, 2, rows, SPRINGS + 1)
+        Springs of films with memory at the rows of the tables, see `mbs.bearings.balls.ball_memory`; else no rows.
     """
 
     tables: FloatArray
@@ -67,6 +80,7 @@ class BallFilmTables(NamedTuple):
     highest: FloatArray
     length: IntArray
     in_use: FloatArray
+    springs: FloatArray
 
 
 class Balls(NamedTuple):
@@ -98,6 +112,12 @@ class Balls(NamedTuple):
         F_c and 2 G/Dw of the last answer [N]; what it dissipates, and what the turning cage brings in [W].
     last, times, works : array (bearings, Z, 4), (bearings,), (bearings,)
         What `speed_work` keeps of the last step, its time [s], and its work by that time [W].
+    relaxes : array (bearings,), of bool
+        Whether films have a memory.
+    held, forces, springs, approaches : array (bearings, Z, 2, HELD), (..., SPRINGS), (..., SPRINGS + 1), (..., 2)
+        What contacts with memory hold over the step, and their states after the last one that was made.
+    clock : array (2,)
+        Times at the end of that step, and of the step for which they hold [s].
     films : BallFilmTables
         Laws of the contacts.
     course : Course
@@ -126,6 +146,12 @@ class Balls(NamedTuple):
     last: FloatArray
     times: FloatArray
     works: FloatArray
+    relaxes: BoolArray
+    held: FloatArray
+    forces: FloatArray
+    springs: FloatArray
+    approaches: FloatArray
+    clock: FloatArray
     films: BallFilmTables
     course: Course
 
@@ -155,7 +181,54 @@ def _blend(films: BallFilmTables, film: int, node: int, weight: float) -> None:
 def _law_of(films: BallFilmTables, film: int, side: int) -> NormalLaw:
     """The law in use of a side."""
     n = films.current[film, side]
-    return NormalLaw(n[0], n[1], n[2], n[3], n[4], n[5], n[6], films.table[film, side, : films.length[film]])
+    table = films.table[film, side, : films.length[film]]
+    return NormalLaw(n[0], n[1], n[2], n[3], n[4], n[5], n[6], 0.0, 0.0, 0.0, table)
+
+
+@njit(error_model="numpy")
+def _read_springs(films: BallFilmTables, film: int, side: int, approach: float, out: FloatArray) -> None:
+    """Write the springs of a contact at an approach, straight between rows and nodes; held beyond the ends."""
+    out[:] = 0.0
+    out[SPRINGS] = 1.0
+    last = films.length[film] - 1
+    if last < 1:
+        return
+    n, node, weight = films.current[film, side], int(films.in_use[film, 0]), films.in_use[film, 1]
+    place = min(max((math.asinh((approach - n[3]) / n[4]) - n[5]) / n[6], 0.0), float(last))
+    cell = min(int(place), last - 1)
+    t = place - cell
+    low = films.springs[film, node, side]
+    high = films.springs[film, (node + 1) % films.numbers.shape[1] if weight > 0.0 else node, side]
+    for r in range(out.size):
+        slow, fast = low[cell, r] + t * (low[cell + 1, r] - low[cell, r]), high[cell, r]
+        fast += t * (high[cell + 1, r] - fast)
+        out[r] = slow + weight * (fast - slow)
+
+
+@njit(error_model="numpy")
+def _hold_all(balls: Balls, step: float) -> None:
+    """Write what the contacts with memory hold over a step [s]."""
+    for b in range(balls.firsts.size):
+        if balls.relaxes[b]:
+            for j in range(balls.counts[b]):
+                for side in range(2):
+                    springs, forces = balls.springs[b, j, side], balls.forces[b, j, side]
+                    hold(step, balls.approaches[b, j, side], springs, forces, balls.held[b, j, side])
+
+
+@njit(error_model="numpy")
+def _go_on_all(balls: Balls, step: float) -> None:
+    """Bring the contacts with memory to the end of a step [s] that was made."""
+    after = np.empty(SPRINGS + 1)
+    for b in range(balls.firsts.size):
+        if balls.relaxes[b]:
+            for j in range(balls.counts[b]):
+                for side in range(2):
+                    approach = balls.rows[b, j, 14 + side]
+                    _read_springs(balls.films, balls.films_of[b], side, approach, after)
+                    moved = approach - balls.approaches[b, j, side]
+                    go_on(step, moved, balls.springs[b, j, side], after, balls.forces[b, j, side])
+                    balls.approaches[b, j, side] = approach
 
 
 @njit(error_model="numpy")
@@ -209,11 +282,12 @@ def _on_ring(balls: Balls, b: int, moment: Moment, motion: FloatArray, answers: 
     numbers[0] = balls.starts[b] + balls.turns[b] * moment.angle
     numbers[1], numbers[2], numbers[3] = balls.loads[b, 0], balls.loads[b, 1], rest
     centres, rows = balls.centres[b, :z], balls.rows[b, :z]
+    held = balls.held[b, : z if balls.relaxes[b] else 0]
     found = NO_BALANCE
     for _ in range(2):
         found = ball_force(
             pose, numbers, balls.cos[b, :z], balls.sin[b, :z], shape, inner, outer, force, stiffness, damping,
-            centres, rows,
+            centres, rows, held,
         )  # fmt: skip
         if found != NO_BALANCE:
             break
@@ -255,6 +329,9 @@ def balls_answer(balls: Balls, moment: Moment, motion: FloatArray, answers: Answ
     course, films = balls.course, balls.films
     for film in range(films.highest.size):
         _blend(films, film, course.nodes[moment.step, film], course.weights[moment.step, film])
+    if balls.clock[1] != moment.time:
+        balls.clock[1] = moment.time
+        _hold_all(balls, moment.time - balls.clock[0])
     for b in range(balls.firsts.size):
         found = _on_ring(balls, b, moment, motion, answers)
         if found < 0:
@@ -269,7 +346,7 @@ def balls_answer(balls: Balls, moment: Moment, motion: FloatArray, answers: Answ
 
 @njit(error_model="numpy")
 def balls_accept(balls: Balls, moment: Moment) -> None:
-    """Take note of the cage's speed that the contact angles of a step ask for, which was made.
+    """Take note of a step that was made: the cage's speed that its contact angles ask for, and films with memory.
 
     Parameters
     ----------
@@ -280,6 +357,8 @@ def balls_accept(balls: Balls, moment: Moment) -> None:
         if not balls.given[b]:
             angles = mean_angles(balls.rows[b, : balls.counts[b]])
             balls.cages[b] = rolling(balls.masses[b, 3], angles, balls.spins[b, 0], balls.spins[b, 1])
+    _go_on_all(balls, moment.time - balls.clock[0])
+    balls.clock[0], balls.clock[1] = moment.time, math.nan
 
 
 @njit(error_model="numpy")
@@ -403,6 +482,9 @@ class _Laws:
                 on_grid(one, self._grids[side], table)
             else:
                 return Made(sound=False)
+            if self._element.relaxes and not law.dry:
+                load, c = one.coefficient * np.exp(1.5 * table[:, 0]), np.exp(table[:, 2])
+                films.springs[film, slot, side] = springs_at(law.responses[side], load, c)
         return Made(sound=True, kind=int(law.dry))
 
 
@@ -456,6 +538,7 @@ class BallBlock(FilmBlock[Balls]):
                 dissipated=float(arrays.powers[b, 0]),
                 driven=float(arrays.powers[b, 1] + arrays.works[b]),
                 stored=dry_energy(arrays.rows[b, :z]),
+                films=FilmsOfBalls(*(place.copy() for place in self._places(b))) if arrays.relaxes[b] else None,
             )
             for b, z in enumerate(arrays.counts.tolist())
         ]
@@ -471,6 +554,17 @@ class BallBlock(FilmBlock[Balls]):
         for b, one in enumerate(states):
             self._arrays.cages[b], self._arrays.times[b] = one.cage, one.time
             self._arrays.last[b, : one.last.shape[0]] = one.last
+            self._arrays.clock[:] = one.time, math.nan
+            places = self._places(b)
+            for place, values in zip(
+                places, dataclasses.astuple(one.films) if one.films else (0.0, 0.0, 0.0), strict=True
+            ):
+                place[:] = values
+
+    def _places(self, b: int) -> tuple[FloatArray, ...]:
+        """Arrays of the films of a bearing: forces, springs, approaches."""
+        arrays, z = self._arrays, int(self._arrays.counts[b])
+        return arrays.forces[b, :z], arrays.springs[b, :z], arrays.approaches[b, :z]
 
 
 def _gather(members: Sequence[Member], films_of: list[int], laws: Sequence[_Laws]) -> Balls:
@@ -488,6 +582,7 @@ def _gather(members: Sequence[Member], films_of: list[int], laws: Sequence[_Laws
         highest=np.zeros(len(laws)),
         length=np.zeros(len(laws), dtype=np.int64),
         in_use=np.full((len(laws), 2), -1.0),
+        springs=np.zeros((len(laws), slots, 2, rows if any(one.relaxes for one in elements) else 0, SPRINGS + 1)),
     )
     cos, sin = np.zeros((2, count, most))
     for b, one in enumerate(elements):
@@ -515,6 +610,12 @@ def _gather(members: Sequence[Member], films_of: list[int], laws: Sequence[_Laws
         last=np.zeros((count, most, 4)),
         times=np.zeros(count),
         works=np.zeros(count),
+        relaxes=np.array([one.relaxes for one in elements], dtype=np.bool_),
+        held=np.zeros((count, most, 2, HELD)),
+        forces=np.zeros((count, most, 2, SPRINGS)),
+        springs=np.zeros((count, most, 2, SPRINGS + 1)),
+        approaches=np.zeros((count, most, 2)),
+        clock=np.array([0.0, math.nan]),
         films=films,
         course=course_of(0, len(laws)),
     )

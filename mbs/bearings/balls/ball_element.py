@@ -2,8 +2,8 @@
 
 The cage's angle goes evenly, by pure rolling at the nominal contact angle. Its speed, by which the balls have their
 centrifugal load and gyroscopic moment, is that of pure rolling at the mean contact angles of the pose; in time the cage
-follows a step later. In time films have the stiffness and damping of slow motion; small oscillations about rest see
-films that relax, see `mbs.bearings.balls.relaxing`.
+follows a step later. Films have the stiffness and damping of slow motion, or a memory: of small oscillations about rest
+see `mbs.bearings.balls.relaxing`, in time `mbs.bearings.balls.ball_memory`.
 """
 
 from __future__ import annotations
@@ -20,6 +20,8 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, SolverError
 from ehdmaps.units import RPM
 from mbs.bearings.balls.ball_bearing import BallElement, BallForce, BallLoads, rolling_cage
+from mbs.bearings.balls.ball_kernel import nothing_held
+from mbs.bearings.balls.ball_memory import FilmsOfBalls
 from mbs.bearings.balls.ball_speed import dry_energy, speed_work, turned_by
 from mbs.bearings.balls.laws import BallLaw
 from mbs.model.elements import Forces, Operation, Powers
@@ -69,6 +71,8 @@ class BallStates(NamedTuple):
         What contacts take up, and what cage and speed bring in [W].
     stored : float
         Energy of the contacts, which are dry [J].
+    films : FilmsOfBalls or None
+        Films with memory; None where none are known.
     """
 
     cage: float
@@ -77,6 +81,7 @@ class BallStates(NamedTuple):
     dissipated: float
     driven: float
     stored: float
+    films: FilmsOfBalls | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +97,7 @@ class MachineBalls(BallElement):
         Law with the films at two speeds of the rings [rad/s]; None for the dry law. Bearings whose `films` are equal
         share them.
     memory : {"slow", "memory"}
-        Whether small oscillations see the films of slow motion at any frequency, or films that relax.
+        Whether films have stiffness and damping of slow motion, or relax; "memory" in time, too.
     """
 
     axial_offset: float = 0.0
@@ -104,7 +109,12 @@ class MachineBalls(BallElement):
     def film_key(self) -> tuple[object, ...]:
         """Key that bearings with the same law at all speeds have in common."""
         law = (id(self.force.law),) if self.films is None else (self.films,)
-        return (*law, self.inner_spin, self.outer_spin)
+        return (*law, self.inner_spin, self.outer_spin, self.relaxes)
+
+    @property
+    def relaxes(self) -> bool:
+        """Tell whether its films have a memory."""
+        return self.memory == "memory" and self.films is not None
 
     def law_at(self, speed: float) -> BallLaw:
         """The law at a speed of the system [rad/s]; dry where nothing rolls.
@@ -160,7 +170,7 @@ class MachineBalls(BallElement):
 
     def relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
         """Relaxation of the films of both contacts of all balls, where they relax, see `Element.relaxation`."""
-        if self.memory == "slow" or self.films is None:
+        if not self.relaxes:
             return None
         from mbs.bearings.balls.relaxing import ball_relaxation
 
@@ -198,12 +208,20 @@ class MachineBalls(BallElement):
             force, pose = self.force_at(operation), displacement.copy()
             pose[0] += self.axial_offset
             conditions = {**self.conditions(operation), "cage_speed": states.cage * operation.speed}
-        balls = force.balls(pose, **conditions)
+        films, step = None if states is None else states.films, 0.0 if states is None else operation.time - states.time
+        if films is not None:
+            force.held = films.held(step)
+        try:
+            balls = force.balls(pose, **conditions)
+            answer = self._answer(force, pose, velocity, conditions, balls)
+        finally:
+            force.held = nothing_held()
         numbers, _ = force.kernel_arguments(**conditions)
         last, rows = np.zeros((balls.angle.size, 4)) if states is None else states.last.copy(), force.last_balls
         work = speed_work(rows, numbers[1:3], force.shape.outer_arm, last)
-        stored, h = dry_energy(rows), 0.0 if states is None else operation.time - states.time
-        answer = self._answer(force, pose, velocity, conditions, balls)
+        if self.relaxes:
+            at_end = balls.approach.T
+            films = FilmsOfBalls.at_rest(force.law, at_end) if films is None else films.after(step, force.law, at_end)
         slowed = answer.damping @ velocity
         turning = turned_by(pose, answer.force + slowed) * self.cage_turn * operation.speed
         cage = self.cage_spin
@@ -212,8 +230,9 @@ class MachineBalls(BallElement):
             time=operation.time,
             last=last,
             dissipated=float(velocity @ slowed),
-            driven=turning + (work / h if h > 0.0 else 0.0),
-            stored=stored,
+            driven=turning + (work / step if step > 0.0 else 0.0),
+            stored=dry_energy(rows),
+            films=films,
         )
 
     def powers(

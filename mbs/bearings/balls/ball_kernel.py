@@ -74,6 +74,9 @@ class NormalLaw(NamedTuple):
         Constant part of c while there is load [N s/m], and the part in proportion to the stiffness [s].
     centre, scale, first, step : float
         Table of g: z = asinh((approach - centre)/scale), its first node and the distance of nodes.
+    held, spring, at : float
+        Force [N] and spring [N/m] of a film with memory beside its rest, by the approach beyond `at` [m], over a step,
+        see `mbs.bearings.balls.ball_memory`; without a spring it has none.
     table : array (nodes, 4)
         ln g and its slope by node, ln c and its slope; none for a dry contact.
     """
@@ -85,12 +88,28 @@ class NormalLaw(NamedTuple):
     scale: float
     first: float
     step: float
+    held: float
+    spring: float
+    at: float
     table: FloatArray
+
+
+HELD = 3
+"""Numbers that a contact with memory holds over a step."""
+
+
+@njit(error_model="numpy")
+def _holding(law: NormalLaw, held: FloatArray) -> NormalLaw:
+    """A law with what its film holds over a step."""
+    return NormalLaw(
+        law.coefficient, law.damping, law.damping_time, law.centre, law.scale, law.first, law.step,
+        held[0], held[1], held[2], law.table,
+    )  # fmt: skip
 
 
 @njit(error_model="numpy")
 def contact(law: NormalLaw, approach: float) -> tuple[float, float, float]:
-    """Load [N], stiffness [N/m] and damping [N s/m] of a contact at rest."""
+    """Load [N], stiffness [N/m] and damping [N s/m] of a contact at rest, or at the end of a step with memory."""
     if law.table.shape[0] == 0:
         if approach <= 0.0:
             return 0.0, 0.0, 0.0
@@ -116,7 +135,15 @@ def contact(law: NormalLaw, approach: float) -> tuple[float, float, float]:
         damping = low[2] * (1.0 - bend) + high[2] * bend + t * r * (low[3] * r - high[3] * t)
     g = math.exp(value)
     root = law.coefficient * math.sqrt(g)
-    return root * g, 1.5 * root * g * slope * slope_of_place, math.exp(damping)
+    load, k = root * g, 1.5 * root * g * slope * slope_of_place
+    if law.spring <= 0.0:
+        return load, k, math.exp(damping)
+    more = law.held + law.spring * (approach - law.at)
+    if more >= 0.0:
+        return load + more, k + law.spring, 0.0
+    size = math.sqrt(more * more + load * load)
+    total = load * load / (size - more)
+    return total, (law.spring * total + k * load) / size, 0.0
 
 
 @njit(error_model="numpy")
@@ -478,6 +505,7 @@ def ball_force(
     damping: FloatArray,
     centres: FloatArray,
     balls: FloatArray,
+    held: FloatArray,
 ) -> int:
     """Force on the inner ring at rest, and its derivatives; the number of loaded balls, or what is wrong.
 
@@ -497,6 +525,8 @@ def ball_force(
         Centres of the balls of the last call, or NaN; written.
     balls : array (Z, 16)
         Written: see `place_ball`.
+    held : array (Z, 2, HELD), or none (0, 2, HELD)
+        What the inner and the outer contacts hold over a step, see `NormalLaw`.
     """
     total = 0.0
     for value in pose:
@@ -519,8 +549,10 @@ def ball_force(
             shape.axial + pose[0] + shape.arm * (pose[4] * s - pose[5] * c),
             shape.radial + pose[1] * c + pose[2] * s,
         )
-        out = balls[j]
-        if not place_ball(d, numbers[1], numbers[2], numbers[3], shape, inner, outer, centres[j], out):
+        out, own_i, own_o = balls[j], inner, outer
+        if held.shape[0] > 0:
+            own_i, own_o = _holding(inner, held[j, 0]), _holding(outer, held[j, 1])
+        if not place_ball(d, numbers[1], numbers[2], numbers[3], shape, own_i, own_o, centres[j], out):
             return NO_BALANCE
         if out[10] <= 0.0:
             continue
@@ -569,3 +601,8 @@ def load_approach(law: NormalLaw, load: float) -> float:
 def empty_table() -> FloatArray:
     """Table of a dry contact."""
     return np.zeros((0, 4))
+
+
+def nothing_held() -> FloatArray:
+    """Numbers that contacts without memory hold: none."""
+    return np.zeros((0, 2, HELD))

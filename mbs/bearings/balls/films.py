@@ -9,6 +9,7 @@ has no film is left out where its neighbours have one on both sides, and the loa
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -18,13 +19,14 @@ from typing import NamedTuple
 import numpy as np
 from scipy.interpolate import CubicSpline, PPoly
 
-from ehdmaps.arrays import FloatArray
+from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import SolverError
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.physics.point.ellipse import Ellipse
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.table.points.file import shipped_point_table
+from ehdmaps.table.points.films import PointFilms
 from mbs.bearings.balls.laws import BallLaw, film_normal_law
 from mbs.bearings.balls.response import ContactResponse
 
@@ -58,6 +60,8 @@ class ContactFilms:
         Loads that have no film, and why.
     read_loads : int
         How many loads were read from the table, all or none.
+    response : ContactResponse or None
+        Response over frequency; None of films that were solved.
     """
 
     loads: FloatArray
@@ -65,6 +69,7 @@ class ContactFilms:
     errors: FloatArray
     left_out: tuple[str, ...]
     read_loads: int = 0
+    response: ContactResponse | None = None
 
     def read(self, load: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Values at loads (k,) and their slopes by ln load, each (4, k).
@@ -191,11 +196,7 @@ def ball_films(
         film_normal_law(contact, side.curve, (low, _BEYOND * high))
         for contact, side in zip(contacts, films, strict=True)
     )
-    responses = tuple(
-        ContactResponse(contact, oil, entrainment_speed, temperature, side.loads)
-        for contact, side in zip(contacts, films, strict=True)
-        if side.read_loads
-    )
+    responses = tuple(side.response for side in films if side.response is not None)
     known = responses if len(responses) == len(films) else ()
     return BallFilms(films[0], films[1], BallLaw(f"films of {oil.title}", inner, outer, (low, high), known))
 
@@ -209,12 +210,13 @@ class _Point(NamedTuple):
 
 
 class _Film(NamedTuple):
-    """Film of one load: values and errors in the order of `ContactFilms`, no values where there is none, and why."""
+    """Film of one load: values and errors in the order of `ContactFilms`, no values where there is none, why, place."""
 
     load: float
     values: tuple[float, ...]
     errors: tuple[float, ...]
     reason: str
+    place: int = 0
 
 
 _NAMES = ("film_offset", "central_film", "minimum_film", "damping")
@@ -223,7 +225,7 @@ _NAMES = ("film_offset", "central_film", "minimum_film", "damping")
 def _contact_films(side: str, contact: Ellipse, point: _Point, table: bool, solves: bool) -> ContactFilms:
     """Films of a contact over load."""
     heaviest = float((HIGHEST_PRESSURE / contact.max_pressure(1.0)) ** 3)
-    found = _read(contact, point, heaviest) if table else []
+    found, films = _read(contact, point, heaviest) if table else ([], None)
     kept = _together(found)
     read = len(kept) >= FEWEST
     if solves and not read:
@@ -236,30 +238,41 @@ def _contact_films(side: str, contact: Ellipse, point: _Point, table: bool, solv
             f"films of the {side} contact: {len(kept)} of {len(found)} loads from {LIGHTEST:g} to {heaviest:.4g} N "
             f"have a film at {point.speed:.4g} m/s; at least {FEWEST} are needed ({'; '.join(left_out[:2])})"
         )
+    loads = np.array([one.load for one in kept])
+    response = None
+    if read and films is not None:
+        response = ContactResponse(loads, _some(films, np.array([one.place for one in kept])))
     return ContactFilms(
-        np.array([one.load for one in kept]),
+        loads,
         np.array([one.values for one in kept]),
         np.array([one.errors for one in kept]),
         left_out,
         len(kept) if read else 0,
+        response,
     )
 
 
-def _read(contact: Ellipse, point: _Point, heaviest: float) -> list[_Film]:
+def _some(films: PointFilms, places: IntArray) -> PointFilms:
+    """Some of films."""
+    errors = {name: values[places] for name, values in films.errors.items()}
+    own = [entry.name for entry in dataclasses.fields(films) if entry.name != "errors"]
+    return PointFilms(**{name: getattr(films, name)[places] for name in own}, errors=errors)
+
+
+def _read(contact: Ellipse, point: _Point, heaviest: float) -> tuple[list[_Film], PointFilms]:
     """Films of the table at its own loads, and at both ends."""
     films = shipped_point_table()
     nodes = films.loads(contact, *point)
     loads = np.r_[LIGHTEST, nodes[(nodes > LIGHTEST * _NEAR) & (nodes < heaviest / _NEAR)], heaviest]
     read = films.films(contact, point.oil, loads, point.speed, point.temperature)
-    return [
-        _Film(
-            float(load),
-            tuple(float(getattr(read, name)[i]) for name in _NAMES) if read.usable[i] else (),
-            tuple(float(read.errors[name][i]) for name in _NAMES),
-            str(read.reason[i]),
-        )
-        for i, load in enumerate(loads)
+    usable, reasons = read.usable.tolist(), read.reason.tolist()
+    values = np.column_stack([getattr(read, name) for name in _NAMES]).tolist()
+    errors = np.column_stack([read.errors[name] for name in _NAMES]).tolist()
+    found = [
+        _Film(load, tuple(values[i]) if usable[i] else (), tuple(errors[i]), reasons[i], i)
+        for i, load in enumerate(loads.tolist())
     ]
+    return found, read
 
 
 _NEAR = 1.02

@@ -90,7 +90,9 @@ def dry_law(
         if not (isinstance(value, int | float) and math.isfinite(value) and value >= 0.0):
             raise InputError(f"ball law, {name}: got {value!r:.60} {unit}; allowed: finite and >= 0")
     inner, outer = (
-        NormalLaw(contact.coefficient, float(damping), float(damping_time), 0.0, 1.0, 0.0, 1.0, empty_table())
+        NormalLaw(
+            contact.coefficient, float(damping), float(damping_time), 0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, empty_table()
+        )
         for contact in geometry.contacts(material)
     )
     name = "hertz" if not (damping or damping_time) else f"hertz with {damping:g} N s/m and {damping_time:g} s times k"
@@ -145,4 +147,5 @@ def film_normal_law(contact: Ellipse, curve: FilmCurve, loads: tuple[float, floa
     width = float(nodes[1] - nodes[0])
     logs_g, logs_c = np.log(contact.approach(load)), np.log(damping)
     table = np.stack((logs_g, rise * width, logs_c, np.gradient(logs_c)), axis=1)
-    return NormalLaw(contact.coefficient, 0.0, 0.0, centre, scale, first, width, np.ascontiguousarray(table))
+    numbers = centre, scale, first, width, 0.0, 0.0, 0.0
+    return NormalLaw(contact.coefficient, 0.0, 0.0, *numbers, np.ascontiguousarray(table))

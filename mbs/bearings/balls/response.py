@@ -7,29 +7,24 @@ Beside k of slow motion a contact has dampers c_r in series with springs c_r/the
 
 so that slow motion is exact and energy is taken up at every frequency. The theta_r are given, `TIMES`; the c_r are the
 non-negative ones whose Z is closest to the table's, by least squares of the relative difference. Above Omega = 8
-nothing is known: Z tends to a stiffness.
+nothing is known: Z tends to a stiffness. Between loads the parts of c are straight over ln of the load.
 """
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import nnls
 
-from ehdmaps.arrays import ComplexArray, FloatArray
-from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.point.ellipse import Ellipse
-from ehdmaps.table.points.file import shipped_point_table
+from ehdmaps.arrays import BoolArray, ComplexArray, FloatArray
 from ehdmaps.table.points.films import PointFilms
 
 TIMES = np.array([0.01, 0.16, 1.0])
 """The times theta_r of all contacts in that of the natural frequency 1. Of all threes on a grid of five in a decade
 none is much better for 95 of 100 loaded contacts; others are worse for those that hardly carry."""
-
-_EXACT = 1e3
-"""Weight of the sum of the dampers."""
 
 
 class Springs(NamedTuple):
@@ -41,16 +36,10 @@ class Springs(NamedTuple):
         Parts of the damping of slow motion, their sum is one.
     times : array (n, r)
         theta [s].
-    misfit : array (n,)
-        Largest |dZ/Z| at the frequencies of the table.
-    stated : array (n,)
-        Largest stated error of the table's Z there, as a part of it.
     """
 
     shares: FloatArray
     times: FloatArray
-    misfit: FloatArray
-    stated: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,69 +48,81 @@ class ContactResponse:
 
     Attributes
     ----------
-    contact : Ellipse
-        The dry contact.
-    oil : Lubricant
-        The oil.
-    entrainment_speed, temperature : float
-        u [m/s], T [K].
     loads : array (n,)
-        Loads at which the table has films, rising [N].
+        Loads, rising [N].
+    films : PointFilms
+        Films there.
     """
 
-    contact: Ellipse
-    oil: Lubricant
-    entrainment_speed: float
-    temperature: float
     loads: FloatArray
-
-    def films(self, load: FloatArray) -> PointFilms:
-        """Films at loads (k,) [N]; where there are none, those of the nearest load that has some.
-
-        Parameters
-        ----------
-        load : array (k,)
-            Loads [N].
-        """
-        table, at = shipped_point_table(), (self.entrainment_speed, self.temperature)
-        asked = np.clip(load, self.loads[0], self.loads[-1])
-        found = table.films(self.contact, self.oil, asked, *at)
-        if np.all(found.usable):
-            return found
-        places = np.log(self.loads)
-        nearest = self.loads[np.abs(np.log(asked)[:, None] - places).argmin(axis=1)]
-        return table.films(self.contact, self.oil, np.where(found.usable, asked, nearest), *at)
+    films: PointFilms
 
     def springs(self, load: FloatArray) -> Springs:
-        """Dampers in series with springs at loads (k,) [N], see the module.
+        """Dampers in series with springs at loads (k,) [N]; beyond the ends those of the ends.
 
         Parameters
         ----------
         load : array (k,)
-            Loads [N].
+            Loads [N], > 0.
         """
-        films = self.films(load)
-        omega = 2.0 * np.pi * films.frequencies
-        held = films.response_stiffness + 1j * omega * films.response_damping
-        times = TIMES / (2.0 * omega[:, :1])  # the first frequency is a half
-        wrong = np.hypot(
-            films.errors["response_stiffness"] * films.response_stiffness,
-            films.errors["response_damping"] * omega * films.response_damping,
-        )
-        shares, misfit = np.empty(times.shape), np.empty(load.size)
-        for i, theta in enumerate(times):
-            shares[i], misfit[i] = _closest(films.stiffness[i], films.damping[i], theta, 1j * omega[i], held[i])
-        return Springs(shares, times, misfit, np.asarray((wrong / np.abs(held)).max(axis=1)))
+        places, asked = np.log(self.loads), np.log(load)
+        shares = np.stack([np.interp(asked, places, column) for column in self._shares.T], axis=1)
+        unit = np.exp(np.interp(asked, places, np.log(self._unit)))
+        return Springs(shares, np.multiply.outer(unit, TIMES))
+
+    @cached_property
+    def misfit(self) -> FloatArray:
+        """Largest |dZ/Z| at the frequencies of the table, of each load (n,)."""
+        columns, left = self._relative
+        return np.asarray(np.abs((columns @ self._shares[:, :, None])[..., 0] - left).max(axis=1))
+
+    @cached_property
+    def stated(self) -> FloatArray:
+        """Largest error of Z there that the table states, as a part of it, of each load (n,)."""
+        films = self.films
+        size = np.abs(self._held)
+        stiffness = films.errors["response_stiffness"] * films.response_stiffness
+        return np.asarray((np.hypot(stiffness, films.errors["response_damping"] * self._held.imag) / size).max(axis=1))
+
+    @property
+    def _unit(self) -> FloatArray:
+        """Time of the natural frequency 1 [s]; the first one that the table holds is a half."""
+        return np.asarray(0.25 / (np.pi * self.films.frequencies[:, 0]))
+
+    @cached_property
+    def _held(self) -> ComplexArray:
+        """Z of the table, (n, 5)."""
+        films = self.films
+        return np.asarray(films.response_stiffness + 2j * np.pi * films.frequencies * films.response_damping)
+
+    @cached_property
+    def _relative(self) -> tuple[ComplexArray, ComplexArray]:
+        """Z of each damper alone (n, 5, r), and Z less k (n, 5), as parts of Z."""
+        s, size = 2j * np.pi * self.films.frequencies[..., None], np.abs(self._held)
+        times = (self._unit[:, None] * TIMES)[:, None, :]
+        columns = s * self.films.damping[:, None, None] / (1.0 + s * times) / size[..., None]
+        return columns, (self._held - self.films.stiffness[:, None]) / size
+
+    @cached_property
+    def _shares(self) -> FloatArray:
+        """Parts of c (n, r): the best of those with each choice of dampers that are none, and none negative."""
+        columns, left = self._relative
+        matrix, right = np.concatenate([columns.real, columns.imag], 1), np.concatenate([left.real, left.imag], 1)
+        best, error = np.zeros((self.loads.size, TIMES.size)), np.full(self.loads.size, np.inf)
+        for count in range(1, TIMES.size + 1):
+            for chosen in itertools.combinations(range(TIMES.size), count):
+                found = np.zeros_like(best)
+                found[:, chosen] = _of_sum_one(matrix[..., chosen], right)
+                wrong = np.sum(((matrix @ found[:, :, None])[..., 0] - right) ** 2, axis=1)
+                better: BoolArray = np.all(found >= 0.0, axis=1) & (wrong < error)
+                best[better], error[better] = found[better], wrong[better]
+        return best
 
 
-def _closest(
-    stiffness: float, damping: float, times: FloatArray, s: ComplexArray, held: ComplexArray
-) -> tuple[FloatArray, float]:
-    """Shares of dampers whose response is closest to one at frequencies s, and the largest difference."""
-    size = np.abs(held)
-    columns = (s[:, None] * damping / (1.0 + np.multiply.outer(s, times))) / size[:, None]
-    left = (held - stiffness) / size
-    matrix = np.vstack([columns.real, columns.imag, np.full((1, times.size), _EXACT)])
-    found, _ = nnls(matrix, np.r_[left.real, left.imag, _EXACT])
-    shares = found / found.sum()
-    return shares, float(np.abs(columns @ shares - left).max())
+def _of_sum_one(matrix: FloatArray, right: FloatArray) -> FloatArray:
+    """Least squares of matrices (n, m, r) whose unknowns (n, r) have the sum one."""
+    last = matrix[..., -1:]
+    rest, left = matrix[..., :-1] - last, right - last[..., 0]
+    across = np.swapaxes(rest, 1, 2)
+    found = np.linalg.solve(across @ rest, across @ left[..., None])[..., 0]
+    return np.concatenate([found, 1.0 - found.sum(axis=1, keepdims=True)], axis=1)

@@ -11,6 +11,7 @@ from ehdmaps.errors import InputError
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.units import TEMPERATURE
+from mbs.model.relaxation import FILM_WORDS
 from mbs.scene.specs import BallSpec
 
 if TYPE_CHECKING:
@@ -89,11 +90,8 @@ def ball_law_words(laws: ContactLaws) -> str:
     from mbs.scene.contact_laws import hertz_damper
 
     if laws.chosen in FILMS:
-        own = "films with memory in linear analyses, in time" if laws.memory == "memory" else "slow films:"
-        return (
-            f"ball bearings with films from the film table of points, {laws.lubricant.title}, flooded, {own} stiffness "
-            "and damping of slow motion at any frequency"
-        )
+        source = f"ball bearings with films from the film table of points, {laws.lubricant.title}, flooded"
+        return f"{source}, {FILM_WORDS[laws.memory]}"
     damper = hertz_damper(laws.chosen)
     words = f", {damper.words} of each contact" if damper is not None and damper.words else ""
     return f"ball bearings dry Hertz{words}"

@@ -1,0 +1,164 @@
+"""Films of balls that have a memory in time: springs in series with dampers beside the law of rest, step by step.
+
+A contact at rest has the load p(approach). Beside it act the springs of `mbs.bearings.balls.response`, of stiffness
+K_r = c_r/theta_r each, whose forces f_r are its states:
+
+    f_r' = K_r approach' - f_r/theta_r,        f = sum f_r,
+    load = p + f where f >= 0,        load = f + sqrt(f^2 + p^2) where films are pulled.
+
+So a load is never a tension, and rises with the approach. Small oscillations see k and c over frequency as linear
+analyses have them. Over a step of h in which the approach goes evenly the solution is exact,
+
+    f_r <- exp(-a) f_r + K_r phi (approach - approach before),        a = h/theta_r, phi = (1 - exp(-a))/a,
+
+with K_r and theta_r of the beginning of the step: p gets a constant force and a spring, no more. Between two steps
+K_r follows the load: where it falls f_r falls in proportion, where it rises f_r stays. Both take energy away.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.compiled import in_python, njit
+from mbs.bearings.balls.ball_kernel import HELD, contact
+from mbs.bearings.balls.laws import BallLaw
+from mbs.bearings.balls.response import TIMES, ContactResponse
+
+SPRINGS = TIMES.size
+"""Springs of a contact."""
+
+_TIMES = tuple(float(time / TIMES[-1]) for time in TIMES)
+
+
+@njit(error_model="numpy")
+def hold(step: float, approach: float, springs: FloatArray, forces: FloatArray, held: FloatArray) -> None:
+    """Write what a contact holds against an approach over a step.
+
+    Parameters
+    ----------
+    step : float
+        Length of the step [s], >= 0.
+    approach : float
+        Approach at its beginning [m].
+    springs : array (SPRINGS + 1,)
+        K_r [N/m], and the longest of their times [s].
+    forces : array (SPRINGS,)
+        f_r at its beginning [N].
+    held : array (3,)
+        Force [N] at the approach held[2] [m], and spring held[1] [N/m] of the end of the step; written.
+    """
+    held[0], held[1], held[2] = 0.0, 0.0, approach
+    for r in range(forces.size):
+        if springs[r] > 0.0:
+            a = step / (springs[forces.size] * _TIMES[r])
+            left = math.exp(-a)
+            held[0] += left * forces[r]
+            held[1] += springs[r] * (-math.expm1(-a) / a if a > 0.0 else 1.0)
+
+
+@njit(error_model="numpy")
+def go_on(step: float, moved: float, springs: FloatArray, after: FloatArray, forces: FloatArray) -> None:
+    """Bring the forces to the end of a step, and to the springs there.
+
+    Parameters
+    ----------
+    step, moved : float
+        Length of the step [s], and change of the approach [m].
+    springs, after : array (SPRINGS + 1,)
+        The same as of `hold`, at the beginning and at the end; the first gets the numbers of the second.
+    forces : array (SPRINGS,)
+        f_r [N]; written.
+    """
+    for r in range(forces.size):
+        if springs[r] > 0.0:
+            a = step / (springs[forces.size] * _TIMES[r])
+            gained = springs[r] * (-math.expm1(-a) / a if a > 0.0 else 1.0)
+            forces[r] = (math.exp(-a) * forces[r] + gained * moved) * min(1.0, after[r] / springs[r])
+        else:
+            forces[r] = 0.0
+    springs[:] = after
+
+
+def springs_at(response: ContactResponse, load: FloatArray, damping: FloatArray) -> FloatArray:
+    """Springs and longest times of a contact, shape (n, SPRINGS + 1), see `hold`.
+
+    Parameters
+    ----------
+    response : ContactResponse
+        Response over frequency.
+    load, damping : array (n,)
+        Load [N] and damping [N s/m] at rest.
+    """
+    found = response.springs(np.maximum(load, 1e-300))
+    return np.column_stack([found.shares * damping[:, None] / found.times, found.times[:, -1]])
+
+
+@dataclass(frozen=True, eq=False)
+class FilmsOfBalls:
+    """Films of a bearing after a step.
+
+    Attributes
+    ----------
+    forces : array (Z, 2, SPRINGS)
+        Forces f_r of the inner and the outer contact of each ball [N].
+    springs : array (Z, 2, SPRINGS + 1)
+        Springs, see `hold`.
+    approaches : array (Z, 2)
+        Approaches [m].
+    """
+
+    forces: FloatArray
+    springs: FloatArray
+    approaches: FloatArray
+
+    @classmethod
+    def at_rest(cls, law: BallLaw, approaches: FloatArray) -> FilmsOfBalls:
+        """Films that have not moved.
+
+        Parameters
+        ----------
+        law : BallLaw
+            Laws of the contacts.
+        approaches : array (Z, 2)
+            Approaches [m].
+        """
+        return cls(np.zeros((*approaches.shape, SPRINGS)), _springs(law, approaches), approaches.copy())
+
+    def held(self, step: float) -> FloatArray:
+        """Numbers that contacts hold over a step [s], (Z, 2, HELD), see `hold`."""
+        found = np.zeros((*self.approaches.shape, HELD))
+        for place in np.ndindex(self.approaches.shape):
+            in_python(hold)(step, self.approaches[place], self.springs[place], self.forces[place], found[place])
+        return found
+
+    def after(self, step: float, law: BallLaw, approaches: FloatArray) -> FilmsOfBalls:
+        """Films after a step.
+
+        Parameters
+        ----------
+        step : float
+            Length of the step [s].
+        law : BallLaw
+            Laws of the contacts there.
+        approaches : array (Z, 2)
+            Approaches there [m].
+        """
+        forces, springs, after = self.forces.copy(), self.springs.copy(), _springs(law, approaches)
+        moved = approaches - self.approaches
+        for place in np.ndindex(approaches.shape):
+            in_python(go_on)(step, moved[place], springs[place], after[place], forces[place])
+        return FilmsOfBalls(forces, springs, approaches.copy())
+
+
+def _springs(law: BallLaw, approaches: FloatArray) -> FloatArray:
+    """Springs of both contacts at approaches (Z, 2), shape (Z, 2, SPRINGS + 1); without stiffness for dry contacts."""
+    found = np.zeros((*approaches.shape, SPRINGS + 1))
+    found[..., -1] = 1.0
+    for side, (one, response) in enumerate(zip((law.inner, law.outer), law.responses, strict=False)):
+        values = np.array([in_python(contact)(one, approach) for approach in approaches[:, side].tolist()])
+        found[:, side] = springs_at(response, values[:, 0], values[:, 2])
+    return found
