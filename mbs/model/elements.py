@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any, Literal, NamedTuple, Protocol
+from typing import Any, ClassVar, Literal, NamedTuple, Protocol
 
 import numpy as np
 
@@ -258,7 +258,15 @@ class ElementDefaults:
 
 
 class OnRings(ElementDefaults):
-    """Element whose first six displacements are those of an inner ring: a bearing of rollers or of balls."""
+    """Element whose first six displacements are those of an inner ring: a bearing of rollers or of balls.
+
+    Attributes
+    ----------
+    locating : bool
+        Whether it holds the ring along the axis, once its clearance is taken up.
+    """
+
+    locating: ClassVar[bool] = False
 
 
 @dataclass(frozen=True, eq=False)

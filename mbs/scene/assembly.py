@@ -19,7 +19,7 @@ from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.films import FilmSource
 from mbs.bearings.thermal import BearingState
 from mbs.gears.pair import GearPair
-from mbs.model.elements import Operation
+from mbs.model.elements import OnRings, Operation
 from mbs.model.relaxation import Films
 from mbs.model.system import Places, System
 from mbs.model.turning import TurningLoad
@@ -66,7 +66,7 @@ def axial_problems(system: System, pairs: Sequence[GearPair], operation: Operati
             pushed.setdefault(place.partition(":")[0], []).append(pair.name)
     return [
         f"gear pair {names[0]!r}: its helix pushes {body!r} along x, and nothing holds {body!r} there; give it a "
-        "spring with a stiffness x, as a locating bearing has it, or take x from its freedoms"
+        "locating bearing, such as a ball bearing, or a spring with a stiffness x, or take x from its freedoms"
         for body, names in pushed.items()
         if len(names) == 1 and _free_along_x(system, body, operation)
     ]
@@ -82,7 +82,10 @@ def _free_along_x(system: System, body: str, operation: Operation) -> bool:
         return False
     still = np.zeros(system.size)
     for connected in system.elements:
-        if not isinstance(connected.element, GearMesh):
+        if isinstance(connected.element, OnRings) and connected.element.locating:
+            if np.any((connected.transform @ moved)[:1]):
+                return False
+        elif not isinstance(connected.element, GearMesh):
             stiffness = connected.evaluate(still, still, operation).stiffness
             if _resists(connected.transform.T @ stiffness @ connected.transform, moved):
                 return False

@@ -93,7 +93,7 @@ def test_a_shaft_that_nothing_holds_along_x_is_refused_and_one_without_the_freed
     text = str(caught.value)
     for body in ("one", "two"):
         assert f"gear pair 'mesh': its helix pushes {body!r} along x, and nothing holds {body!r} there" in text
-    assert "give it a spring with a stiffness x" in text
+    assert "give it a locating bearing, such as a ball bearing, or a spring with a stiffness x" in text
     assert assemble(stage(axial="", angle=0.0)).system.size == 12  # spur gears push nothing
     found = statics(assemble(stage(freedoms=FREE.replace('"x", ', ""), axial="")))
     assert "  one and two: no freedom x" in "\n".join(gear_lines(found.model, found.balance))

@@ -21,7 +21,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -346,6 +346,7 @@ class BallElement(OnRings):
         Angle of the first ball from y at the beginning [rad].
     """
 
+    locating: ClassVar[bool] = True
     name: str
     inner: str
     outer: str

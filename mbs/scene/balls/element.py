@@ -149,7 +149,7 @@ class _TableFilms:
         return _film_law(self, self.geometry.entrainment_speed(inner_speed, outer_speed))
 
 
-@functools.lru_cache(maxsize=64)
+@functools.lru_cache(maxsize=512)  # a run over a decade of speed has 120 laws, and comes back to them
 def _film_law(films: _TableFilms, u: float) -> BallLaw:
     """The law at an entrainment speed [m/s]; alike bearings read it once."""
     from mbs.bearings.balls.films import ball_films
