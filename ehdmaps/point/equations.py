@@ -112,7 +112,7 @@ class Equations:
         return Factors(self.found, self.free, (lu, pivots), scale) if info == 0 else None
 
     def applied(self, change: FloatArray) -> FloatArray:
-        """What a change of free pressures and H0 does to the equations, both of shape (k + 1,).
+        """Change of the equations by one of free pressures and H0, both of shape (k + 1,).
 
         Parameters
         ----------

@@ -24,7 +24,6 @@ from mbs.model.relaxation import Films
 from mbs.model.system import Places, System
 from mbs.model.turning import TurningLoad
 from mbs.scene import kinds
-from mbs.scene.balls.element import ball_law_words
 from mbs.scene.bodies import build_bodies
 from mbs.scene.contact_laws import NO_LAW, ContactLaws, choose_law, supply_words, surface_label
 from mbs.scene.kinds import ElementKind
@@ -32,7 +31,6 @@ from mbs.scene.map_set import TABLE_LAW, MapSet, table_maps
 from mbs.scene.oils import oil_warnings
 from mbs.scene.scene import Scene
 from mbs.scene.surroundings import Built, Surroundings
-from mbs.scene.tapered.element import tapered_law_words
 from mbs.scene.turning import turning_loads, with_places
 
 if TYPE_CHECKING:
@@ -254,8 +252,15 @@ def assemble(
         raise InputError(problems)
     bearings = tuple(_shown(built, "bearings", BearingElement))
     of_balls = {spec.name for spec in scene.balls}
-    words = ([laws.words] if bearings else []) + ([ball_law_words(laws)] if scene.balls else [])
-    words += [tapered_law_words(laws)] if scene.tapered else []
+    words = [laws.words] if bearings else []
+    if scene.balls:
+        from mbs.scene.balls.element import ball_law_words
+
+        words.append(ball_law_words(laws))
+    if scene.tapered:
+        from mbs.scene.tapered.element import tapered_law_words
+
+        words.append(tapered_law_words(laws))
     return Model(
         scene=scene,
         system=system,

@@ -14,13 +14,11 @@ from ehdmaps.units import LENGTH, PRESSURE, TEMPERATURE, Display, short
 from mbs.bearings.bearing import MOST_COUPLED
 from mbs.bearings.thermal import EXPANSIONS, STEEL_EXPANSION, GivenTemperatures, HeatPaths, Mounting, Seat
 from mbs.scene import fields
-from mbs.scene.balls.reading import is_ball, read_ball
 from mbs.scene.fields import DEGREE, MICROMETRE
 from mbs.scene.matrices import MatrixSpec, read_table_bearing
 from mbs.scene.profiles import read_profile
 from mbs.scene.shafts.standing import read_rings
 from mbs.scene.specs import BallSpec, BearingSpec, TaperedSpec
-from mbs.scene.tapered.reading import is_tapered, read_tapered
 
 if TYPE_CHECKING:
     from mbs.scene.surroundings import Built, Surroundings
@@ -140,10 +138,14 @@ def read_bearing(section: Table, name: str) -> BearingSpec | BallSpec | TaperedS
     """
     if section.choice("kind", ("rollers", "table")) == "table":
         return read_table_bearing(section, name)
-    if is_ball(section):
-        return read_ball(section, name)
-    if is_tapered(section):
-        return read_tapered(section, name)
+    if "bearing" in section:  # catalogues of others are loaded where a designation is given
+        from mbs.scene.balls.reading import is_ball, read_ball
+        from mbs.scene.tapered.reading import is_tapered, read_tapered
+
+        if is_ball(section):
+            return read_ball(section, name)
+        if is_tapered(section):
+            return read_tapered(section, name)
     inner, outer = read_rings(section, name)
     geometry = _geometry(section)
     profile = read_profile(section, geometry)

@@ -8,21 +8,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from importlib import import_module
+from typing import Any
 
 from ehdmaps.jobs.table import Table
 from mbs.gears.pair import GearPair
 from mbs.scene import bearings, gears
-from mbs.scene.balls.element import ball_problems, build_ball
-from mbs.scene.balls.reading import read_ball
 from mbs.scene.matrices import MatrixSpec, build_matrices, matrix_problems, read_spring
 from mbs.scene.specs import BallSpec, BearingSpec, TaperedSpec
 from mbs.scene.surroundings import Built, Surroundings
-from mbs.scene.tapered.element import build_tapered, tapered_problems
-from mbs.scene.tapered.reading import read_tapered
-
-if TYPE_CHECKING:
-    pass
 
 
 @dataclass(frozen=True)
@@ -54,6 +48,15 @@ class ElementKind:
     places: Callable[[Any], tuple[str, ...]]
     problems: Callable[[Any, Surroundings], list[str]]
     build: Callable[[Any, Surroundings], Built]
+
+
+def _later(module: str, name: str) -> Callable[[Any, Surroundings], Any]:
+    """A function whose module is loaded when a scene has such an element."""
+
+    def called(spec: Any, surroundings: Surroundings) -> Any:
+        return getattr(import_module(module), name)(spec, surroundings)
+
+    return called
 
 
 KINDS = (
@@ -88,19 +91,19 @@ KINDS = (
         key="",
         word="ball bearing",
         spec=BallSpec,
-        read=read_ball,
+        read=bearings.read_bearing,
         places=lambda spec: (spec.inner, spec.outer),
-        problems=ball_problems,
-        build=build_ball,
+        problems=_later("mbs.scene.balls.element", "ball_problems"),
+        build=_later("mbs.scene.balls.element", "build_ball"),
     ),
     ElementKind(
         key="",
         word="tapered roller bearing",
         spec=TaperedSpec,
-        read=read_tapered,
+        read=bearings.read_bearing,
         places=lambda spec: (spec.inner, spec.outer),
-        problems=tapered_problems,
-        build=build_tapered,
+        problems=_later("mbs.scene.tapered.element", "tapered_problems"),
+        build=_later("mbs.scene.tapered.element", "build_tapered"),
     ),
 )
 """All kinds, in the order of the elements of a system."""

@@ -14,13 +14,13 @@ from typing import TYPE_CHECKING, Protocol
 from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.oil_supply import OilSupply
-from ehdmaps.physics.point.ball_geometry import BallGeometry
-from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from ehdmaps.physics.surface import CrownedProfile, TabulatedProfile
 from mbs.bearings.thermal import GivenTemperatures, HeatPaths, Mounting
 from mbs.model.body import Body, Inertia, rigid_problems
 
 if TYPE_CHECKING:
+    from ehdmaps.physics.point.ball_geometry import BallGeometry
+    from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
     from mbs.flexible.plan import Attached, ReductionPlan, Turn
     from mbs.flexible.reduced_body import ReducedBody
     from mbs.flexible.shaft_parts import Disc, Section

@@ -23,9 +23,9 @@ def is_ball(section: Table) -> bool:
     Parameters
     ----------
     section : Table
-        A table [[bearings]].
+        A table [[bearings]] with the key `bearing`.
     """
-    given = section.get("bearing") if "bearing" in section else None
+    given = section.get("bearing")
     return isinstance(given, str) and bool(plain_ball_designation(given))
 
 

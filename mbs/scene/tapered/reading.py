@@ -21,9 +21,9 @@ def is_tapered(section: Table) -> bool:
     Parameters
     ----------
     section : Table
-        A table [[bearings]].
+        A table [[bearings]] with the key `bearing`.
     """
-    given = section.get("bearing") if "bearing" in section else None
+    given = section.get("bearing")
     return isinstance(given, str) and bool(plain_tapered_designation(given))
 
 
