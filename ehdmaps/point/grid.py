@@ -34,7 +34,7 @@ root of `Cells.edge` where that is below one."""
 _EDGE, _CORE = 0.55, 1.1
 _MOST_KERNELS = 12
 _BESIDE = 1e-3
-_SAMPLES = 20001
+_SAMPLES = 5001
 _TOUCHING = 1e-14
 
 

@@ -14,10 +14,13 @@ choose.
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from typing import NamedTuple
 
 from ehdmaps.physics.isotherm import Isotherm
 from ehdmaps.physics.point.ellipse import EllipticNumbers, elliptic_numbers
+
+_numbers = lru_cache(maxsize=64)(elliptic_numbers)
 
 
 class PointProblem(NamedTuple):
@@ -41,7 +44,7 @@ class PointProblem(NamedTuple):
     @property
     def numbers(self) -> EllipticNumbers:
         """Elliptic numbers of the dry contact."""
-        return elliptic_numbers(self.ellipticity)
+        return _numbers(self.ellipticity)
 
     @property
     def load_scale(self) -> float:
