@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from mbs.bearings.balls.ball_point import BallPoint
+    from mbs.bearings.tapered.tapered_point import TaperedPoint
 
 
 WIDE_RANGE = 20.0
@@ -443,12 +444,12 @@ def _table(points: list[BearingPoint], description: BearingDescription) -> list[
     return lines
 
 
-def warning_lines(points: Sequence[BearingPoint | BallPoint]) -> list[str]:
+def warning_lines(points: Sequence[BearingPoint | BallPoint | TaperedPoint]) -> list[str]:
     """Each warning and note once, with how many points it is about.
 
     Parameters
     ----------
-    points : sequence of BearingPoint or BallPoint
+    points : sequence of BearingPoint, BallPoint or TaperedPoint
         The points.
     """
     lines = []

@@ -29,7 +29,7 @@ class Rollers(NamedTuple):
 
     diameter: float
     length: float
-    count: float
+    number: float
 
 
 def rating_factor(gamma: float) -> float:
@@ -63,7 +63,7 @@ def static_rating(rollers: Rollers, pitch: float, angle: float = 0.0) -> float:
         Pitch diameter [m], contact angle [rad].
     """
     gamma = rollers.diameter * math.cos(angle) / pitch
-    return RATING * (1.0 - gamma) * rollers.count * rollers.length * rollers.diameter * math.cos(angle)
+    return RATING * (1.0 - gamma) * rollers.number * rollers.length * rollers.diameter * math.cos(angle)
 
 
 def dynamic_rating(rollers: Rollers, pitch: float, angle: float = 0.0, quality: float = 1.1) -> float:
@@ -80,7 +80,7 @@ def dynamic_rating(rollers: Rollers, pitch: float, angle: float = 0.0, quality: 
     """
     diameter, length = rollers.diameter / _MM, rollers.length * math.cos(angle) / _MM
     factor = quality * rating_factor(rollers.diameter * math.cos(angle) / pitch)
-    return float(factor * length ** (7.0 / 9.0) * rollers.count**0.75 * diameter ** (29.0 / 27.0))
+    return float(factor * length ** (7.0 / 9.0) * rollers.number**0.75 * diameter ** (29.0 / 27.0))
 
 
 def with_static_rating(diameter: float, count: float, pitch: float, rating: float, angle: float = 0.0) -> Rollers:

@@ -159,7 +159,7 @@ def tapered_estimate(designation: str) -> TaperedGeometry:
     angle = math.atan(entry.axial_factor / 1.5)
     pitch = 0.5 * (entry.bore + entry.outside_diameter)
     found = by_ratings(pitch, (entry.dynamic_rating, entry.static_rating), FILLED, angle)
-    count = round(found.count)
+    count = round(found.number)
     rollers = with_static_rating(found.diameter, count, pitch, entry.static_rating, angle)
     sentence = f"inner geometry estimated from catalogue dimensions and NSK's ratings (ISO 76, ISO 281): {ERRORS}"
     name = plain_tapered_designation(designation)
@@ -210,7 +210,9 @@ def tapered_boundary(designation: str) -> TaperedCatalogue | None:
     name = plain_tapered_designation(designation)
     for row in _TABLE.get(name[:3], ()):
         if _code(row[0]) == name[3:]:
-            return TaperedCatalogue(*(value * _MM for value in row[:5]), row[5], row[6], row[7] * _MM, row[8])
+            d, outside, width, cone, cup, dynamic, static, centre, factor = row
+            lengths = (d * _MM, outside * _MM, width * _MM, cone * _MM, cup * _MM)
+            return TaperedCatalogue(*lengths, dynamic, static, centre * _MM, factor)
     return None
 
 

@@ -199,9 +199,20 @@ class RollerWork(NamedTuple):
 
 def roller_work() -> RollerWork:
     """Work space for one bearing."""
-    vectors = [np.zeros(8) for _ in range(3)]
-    squares = [np.zeros((3, 3)) for _ in range(4)]
-    return RollerWork(*vectors, *squares, *(np.zeros(3) for _ in range(3)), np.zeros((3, 3)), np.zeros((2, 3, 3)))
+    return RollerWork(
+        cup=np.zeros(8),
+        cone=np.zeros(8),
+        rib=np.zeros(8),
+        inner=np.zeros((3, 3)),
+        whole=np.zeros((3, 3)),
+        damped_inner=np.zeros((3, 3)),
+        damped_outer=np.zeros((3, 3)),
+        rest=np.zeros(3),
+        step=np.zeros(3),
+        trial=np.zeros(3),
+        share=np.zeros((3, 3)),
+        plane=np.zeros((2, 3, 3)),
+    )
 
 
 @njit(error_model="numpy")
@@ -228,13 +239,15 @@ def _state(
     for i in range(2):
         w.rest[i] = loads[i] + w.cone[0] * shape.cone[i] + w.rib[0] * shape.rib[i] - w.cup[0] * shape.cup[i]
     w.rest[2] = loads[2] + w.cone[1] + w.rib[1] - w.cup[1]
-    return w.cup[0] + w.cone[0] + w.rib[0] + abs(loads[0]) + abs(loads[1]) + abs(loads[2]) / shape.levers[-1]
+    size: float = w.cup[0] + w.cone[0] + w.rib[0] + abs(loads[0]) + abs(loads[1]) + abs(loads[2] / shape.levers[-1])
+    return size
 
 
 @njit(error_model="numpy")
 def _left(w: RollerWork, length: float) -> float:
     """Size of the force that is left [N]; moments over half of the length of the roller."""
-    return max(abs(w.rest[0]), abs(w.rest[1]), abs(w.rest[2]) / length)
+    left: float = max(abs(w.rest[0]), abs(w.rest[1]), abs(w.rest[2]) / length)
+    return left
 
 
 @njit(error_model="numpy")

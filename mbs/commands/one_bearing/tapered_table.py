@@ -171,21 +171,21 @@ def tapered_dataset(description: TaperedDescription, points: Points) -> xr.Datas
     }
     everything = [point for line in points for point in line]
     geometry = {f"bearing_{name}": value for name, value in first.force.geometry.record().items() if name != "name"}
-    return described(
-        xr.Dataset(variables, coords=coordinates),
-        bearing=first.force.geometry.name,
+    described_by: dict[str, Any] = {
+        "bearing": first.force.geometry.name,
         **geometry,
-        bearing_law=description.law,
-        films=description.films,
-        load_direction_deg=description.direction,
-        axial_load_N=first.axial,
-        outer_speed_rad_s=first.outer_speed,
-        temperature_K=description.temperature,
-        roughness_m=description.roughness,
-        tilts=int(description.tilts),
-        assumed="; ".join(description.assumed),
-        warnings="\n".join(dict.fromkeys(line for point in everything for line in (*point.problems, *point.notes))),
-    )
+        "bearing_law": description.law,
+        "films": description.films,
+        "load_direction_deg": description.direction,
+        "axial_load_N": first.axial,
+        "outer_speed_rad_s": first.outer_speed,
+        "temperature_K": description.temperature,
+        "roughness_m": description.roughness,
+        "tilts": int(description.tilts),
+        "assumed": "; ".join(description.assumed),
+        "warnings": "\n".join(dict.fromkeys(line for point in everything for line in (*point.problems, *point.notes))),
+    }
+    return described(xr.Dataset(variables, coords=coordinates), **described_by)
 
 
 def write_tapered_csv(dataset: xr.Dataset, path: str) -> None:
