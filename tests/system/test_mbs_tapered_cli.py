@@ -10,9 +10,12 @@ import pytest
 import xarray as xr
 
 from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.jobs.make.table_law import table_map
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.rollers.tapered_catalogue import tapered_boundary, tapered_estimate
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
+from mbs.bearings.balls.ball_kernel import contact
+from mbs.bearings.tapered.line_film import LOADS, cylinder_of, line_film
 from mbs.bearings.tapered.reference_load import reference_load
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
 from mbs.bearings.tapered.tapered_point import STATIC_LIMIT, tapered_point
@@ -70,7 +73,7 @@ def test_tables_hold_the_balance(capsys, here) -> None:
     [
         (("32208", "--load", "5 kN", "--speed", "0 rpm"), "--axial: got 0 N; allowed: above zero"),
         ((*LOADED, "--clearance", "5 um", "--plot", "a.png"), "--clearance, --plot: not for tapered roller bearings"),
-        ((*LOADED, "--law", "films"), "films of tapered rollers move nothing yet"),
+        ((*LOADED, "--law", "films"), "for a tapered roller bearing; allowed: hertz, hertz:TIME"),
         (
             (*LOADED, "--profile", "a.csv"),
             "--profile: got 'a.csv' for a tapered roller bearing; allowed: iso, straight",
@@ -128,3 +131,32 @@ def test_factors_of_catalogues_come_near_the_lives_of_slices() -> None:
     equal = 5000.0 * (half.life / axial.life) ** 0.25 / 5000.0  # lives go with the fourth power of lines
     assert equal == pytest.approx(0.377 / math.tan(force.geometry.cup_angle), rel=0.03)  # rounding of both factors
     assert equal == pytest.approx(thrust, rel=0.08)  # catalogues are on the safe side
+
+
+def test_films_of_the_table_act_in_the_balance(capsys, here) -> None:
+    """The table of the kernel is the law; films lift the ring out of the cup, and are softer in series."""
+    law = line_law("inner")
+    speed, length = FORCE.geometry.entrainment_speed(3000.0 * RPM), FORCE.geometry.roller_length
+    film = line_film(law, length, speed, 313.15)
+    places = np.array([-20e-6, -1e-6, -0.2e-6, 0.3e-6, 2e-6, 10e-6, 30e-6])
+    expected = np.array(law.at(speed, 313.15).evaluate(places, np.zeros(7))[:3]) * length
+    found = np.array([contact(film, place) for place in places]).T
+    assert np.max(np.abs(found[0] / expected[0] - 1.0)) < 1e-8  # cubics between 1200 nodes
+    assert np.max(np.abs(found / expected - 1.0)) < 2e-2  # the law has corners at its own points, rounded in a cell
+    status, out, _ = run(capsys, *LOADED, "--law", "table")
+    assert status == 0 and "film table at radius and speed of the middle, rib dry" in out
+    rows = {line[2:10].strip(): line[42:].split() for line in out.splitlines() if line[42:].strip()}
+    dry = tapered_point(FORCE, (2000.0, 5000.0, 0.0), 3000.0 * RPM)
+    assert 0.8e-6 * dry.stiffness[1, 1] < float(rows["stiffnes"][0]) < 1e-6 * dry.stiffness[1, 1]
+    assert float(rows["damping"][0]) > 1.0
+    # by both films over the sine of the contact angle: a third of 1.3 and 1.4 um more than central films are stiff
+    lifted = (1e6 * dry.pose[0] - float(rows["inner ri"][2])) * math.sin(FORCE.geometry.cup_angle)
+    assert 2.7 < lifted < 1.35 * 2.7
+    assert "17 of 17 rollers carry" in out
+
+
+def line_law(side):
+    speed = FORCE.geometry.entrainment_speed(3000.0 * RPM)
+    speeds, kelvin = (0.9 * speed, 1.1 * speed), (313.15, 313.15)
+    emap = table_map(cylinder_of(FORCE.geometry), Lubricant.named("FVA3"), LOADS, speeds, kelvin)
+    return emap.law(side, "asymptote")

@@ -3,6 +3,7 @@
 =====================  ================================================================================================
 `tapered_kernel`       the balance of each roller, and the sums over rollers: force, stiffness, damping
 `tapered_bearing`      the force element; loads of the rollers
+`line_film`            films of both raceways at one speed as tables for the kernel
 `tapered_point`        an operating point: equilibrium, pressures, films, the rib
 `reference_load`       equivalent load and life by the loads of all slices
 =====================  ================================================================================================

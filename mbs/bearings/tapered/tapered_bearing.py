@@ -4,10 +4,11 @@ Frame O sits in the plane of the middles of the rollers, x along the axis. Pose 
 `mbs.bearings.balls.ball_bearing`; the pose zero has all contacts just touch, without clearance: what presses or loosens
 them is an axial displacement. A positive contact angle carries +x.
 
-Quasi-static and dry: each roller is in balance between cup, cone and rib with its centrifugal load and gyroscopic
-moment, moves along and across the contacts and tilts in its plane. Both raceways carry after ISO/TS 16281, in slices,
-half of the total approach each, with the profile on each side; the rib is a contact of Hertz. Speeds are held in the
-derivatives. Left out: friction, skewing, the cage, how slices of a roller press on each other, bending of the rings.
+Quasi-static: each roller is in balance between cup, cone and rib with its centrifugal load and gyroscopic moment, moves
+along and across the contacts and tilts in its plane. Both raceways carry after ISO/TS 16281, in slices, half of the
+total approach each, with the profile on each side, or by tables with films; the rib is dry, after Hertz. Speeds are
+held in the derivatives. Left out: friction, skewing, the cage, how slices of a roller press on each other, bending of
+the rings.
 
 References
 ----------
@@ -30,6 +31,7 @@ from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.physics.surface import iso_profile
+from mbs.bearings.balls.ball_kernel import NormalLaw, contact, empty_table
 from mbs.bearings.laws import roller_coefficient
 from mbs.bearings.tapered.tapered_kernel import (
     COLUMNS,
@@ -87,6 +89,8 @@ class TaperedForce:
         Constant damping of each contact of a roller while it carries load [N s/m], >= 0.
     damping_time : float
         Damping over stiffness of each contact [s], >= 0.
+    films : (NormalLaw, NormalLaw), optional
+        Tables of cone and cup with films at one speed, see `line_film`; dry lines without.
     profile : {"iso", "straight"}
         Profile of the rollers.
     slices : int
@@ -119,6 +123,7 @@ class TaperedForce:
         damping: float = 0.0,
         damping_time: float = 0.0,
         *,
+        films: tuple[NormalLaw, NormalLaw] | None = None,
         profile: str = "iso",
         slices: int = SLICES,
         material: Material = STEEL,
@@ -162,7 +167,11 @@ class TaperedForce:
         )
         # each raceway takes half of the total approach at the same load
         single = 2.0 ** (10.0 / 9.0) * roller_coefficient(length, material)
-        self.laws = RollerLaws(single, single, 0.0 if rib is None else rib.coefficient, self.damping, self.damping_time)
+        dry = NormalLaw(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, empty_table())
+        cone, cup = (dry, dry) if films is None else films
+        self.films = films
+        coefficient = 0.0 if rib is None else rib.coefficient
+        self.laws = RollerLaws(single, single, coefficient, self.damping, self.damping_time, cup, cone)
         self._angles, self._way = places, way
         self._kernel = tapered_force if compiled else in_python(tapered_force)
         self._places = np.full((geometry.rollers, 3), np.nan)
@@ -276,6 +285,9 @@ class TaperedForce:
             depth = approach[:, None] + moved[2][:, None] * shape.levers - shape.profile
             each = (self.laws.cone, self.laws.cup)[side] / self.geometry.roller_length
             slices[side] = each * np.maximum(depth, 0.0) ** (10.0 / 9.0)
+            if self.films is not None:
+                loads = [contact(self.films[side], g)[0] for g in depth.ravel().tolist()]
+                slices[side] = np.reshape(loads, depth.shape) / self.geometry.roller_length
         half, diameter = self.geometry.half_cone_angle, self.geometry.roller_diameter
         centre = (self._way * rows[6:8] + 0.5 * diameter * math.sin(half)) * math.cos(half)
         return TaperedLoads(angle, rows[3:6], np.where(rows[3:5] > 0.0, centre, 0.0), slices)

@@ -17,7 +17,8 @@ steps where they lead beyond the minimum along them. Slow motion has
 
     stiffness  A - A M^-1 A,        damping  (1 - S)' A_c (1 - S) + S' B_c S,     S = M^-1 A,
 
-with the dampers' sums A_c and B_c. Slices of a line carry q = C g^(10/9)/n each, the rib Q = C g^(3/2).
+with the dampers' sums A_c and B_c. Slices of a line carry q = C g^(10/9)/n each, or what a table with films says; the
+rib has Q = C g^(3/2).
 """
 
 from __future__ import annotations
@@ -29,6 +30,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.compiled import njit
+from mbs.bearings.balls.ball_kernel import NormalLaw, contact
 from mbs.bearings.slices import power
 
 NOT_FINITE, TOO_FAR, NO_BALANCE = -1, -2, -3
@@ -91,6 +93,8 @@ class RollerLaws(NamedTuple):
         Constant damping of each contact while it carries load [N s/m]; of lines, for the whole roller.
     damping_time : float
         Damping over stiffness of each contact [s].
+    cup_film, cone_film : NormalLaw
+        Tables of a whole roller with films; without a table for dry lines.
     """
 
     cup: float
@@ -98,11 +102,14 @@ class RollerLaws(NamedTuple):
     rib: float
     damping: float
     damping_time: float
+    cup_film: NormalLaw
+    cone_film: NormalLaw
 
 
 @njit(error_model="numpy")
 def _line(
     coefficient: float,
+    film: NormalLaw,
     normal: tuple[float, float],
     x: float,
     r: float,
@@ -119,11 +126,15 @@ def _line(
     for i in range(count):
         lever = shape.levers[i]
         g = approach + turn * lever - shape.profile[i]
-        if g <= 0.0:
+        if film.table.shape[0] > 0:
+            q, k, c = contact(film, g)
+            q, k, c = q / count, k / count, c / count
+        elif g > 0.0:
+            root = each * power(g, 1.0 / 9.0)
+            q, k = root * g, (10.0 / 9.0) * root
+            c = damper + laws.damping_time * k
+        else:
             continue
-        root = each * power(g, 1.0 / 9.0)
-        q, k = root * g, (10.0 / 9.0) * root
-        c = damper + laws.damping_time * k
         sums[0] += q
         sums[1] += q * lever
         sums[2] += k
@@ -225,9 +236,9 @@ def _state(
     w: RollerWork,
 ) -> float:
     """Contacts at a place of the roller; the force that is left in `w.rest`, and the sum of the sizes of its parts."""
-    _line(laws.cup, shape.cup, v[0], v[1], v[2], shape, laws, w.cup)
+    _line(laws.cup, laws.cup_film, shape.cup, v[0], v[1], v[2], shape, laws, w.cup)
     x, r, turn = d[0] - v[0], d[1] - v[1], d[2] - v[2]
-    _line(laws.cone, shape.cone, x, r, turn, shape, laws, w.cone)
+    _line(laws.cone, laws.cone_film, shape.cone, x, r, turn, shape, laws, w.cone)
     w.rib[:] = 0.0
     g = shape.rib[0] * x + shape.rib[1] * r + turn * shape.rib_lever
     if g > 0.0 and laws.rib > 0.0:

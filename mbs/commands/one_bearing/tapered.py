@@ -29,7 +29,9 @@ from mbs.commands.one_bearing.values import (
 )
 from mbs.output.bearing_table import result_kind
 from mbs.output.files import write_dataset
+from mbs.scene.contact_laws import Damper
 from mbs.scene.fields import FORCE, MICROMETRE
+from mbs.scene.map_set import TABLE_LAW
 
 _TAKEN = ("law", "temperature", "roughness")
 """Choices that tapered roller bearings take."""
@@ -45,6 +47,8 @@ class TaperedRequest:
     ----------
     force : TaperedForce
         Geometry and laws.
+    films : bool
+        Whether films act in the balance.
     oil : Lubricant
         Oil of the films.
     loads : tuple of float
@@ -62,6 +66,7 @@ class TaperedRequest:
     """
 
     force: TaperedForce
+    films: bool
     oil: Lubricant
     loads: tuple[float, ...]
     axial: float
@@ -97,7 +102,8 @@ def read_tapered(arguments: argparse.Namespace) -> TaperedRequest:
     if len(loads) * len(speeds) > MOST_POINTS:
         problems.append(f"--load, --speed: got {len(loads) * len(speeds)} points; allowed: at most {MOST_POINTS}")
     way = read_direction(arguments.direction, problems)
-    damper = read_damper(chosen.get("law"), _KIND, "; films of tapered rollers move nothing yet", problems)
+    films = chosen.get("law") == TABLE_LAW
+    damper = Damper() if films else read_damper(chosen.get("law"), _KIND, f", {TABLE_LAW}", problems)
     profile = arguments.profile
     if profile not in ("iso", "straight"):
         problems.append(f"--profile: got {profile!r:.60} for a {_KIND}; allowed: iso, straight")
@@ -118,6 +124,7 @@ def read_tapered(arguments: argparse.Namespace) -> TaperedRequest:
         *([f"oil {DEFAULT_OIL}"] if arguments.oil is None else []),
     ]
     return TaperedRequest(
+        films=films,
         force=TaperedForce(geometry, damper.constant, damper.time, profile=profile, slices=slices),
         oil=oil,
         loads=loads,
@@ -126,7 +133,9 @@ def read_tapered(arguments: argparse.Namespace) -> TaperedRequest:
         speeds=speeds,
         outer_speed=outer,
         description=TaperedDescription(
-            law="dry, ISO/TS 16281, rib Hertz" + (f", {damper.words} of each contact" if damper.words else ""),
+            law="film table at radius and speed of the middle, rib dry"
+            if films
+            else "dry, ISO/TS 16281, rib Hertz" + (f", {damper.words} of each contact" if damper.words else ""),
             films=f"films by the formulas of Moes and Dowson-Higginson, {oil.title}"
             + ("" if oil.verified else " (unverified data of the oil)"),
             direction=math.degrees(math.atan2(way[1], way[0])),
@@ -155,10 +164,11 @@ def run_tapered(arguments: argparse.Namespace) -> tuple[str, int]:
 
 def tapered_points(request: TaperedRequest) -> list[list[TaperedPoint]]:
     """Points at every load and every speed."""
+    forces = _forces(request)
     return [
         [
             tapered_point(
-                request.force,
+                force,
                 (request.axial, load * request.way[0], load * request.way[1]),
                 speed,
                 request.outer_speed,
@@ -166,9 +176,37 @@ def tapered_points(request: TaperedRequest) -> list[list[TaperedPoint]]:
                 oil=request.oil,
                 temperature=request.description.temperature,
             )
-            for speed in request.speeds
+            for speed, force in zip(request.speeds, forces, strict=True)
         ]
         for load in request.loads
+    ]
+
+
+def _forces(request: TaperedRequest) -> list[TaperedForce]:
+    """The force at each speed of the inner ring, with the films of the speed; dry where nothing rolls."""
+    geometry, kelvin = request.force.geometry, request.description.temperature
+    speeds = [geometry.entrainment_speed(speed, request.outer_speed) for speed in request.speeds]
+    if not request.films or not max(speeds) > 0.0:
+        return [request.force] * len(speeds)
+    from ehdmaps.jobs.make.table_law import table_map
+    from mbs.bearings.tapered.line_film import LOADS as LINE_LOADS
+    from mbs.bearings.tapered.line_film import cylinder_of, line_film
+
+    slowest = min(speed for speed in speeds if speed > 0.0)
+    emap = table_map(
+        cylinder_of(geometry), request.oil, LINE_LOADS, (0.9 * slowest, 1.1 * max(speeds)), (kelvin, kelvin)
+    )
+    laws = emap.law("inner", "asymptote"), emap.law("outer", "asymptote")
+    return [
+        TaperedForce(
+            geometry,
+            films=(tables[0], tables[1]),
+            profile=request.force.profile,
+            slices=request.force.positions.size,
+        )
+        if u > 0.0 and (tables := [line_film(law, geometry.roller_length, u, kelvin) for law in laws])
+        else request.force
+        for u in speeds
     ]
 
 
