@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 NODES, KNEE = 1200, 0.3e-6
 """Nodes, and the width about approach zero in which they lie dense: films begin to carry there [m]."""
 
-LOADS = (1e2, 1e6)
+LOADS = (1e2, 2e6)
 """Lowest and highest load of the tables [N/m]; they go on straight in the logarithms."""
 
 _FAR = 1e-3

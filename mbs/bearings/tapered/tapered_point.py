@@ -196,12 +196,13 @@ def tapered_point(
     except AnalysisError as error:
         radial = math.hypot(*given[1:])
         words = f"no equilibrium of {geometry.name} under {given[0]:.4g} N axial, {radial:.4g} N radial"
-        least = math.tan(geometry.cup_angle) * radial
+        thrown = geometry.rollers * force.speed_loads(inner_speed, outer_speed)[0]
+        least = math.tan(geometry.cup_angle) * (radial + thrown)
         if math.copysign(given[0], given[0] * geometry.contact_angle) < least:
             way = "positive" if geometry.contact_angle > 0.0 else "negative"
             words += (
-                f"; a tapered roller bearing falls apart without a {way} axial load above Fr tan(alpha) = "
-                f"{least:.4g} N; half of its rollers carry at 0.5 Fr/Y = {1.25 * least:.4g} N"
+                f"; a tapered roller bearing falls apart without a {way} axial load above tan(alpha) (Fr + Z Fc) = "
+                f"{least:.4g} N, Fc the centrifugal load of a roller"
             )
         raise AnalysisError(f"{words}: {error.__cause__ or error}") from error
     pose = np.zeros(6)

@@ -196,7 +196,7 @@ def _forces(request: TaperedRequest) -> list[TaperedForce]:
     emap = table_map(
         cylinder_of(geometry), request.oil, LINE_LOADS, (0.9 * slowest, 1.1 * max(speeds)), (kelvin, kelvin)
     )
-    laws = emap.law("inner", "asymptote"), emap.law("outer", "asymptote")
+    laws = emap.law("inner", "clamp"), emap.law("outer", "clamp")
     return [
         TaperedForce(
             geometry,
