@@ -100,4 +100,4 @@ def line_film(law: ContactLaw, length: float, entrainment_speed: float, temperat
     rise = (2.0 / 3.0) * k / w * KNEE * np.cosh(nodes) * width
     logs = np.log(c)
     table = np.stack((np.log(w) * (2.0 / 3.0), rise, logs, np.gradient(logs)), axis=1)
-    return NormalLaw(1.0, 0.0, 0.0, 0.0, KNEE, first, width, np.ascontiguousarray(table))
+    return NormalLaw(1.0, 0.0, 0.0, 0.0, KNEE, first, width, 0.0, 0.0, 0.0, np.ascontiguousarray(table))

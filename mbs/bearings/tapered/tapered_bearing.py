@@ -167,7 +167,7 @@ class TaperedForce:
         )
         # each raceway takes half of the total approach at the same load
         single = 2.0 ** (10.0 / 9.0) * roller_coefficient(length, material)
-        dry = NormalLaw(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, empty_table())
+        dry = NormalLaw(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, empty_table())
         cone, cup = (dry, dry) if films is None else films
         self.films = films
         coefficient = 0.0 if rib is None else rib.coefficient
