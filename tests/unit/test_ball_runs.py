@@ -64,8 +64,8 @@ def test_compiled_block_is_the_element(law, rpm):
 
 
 def test_films_are_blended_over_the_speed():
-    """Straight in ln g between nodes that are 2 % of the speed apart: g = approach + h, h with some u^0.67, is wrong by
-    at most (0.67 * 0.02)^2/8 = 2e-5 of itself, and the load by 1.5 times as much."""
+    """Straight in ln g between nodes that are 4 % of the speed apart: g = approach + h, h with some u^0.67, is wrong by
+    at most (0.67 * 0.04)^2/8 = 9e-5 of itself, and the load by 1.5 times as much."""
     element = drive("table").balls[0]
     block, speeds = BallBlock([Member(element, 0, 0)]), np.linspace(100.0, 1300.0, 240)
     block.begin(speeds)
@@ -76,7 +76,7 @@ def test_films_are_blended_over_the_speed():
         block.resume([with_cage(element, 0.4)])
         theirs, _ = element.advance(with_cage(element, 0.4), PLACE, RATE, Operation(float(speeds[step]), 0.3))
         worst = max(worst, float(np.max(np.abs(found.force - theirs.force[FELT])) / np.max(np.abs(theirs.force))))
-    assert 1e-12 < worst < 3e-5
+    assert 1e-12 < worst < 1.2e-4
 
 
 @pytest.mark.parametrize("law", ["hertz", "table"])

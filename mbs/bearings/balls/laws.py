@@ -120,7 +120,7 @@ def film_normal_law(contact: Ellipse, curve: FilmCurve, loads: tuple[float, floa
     InputError
         If the offset rises with the load so fast that the approach falls, or damping is not positive.
     """
-    rough = np.geomspace(*loads, 20 * NODES)
+    rough = np.geomspace(*loads, 4 * NODES)
     dry = np.asarray(contact.approach(rough))
     offset, _, damping = curve(rough)
     approach = dry - offset
