@@ -298,6 +298,7 @@ def bearing_heading(description: BearingDescription) -> list[str]:
         f"  {TEMPERATURE.text(description.temperature)}, {state}, profile {bearing.profile}, {slices}, "
         f"load at {description.direction:.4g} deg from y (a roller) towards z, {surface_label(description.surface)}",
         f"  assumed: {', '.join(description.assumed) or 'nothing'}",
+        *([f"  {bearing.geometry.estimated}"] if bearing.geometry.estimated else []),
     ]
 
 

@@ -71,6 +71,12 @@ def test_a_named_bearing_needs_a_load_and_a_speed(here, capsys, name):
     assert (here / "a.png").stat().st_size > 10_000
 
 
+def test_an_estimated_bearing_says_so_and_how_well(here, capsys):
+    for name in ("NU210", "NA4908"):
+        assert "  inner geometry estimated from" in run(capsys, name, *DRY, "--load", "5 kN", "--speed", "0 rpm")[1]
+    assert "estimated" not in run(capsys, "NU308", *DRY, "--load", "5 kN", "--speed", "0 rpm")[1]
+
+
 def test_a_map_gives_what_a_program_of_ones_own_gets_from_it(here, capsys, formula_map):
     options = ("--map", formula_map, "--clearance", "20 um", "--temperature", "40 degC", "--direction", "800", "600")
     status, out, _ = run(capsys, "NU308", "--load", "1 kN", "--speed", "500 rpm", *options, "-o", "a.nc")
