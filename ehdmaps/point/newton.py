@@ -38,7 +38,8 @@ MOST_OF_FILM = 0.7
 LEAST_STEP = 1e-3
 """Part of a step below which a solve ends: a film that the grid cannot carry closes."""
 
-MOST_STEPS = 60
+MOST_STEPS = 150
+"""Steps after which a solve ends. At L of 60 the limit in ln(eta) makes them short, and up to a hundred are needed."""
 
 _MOST_ABOUT = 0.1
 """Largest pressure of a rigid paraboloid that a start takes: solids give way to higher ones [p_H]."""
