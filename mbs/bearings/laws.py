@@ -256,7 +256,7 @@ def roller_coefficient(length: float, material: Material) -> float:
         Material of rollers and rings.
     """
     stiffer = reduced_modulus(material, material) / STEEL_REDUCED_MODULUS
-    return ISO_LINE_CONSTANT * (1e3 * length) ** (8.0 / 9.0) * 1e3**_EXPONENT * stiffer
+    return float(ISO_LINE_CONSTANT * (1e3 * length) ** (8.0 / 9.0) * 1e3**_EXPONENT * stiffer)
 
 
 def constant(stiffness: float, damping: float = 0.0) -> PowerLaw:
