@@ -20,6 +20,7 @@ import numpy as np
 
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.compiled import njit
+from ehdmaps.copies import put
 from ehdmaps.physics.point.ellipse import elliptic_numbers
 from ehdmaps.point.tail import Tail, far_tail
 
@@ -218,7 +219,8 @@ def _kernel(x: FloatArray, y: FloatArray, factor: float) -> FloatArray:
     """
     n, m = x.size, y.size
     along, across = np.empty(n + 2), np.empty(m + 1)
-    along[1 : n + 1], across[:m] = x, y
+    put(x, along[1 : n + 1])
+    put(y, across[:m])
     along[0] = x[0] - _BESIDE * (x[1] - x[0])
     along[n + 1] = x[n - 1] + _BESIDE * (x[n - 1] - x[n - 2])
     across[m] = y[m - 1] + _BESIDE * (y[m - 1] - y[m - 2])
@@ -236,8 +238,8 @@ def _kernel(x: FloatArray, y: FloatArray, factor: float) -> FloatArray:
             pair += 1
     logs, values = np.log(np.maximum(apart, _TOUCHING)), np.empty(2 * pairs)
     whole = np.empty(2 * m + 1)
-    whole[m:] = across
-    whole[: m + 1] = -across[::-1]
+    for j in range(m + 1):
+        whole[m + j], whole[m - j] = across[j], -across[j]
     rates = 1.0 / np.diff(whole)
     line, bent = np.empty(2 * m + 1), np.empty(2 * m + 1)
     second = np.empty((n, n + 2, m, m))  # second differences across

@@ -24,6 +24,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.compiled import in_python, njit
+from ehdmaps.copies import put
 from mbs.bearings.balls.ball_kernel import HELD, contact
 from mbs.bearings.balls.laws import BallLaw
 from mbs.bearings.balls.response import TIMES, ContactResponse
@@ -80,7 +81,7 @@ def go_on(step: float, moved: float, springs: FloatArray, after: FloatArray, for
             forces[r] = (math.exp(-a) * forces[r] + gained * moved) * min(1.0, after[r] / springs[r])
         else:
             forces[r] = 0.0
-    springs[:] = after
+    put(after, springs)
 
 
 def springs_at(response: ContactResponse, load: FloatArray, damping: FloatArray) -> FloatArray:

@@ -30,6 +30,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.compiled import njit
+from ehdmaps.copies import put
 from mbs.bearings.balls.ball_kernel import NormalLaw, contact
 from mbs.bearings.slices import power
 
@@ -305,7 +306,7 @@ def place_roller(
         if error < best:
             best = error
             out[9], out[10], out[11] = w.trial[0], w.trial[1], w.trial[2]
-    place[:] = out[9:12]
+    put(out[9:12], place)
     found = False
     size = _state(d, place, loads, shape, laws, w)
     for _ in range(_STEPS):
@@ -332,7 +333,7 @@ def place_roller(
             part *= min(max(slope / (slope - here), 0.1), 0.9)
         if part * reach <= 1e-16 * most:
             break
-        place[:] = w.trial
+        put(w.trial, place)
     _matrices(shape, w)
     _answer(soft, length, w)
     out[0] = w.cone[0] * shape.cone[0] + w.rib[0] * shape.rib[0]
@@ -342,7 +343,7 @@ def place_roller(
     out[6] = w.cone[1] / w.cone[0] if w.cone[0] > 0.0 else 0.0
     out[7] = w.cup[1] / w.cup[0] if w.cup[0] > 0.0 else 0.0
     out[8] = shape.rib[0] * (d[0] - place[0]) + shape.rib[1] * (d[1] - place[1]) + shape.rib_lever * (d[2] - place[2])
-    out[9:12] = place
+    put(place, out[9:12])
     out[12], out[13], out[14] = d
     return found
 
@@ -351,6 +352,7 @@ def place_roller(
 def _matrices(shape: TaperedShape, w: RollerWork) -> None:
     """A, M = A + B, and the dampers' sums, from the sums of the contacts."""
     w.inner[:] = 0.0
+    w.whole[:] = 0.0
     w.damped_inner[:] = 0.0
     w.damped_outer[:] = 0.0
     _add(shape.cone, w.cone, 2, w.inner)
@@ -358,8 +360,8 @@ def _matrices(shape: TaperedShape, w: RollerWork) -> None:
     _add(shape.cone, w.cone, 5, w.damped_inner)
     _add(shape.rib, w.rib, 5, w.damped_inner)
     _add(shape.cup, w.cup, 5, w.damped_outer)
-    w.whole[:] = w.inner
-    _add(shape.cup, w.cup, 2, w.whole)
+    for side, sums in ((shape.cone, w.cone), (shape.rib, w.rib), (shape.cup, w.cup)):
+        _add(side, sums, 2, w.whole)
 
 
 @njit(error_model="numpy")
