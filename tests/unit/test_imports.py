@@ -49,6 +49,7 @@ ALLOWED = {
     "ehdmaps.point": {
         "ehdmaps.arrays",
         "ehdmaps.compiled",
+        "ehdmaps.copies",
         "ehdmaps.compiling",
         "ehdmaps.ehl",
         "ehdmaps.errors",

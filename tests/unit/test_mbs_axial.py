@@ -59,8 +59,8 @@ FREE = '"x", "y", "z", "theta_x", "theta_y", "theta_z"'
 AXIAL = 'x = "2e7 N/m", '
 
 
-def stage(freedoms=FREE, axial=AXIAL, angle=15.0):
-    """Two shafts, 20 and 40 teeth, the second one held against turning."""
+def stage(freedoms=FREE, axial=AXIAL, angle=15.0, more=""):
+    """Two shafts, 20 and 40 teeth, the second one held against turning; with more elements if wanted."""
     apart, held = 0.09 / math.cos(math.radians(angle)), f'{axial}theta_x = "1e7 N m/rad", '
     bodies = [
         BODY.format(name="one", freedoms=freedoms, x=0.0, y=0.0, spin=1.0, axial=axial),
@@ -68,7 +68,7 @@ def stage(freedoms=FREE, axial=AXIAL, angle=15.0):
     ]
     gears = GEARS.format(name="mesh", on="one", against="two", teeth="20, 40", angle=angle)
     load = LOAD.format(name="drive", on="one", moment=TORQUE)
-    return parse_scene(HEAD + "".join(bodies) + gears + load, "stage", "stage.toml")
+    return parse_scene(HEAD + "".join(bodies) + gears + load + more, "stage", "stage.toml")
 
 
 def test_the_axial_force_is_in_the_springs_along_the_shafts_and_told():
@@ -85,6 +85,21 @@ def test_the_axial_force_is_in_the_springs_along_the_shafts_and_told():
     (line,) = gear_lines(found.model, found.balance)
     assert f"{tangential:.6g} N tangential" in line
     assert f"{parts[2]:+.6g} N axial on one, {-parts[2]:+.6g} N on two" in line
+
+
+@pytest.mark.parametrize(("bearing", "mirrored"), [("6208", (0, 0)), ("7208B", (0, 1)), ("32208", (0, 1))])
+def test_a_bearing_that_locates_a_shaft_takes_its_thrust(bearing, mirrored):
+    """Newton leaves 1e-10 of the largest force; bearings without play touch at rest, where they have no stiffness."""
+    thrust = TORQUE / (0.5 * 3e-3 * 20 / math.cos(HELIX)) * math.tan(HELIX)
+    more = "".join(
+        f'[[bearings]]\nname = "b_{body}"\ninner = "{body}"\nouter = "ground"\nbearing = "{bearing}"\n'
+        + ("mirrored = true\n" if turned else "")
+        for body, turned in zip(("one", "two"), mirrored, strict=True)
+    )
+    found = statics(assemble(stage(axial="", more=more), "hertz"))
+    names = [connected.element.name for connected in found.model.system.elements]
+    held = {name: force[0] for name, force in zip(names, found.balance.forces, strict=True)}
+    assert [abs(held["b_one"]), abs(held["b_two"])] == pytest.approx([thrust, thrust], rel=1e-8)
 
 
 def test_a_shaft_that_nothing_holds_along_x_is_refused_and_one_without_the_freedom_told():

@@ -20,7 +20,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -354,6 +354,7 @@ class TaperedElement(OnRings):
         displacement, or play.
     """
 
+    locating: ClassVar[bool] = True
     name: str
     inner: str
     outer: str

@@ -7,14 +7,12 @@ import dataclasses
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.table import Table
 from ehdmaps.physics.point.ball_catalogue import ball_estimate, plain_ball_designation
-from ehdmaps.physics.point.ball_geometry import BallGeometry
-from ehdmaps.units import short
-from mbs.scene.fields import DEGREE, MICROMETRE
-from mbs.scene.shafts.standing import read_rings
+from mbs.scene.fields import MICROMETRE
+from mbs.scene.shafts.standing import read_located
 from mbs.scene.specs import BallSpec
 
-WIDEST, FARTHEST = 1e-2, 1e-3
-"""Largest clearance and largest axial offset, either way [m]."""
+WIDEST = 1e-2
+"""Largest clearance, either way [m]."""
 
 
 def is_ball(section: Table) -> bool:
@@ -39,23 +37,12 @@ def read_ball(section: Table, name: str) -> BallSpec | None:
     name : str
         Name of the bearing.
     """
-    inner, outer = read_rings(section, name)
-    geometry: BallGeometry | None = None
-    try:
-        geometry = ball_estimate(str(section.get("bearing")))
-    except InputError as error:
-        for problem in error.problems:
-            section.note("bearing", problem.removeprefix("ball bearing designation: "))
-    mirrored = section.get("mirrored")
-    if "mirrored" in section and not isinstance(mirrored, bool):
-        section.note("mirrored", f"got {short(mirrored)}; allowed: true, false")
+    inner, outer, geometry, mirrored, angle, offset = read_located(section, name, ball_estimate)
     clearance = section.quantity("diametral_clearance", "m", -WIDEST, WIDEST, MICROMETRE) or 0.0
-    angle = section.quantity("start_angle", "rad", -7.0, 7.0, DEGREE) or 0.0
-    offset = section.quantity("axial_offset", "m", -FARTHEST, FARTHEST, MICROMETRE) or 0.0
     if geometry is not None:
-        if mirrored is True and geometry.contact_angle == 0.0:
+        if mirrored and geometry.contact_angle == 0.0:
             section.note("mirrored", f"got true for {geometry.name}, which is alike both ways; delete it")
-        way = -1.0 if mirrored is True else 1.0
+        way = -1.0 if mirrored else 1.0
         try:
             geometry = dataclasses.replace(geometry, clearance=clearance, contact_angle=way * geometry.contact_angle)
         except InputError as error:

@@ -6,14 +6,19 @@ the ground unless `outer` says where.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Generic, NamedTuple, TypeVar
 
+from ehdmaps.errors import InputError
 from ehdmaps.units import LENGTH, short
 from mbs.model.elements import GROUND
 from mbs.scene import fields
 
 if TYPE_CHECKING:
     from ehdmaps.jobs.table import Table
+
+FARTHEST = 1e-3
+"""Largest axial offset of a bearing, either way [m]."""
 
 _STANDARD_GRAVITY = 9.80665
 """Acceleration of gravity by definition (ISO 80000-3) [m/s2]."""
@@ -80,6 +85,59 @@ def read_rings(section: Table, name: str) -> tuple[str | None, str | None]:
         shaft = None
     outer = fields.place(section, "outer") if "outer" in section else GROUND
     return (None if position is None or shaft is None else f"{shaft}:{name}"), outer
+
+
+Geometry = TypeVar("Geometry")
+
+
+class Located(NamedTuple, Generic[Geometry]):
+    """Bearing that holds its shaft along the axis too, as a table [[bearings]] with its designation has it.
+
+    Attributes
+    ----------
+    inner, outer : str or None
+        Places of both rings; None where a problem was noted.
+    geometry : geometry or None
+        Geometry as its catalogue has it; None where a problem was noted.
+    mirrored : bool
+        Whether it is turned round.
+    start_angle, axial_offset : float
+        [rad], [m].
+    """
+
+    inner: str | None
+    outer: str | None
+    geometry: Geometry | None
+    mirrored: bool
+    start_angle: float
+    axial_offset: float
+
+
+def read_located(section: Table, name: str, estimate: Callable[[str], Geometry]) -> Located[Geometry]:
+    """Read a bearing by its designation, and how it stands.
+
+    Parameters
+    ----------
+    section : Table
+        The table; the caller closes it.
+    name : str
+        Name of the bearing.
+    estimate : callable
+        Designation to geometry, as a catalogue has it; raises an InputError.
+    """
+    inner, outer = read_rings(section, name)
+    geometry = None
+    try:
+        geometry = estimate(str(section.get("bearing")))
+    except InputError as error:
+        for problem in error.problems:
+            section.note("bearing", problem.partition("bearing designation: ")[2] or problem)
+    mirrored = section.get("mirrored")
+    if "mirrored" in section and not isinstance(mirrored, bool):
+        section.note("mirrored", f"got {short(mirrored)}; allowed: true, false")
+    angle = section.quantity("start_angle", "rad", -7.0, 7.0, fields.DEGREE) or 0.0
+    offset = section.quantity("axial_offset", "m", -FARTHEST, FARTHEST, fields.MICROMETRE) or 0.0
+    return Located(inner, outer, geometry, mirrored is True, angle, offset)
 
 
 def read_gravity(operation: Table, shafts: object) -> tuple[float, float, float] | None:

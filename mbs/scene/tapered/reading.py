@@ -2,17 +2,10 @@
 
 from __future__ import annotations
 
-from ehdmaps.errors import InputError
 from ehdmaps.jobs.table import Table
 from ehdmaps.physics.rollers.tapered_catalogue import mirrored, plain_tapered_designation, tapered_estimate
-from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
-from ehdmaps.units import short
-from mbs.scene.fields import DEGREE, MICROMETRE
-from mbs.scene.shafts.standing import read_rings
+from mbs.scene.shafts.standing import read_located
 from mbs.scene.specs import TaperedSpec
-
-FARTHEST = 1e-3
-"""Largest axial offset, either way [m]."""
 
 
 def is_tapered(section: Table) -> bool:
@@ -37,18 +30,7 @@ def read_tapered(section: Table, name: str) -> TaperedSpec | None:
     name : str
         Name of the bearing.
     """
-    inner, outer = read_rings(section, name)
-    geometry: TaperedGeometry | None = None
-    try:
-        geometry = tapered_estimate(str(section.get("bearing")))
-    except InputError as error:
-        for problem in error.problems:
-            section.note("bearing", problem.removeprefix("tapered bearing designation: "))
-    turned = section.get("mirrored")
-    if "mirrored" in section and not isinstance(turned, bool):
-        section.note("mirrored", f"got {short(turned)}; allowed: true, false")
-    angle = section.quantity("start_angle", "rad", -7.0, 7.0, DEGREE) or 0.0
-    offset = section.quantity("axial_offset", "m", -FARTHEST, FARTHEST, MICROMETRE) or 0.0
+    inner, outer, geometry, turned, angle, offset = read_located(section, name, tapered_estimate)
     if inner is None or outer is None or geometry is None:
         return None
-    return TaperedSpec(name, inner, outer, mirrored(geometry) if turned is True else geometry, angle, offset)
+    return TaperedSpec(name, inner, outer, mirrored(geometry) if turned else geometry, angle, offset)
