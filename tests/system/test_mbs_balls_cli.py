@@ -203,3 +203,11 @@ def test_a_bearing_for_ross_has_the_matrices_of_the_result(capsys, here) -> None
         assert np.ptp(element["kxx"]) > 0.1 * element["kxx"][0]
     status, _, err = run(capsys, "6208", "--load", "1 kN", "--load", "2 kN", "--speed", "0 rpm", "-o", "b.toml")
     assert status == 2 and "-o: got b.toml for 2 loads and 1 speeds; allowed: one load, or a file .nc or .csv" in err
+
+
+def test_the_largest_speed_in_rpm_is_allowed(capsys, here) -> None:
+    """1e5 rpm is larger than its own limit by the rounding of the unit."""
+    ask = ("7208B", "--load", "1 kN", "--axial", "2 kN", "--speed")
+    status, out, _ = run(capsys, *ask, "100000 rpm")
+    assert status == 0 and "balls run on the outer raceway alone" in out
+    assert run(capsys, *ask, "100001 rpm")[0] == 2

@@ -17,6 +17,9 @@ from mbs.scene.choices import OPTIONS
 
 MOST_POINTS = 500
 
+_ROUND_OFF = 1e-12
+"""Part of a limit by which a value of just its size may miss it, as 1e5 rpm do in rad/s."""
+
 LOADS, SPEEDS = (1e-3, 1e7), (0.0, 1e5 * math.pi / 30.0)
 """Smallest and largest load [N] and speed [rad/s]."""
 
@@ -158,13 +161,14 @@ def _quantity(
     except InputError as error:
         problems.append(f"{option}: {error.problems[0]}")
         return math.nan
-    if not limits[0] <= value <= limits[1]:
+    reach = _ROUND_OFF * max(abs(limits[0]), abs(limits[1]))
+    if not limits[0] - reach <= value <= limits[1] + reach:
         problems.append(
             f"{option}: got {short(text)}; allowed: {display.text(limits[0])} to {display.text(limits[1])}; check its "
             "unit"
         )
         return math.nan
-    return value
+    return min(max(value, limits[0]), limits[1])
 
 
 def read_whole(option: str, text: str, low: int, high: int, problems: list[str]) -> int:
