@@ -43,7 +43,7 @@ COLUMNS = 24
 _STEPS, _CUTS = 80, 40
 _BALANCE, _ROUGH = 1e-13, 1e-9
 _NOTHING = 1e-10
-"""Load [N] that is none."""
+"""Load below which a contact counts as unloaded [N]."""
 
 _SOFT = 1e-13
 """Stiffness, over that of a contact, that holds rollers which nothing holds."""
