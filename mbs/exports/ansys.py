@@ -45,7 +45,7 @@ def _text(bearing: LinearBearing, header: tuple[str, ...], _: argparse.Namespace
         for matrix in (bearing.stiffness[index, 0], bearing.damping[index, 0]):
             lines.append("".join(f"{matrix[i, j]:15.7E}" for i in (1, 2) for j in (1, 2)))
     left_out = ("left out: stiffness and damping along the axis and of tilts",) if bearing.axial else ()
-    return "\n".join([*lines, "", *header, *left_out]) + "\n"
+    return "\n".join([*lines, "", *header, *bearing.left_out(axial_terms=True), *left_out]) + "\n"
 
 
 FORMAT = Format(KIND, "bearing characteristics over speed of Mechanical APDL", "", _text)

@@ -87,7 +87,7 @@ def _deck(
         f"({_unsymmetric(c):.1e})",
         "a housing: take the *BOUNDARY away and tie the nodes of the set to it",
     )
-    lines = [f"** {line}" for line in (*header, *notes)]
+    lines = [f"** {line}" for line in (*header, *notes, *bearing.left_out(axial_terms=False))]
     lines += [f"*NODE, NSET=EHD_{name}_GROUND"]
     for index, axes in enumerate(lines_at.values()):
         along = np.eye(3)[list(axes)].sum(axis=0)

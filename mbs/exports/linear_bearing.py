@@ -40,6 +40,28 @@ class LinearBearing:
         """True for a bearing that is stiff along its axis."""
         return bool(np.any(self.stiffness[..., 0, 0]))
 
+    def left_out(self, *, axial_terms: bool) -> tuple[str, ...]:
+        """Lines on what nodes without tilts leave out of a bearing that is stiff along its axis, and what mends most.
+
+        A radial force that acts at x = s has K between y and the tilt about z of s Kyy, and between z and the tilt
+        about y of -s Kzz.
+
+        Parameters
+        ----------
+        axial_terms : bool
+            Whether terms between axial and radial motion are left out, too.
+        """
+        if not self.axial:
+            return ()
+        k = self.stiffness[:, 0]
+        places = 1e3 * np.array([k[:, 1, 5] / k[:, 1, 1], -k[:, 2, 4] / k[:, 2, 2]])
+        low, high = (f"{place:.3g}" for place in (places.min(), places.max()))
+        between = low if low == high else f"{low} to {high}"
+        tilts = f"tilts: radial forces act at x = {between} mm of the bearing; a node there feels most of what tilts do"
+        coupled = float(np.max(np.abs(k[:, 0, 1:3])) / np.max(np.abs(k[:, 1:3, 1:3])))
+        axial = f"left out: terms between axial and radial motion, up to {coupled:.1e} of K"
+        return (tilts, axial) if axial_terms else (tilts,)
+
     def dynamic_error(self) -> FloatArray:
         """Estimated |dZ/Z| along the load at each frequency, shape (n, m); NaN where it is not known."""
         return np.full((self.speeds.size, self.frequencies.size), np.nan)

@@ -35,7 +35,6 @@ _NOTES = (
     "read by: ross.BearingElement.load(FILE)",
 )
 
-
 _VERSIONS = ("2", "3")
 
 
@@ -61,7 +60,7 @@ def _text(bearing: LinearBearing, header: tuple[str, ...], arguments: argparse.N
         raise InputError(problems)
     name = re.sub(r"[^A-Za-z0-9]+", "_", bearing.name).strip("_") or "bearing"
     axes = _axes(bearing, arguments.ross)
-    lines = [f"# {line}" for line in (*header, *_NOTES)]
+    lines = [f"# {line}" for line in (*header, *_NOTES, *bearing.left_out(axial_terms=True))]
     lines += ["", f"[BearingElement_{name}]", f"n = {int(node)}", f'tag = "{name} at {int(node)}"', "scale_factor = 1"]
     lines += [f"{key} = {_array(values)}" for key, values in axes.items()]
     shape = [axis.size for axis in axes.values()]

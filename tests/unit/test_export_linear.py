@@ -233,22 +233,22 @@ def test_calculix_answers_as_linear_analysis_does(path, force, tmp_path):
 BALLS = ("7208B", "--load", "1 kN", "--direction", "20 deg", "--axial", "2 kN", "--law", "hertz:1.25e-5 s")
 
 
-@pytest.fixture(scope="module")
-def balls(tmp_path_factory):
-    """Files of an angular contact bearing for Nastran, CalculiX and Ansys, and K and C of the result."""
-    folder = tmp_path_factory.mktemp("balls")
-    for ending in ("bdf", "inp", "txt", "nc"):
-        assert bearing_main(["bearing", *BALLS, "--speed", "6000 rpm", "-o", str(folder / f"b.{ending}")]) == 0
+@pytest.fixture(scope="module", params=[BALLS, ("32008", *BALLS[1:])], ids=["balls", "tapered"])
+def coupled(tmp_path_factory, request):
+    """Files of an angular contact or tapered bearing for other programs, and K and C of the result."""
+    folder = tmp_path_factory.mktemp("coupled")
+    for ending in ("bdf", "inp", "txt", "toml", "nc"):
+        assert bearing_main(["bearing", *request.param, "--speed", "6000 rpm", "-o", str(folder / f"b.{ending}")]) == 0
     with xr.open_dataset(folder / "b.nc") as result:
         matrices = [result[name].values[0, 0] for name in ("stiffness_matrix", "damping_matrix")]
     return folder, matrices
 
 
 @pytest.mark.slow
-def test_calculix_answers_along_all_axes_of_a_ball_bearing(balls, tmp_path):
+def test_calculix_answers_along_all_axes(coupled, tmp_path):
     """Receptances of a mass on it by the symmetric parts of K and C: 1e-5 is the last digit that ccx prints."""
     ccx = needed_calculix()
-    folder, matrices = balls
+    folder, matrices = coupled
     k, c = (0.5 * (matrix + matrix.T)[:3, :3] for matrix in matrices)
     free, modes = ("*BOUNDARY\n1, 1, 1\n", "*BOUNDARY\n"), ("\n2\n*END STEP", "\n3\n*END STEP")
     deck = machine("b.inp").replace(*free).replace(*modes)
@@ -267,9 +267,9 @@ def test_calculix_answers_along_all_axes_of_a_ball_bearing(balls, tmp_path):
 
 
 @pytest.mark.skipif(importlib.util.find_spec("pyNastran") is None, reason="needs pyNastran")
-def test_nastran_has_the_matrices_of_a_ball_bearing_whole(balls, tmp_path):
+def test_nastran_has_coupled_matrices_whole(coupled, tmp_path):
     """By pyNastran: ten digits of the fields, and the unsymmetric part, which the file says it leaves out."""
-    folder, matrices = balls
+    folder, matrices = coupled
     mesh = tmp_path / "grid.bdf"
     mesh.write_text("GRID,1,,0.,0.,0.\n")
     read = read_nastran(folder / "b.bdf", folder / "b.bdf", mesh, ("K900001", "B900001"))
@@ -279,13 +279,27 @@ def test_nastran_has_the_matrices_of_a_ball_bearing_whole(balls, tmp_path):
         np.testing.assert_allclose(found.toarray(), symmetric, rtol=1e-9, atol=1e-12 * np.abs(symmetric).max())
 
 
-def test_ansys_has_the_radial_part_of_a_ball_bearing_and_says_what_is_left_out(balls):
+def test_ansys_and_ross_have_the_radial_part_and_say_what_is_left_out(coupled):
     """To the eight digits of its fields."""
-    folder, matrices = balls
+    folder, matrices = coupled
     lines = (folder / "b.txt").read_text(encoding="utf-8").splitlines()
     for line, matrix in zip(lines[5:7], matrices, strict=True):
         np.testing.assert_allclose(np.array(line.split(), dtype=float), matrix[1:3, 1:3].ravel(), rtol=1e-7, atol=1e-6)
     assert lines[-1] == "left out: stiffness and damping along the axis and of tilts"
+    k = matrices[0]
+    element = tomllib.loads((folder / "b.toml").read_text(encoding="utf-8"))
+    (ross,) = (value for name, value in element.items() if name.startswith("BearingElement"))
+    for key, i, j in (("xx", 1, 1), ("xy", 1, 2), ("yx", 2, 1), ("yy", 2, 2), ("zz", 0, 0)):
+        assert ross[f"k{key}"] == pytest.approx(k[i, j], rel=1e-15)
+    for ending in ("txt", "toml", "inp"):
+        text = (folder / f"b.{ending}").read_text(encoding="utf-8")
+        (place,) = re.findall(r"radial forces act at x = (\S+)(?: to \S+)? mm", text)
+        at = np.eye(6)
+        at[1, 5], at[2, 4] = -1e-3 * float(place), 1e-3 * float(place)  # of the node, by y and z of that point
+        there = at.T @ k @ at
+        # digits of the place, and that both planes have their own
+        assert abs(there[1, 5]) < 0.02 * abs(k[1, 5]) and abs(there[2, 4]) < 0.02 * abs(k[2, 4])
+        assert (f"{np.max(np.abs(k[0, 1:3])) / np.max(np.abs(k[1:3, 1:3])):.1e} of K" in text) == (ending != "inp")
 
 
 def test_a_deck_of_a_ball_bearing_is_of_one_speed(capsys, tmp_path):

@@ -2,31 +2,20 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from ehdmaps.exports.target import BEARING_AXES
-from ehdmaps.outputs import MARK, Kind, Output, write_text
-from ehdmaps.units import RPM, TEMPERATURE
-from ehdmaps.version import version
+from ehdmaps.outputs import Output
+from ehdmaps.units import TEMPERATURE
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.laws import BallLaw
+from mbs.commands.one_bearing.linear_files import around, ending_of, header_of, is_linear, linear_outputs, write_linear
 from mbs.output.ball_table import BallDescription, ball_heading
-from mbs.output.bearing_table import result_kind
-from mbs.scene.fields import FORCE
 
 if TYPE_CHECKING:
     from mbs.bearings.balls.ball_point import BallPoint
     from mbs.exports.balls.speed_laws import SpeedLaws
-    from mbs.exports.linear_bearing import Format
-
-LINEAR = (".toml", ".bdf", ".inp", ".txt")
-"""Endings of files for linear programs: ROSS, Nastran, CalculiX or Abaqus, Ansys; see `mbs.exports.linear_bearing`."""
 
 SOURCE, UNIT = ".c", ".fmu"
 """Endings of files that hold the bearing itself."""
@@ -65,7 +54,7 @@ def is_export(path: str | None) -> bool:
     path : str or None
         Path of -o.
     """
-    return _ending(path) in (*LINEAR, SOURCE, UNIT)
+    return is_linear(path) or ending_of(path) in (SOURCE, UNIT)
 
 
 def ball_outputs(path: str | None) -> tuple[Output, ...]:
@@ -76,38 +65,16 @@ def ball_outputs(path: str | None) -> tuple[Output, ...]:
     path : str or None
         Path of -o.
     """
-    ending = _ending(path)
-    if path is None or not is_export(path):
-        kind = result_kind(path)
-        if ".nc" in kind.endings:
-            kind = dataclasses.replace(kind, endings=(*kind.endings, *LINEAR, SOURCE, UNIT))
-        return (Output("-o", path, kind),)
-    if ending == SOURCE:
+    ending = ending_of(path)
+    if path is not None and ending == SOURCE:
         from mbs.exports.balls import source
 
         return Output("-o", path, source.SOURCE), Output("-o", str(source.header_of(path)), source.HEADER)
-    return (Output("-o", path, _kind(ending)),)
+    if ending == UNIT:
+        from ehdmaps.exports.fmu.unit import UNIT as KIND_OF_UNITS
 
-
-def count_problems(path: str | None, loads: int, speeds: int) -> list[str]:
-    """Problems with more loads or speeds than a file for another program has.
-
-    Parameters
-    ----------
-    path : str or None
-        Path of -o.
-    loads, speeds : int
-        How many there are.
-    """
-    ending = _ending(path)
-    one_speed = ending in LINEAR and _format(ending).one_speed
-    if not is_export(path) or (loads <= 1 and (speeds <= 1 or not one_speed)):
-        return []
-    return [
-        f"-o: got {path} for {loads} loads and {speeds} speeds; allowed: one load"
-        + (", one speed" if one_speed else "")
-        + ", or a file .nc or .csv"
-    ]
+        return (Output("-o", path, KIND_OF_UNITS),)
+    return linear_outputs(path, (SOURCE, UNIT))
 
 
 def write_export(path: str, given: BallExport) -> str:
@@ -127,18 +94,17 @@ def write_export(path: str, given: BallExport) -> str:
     InputError
         If it cannot be written.
     """
-    ending = _ending(path)
-    if ending in LINEAR:
-        write_text(path, _linear_text(given, _format(ending)), _kind(ending))
-        return f"{path}: written"
+    heading = ball_heading(given.description, given.points[0])
+    if is_linear(path):
+        return write_linear(path, given.force.geometry.name, heading, given.points, given.outer_speed)
     laws, words = _speed_laws(given)
     header = (
-        *_header(given),
+        *header_of(heading),
         f"temperature: {TEMPERATURE.text(given.description.temperature)}",
         f"law: {given.description.law}",
         words,
     )
-    if ending == SOURCE:
+    if ending_of(path) == SOURCE:
         from mbs.exports.balls.source import write_source
 
         return write_source(path, given.force, laws, header)
@@ -148,55 +114,9 @@ def write_export(path: str, given: BallExport) -> str:
     names = ("pose.x", "pose.y", "pose.z", "", "pose.theta_y", "pose.theta_z")
     start = {name: float(value) for name, value in zip(names, point.pose, strict=True) if name}
     start |= {"speed.inner": point.inner_speed, "speed.outer": point.outer_speed}
-    return write_ball_unit(path, given.force, laws, start, (*header, *_around(given), "start: the first of the speeds"))
-
-
-def _ending(path: str | None) -> str:
-    """Ending of a path."""
-    return "" if path is None else Path(path).suffix.lower()
-
-
-def _format(ending: str) -> Format:
-    """Format of a linear program."""
-    from mbs.exports.linear_bearing import format_of
-
-    return format_of(ending)
-
-
-def _kind(ending: str) -> Kind:
-    """Kind of a file of one part."""
-    if ending in LINEAR:
-        return _format(ending).kind
-    from ehdmaps.exports.fmu.unit import UNIT as KIND_OF_UNITS
-
-    return KIND_OF_UNITS
-
-
-def _header(given: BallExport) -> tuple[str, ...]:
-    """Lines that say where a file comes from; the first one carries the mark of our files."""
-    heading = (line.strip() for line in ball_heading(given.description, given.points[0]))
-    return (f"{MARK} {version()}", *BEARING_AXES, *heading)
-
-
-def _around(given: BallExport) -> tuple[str, ...]:
-    """The load of the points, and what is to be known of them."""
-    point = given.points[0]
-    return (
-        f"linear around: radial {FORCE.text(point.size)}, axial {FORCE.text(point.axial)} on the inner ring",
-        *dict.fromkeys(line for point in given.points for line in (*point.problems, *point.notes)),
+    return write_ball_unit(
+        path, given.force, laws, start, (*header, *around(given.points), "start: the first of the speeds")
     )
-
-
-def _linear_text(given: BallExport, program: Format) -> str:
-    """Text of the bearing over speed for a linear program."""
-    from mbs.exports.linear_bearing import LinearBearing
-
-    load, *notes = _around(given)
-    slow = "K and C of slow motion; the outer ring turns with " + RPM.text(given.outer_speed)
-    matrices = np.array([[point.stiffness, point.damping] for point in given.points])[:, None]
-    speeds = np.array([point.inner_speed for point in given.points])
-    bearing = LinearBearing(given.force.geometry.name, speeds, np.zeros(1), matrices[:, :, 0], matrices[:, :, 1])
-    return program.plain(bearing, (*_header(given), load, slow, *notes))
 
 
 def _speed_laws(given: BallExport) -> tuple[SpeedLaws, str]:

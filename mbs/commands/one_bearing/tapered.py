@@ -8,15 +8,22 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ehdmaps.errors import InputError
-from ehdmaps.outputs import Output, output_problems
+from ehdmaps.outputs import output_problems
 from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
 from ehdmaps.physics.rollers.tapered_catalogue import tapered_estimate
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from ehdmaps.units import RPM, TEMPERATURE
 from mbs.bearings.tapered.tapered_bearing import MOST_SLICES, SLICES, TaperedForce
 from mbs.bearings.tapered.tapered_point import TaperedPoint, tapered_point
+from mbs.commands.one_bearing.linear_files import count_problems, is_linear, linear_outputs, write_linear
 from mbs.commands.one_bearing.shared import CELSIUS_40, ROUGHNESS, read_damper, read_oil, refuse_others
-from mbs.commands.one_bearing.tapered_table import TaperedDescription, tapered_dataset, tapered_text, write_tapered_csv
+from mbs.commands.one_bearing.tapered_table import (
+    TaperedDescription,
+    tapered_dataset,
+    tapered_heading,
+    tapered_text,
+    write_tapered_csv,
+)
 from mbs.commands.one_bearing.values import (
     LOADS,
     MOST_POINTS,
@@ -27,7 +34,6 @@ from mbs.commands.one_bearing.values import (
     read_values,
     read_whole,
 )
-from mbs.output.bearing_table import result_kind
 from mbs.output.files import write_dataset
 from mbs.scene.contact_laws import Damper
 from mbs.scene.fields import FORCE, MICROMETRE
@@ -110,7 +116,8 @@ def read_tapered(arguments: argparse.Namespace) -> TaperedRequest:
     slices = SLICES if arguments.slices == "41" else read_whole("--slices", arguments.slices, 2, MOST_SLICES, problems)
     temperature = float(chosen.get("temperature", CELSIUS_40))
     oil = read_oil(arguments.oil, temperature, problems)
-    problems += output_problems((Output("-o", arguments.output, result_kind(arguments.output)),), [])
+    problems += output_problems(linear_outputs(arguments.output), [])
+    problems += count_problems(arguments.output, len(loads), len(speeds))
     if problems or geometry is None or damper is None or oil is None or slices is None:
         raise InputError(tuple(dict.fromkeys(problems)))
     roughness = chosen["roughness"].roughness if "roughness" in chosen else ROUGHNESS
@@ -153,13 +160,21 @@ def run_tapered(arguments: argparse.Namespace) -> tuple[str, int]:
     points = tapered_points(request)
     lines = tapered_text(request.description, points)
     if arguments.output:
-        dataset = tapered_dataset(request.description, points)
-        if Path(arguments.output).suffix.lower() == ".csv":
-            write_tapered_csv(dataset, arguments.output)
-        else:
-            write_dataset(dataset, Path(arguments.output))
-        lines.append(f"{arguments.output}: written")
+        lines.append(_written(arguments.output, request, points))
     return "\n".join(lines), 1 if any(point.problems for row in points for point in row) else 0
+
+
+def _written(path: str, request: TaperedRequest, points: list[list[TaperedPoint]]) -> str:
+    """Write the file of -o, and return what was written in words."""
+    if is_linear(path):
+        heading = tapered_heading(request.description, points[0][0])
+        return write_linear(path, request.force.geometry.name, heading, points[0], request.outer_speed)
+    dataset = tapered_dataset(request.description, points)
+    if Path(path).suffix.lower() == ".csv":
+        write_tapered_csv(dataset, path)
+    else:
+        write_dataset(dataset, Path(path))
+    return f"{path}: written"
 
 
 def tapered_points(request: TaperedRequest) -> list[list[TaperedPoint]]:

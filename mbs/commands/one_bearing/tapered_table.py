@@ -210,10 +210,28 @@ def tapered_text(description: TaperedDescription, points: Points) -> list[str]:
         Points by load, then by speed.
     """
     everything = [point for line in points for point in line]
-    force = everything[0].force
+    lines = tapered_heading(description, everything[0])
+    if len(everything) == 1:
+        lines += _page(everything[0], description) + _rollers(everything[0])
+    else:
+        lines += _table(everything, description)
+    return lines + warning_lines(everything)
+
+
+def tapered_heading(description: TaperedDescription, point: TaperedPoint) -> list[str]:
+    """Tell what was computed, and what of it was assumed or estimated.
+
+    Parameters
+    ----------
+    description : TaperedDescription
+        What all points have in common.
+    point : TaperedPoint
+        One of them.
+    """
+    force = point.force
     geometry = force.geometry
     angles = [DEGREE.value(x) for x in (geometry.cup_angle, geometry.half_cone_angle, geometry.cone_angle)]
-    lines = [
+    return [
         f"{geometry.title}: law {description.law}; {description.films}",
         f"  {geometry.rollers} rollers of {1e3 * geometry.roller_diameter:.4g} x {1e3 * geometry.roller_length:.4g} mm "
         f"on {1e3 * geometry.pitch_diameter:.4g} mm; contact angle {angles[0]:.4g} deg, half cone angle of the rollers "
@@ -224,11 +242,6 @@ def tapered_text(description: TaperedDescription, points: Points) -> list[str]:
         f"  assumed: {', '.join(description.assumed) or 'nothing'}",
         *([f"  {geometry.estimated}"] if geometry.estimated else []),
     ]
-    if len(everything) == 1:
-        lines += _page(everything[0], description) + _rollers(everything[0])
-    else:
-        lines += _table(everything, description)
-    return lines + warning_lines(everything)
 
 
 def _page(point: TaperedPoint, description: TaperedDescription) -> list[str]:

@@ -1,0 +1,172 @@
+"""Files of a bearing for linear programs: its stiffness and damping around a load, by the ending of the file."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.exports.target import BEARING_AXES
+from ehdmaps.outputs import MARK, Output, write_text
+from ehdmaps.units import RPM
+from ehdmaps.version import version
+from mbs.output.bearing_table import result_kind
+from mbs.scene.fields import FORCE
+
+if TYPE_CHECKING:
+    from mbs.exports.linear_bearing import Format
+
+LINEAR = (".toml", ".bdf", ".inp", ".txt")
+"""Endings of files for linear programs: ROSS, Nastran, CalculiX or Abaqus, Ansys; see `mbs.exports.linear_bearing`."""
+
+
+class AtLoad(Protocol):
+    """A bearing in equilibrium: a point of balls or of tapered rollers."""
+
+    @property
+    def inner_speed(self) -> float:
+        """Speed of the inner ring [rad/s]."""
+
+    @property
+    def size(self) -> float:
+        """Size of the radial load [N]."""
+
+    @property
+    def axial(self) -> float:
+        """Axial load [N]."""
+
+    @property
+    def stiffness(self) -> FloatArray:
+        """Stiffness, -d force/d pose, (6, 6)."""
+
+    @property
+    def damping(self) -> FloatArray:
+        """Damping, -d force/d velocity, (6, 6)."""
+
+    @property
+    def problems(self) -> tuple[str, ...]:
+        """Reasons why the laws do not hold at the point."""
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Facts that are to be known of the point."""
+
+
+def ending_of(path: str | None) -> str:
+    """Ending of a path, in lower case; empty without one."""
+    return "" if path is None else Path(path).suffix.lower()
+
+
+def is_linear(path: str | None) -> bool:
+    """Tell whether a result is a file for a linear program, by the path of -o."""
+    return ending_of(path) in LINEAR
+
+
+def linear_outputs(path: str | None, others: Sequence[str] = ()) -> tuple[Output, ...]:
+    """File that -o asks for: a result, or a file for a linear program.
+
+    Parameters
+    ----------
+    path : str or None
+        Path of -o.
+    others : sequence of str
+        Further endings that a message names.
+    """
+    if path is not None and is_linear(path):
+        return (Output("-o", path, _format(path).kind),)
+    kind = result_kind(path)
+    if ".nc" in kind.endings:
+        kind = dataclasses.replace(kind, endings=(*kind.endings, *LINEAR, *others))
+    return (Output("-o", path, kind),)
+
+
+def count_problems(path: str | None, loads: int, speeds: int, *, of_one_load: bool = False) -> list[str]:
+    """Problems with more loads or speeds than a file for another program has.
+
+    Parameters
+    ----------
+    path : str or None
+        Path of -o.
+    loads, speeds : int
+        How many there are.
+    of_one_load : bool
+        Whether a file that is for no linear program has one load, too.
+    """
+    one_speed = path is not None and is_linear(path) and _format(path).one_speed
+    if not (is_linear(path) or of_one_load) or (loads <= 1 and (speeds <= 1 or not one_speed)):
+        return []
+    return [
+        f"-o: got {path} for {loads} loads and {speeds} speeds; allowed: one load"
+        + (", one speed" if one_speed else "")
+        + ", or a file .nc or .csv"
+    ]
+
+
+def header_of(heading: Sequence[str]) -> tuple[str, ...]:
+    """Lines that say where a file comes from; the first one carries the mark of our files.
+
+    Parameters
+    ----------
+    heading : sequence of str
+        What was computed, as it is told to people.
+    """
+    return (f"{MARK} {version()}", *BEARING_AXES, *(line.strip() for line in heading))
+
+
+def around(points: Sequence[AtLoad]) -> tuple[str, ...]:
+    """The load of points over speed, and what is to be known of them.
+
+    Parameters
+    ----------
+    points : sequence of AtLoad
+        Points at one load.
+    """
+    point = points[0]
+    return (
+        f"linear around: radial {FORCE.text(point.size)}, axial {FORCE.text(point.axial)} on the inner ring",
+        *dict.fromkeys(line for point in points for line in (*point.problems, *point.notes)),
+    )
+
+
+def write_linear(path: str, name: str, heading: Sequence[str], points: Sequence[AtLoad], outer_speed: float) -> str:
+    """Write stiffness and damping over speed for a linear program, and return what was written in words.
+
+    Parameters
+    ----------
+    path : str
+        Path of -o; `is_linear` holds.
+    name : str
+        Name of the bearing.
+    heading : sequence of str
+        What was computed, as it is told to people.
+    points : sequence of AtLoad
+        Points at the one load, over the speeds.
+    outer_speed : float
+        Speed of the outer ring [rad/s].
+
+    Raises
+    ------
+    InputError
+        If it cannot be written, or the format cannot hold it.
+    """
+    from mbs.exports.linear_bearing import LinearBearing
+
+    program = _format(path)
+    load, *notes = around(points)
+    slow = "K and C of slow motion; the outer ring turns with " + RPM.text(outer_speed)
+    matrices = np.array([[point.stiffness, point.damping] for point in points])[:, None]
+    speeds = np.array([point.inner_speed for point in points])
+    bearing = LinearBearing(name, speeds, np.zeros(1), matrices[:, :, 0], matrices[:, :, 1])
+    write_text(path, program.plain(bearing, (*header_of(heading), load, slow, *notes)), program.kind)
+    return f"{path}: written"
+
+
+def _format(path: str) -> Format:
+    """Format of a linear program."""
+    from mbs.exports.linear_bearing import format_of
+
+    return format_of(ending_of(path))
