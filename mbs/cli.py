@@ -307,7 +307,9 @@ def _bearing(top: Program) -> None:
         metavar="ANGLE",
         help='of the load from y, where a roller is, towards z, such as "15 deg"; or its parts along y and z (0 deg)',
     )
-    command.add_argument("--axial", metavar="LOAD", help="on the inner ring of a ball bearing, along x (0 N)")
+    command.add_argument(
+        "--axial", metavar="LOAD", help="on the inner ring of balls, tapered rollers, NJ, NUP, along x (0 N)"
+    )
     command.add_argument("--outer-speed", metavar="SPEED", help="of the outer ring of a ball bearing (0 rpm)")
     command.add_argument("--tilts", action="store_true", help="the inner ring of a ball bearing tilts freely")
     for side in ("inner", "outer"):

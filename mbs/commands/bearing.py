@@ -22,6 +22,7 @@ from ehdmaps.physics.contact import OIL_TEMPERATURES
 from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.rollers.needle_catalogue import needle_designations
+from ehdmaps.physics.rollers.ribbed_geometry import NO_RIBS, ribbed_way
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.physics.surface import SMOOTH, Surface
 from ehdmaps.units import RPM, TEMPERATURE, closest, short
@@ -267,9 +268,7 @@ def _refuse_axial(arguments: argparse.Namespace, problems: list[str]) -> None:
     given = [f"--{name}" for name in ("axial", "outer-speed") if getattr(arguments, name.replace("-", "_"), None)]
     given += ["--tilts"] * bool(getattr(arguments, "tilts", False))
     if given:
-        problems.append(
-            f"{', '.join(given)}: for ball bearings such as 6208; not for cylindrical rollers; leave it out"
-        )
+        problems.append(f"{', '.join(given)}: got a bearing of cylindrical rollers; {NO_RIBS}; leave it out")
 
 
 def _all_slices(given: _Given | None, slices: str) -> int:
@@ -511,7 +510,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         from mbs.commands.one_bearing.balls import run_balls  # with kernels that others do not need
 
         return run_balls(arguments)
-    if _TAPERED.match(arguments.bearing) and not os.path.isfile(arguments.bearing):
+    axial = getattr(arguments, "axial", None) is not None and ribbed_way(arguments.bearing)
+    if (axial or _TAPERED.match(arguments.bearing)) and not os.path.isfile(arguments.bearing):
         from mbs.commands.one_bearing.tapered import run_tapered  # with kernels that others do not need
 
         return run_tapered(arguments)

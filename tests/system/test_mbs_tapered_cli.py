@@ -90,6 +90,34 @@ def test_refusals(capsys, here, command, words) -> None:
     assert status == 2 and words in err
 
 
+@pytest.mark.parametrize(
+    ("command", "words"),
+    [
+        (("NU308", "--axial", "1 kN"), "--axial: got a bearing of cylindrical rollers; allowed for axial loads: balls"),
+        (("NA4908", "--axial", "1 kN"), "needles none"),
+        (("NJ308", "--axial=-1 kN"), "--axial: got -1000 N; allowed: above zero: NJ carries one way"),
+        (("NUP210", "--axial", "0 N"), "--axial: got 0 N; allowed: not zero"),
+        (("NUP210", "--axial", "1 kN", "--coupled"), "--coupled: not for roller bearings with ribs"),
+    ],
+)
+def test_ribs_are_refused_where_there_are_none(capsys, here, command, words) -> None:
+    status, _, err = run(capsys, *command, "--load", "5 kN", "--speed", "0 rpm")
+    assert status == 2 and words in err
+
+
+def test_ribs_of_cylindrical_rollers(capsys, here) -> None:
+    """Loads of the table are in balance with the axial load: of the equilibrium."""
+    command = ("NUP 210 ECP", "--axial=-3 kN", "--load", "5 kN", "--speed", "3000 rpm", "--clearance", "20 um")
+    status, out, err = run(capsys, *command, "-o", "out.nc")
+    assert (status, err) == (0, "")
+    for words in ("clearance 20 um; ribs carry both ways, open by 0.5 deg", "0.5 Fr = 2500 N", "no axial clearance"):
+        assert words in out
+    with xr.open_dataset("out.nc") as data:
+        leans = math.cos(math.radians(0.5))
+        assert float(data["rib_load"].sum()) * leans == pytest.approx(3000.0, rel=1e-8)
+        assert data.attrs["bearing_carries"] == "both"
+
+
 def test_no_equilibrium_and_overload_are_said() -> None:
     with pytest.raises(
         AnalysisError, match=r"falls apart without a positive axial load above tan.alpha. .Fr . Z Fc. = 1233 N, Fc the"

@@ -71,6 +71,6 @@ def test_rollers_of_loose_rings_lie_in_the_cup() -> None:
     loads = FORCE.rollers(loose, inner_speed=1000.0).load
     centrifugal, _ = FORCE.speed_loads(1000.0)
     # no contact with the cone: two forces and the rib's hold a roller, by the triangle of their directions
-    parts = np.linalg.solve(np.array([FORCE.shape.cup, -np.array(FORCE.shape.rib)]).T, [0.0, centrifugal])
+    parts = np.linalg.solve(np.array([np.array(FORCE.shape.cup), -FORCE.shape.ribs.normals[0]]).T, [0.0, centrifugal])
     assert loads[0] == pytest.approx(0.0, abs=1e-6)
     np.testing.assert_allclose(loads[1:], np.repeat(parts[:, None], FORCE.geometry.rollers, 1), rtol=1e-6)

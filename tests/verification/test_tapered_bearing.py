@@ -55,7 +55,7 @@ def in_space(force: TaperedForce, pose: np.ndarray, centrifugal: float, moment: 
             at_rib = pose[:3] + np.cross(tilt, rib) - moved(rib, v)  # noqa: B023
             gaps = moved(cup, v) @ to_cup - force.shape.profile, ring @ from_cone - force.shape.profile  # noqa: B023
             lines = [single * np.maximum(gap, 0.0) ** (10.0 / 9.0) for gap in gaps]
-            return lines[0], lines[1], force.laws.rib * max(float(at_rib @ rib_normal), 0.0) ** 1.5  # noqa: B023
+            return lines[0], lines[1], force.shape.ribs.laws[0] * max(float(at_rib @ rib_normal), 0.0) ** 1.5  # noqa: B023
 
         def left(v: np.ndarray) -> np.ndarray:
             outer, inner, end = loads(1e-6 * v)
@@ -133,7 +133,7 @@ def test_constant_dampers_take_the_power_of_their_rates() -> None:
     for normal, levers, moves in (
         (shape.cup, shape.levers, rate),
         (shape.cone, shape.levers, np.array([1.0, 0.0, 0.0]) - rate),
-        (shape.rib, np.array([shape.rib_lever]), np.array([1.0, 0.0, 0.0]) - rate),
+        (shape.ribs.normals[0], shape.ribs.levers, np.array([1.0, 0.0, 0.0]) - rate),
     ):
         speed = normal[0] * moves[0] + normal[1] * moves[1] + levers * moves[2]
         power += 300.0 * float(np.mean(speed**2))
@@ -145,10 +145,10 @@ def test_an_axial_load_is_shared_by_the_closed_form() -> None:
     force = TaperedForce(GEOMETRY, profile="straight")
     f, K, _ = force([20e-6, 0.0, 0.0, 0.0, 0.0, 0.0])
     shape, law = force.shape, force.laws
-    shares = np.linalg.solve(np.array([shape.cone, shape.rib]).T, np.array(shape.cup))
+    shares = np.linalg.solve(np.array([shape.cone, shape.ribs.normals[0]]).T, np.array(shape.cup))
     cup = -f[0] / (GEOMETRY.rollers * shape.cup[0])
     line = (np.array([cup, shares[0] * cup]) / law.cup) ** 0.9
-    rib = (shares[1] * cup / law.rib) ** (2.0 / 3.0)
+    rib = (shares[1] * cup / shape.ribs.laws[0]) ** (2.0 / 3.0)
     # rollers tilt until the lines of the three forces meet, 0.13 mm beside their middles: 5e-4 of the approach
     approach = line[0] + shares[0] * line[1] + shares[1] * rib
     assert approach == pytest.approx(shape.cup[0] * 20e-6, rel=1e-3)

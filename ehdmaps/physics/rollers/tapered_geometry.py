@@ -23,6 +23,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, fields
 from functools import cached_property
+from typing import ClassVar, NamedTuple
 
 from ehdmaps.errors import InputError
 from ehdmaps.labels import label_problem
@@ -38,6 +39,33 @@ RIB_SHARE = 0.125
 
 LARGEST_ANGLE = math.radians(45.0)
 """Largest contact angle of a radial bearing, ISO 281 [rad]."""
+
+
+class Rib(NamedTuple):
+    """Contact of the end of a roller with a rib, in the plane of the roller and the bearing's axis.
+
+    Attributes
+    ----------
+    outer : bool
+        Whether the rib is that of the outer ring.
+    normal : (float, float)
+        Normal, axial and radial: from an inner rib into the roller, from the roller into an outer one.
+    lever : float
+        Lever of the normal about the middle of the roller, as rotations go from the axis outwards [m].
+    radius : float
+        Distance of the contact from the bearing's axis [m].
+    play : float
+        Distance of rib and end where nothing has moved [m].
+    contact : Ellipse
+        The dry contact, x the direction of sliding.
+    """
+
+    outer: bool
+    normal: tuple[float, float]
+    lever: float
+    radius: float
+    play: float
+    contact: Ellipse
 
 
 @dataclass(frozen=True)
@@ -78,6 +106,7 @@ class TaperedGeometry:
     [1.99, 10.03]
     """
 
+    kind: ClassVar[str] = "tapered bearing"
     name: str
     roller_diameter: float
     roller_length: float
@@ -103,6 +132,11 @@ class TaperedGeometry:
         """Everything that defines the bearing, for provenance; SI units; what is not given is left out."""
         values = {entry.name: getattr(self, entry.name) for entry in fields(self)}
         return {name: value for name, value in values.items() if value is not None}
+
+    @property
+    def raceway_play(self) -> float:
+        """Distance of a roller in the middle of its play from either raceway, where nothing has moved [m]."""
+        return 0.0
 
     @property
     def cup_angle(self) -> float:
@@ -177,6 +211,11 @@ class TaperedGeometry:
         """Angle phi of the rib's normal to the roller's axis [rad]: the normal goes through the sphere's centre."""
         return math.asin(self.rib_lever / self.end_sphere) if math.isfinite(self.end_sphere) else 0.0
 
+    @property
+    def rib_reach(self) -> float:
+        """Distance of the rib's normal from the middle of the roller [m]."""
+        return (self.end_sphere - 0.5 * self.roller_length) * math.sin(self.rib_angle)
+
     def entrainment_speed(self, inner_speed: float, outer_speed: float = 0.0) -> float:
         """Speed of both surfaces against the cage in the middle of a roller, in pure rolling [m/s].
 
@@ -207,16 +246,24 @@ class TaperedGeometry:
         """
         return -0.5 * (inner_speed - outer_speed) * (1.0 / self.gamma - self.gamma) * math.cos(self.axis_angle)
 
-    def rib_speeds(self, inner_speed: float, outer_speed: float = 0.0) -> tuple[float, float]:
+    def rib_speeds(
+        self, inner_speed: float, outer_speed: float = 0.0, *, outer: bool = False, radius: float | None = None
+    ) -> tuple[float, float]:
         """Speeds of the rib and of the roller's end at their contact, against the cage [m/s].
 
         Parameters
         ----------
         inner_speed, outer_speed : float
             Speeds of the rings [rad/s].
+        outer : bool
+            Whether the rib is that of the outer ring.
+        radius : float, optional
+            Distance of the contact from the bearing's axis [m]; that of the rib of the cone if left out.
         """
-        rib = (inner_speed - self.cage_speed(inner_speed, outer_speed)) * self.rib_radius
-        return rib, -self.roller_speed(inner_speed, outer_speed) * self.rib_lever
+        ring = outer_speed if outer else inner_speed
+        rib = (ring - self.cage_speed(inner_speed, outer_speed)) * (self.rib_radius if radius is None else radius)
+        end = self.roller_speed(inner_speed, outer_speed) * self.rib_lever
+        return rib, end if outer else -end
 
     def roller_mass(self, material: Material) -> float:
         """Mass of a roller, a truncated cone [kg].
@@ -274,10 +321,25 @@ class TaperedGeometry:
         along = 1.0 / (1.0 / self.end_sphere - 1.0 / hollow)
         return Ellipse(along, self.end_sphere, reduced_modulus(material, material))
 
+    def ribs(self, material: Material) -> tuple[Rib, ...]:
+        """The ribs that hold a roller along its axis; none for cylinders.
+
+        Parameters
+        ----------
+        material : Material
+            Material of rollers and rings.
+        """
+        contact = self.rib_contact(material)
+        if contact is None:
+            return ()
+        way, angle = (-1.0 if self.contact_angle < 0.0 else 1.0), self.axis_angle - self.rib_angle
+        normal = way * math.cos(angle), -math.sin(angle)
+        return (Rib(False, normal, way * self.rib_reach, self.rib_radius, 0.0, contact),)
+
 
 def _problems(geometry: TaperedGeometry) -> list[str]:
     """Everything that is wrong with a geometry."""
-    where = f"tapered bearing {geometry.name!r}" if isinstance(geometry.name, str) else "tapered bearing"
+    where = f"{geometry.kind} {geometry.name!r}" if isinstance(geometry.name, str) else geometry.kind
     problems = [] if isinstance(geometry.name, str) and geometry.name else [f"{where}: has no name"]
     problems += [f"{where}, label: {problem}" for problem in label_problem(geometry.label)]
     for name in ("roller_diameter", "roller_length", "pitch_diameter", "end_radius", "rib_height"):

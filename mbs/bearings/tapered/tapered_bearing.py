@@ -6,9 +6,10 @@ them is an axial displacement. A positive contact angle carries +x.
 
 Quasi-static: each roller is in balance between cup, cone and rib with its centrifugal load and gyroscopic moment, moves
 along and across the contacts and tilts in its plane. Both raceways carry after ISO/TS 16281, in slices, half of the
-total approach each, with the profile on each side, or by tables with films; the rib is dry, after Hertz. Speeds are
-held in the derivatives. Left out: friction, skewing, the cage, how slices of a roller press on each other, bending of
-the rings.
+total approach each, with the profile on each side, or by tables with films; ribs are dry, after Hertz. Cylindrical
+rollers between ribs on both rings (NJ, NUP) are those of a contact angle of zero, in the middle of the play of both
+raceways and of the ribs at the pose zero. Speeds are held in the derivatives. Left out: friction, skewing, the cage,
+how slices of a roller press on each other, bending of the rings.
 
 References
 ----------
@@ -35,8 +36,10 @@ from mbs.bearings.balls.ball_kernel import NormalLaw, contact, empty_table
 from mbs.bearings.laws import roller_coefficient
 from mbs.bearings.tapered.tapered_kernel import (
     COLUMNS,
+    FIRST_RIB,
     NOT_FINITE,
     TOO_FAR,
+    Ribs,
     RollerLaws,
     TaperedShape,
     roller_work,
@@ -65,7 +68,9 @@ class TaperedLoads:
     angle : array (Z,)
         Angles of the rollers in O, from y towards z, within -pi to pi [rad].
     load : array (3, Z)
-        Loads of cone, cup and rib [N].
+        Loads of cone, cup and all ribs of the cone [N].
+    ribs : array (m, Z)
+        Loads of the ribs, as the geometry has them [N].
     centre : array (2, Z)
         Places along the roller where cone and cup carry, from its middle towards the apex [m].
     slices : array (2, Z, n)
@@ -74,6 +79,7 @@ class TaperedLoads:
 
     angle: FloatArray
     load: FloatArray
+    ribs: FloatArray
     centre: FloatArray
     slices: FloatArray
 
@@ -130,15 +136,15 @@ class TaperedForce:
         compiled: bool = True,
     ) -> None:
         problems = [
-            f"tapered bearing, {name}: got {value!r:.60} {unit}; allowed: finite and >= 0"
+            f"{geometry.kind}, {name}: got {value!r:.60} {unit}; allowed: finite and >= 0"
             for name, value, unit in (("damping", damping, "N s/m"), ("damping_time", damping_time, "s"))
             if not (isinstance(value, int | float) and math.isfinite(value) and value >= 0.0)
         ]
         if profile not in ("iso", "straight"):
-            problems.append(f"tapered bearing, profile: got {profile!r:.60}; allowed: iso, straight")
+            problems.append(f"{geometry.kind}, profile: got {profile!r:.60}; allowed: iso, straight")
         if not isinstance(slices, int) or isinstance(slices, bool) or not 2 <= slices <= MOST_SLICES:
             problems.append(
-                f"tapered bearing, slices: got {slices!r:.60}; allowed: a whole number from 2 to {MOST_SLICES}"
+                f"{geometry.kind}, slices: got {slices!r:.60}; allowed: a whole number from 2 to {MOST_SLICES}"
             )
         if problems:
             raise InputError(problems)
@@ -149,17 +155,20 @@ class TaperedForce:
         depths = iso_profile(self.positions, diameter, length) if profile == "iso" else np.zeros(slices)
         places = 2.0 * math.pi * np.arange(geometry.rollers) / geometry.rollers
         way = -1.0 if geometry.contact_angle < 0.0 else 1.0
-        phi, theta = geometry.rib_angle, geometry.axis_angle
-        rib = geometry.rib_contact(material)
-        reach = 0.0 if rib is None else (geometry.end_sphere - 0.5 * length) * math.sin(phi)
+        self.ribs = geometry.ribs(material)
         self.shape = TaperedShape(
             pitch_radius=0.5 * geometry.pitch_diameter,
             cup=(way * math.sin(geometry.cup_angle), math.cos(geometry.cup_angle)),
             cone=(way * math.sin(geometry.cone_angle), math.cos(geometry.cone_angle)),
-            rib=(way * math.cos(theta - phi), -math.sin(theta - phi)),
-            rib_lever=way * reach,
+            ribs=Ribs(
+                np.array([rib.normal for rib in self.ribs], dtype=np.float64).reshape(-1, 2),
+                np.array([rib.lever for rib in self.ribs], dtype=np.float64),
+                np.array([rib.play for rib in self.ribs], dtype=np.float64),
+                np.array([rib.contact.coefficient for rib in self.ribs], dtype=np.float64),
+                np.array([rib.outer for rib in self.ribs], dtype=np.bool_),
+            ),
             levers=way * (self.positions / math.cos(half) - 0.5 * diameter * math.sin(half)),
-            profile=depths,
+            profile=depths + geometry.raceway_play,
             cos=np.cos(places),
             sin=np.sin(places),
             most_travel=FARTHEST * diameter,
@@ -170,14 +179,13 @@ class TaperedForce:
         dry = NormalLaw(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, empty_table())
         cone, cup = (dry, dry) if films is None else films
         self.films = films
-        coefficient = 0.0 if rib is None else rib.coefficient
-        self.laws = RollerLaws(single, single, coefficient, self.damping, self.damping_time, cup, cone)
+        self.laws = RollerLaws(single, single, self.damping, self.damping_time, cup, cone)
         self._angles, self._way = places, way
         self._kernel = tapered_force if compiled else in_python(tapered_force)
         self._places = np.full((geometry.rollers, 3), np.nan)
         self._rollers = np.zeros((geometry.rollers, COLUMNS))
         self._out = np.zeros(6), np.zeros((6, 6)), np.zeros((6, 6))
-        self._work = roller_work()
+        self._work = roller_work(len(self.ribs))
 
     def speed_loads(
         self, inner_speed: float, outer_speed: float = 0.0, cage_speed: float | None = None
@@ -200,7 +208,7 @@ class TaperedForce:
         cage = geometry.cage_speed(inner_speed, outer_speed) if cage_speed is None else cage_speed
         if not all(abs(speed) <= FASTEST for speed in (inner_speed, outer_speed, cage)):
             raise InputError(
-                f"tapered bearing, speeds: got {inner_speed!r}, {outer_speed!r} and {cage!r} rad/s; allowed: finite "
+                f"{geometry.kind}, speeds: got {inner_speed!r}, {outer_speed!r} and {cage!r} rad/s; allowed: finite "
                 f"numbers, at most {FASTEST:g} rad/s either way"
             )
         mass, diameter = geometry.roller_mass(self.material), geometry.roller_diameter
@@ -253,7 +261,7 @@ class TaperedForce:
         if velocity is not None:
             rate = _six(velocity, "velocity")
             if not np.all(np.isfinite(rate)):
-                raise InputError(f"tapered bearing, velocity: got {rate.tolist()}; allowed: finite numbers")
+                raise InputError(f"{self.geometry.kind}, velocity: got {rate.tolist()}; allowed: finite numbers")
             force -= damping @ rate
         return force, stiffness, damping
 
@@ -290,7 +298,8 @@ class TaperedForce:
                 slices[side] = np.reshape(loads, depth.shape) / self.geometry.roller_length
         half, diameter = self.geometry.half_cone_angle, self.geometry.roller_diameter
         centre = (self._way * rows[6:8] + 0.5 * diameter * math.sin(half)) * math.cos(half)
-        return TaperedLoads(angle, rows[3:6], np.where(rows[3:5] > 0.0, centre, 0.0), slices)
+        ribs = rows[FIRST_RIB : FIRST_RIB + len(self.ribs)]
+        return TaperedLoads(angle, rows[3:6], ribs, np.where(rows[3:5] > 0.0, centre, 0.0), slices)
 
     def _evaluated(
         self, pose: npt.ArrayLike, cage_angle: float, inner_speed: float, outer_speed: float, cage_speed: float | None
@@ -307,19 +316,18 @@ class TaperedForce:
 
     def _refuse(self, found: int, pose: FloatArray, cage_angle: float) -> None:
         """Say what is wrong."""
+        kind = self.geometry.kind
         if found == NOT_FINITE:
             raise InputError(
-                f"tapered bearing, pose: got {pose.tolist()} and the cage angle {cage_angle!r}; allowed: finite numbers"
+                f"{kind}, pose: got {pose.tolist()} and the cage angle {cage_angle!r}; allowed: finite numbers"
             )
         if found == TOO_FAR:
             raise InputError(
-                f"tapered bearing, pose: got x, y, z = {pose[0]:.6g}, {pose[1]:.6g}, {pose[2]:.6g} m, theta_y, theta_z "
+                f"{kind}, pose: got x, y, z = {pose[0]:.6g}, {pose[1]:.6g}, {pose[2]:.6g} m, theta_y, theta_z "
                 f"= {pose[4]:.6g}, {pose[5]:.6g} rad; allowed: within {self.shape.most_travel:.6g} m and "
                 f"{self.shape.most_tilt:.6g} rad; check units and the step of the solver"
             )
-        raise AnalysisError(
-            f"tapered bearing {self.geometry.name}: no balance of a roller was found at {pose.tolist()}"
-        )
+        raise AnalysisError(f"{kind} {self.geometry.name}: no balance of a roller was found at {pose.tolist()}")
 
 
 def _six(values: npt.ArrayLike, name: str) -> FloatArray:
@@ -327,9 +335,9 @@ def _six(values: npt.ArrayLike, name: str) -> FloatArray:
     try:
         array = np.ascontiguousarray(values, dtype=np.float64)
     except (TypeError, ValueError):
-        raise InputError(f"tapered bearing, {name}: got {values!r:.80}; allowed: six real numbers") from None
+        raise InputError(f"bearing, {name}: got {values!r:.80}; allowed: six real numbers") from None
     if array.shape != (6,):
-        raise InputError(f"tapered bearing, {name}: got an array of shape {array.shape}; allowed: (6,)")
+        raise InputError(f"bearing, {name}: got an array of shape {array.shape}; allowed: (6,)")
     return array
 
 

@@ -1,23 +1,23 @@
-"""Compiled sums over the rollers of a tapered roller bearing: force, stiffness, damping, and the place of each roller.
+"""Compiled sums over the rollers of a tapered roller bearing: force, stiffness, damping, place of each roller.
 
 All of a roller happens in the plane of the bearing's axis and the roller, where it has three freedoms: V = (axial,
 radial, rotation from the axis outwards), of its middle. D = (axial, radial, rotation) is what the inner ring does to
 the middle of the roller, as a rigid body. Displacements are small against the roller, so that normals stand still. A
 contact with the normal e (axial, radial) and the lever b about the middle of the roller has the approach
 
-    n.V at the cup,     n.(D - V) at the cone and at the rib,     n = (e, b),
+    n.V at the cup and its ribs,     n.(D - V) at the cone and its ribs,     n = (e, b),
 
-less the depth of its profile. With A and B the sums of k n n' over the contacts with the inner ring and with the outer
-one, and M = A + B, the roller is in balance where
+less the depth of its profile, or the play of a rib. With A and B the sums of k n n' over the contacts with the inner
+ring and with the outer one, and M = A + B, the roller is in balance where
 
-    sum Q n (cup) - sum Q n (cone, rib) = F,
+    sum Q n (cup) - sum Q n (cone) = F,
 
 F its centrifugal load and gyroscopic moment: the minimum of a convex potential, found by Newton's method, with shorter
 steps where they lead beyond the minimum along them. Slow motion has
 
     stiffness  A - A M^-1 A,        damping  (1 - S)' A_c (1 - S) + S' B_c S,     S = M^-1 A,
 
-with the dampers' sums A_c and B_c. Slices of a line carry q = C g^(10/9)/n each, or what a table with films says; the
+with the dampers' sums A_c and B_c. Slices of a line carry q = C g^(10/9)/n each, or what a table with films says; a
 rib has Q = C g^(3/2).
 """
 
@@ -28,7 +28,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ehdmaps.arrays import FloatArray
+from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.compiled import njit
 from ehdmaps.copies import put
 from mbs.bearings.balls.ball_kernel import NormalLaw, contact
@@ -37,8 +37,9 @@ from mbs.bearings.slices import power
 NOT_FINITE, TOO_FAR, NO_BALANCE = -1, -2, -3
 """What `tapered_force` finds instead of an answer."""
 
-COLUMNS = 24
-"""Numbers that are kept of a roller, see `place_roller`."""
+FIRST_RIB, MOST_RIBS = 15, 4
+COLUMNS = FIRST_RIB + MOST_RIBS
+"""Numbers that are kept of a roller, see `place_roller`: the last ones are loads of its ribs."""
 
 _STEPS, _CUTS = 80, 40
 _BALANCE, _ROUGH = 1e-13, 1e-9
@@ -49,6 +50,28 @@ _SOFT = 1e-13
 """Stiffness, over that of a contact, that holds rollers which nothing holds."""
 
 
+class Ribs(NamedTuple):
+    """Ribs that the end of a roller may lean on, m of them.
+
+    Attributes
+    ----------
+    normals : array (m, 2)
+        Normals, axial and radial.
+    levers, plays : array (m,)
+        Levers of the normals about the middle of the roller, and distances from the ends where nothing moved [m].
+    laws : array (m,)
+        C of each [N/m^1.5].
+    outer : array (m,), of bool
+        Whether it is a rib of the cup.
+    """
+
+    normals: FloatArray
+    levers: FloatArray
+    plays: FloatArray
+    laws: FloatArray
+    outer: BoolArray
+
+
 class TaperedShape(NamedTuple):
     """Numbers of a bearing that do not change.
 
@@ -56,12 +79,12 @@ class TaperedShape(NamedTuple):
     ----------
     pitch_radius : float
         Distance of the middles of rollers from the axis [m].
-    cup, cone, rib : (float, float)
-        Normals of the contacts: axial, radial.
-    rib_lever : float
-        Lever of the rib's normal about the middle of the roller [m].
+    cup, cone : (float, float)
+        Normals of the lines: axial, radial.
+    ribs : Ribs
+        What holds a roller along its axis.
     levers, profile : array (n,)
-        Levers of the slices of both lines, and depths of the profile on one side [m].
+        Levers of the slices of both lines, and depths of the profile on one side with the play there [m].
     cos, sin : array (Z,)
         Directions of the rollers in the cage, y and z.
     most_travel, most_tilt : float
@@ -71,8 +94,7 @@ class TaperedShape(NamedTuple):
     pitch_radius: float
     cup: tuple[float, float]
     cone: tuple[float, float]
-    rib: tuple[float, float]
-    rib_lever: float
+    ribs: Ribs
     levers: FloatArray
     profile: FloatArray
     cos: FloatArray
@@ -88,8 +110,6 @@ class RollerLaws(NamedTuple):
     ----------
     cup, cone : float
         C of the whole roller [N/m^(10/9)].
-    rib : float
-        C of the rib [N/m^1.5]; 0 for none.
     damping : float
         Constant damping of each contact while it carries load [N s/m]; of lines, for the whole roller.
     damping_time : float
@@ -100,7 +120,6 @@ class RollerLaws(NamedTuple):
 
     cup: float
     cone: float
-    rib: float
     damping: float
     damping_time: float
     cup_film: NormalLaw
@@ -183,8 +202,10 @@ class RollerWork(NamedTuple):
 
     Attributes
     ----------
-    cup, cone, rib : array (8,)
-        Sums of the contacts, see `_line`.
+    cup, cone : array (8,)
+        Sums of the lines, see `_line`.
+    ribs : array (m, 8)
+        The same of the ribs.
     inner, whole, damped_inner, damped_outer : array (3, 3)
         A, M, A_c, B_c.
     rest, step, trial : array (3,)
@@ -197,7 +218,7 @@ class RollerWork(NamedTuple):
 
     cup: FloatArray
     cone: FloatArray
-    rib: FloatArray
+    ribs: FloatArray
     inner: FloatArray
     whole: FloatArray
     damped_inner: FloatArray
@@ -209,12 +230,18 @@ class RollerWork(NamedTuple):
     plane: FloatArray
 
 
-def roller_work() -> RollerWork:
-    """Work space for one bearing."""
+def roller_work(ribs: int) -> RollerWork:
+    """Work space for one bearing, by the number of its ribs.
+
+    Parameters
+    ----------
+    ribs : int
+        Ribs of a roller.
+    """
     return RollerWork(
         cup=np.zeros(8),
         cone=np.zeros(8),
-        rib=np.zeros(8),
+        ribs=np.zeros((ribs, 8)),
         inner=np.zeros((3, 3)),
         whole=np.zeros((3, 3)),
         damped_inner=np.zeros((3, 3)),
@@ -240,18 +267,27 @@ def _state(
     _line(laws.cup, laws.cup_film, shape.cup, v[0], v[1], v[2], shape, laws, w.cup)
     x, r, turn = d[0] - v[0], d[1] - v[1], d[2] - v[2]
     _line(laws.cone, laws.cone_film, shape.cone, x, r, turn, shape, laws, w.cone)
-    w.rib[:] = 0.0
-    g = shape.rib[0] * x + shape.rib[1] * r + turn * shape.rib_lever
-    if g > 0.0 and laws.rib > 0.0:
-        root = laws.rib * math.sqrt(g)
-        k, b = 1.5 * root, shape.rib_lever
-        c = laws.damping + laws.damping_time * k
-        w.rib[0], w.rib[1], w.rib[2], w.rib[3], w.rib[4] = root * g, root * g * b, k, k * b, k * b * b
-        w.rib[5], w.rib[6], w.rib[7] = c, c * b, c * b * b
     for i in range(2):
-        w.rest[i] = loads[i] + w.cone[0] * shape.cone[i] + w.rib[0] * shape.rib[i] - w.cup[0] * shape.cup[i]
-    w.rest[2] = loads[2] + w.cone[1] + w.rib[1] - w.cup[1]
-    size: float = w.cup[0] + w.cone[0] + w.rib[0] + abs(loads[0]) + abs(loads[1]) + abs(loads[2] / shape.levers[-1])
+        w.rest[i] = loads[i] + w.cone[0] * shape.cone[i] - w.cup[0] * shape.cup[i]
+    w.rest[2] = loads[2] + w.cone[1] - w.cup[1]
+    size: float = w.cup[0] + w.cone[0] + abs(loads[0]) + abs(loads[1]) + abs(loads[2] / shape.levers[-1])
+    ribs = shape.ribs
+    for m in range(ribs.levers.size):
+        sums, sign = w.ribs[m], -1.0 if ribs.outer[m] else 1.0
+        sums[:] = 0.0
+        ex, er, b = ribs.normals[m, 0], ribs.normals[m, 1], ribs.levers[m]
+        g = (ex * v[0] + er * v[1] + b * v[2] if ribs.outer[m] else ex * x + er * r + b * turn) - ribs.plays[m]
+        if not g > 0.0:
+            continue
+        root = ribs.laws[m] * math.sqrt(g)
+        q, k = root * g, 1.5 * root
+        c = laws.damping + laws.damping_time * k
+        sums[0], sums[1], sums[2], sums[3], sums[4] = q, q * b, k, k * b, k * b * b
+        sums[5], sums[6], sums[7] = c, c * b, c * b * b
+        w.rest[0] += sign * q * ex
+        w.rest[1] += sign * q * er
+        w.rest[2] += sign * q * b
+        size += q
     return size
 
 
@@ -286,10 +322,10 @@ def place_roller(
         V at the beginning, and then where it is; NaN for a start from nothing.
     w : RollerWork
         Work space; stiffness and damping in `plane`.
-    out : array (24,)
+    out : array (19,)
         Written: forces on the inner ring without their sign, axial, radial [N], moment about the middle of the roller
-        [N m]; loads of cone, cup, rib [N]; where along the roller the lines carry, cone and cup [m]; the approach of
-        the rib [m]; V; D.
+        [N m]; loads of cone, cup, all ribs of the cone [N]; where along the roller the lines carry, cone and cup [m];
+        load of all ribs of the cup [N]; V; D; loads of the ribs.
     """
     length = abs(shape.levers[-1])
     hard = laws.cup + laws.cone
@@ -335,14 +371,24 @@ def place_roller(
             break
         put(w.trial, place)
     _matrices(shape, w)
-    _answer(soft, length, w)
-    out[0] = w.cone[0] * shape.cone[0] + w.rib[0] * shape.rib[0]
-    out[1] = w.cone[0] * shape.cone[1] + w.rib[0] * shape.rib[1]
-    out[2] = w.cone[1] + w.rib[1]
-    out[3], out[4], out[5] = w.cone[0], w.cup[0], w.rib[0]
+    _answer(shape, soft, length, w)
+    out[0] = w.cone[0] * shape.cone[0]
+    out[1] = w.cone[0] * shape.cone[1]
+    out[2] = w.cone[1]
+    out[3], out[4], out[5], out[8] = w.cone[0], w.cup[0], 0.0, 0.0
+    ribs = shape.ribs
+    for m in range(ribs.levers.size):
+        q = w.ribs[m, 0]
+        out[FIRST_RIB + m] = q
+        if ribs.outer[m]:
+            out[8] += q
+            continue
+        out[0] += q * ribs.normals[m, 0]
+        out[1] += q * ribs.normals[m, 1]
+        out[2] += q * ribs.levers[m]
+        out[5] += q
     out[6] = w.cone[1] / w.cone[0] if w.cone[0] > 0.0 else 0.0
     out[7] = w.cup[1] / w.cup[0] if w.cup[0] > 0.0 else 0.0
-    out[8] = shape.rib[0] * (d[0] - place[0]) + shape.rib[1] * (d[1] - place[1]) + shape.rib_lever * (d[2] - place[2])
     put(place, out[9:12])
     out[12], out[13], out[14] = d
     return found
@@ -356,19 +402,29 @@ def _matrices(shape: TaperedShape, w: RollerWork) -> None:
     w.damped_inner[:] = 0.0
     w.damped_outer[:] = 0.0
     _add(shape.cone, w.cone, 2, w.inner)
-    _add(shape.rib, w.rib, 2, w.inner)
     _add(shape.cone, w.cone, 5, w.damped_inner)
-    _add(shape.rib, w.rib, 5, w.damped_inner)
     _add(shape.cup, w.cup, 5, w.damped_outer)
-    for side, sums in ((shape.cone, w.cone), (shape.rib, w.rib), (shape.cup, w.cup)):
-        _add(side, sums, 2, w.whole)
+    _add(shape.cone, w.cone, 2, w.whole)
+    _add(shape.cup, w.cup, 2, w.whole)
+    ribs = shape.ribs
+    for m in range(ribs.levers.size):
+        normal, sums = (ribs.normals[m, 0], ribs.normals[m, 1]), w.ribs[m]
+        _add(normal, sums, 2, w.whole)
+        if ribs.outer[m]:
+            _add(normal, sums, 5, w.damped_outer)
+        else:
+            _add(normal, sums, 2, w.inner)
+            _add(normal, sums, 5, w.damped_inner)
 
 
 @njit(error_model="numpy")
-def _answer(soft: float, length: float, w: RollerWork) -> None:
+def _answer(shape: TaperedShape, soft: float, length: float, w: RollerWork) -> None:
     """Stiffness and damping of a roller in balance."""
     w.plane[:] = 0.0
-    if w.cone[0] + w.rib[0] <= 0.0:
+    carried = w.cone[0]
+    for m in range(shape.ribs.levers.size):
+        carried += 0.0 if shape.ribs.outer[m] else w.ribs[m, 0]
+    if carried <= 0.0:
         return
     for i in range(3):
         w.whole[i, i] += soft * (1.0 if i < 2 else length * length)
@@ -424,7 +480,7 @@ def tapered_force(
         Written: force [N], [N m], and -df/dpose, -df/dvelocity.
     places : array (Z, 3)
         Places of the rollers of the last call, or NaN; written.
-    rollers : array (Z, 24)
+    rollers : array (Z, 19)
         Written: see `place_roller`.
     w : RollerWork
         Work space.

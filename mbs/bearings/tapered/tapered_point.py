@@ -1,8 +1,8 @@
-"""One tapered roller bearing at an operating point: where its inner ring comes to rest, what its rollers feel there.
+"""One bearing of rollers and ribs at an operating point: where its inner ring comes to rest, what its rollers feel.
 
 The outer ring is held, the inner one moves along x, y and z, and tilts if it may. Contacts are dry. Films of the lines
-are those of formulas at the load, radius and speed of each slice; that of the rib is the formula of Hamrock and Dowson,
-whose ellipses are not longer along the motion, as the rib's are: an order of magnitude. Films move nothing.
+are those of formulas at the load, radius and speed of each slice; that of a rib is the formula of Hamrock and Dowson,
+whose ellipses are not longer along the motion, as ribs' may be: an order of magnitude. Films move nothing.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.hertz import max_pressure
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.film_formulas import hamrock_dowson_central
+from ehdmaps.physics.rollers.ribbed_geometry import LARGEST_SHARE, RibbedGeometry, axial_limit
 from ehdmaps.physics.rollers.tapered_catalogue import tapered_ratings
 from ehdmaps.units import PRESSURE
 from mbs.bearings.films import FormulaFilms
@@ -35,14 +36,14 @@ STATIC_LIMIT = 4.0e9
 SIDES = ("inner", "outer")
 
 RIB_FRICTION = 0.05
-"""Coefficient of friction at the rib, assumed: mixed friction with an oil film."""
+"""Coefficient of friction at ribs, assumed: mixed friction with an oil film."""
 
 _RING = "inner ring"
 
 
 @dataclass(frozen=True, eq=False)
 class TaperedPoint:
-    """A tapered roller bearing in equilibrium.
+    """A tapered roller bearing, or one with cylindrical rollers between ribs, in equilibrium.
 
     Attributes
     ----------
@@ -63,10 +64,10 @@ class TaperedPoint:
     pressure, central_film, minimum_film : array (2, Z)
         Largest Hertz pressure of the slices of cone and cup [Pa], and their smallest films [m]; NaN for films of
         contacts without load, or without an oil.
-    rib_pressure, rib_film : array (Z,)
-        Hertz pressure [Pa] and central film [m] at the rib.
+    rib_pressure, rib_film : array (m, Z)
+        Hertz pressure [Pa] and central film [m] at the ribs.
     sliding_speed : float
-        Sliding speed at the rib [m/s].
+        Largest sliding speed at a rib that carries load, or at any where none does [m/s].
     rib_power : float
         Power that all ribs take with the friction `RIB_FRICTION` [W].
     centrifugal_load : float
@@ -154,14 +155,14 @@ def tapered_point(
     oil: Lubricant | None = None,
     temperature: float = 313.15,
 ) -> TaperedPoint:
-    """Equilibrium of a tapered roller bearing.
+    """Equilibrium of a tapered roller bearing, or of one with cylindrical rollers between ribs.
 
     Parameters
     ----------
     force : TaperedForce
         Geometry and laws.
     load : (float, float, float)
-        Load on the inner ring, x, y and z [N]; x with the sign of the contact angle.
+        Load on the inner ring, x, y and z [N]; x with the sign of the contact angle, or as ribs carry it.
     inner_speed, outer_speed : float
         Speeds of the rings [rad/s].
     tilts : bool
@@ -187,8 +188,9 @@ def tapered_point(
     element = _Held("bearing", _RING, "ground", force, inner_speed, outer_speed)
     geometry = force.geometry
     start = np.zeros(len(free))
+    way = math.copysign(1.0, geometry.contact_angle if geometry.contact_angle else given[0])
     start[:3] = (
-        1e-5 * math.copysign(1.0, geometry.contact_angle),
+        way * (1e-5 + sum(rib.play for rib in force.ribs if way * rib.normal[0] > 0.0)),
         *(2e-6 * given[1:] / max(np.abs(given).max(), 1e-300)),
     )
     try:
@@ -198,10 +200,10 @@ def tapered_point(
         words = f"no equilibrium of {geometry.name} under {given[0]:.4g} N axial, {radial:.4g} N radial"
         thrown = geometry.rollers * force.speed_loads(inner_speed, outer_speed)[0]
         least = math.tan(geometry.cup_angle) * (radial + thrown)
-        if math.copysign(given[0], given[0] * geometry.contact_angle) < least:
-            way = "positive" if geometry.contact_angle > 0.0 else "negative"
+        if geometry.contact_angle and math.copysign(given[0], given[0] * geometry.contact_angle) < least:
+            sign = "positive" if geometry.contact_angle > 0.0 else "negative"
             words += (
-                f"; a tapered roller bearing falls apart without a {way} axial load above tan(alpha) (Fr + Z Fc) = "
+                f"; a tapered roller bearing falls apart without a {sign} axial load above tan(alpha) (Fr + Z Fc) = "
                 f"{least:.4g} N, Fc the centrifugal load of a roller"
             )
         raise AnalysisError(f"{words}: {error.__cause__ or error}") from error
@@ -210,19 +212,8 @@ def tapered_point(
     rollers = element.rollers(pose, Operation())
     speed = geometry.entrainment_speed(inner_speed, outer_speed)
     pressure, central, minimum = _lines(force, rollers, speed, oil, temperature)
-    rib, slides = geometry.rib_contact(force.material), geometry.rib_speeds(inner_speed, outer_speed)
-    rib_pressure, rib_film = np.zeros(rollers.angle.size), np.full(rollers.angle.size, np.nan)
-    if rib is not None:
-        rib_pressure = np.asarray(rib.max_pressure(rollers.load[2]))
-        mean, carries = 0.5 * abs(slides[0] + slides[1]), rollers.load[2] > 0.0
-        if oil is not None and mean > 0.0:
-            state = oil.at(temperature)
-            rib_film[carries] = rib.rolling_radius * hamrock_dowson_central(
-                state.viscosity * mean / (rib.reduced_modulus * rib.rolling_radius),
-                rollers.load[2][carries] / (rib.reduced_modulus * rib.rolling_radius**2),
-                state.pressure_viscosity.pressure_viscosity * rib.reduced_modulus,
-                rib.ellipticity,
-            )
+    rib_pressure, rib_film, slides = _ribs(force, rollers, (inner_speed, outer_speed), oil, temperature)
+    carries = rollers.ribs.max(axis=1, initial=0.0) > 0.0
     length = geometry.roller_length / force.positions.size
     gamma = geometry.roller_diameter * math.cos(geometry.cup_angle) / geometry.pitch_diameter
     turns = abs(inner_speed) >= abs(outer_speed)
@@ -246,14 +237,41 @@ def tapered_point(
         minimum_film=minimum,
         rib_pressure=rib_pressure,
         rib_film=rib_film,
-        sliding_speed=abs(slides[0] - slides[1]),
-        rib_power=RIB_FRICTION * float(rollers.load[2].sum()) * abs(slides[0] - slides[1]),
+        sliding_speed=float(np.max(slides[carries] if np.any(carries) else slides, initial=0.0)),
+        rib_power=RIB_FRICTION * float(slides @ rollers.ribs.sum(axis=1)),
         centrifugal_load=centrifugal,
         equivalent_load=equivalent,
         life=life,
         problems=tuple(filter(None, [_overload(pressure)])),
-        notes=tuple(filter(None, [_slack(rollers), _edges(force, rollers)])),
+        notes=tuple(filter(None, [_slack(force, rollers), _limits(force, given), _edges(force, rollers)])),
     )
+
+
+def _ribs(
+    force: TaperedForce,
+    rollers: TaperedLoads,
+    speeds: tuple[float, float],
+    oil: Lubricant | None,
+    temperature: float,
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Hertz pressures and central films of all ribs, (m, Z) each, and their sliding speeds, (m,)."""
+    pressure, film = np.zeros(rollers.ribs.shape), np.full(rollers.ribs.shape, np.nan)
+    slides = np.zeros(len(force.ribs))
+    for index, rib in enumerate(force.ribs):
+        contact, loads = rib.contact, rollers.ribs[index]
+        pressure[index] = np.asarray(contact.max_pressure(loads))
+        ring, end = force.geometry.rib_speeds(*speeds, outer=rib.outer, radius=rib.radius)
+        slides[index] = abs(ring - end)
+        mean, carries = 0.5 * abs(ring + end), loads > 0.0
+        if oil is not None and mean > 0.0:
+            state = oil.at(temperature)
+            film[index, carries] = contact.rolling_radius * hamrock_dowson_central(
+                state.viscosity * mean / (contact.reduced_modulus * contact.rolling_radius),
+                loads[carries] / (contact.reduced_modulus * contact.rolling_radius**2),
+                state.pressure_viscosity.pressure_viscosity * contact.reduced_modulus,
+                contact.ellipticity,
+            )
+    return pressure, film, slides
 
 
 def _lines(
@@ -291,8 +309,21 @@ def _overload(pressure: FloatArray) -> str:
     )
 
 
-def _slack(rollers: TaperedLoads) -> str:
-    """A sentence where less than half of the rollers carry load."""
+def _limits(force: TaperedForce, load: FloatArray) -> str:
+    """A sentence where an axial load is beyond what catalogues allow ribs."""
+    if not isinstance(force.geometry, RibbedGeometry):
+        return ""
+    axial, radial = abs(float(load[0])), math.hypot(*load[1:])
+    limit, most = axial_limit(force.geometry.name), LARGEST_SHARE * radial
+    found = [f"{LARGEST_SHARE:g} Fr = {most:.4g} N"] * (axial > most)
+    found += [f"{limit:.4g} N, the strength of ribs"] * (limit is not None and axial > limit)
+    return f"axial load of {axial:.4g} N is above what SKF allows: {' and '.join(found)}" if found else ""
+
+
+def _slack(force: TaperedForce, rollers: TaperedLoads) -> str:
+    """A sentence where less than half of the tapered rollers carry load."""
+    if not force.geometry.contact_angle:
+        return ""
     cone = rollers.load[0]
     share = np.count_nonzero(cone > 0.01 * cone.max()) / cone.size
     if share >= 0.45:

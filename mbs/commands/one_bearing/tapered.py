@@ -1,4 +1,4 @@
-"""`mbs bearing` of a tapered roller bearing, by its designation; every problem at once."""
+"""`mbs bearing` of rollers and ribs, tapered or NJ and NUP under axial load, by designation; every problem at once."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from pathlib import Path
 from ehdmaps.errors import InputError
 from ehdmaps.outputs import output_problems
 from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
+from ehdmaps.physics.rollers.ribbed_geometry import RibbedGeometry, ribbed_estimate, ribbed_way
 from ehdmaps.physics.rollers.tapered_catalogue import tapered_estimate
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from ehdmaps.units import RPM, TEMPERATURE
@@ -40,9 +41,7 @@ from mbs.scene.fields import FORCE, MICROMETRE
 from mbs.scene.map_set import TABLE_LAW
 
 _TAKEN = ("law", "temperature", "roughness")
-"""Choices that tapered roller bearings take."""
-
-_KIND = "tapered roller bearing"
+"""Choices that all of them take; those without a contact angle have a clearance too."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,15 +90,22 @@ def read_tapered(arguments: argparse.Namespace) -> TaperedRequest:
         With every problem.
     """
     problems: list[str] = []
-    geometry = _geometry(arguments.bearing, problems)
     chosen = read_choices(arguments, problems)
-    refuse_others(arguments, list(chosen), _TAKEN, _KIND, problems, ("profile", "slices"))
+    ribbed = bool(ribbed_way(arguments.bearing))
+    kind = "roller bearing with ribs" if ribbed else "tapered roller bearing"
+    geometry = _geometry(arguments.bearing, float(chosen.get("clearance", 0.0)), problems)
+    taken = (*_TAKEN, "clearance") if ribbed else _TAKEN
+    refuse_others(arguments, list(chosen), taken, kind, problems, ("profile", "slices"))
     axial = read_one("--axial", arguments.axial, "N", (-LOADS[1], LOADS[1]), FORCE, 0.0, problems)
     least = 0.0 if axial else LOADS[0]
     loads = read_values("--load", arguments.load, "N", (least, LOADS[1]), FORCE, problems)
-    if geometry is not None and not axial > 0.0:
+    if isinstance(geometry, RibbedGeometry) and not (axial > 0.0 or (axial < 0.0 and geometry.carries == "both")):
+        allowed = "not zero; without the option it is a bearing without ribs"
+        allowed = allowed if geometry.carries == "both" else "above zero: NJ carries one way, here along x"
+        problems.append(f"--axial: got {FORCE.text(axial)}; allowed: {allowed}")
+    elif geometry is not None and not (ribbed or axial > 0.0):
         problems.append(
-            f"--axial: got {FORCE.text(axial)}; allowed: above zero: the rings of a single {_KIND} fall apart without; "
+            f"--axial: got {FORCE.text(axial)}; allowed: above zero: the rings of a single {kind} fall apart without; "
             f"half of its rollers carry at {1.25 * math.tan(geometry.cup_angle):.3g} of the radial load"
         )
     speeds = read_values("--speed", arguments.speed, "rad/s", SPEEDS, RPM, problems)
@@ -109,10 +115,10 @@ def read_tapered(arguments: argparse.Namespace) -> TaperedRequest:
         problems.append(f"--load, --speed: got {len(loads) * len(speeds)} points; allowed: at most {MOST_POINTS}")
     way = read_direction(arguments.direction, problems)
     films = chosen.get("law") == TABLE_LAW
-    damper = Damper() if films else read_damper(chosen.get("law"), _KIND, f", {TABLE_LAW}", problems)
+    damper = Damper() if films else read_damper(chosen.get("law"), kind, f", {TABLE_LAW}", problems)
     profile = arguments.profile
     if profile not in ("iso", "straight"):
-        problems.append(f"--profile: got {profile!r:.60} for a {_KIND}; allowed: iso, straight")
+        problems.append(f"--profile: got {profile!r:.60} for a {kind}; allowed: iso, straight")
     slices = SLICES if arguments.slices == "41" else read_whole("--slices", arguments.slices, 2, MOST_SLICES, problems)
     temperature = float(chosen.get("temperature", CELSIUS_40))
     oil = read_oil(arguments.oil, temperature, problems)
@@ -129,6 +135,8 @@ def read_tapered(arguments: argparse.Namespace) -> TaperedRequest:
             else []
         ),
         *([f"oil {DEFAULT_OIL}"] if arguments.oil is None else []),
+        *(["no axial clearance"] if ribbed else []),
+        *(["no clearance"] if ribbed and "clearance" not in chosen else []),
     ]
     return TaperedRequest(
         films=films,
@@ -225,10 +233,10 @@ def _forces(request: TaperedRequest) -> list[TaperedForce]:
     ]
 
 
-def _geometry(source: str, problems: list[str]) -> TaperedGeometry | None:
+def _geometry(source: str, clearance: float, problems: list[str]) -> TaperedGeometry | None:
     """The bearing of a designation."""
     try:
-        return tapered_estimate(source)
+        return ribbed_estimate(source, clearance) if ribbed_way(source) else tapered_estimate(source)
     except InputError as error:
         problems += [f"BEARING: {problem}" for problem in error.problems]
         return None

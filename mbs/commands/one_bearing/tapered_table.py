@@ -1,4 +1,4 @@
-"""Points of a tapered roller bearing in words, as a labelled dataset, and as CSV, in the words of other bearings."""
+"""Points of a bearing of rollers and ribs in words, as a labelled dataset, as CSV, in the words of other bearings."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ehdmaps.physics.rollers.ribbed_geometry import RibbedGeometry
+from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from ehdmaps.units import DAMPER, FILM, PRESSURE, RPM, SPRING, TEMPERATURE
 from mbs.bearings.tapered.tapered_bearing import TaperedElement
 from mbs.bearings.tapered.tapered_point import RIB_FRICTION, SIDES, TaperedPoint
@@ -196,7 +198,7 @@ def write_tapered_csv(dataset: xr.Dataset, path: str) -> None:
     InputError
         If it may not be replaced, or cannot be written.
     """
-    write_csv(dataset, path, "tapered roller bearing", _ROW, _SIDE)
+    write_csv(dataset, path, "bearing of rollers and ribs", _ROW, _SIDE)
 
 
 def tapered_text(description: TaperedDescription, points: Points) -> list[str]:
@@ -230,18 +232,31 @@ def tapered_heading(description: TaperedDescription, point: TaperedPoint) -> lis
     """
     force = point.force
     geometry = force.geometry
-    angles = [DEGREE.value(x) for x in (geometry.cup_angle, geometry.half_cone_angle, geometry.cone_angle)]
     return [
         f"{geometry.title}: law {description.law}; {description.films}",
         f"  {geometry.rollers} rollers of {1e3 * geometry.roller_diameter:.4g} x {1e3 * geometry.roller_length:.4g} mm "
-        f"on {1e3 * geometry.pitch_diameter:.4g} mm; contact angle {angles[0]:.4g} deg, half cone angle of the rollers "
-        f"{angles[1]:.3g} deg, cone {angles[2]:.4g} deg",
+        f"on {1e3 * geometry.pitch_diameter:.4g} mm; {_angles(geometry)}",
         f"  profile {force.profile}, {force.positions.size} slices, {TEMPERATURE.text(description.temperature)}, load "
         f"at {description.direction:.4g} deg from y (a roller) towards z, inner ring "
         f"{'tilts freely' if description.tilts else 'does not tilt'}",
         f"  assumed: {', '.join(description.assumed) or 'nothing'}",
         *([f"  {geometry.estimated}"] if geometry.estimated else []),
     ]
+
+
+def _angles(geometry: TaperedGeometry) -> str:
+    """Contact angle and cones, or ribs."""
+    if isinstance(geometry, RibbedGeometry):
+        ways = {"both": "both ways", "+x": "along x", "-x": "along -x"}[geometry.carries]
+        return (
+            f"clearance {1e6 * geometry.diametral_clearance:.4g} um; ribs carry {ways}, open by "
+            f"{DEGREE.value(geometry.rib_angle):.3g} deg against spherical ends (assumed)"
+        )
+    angles = [DEGREE.value(x) for x in (geometry.cup_angle, geometry.half_cone_angle, geometry.cone_angle)]
+    return (
+        f"contact angle {angles[0]:.4g} deg, half cone angle of the rollers {angles[1]:.3g} deg, cone "
+        f"{angles[2]:.4g} deg"
+    )
 
 
 def _page(point: TaperedPoint, description: TaperedDescription) -> list[str]:
