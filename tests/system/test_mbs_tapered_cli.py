@@ -97,7 +97,7 @@ def test_refusals(capsys, here, command, words) -> None:
         (("NA4908", "--axial", "1 kN"), "needles none"),
         (("NJ308", "--axial=-1 kN"), "--axial: got -1000 N; allowed: above zero: NJ carries one way"),
         (("NUP210", "--axial", "0 N"), "--axial: got 0 N; allowed: not zero"),
-        (("NUP210", "--axial", "1 kN", "--coupled"), "--coupled: not for roller bearings with ribs"),
+        (("NUP210", "--axial", "1 kN", "--coupled"), "--coupled: not for ribbed roller bearings"),
     ],
 )
 def test_ribs_are_refused_where_there_are_none(capsys, here, command, words) -> None:

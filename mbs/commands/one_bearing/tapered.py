@@ -92,7 +92,7 @@ def read_tapered(arguments: argparse.Namespace) -> TaperedRequest:
     problems: list[str] = []
     chosen = read_choices(arguments, problems)
     ribbed = bool(ribbed_way(arguments.bearing))
-    kind = "roller bearing with ribs" if ribbed else "tapered roller bearing"
+    kind = "ribbed roller bearing" if ribbed else "tapered roller bearing"
     geometry = _geometry(arguments.bearing, float(chosen.get("clearance", 0.0)), problems)
     taken = (*_TAKEN, "clearance") if ribbed else _TAKEN
     refuse_others(arguments, list(chosen), taken, kind, problems, ("profile", "slices"))
