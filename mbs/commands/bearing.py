@@ -268,7 +268,10 @@ def _refuse_axial(arguments: argparse.Namespace, problems: list[str]) -> None:
     given = [f"--{name}" for name in ("axial", "outer-speed") if getattr(arguments, name.replace("-", "_"), None)]
     given += ["--tilts"] * bool(getattr(arguments, "tilts", False))
     if given:
-        problems.append(f"{', '.join(given)}: got a bearing of cylindrical rollers; {NO_RIBS}; leave it out")
+        problems.append(
+            f"{', '.join(given)}: got cylindrical rollers without --axial, or without ribs for it; {NO_RIBS}; leave "
+            "it out"
+        )
 
 
 def _all_slices(given: _Given | None, slices: str) -> int:

@@ -347,6 +347,10 @@ def _with_clearance(scene: Scene, clearance: float, problems: list[str]) -> Scen
         )
     except InputError as error:
         problems += [f"--clearance: {problem}" for problem in error.problems]
+    if scene.tapered:
+        from mbs.scene.tapered.ribs import with_clearance
+
+        scene = scene.with_tapered(lambda entry: with_clearance(entry, clearance))
     return scene.with_bearings(changed)
 
 

@@ -18,7 +18,7 @@ from mbs.scene.fields import DEGREE, MICROMETRE
 from mbs.scene.matrices import MatrixSpec, read_table_bearing
 from mbs.scene.profiles import read_profile
 from mbs.scene.shafts.standing import read_rings
-from mbs.scene.specs import BallSpec, BearingSpec, TaperedSpec
+from mbs.scene.specs import RIB_KEYS, BallSpec, BearingSpec, TaperedSpec
 
 if TYPE_CHECKING:
     from mbs.scene.surroundings import Built, Surroundings
@@ -166,8 +166,10 @@ def read_bearing(section: Table, name: str) -> BearingSpec | BallSpec | TaperedS
     thermal, mounting = read_thermal(section), read_mounting(section)
     supply = section.optional("supply", f"{section.where} supply", read_supply)
     if inner is None or outer is None or geometry is None:
+        for key in RIB_KEYS:
+            section.get(key)
         return None
-    return BearingSpec(
+    spec = BearingSpec(
         name,
         inner,
         outer,
@@ -183,6 +185,11 @@ def read_bearing(section: Table, name: str) -> BearingSpec | BallSpec | TaperedS
         coupled is True,
         pocket,
     )
+    if not (isinstance(section.get("bearing"), str) or any(key in section for key in RIB_KEYS)):
+        return spec
+    from mbs.scene.tapered.ribs import read_ribs
+
+    return read_ribs(section, spec)
 
 
 def _geometry(section: Table) -> BearingGeometry | None:

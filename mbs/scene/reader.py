@@ -27,7 +27,7 @@ from mbs.scene.fields import DEGREE, FORCE, HERTZ, LONGEST_FILE, MICROMETRE, MIL
 from mbs.scene.matrices import MatrixSpec, read_spring
 from mbs.scene.scene import Scene
 from mbs.scene.shafts.standing import mounts, read_gravity
-from mbs.scene.specs import ORIGIN, BodySpec, FlexibleSpec, RigidSpec, ShaftSpec
+from mbs.scene.specs import ORIGIN, BearingSpec, BodySpec, FlexibleSpec, RigidSpec, ShaftSpec
 from mbs.scene.turning import read_excitation, read_unbalance
 from mbs.settings import HIGHEST, MOST_SPEEDS, CampbellSettings, RunUp, Settings, SweepRange
 
@@ -240,6 +240,10 @@ class _Reader:
         excitations = self._all("excitations", read_excitation)
         elements = [entry for kind in kinds.KINDS if kind.key for entry in self._all(kind.key, kind.read)]
         elements += [spring for spring in springs if isinstance(spring, MatrixSpec)]
+        if any(isinstance(entry, BearingSpec) and entry.between_ribs is not None for entry in elements):
+            from mbs.scene.tapered.ribs import held_by_ribs
+
+            elements = held_by_ribs(elements, bodies, top.problems)
         inputs = self._all("inputs", self._input)
         sensors = self._all("sensors", self._sensor)
         laws = self._laws()

@@ -157,7 +157,7 @@ class Scene:
 
     @property
     def tapered(self) -> tuple[TaperedSpec, ...]:
-        """The tapered roller bearings among the machine elements."""
+        """The bearings of tapered rollers, or of rollers between ribs, among the machine elements."""
         return tuple(entry for entry in self.elements if isinstance(entry, TaperedSpec))
 
     @property
@@ -192,6 +192,11 @@ class Scene:
         """The scene with other bearings, each in the place of the one in the same order."""
         others = iter(tuple(bearings))
         changed = [next(others) if isinstance(entry, BearingSpec) else entry for entry in self.elements]
+        return dataclasses.replace(self, elements=changed)
+
+    def with_tapered(self, change: Callable[[TaperedSpec], TaperedSpec]) -> Scene:
+        """The scene with each bearing of tapered rollers, or of rollers between ribs, changed."""
+        changed = [change(entry) if isinstance(entry, TaperedSpec) else entry for entry in self.elements]
         return dataclasses.replace(self, elements=changed)
 
     def with_balls(self, change: Callable[[BallSpec], BallSpec]) -> Scene:

@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 Triple = tuple[float, float, float]
 ORIGIN: Triple = (0.0, 0.0, 0.0)
 
+RIB_KEYS = ("axial_clearance", "axial_offset", "mirrored")
+"""Keys of cylindrical roller bearings that only ribs on both rings take."""
+
 HIGHEST_DAMPING_RATIO = 0.99
 """Of the modes of a body of finite elements."""
 
@@ -228,6 +231,8 @@ class BearingSpec:
         Whether the slices of a roller know of their neighbours.
     pocket_clearance : float or None
         Clearance of a roller in its pocket of the cage [m]; None for rollers that roll without slip.
+    between_ribs : TaperedSpec or None
+        The same bearing as ribs on both rings hold it, for a shaft that moves along x; None without such ribs.
     """
 
     name: str
@@ -244,6 +249,7 @@ class BearingSpec:
     supply: OilSupply | None = None
     slices_coupled: bool = False
     pocket_clearance: float | None = None
+    between_ribs: TaperedSpec | None = None
 
     @property
     def changes_in_operation(self) -> bool:
@@ -279,7 +285,7 @@ class BallSpec:
 
 @dataclass(frozen=True)
 class TaperedSpec:
-    """A tapered roller bearing between two places, which are the middles of its rollers.
+    """A tapered roller bearing, or one of cylindrical rollers between ribs; its places are the middles of its rollers.
 
     Attributes
     ----------
@@ -288,11 +294,17 @@ class TaperedSpec:
     inner, outer : str
         Places of its rings.
     geometry : TaperedGeometry
-        Cones, rollers and rib; which way it stands by the sign of its contact angle.
+        Cones, rollers and ribs; which way it stands by the sign of its contact angle, or by what it carries.
     start_angle : float
         Angle of the first roller from y [rad].
     axial_offset : float
         Way of the inner ring along x against the outer one where both places have not moved [m].
+    profile : {"iso", "straight"}, CrownedProfile or TabulatedProfile
+        Profile of the rollers.
+    slices : int
+        Slices of a roller.
+    without, given : tuple of str
+        Keys that were given and that it does not take, and keys of its ribs, until its bodies are known; then none.
     """
 
     name: str
@@ -301,6 +313,10 @@ class TaperedSpec:
     geometry: TaperedGeometry
     start_angle: float = 0.0
     axial_offset: float = 0.0
+    profile: str | CrownedProfile | TabulatedProfile = "iso"
+    slices: int = 21
+    without: Sequence[str] = ()
+    given: Sequence[str] = ()
 
 
 def _freeze(spec: object, *names: str) -> None:

@@ -53,7 +53,9 @@ def by_points(force: TaperedForce, pose: np.ndarray, centrifugal: float) -> np.n
                 away = np.array([end * math.cos(angle), up * math.sin(angle)])  # from the end out of the roller
                 point = np.array([end * (half - sphere), 0.0]) + sphere * away
                 other = np.zeros(3) if rib.outer else ring  # noqa: B023
-                gap = float((moved(v, point) - moved(other, point)) @ away) - 0.25 * geometry.axial_clearance
+                gap = float(
+                    (moved(v, point) - moved(other, point)) @ away
+                ) - 0.25 * geometry.axial_clearance * math.cos(angle)
                 push = -force.shape.ribs.laws[index] * max(gap, 0.0) ** 1.5 * away
                 both = np.array([*push, point[0] * push[1] - point[1] * push[0]])
                 on_roller += both

@@ -122,7 +122,8 @@ class RibbedGeometry(TaperedGeometry):
                 contact = Ellipse(along, self.end_sphere, reduced_modulus(material, material))
                 normal = way * math.cos(self.rib_angle), sine
                 lever = side * way * self.rib_reach
-                found.append(Rib(outer, normal, lever, radius, 0.25 * self.axial_clearance, contact))
+                play = 0.25 * self.axial_clearance * math.cos(self.rib_angle)
+                found.append(Rib(outer, normal, lever, radius, play, contact))
         return tuple(found)
 
 
@@ -198,8 +199,7 @@ def ribbed_estimate(designation: str, diametral_clearance: float = 0.0, axial_cl
 
 
 NO_RIBS = (
-    "allowed for axial loads: balls, tapered rollers, and NJ and NUP with --axial; N and NU have ribs on one ring "
-    "only, needles none"
+    "allowed for axial loads: balls, tapered rollers, NJ and NUP; N and NU have ribs on one ring only, needles none"
 )
 """Why a bearing carries no axial load."""
 

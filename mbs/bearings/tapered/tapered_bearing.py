@@ -19,6 +19,7 @@ ISO/TS 16281:2008. J. M. de Mul, J. M. Vree, D. A. Maas, Journal of Tribology 11
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
@@ -97,8 +98,8 @@ class TaperedForce:
         Damping over stiffness of each contact [s], >= 0.
     films : (NormalLaw, NormalLaw), optional
         Tables of cone and cup with films at one speed, see `line_film`; dry lines without.
-    profile : {"iso", "straight"}
-        Profile of the rollers.
+    profile : {"iso", "straight"} or callable
+        Profile of the rollers on one side [m], by name or over the distance from the middle [m].
     slices : int
         Slices of a roller.
     material : Material
@@ -130,7 +131,7 @@ class TaperedForce:
         damping_time: float = 0.0,
         *,
         films: tuple[NormalLaw, NormalLaw] | None = None,
-        profile: str = "iso",
+        profile: str | Callable[[FloatArray], FloatArray] = "iso",
         slices: int = SLICES,
         material: Material = STEEL,
         compiled: bool = True,
@@ -140,7 +141,7 @@ class TaperedForce:
             for name, value, unit in (("damping", damping, "N s/m"), ("damping_time", damping_time, "s"))
             if not (isinstance(value, int | float) and math.isfinite(value) and value >= 0.0)
         ]
-        if profile not in ("iso", "straight"):
+        if profile not in ("iso", "straight") and not callable(profile):
             problems.append(f"{geometry.kind}, profile: got {profile!r:.60}; allowed: iso, straight")
         if not isinstance(slices, int) or isinstance(slices, bool) or not 2 <= slices <= MOST_SLICES:
             problems.append(
@@ -153,6 +154,8 @@ class TaperedForce:
         length, diameter, half = geometry.roller_length, geometry.roller_diameter, geometry.half_cone_angle
         self.positions = ((np.arange(slices) + 0.5) / slices - 0.5) * length
         depths = iso_profile(self.positions, diameter, length) if profile == "iso" else np.zeros(slices)
+        if callable(profile):
+            depths = np.array(profile(self.positions.copy()), dtype=np.float64)
         places = 2.0 * math.pi * np.arange(geometry.rollers) / geometry.rollers
         way = -1.0 if geometry.contact_angle < 0.0 else 1.0
         self.ribs = geometry.ribs(material)

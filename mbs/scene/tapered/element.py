@@ -1,10 +1,11 @@
-"""Tapered roller bearings of a scene: the law in force, what is wrong about it, and the element."""
+"""Bearings of tapered rollers, or of rollers between ribs, in a scene: their law, what is wrong, the element."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 from ehdmaps.errors import InputError
+from ehdmaps.physics.rollers.ribbed_geometry import RibbedGeometry
 from mbs.scene.specs import TaperedSpec
 
 if TYPE_CHECKING:
@@ -16,7 +17,7 @@ _FILMS = ("table", "map")
 
 
 def tapered_problems(spec: TaperedSpec, surroundings: Surroundings) -> list[str]:
-    """Problems with a tapered roller bearing: it has one body only, or no law of its own is in force.
+    """Problems with such a bearing: it has one body only, or no law of its own is in force.
 
     Parameters
     ----------
@@ -39,14 +40,14 @@ def tapered_problems(spec: TaperedSpec, surroundings: Surroundings) -> list[str]
     others = laws.scene.bearings or laws.scene.balls
     if not (laws.chosen in _FILMS and others):
         problems.append(
-            f"bearing {spec.name!r}: got the law {laws.chosen!r:.60} for a tapered roller bearing; allowed: hertz, "
+            f"bearing {spec.name!r}: got the law {laws.chosen!r:.60} for a {_kind(spec)}; allowed: hertz, "
             f"{HERTZ_FORMS}; table and map beside other bearings, whose films they are"
         )
     return problems
 
 
 def tapered_law_words(laws: ContactLaws) -> str:
-    """Law of the tapered roller bearings of a scene, for people.
+    """Law of the bearings of tapered rollers, or of rollers between ribs, of a scene, for people.
 
     Parameters
     ----------
@@ -55,15 +56,21 @@ def tapered_law_words(laws: ContactLaws) -> str:
     """
     from mbs.scene.contact_laws import hertz_damper
 
+    kinds = " and ".join(dict.fromkeys(f"{_kind(spec)}s" for spec in laws.scene.tapered))
     if laws.chosen in _FILMS:
-        return "tapered roller bearings dry and without damping: they have no films"
+        return f"{kinds} dry and without damping: they have no films"
     damper = hertz_damper(laws.chosen)
     words = f", {damper.words} of each contact" if damper is not None and damper.words else ""
-    return f"tapered roller bearings dry Hertz{words}"
+    return f"{kinds} dry Hertz{words}"
+
+
+def _kind(spec: TaperedSpec) -> str:
+    """Kind of a bearing, in words."""
+    return "ribbed roller bearing" if isinstance(spec.geometry, RibbedGeometry) else "tapered roller bearing"
 
 
 def build_tapered(spec: TaperedSpec, surroundings: Surroundings) -> Built:
-    """The element of a tapered roller bearing.
+    """The element of a bearing of tapered rollers, or of rollers between ribs.
 
     Parameters
     ----------
@@ -82,7 +89,9 @@ def build_tapered(spec: TaperedSpec, surroundings: Surroundings) -> Built:
         name=spec.name,
         inner=spec.inner,
         outer=spec.outer,
-        force=TaperedForce(spec.geometry, damper.constant, damper.time),
+        force=TaperedForce(
+            spec.geometry, damper.constant, damper.time, profile=spec.profile, slices=max(spec.slices, 2)
+        ),
         inner_spin=surroundings.places.spin(spec.inner),
         outer_spin=surroundings.places.spin(spec.outer),
         start_angle=spec.start_angle,

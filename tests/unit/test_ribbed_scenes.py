@@ -1,0 +1,112 @@
+"""Bearings NJ and NUP in scenes: ribs hold a shaft that moves along x, and are not there for one that does not."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from ehdmaps.errors import InputError
+from ehdmaps.physics.rollers.ribbed_geometry import ribbed_estimate
+from mbs import assemble, parse_scene
+from mbs.bearings.tapered.tapered_bearing import TaperedElement, TaperedForce
+from mbs.linearised.modes import modes
+from mbs.model.equilibrium import equilibrium
+
+MASS = 20.0
+CROWN = 'profile = { crown_drop = "6 um" }'
+
+
+def text(bearing="NUP210", more="", freedoms='"x"', force="1500 N", outer="ground"):
+    """A mass on one bearing, pushed along x and y."""
+    return f"""
+schema = 1
+[operation]
+speed = "3000 rpm"
+temperature = "60 degC"
+[[bodies]]
+name = "rotor"
+freedoms = [{freedoms}]
+spin = 1
+mass = "{MASS} kg"
+polar_inertia = "0.05 kg m^2"
+transverse_inertia = "0.2 kg m^2"
+[[bearings]]
+name = "one"
+bearing = "{bearing}"
+inner = "rotor"
+outer = "{outer}"
+{more}
+[[loads]]
+name = "push"
+on = "rotor"
+force = ["{force}", "-4000 N", "0 N"]
+"""
+
+
+def model(law="hertz", clearance=None, **keys):
+    return assemble(parse_scene(text(**keys), "rotor", "rotor.toml"), law, clearance=clearance)
+
+
+@pytest.mark.parametrize(("keys", "way"), [({}, 1.0), ({"bearing": "NJ210"}, 1.0), ({"more": CROWN}, 1.0)])
+def test_ribs_hold_a_mass_along_x(keys, way) -> None:
+    """Rest and axial mode by the force of the bearing alone; the pose is where both meet."""
+    machine = model(**keys)
+    (element,) = (connected.element for connected in machine.system.elements)
+    assert isinstance(element, TaperedElement)
+    balance = equilibrium(machine.system, machine.operation)
+    profile = machine.scene.tapered[0].profile
+    alone = TaperedForce(ribbed_estimate("NUP210"), profile=profile, slices=41)
+    pose = [float(balance.displacement[0]), 0.0, 0.0, 0.0, 0.0, 0.0]
+    force, stiffness, _ = alone(pose, inner_speed=machine.operation.speed)
+    assert force[0] == pytest.approx(-1500.0, rel=1e-8)  # of the equilibrium, 1e-10
+    found = np.abs(modes(balance).eigenvalues)
+    assert np.min(np.abs(found / math.sqrt(stiffness[0, 0] / MASS) - 1.0)) < 1e-8
+    assert (profile == "iso") == (keys.get("more") != CROWN)
+
+
+def test_keys_and_choices_reach_the_ribs() -> None:
+    """Clearances and offset shift where the ribs carry; a mirrored NJ carries the other way."""
+    keys = 'axial_clearance = "40 um"\naxial_offset = "5 um"\ndiametral_clearance = "12 um"'
+    plain, shifted = (
+        equilibrium(each.system, each.operation).displacement[0] for each in (model(clearance=12e-6), model(more=keys))
+    )
+    assert shifted - plain == pytest.approx(15e-6, abs=1e-12)  # of the equilibrium
+    mirrored = model(bearing="NJ210", more='mirrored = true\naxial_clearance = "20 um"', force="-1500 N")
+    assert mirrored.scene.tapered[0].geometry.carries == "-x"
+    assert equilibrium(mirrored.system, mirrored.operation).displacement[0] < -10e-6
+    assert mirrored.law == "ribbed roller bearings dry Hertz"
+
+
+def test_a_shaft_held_along_x_has_bearings_without_ribs() -> None:
+    machine = model(freedoms='"y", "z"', more='rollers = "bodies"')
+    assert not machine.scene.tapered
+    assert machine.scene.bearings[0].between_ribs is None and machine.scene.bearings[0].rollers_as_bodies
+
+
+@pytest.mark.parametrize(
+    ("keys", "words"),
+    [
+        (
+            {"bearing": "NU210", "more": 'axial_clearance = "5 um"'},
+            "axial_clearance: got a bearing without ribs on both",
+        ),
+        ({"more": 'mirrored = "yes"'}, "mirrored: got 'yes'; allowed: true, false"),
+        ({"more": "slices_coupled = true"}, "one, slices_coupled: got NUP210, whose ring moves along x: its ribs hold"),
+        ({"more": 'axial_clearance = "5 um"', "freedoms": '"y"'}, "axial_clearance: has no effect on a bearing whose"),
+        ({"outer": "rotor"}, "got rotor and rotor; allowed: rings on two bodies"),
+    ],
+)
+def test_refusals(keys, words) -> None:
+    with pytest.raises(InputError) as caught:
+        model(**keys)
+    assert words in str(caught.value)
+
+
+def test_laws_with_films_are_refused() -> None:
+    with pytest.raises(InputError, match=r"got the law 'formula' for a ribbed roller bearing; allowed: hertz"):
+        assemble(
+            parse_scene(text().replace("[[loads]]", '[lubricant]\nname = "FVA3"\n[[loads]]'), "rotor", "rotor.toml"),
+            "formula",
+        )
