@@ -3,6 +3,8 @@
 =====================  ================================================================================================
 `tapered_kernel`       the balance of each roller, and the sums over rollers: force, stiffness, damping
 `tapered_bearing`      the force element; loads of the rollers
+`tapered_energy`       energy of dry contacts, and the work of speed
+`tapered_block`        the bearings of a compiled run
 `line_film`            films of both raceways at one speed as tables for the kernel
 `tapered_point`        an operating point: equilibrium, pressures, films, the rib
 `reference_load`       equivalent load and life by the loads of all slices

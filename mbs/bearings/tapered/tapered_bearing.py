@@ -34,7 +34,9 @@ from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.physics.surface import iso_profile
 from mbs.bearings.balls.ball_kernel import NormalLaw, contact, empty_table
+from mbs.bearings.balls.ball_speed import turned_by
 from mbs.bearings.laws import roller_coefficient
+from mbs.bearings.tapered.tapered_energy import TaperedStates, dry_energy, place_work
 from mbs.bearings.tapered.tapered_kernel import (
     COLUMNS,
     FIRST_RIB,
@@ -46,7 +48,7 @@ from mbs.bearings.tapered.tapered_kernel import (
     roller_work,
     tapered_force,
 )
-from mbs.model.elements import Excitation, Forces, OnRings, Operation, Port
+from mbs.model.elements import Excitation, Forces, OnRings, Operation, Port, Powers
 
 FASTEST = 2e4
 """Largest accepted speed of a ring [rad/s]."""
@@ -304,6 +306,11 @@ class TaperedForce:
         ribs = rows[FIRST_RIB : FIRST_RIB + len(self.ribs)]
         return TaperedLoads(angle, rows[3:6], ribs, np.where(rows[3:5] > 0.0, centre, 0.0), slices)
 
+    @property
+    def last_rollers(self) -> FloatArray:
+        """Numbers that the kernel wrote of the rollers at the last call, (Z, 28), see `place_roller`."""
+        return self._rollers
+
     def _evaluated(
         self, pose: npt.ArrayLike, cage_angle: float, inner_speed: float, outer_speed: float, cage_speed: float | None
     ) -> None:
@@ -416,8 +423,10 @@ class TaperedElement(OnRings):
 
         Parameters
         ----------
-        states, displacement, velocity, operation
-            What `Element.advance` takes; there are no states.
+        states : TaperedStates or None
+            States after the last step.
+        displacement, velocity, operation
+            What `Element.advance` takes.
 
         Raises
         ------
@@ -425,12 +434,37 @@ class TaperedElement(OnRings):
             Where the rings have come apart.
         """
         try:
-            return self.evaluate(displacement, velocity, operation), None
+            answer = self.evaluate(displacement, velocity, operation)
         except InputError as error:
             raise AnalysisError(
                 f"bearing {self.name!r}: its rings are apart at {operation.time:.6g} s ({error}): preload is lost; "
                 "take more preload, or smaller loads"
             ) from error
+        rollers = self.force.last_rollers
+        step = 0.0 if states is None else operation.time - states.time
+        last = np.zeros((rollers.shape[0], 4)) if states is None else states.last.copy()
+        conditions = self.conditions(operation)
+        loads = self.force.speed_loads(conditions["inner_speed"], conditions["outer_speed"])
+        work = place_work(rollers, loads, last)
+        slowed = answer.damping @ velocity
+        turning = turned_by(self.pose(displacement), answer.force + slowed) * self.cage_turn * operation.speed
+        return answer, TaperedStates(
+            time=operation.time,
+            last=last,
+            dissipated=float(velocity @ slowed),
+            driven=turning + (work / step if step > 0.0 else 0.0),
+            stored=dry_energy(self.force.laws, self.force.shape, rollers),
+        )
+
+    def powers(
+        self, states: Any, force: FloatArray, displacement: FloatArray, velocity: FloatArray, operation: Operation
+    ) -> Powers | None:
+        """Power that contacts dissipate, and that cage and speed bring in, see `Element.powers`."""
+        return Powers(states.dissipated, states.driven)
+
+    def stored(self, states: Any, displacement: FloatArray, operation: Operation) -> float | None:
+        """Energy of its dry contacts [J], see `Element.stored`."""
+        return float(states.stored)
 
     def evaluate(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> Forces:
         """Force on the inner ring, stiffness and damping, see `Element.evaluate`."""

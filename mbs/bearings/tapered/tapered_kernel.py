@@ -31,6 +31,7 @@ import numpy as np
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.compiled import njit
 from ehdmaps.copies import put
+from ehdmaps.maps.kernels.lines import FAST
 from mbs.bearings.balls.ball_kernel import NormalLaw, contact
 from mbs.bearings.slices import power
 
@@ -38,13 +39,20 @@ NOT_FINITE, TOO_FAR, NO_BALANCE = -1, -2, -3
 """What `tapered_force` finds instead of an answer."""
 
 FIRST_RIB, MOST_RIBS = 15, 4
-COLUMNS = FIRST_RIB + MOST_RIBS
-"""Numbers that are kept of a roller, see `place_roller`: the last ones are loads of its ribs."""
+_SHARE = FIRST_RIB + MOST_RIBS
+COLUMNS = _SHARE + 9
+"""Numbers that are kept of a roller, see `place_roller`: loads of its ribs before S."""
 
 _STEPS, _CUTS = 80, 40
 _BALANCE, _ROUGH = 1e-13, 1e-9
 _NOTHING = 1e-10
 """Load below which a contact counts as unloaded [N]."""
+
+_NEAR = 0.1
+"""Part of the forces on a roller that may be left at a place from which Newton's method begins at once."""
+
+_NO_APPROACH = 1e-290
+"""Approach in the place of none [m], whose power is a number."""
 
 _SOFT = 1e-13
 """Stiffness, over that of a contact, that holds rollers which nothing holds."""
@@ -126,6 +134,39 @@ class RollerLaws(NamedTuple):
     cone_film: NormalLaw
 
 
+@njit(error_model="numpy", fastmath=FAST)
+def _dry_line(
+    law: tuple[float, float, float],
+    approach: float,
+    turn: float,
+    levers: FloatArray,
+    profile: FloatArray,
+    sums: FloatArray,
+) -> None:
+    """Sums of a dry line, see `_line`, by C, damping and its time of a slice; without branches, slices side by side."""
+    each, damper, time = law
+    q = qb = k = kb = kbb = n = nb = nbb = 0.0
+    for i in range(levers.size):
+        lever = levers[i]
+        g = approach + turn * lever - profile[i]
+        on = 1.0 if g > 0.0 else 0.0
+        root = on * each * power(g if g > _NO_APPROACH else _NO_APPROACH, 1.0 / 9.0)
+        q += root * g
+        qb += root * g * lever
+        k += root
+        kb += root * lever
+        kbb += root * lever * lever
+        n += on
+        nb += on * lever
+        nbb += on * lever * lever
+    by_root = 10.0 / 9.0
+    sums[0], sums[1] = q, qb
+    sums[2], sums[3], sums[4] = by_root * k, by_root * kb, by_root * kbb
+    sums[5] = damper * n + time * sums[2]
+    sums[6] = damper * nb + time * sums[3]
+    sums[7] = damper * nbb + time * sums[4]
+
+
 @njit(error_model="numpy")
 def _line(
     coefficient: float,
@@ -139,22 +180,17 @@ def _line(
     sums: FloatArray,
 ) -> None:
     """Sums of a line at a relative displacement: Q, Q b; k, k b, k b b; the same of c; into `sums` (8,)."""
-    sums[:] = 0.0
     count = shape.levers.size
     approach = normal[0] * x + normal[1] * r
-    each, damper = coefficient / count, laws.damping / count
+    if film.table.shape[0] == 0:
+        law = (coefficient / count, laws.damping / count, laws.damping_time)
+        _dry_line(law, approach, turn, shape.levers, shape.profile, sums)
+        return
+    sums[:] = 0.0
     for i in range(count):
         lever = shape.levers[i]
-        g = approach + turn * lever - shape.profile[i]
-        if film.table.shape[0] > 0:
-            q, k, c = contact(film, g)
-            q, k, c = q / count, k / count, c / count
-        elif g > 0.0:
-            root = each * power(g, 1.0 / 9.0)
-            q, k = root * g, (10.0 / 9.0) * root
-            c = damper + laws.damping_time * k
-        else:
-            continue
+        q, k, c = contact(film, approach + turn * lever - shape.profile[i])
+        q, k, c = q / count, k / count, c / count
         sums[0] += q
         sums[1] += q * lever
         sums[2] += k
@@ -298,7 +334,7 @@ def _left(w: RollerWork, length: float) -> float:
     return left
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", forceinline=True)
 def place_roller(
     d: tuple[float, float, float],
     loads: FloatArray,
@@ -322,29 +358,33 @@ def place_roller(
         V at the beginning, and then where it is; NaN for a start from nothing.
     w : RollerWork
         Work space; stiffness and damping in `plane`.
-    out : array (19,)
+    out : array (28,)
         Written: forces on the inner ring without their sign, axial, radial [N], moment about the middle of the roller
         [N m]; loads of cone, cup, all ribs of the cone [N]; where along the roller the lines carry, cone and cup [m];
-        load of all ribs of the cup [N]; V; D; loads of the ribs.
+        load of all ribs of the cup [N]; V; D; loads of the ribs; S, by which V follows D. D and S of the last call are
+        read.
     """
     length = abs(shape.levers[-1])
     hard = laws.cup + laws.cone
     soft = _SOFT * 0.2 * hard
-    best = math.inf
-    for start in range(2):
+    # the roller goes with the ring as it did at the last call
+    for i in range(3):
+        for k in range(3):
+            place[i] += out[_SHARE + 3 * i + k] * (d[k] - out[12 + k])
+    size, error = 0.0, math.inf
+    if abs(place[0]) + abs(place[1]) + abs(place[2]) < math.inf:
+        size = _state(d, place, loads, shape, laws, w)
+        error = _left(w, length) / (size + _NOTHING)
+    if not error < _NEAR:
         for i in range(3):
             # every contact shares the approach in halves: rings that press have rollers that are pressed
-            w.trial[i] = place[i] if start == 0 else 0.5 * d[i]
-        if not abs(w.trial[0]) + abs(w.trial[1]) + abs(w.trial[2]) < math.inf:
-            continue
+            w.trial[i] = 0.5 * d[i]
         size = _state(d, w.trial, loads, shape, laws, w)
-        error = _left(w, length) / (size + _NOTHING)
-        if error < best:
-            best = error
-            out[9], out[10], out[11] = w.trial[0], w.trial[1], w.trial[2]
-    put(out[9:12], place)
+        if _left(w, length) / (size + _NOTHING) < error:
+            put(w.trial, place)
+        else:
+            size = _state(d, place, loads, shape, laws, w)
     found = False
-    size = _state(d, place, loads, shape, laws, w)
     for _ in range(_STEPS):
         left = _left(w, length)
         found = left <= _ROUGH * size + 10.0 * _NOTHING
@@ -391,6 +431,8 @@ def place_roller(
     out[7] = w.cup[1] / w.cup[0] if w.cup[0] > 0.0 else 0.0
     put(place, out[9:12])
     out[12], out[13], out[14] = d
+    for i in range(3):
+        put(w.share[i], out[_SHARE + 3 * i : _SHARE + 3 * i + 3])
     return found
 
 
@@ -421,6 +463,7 @@ def _matrices(shape: TaperedShape, w: RollerWork) -> None:
 def _answer(shape: TaperedShape, soft: float, length: float, w: RollerWork) -> None:
     """Stiffness and damping of a roller in balance."""
     w.plane[:] = 0.0
+    w.share[:] = 0.0
     carried = w.cone[0]
     for m in range(shape.ribs.levers.size):
         carried += 0.0 if shape.ribs.outer[m] else w.ribs[m, 0]
@@ -448,6 +491,33 @@ def _answer(shape: TaperedShape, soft: float, length: float, w: RollerWork) -> N
                     damping += w.share[m, i] * w.damped_outer[m, n] * w.share[n, j]
             w.plane[0, i, j] = stiffness
             w.plane[1, i, j] = damping
+
+
+@njit(error_model="numpy")
+def _on_ring(plane: FloatArray, c: float, s: float, radius: float, matrix: FloatArray) -> None:
+    """Add the symmetric matrix (3, 3) of a roller to the upper half of that of the ring (6, 6).
+
+    D = (x - R turn, c y + s z, turn), turn = c theta_z - s theta_y.
+    """
+    xx, xr, rr = plane[0, 0], 0.5 * (plane[0, 1] + plane[1, 0]), plane[1, 1]
+    x_turn = 0.5 * (plane[0, 2] + plane[2, 0]) - radius * xx
+    r_turn = 0.5 * (plane[1, 2] + plane[2, 1]) - radius * xr
+    turn = plane[2, 2] - radius * (plane[0, 2] + plane[2, 0]) + radius * radius * xx
+    matrix[0, 0] += xx
+    matrix[0, 1] += c * xr
+    matrix[0, 2] += s * xr
+    matrix[0, 4] -= s * x_turn
+    matrix[0, 5] += c * x_turn
+    matrix[1, 1] += c * c * rr
+    matrix[1, 2] += c * s * rr
+    matrix[1, 4] -= c * s * r_turn
+    matrix[1, 5] += c * c * r_turn
+    matrix[2, 2] += s * s * rr
+    matrix[2, 4] -= s * s * r_turn
+    matrix[2, 5] += c * s * r_turn
+    matrix[4, 4] += s * s * turn
+    matrix[4, 5] -= c * s * turn
+    matrix[5, 5] += c * c * turn
 
 
 @njit(error_model="numpy")
@@ -480,8 +550,8 @@ def tapered_force(
         Written: force [N], [N m], and -df/dpose, -df/dvelocity.
     places : array (Z, 3)
         Places of the rollers of the last call, or NaN; written.
-    rollers : array (Z, 19)
-        Written: see `place_roller`.
+    rollers : array (Z, 28)
+        What the last call wrote; written: see `place_roller`.
     w : RollerWork
         Work space.
     """
@@ -513,26 +583,16 @@ def tapered_force(
         if out[3] + out[5] <= 0.0:
             continue
         loaded += 1
-        # D by the pose: axial (1, 0, 0, 0, R s, -R c), radial (0, c, s, 0, 0, 0), rotation (0, 0, 0, 0, -s, c)
-        for m in range(3):
-            for a in range(6):
-                left = _by_pose(m, a, c, s, radius)
-                if left == 0.0:
-                    continue
-                force[a] -= left * out[m]
-                for n in range(3):
-                    for b in range(6):
-                        right = _by_pose(n, b, c, s, radius)
-                        stiffness[a, b] += left * w.plane[0, m, n] * right
-                        damping[a, b] += left * w.plane[1, m, n] * right
+        moment = out[2] - radius * out[0]
+        force[0] -= out[0]
+        force[1] -= c * out[1]
+        force[2] -= s * out[1]
+        force[4] += s * moment
+        force[5] -= c * moment
+        _on_ring(w.plane[0], c, s, radius, stiffness)
+        _on_ring(w.plane[1], c, s, radius, damping)
+    for matrix in (stiffness, damping):
+        for a in range(6):
+            for b in range(a):
+                matrix[a, b] = matrix[b, a]
     return loaded
-
-
-@njit(error_model="numpy")
-def _by_pose(m: int, a: int, c: float, s: float, radius: float) -> float:
-    """Derivative of entry m of D by entry a of the pose."""
-    if m == 0:
-        return 1.0 if a == 0 else (radius * s if a == 4 else (-radius * c if a == 5 else 0.0))
-    if m == 1:
-        return c if a == 1 else (s if a == 2 else 0.0)
-    return -s if a == 4 else (c if a == 5 else 0.0)

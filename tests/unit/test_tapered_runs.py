@@ -1,0 +1,136 @@
+"""Tapered roller bearings in runs in time: compiled code against the element in Python, and their work."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from ehdmaps.physics.rollers.tapered_catalogue import mirrored
+from mbs.bearings.tapered.tapered_bearing import TaperedElement, TaperedForce
+from mbs.bearings.tapered.tapered_block import FELT, TaperedBlock, tapered_accept, tapered_answer, tapered_powers
+from mbs.model.blocks import FOUND, IN_PYTHON, Answers, Member, Moment
+from mbs.model.elements import Operation
+from mbs.model.equilibrium import equilibrium
+from mbs.model.profiles import SpeedProfile
+from mbs.settings import Settings
+from mbs.transient.run import Options, run
+from tests.unit.test_tapered_scenes import GEOMETRY, O_PAIR, X_PAIR, model
+
+PLACE = np.array([12e-6, -6e-6, 3e-6, 0.0, 5e-5, -8e-5])
+RATE = np.array([1e-3, -2e-3, 1e-3, 0.0, 0.1, 0.2])
+ELEMENTS = [
+    TaperedElement("loaded", "a", "b", TaperedForce(GEOMETRY, 3.0, 1e-5), start_angle=0.2, axial_offset=5e-6),
+    TaperedElement("parted", "a", "b", TaperedForce(mirrored(GEOMETRY), 0.0, 1e-5), inner_spin=-0.5, outer_spin=0.2),
+    TaperedElement("other", "a", "b", TaperedForce(GEOMETRY, slices=5, profile="straight"), outer_spin=0.4),
+]
+
+
+@pytest.mark.parametrize("speed", [0.0, 900.0, -900.0])
+def test_compiled_block_is_the_element(speed):
+    """Three bearings at once, one with half of its rollers loaded: the same kernel and the same balance, to 1e-13 of
+    the forces on a roller; two steps, so that works of speed are there."""
+    block = TaperedBlock([Member(one, place, 5 * place) for place, one in enumerate(ELEMENTS)])
+    states = [one.advance(None, 0.9 * PLACE, 0.0 * RATE, Operation(speed))[1] for one in ELEMENTS]
+    block.begin(np.array([speed]))
+    block.resume(states)
+    arrays, sound = block.prepare(0, 1)
+    assert np.all(sound)
+    found = Answers(np.zeros(15), np.zeros((15, 15)), np.zeros(3, dtype=np.int64))
+    moment = Moment(0, 1e-5, speed, 0.3, 1.0, 1e3)
+    motion = np.array([np.tile(PLACE[FELT], 3), np.tile(RATE[FELT], 3)])
+    assert tapered_answer(arrays, moment, motion, found) == FOUND
+    tapered_accept(arrays, moment)
+    powers = np.zeros((3, 3))
+    tapered_powers(arrays, moment, motion, found, powers)
+    for place, one in enumerate(ELEMENTS):
+        theirs, after = one.advance(states[place], PLACE, RATE, Operation(speed, 0.3, 1e-5))
+        part = slice(5 * place, 5 * place + 5)
+        slopes = (theirs.stiffness + 1e3 * theirs.damping)[np.ix_(FELT, FELT)]
+        np.testing.assert_allclose(found.force[part], theirs.force[FELT], atol=1e-10 * np.abs(theirs.force).max())
+        np.testing.assert_allclose(found.slopes[part, part], slopes, atol=1e-9 * np.abs(slopes).max())
+        ours = block.states()[place]
+        told = after.dissipated, after.driven, after.stored
+        assert (ours.dissipated, ours.driven, ours.stored) == pytest.approx(told, rel=1e-8, abs=1e-12)
+        assert powers[place, :2] == pytest.approx(told[:2], rel=1e-8, abs=1e-12)
+        held = one.rollers(PLACE, Operation(speed, 0.3)).load[1] > 1e-6  # others lie anywhere
+        np.testing.assert_allclose(ours.last[held], after.last[held], rtol=1e-8, atol=1e-17)
+    loads = ELEMENTS[1].force.rollers(PLACE).load[0]
+    assert 2 < np.count_nonzero(loads) < loads.size
+    far = motion.copy()
+    far[0, 0] = -2e-3
+    assert tapered_answer(arrays, moment, far, found) == IN_PYTHON
+    assert tapered_answer(arrays, moment._replace(speed=3e4), motion, found) == IN_PYTHON
+
+
+def test_no_closed_path_gives_energy():
+    """All rollers part and come back on the way, at a speed whose loads stay: contacts store what the ring and the
+    turning cage do, by the trapezoidal rule over 2000 places; with dampers the same path takes energy."""
+    turn = np.linspace(0.0, 2.0 * math.pi, 2001)
+    path = np.zeros((turn.size, 6))
+    path[:, 0], path[:, 1], path[:, 2] = 25e-6 * np.cos(turn), 8e-6 * np.sin(2 * turn + 0.3), 5e-6 * np.sin(turn)
+    path[:, 4], path[:, 5] = 2e-4 * np.sin(turn + 1.0), 1e-4 * np.cos(2 * turn)
+    force = TaperedForce(GEOMETRY, damping_time=1e-5)
+    found = [force(pose, inner_speed=400.0) for pose in path]
+    loaded = [np.count_nonzero(force.rollers(pose, inner_speed=400.0).load[0]) for pose in path[::50]]
+    assert min(loaded) == 0 and max(loaded) == GEOMETRY.rollers
+    moved, mean = np.diff(path, axis=0), 0.5 * (np.array([f for f, _, _ in found[1:]]) + [f for f, _, _ in found[:-1]])
+    work = np.sum(mean * moved, axis=1)
+    assert abs(work.sum()) < 1e-5 * np.abs(work).sum()
+    taken = [step @ damping @ step for step, (_, _, damping) in zip(moved, found[1:], strict=True)]
+    assert min(taken) >= -1e-12 * max(taken) and max(taken) > 0.0
+
+
+def swung(pair, way, law="hertz:1.25e-5 s"):
+    """A preloaded rotor pushed 30 um along its axis, beyond its preload of 15 um, and 2 um aside, and let go."""
+    machine = model(law, **pair)
+    rest = equilibrium(machine.system, machine.operation)
+    start = rest.displacement.copy()
+    for name, push in (("rotor.x", way * 30e-6), ("rotor.y", 2e-6)):
+        start[machine.system.coordinates.index(name)] += push
+    return machine, start
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("pair", [O_PAIR, X_PAIR], ids=["O", "X"])
+def test_run_up_with_lift_off_is_the_same_in_python(pair):
+    """A row parts and comes back in O and X pairs. Both make the same steps to Newton's tolerance, 1e-10 of the forces;
+    energies are what contacts store, dampers take, and cage and speed bring in."""
+    machine, start = swung(pair, 1.0)
+    course, settings = SpeedProfile.ramp(300.0, 700.0, 2e-3), Settings(step=1e-5, sample=2e-5)
+    ours, theirs = (
+        run(machine.system, course, 2e-3, settings, displacement=start, options=Options(states=True, compiled=compiled))
+        for compiled in (True, False)
+    )
+    assert ours.compiled == ours.steps == theirs.steps == 200
+    moved = np.ptp(theirs.states.displacement, axis=0)
+    np.testing.assert_allclose(ours.states.displacement, theirs.states.displacement, atol=1e-8 * moved.max())
+    for one, other in zip(ours.energy.elements, theirs.energy.elements, strict=True):
+        assert one.told and other.told
+        assert [one.driven, one.dissipated, one.change] == pytest.approx(
+            [other.driven, other.dissipated, other.change], rel=1e-6, abs=1e-8 * ours.energy.through
+        )
+    axial = [np.abs(force[:, 0]) for force in ours.forces]
+    for force, forwards in zip(axial, theirs.forces, strict=True):
+        np.testing.assert_allclose(force, np.abs(forwards[:, 0]), atol=1e-6 * force.max())
+    # one of the rows has only what centrifugal loads leave, 20 N at its rib, and then more than its preload
+    gone = [force < 1e-2 * force.max() for force in axial]
+    returns = [force[np.argmax(one) :].max() > 1000.0 for one, force in zip(gone, axial, strict=True)]
+    assert any(0.05 < np.mean(one) < 0.9 and returned for one, returned in zip(gone, returns, strict=True))
+
+
+@pytest.mark.slow
+def test_energy_of_a_run_closes():
+    """Rows lift off and come back: the residual is the trapezoidal rule's, of second order: a fourth of the step leaves
+    a sixteenth."""
+    machine, start = swung(O_PAIR, -1.0)
+    left = []
+    for steps in (1000, 4000):
+        settings = Settings(step=0.01 / steps, sample=1e-4)
+        done = run(machine.system, SpeedProfile.ramp(300.0, 900.0, 0.01), 0.01, settings, displacement=start)
+        assert done.compiled == done.steps and all(one.told for one in done.energy.elements)
+        assert min(one.dissipated for one in done.energy.elements) > 0.0
+        left.append(abs(done.energy.relative_residual))
+    assert left[1] < 5e-4
+    assert left[0] > 8.0 * left[1]
