@@ -11,6 +11,8 @@
 | `linearisation` | the equations to first order with the oil that the film stores: slow motion, and any frequency |
 | `two_grids` | the ways to a solution, both grids, extrapolation and errors |
 | `solver` | `solve`: one contact in SI |
+| `roller_grid` | grids of a roller of finite length with its profile, and the dry contact on them |
+| `finite_roller` | `solve_roller`: the film of such a roller in SI |
 """
 
 from ehdmaps.point.solver import PointField, PointResponse, PointSolution, solve

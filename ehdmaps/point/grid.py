@@ -108,7 +108,7 @@ class PointGrid:
     @cached_property
     def areas(self) -> FloatArray:
         """Area of each node in the half, shape (n, m)."""
-        return np.outer(_widths(self.x), _widths(self.y))
+        return np.outer(node_widths(self.x), node_widths(self.y))
 
     @cached_property
     def weights(self) -> FloatArray:
@@ -146,7 +146,7 @@ def point_grid(ellipticity: float, scale: float, cells: Cells) -> PointGrid:
         Size of the grid.
     """
     ratio = float(elliptic_numbers(ellipticity).curvature_ratio)
-    x = scale * _graded(_size_along(cells.edge), -cells.inlet, OUTLET * cells.inlet, cells.along)
+    x = scale * nodes_along(cells.edge, cells.inlet, cells.along)
     side = max(1.7 * ellipticity, ellipticity + 1.0, 0.8 * cells.inlet / math.sqrt(ratio))
     y = scale * _graded(_size_across(ellipticity, cells.edge), 0.0, side, cells.across)
     return grid_on(ellipticity, scale, x, y)
@@ -165,8 +165,23 @@ def grid_on(ellipticity: float, scale: float, x: FloatArray, y: FloatArray) -> P
         Nodes along, from before the contact to behind it, and across, from 0 [a].
     """
     numbers = elliptic_numbers(ellipticity)
-    kernel = _kernel(x, y, float(numbers.pressure_factor) / math.pi)
+    kernel = grid_kernel(x, y, float(numbers.pressure_factor) / math.pi)
     return PointGrid(ellipticity, scale, x, y, kernel, far_tail(x, y, float(numbers.curvature_ratio)))
+
+
+def nodes_along(edge: float, inlet: float, cells: int) -> FloatArray:
+    """Nodes along, from before the contact to behind it [a].
+
+    Parameters
+    ----------
+    edge : float
+        Size of the cells where the dry contact ends, see `Cells`.
+    inlet : float
+        Length of the inlet before the contact centre.
+    cells : int
+        Number of cells.
+    """
+    return _graded(_size_along(edge), -inlet, OUTLET * inlet, cells)
 
 
 def _size_along(edge: float) -> Callable[[FloatArray], FloatArray]:
@@ -204,18 +219,31 @@ def _graded(size: Callable[[FloatArray], FloatArray], low: float, high: float, c
     return np.asarray(nodes)
 
 
-def _widths(nodes: FloatArray) -> FloatArray:
-    """Half the cells on both sides of each node."""
+def node_widths(nodes: FloatArray) -> FloatArray:
+    """Half the cells on both sides of each node.
+
+    Parameters
+    ----------
+    nodes : ndarray, shape (k,)
+        Rising places.
+    """
     half = 0.5 * np.diff(nodes)
     return np.asarray(np.r_[half, 0.0] + np.r_[0.0, half])
 
 
 @njit(fastmath=True)
-def _kernel(x: FloatArray, y: FloatArray, factor: float) -> FloatArray:
+def grid_kernel(x: FloatArray, y: FloatArray, factor: float) -> FloatArray:
     """Deflection at each node by the hat of each node and by its image in the other half, times a factor.
 
     Hats at the ends of the grid are half ones: beyond, they fall to zero over a small part of a cell. G is even in both
     distances: each pair of places along, and of places across, is looked at once.
+
+    Parameters
+    ----------
+    x, y : ndarray, shape (n,), (m,)
+        Nodes along and across; y begins at 0.
+    factor : float
+        Factor of the deflection.
     """
     n, m = x.size, y.size
     along, across = np.empty(n + 2), np.empty(m + 1)

@@ -17,7 +17,7 @@ from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.physics.solution import Status
 from ehdmaps.point.equations import Equations, Factors, own_slopes
 from ehdmaps.point.grid import PointGrid
-from ehdmaps.point.problem import PointProblem, start_film
+from ehdmaps.point.problem import FilmProblem, PointProblem, start_film
 from ehdmaps.point.reynolds import Balance, balance, changed
 
 TOLERANCE = 1e-5
@@ -54,7 +54,7 @@ class PointState:
 
     Attributes
     ----------
-    problem : PointProblem
+    problem : FilmProblem
         What was solved.
     grid : PointGrid
         Grid of the state.
@@ -74,7 +74,7 @@ class PointState:
         Factors of them, or of a step nearby.
     """
 
-    problem: PointProblem
+    problem: FilmProblem
     grid: PointGrid
     pressure: FloatArray
     film: FloatArray
@@ -91,12 +91,12 @@ class PointState:
         return self.height - self.problem.wedge * self.grid.elasticity * self.grid.tail.deflection
 
 
-def newton(problem: PointProblem, grid: PointGrid, pressure: FloatArray, height: float) -> PointState:
+def newton(problem: FilmProblem, grid: PointGrid, pressure: FloatArray, height: float) -> PointState:
     """Solve a contact on a grid from a start.
 
     Parameters
     ----------
-    problem : PointProblem
+    problem : FilmProblem
         The contact.
     grid : PointGrid
         The grid.
@@ -165,9 +165,6 @@ def newton(problem: PointProblem, grid: PointGrid, pressure: FloatArray, height:
 def starts(problem: PointProblem, grid: PointGrid, thickness: tuple[float, ...]) -> Iterator[tuple[FloatArray, float]]:
     """Pressures to start from, each with a film of so many times what a formula gives, and its H0.
 
-    Under the contact they are those of Hertz, about it those of a rigid paraboloid in the gap that these leave, so that
-    nearly all nodes with a pressure have one from the first step on.
-
     Parameters
     ----------
     problem : PointProblem
@@ -177,15 +174,33 @@ def starts(problem: PointProblem, grid: PointGrid, thickness: tuple[float, ...])
     thickness : tuple of float
         Factors on the film.
     """
-    hertz = grid.hertz_pressure()
-    gap = grid.deflection(hertz) + grid.parabola
-    inside, unknown = hertz > 0.0, grid.inner | grid.tail.far
-    touching = float(np.min(gap[inside]))
     for factor in thickness:
-        film = factor * start_film(problem)
-        about = problem.wedge * grid.tail.about / np.maximum(gap - touching + film, film) ** 2
-        pressure = np.where(unknown, np.maximum(hertz, np.minimum(about, _MOST_ABOUT)), 0.0)
-        yield pressure, film - float(np.min((grid.deflection(pressure) + grid.parabola)[inside]))
+        yield start_about(problem, grid, grid.hertz_pressure(), factor * start_film(problem))
+
+
+def start_about(problem: FilmProblem, grid: PointGrid, dry: FloatArray, film: float) -> tuple[FloatArray, float]:
+    """Pressures to start from by those of the dry contact, and H0.
+
+    About the contact they are those of a rigid paraboloid in the gap that the dry ones leave, so that nearly all nodes
+    with a pressure have one from the first step on.
+
+    Parameters
+    ----------
+    problem : FilmProblem
+        The contact.
+    grid : PointGrid
+        The grid.
+    dry : ndarray, shape (n, m)
+        Pressures of the dry contact.
+    film : float
+        Film to start with [a^2/Rx].
+    """
+    gap = grid.deflection(dry) + grid.parabola
+    inside, unknown = dry > 0.0, grid.inner | grid.tail.far
+    touching = float(np.min(gap[inside]))
+    about = problem.wedge * grid.tail.about / np.maximum(gap - touching + film, film) ** 2
+    pressure = np.where(unknown, np.maximum(dry, np.minimum(about, _MOST_ABOUT)), 0.0)
+    return pressure, film - float(np.min((grid.deflection(pressure) + grid.parabola)[inside]))
 
 
 def _with_pressure(grid: PointGrid, found: Balance, pressure: FloatArray) -> BoolArray:

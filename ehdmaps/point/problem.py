@@ -15,12 +15,31 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 from ehdmaps.physics.isotherm import Isotherm
 from ehdmaps.physics.point.ellipse import EllipticNumbers, elliptic_numbers
 
 _numbers = lru_cache(maxsize=64)(elliptic_numbers)
+
+
+class FilmProblem(Protocol):
+    """Groups that Newton's method asks of a contact."""
+
+    @property
+    def isotherm(self) -> Isotherm:
+        """Viscosity and density over P: pressures in p_H."""
+        ...
+
+    @property
+    def load(self) -> float:
+        """Integral of P."""
+        ...
+
+    @property
+    def wedge(self) -> float:
+        """Wedge number lambda."""
+        ...
 
 
 class PointProblem(NamedTuple):

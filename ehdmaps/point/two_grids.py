@@ -197,8 +197,27 @@ def _solved_on(problem: PointProblem, resolution: Resolution, previous: PointGro
         if not state.status.usable:
             return PointGroups(state.status, steps, resolution)
         states.append(state)
-    coarse, fine = (numbers_of(state) for state in states)
-    left = resolution.left
+    before, behind = (numbers_of(state) for state in states)
+    values, errors = extrapolated(before, behind, resolution.left, states[1], cusp=problem.isotherm.alpha > 0.0)
+    return PointGroups(Status.CONVERGED, steps, resolution, values, errors, states[0], states[1])
+
+
+def extrapolated(
+    coarse: PointNumbers, fine: PointNumbers, left: float, state: PointState, *, cusp: bool
+) -> tuple[PointNumbers, PointNumbers]:
+    """Numbers by those of two grids, and their errors relative to them.
+
+    Parameters
+    ----------
+    coarse, fine : PointNumbers
+        Numbers on both grids.
+    left : float
+        What extrapolation adds over their difference, `Resolution.left`.
+    state : PointState
+        The state on the finer one.
+    cusp : bool
+        Whether pressures may have a spike.
+    """
     compliance = fine.compliance + left * (fine.compliance - coarse.compliance)
     loss = fine.loss + left * (fine.loss - coarse.loss)
     values = PointNumbers(*(b + left * (b - a) for a, b in zip(coarse, fine, strict=True)))
@@ -214,11 +233,11 @@ def _solved_on(problem: PointProblem, resolution: Resolution, previous: PointGro
     )
     # the dry contact is exact: what is left of the compliance has its error
     film_compliance = errors.compliance * abs(values.compliance / values.film_compliance)
-    top = states[1].pressure
+    top = state.pressure
     row = top[:, int(np.unravel_index(np.argmax(top), top.shape)[1])]
-    between = peak_sampling_error(grids[1].x, row, cusp=problem.isotherm.alpha > 0.0)
+    between = peak_sampling_error(state.grid.x, row, cusp=cusp)
     errors = errors._replace(film_compliance=film_compliance, max_pressure=max(errors.max_pressure, between))
-    return PointGroups(Status.CONVERGED, steps, resolution, values, errors, states[0], states[1])
+    return values, errors
 
 
 def responses(groups: PointGroups, frequencies: FloatArray) -> tuple[ComplexArray, FloatArray]:
@@ -250,13 +269,28 @@ def numbers_of(state: PointState) -> PointNumbers:
     state : PointState
         A state that is solved.
     """
-    problem, grid = state.problem, state.grid
+    problem = state.problem
+    assert isinstance(problem, PointProblem)  # others have no closed form of the dry contact
+    return numbers_beside(state, problem.dry_approach, problem.dry_compliance)
+
+
+def numbers_beside(state: PointState, dry_approach: float, dry_compliance: float) -> PointNumbers:
+    """Numbers of a contact on one grid beside the dry one.
+
+    Parameters
+    ----------
+    state : PointState
+        A state that is solved.
+    dry_approach, dry_compliance : float
+        Approach of the dry contact [a^2/Rx], and its derivative by the load.
+    """
+    grid = state.grid
     compliance, loss = Tangent.of(state).slow()
     return PointNumbers(
-        film_offset=state.datum + problem.dry_approach,
+        film_offset=state.datum + dry_approach,
         compliance=compliance,
         loss=loss,
-        film_compliance=compliance - problem.dry_compliance,
+        film_compliance=compliance - dry_compliance,
         stiffness=1.0 / compliance,
         damping=loss / compliance**2,
         central_film=float(CubicSpline(grid.x, state.film[:, 0])(0.0)),
@@ -267,7 +301,17 @@ def numbers_of(state: PointState) -> PointNumbers:
 
 def _ladders(problem: PointProblem) -> tuple[float, float, float]:
     """Scale of the grid, size of its cells at the edge, and its inlet over the usual one, by the film's thickness."""
-    film = start_film(problem)
+    return ladder(start_film(problem))
+
+
+def ladder(film: float) -> tuple[float, float, float]:
+    """Scale of a grid, size of its cells at the edge, and its inlet over the usual one, by a film.
+
+    Parameters
+    ----------
+    film : float
+        Film that a formula gives [a^2/Rx].
+    """
     width = WIDE * math.sqrt(2.0 * film)
     if width > 1.0:
         return SCALE_STEP ** math.ceil(math.log(width) / math.log(SCALE_STEP)), 1.0, 1.0
@@ -277,7 +321,7 @@ def _ladders(problem: PointProblem) -> tuple[float, float, float]:
 def _tries(problem: PointProblem, grid: PointGrid, known: PointState | None) -> Iterator[PointState]:
     """Solutions by one way after another, to be taken until one of them is."""
     if known is not None:
-        yield newton(problem, grid, *_carried_over(known, grid))
+        yield newton(problem, grid, *carried_over(known, grid))
     for start in starts(problem, grid, THICKNESSES):
         yield newton(problem, grid, *start)
     for factor in MARCH:
@@ -301,8 +345,16 @@ def _marched(problem: PointProblem, grid: PointGrid, factor: float) -> Iterator[
     yield state if count == steps else replace(state, status=Status.STAGNATED)
 
 
-def _carried_over(state: PointState, grid: PointGrid) -> tuple[FloatArray, float]:
-    """Pressure and H0 of a state on another grid."""
+def carried_over(state: PointState, grid: PointGrid) -> tuple[FloatArray, float]:
+    """Pressure and H0 of a state on another grid.
+
+    Parameters
+    ----------
+    state : PointState
+        The state.
+    grid : PointGrid
+        The other grid.
+    """
     if state.grid is grid:
         return state.pressure, state.height
     spline = RectBivariateSpline(state.grid.x, state.grid.y, state.pressure)

@@ -1,0 +1,160 @@
+"""Crowned and finite rollers: solved films beside slices with films of lines, and beside those of the ellipse.
+
+Run: python -m tests.benchmarks.bench_finite_rollers [ellipses | ends]
+
+The inner contact of NU308, FVA 3, 60 degC, 2 m/s. `ellipses` has rollers that are crowned all along, by the depth at
+their ends; the ellipse of Hertz is longer than the roller where "b" is above 1. `ends` has profiles with a straight
+middle that is rounded towards the ends, by its length and the depth at the ends.
+
+Slices are 41 of ISO/TS 16281, each with the film of a line from the film table; their load per length is that of their
+own law. Differences are those of slices, and of the ellipse, from the solved roller [%]: film in the middle, smallest
+film, film offset (dry less lubricated approach), dry stiffness, stiffness, damping. "error" is what the solver states
+of the smallest film and of the damping, "end" the smallest film over the smallest one across the middle, and its place
+over half the length.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import brentq
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.jobs.make.table_law import table_map
+from ehdmaps.physics.bearing import BEARINGS
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.point.ellipse import Ellipse
+from ehdmaps.physics.solids import STEEL
+from ehdmaps.physics.surface import CrownedProfile, iso_profile
+from ehdmaps.point import solve
+from ehdmaps.point.finite_roller import FiniteRoller, RollerSolution, solve_roller
+from mbs.bearings.films import MapFilms
+from mbs.bearings.laws import roller_coefficient
+
+GEOMETRY, OIL, SPEED, KELVIN = BEARINGS["NU308"], Lubricant.named("FVA3"), 2.0, 333.15
+LENGTH, SLICES, DRY_STEP = GEOMETRY.roller_length, 41, 1e-8
+DROPS, LOADS = (1e-6, 5e-6, 20e-6, 60e-6, 200e-6, 600e-6), (100.0, 500.0, 2000.0)
+STRAIGHT = ((0.6, 10e-6), (0.9, 10e-6), (0.96, 10e-6), (0.97, 50e-6))
+
+
+class Numbers(NamedTuple):
+    """Numbers of a contact, solved or by slices or an ellipse."""
+
+    central_film: float
+    minimum_film: float
+    film_offset: float
+    dry_stiffness: float
+    stiffness: float
+    damping: float
+
+
+class Slices:
+    """A contact by slices with films of lines."""
+
+    def __init__(self) -> None:
+        speeds, kelvin = (0.9 * SPEED, 1.1 * SPEED), (KELVIN, KELVIN)
+        emap = table_map(GEOMETRY, OIL, (1.0, 2e6), speeds, kelvin)
+        self._law = emap.law("inner", "clamp").at(SPEED, KELVIN)
+        self._films = MapFilms(emap)
+        self._places = ((np.arange(SLICES) + 0.5) / SLICES - 0.5) * LENGTH
+        self._coefficient = 2.0 ** (10.0 / 9.0) * roller_coefficient(LENGTH, STEEL) / LENGTH
+
+    def numbers(self, profile: Callable[[FloatArray], FloatArray], load: float) -> Numbers:
+        """Numbers of a profile under a load."""
+        depth, each = profile(self._places), LENGTH / SLICES
+
+        def films(approach: float) -> FloatArray:
+            return np.asarray(self._law.evaluate(approach - depth, np.zeros(SLICES))[:3]) * each
+
+        def dry(approach: float) -> float:
+            return float(np.sum(np.maximum(approach - depth, 0.0) ** (10.0 / 9.0))) * self._coefficient * each
+
+        with_film = brentq(lambda at: float(np.sum(films(at)[0])) - load, -50e-6, 500e-6, xtol=1e-14)
+        without = brentq(lambda at: dry(at) - load, 0.0, 500e-6, xtol=1e-14)
+        w, k, c = films(with_film)
+        state = self._films.state(0, w / each, SPEED, KELVIN)
+        carries = w > 1e-3 * np.max(w)
+        return Numbers(
+            float(state.central_film[SLICES // 2]),
+            float(np.min(state.minimum_film[carries])),
+            without - with_film,
+            (dry(without + DRY_STEP) - dry(without - DRY_STEP)) / (2.0 * DRY_STEP),
+            float(np.sum(k)),
+            float(np.sum(c)),
+        )
+
+
+def solved(profile: Callable[[FloatArray], FloatArray], load: float) -> RollerSolution:
+    """The roller with its profile."""
+    contact = GEOMETRY.contacts(STEEL, "iso16281")[0]
+    roller = FiniteRoller(contact.radius, LENGTH, contact.reduced_modulus, profile)
+    return solve_roller(roller, OIL, load, SPEED, KELVIN)
+
+
+def of_ellipse(radius: float, load: float) -> tuple[Numbers | None, float]:
+    """The ellipse of a crown, and its half-length over that of the roller."""
+    contact = GEOMETRY.contacts(STEEL, "iso16281")[0]
+    ellipse = Ellipse(contact.radius, radius, contact.reduced_modulus)
+    share = float(ellipse.semi_axes(load)[1]) / (0.5 * LENGTH)
+    found = solve(ellipse, OIL, load, SPEED, KELVIN)
+    if not found.status.usable:
+        return None, share
+    dry = float(ellipse.stiffness(load))
+    return Numbers(
+        found.central_film, found.minimum_film, found.film_offset, dry, found.stiffness, found.damping
+    ), share
+
+
+def line(label: str, found: RollerSolution, others: list[Numbers | None]) -> str:
+    """A row: what was solved, and how far others are from it."""
+    if not found.status.usable:
+        return f"{label}{found.reason}"
+    own = Numbers(
+        found.central_film, found.minimum_film, found.film_offset, found.dry_stiffness, found.stiffness, found.damping
+    )
+    end = f"{100.0 * (found.minimum_film / found.middle_film - 1.0):+6.1f} {found.minimum_place / (0.5 * LENGTH):5.2f}"
+    text = f"{label}{1e6 * own.central_film:7.4f} {end} {100.0 * found.minimum_film_error:5.1f} "
+    text += f"{100.0 * found.damping_error:5.1f} "
+    for other in others:
+        shares = [math.nan] * 6 if other is None else [100.0 * (b / a - 1.0) for a, b in zip(own, other, strict=True)]
+        text += " |" + "".join(f"{share:+7.1f}" for share in shares)
+    return text
+
+
+HEAD = "   film     end place error error   |" + "     hc   hmin offset  k_dry      k      c"
+
+
+def main(asked: list[str]) -> None:
+    """Print both tables, or the one that is asked for."""
+    slices = Slices()
+    if asked in ([], ["ellipses"]):
+        print("crowned all along; slices, then ellipse")
+        print(f"{'drop um':>7} {'N':>5} {'GPa':>5} {'b':>5} {HEAD} |{HEAD.partition('|')[2]}")
+        for drop in DROPS:
+            profile = CrownedProfile.of_drop(drop, LENGTH)
+            for load in LOADS:
+                found = solved(profile, load)
+                ellipse, share = of_ellipse(profile.radius, load)
+                label = f"{1e6 * drop:7.0f} {load:5.0f} {1e-9 * found.max_pressure:5.2f} {share:5.2f} "
+                print(line(label, found, [slices.numbers(profile, load), ellipse]))
+    if asked in ([], ["ends"]):
+        print("straight in the middle, rounded towards the ends; slices")
+        print(f"{'straight':>8} {'drop um':>7} {'N':>5} {'GPa':>5} {HEAD}")
+        for load in LOADS:
+            found = solved(lambda y: iso_profile(y, GEOMETRY.roller_diameter, LENGTH), load)
+            numbers = slices.numbers(lambda y: iso_profile(y, GEOMETRY.roller_diameter, LENGTH), load)
+            print(line(f"{'ISO':>8} {'':7} {load:5.0f} {1e-9 * found.max_pressure:5.2f} ", found, [numbers]))
+        for share, drop in STRAIGHT:
+            profile = CrownedProfile.of_drop(drop, LENGTH, share * LENGTH)
+            for load in LOADS:
+                found = solved(profile, load)
+                label = f"{share:8.2f} {1e6 * drop:7.0f} {load:5.0f} {1e-9 * found.max_pressure:5.2f} "
+                print(line(label, found, [slices.numbers(profile, load)]))
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
