@@ -86,6 +86,9 @@ def njit(function: Callable[..., Any] | None = None, /, *, cache: bool = True, *
     """
     if function is None:
         return functools.partial(njit, cache=cache, **options)
+    # `_nrt=False` leaves out the counts of references to arrays, which cost as much as a kernel that makes none; where
+    # nothing is said numba takes it from the function that calls
+    options.setdefault("_nrt", True)
     folder = _folder() if cache else None
     if folder is None:
         return numba.njit(**options)(function)

@@ -8,7 +8,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.compiled import njit
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False)
 def port_motion(transform: FloatArray, q: FloatArray, v: FloatArray, motion: FloatArray) -> None:
     """Displacement and velocity of all ports, into `motion` (2, m), from those of the coordinates.
 
@@ -33,7 +33,7 @@ def port_motion(transform: FloatArray, q: FloatArray, v: FloatArray, motion: Flo
         motion[1, i] = rate
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False)
 def unbalanced(
     mass: FloatArray,
     damping: FloatArray,
@@ -79,7 +79,7 @@ def unbalanced(
     return math.sqrt(size), math.sqrt(max(by_load, by_contact, by_inertia))
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False)
 def eliminate(matrix: FloatArray, right: FloatArray) -> bool:
     """Gaussian elimination with partial pivoting, in place: no allocation; False if singular or not finite.
 

@@ -38,8 +38,11 @@ from mbs.transient.run_arrays import Course, Energies, Linear, Numbers, Records,
 DONE, TOO_LARGE = FOUND, 3
 """How `advance` ended, besides `NO_SOLUTION` and `IN_PYTHON`: all steps made; error above the tolerance."""
 
+_OPTIONS: Any = {"error_model": "numpy", "_nrt": False}
+"""See `ehdmaps.compiled.njit`."""
 
-@njit(error_model="numpy", fastmath=FAST)
+
+@njit(error_model="numpy", fastmath=FAST, _nrt=False)
 def _times(matrix: FloatArray, x: FloatArray, out: FloatArray) -> None:
     """Matrix times vector."""
     for i in range(matrix.shape[0]):
@@ -50,7 +53,7 @@ def _times(matrix: FloatArray, x: FloatArray, out: FloatArray) -> None:
         out[i] = total
 
 
-@njit(error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST, _nrt=False)
 def _expanded_times(matrices: FloatArray, by: float, x: FloatArray, out: FloatArray) -> None:
     """(M0 + by M1 + by^2 M2) times vector."""
     for i in range(matrices.shape[1]):
@@ -63,7 +66,7 @@ def _expanded_times(matrices: FloatArray, by: float, x: FloatArray, out: FloatAr
         out[i] = t0 + by * (t1 + by * t2)
 
 
-@njit(error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST, _nrt=False)
 def _expanded(matrices: FloatArray, by: float, out: FloatArray) -> None:
     """M0 + by M1 + by^2 M2."""
     for i in range(out.shape[0]):
@@ -72,7 +75,7 @@ def _expanded(matrices: FloatArray, by: float, out: FloatArray) -> None:
             row[j] = r0[j] + by * (r1[j] + by * r2[j])
 
 
-@njit(error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST, _nrt=False)
 def _size(matrix: FloatArray, x: FloatArray) -> float:
     """Root of x^T M x."""
     total = 0.0
@@ -85,7 +88,7 @@ def _size(matrix: FloatArray, x: FloatArray) -> float:
     return math.sqrt(max(total, 0.0))
 
 
-@njit(error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST, _nrt=False)
 def _norm(x: FloatArray) -> float:
     """Euclidean norm."""
     total = 0.0
@@ -120,7 +123,7 @@ def all_answer(blocks: tuple[Any, ...], moment: Moment, motion: FloatArray, answ
     return FOUND
 
 
-@overload(all_answer, jit_options={"error_model": "numpy"})
+@overload(all_answer, jit_options=_OPTIONS)
 def _all_answer(blocks: Any, moment: Any, motion: Any, answers: Any) -> Callable[..., int]:
     """Compile for the types of some blocks: the first one, and then the rest likewise."""
     if len(blocks) == 0:
@@ -156,7 +159,7 @@ def all_accept(blocks: tuple[Any, ...], moment: Moment) -> None:
             accept(block, moment)
 
 
-@overload(all_accept, jit_options={"error_model": "numpy"})
+@overload(all_accept, jit_options=_OPTIONS)
 def _all_accept(blocks: Any, moment: Any) -> Callable[..., None]:
     """Compile for the types of some blocks: the first one, and then the rest likewise."""
     if len(blocks) == 0:
@@ -196,7 +199,7 @@ def all_powers(blocks: tuple[Any, ...], moment: Moment, motion: FloatArray, answ
             powers(block, moment, motion, answers, out)
 
 
-@overload(all_powers, jit_options={"error_model": "numpy"})
+@overload(all_powers, jit_options=_OPTIONS)
 def _all_powers(blocks: Any, moment: Any, motion: Any, answers: Any, out: Any) -> Callable[..., None]:
     """Compile for the types of some blocks: the first one, and then the rest likewise."""
     if len(blocks) == 0:
@@ -220,7 +223,7 @@ def _all_powers(blocks: Any, moment: Any, motion: Any, answers: Any, out: Any) -
     return first_and_rest
 
 
-@njit(error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST, _nrt=False)
 def _account(
     linear: Linear,
     numbers: Numbers,
@@ -264,7 +267,7 @@ def _account(
         energies.lost[part] += h * power
 
 
-@njit(error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST, _nrt=False)
 def _jacobian(slopes: FloatArray, receptance: FloatArray, alone: int, out: FloatArray) -> None:
     """1 + (by_q K + by_v C) R; slopes are zero but for the elements' own, R is diagonal for what is alone."""
     m = out.shape[0]
@@ -282,7 +285,7 @@ def _jacobian(slopes: FloatArray, receptance: FloatArray, alone: int, out: Float
                     row[j] += slope * by[j]
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False)
 def observe(state: State, records: Records, row: int) -> None:
     """Record the state.
 

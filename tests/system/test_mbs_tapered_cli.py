@@ -14,7 +14,7 @@ from ehdmaps.jobs.make.table_law import table_map
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.rollers.tapered_catalogue import tapered_boundary, tapered_estimate
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
-from mbs.bearings.balls.ball_kernel import contact
+from mbs.bearings.balls.normal_law import contact
 from mbs.bearings.tapered.line_film import LOADS, cylinder_of, line_film
 from mbs.bearings.tapered.reference_load import reference_load
 from mbs.bearings.tapered.tapered_bearing import TaperedForce

@@ -9,7 +9,7 @@ import pytest
 
 from mbs import assemble, read_scene
 from mbs.bearings.balls.ball_block import FELT, BallBlock, balls_accept, balls_answer
-from mbs.bearings.balls.ball_kernel import contact
+from mbs.bearings.balls.normal_law import contact
 from mbs.model.blocks import FOUND, Answers, Member, Moment
 from mbs.model.elements import Operation
 

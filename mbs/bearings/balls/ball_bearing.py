@@ -32,16 +32,18 @@ from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.physics.solids import STEEL, Material
 from mbs.bearings.balls.ball_kernel import (
+    COLUMNS,
     NO_BALANCE,
     NOT_FINITE,
+    START,
     TOO_FAR,
     BallShape,
     ball_force,
-    load_approach,
-    nothing_held,
+    write_angles,
 )
 from mbs.bearings.balls.ball_speed import ball_loads, rolling
 from mbs.bearings.balls.laws import BallLaw
+from mbs.bearings.balls.normal_law import load_approach, nothing_held
 from mbs.model.elements import Excitation, Forces, OnRings, Operation, Port
 
 FASTEST = 2e4
@@ -52,8 +54,6 @@ NEGLIGIBLE = 1e-11
 
 HARMONICS = 3
 """Multiples of the passing frequency of the balls that are worth following."""
-
-_COLUMNS = 16
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,8 +133,8 @@ class BallForce:
         self._places = 2.0 * math.pi * np.arange(geometry.balls) / geometry.balls
         self.directions = np.cos(self._places), np.sin(self._places)
         self._kernel = ball_force if compiled else in_python(ball_force)
-        self._centres = np.full((geometry.balls, 2), np.nan)
-        self._balls = np.zeros((geometry.balls, _COLUMNS))
+        self._centres = np.full((geometry.balls, START), np.nan)
+        self._balls = np.zeros((geometry.balls, COLUMNS))
         self._out = np.zeros(6), np.zeros((6, 6)), np.zeros((6, 6))
         self._rest = (0.0, 0.0)
         self.held = nothing_held()
@@ -239,7 +239,7 @@ class BallForce:
 
     @property
     def last_balls(self) -> FloatArray:
-        """Rows that `place_ball` wrote of each ball at the last call, shape (Z, 16)."""
+        """Rows that `place_ball` wrote of each ball at the last call, shape (Z, COLUMNS)."""
         return self._balls
 
     def kernel_arguments(
@@ -282,6 +282,7 @@ class BallForce:
         if found < 0:
             self._centres[:] = np.nan
             self._refuse(found, place, cage_angle)
+        write_angles(self._balls)
         return self._out
 
     def _refuse(self, found: int, pose: FloatArray, cage_angle: float) -> None:

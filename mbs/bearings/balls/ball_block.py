@@ -20,18 +20,18 @@ from ehdmaps.errors import EhdmapsError
 from mbs.bearings.balls.ball_bearing import NEGLIGIBLE
 from mbs.bearings.balls.ball_element import BallStates, MachineBalls
 from mbs.bearings.balls.ball_kernel import (
-    HELD,
+    COLUMNS,
     NO_BALANCE,
+    START,
     TOO_FAR,
     BallShape,
-    NormalLaw,
     ball_force,
-    contact,
-    load_approach,
+    write_angles,
 )
 from mbs.bearings.balls.ball_memory import SPRINGS, FilmsOfBalls, go_on, hold, springs_at
 from mbs.bearings.balls.ball_speed import ball_loads, dry_energy, mean_angles, rolling, speed_work, turned_by
 from mbs.bearings.balls.laws import NODES, BallLaw
+from mbs.bearings.balls.normal_law import HELD, NormalLaw, contact, load_approach
 from mbs.bearings.speed_tables import Course, CourseOfFilms, FilmBlock, Made, Prepared, SpeedWindow, course_of, shared
 from mbs.model.blocks import FOUND, IN_PYTHON, NO_SOLUTION, Answers, Kind, Member, Moment
 
@@ -102,8 +102,8 @@ class Balls(NamedTuple):
         What `ball_loads` takes.
     cos, sin : array (bearings, Z)
         Directions of the balls in the cage.
-    centres, rows : array (bearings, Z, 2), (bearings, Z, 16)
-        Places of the balls, and what `place_ball` writes of each, at the last answer.
+    centres, rows : array (bearings, Z, START), (bearings, Z, COLUMNS)
+        Starts of the balls, and what `place_ball` writes of each, at the last answer.
     cages : array (bearings,)
         Speed of the cage by that of the system, of the step before.
     rests : array (bearings,)
@@ -114,10 +114,14 @@ class Balls(NamedTuple):
         What `speed_work` keeps of the last step, its time [s], and its work by that time [W].
     relaxes : array (bearings,), of bool
         Whether films have a memory.
-    held, forces, springs, approaches : array (bearings, Z, 2, HELD), (..., SPRINGS), (..., SPRINGS + 1), (..., 2)
-        What contacts with memory hold over the step, and their states after the last one that was made.
+    held, passed : array (bearings, Z, 2, HELD), (bearings, Z, 2, SPRINGS, 2)
+        What contacts with memory hold over the step, see `mbs.bearings.balls.ball_memory.hold`.
+    forces, springs, approaches : array (bearings, Z, 2, SPRINGS), (..., SPRINGS + 1), (..., 2)
+        Their states after the last step that was made.
     clock : array (2,)
         Times at the end of that step, and of the step for which they hold [s].
+    rooms, matrices : array (3, 6), (2, 6, 6)
+        Room for a bearing's pose, numbers and force, and for its stiffness and damping.
     films : BallFilmTables
         Laws of the contacts.
     course : Course
@@ -148,15 +152,18 @@ class Balls(NamedTuple):
     works: FloatArray
     relaxes: BoolArray
     held: FloatArray
+    passed: FloatArray
     forces: FloatArray
     springs: FloatArray
     approaches: FloatArray
     clock: FloatArray
+    rooms: FloatArray
+    matrices: FloatArray
     films: BallFilmTables
     course: Course
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False, forceinline=True)
 def _blend(films: BallFilmTables, film: int, node: int, weight: float) -> None:
     """Bring the laws in use to a place between two nodes."""
     if films.in_use[film, 0] == node and films.in_use[film, 1] == weight:
@@ -177,7 +184,7 @@ def _blend(films: BallFilmTables, film: int, node: int, weight: float) -> None:
         table[i] = low[i] + weight * (high[i] - low[i])
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False, forceinline=True)
 def _law_of(films: BallFilmTables, film: int, side: int) -> NormalLaw:
     """The law in use of a side."""
     n = films.current[film, side]
@@ -185,27 +192,27 @@ def _law_of(films: BallFilmTables, film: int, side: int) -> NormalLaw:
     return NormalLaw(n[0], n[1], n[2], n[3], n[4], n[5], n[6], 0.0, 0.0, 0.0, table)
 
 
-@njit(error_model="numpy")
-def _read_springs(films: BallFilmTables, film: int, side: int, approach: float, out: FloatArray) -> None:
-    """Write the springs of a contact at an approach, straight between rows and nodes; held beyond the ends."""
-    out[:] = 0.0
-    out[SPRINGS] = 1.0
+@njit(error_model="numpy", _nrt=False, forceinline=True)
+def _read_springs(films: BallFilmTables, film: int, side: int, at: float, out: FloatArray) -> None:
+    """Write the springs of a contact at a place on its table, straight between rows and nodes; held beyond the ends."""
     last = films.length[film] - 1
     if last < 1:
+        out[:] = 0.0
+        out[SPRINGS] = 1.0
         return
-    n, node, weight = films.current[film, side], int(films.in_use[film, 0]), films.in_use[film, 1]
-    place = min(max((math.asinh((approach - n[3]) / n[4]) - n[5]) / n[6], 0.0), float(last))
+    node, weight, springs = int(films.in_use[film, 0]), films.in_use[film, 1], films.springs
+    other = (node + 1) % films.numbers.shape[1] if weight > 0.0 else node
+    place = min(max(at, 0.0), float(last))
     cell = min(int(place), last - 1)
     t = place - cell
-    low = films.springs[film, node, side]
-    high = films.springs[film, (node + 1) % films.numbers.shape[1] if weight > 0.0 else node, side]
-    for r in range(out.size):
-        slow, fast = low[cell, r] + t * (low[cell + 1, r] - low[cell, r]), high[cell, r]
-        fast += t * (high[cell + 1, r] - fast)
+    for r in range(SPRINGS + 1):
+        slow, fast = springs[film, node, side, cell, r], springs[film, other, side, cell, r]
+        slow += t * (springs[film, node, side, cell + 1, r] - slow)
+        fast += t * (springs[film, other, side, cell + 1, r] - fast)
         out[r] = slow + weight * (fast - slow)
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False, forceinline=True)
 def _hold_all(balls: Balls, step: float) -> None:
     """Write what the contacts with memory hold over a step [s]."""
     for b in range(balls.firsts.size):
@@ -213,25 +220,26 @@ def _hold_all(balls: Balls, step: float) -> None:
             for j in range(balls.counts[b]):
                 for side in range(2):
                     springs, forces = balls.springs[b, j, side], balls.forces[b, j, side]
-                    hold(step, balls.approaches[b, j, side], springs, forces, balls.held[b, j, side])
+                    passed, held = balls.passed[b, j, side], balls.held[b, j, side]
+                    hold(step, balls.approaches[b, j, side], springs, forces, passed, held)
 
 
-@njit(error_model="numpy")
-def _go_on_all(balls: Balls, step: float) -> None:
-    """Bring the contacts with memory to the end of a step [s] that was made."""
-    after = np.empty(SPRINGS + 1)
+@njit(error_model="numpy", _nrt=False, forceinline=True)
+def _go_on_all(balls: Balls) -> None:
+    """Bring the contacts with memory to the end of a step that was made."""
+    after = balls.rooms[0, : SPRINGS + 1]
     for b in range(balls.firsts.size):
         if balls.relaxes[b]:
             for j in range(balls.counts[b]):
                 for side in range(2):
                     approach = balls.rows[b, j, 14 + side]
-                    _read_springs(balls.films, balls.films_of[b], side, approach, after)
-                    moved = approach - balls.approaches[b, j, side]
-                    go_on(step, moved, balls.springs[b, j, side], after, balls.forces[b, j, side])
+                    _read_springs(balls.films, balls.films_of[b], side, balls.rows[b, j, 20 + side], after)
+                    moved, passed = approach - balls.approaches[b, j, side], balls.passed[b, j, side]
+                    go_on(moved, balls.springs[b, j, side], after, passed, balls.forces[b, j, side])
                     balls.approaches[b, j, side] = approach
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False)
 def rest_approach(law: NormalLaw, load: float, start: float) -> float:
     """Approach at which a contact carries a load >= 0 [m], from a start near it.
 
@@ -259,12 +267,12 @@ def rest_approach(law: NormalLaw, load: float, start: float) -> float:
     return approach
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False, forceinline=True)
 def _on_ring(balls: Balls, b: int, moment: Moment, motion: FloatArray, answers: Answers) -> int:
     """Write the answer of a bearing; status as of `ball_force`."""
     i, z, film, x, y = balls.firsts[b], balls.counts[b], balls.films_of[b], motion[0], motion[1]
-    pose, numbers = np.empty(6), np.empty(4)
-    force, stiffness, damping = np.empty(6), np.empty((6, 6)), np.empty((6, 6))
+    pose, numbers, force = balls.rooms[0], balls.rooms[1], balls.rooms[2]
+    stiffness, damping = balls.matrices[0], balls.matrices[1]
     pose[0], pose[1], pose[2], pose[3] = x[i] + balls.offsets[b], x[i + 1], x[i + 2], 0.0
     pose[4], pose[5] = x[i + 3], x[i + 4]
     s = balls.shapes[b]
@@ -311,7 +319,7 @@ def _on_ring(balls: Balls, b: int, moment: Moment, motion: FloatArray, answers: 
     return found
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False)
 def balls_answer(balls: Balls, moment: Moment, motion: FloatArray, answers: Answers) -> int:
     """Forces and slopes of all ball bearings; see `mbs.model.blocks.Kind`.
 
@@ -344,7 +352,7 @@ def balls_answer(balls: Balls, moment: Moment, motion: FloatArray, answers: Answ
     return FOUND
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False)
 def balls_accept(balls: Balls, moment: Moment) -> None:
     """Take note of a step that was made: the cage's speed that its contact angles ask for, and films with memory.
 
@@ -355,13 +363,15 @@ def balls_accept(balls: Balls, moment: Moment) -> None:
     """
     for b in range(balls.firsts.size):
         if not balls.given[b]:
-            angles = mean_angles(balls.rows[b, : balls.counts[b]])
+            rows = balls.rows[b, : balls.counts[b]]
+            write_angles(rows)
+            angles = mean_angles(rows)
             balls.cages[b] = rolling(balls.masses[b, 3], angles, balls.spins[b, 0], balls.spins[b, 1])
-    _go_on_all(balls, moment.time - balls.clock[0])
+    _go_on_all(balls)
     balls.clock[0], balls.clock[1] = moment.time, math.nan
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False)
 def balls_powers(balls: Balls, moment: Moment, motion: FloatArray, answers: Answers, out: FloatArray) -> None:
     """Write what contacts dissipate, and what cage and speed bring in; see `mbs.model.blocks.Kind`.
 
@@ -379,7 +389,7 @@ def balls_powers(balls: Balls, moment: Moment, motion: FloatArray, answers: Answ
         out[balls.places[b], 0], out[balls.places[b], 1] = balls.powers[b, 0], balls.powers[b, 1] + balls.works[b]
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False)
 def on_grid(law: NormalLaw, grid: NormalLaw, out: FloatArray) -> None:
     """Write the table of a law on another grid of approaches.
 
@@ -601,8 +611,8 @@ def _gather(members: Sequence[Member], films_of: list[int], laws: Sequence[_Laws
         masses=np.array([one.force.masses for one in elements], dtype=np.float64).reshape(count, 4),
         cos=cos,
         sin=sin,
-        centres=np.full((count, most, 2), np.nan),
-        rows=np.zeros((count, most, 16)),
+        centres=np.full((count, most, START), np.nan),
+        rows=np.zeros((count, most, COLUMNS)),
         cages=np.array([one.cage_turn for one in elements], dtype=np.float64),
         rests=np.zeros(count),
         loads=np.zeros((count, 2)),
@@ -612,10 +622,13 @@ def _gather(members: Sequence[Member], films_of: list[int], laws: Sequence[_Laws
         works=np.zeros(count),
         relaxes=np.array([one.relaxes for one in elements], dtype=np.bool_),
         held=np.zeros((count, most, 2, HELD)),
+        passed=np.zeros((count, most, 2, SPRINGS, 2)),
         forces=np.zeros((count, most, 2, SPRINGS)),
         springs=np.zeros((count, most, 2, SPRINGS + 1)),
         approaches=np.zeros((count, most, 2)),
         clock=np.array([0.0, math.nan]),
+        rooms=np.zeros((3, 6)),
+        matrices=np.zeros((2, 6, 6)),
         films=films,
         course=course_of(0, len(laws)),
     )

@@ -20,10 +20,10 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, SolverError
 from ehdmaps.units import RPM
 from mbs.bearings.balls.ball_bearing import BallElement, BallForce, BallLoads, rolling_cage
-from mbs.bearings.balls.ball_kernel import nothing_held
 from mbs.bearings.balls.ball_memory import FilmsOfBalls
 from mbs.bearings.balls.ball_speed import dry_energy, speed_work, turned_by
 from mbs.bearings.balls.laws import BallLaw
+from mbs.bearings.balls.normal_law import nothing_held
 from mbs.model.elements import Forces, Operation, Powers
 from mbs.model.relaxation import Films, Relaxation
 

@@ -15,7 +15,7 @@ of the traction, M = K_i + K_o - T, S = M^-1 K_i and S' = K_i M^-1, slow motion 
 exact for a ball without mass of its own against its balance: M comes from the balance as it is solved, by Newton's
 method. Without gyroscopic moment the balance is the minimum of a convex potential.
 
-Each contact law is F = C g^(3/2), with the dry overlap g = approach, or with g(approach) from a table for films.
+A ball begins where it was, moved by S as the groove's centre has moved since.
 """
 
 from __future__ import annotations
@@ -23,10 +23,15 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numpy as np
-
 from ehdmaps.arrays import FloatArray
 from ehdmaps.compiled import njit
+from mbs.bearings.balls.normal_law import NormalLaw, carried, holding, slowed
+
+COLUMNS = 22
+"""Numbers that are kept of a ball, see `place_ball`."""
+
+START = 8
+"""Numbers by which a ball begins, see `place_ball`."""
 
 NOT_FINITE, TOO_FAR, NO_BALANCE = -1, -2, -3
 """What `ball_force` finds instead of an answer."""
@@ -35,8 +40,13 @@ NEWTON_STEPS, LAST_STEPS = 12, 6
 """Steps of Newton's method until the angle is searched, and after that."""
 
 _CUTS = 12
-_BALANCE, _ROUGH_BALANCE = 1e-13, 1e-9
+_BALANCE, _ROUGH_BALANCE = 1e-11, 1e-9
+"""Force out of balance, over the sizes of its parts, at which Newton's method ends: its last step is gone by the
+derivatives alone, so that forces are exact to the square of it, stiffness and damping to itself."""
+
 _ROUND_OFF = 1e-15
+_NEAR = 0.3
+"""Force out of balance, over the sizes of its parts, from which Newton's method begins at once."""
 
 
 class BallShape(NamedTuple):
@@ -63,90 +73,7 @@ class BallShape(NamedTuple):
     most_tilt: float
 
 
-class NormalLaw(NamedTuple):
-    """Law of a contact over its approach.
-
-    Attributes
-    ----------
-    coefficient : float
-        C of F = C g^(3/2) [N/m^1.5].
-    damping, damping_time : float
-        Constant part of c while there is load [N s/m], and the part in proportion to the stiffness [s].
-    centre, scale, first, step : float
-        Table of g: z = asinh((approach - centre)/scale), its first node and the distance of nodes.
-    held, spring, at : float
-        Force [N] and spring [N/m] of a film with memory beside its rest, by the approach beyond `at` [m], over a step,
-        see `mbs.bearings.balls.ball_memory`; without a spring it has none.
-    table : array (nodes, 4)
-        ln g and its slope by node, ln c and its slope; none for a dry contact.
-    """
-
-    coefficient: float
-    damping: float
-    damping_time: float
-    centre: float
-    scale: float
-    first: float
-    step: float
-    held: float
-    spring: float
-    at: float
-    table: FloatArray
-
-
-HELD = 3
-"""Numbers that a contact with memory holds over a step."""
-
-
-@njit(error_model="numpy")
-def _holding(law: NormalLaw, held: FloatArray) -> NormalLaw:
-    """A law with what its film holds over a step."""
-    return NormalLaw(
-        law.coefficient, law.damping, law.damping_time, law.centre, law.scale, law.first, law.step,
-        held[0], held[1], held[2], law.table,
-    )  # fmt: skip
-
-
-@njit(error_model="numpy")
-def contact(law: NormalLaw, approach: float) -> tuple[float, float, float]:
-    """Load [N], stiffness [N/m] and damping [N s/m] of a contact at rest, or at the end of a step with memory."""
-    if law.table.shape[0] == 0:
-        if approach <= 0.0:
-            return 0.0, 0.0, 0.0
-        root = law.coefficient * math.sqrt(approach)
-        k = 1.5 * root
-        return root * approach, k, law.damping + law.damping_time * k
-    zeta = (approach - law.centre) / law.scale
-    place = (math.asinh(zeta) - law.first) / law.step
-    last = law.table.shape[0] - 1
-    cell = min(max(int(place), 0), last - 1)
-    t = place - cell
-    low, high = law.table[cell], law.table[cell + 1]
-    slope_of_place = 1.0 / (law.scale * law.step * math.sqrt(1.0 + zeta * zeta))
-    if t < 0.0:  # straight beyond the ends
-        value, slope, damping = low[0] + low[1] * t, low[1], low[2] + low[3] * t
-    elif t > 1.0:
-        value, slope, damping = high[0] + high[1] * (t - 1.0), high[1], high[2] + high[3] * (t - 1.0)
-    else:
-        r = 1.0 - t
-        bend = t * t * (3.0 - 2.0 * t)
-        value = low[0] * (1.0 - bend) + high[0] * bend + t * r * (low[1] * r - high[1] * t)
-        slope = 6.0 * t * r * (high[0] - low[0]) + low[1] * r * (r - 2.0 * t) + high[1] * t * (t - 2.0 * r)
-        damping = low[2] * (1.0 - bend) + high[2] * bend + t * r * (low[3] * r - high[3] * t)
-    g = math.exp(value)
-    root = law.coefficient * math.sqrt(g)
-    load, k = root * g, 1.5 * root * g * slope * slope_of_place
-    if law.spring <= 0.0:
-        return load, k, math.exp(damping)
-    more = law.held + law.spring * (approach - law.at)
-    if more >= 0.0:
-        return load + more, k + law.spring, 0.0
-    size = math.sqrt(more * more + load * load)
-    total = load * load / (size - more)
-    return total, (law.spring * total + k * load) / size, 0.0
-
-
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False, forceinline=True)
 def place_ball(
     d: tuple[float, float],
     centrifugal: float,
@@ -170,63 +97,107 @@ def place_ball(
         Approach at the outer raceway of a ball that bears its centrifugal load alone [m].
     shape, inner, outer : BallShape, NormalLaw, NormalLaw
         Lengths, and laws of the contacts.
-    centre : array (2,)
-        Centre of the ball at the beginning, and then where it is; NaN for a start from nothing.
-    out : array (16,)
+    centre : array (START,)
+        Centre of the ball at the last call, d there [m], and S (4); NaN for a start from nothing. Written.
+    out : array (COLUMNS,)
         Written: force on the inner ring without its sign (2), stiffness (4), damping (4) of the pair, loads Q_i and
-        Q_o [N], angles a_i and a_o [rad], approaches [m].
+        Q_o [N]; room for the contact angles, see `write_angles`; approaches [m], directions e_i (2) and
+        e_o (2), places of the contacts on their tables.
     """
     length = math.sqrt(d[0] * d[0] + d[1] * d[1])
     overlap = length - shape.inner_arm - shape.outer_arm
-    out[:] = 0.0
     dry = inner.table.shape[0] == 0 and outer.table.shape[0] == 0
     if dry and centrifugal <= 0.0 and overlap <= 0.0:
+        one = 1.0 / length
         reach = shape.outer_arm + 0.5 * overlap
-        centre[0], centre[1] = reach * d[0] / length, reach * d[1] / length
-        out[12] = out[13] = math.atan2(d[0], d[1])
+        _keep(reach * d[0] * one, reach * d[1] * one, d, centre)
+        for i in range(COLUMNS):
+            out[i] = 0.0
         out[14] = out[15] = 0.5 * overlap
+        out[16] = out[18] = d[0] * one
+        out[17] = out[19] = d[1] * one
         return True
-    share = outer.coefficient ** (-2.0 / 3.0)
-    share /= share + inner.coefficient ** (-2.0 / 3.0)
     if dry and centrifugal <= 0.0:  # two dry contacts in line share the overlap
-        reach = (shape.outer_arm + share * overlap) / length
-        centre[0], centre[1] = reach * d[0], reach * d[1]
-        _answer(_state(centre[0], centre[1], d, 0.0, 0.0, shape, inner, outer), shape, out)
+        reach = (shape.outer_arm + _share(inner, outer) * overlap) / length
+        _keep(reach * d[0], reach * d[1], d, centre)
+        _answer(_state(centre[0], centre[1], d, 0.0, 0.0, shape, inner, outer), shape, inner, outer, centre, out)
         return True
-    # starts: where the ball was; in line between the grooves; on the outer raceway alone, in line and at its bottom
+    mx, mr = d[0] - centre[2], d[1] - centre[3]
+    x, r = centre[0] + centre[4] * mx + centre[5] * mr, centre[1] + centre[6] * mx + centre[7] * mr
+    found = False
+    if x * x + r * r > 0.0:
+        state = _state(x, r, d, centrifugal, traction, shape, inner, outer)
+        # a ball between both raceways, without load, would not know where to go
+        if state.qo > 0.0 and state.fx * state.fx + state.fr * state.fr < (_NEAR * state.size) ** 2:
+            x, r, state, found = _newton(x, r, state, NEWTON_STEPS, d, centrifugal, traction, shape, inner, outer)
+    if not found:
+        x, r, state, found = _anew(centre, d, centrifugal, traction, rest, shape, inner, outer)
+    _keep(x, r, d, centre)
+    _answer(state, shape, inner, outer, centre, out)
+    return found
+
+
+@njit(error_model="numpy", _nrt=False, forceinline=True)
+def _keep(x: float, r: float, d: tuple[float, float], centre: FloatArray) -> None:
+    """Keep where a ball is, and by which d."""
+    centre[0], centre[1], centre[2], centre[3] = x, r, d[0], d[1]
+    centre[4] = centre[5] = centre[6] = centre[7] = 0.0
+
+
+@njit(error_model="numpy", _nrt=False)
+def _share(inner: NormalLaw, outer: NormalLaw) -> float:
+    """Part of an overlap that the outer contact takes, both dry and in line."""
+    share: float = 1.0 / (1.0 + (outer.coefficient / inner.coefficient) ** (2.0 / 3.0))
+    return share
+
+
+@njit(error_model="numpy", _nrt=False)
+def _anew(
+    centre: FloatArray,
+    d: tuple[float, float],
+    centrifugal: float,
+    traction: float,
+    rest: float,
+    shape: BallShape,
+    inner: NormalLaw,
+    outer: NormalLaw,
+) -> tuple[float, float, BallState, bool]:
+    """Balance of a ball from the best of some starts: its place, and whether it was found.
+
+    Where the ball was; in line between the grooves; on the outer raceway alone, in line and at its bottom.
+    """
+    length = math.sqrt(d[0] * d[0] + d[1] * d[1])
+    overlap = length - shape.inner_arm - shape.outer_arm
     best, x, r = math.inf, 0.0, shape.outer_arm + rest
     state = _state(x, r, d, centrifugal, traction, shape, inner, outer)
     for start in range(4):
         if start == 0:
             px, pr = centre[0], centre[1]
         elif start < 3:
-            reach = (shape.outer_arm + (share * overlap if start == 1 else rest)) / length
+            reach = (shape.outer_arm + (_share(inner, outer) * overlap if start == 1 else rest)) / length
             px, pr = reach * d[0], reach * d[1]
         else:
             px, pr = 0.0, shape.outer_arm + rest
         if not px * px + pr * pr > 0.0:
             continue
         here = _state(px, pr, d, centrifugal, traction, shape, inner, outer)
-        # a ball between both raceways, without load, would not know where to go
         if not here.qo > 0.0:
             continue
         error = math.sqrt(here.fx * here.fx + here.fr * here.fr) / here.size
         # at the bottom: no inner contact, and in balance
         if error < best or (start == 3 and error < 1e-3):
             best, x, r, state = error, px, pr, here
-        if best < 0.3 and start == 0:
+        if best < _NEAR and start == 0:
             break
     x, r, state, found = _newton(x, r, state, NEWTON_STEPS, d, centrifugal, traction, shape, inner, outer)
     if not found:
         x, r = _searched(d, centrifugal, traction, shape, inner, outer)
         state = _state(x, r, d, centrifugal, traction, shape, inner, outer)
         x, r, state, found = _newton(x, r, state, LAST_STEPS, d, centrifugal, traction, shape, inner, outer)
-    centre[0], centre[1] = x, r
-    _answer(state, shape, out)
-    return found
+    return x, r, state, found
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False, forceinline=True)
 def _newton(
     x: float,
     r: float,
@@ -283,7 +254,7 @@ def _newton(
     return x, r, state, norm <= _ROUGH_BALANCE * state.size + allowed
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False)
 def _searched(
     d: tuple[float, float],
     centrifugal: float,
@@ -322,7 +293,7 @@ def _searched(
     return reach * math.sin(angle), reach * math.cos(angle)
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False)
 def _across(
     angle: float,
     reach: float,
@@ -339,7 +310,7 @@ def _across(
     return state.fx * cos - state.fr * sin
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False)
 def _reach(
     angle: float,
     guess: float,
@@ -383,8 +354,10 @@ class BallState(NamedTuple):
         Force that is left, axial and radial, and the sum of the sizes of its parts [N].
     m00, m01, m10, m11 : float
         Minus its derivative by the place of the ball [N/m].
-    qi, qo, ki, ci, co : float
-        Loads [N], stiffness [N/m], damping [N s/m] of the contacts.
+    qi, qo, ki, ko : float
+        Loads [N] and stiffness [N/m] of the contacts.
+    at_i, at_o : float
+        Their places on their tables.
     ix, ir, ox, orr : float
         Directions e_i and e_o.
     inner_distance, reach : float
@@ -401,8 +374,9 @@ class BallState(NamedTuple):
     qi: float
     qo: float
     ki: float
-    ci: float
-    co: float
+    ko: float
+    at_i: float
+    at_o: float
     ix: float
     ir: float
     ox: float
@@ -411,7 +385,7 @@ class BallState(NamedTuple):
     reach: float
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False, forceinline=True)
 def _state(
     x: float,
     r: float,
@@ -426,8 +400,8 @@ def _state(
     reach = math.sqrt(x * x + r * r)
     ix, ir = d[0] - x, d[1] - r
     distance = max(math.sqrt(ix * ix + ir * ir), 1e-300)
-    qo, ko, co = contact(outer, reach - shape.outer_arm)
-    qi, ki, ci = contact(inner, distance - shape.inner_arm)
+    qo, ko, at_o = carried(outer, reach - shape.outer_arm)
+    qi, ki, at_i = carried(inner, distance - shape.inner_arm)
     one_o, one_i = 1.0 / reach, 1.0 / distance
     ox, orr, ix, ir = x * one_o, r * one_o, ix * one_i, ir * one_i
     to, ti = qo * one_o, qi * one_i
@@ -445,8 +419,9 @@ def _state(
         qi,
         qo,
         ki,
-        ci,
-        co,
+        ko,
+        at_i,
+        at_o,
         ix,
         ir,
         ox,
@@ -456,10 +431,12 @@ def _state(
     )
 
 
-@njit(error_model="numpy")
-def _answer(state: BallState, shape: BallShape, out: FloatArray) -> None:
-    """Force, stiffness and damping of a ball in balance, see `place_ball`."""
-    qi, ki, ci, co = state.qi, state.ki, state.ci, state.co
+@njit(error_model="numpy", _nrt=False, forceinline=True)
+def _answer(
+    state: BallState, shape: BallShape, inner: NormalLaw, outer: NormalLaw, centre: FloatArray, out: FloatArray
+) -> None:
+    """Force, stiffness and damping of a ball in balance, and S, see `place_ball`."""
+    qi, ki = state.qi, state.ki
     ix, ir, ox, orr = state.ix, state.ir, state.ox, state.orr
     ti = qi / state.inner_distance
     k00, k01, k11 = (ki - ti) * ix * ix + ti, (ki - ti) * ix * ir, (ki - ti) * ir * ir + ti
@@ -467,17 +444,27 @@ def _answer(state: BallState, shape: BallShape, out: FloatArray) -> None:
     determinant = m00 * m11 - m01 * m10
     out[0], out[1] = qi * ix, qi * ir
     out[10], out[11] = qi, state.qo
-    out[12], out[13] = math.atan2(ix, ir), math.atan2(ox, orr)
+    out[12] = out[13] = 0.0
     out[14], out[15] = state.inner_distance - shape.inner_arm, state.reach - shape.outer_arm
+    out[16], out[17], out[18], out[19], out[20], out[21] = ix, ir, ox, orr, state.at_i, state.at_o
     if qi <= 0.0 or determinant == 0.0:
+        for i in range(2, 10):
+            out[i] = 0.0
         return
+    ci, co = slowed(inner, ki, state.at_i), slowed(outer, state.ko, state.at_o)
     one = 1.0 / determinant
     n00, n01, n10, n11 = m11 * one, -m01 * one, -m10 * one, m00 * one
     # S = M^-1 K_i and S' = K_i M^-1
     s00, s01 = n00 * k00 + n01 * k01, n00 * k01 + n01 * k11
     s10, s11 = n10 * k00 + n11 * k01, n10 * k01 + n11 * k11
+    centre[4], centre[5], centre[6], centre[7] = s00, s01, s10, s11
     p00, p01 = k00 * n00 + k01 * n10, k00 * n01 + k01 * n11
     p10, p11 = k01 * n00 + k11 * n10, k01 * n01 + k11 * n11
+    # what is left out of balance moves the ball by one step more
+    centre[0] += n00 * state.fx + n01 * state.fr
+    centre[1] += n10 * state.fx + n11 * state.fr
+    out[0] -= p00 * state.fx + p01 * state.fr
+    out[1] -= p10 * state.fx + p11 * state.fr
     # K_i (1 - S), without the difference of nearly equal numbers: S' (M - K_i)
     b00, b01, b10, b11 = m00 - k00, m01 - k01, m10 - k01, m11 - k11
     out[2], out[3] = p00 * b00 + p01 * b10, p00 * b01 + p01 * b11
@@ -491,7 +478,7 @@ def _answer(state: BallState, shape: BallShape, out: FloatArray) -> None:
     out[8], out[9] = ci * vr * ux + co * yr * wx, ci * vr * ur + co * yr * wr
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False)
 def ball_force(
     pose: FloatArray,
     numbers: FloatArray,
@@ -521,9 +508,9 @@ def ball_force(
         Lengths, and laws of the contacts.
     force, stiffness, damping : array (6,), (6, 6), (6, 6)
         Written: force [N], [N m], and -df/dpose, -df/dvelocity.
-    centres : array (Z, 2)
-        Centres of the balls of the last call, or NaN; written.
-    balls : array (Z, 16)
+    centres : array (Z, START)
+        Starts of the balls, or NaN; written, see `place_ball`.
+    balls : array (Z, COLUMNS)
         Written: see `place_ball`.
     held : array (Z, 2, HELD), or none (0, 2, HELD)
         What the inner and the outer contacts hold over a step, see `NormalLaw`.
@@ -551,58 +538,62 @@ def ball_force(
         )
         out, own_i, own_o = balls[j], inner, outer
         if held.shape[0] > 0:
-            own_i, own_o = _holding(inner, held[j, 0]), _holding(outer, held[j, 1])
+            own_i, own_o = holding(inner, held, j, 0), holding(outer, held, j, 1)
         if not place_ball(d, numbers[1], numbers[2], numbers[3], shape, own_i, own_o, centres[j], out):
             return NO_BALANCE
         if out[10] <= 0.0:
             continue
         loaded += 1
-        # derivatives of d by the pose: axial (1, 0, 0, 0, a s, -a c), radial (0, c, s, 0, 0, 0)
-        axial = (1.0, shape.arm * s, -shape.arm * c)
-        radial = (c, s)
-        for m in range(3):
-            row = 0 if m == 0 else m + 3
-            force[row] -= axial[m] * out[0]
-            for n in range(3):
-                column = 0 if n == 0 else n + 3
-                stiffness[row, column] += axial[m] * out[2] * axial[n]
-                damping[row, column] += axial[m] * out[6] * axial[n]
-            for n in range(2):
-                stiffness[row, n + 1] += axial[m] * out[3] * radial[n]
-                damping[row, n + 1] += axial[m] * out[7] * radial[n]
-                stiffness[n + 1, row] += radial[n] * out[4] * axial[m]
-                damping[n + 1, row] += radial[n] * out[8] * axial[m]
-        for m in range(2):
-            force[m + 1] -= radial[m] * out[1]
-            for n in range(2):
-                stiffness[m + 1, n + 1] += radial[m] * out[5] * radial[n]
-                damping[m + 1, n + 1] += radial[m] * out[9] * radial[n]
+        y, z = shape.arm * s, -shape.arm * c
+        force[0] -= out[0]
+        force[1] -= c * out[1]
+        force[2] -= s * out[1]
+        force[4] -= y * out[0]
+        force[5] -= z * out[0]
+        _add(out[2], out[3], out[4], out[5], c, s, y, z, stiffness)
+        _add(out[6], out[7], out[8], out[9], c, s, y, z, damping)
     return loaded
 
 
-@njit(error_model="numpy")
-def load_approach(law: NormalLaw, load: float) -> float:
-    """Approach at which a contact carries a load > 0 [m]."""
-    g: float = (load / law.coefficient) ** (2.0 / 3.0)
-    if law.table.shape[0] == 0:
-        return g
-    low, high = float(law.centre - 1e3 * law.scale), float(g + 1e3 * law.scale)
-    for _ in range(200):
-        middle = 0.5 * (low + high)
-        if contact(law, middle)[0] < load:
-            low = middle
-        else:
-            high = middle
-        if high - low <= 1e-15 * law.scale:
-            break
-    return 0.5 * (low + high)
+@njit(error_model="numpy", _nrt=False, forceinline=True)
+def _add(xx: float, xr: float, rx: float, rr: float, c: float, s: float, y: float, z: float, out: FloatArray) -> None:
+    """Add what a ball has by d to a matrix (6, 6); d by pose: axial (1, 0, 0, 0, y, z), radial (0, c, s, 0, 0, 0)."""
+    out[0, 0] += xx
+    out[0, 1] += xr * c
+    out[0, 2] += xr * s
+    out[0, 4] += xx * y
+    out[0, 5] += xx * z
+    out[1, 0] += rx * c
+    out[1, 1] += rr * c * c
+    out[1, 2] += rr * c * s
+    out[1, 4] += rx * c * y
+    out[1, 5] += rx * c * z
+    out[2, 0] += rx * s
+    out[2, 1] += rr * s * c
+    out[2, 2] += rr * s * s
+    out[2, 4] += rx * s * y
+    out[2, 5] += rx * s * z
+    out[4, 0] += xx * y
+    out[4, 1] += xr * y * c
+    out[4, 2] += xr * y * s
+    out[4, 4] += xx * y * y
+    out[4, 5] += xx * y * z
+    out[5, 0] += xx * z
+    out[5, 1] += xr * z * c
+    out[5, 2] += xr * z * s
+    out[5, 4] += xx * z * y
+    out[5, 5] += xx * z * z
 
 
-def empty_table() -> FloatArray:
-    """Table of a dry contact."""
-    return np.zeros((0, 4))
+@njit(error_model="numpy", _nrt=False)
+def write_angles(balls: FloatArray) -> None:
+    """Write the contact angles of the inner and the outer side [rad], by the directions of the contacts.
 
-
-def nothing_held() -> FloatArray:
-    """Numbers that contacts without memory hold: none."""
-    return np.zeros((0, 2, HELD))
+    Parameters
+    ----------
+    balls : array (Z, COLUMNS)
+        What `place_ball` writes of each ball; angles written into columns 12 and 13.
+    """
+    for j in range(balls.shape[0]):
+        for side in range(2):
+            balls[j, 12 + side] = math.atan2(balls[j, 16 + 2 * side], balls[j, 17 + 2 * side])

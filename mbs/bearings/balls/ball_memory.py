@@ -25,8 +25,8 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.compiled import in_python, njit
 from ehdmaps.copies import put
-from mbs.bearings.balls.ball_kernel import HELD, contact
 from mbs.bearings.balls.laws import BallLaw
+from mbs.bearings.balls.normal_law import HELD, contact
 from mbs.bearings.balls.response import TIMES, ContactResponse
 
 SPRINGS = TIMES.size
@@ -35,8 +35,10 @@ SPRINGS = TIMES.size
 _TIMES = tuple(float(time / TIMES[-1]) for time in TIMES)
 
 
-@njit(error_model="numpy")
-def hold(step: float, approach: float, springs: FloatArray, forces: FloatArray, held: FloatArray) -> None:
+@njit(error_model="numpy", _nrt=False, forceinline=True)
+def hold(
+    step: float, approach: float, springs: FloatArray, forces: FloatArray, passed: FloatArray, held: FloatArray
+) -> None:
     """Write what a contact holds against an approach over a step.
 
     Parameters
@@ -49,38 +51,41 @@ def hold(step: float, approach: float, springs: FloatArray, forces: FloatArray, 
         K_r [N/m], and the longest of their times [s].
     forces : array (SPRINGS,)
         f_r at its beginning [N].
+    passed : array (SPRINGS, 2)
+        exp(-a) and K_r phi [N/m]; written.
     held : array (3,)
         Force [N] at the approach held[2] [m], and spring held[1] [N/m] of the end of the step; written.
     """
     held[0], held[1], held[2] = 0.0, 0.0, approach
-    for r in range(forces.size):
-        if springs[r] > 0.0:
-            a = step / (springs[forces.size] * _TIMES[r])
-            left = math.exp(-a)
-            held[0] += left * forces[r]
-            held[1] += springs[r] * (-math.expm1(-a) / a if a > 0.0 else 1.0)
+    for r in range(SPRINGS):
+        passed[r, 0], passed[r, 1] = 1.0 if springs[r] > 0.0 else 0.0, springs[r]
+        if springs[r] > 0.0 and step > 0.0:
+            a = step / (springs[SPRINGS] * _TIMES[r])
+            gone = -math.expm1(-a)
+            passed[r, 0], passed[r, 1] = 1.0 - gone, springs[r] * gone / a
+        held[0] += passed[r, 0] * forces[r]
+        held[1] += passed[r, 1]
 
 
-@njit(error_model="numpy")
-def go_on(step: float, moved: float, springs: FloatArray, after: FloatArray, forces: FloatArray) -> None:
+@njit(error_model="numpy", _nrt=False, forceinline=True)
+def go_on(moved: float, springs: FloatArray, after: FloatArray, passed: FloatArray, forces: FloatArray) -> None:
     """Bring the forces to the end of a step, and to the springs there.
 
     Parameters
     ----------
-    step, moved : float
-        Length of the step [s], and change of the approach [m].
+    moved : float
+        Change of the approach [m].
     springs, after : array (SPRINGS + 1,)
         The same as of `hold`, at the beginning and at the end; the first gets the numbers of the second.
+    passed : array (SPRINGS, 2)
+        What `hold` wrote.
     forces : array (SPRINGS,)
         f_r [N]; written.
     """
-    for r in range(forces.size):
-        if springs[r] > 0.0:
-            a = step / (springs[forces.size] * _TIMES[r])
-            gained = springs[r] * (-math.expm1(-a) / a if a > 0.0 else 1.0)
-            forces[r] = (math.exp(-a) * forces[r] + gained * moved) * min(1.0, after[r] / springs[r])
-        else:
-            forces[r] = 0.0
+    for r in range(SPRINGS):
+        forces[r] = passed[r, 0] * forces[r] + passed[r, 1] * moved
+        if after[r] < springs[r]:
+            forces[r] *= after[r] / springs[r]
     put(after, springs)
 
 
@@ -131,10 +136,15 @@ class FilmsOfBalls:
 
     def held(self, step: float) -> FloatArray:
         """Numbers that contacts hold over a step [s], (Z, 2, HELD), see `hold`."""
-        found = np.zeros((*self.approaches.shape, HELD))
-        for place in np.ndindex(self.approaches.shape):
-            in_python(hold)(step, self.approaches[place], self.springs[place], self.forces[place], found[place])
-        return found
+        return self._over(step)[1]
+
+    def _over(self, step: float) -> tuple[FloatArray, FloatArray]:
+        """Numbers that `hold` writes of all contacts."""
+        shape = self.approaches.shape
+        passed, held = np.zeros((*shape, SPRINGS, 2)), np.zeros((*shape, HELD))
+        for at in np.ndindex(shape):
+            in_python(hold)(step, self.approaches[at], self.springs[at], self.forces[at], passed[at], held[at])
+        return passed, held
 
     def after(self, step: float, law: BallLaw, approaches: FloatArray) -> FilmsOfBalls:
         """Films after a step.
@@ -149,9 +159,9 @@ class FilmsOfBalls:
             Approaches there [m].
         """
         forces, springs, after = self.forces.copy(), self.springs.copy(), _springs(law, approaches)
-        moved = approaches - self.approaches
-        for place in np.ndindex(approaches.shape):
-            in_python(go_on)(step, moved[place], springs[place], after[place], forces[place])
+        moved, passed = approaches - self.approaches, self._over(step)[0]
+        for at in np.ndindex(approaches.shape):
+            in_python(go_on)(moved[at], springs[at], after[at], passed[at], forces[at])
         return FilmsOfBalls(forces, springs, approaches.copy())
 
 

@@ -15,7 +15,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.compiled import njit
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False)
 def ball_loads(masses: FloatArray, cage: float, outer: float) -> tuple[float, float]:
     """Centrifugal load F_c of a ball [N], and factor G of its gyroscopic moment G sin(alpha_o) [N m].
 
@@ -34,13 +34,13 @@ def ball_loads(masses: FloatArray, cage: float, outer: float) -> tuple[float, fl
     return centrifugal, max(masses[1] * cage * (cage - outer), -0.25 * masses[2] * centrifugal)
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False)
 def mean_angles(balls: FloatArray) -> tuple[float, float]:
     """Mean contact angles of the inner and the outer side, by the loads of the balls [rad]; zero without load.
 
     Parameters
     ----------
-    balls : array (Z, 16)
+    balls : array (Z, COLUMNS)
         What `place_ball` writes of each ball.
     """
     load_i = load_o = angle_i = angle_o = 0.0
@@ -52,7 +52,7 @@ def mean_angles(balls: FloatArray) -> tuple[float, float]:
     return (angle_i / load_i if load_i > 0.0 else 0.0), (angle_o / load_o if load_o > 0.0 else 0.0)
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False)
 def rolling(ratio: float, angles: tuple[float, float], inner: float, outer: float) -> float:
     """Speed of the cage by pure rolling at mean contact angles, in the unit of the rings' speeds.
 
@@ -69,13 +69,13 @@ def rolling(ratio: float, angles: tuple[float, float], inner: float, outer: floa
     return (inner * at_inner + outer * at_outer) / (at_inner + at_outer)
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False)
 def speed_work(balls: FloatArray, loads: FloatArray, arm: float, last: FloatArray) -> float:
     """Work of the centrifugal loads and tractions on the balls since the last call [J], by the trapezoidal rule.
 
     Parameters
     ----------
-    balls : array (Z, 16)
+    balls : array (Z, COLUMNS)
         What `place_ball` writes of each ball.
     loads : array (2,)
         F_c, and 2 G/Dw [N].
@@ -86,7 +86,7 @@ def speed_work(balls: FloatArray, loads: FloatArray, arm: float, last: FloatArra
     """
     work = 0.0
     for j in range(balls.shape[0]):
-        reach, sin, cos = arm + balls[j, 15], math.sin(balls[j, 13]), math.cos(balls[j, 13])
+        reach, sin, cos = arm + balls[j, 15], balls[j, 18], balls[j, 19]
         x, r = reach * sin, reach * cos
         along, outward = -loads[1] * sin * cos, loads[0] + loads[1] * sin * sin
         work += 0.5 * ((along + last[j, 2]) * (x - last[j, 0]) + (outward + last[j, 3]) * (r - last[j, 1]))
@@ -94,7 +94,7 @@ def speed_work(balls: FloatArray, loads: FloatArray, arm: float, last: FloatArra
     return work
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False)
 def turned_by(pose: FloatArray, force: FloatArray) -> float:
     """Moment that the bearing asks of its cage [N m], by pose and force at rest of its inner ring, (6,) each."""
     radial: float = pose[1] * force[2] - pose[2] * force[1]
@@ -107,7 +107,7 @@ def dry_energy(balls: FloatArray) -> float:
 
     Parameters
     ----------
-    balls : array (Z, 16)
+    balls : array (Z, COLUMNS)
         What `place_ball` writes of each ball.
     """
     return 0.4 * float((balls[:, 10:12] * balls[:, 14:16].clip(min=0.0)).sum())

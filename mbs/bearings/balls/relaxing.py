@@ -18,8 +18,9 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.compiled import in_python
-from mbs.bearings.balls.ball_kernel import BallShape, contact
+from mbs.bearings.balls.ball_kernel import BallShape
 from mbs.bearings.balls.laws import BallLaw
+from mbs.bearings.balls.normal_law import contact
 from mbs.bearings.balls.response import TIMES
 from mbs.model.relaxation import Relaxation
 
@@ -40,7 +41,7 @@ def ball_relaxation(
         Laws of the contacts; without responses, springs have no stiffness.
     shape : BallShape
         Lengths of the bearing.
-    balls : array (Z, 16)
+    balls : array (Z, COLUMNS)
         What `place_ball` writes of each ball.
     traction : float
         2 G/Dw [N].
@@ -72,7 +73,7 @@ def _of_ball(
     times: FloatArray,
 ) -> None:
     """Fill rows (r, 2) by d, and times of the springs in series with dampers that a ball is."""
-    directions = [np.array([np.sin(angle), np.cos(angle)]) for angle in ball[12:14]]
+    directions = ball[16:18], ball[18:20]
     lengths = shape.inner_arm + ball[14], shape.outer_arm + ball[15]
     at_rest, values, felt = [], [], []
     for side, of_side in enumerate((law.inner, law.outer)):

@@ -16,7 +16,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
-from mbs.bearings.balls.ball_kernel import NormalLaw
+from mbs.bearings.balls.normal_law import NormalLaw
 
 if TYPE_CHECKING:
     from ehdmaps.maps.law import ContactLaw

@@ -33,8 +33,8 @@ from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.physics.surface import iso_profile
-from mbs.bearings.balls.ball_kernel import NormalLaw, contact, empty_table
 from mbs.bearings.balls.ball_speed import turned_by
+from mbs.bearings.balls.normal_law import NormalLaw, contact, empty_table
 from mbs.bearings.laws import roller_coefficient
 from mbs.bearings.tapered.tapered_energy import TaperedStates, dry_energy, place_work
 from mbs.bearings.tapered.tapered_kernel import (

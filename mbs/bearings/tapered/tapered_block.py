@@ -10,8 +10,8 @@ import numpy as np
 
 from ehdmaps.arrays import BoolArray, FloatArray, IntArray
 from ehdmaps.compiled import njit
-from mbs.bearings.balls.ball_kernel import NormalLaw, empty_table
 from mbs.bearings.balls.ball_speed import turned_by
+from mbs.bearings.balls.normal_law import NormalLaw, empty_table
 from mbs.bearings.tapered.tapered_bearing import FASTEST, TaperedElement, TaperedForce
 from mbs.bearings.tapered.tapered_energy import TaperedStates, dry_energy, place_work
 from mbs.bearings.tapered.tapered_kernel import (

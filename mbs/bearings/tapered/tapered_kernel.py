@@ -32,7 +32,7 @@ from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.compiled import njit
 from ehdmaps.copies import put
 from ehdmaps.maps.kernels.lines import FAST
-from mbs.bearings.balls.ball_kernel import NormalLaw, contact
+from mbs.bearings.balls.normal_law import NormalLaw, contact
 from mbs.bearings.slices import power
 
 NOT_FINITE, TOO_FAR, NO_BALANCE = -1, -2, -3

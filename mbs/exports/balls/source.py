@@ -12,7 +12,7 @@ from ehdmaps.errors import InputError
 from ehdmaps.exports.c.text import comment, define, number, renamed, template
 from ehdmaps.outputs import Kind, has_mark, write_text
 from mbs.bearings.balls.ball_bearing import BallForce
-from mbs.bearings.balls.ball_kernel import NormalLaw
+from mbs.bearings.balls.normal_law import NormalLaw
 from mbs.exports.balls.speed_laws import SpeedLaws
 
 SOURCE = Kind("a ball bearing in C made by ehdmaps", (".c",), has_mark)
