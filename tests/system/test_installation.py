@@ -135,6 +135,7 @@ def test_an_upgrade_computes_with_the_new_code(tmp_path, cache):
     run(*generate, folder=tmp_path, XDG_CACHE_HOME=cache)
     with ehdmaps.open_map(tmp_path / "map.nc").dataset as before:
         before.load()
+    point = solved(program, tmp_path, XDG_CACHE_HOME=cache)
     law = tree / "ehdmaps" / "physics" / "isotherm.py"
     text = law.read_text()
     changed = text.replace("return alpha * p * f, alpha", "return 1.05 * alpha * p * f, 1.05 * alpha")
@@ -147,5 +148,5 @@ def test_an_upgrade_computes_with_the_new_code(tmp_path, cache):
     # 5 % more of alpha make some 2 % more film
     assert (np.abs(after["central_film"] / before["central_film"] - 1.0) > 0.01).all()
     assert after.attrs["code_hash"] != before.attrs["code_hash"]
-    point = solved(program, tmp_path, XDG_CACHE_HOME=cache)
-    assert point == solved(program, tmp_path, XDG_CACHE_HOME=str(tmp_path / "another cache"))
+    for old, new in zip(point, solved(program, tmp_path, XDG_CACHE_HOME=cache), strict=True):
+        assert new[0] > 1.01 * old[0]
