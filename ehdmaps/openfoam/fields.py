@@ -1,7 +1,8 @@
-"""Mesh and fields of the film, read by numpy from the ascii files of a case; written as VTU or XDMF."""
+"""Mesh and fields of a film of a line or a point, read by numpy from ascii files of a case; written as VTU or XDMF."""
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass
 from pathlib import Path
@@ -57,6 +58,11 @@ class FilmFields:
     liquid_fraction: FloatArray
     T: FloatArray | None = None
 
+    @property
+    def block(self) -> tuple[str, IntArray]:
+        """Shape of the cells and their corners."""
+        return "quad", self.quads
+
     def profile(self, values: FloatArray, x: float, rows: int) -> tuple[FloatArray, FloatArray]:
         """Values in the column of cells nearest to a place.
 
@@ -84,6 +90,71 @@ class FilmFields:
         heights = np.sort(corners[column, :, 1], axis=1)
         low, high = heights[0, :2].mean(), heights[-1, 2:].mean()
         return (centres[column, 1] - low) / (high - low), values[column]
+
+
+@dataclass(frozen=True)
+class PointFields:
+    """Half of the film of a point contact, rows of hexahedra over its columns, with a value of each field a cell.
+
+    Attributes
+    ----------
+    points : ndarray, shape (points, 3)
+        x along, y >= 0 beside, z across the film, from the contact centre [m].
+    hexahedra : ndarray, shape (cells, 8)
+        Indices of the corners.
+    p, mu, rho, liquid_fraction : ndarray, shape (cells,)
+        Fields as in `FilmFields`.
+    U : ndarray, shape (cells, 3)
+        Velocity [m/s].
+    """
+
+    points: FloatArray
+    hexahedra: IntArray
+    p: FloatArray
+    U: FloatArray
+    mu: FloatArray
+    rho: FloatArray
+    liquid_fraction: FloatArray
+    T: None = None
+
+    @property
+    def block(self) -> tuple[str, IntArray]:
+        """Shape of the cells and their corners."""
+        return "hexahedron", self.hexahedra
+
+
+def read_point_fields(case: Path, columns: int, lines: int, rows: int) -> PointFields:
+    """Read the fields of a point contact that has run with `writeFields true`.
+
+    Parameters
+    ----------
+    case : Path
+        The case folder.
+    columns, lines, rows : int
+        Cells along the motion, beside it, and across the film.
+
+    Raises
+    ------
+    SolverError
+        If a file is missing, not ascii, or has other than the expected numbers.
+    """
+    points = _list(case / "constant" / "polyMesh" / "points", 3)
+    shape = (lines + 1, columns + 1, rows + 1)
+    if points.shape[0] != math.prod(shape):
+        raise SolverError(f"{case}: got a mesh of {points.shape[0]} points; allowed: {math.prod(shape)}, as asked")
+    number = np.arange(points.shape[0]).reshape(shape)
+    floor = [number[:-1, :-1], number[:-1, 1:], number[1:, 1:], number[1:, :-1]]
+    corners = [*(each[..., :-1] for each in floor), *(each[..., 1:] for each in floor)]
+    cells, last = columns * lines * rows, case / TIME
+    return PointFields(
+        points=points,
+        hexahedra=np.stack(corners, axis=-1).reshape(cells, 8),
+        p=_field(last / "p", cells, 1),
+        U=_field(last / "U", cells, 3),
+        mu=_field(last / "mu", cells, 1),
+        rho=_field(last / "rho", cells, 1),
+        liquid_fraction=_field(last / "liquidFraction", cells, 1),
+    )
 
 
 def read_fields(case: Path) -> FilmFields:
@@ -128,7 +199,7 @@ def read_fields(case: Path) -> FilmFields:
     )
 
 
-def write_fields(fields: FilmFields, path: Path) -> None:
+def write_fields(fields: FilmFields | PointFields, path: Path) -> None:
     """Write the fields as VTU or XDMF, by the ending of the file, for ParaView: coordinates in m, all data a cell.
 
     A film is a thousand times longer than thick: look at it with its y scaled.
@@ -144,9 +215,7 @@ def write_fields(fields: FilmFields, path: Path) -> None:
         import meshio
 
     names = [name for name in ("p", "U", "mu", "rho", "liquid_fraction", "T") if getattr(fields, name) is not None]
-    mesh = meshio.Mesh(
-        fields.points, [("quad", fields.quads)], cell_data={name: [getattr(fields, name)] for name in names}
-    )
+    mesh = meshio.Mesh(fields.points, [fields.block], cell_data={name: [getattr(fields, name)] for name in names})
     # XML keeps an XDMF file in one piece, without HDF5
     options: dict[str, Any] = {"data_format": "XML"} if path.suffix == ".xdmf" else {}
     with written_aside(path, FIELDS) as aside:

@@ -1,21 +1,30 @@
 """The file `constant/ehlProperties`: all that a case of `ehlFoam` is told about its point, its oil over temperature.
 
-OpenFOAM dictionaries can execute code. So nothing is written but finite numbers, by `repr`, and words of fixed tables.
+Its entries are those of `dictionary`.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
-from numbers import Real
-from typing import Any, Literal
-
-import numpy as np
-from numpy.typing import ArrayLike
+from typing import Literal
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
+from ehdmaps.openfoam.dictionary import (
+    HEADER,
+    block,
+    camel,
+    count,
+    density_law,
+    entry,
+    line,
+    number_list,
+    oil_blocks,
+    oil_numbers,
+    switch,
+    word,
+)
 from ehdmaps.physics.heat import HeatData
 from ehdmaps.physics.lubricant import Lubricant, LubricantState
 from ehdmaps.physics.rheology import CARREAU, EYRING, LIMITING, NEWTONIAN, ShearLaw
@@ -92,55 +101,6 @@ SHEAR_FORMS: Mapping[int, str] = {NEWTONIAN: "Newtonian", EYRING: "Eyring", CARR
 
 NEWTON = ShearLaw()
 """The law of an oil that does not care about shear."""
-
-HEADER = """FoamFile
-{
-    version     2.0;
-    format      ascii;
-    class       dictionary;
-    object      ehlProperties;
-}
-
-// All values in SI"""
-
-NOTES: Mapping[str, str] = {
-    "reducedRadius": "R [m]",
-    "reducedModulus": "E' [Pa]",
-    "load": "per length [N/m]",
-    "lowerSpeed": "of the surfaces, in +x [m/s]",
-    "upperSpeed": "[m/s]",
-    "viscosity": "at ambient pressure [Pa s]",
-    "pressureViscosity": "there [1/Pa]",
-    "pressureScale": "[Pa]",
-    "density": "at ambient pressure [kg/m^3]",
-    "stress": "[Pa]",
-    "pressureRange": "from full film to no liquid [Pa]",
-    "columns": "cells along the film",
-    "rows": "and across it",
-    "film": "expected film, h R/b^2",
-    "inletLength": "in sqrt(2 h R), from the Hertz zone",
-    "outletLength": "in widths of the exit zone",
-    "spikePosition": "in half-widths b from the centre",
-    "spikeWidth": "[b], 0: no spike",
-    "temperature": "of the surfaces, and of the oil that comes in [K]",
-    "oilConductivity": "[W/(m K)]",
-    "oilHeatCapacity": "[J/(kg K)]",
-    "solidConductivity": "[W/(m K)]",
-    "solidHeatCapacity": "[J/(kg K)]",
-    "solidDensity": "[kg/m^3]",
-    "first": "[K]",
-    "step": "[K]",
-    "x": "from the contact centre [m]",
-    "pressure": "[Pa]",
-    "centralFilm": "[m]",
-    "frequencies": "[Hz], 0 is the low-frequency limit",
-    "frequency": "[Hz]",
-    "amplitude": "of the load",
-}
-"""What is said behind an entry of the file."""
-
-NUMBERS_A_LINE = 5
-"""Of a long list."""
 
 
 @dataclass(frozen=True)
@@ -297,148 +257,72 @@ class Parameters:
         return "\n".join([HEADER, "", *self._lines(), ""])
 
     def _lines(self) -> Iterator[str]:
-        yield _entry("reducedRadius", self.reduced_radius)
-        yield _entry("reducedModulus", self.reduced_modulus)
-        yield _entry("load", self.load)
-        yield _entry("lowerSpeed", self.lower_speed)
-        yield _entry("upperSpeed", self.upper_speed)
-        isotherm = [_entry(key, value) for key, value in _numbers(self.oil).items()]
-        yield from _block("viscosity", [_line("type", self.oil.pressure_viscosity.case_name), *isotherm])
-        yield from _block("density", [_line("type", _density(self.oil)), _entry("density", self.oil.density)])
-        yield from _block("shear", _shear(self.shear))
-        yield from _block("cavitation", [_entry("pressureRange", self.cavitation_range)])
-        yield _line("flow", _word("flow", self.flow, FLOWS))
-        yield _count("columns", self.columns)
-        yield _count("rows", self.rows)
+        yield entry("reducedRadius", self.reduced_radius)
+        yield entry("reducedModulus", self.reduced_modulus)
+        yield entry("load", self.load)
+        yield entry("lowerSpeed", self.lower_speed)
+        yield entry("upperSpeed", self.upper_speed)
+        yield from oil_blocks(self.oil)
+        yield from block("shear", _shear(self.shear))
+        yield from block("cavitation", [entry("pressureRange", self.cavitation_range)])
+        yield line("flow", word("flow", self.flow, FLOWS))
+        yield count("columns", self.columns)
+        yield count("rows", self.rows)
         mesh = [
-            _entry("film", self.mesh.film),
-            _entry("inletLength", self.mesh.inlet_length),
-            _entry("outletLength", self.mesh.outlet_length),
-            _entry("spikePosition", self.mesh.spike_position),
-            _entry("spikeWidth", self.mesh.spike_width),
+            entry("film", self.mesh.film),
+            entry("inletLength", self.mesh.inlet_length),
+            entry("outletLength", self.mesh.outlet_length),
+            entry("spikePosition", self.mesh.spike_position),
+            entry("spikeWidth", self.mesh.spike_width),
         ]
-        yield from _block("mesh", mesh)
+        yield from block("mesh", mesh)
         if self.heat is not None:
-            yield from _block("heat", _heat(self.heat))
+            yield from block("heat", _heat(self.heat))
         if self.start is not None:
             start = [
-                _list("x", self.start.x),
-                _list("pressure", self.start.pressure),
-                _entry("centralFilm", self.start.central_film),
+                number_list("x", self.start.x),
+                number_list("pressure", self.start.pressure),
+                entry("centralFilm", self.start.central_film),
             ]
-            yield from _block("start", start)
-        yield from _block("response", [_list("frequencies", self.frequencies)])
+            yield from block("start", start)
+        yield from block("response", [number_list("frequencies", self.frequencies)])
         if self.oscillation is not None:
             oscillation = [
-                _entry("frequency", self.oscillation.frequency),
-                _entry("amplitude", self.oscillation.amplitude),
-                _count("stepsPerCycle", self.oscillation.steps_per_cycle),
-                _count("cycles", self.oscillation.cycles),
+                entry("frequency", self.oscillation.frequency),
+                entry("amplitude", self.oscillation.amplitude),
+                count("stepsPerCycle", self.oscillation.steps_per_cycle),
+                count("cycles", self.oscillation.cycles),
             ]
-            yield from _block("oscillation", oscillation)
-        yield _count("maxIterations", self.max_iterations)
-        yield _entry("tolerance", self.tolerance)
-        yield _switch("writeFields", self.write_fields)
+            yield from block("oscillation", oscillation)
+        yield count("maxIterations", self.max_iterations)
+        yield entry("tolerance", self.tolerance)
+        yield switch("writeFields", self.write_fields)
 
 
 def _heat(heat: Heat) -> list[str]:
     """Data of the heat, and the isotherms of the oil, their numbers as lists."""
     states = heat.oil.states
-    numbers = [_numbers(state) for state in states]
-    lists = [_list(key, [each[key] for each in numbers]) for key in numbers[0]]
-    viscosity = [_line("type", states[0].pressure_viscosity.case_name), *lists]
-    density = [_line("type", _density(states[0])), _list("density", [state.density for state in states])]
-    oil = [_entry("first", heat.oil.first), _entry("step", STEP)]
-    oil += [*_block("viscosity", viscosity), *_block("density", density)]
-    data = {_camel(field.name): getattr(heat.data, field.name) for field in fields(heat.data)}
+    numbers = [oil_numbers(state) for state in states]
+    lists = [number_list(key, [each[key] for each in numbers]) for key in numbers[0]]
+    viscosity = [line("type", states[0].pressure_viscosity.case_name), *lists]
+    density = [line("type", density_law(states[0])), number_list("density", [state.density for state in states])]
+    oil = [entry("first", heat.oil.first), entry("step", STEP)]
+    oil += [*block("viscosity", viscosity), *block("density", density)]
+    data = {camel(field.name): getattr(heat.data, field.name) for field in fields(heat.data)}
     return [
-        _entry("temperature", heat.temperature),
-        *(_entry(key, value) for key, value in data.items()),
-        *_block("isotherms", oil),
+        entry("temperature", heat.temperature),
+        *(entry(key, value) for key, value in data.items()),
+        *block("isotherms", oil),
     ]
-
-
-def _numbers(oil: LubricantState) -> dict[str, float]:
-    """Numbers of an isotherm, in the dictionary's spelling."""
-    try:
-        numbers = oil.pressure_viscosity.case_numbers()
-    except InputError as error:
-        raise InputError([f"ehlProperties, {problem}" for problem in error.problems]) from None
-    return {"viscosity": oil.viscosity} | {_camel(key): value for key, value in numbers.items()}
-
-
-def _density(oil: LubricantState) -> str:
-    """Name of the law of density."""
-    return "DowsonHigginson" if oil.compressible else "incompressible"
 
 
 def _shear(law: ShearLaw) -> list[str]:
     """The law of shear under its name, with the numbers that it has."""
-    entries = [_line("type", _word("shear", law.form, SHEAR_FORMS))]
+    entries = [line("type", word("shear", law.form, SHEAR_FORMS))]
     if law.form != NEWTONIAN:
-        entries.append(_entry("stress", law.stress))
+        entries.append(entry("stress", law.stress))
     if law.form == LIMITING:
-        entries.append(_entry("ratio", law.ratio))
+        entries.append(entry("ratio", law.ratio))
     if law.form == CARREAU:
-        entries.append(_entry("exponent", law.exponent))
+        entries.append(entry("exponent", law.exponent))
     return entries
-
-
-def _camel(name: str) -> str:
-    """A name in the dictionary's spelling: pressure_scale is pressureScale."""
-    first, *others = name.split("_")
-    return first + "".join(map(str.capitalize, others))
-
-
-def _block(name: str, entries: Sequence[str]) -> Iterator[str]:
-    """A sub-dictionary, a line at a time."""
-    yield from (name, "{", *(f"    {line}" for entry in entries for line in entry.split("\n")), "}")
-
-
-def _line(key: str, value: str) -> str:
-    """An entry with its note."""
-    note = NOTES.get(key, "")
-    entry = f"{key:<20}{value};"
-    return f"{entry:<45}// {note}" if note else entry
-
-
-def _entry(key: str, value: object) -> str:
-    """A key and its number."""
-    # repr of a float is exact and has no character that a dictionary could take for anything else
-    if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(value):
-        raise InputError(f"ehlProperties, {key}: got {value!r:.60}; allowed: a finite number")
-    return _line(key, repr(float(value)))
-
-
-def _count(key: str, value: object) -> str:
-    """A key and its whole number."""
-    if isinstance(value, bool) or not isinstance(value, int) or value < 1:
-        raise InputError(f"ehlProperties, {key}: got {value!r:.60}; allowed: a whole number >= 1")
-    return _line(key, repr(int(value)))
-
-
-def _switch(key: str, value: object) -> str:
-    """A key and true or false."""
-    if not isinstance(value, bool):
-        raise InputError(f"ehlProperties, {key}: got {value!r:.60}; allowed: true or false")
-    return _line(key, "true" if value else "false")
-
-
-def _list(key: str, values: ArrayLike) -> str:
-    """A key and its list of numbers, a long one over many lines."""
-    array = np.asarray(values)
-    if array.ndim != 1 or (array.size and array.dtype.kind not in "iuf") or not np.isfinite(array.astype(float)).all():
-        raise InputError(f"ehlProperties, {key}: got {array.ravel()[:3]!r:.60}; allowed: a list of finite numbers")
-    numbers = [repr(number) for number in array.astype(float).tolist()]
-    if len(numbers) <= NUMBERS_A_LINE:
-        return _line(key, f"({' '.join(numbers)})")
-    starts = range(0, len(numbers), NUMBERS_A_LINE)
-    lines = (f"    {' '.join(numbers[start : start + NUMBERS_A_LINE])}" for start in starts)
-    return "\n".join((f"{key:<45}// {NOTES[key]}" if key in NOTES else key, "(", *lines, ");"))
-
-
-def _word(key: str, value: object, table: Mapping[Any, str]) -> str:
-    """The dictionary's word for a word of the job file."""
-    if not isinstance(value, str | int) or isinstance(value, bool) or value not in table:
-        raise InputError(f"ehlProperties, {key}: got {value!r:.60}; allowed: {', '.join(map(str, table))}")
-    return table[value]

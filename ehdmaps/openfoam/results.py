@@ -158,34 +158,34 @@ def read_results(case: Path) -> Results:
         raise SolverError(f"{path}, status: got {word!r:.60}; allowed: {', '.join(STATUSES)}")
     status = STATUSES[word]
     reason = str(entries.get("reason", "")).strip('"')
-    iterations = int(_number(path, entries, "iterations"))
+    iterations = int(number(path, entries, "iterations"))
     if status is not Status.CONVERGED:
         return Results(status, reason, iterations)
-    frequencies = _numbers(path, entries, "frequencies", None)
+    frequencies = numbers(path, entries, "frequencies", None)
     oscillated = "oscillationFilmCompliance" in entries
     return Results(
         status=status,
         reason=reason,
         iterations=iterations,
-        central_film=_number(path, entries, "centralFilm"),
-        minimum_film=_number(path, entries, "minimumFilm"),
-        max_pressure=_number(path, entries, "maximumPressure"),
-        film_offset=_number(path, entries, "filmOffset"),
-        wall_stress=_number(path, entries, "wallStress"),
-        traction=_number(path, entries, "traction"),
-        rolling_force=_number(path, entries, "rollingForce"),
+        central_film=number(path, entries, "centralFilm"),
+        minimum_film=number(path, entries, "minimumFilm"),
+        max_pressure=number(path, entries, "maximumPressure"),
+        film_offset=number(path, entries, "filmOffset"),
+        wall_stress=number(path, entries, "wallStress"),
+        traction=number(path, entries, "traction"),
+        rolling_force=number(path, entries, "rollingForce"),
         frequencies=frequencies,
-        film_compliance=_numbers(path, entries, "filmCompliance", len(frequencies)),
-        loss_compliance=_numbers(path, entries, "lossCompliance", len(frequencies)),
-        response_residual=_numbers(path, entries, "responseResidual", len(frequencies)),
-        load_defect=_number(path, entries, "loadDefect"),
-        flux_defect=_number(path, entries, "fluxDefect"),
-        outlet_defect=_number(path, entries, "outletDefect"),
-        cell_continuity=_number(path, entries, "cellContinuity"),
-        **({key: _number(path, entries, word) for key, word in HEAT.items()} if "filmTemperature" in entries else {}),
-        seconds=_number(path, entries, "seconds"),
-        oscillation_film_compliance=_number(path, entries, "oscillationFilmCompliance") if oscillated else None,
-        oscillation_loss_compliance=_number(path, entries, "oscillationLossCompliance") if oscillated else None,
+        film_compliance=numbers(path, entries, "filmCompliance", len(frequencies)),
+        loss_compliance=numbers(path, entries, "lossCompliance", len(frequencies)),
+        response_residual=numbers(path, entries, "responseResidual", len(frequencies)),
+        load_defect=number(path, entries, "loadDefect"),
+        flux_defect=number(path, entries, "fluxDefect"),
+        outlet_defect=number(path, entries, "outletDefect"),
+        cell_continuity=number(path, entries, "cellContinuity"),
+        **({key: number(path, entries, word) for key, word in HEAT.items()} if "filmTemperature" in entries else {}),
+        seconds=number(path, entries, "seconds"),
+        oscillation_film_compliance=number(path, entries, "oscillationFilmCompliance") if oscillated else None,
+        oscillation_loss_compliance=number(path, entries, "oscillationLossCompliance") if oscillated else None,
     )
 
 
@@ -206,7 +206,31 @@ def read_film(case: Path, columns: int, name: str = FILM) -> FilmTable:
     SolverError
         If it is not there or is not a table of finite numbers with the columns of `COLUMNS`.
     """
-    path = case / name
+    return FilmTable(*read_table(case / name, columns, COLUMNS))
+
+
+def read_table(path: Path, count: int, columns: tuple[str, ...]) -> FloatArray:
+    """Read a table of numbers.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    count : int
+        Number of lines.
+    columns : tuple of str
+        Heads of its columns.
+
+    Returns
+    -------
+    ndarray, shape (columns, count)
+        A row for each column.
+
+    Raises
+    ------
+    SolverError
+        If it is not there or is not such a table of finite numbers.
+    """
     try:
         with path.open(encoding="ascii") as file:
             header = file.readline().lstrip("#").split()
@@ -215,30 +239,62 @@ def read_film(case: Path, columns: int, name: str = FILM) -> FilmTable:
         raise SolverError(f"{path}: is not there") from error
     except ValueError as error:
         raise SolverError(f"{path}: is no table of numbers ({error})") from error
-    if tuple(header) != COLUMNS or table.shape != (columns, len(COLUMNS)) or not np.isfinite(table).all():
+    if tuple(header) != columns or table.shape != (count, len(columns)) or not np.isfinite(table).all():
         raise SolverError(
             f"{path}: got an array of shape {table.shape} under {' '.join(header):.80}; "
-            f"allowed: {columns} lines of finite numbers under {' '.join(COLUMNS)}"
+            f"allowed: {count} lines of finite numbers under {' '.join(columns)}"
         )
-    return FilmTable(*np.ascontiguousarray(table.T))
+    return np.ascontiguousarray(table.T)
 
 
-def _number(path: Path, entries: Mapping[str, Any], key: str) -> float:
-    """A finite number."""
+def number(path: Path, entries: Mapping[str, Any], key: str) -> float:
+    """Return a finite number of a dictionary.
+
+    Parameters
+    ----------
+    path : Path
+        File of the dictionary, for the message.
+    entries : mapping
+        The dictionary.
+    key : str
+        Key of the entry.
+
+    Raises
+    ------
+    SolverError
+        If it is none.
+    """
     value = entries.get(key)
     if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(value):
         raise SolverError(f"{path}, {key}: got {value!r:.60}; allowed: a finite number")
     return float(value)
 
 
-def _numbers(path: Path, entries: Mapping[str, Any], key: str, length: int | None) -> tuple[float, ...]:
-    """A list of finite numbers; the parser takes three of them for a vector."""
+def numbers(path: Path, entries: Mapping[str, Any], key: str, length: int | None) -> tuple[float, ...]:
+    """Return a list of finite numbers of a dictionary; the parser takes three of them for a vector.
+
+    Parameters
+    ----------
+    path : Path
+        File of the dictionary, for the message.
+    entries : mapping
+        The dictionary.
+    key : str
+        Key of the entry.
+    length : int or None
+        How many; None: any.
+
+    Raises
+    ------
+    SolverError
+        If it is none.
+    """
     value = entries.get(key)
     try:
-        numbers = tuple(float(number) for number in value)  # type: ignore[union-attr]
+        found = tuple(float(each) for each in value)  # type: ignore[union-attr]
     except (TypeError, ValueError):
-        numbers = (math.nan,)
-    if not all(map(math.isfinite, numbers)) or length not in (None, len(numbers)):
+        found = (math.nan,)
+    if not all(map(math.isfinite, found)) or length not in (None, len(found)):
         what = "finite numbers" if length is None else f"{length} finite numbers"
         raise SolverError(f"{path}, {key}: got {value!s:.60}; allowed: {what} in brackets")
-    return numbers
+    return found

@@ -20,6 +20,7 @@ from ehdmaps.physics.closed_form import CONTINUUM, NO_CONTINUUM, THICK_NOTE, THI
 from ehdmaps.physics.hertz import LARGEST_PRESSURE
 from ehdmaps.physics.lubricant import Lubricant, LubricantState
 from ehdmaps.physics.point.ellipse import Ellipse
+from ehdmaps.physics.point.groups import point_groups
 from ehdmaps.physics.solution import Status
 from ehdmaps.physics.spectrum import checked_frequencies
 from ehdmaps.point.problem import PointProblem
@@ -245,27 +246,6 @@ def solve(
     if asked is not None:
         response = _response(groups, asked, ellipse, load, entrainment_speed)
     return _in_si(groups, where, (M, L), state, response, seconds())
-
-
-def point_groups(ellipse: Ellipse, state: LubricantState, load: float, entrainment_speed: float) -> tuple[float, float]:
-    """Moes' groups M and L of a point contact.
-
-    Parameters
-    ----------
-    ellipse : Ellipse
-        The contact.
-    state : LubricantState
-        The oil at its temperature.
-    load : float
-        F [N].
-    entrainment_speed : float
-        u [m/s], > 0.
-    """
-    modulus, radius = ellipse.reduced_modulus, ellipse.rolling_radius
-    speed = 2.0 * state.viscosity * entrainment_speed / (modulus * radius)
-    with np.errstate(all="ignore"):
-        M = float(np.float64(load) / (modulus * radius**2) * np.float64(speed) ** -0.75)
-    return M, state.pressure_viscosity.pressure_viscosity * modulus * speed**0.25
 
 
 def _beyond_reach(ellipse: Ellipse, load: float, M: float, L: float) -> str:

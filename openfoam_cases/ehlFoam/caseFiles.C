@@ -32,7 +32,10 @@ static void refuseSchemes(const dictionary& schemes, const word& group, const wo
 } // End namespace Foam
 
 
-void Foam::refuseUnread(const Time& runTime, const fvMesh& mesh, const bool written)
+void Foam::refuseUnread
+(
+    const Time& runTime, const fvSchemes& schemes, const fvSolution& solution, const bool written
+)
 {
     const fileName start(runTime.path()/runTime.timeName());
     const fileNameList fields(readDir(start, fileName::FILE));
@@ -49,12 +52,10 @@ void Foam::refuseUnread(const Time& runTime, const fvMesh& mesh, const bool writ
             << "functions: got them with writeFields false, allowed are function objects with writeFields true, in "
             << "constant/ehlProperties: they run on the fields that are written" << exit(FatalIOError);
     }
-    const fvSchemes& schemes = mesh;
     refuseSchemes(schemes.schemesDict(), "ddtSchemes", "steadyState");
     refuseSchemes(schemes.schemesDict(), "divSchemes", "none");
     refuseSchemes(schemes.schemesDict(), "laplacianSchemes", "none");
     refuseSchemes(schemes.schemesDict(), "interpolationSchemes", "linear");
-    const fvSolution& solution = mesh;
     for (const entry& given : solution)
     {
         if (given.keyword() != "FoamFile")

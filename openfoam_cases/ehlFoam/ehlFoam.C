@@ -6,7 +6,8 @@
 
 /*-
     One lubricated line contact: the film as CFD cells between two elastic
-    half-spaces, its steady state, its stiffness and its damping.
+    half-spaces, its steady state, its stiffness and its damping. With a
+    transverseRadius it is a point contact, see solvePoint.
 
     constant/ehlProperties says what is solved; the answer goes to `results`
     (an OpenFOAM dictionary), film.dat (a table over the columns) and, if asked,
@@ -19,6 +20,7 @@
 
 #include "report.H"
 #include "steadyState.H"
+#include "solvePoint.H"
 #include "oscillation.H"
 #include "caseFiles.H"
 #include "lawTable.H"
@@ -72,7 +74,7 @@ label numberOf(const dictionary& dict, const word& cells, const label least)
 
 int main(int argc, char* argv[])
 {
-    argList::addNote("Elastohydrodynamic line contact, film-resolved");
+    argList::addNote("Elastohydrodynamic contact of a line or a point, film-resolved");
     argList::noParallel();
     argList::addOption("laws", "file", "write the oil at the pressures and rates of a file to laws.dat, solve nothing");
     argList::addOption("walls", "file", "write surface temperatures under the heat of a file to walls.dat, solve nothing");
@@ -95,6 +97,12 @@ int main(int argc, char* argv[])
         writeLaws(dict, args["laws"], runTime.path()/"laws.dat");
         return 0;
     }
+    if (dict.found("transverseRadius"))
+    {
+        const bool written = dict.lookupOrDefault<bool>("writeFields", true);
+        refuseUnread(runTime, fvSchemes(runTime), fvSolution(runTime), written);
+        return solvePoint(dict, runTime, written);
+    }
     const lineContact contact(dict);
     if (args.found("walls"))
     {
@@ -114,7 +122,7 @@ int main(int argc, char* argv[])
     const scalar filmScale = positive(meshDict, "film")*contact.filmUnit();
     filmMesh film(runTime, columns, rows, dict.lookupOrDefault<scalar>("lowerShare", 0.5));
     const bool written = dict.lookupOrDefault<bool>("writeFields", true);
-    refuseUnread(runTime, film.mesh(), written);
+    refuseUnread(runTime, film.mesh(), film.mesh(), written);
     Info<< "b " << contact.halfWidth << " m, p_H " << contact.pressure << " Pa, film expected "
         << filmScale << " m, " << columns << " x " << rows << " cells" << nl << endl;
 

@@ -56,6 +56,54 @@ if mode[0] == "garbage":
     (case / "results").write_bytes(bytes(range(256)) * 10)
     sys.exit(0)
 
+if "transverseRadius" in text:
+    # a point: a paraboloid of pressure over a flat film, each number of the coarse mesh 1 % above that of the fine one
+    nx, ny, rows = (int(number(key)) for key in ("columns", "lines", "rows"))
+    R, E, load = number("reducedRadius"), number("reducedModulus"), number("load")
+    a = (3 * load * R / (2 * E)) ** (1 / 3)
+    peak = 2e-2 * E * a / R if mode[0] == "faint" else 0.3 * E * a / R
+    status = mode[0] if mode[0] in ("stagnated", "diverged") else "converged"
+    pair = lambda v: f"({1.01 * v!r} {v!r})"
+    thick = {"thick": 0.02 * R, "thicker": R}.get(mode[0], 1e-7)
+    entries = {
+        "centralFilm": pair(1e-7), "minimumFilm": pair(8e-8), "maximumPressure": pair(peak), "filmOffset": pair(thick),
+        "compliance": pair(1e-8 if mode[0] != "soft" else -1e-8), "lossCompliance": pair(1e-13),
+        "massDefect": 1e-11, "loadDefect": 1e-12,
+    }
+    if mode[0] == "unresolved":
+        entries["centralFilm"] = "(2e-7 1e-7)"
+    if mode[0] == "nan":
+        entries["filmOffset"] = "(1e-7 nan)"
+    if status != "converged":
+        entries = {}
+    reason = '""' if status == "converged" else '"steps are cut to nothing"'
+    entries |= {"status": status, "reason": reason, "iterations": 9, "seconds": 0.1}
+    head = "FoamFile { version 2.0; format ascii; class %s; object %s; }\\n"
+    body = "".join(f"{k} {v};\\n" for k, v in entries.items())
+    (case / "results").write_text(head % ("dictionary", "results") + body)
+    x = [a * (-2 + 3 * (i + 0.5) / nx) for i in range(nx)]
+    y = [2 * a * (j + 0.5) / ny for j in range(ny)]
+    line = lambda u, v: "%r %r %r 1e-07 1.0\\n" % (u, v, peak * max(0.0, 1 - (u * u + v * v) / a / a))
+    table = [line(u, v) for v in y for u in x]
+    (case / "film.dat").write_text("# x y pressure film liquid_fraction\\n" + "".join(table))
+    if re.search("writeFields +true", text):
+        (case / "constant" / "polyMesh").mkdir()
+        (case / "1").mkdir()
+        levels = [1e-7 * (k / rows - 0.5) for k in range(rows + 1)]
+        at = [(a * (-2 + 3 * i / nx), 2 * a * j / ny, z) for j in range(ny + 1) for i in range(nx + 1) for z in levels]
+        points = "\\n".join("(%r %r %r)" % each for each in at)
+        body = head % ("vectorField", "points") + f"{len(at)}\\n(\\n{points}\\n)\\n"
+        (case / "constant" / "polyMesh" / "points").write_text(body)
+        numbered = "\\n".join(map(str, range(nx * ny * rows)))
+        for name, value in {
+            "p": f"nonuniform List<scalar>\\n{nx * ny * rows}\\n(\\n{numbered}\\n)\\n", "U": "uniform (1 0 0)",
+            "mu": "uniform 0.1", "rho": "uniform 880", "liquidFraction": "uniform 1",
+        }.items():
+            kind = "volVectorField" if name == "U" else "volScalarField"
+            (case / "1" / name).write_text(head % (kind, name) + f"internalField {value};\\n")
+    print("End")
+    sys.exit(0)
+
 columns, rows = int(re.search(r"\\bcolumns +(\\d+);", text)[1]), int(re.search(r"\\brows +(\\d+);", text)[1])
 R, E, load = number("reducedRadius"), number("reducedModulus"), number("load")
 speed = 0.5 * (number("lowerSpeed") + number("upperSpeed"))

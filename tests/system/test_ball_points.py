@@ -70,7 +70,7 @@ def test_no_load_is_told_and_ends_with_status_one(capsys):
             "--frequency: got 90000 Hz; allowed beside --films table",
         ),
         (["--films", "table", "--plot", "film.png"], "--plot: stands beside --films table"),
-        (["--solver", "openfoam"], "--solver: got 'openfoam'; allowed: reynolds"),
+        (["--solver", "formula"], "--solver: got 'formula'; allowed: reynolds, openfoam"),
         (["--frequency", "10 Hz", "1 Hz", "3"], "--frequency: got 10 Hz 1 Hz 3; allowed"),
         (["--oil", "butter"], "--oil: "),
         (["--load", "100 N/mm"], "--load: got the unit 'N/mm'"),

@@ -15,7 +15,7 @@ TOLD = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 PROJECT, SETUPTOOLS = TOLD["project"], TOLD["tool"]["setuptools"]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 CASES = "openfoam_cases"
-NOT_INSTALLED = {"RESULTS.md", "film.png"}
+NOT_INSTALLED = {"RESULTS.md", "film.png", "point.png"}
 """Of the folder of cases: results, for readers of the repository."""
 
 

@@ -1,4 +1,4 @@
-"""`ehdmaps solve` of a ball bearing: both contacts at one load of a ball, solved or read from the table of points."""
+"""`ehdmaps solve` of a ball bearing: both contacts at one load of a ball, solved, by CFD, or read from the table."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -28,6 +28,9 @@ from ehdmaps.point.solver import PointResponse, PointSolution, solve
 from ehdmaps.program import tell
 from ehdmaps.units import DAMPER, FILM, LENGTH, PRESSURE, RPM, SPEED, SPRING, TEMPERATURE, Display, quantity, short
 
+if TYPE_CHECKING:
+    from ehdmaps.jobs.solve.cfd_points import CfdPoints
+
 FORCE = Display("N")
 _HERTZ = Display("Hz")
 
@@ -42,20 +45,26 @@ NUMBERS = (
 )
 """Lines of the table with an error: label, attribute of `PointSolution`, display."""
 
+CONTACTS = ("inner", "outer")
+"""Names of the contacts of a ball."""
+
 SOLVED, TABLE = "solved", "table"
 """Films of the contacts, as films of [solver] says it of lines."""
 
+REYNOLDS, OPENFOAM = "reynolds", "openfoam"
+"""What solves them."""
+
 _FASTEST = 1e6 * math.pi / 30.0
-_OF_LINES = (
-    *("length", "shear_stress", "slide_to_roll", "limiting_ratio", "keep_cases", "fields", "supply", "physics"),
-    "shear",
-)
+_OF_LINES = (*("length", "shear_stress", "slide_to_roll", "limiting_ratio", "supply", "physics", "shear"),)
 """Options of line contacts."""
 
 
 @dataclass(frozen=True)
 class _Request:
-    """Question: bearing, oil, load of a ball [N], speed [m/s], temperature [K], frequencies [Hz], films, picture."""
+    """Question: bearing, oil, load of a ball [N], speed [m/s], temperature [K], frequencies [Hz], films, picture.
+
+    `cfd` is what solves them by OpenFOAM; None by `reynolds`.
+    """
 
     bearing: BallGeometry
     oil: Lubricant
@@ -65,6 +74,7 @@ class _Request:
     frequencies: FloatArray | None
     films: str
     plot: Path | None
+    cfd: CfdPoints | None
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
@@ -77,8 +87,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """
     request = _read(arguments)
     solutions = {
-        name: _contact(request, ellipse)
-        for name, ellipse in zip(("inner", "outer"), request.bearing.contacts(STEEL), strict=True)
+        name: _contact(request, name, ellipse)
+        for name, ellipse in zip(CONTACTS, request.bearing.contacts(STEEL), strict=True)
     }
     if request.plot is not None:
         from ehdmaps.jobs.solve.point_plot import plot_points
@@ -89,9 +99,14 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     return text, 0 if all(solution.status.usable for solution in solutions.values()) else 1
 
 
-def _contact(request: _Request, ellipse: Ellipse) -> PointSolution:
+def _contact(request: _Request, name: str, ellipse: Ellipse) -> PointSolution:
     """One contact, as the request asks."""
     point = (request.oil, request.load, request.speed, request.temperature)
+    if request.cfd is not None:
+        solution, said = request.cfd.solve(name, ellipse, *point)
+        if said:
+            tell(said)
+        return solution
     if request.films == TABLE:
         return read_point(ellipse, *point, request.frequencies)
     return solve(ellipse, *point, request.frequencies)
@@ -162,8 +177,12 @@ def _read(arguments: argparse.Namespace) -> _Request:
         if getattr(arguments, name, None) is not None:
             option = name.replace("_", "-")
             problems.append(f"--{option}: is one of line contacts; allowed: without it for the balls of a bearing")
-    if arguments.solver not in (None, "reynolds"):
-        problems.append(f"--solver: got {short(arguments.solver)}; allowed: reynolds for the balls of a bearing")
+    if arguments.solver not in (None, REYNOLDS, OPENFOAM):
+        problems.append(
+            f"--solver: got {short(arguments.solver)}; allowed: {REYNOLDS}, {OPENFOAM} for the balls of a bearing"
+        )
+    by_cfd = arguments.solver == OPENFOAM
+    problems += _of_the_other_solver(arguments, by_cfd)
 
     def read(option: str, text: str, unit: str, low: float, high: float, display: Display) -> float:
         try:
@@ -206,6 +225,14 @@ def _read(arguments: argparse.Namespace) -> _Request:
     if films == TABLE and arguments.plot is not None:
         problems.append(f"--plot: stands beside --films {TABLE}, which has no field; allowed: --films {SOLVED}")
     problems += output_problems([Output("--plot", arguments.plot, FIGURE)])
+    cfd = None
+    if by_cfd:
+        from ehdmaps.jobs.solve.cfd_points import cfd_points
+
+        try:
+            cfd = cfd_points(arguments.fields, arguments.keep_cases, CONTACTS)
+        except InputError as error:
+            problems.extend(error.problems)
     if oil is not None and math.isfinite(temperature):
         try:
             oil.at(temperature)
@@ -214,7 +241,23 @@ def _read(arguments: argparse.Namespace) -> _Request:
     if problems or bearing is None or oil is None:
         raise InputError(problems)
     plot = None if arguments.plot is None else Path(arguments.plot)
-    return _Request(bearing, oil, load, speed, temperature, frequencies, films, plot)
+    return _Request(bearing, oil, load, speed, temperature, frequencies, films, plot, cfd)
+
+
+def _of_the_other_solver(arguments: argparse.Namespace, by_cfd: bool) -> list[str]:
+    """Say which options belong to the solver that is not asked."""
+    if not by_cfd:
+        given = [name for name in ("fields", "keep_cases") if getattr(arguments, name, None) is not None]
+        return [f"--{name.replace('_', '-')}: is one of OpenFOAM; allowed: with --solver {OPENFOAM}" for name in given]
+    problems = []
+    if arguments.frequency is not None:
+        problems.append(
+            f"--frequency: stands beside --solver {OPENFOAM}, which has k and c of slow motion of a ball; allowed: "
+            f"--solver {REYNOLDS}"
+        )
+    if arguments.films == TABLE:
+        problems.append(f"--films: got {TABLE} beside --solver {OPENFOAM}; allowed: {SOLVED}")
+    return problems
 
 
 def _spaced(given: Sequence[str], ends: list[float], problems: list[str]) -> FloatArray | None:
@@ -234,8 +277,9 @@ def _spaced(given: Sequence[str], ends: list[float], problems: list[str]) -> Flo
 
 def _heading(request: _Request) -> str:
     """Bearing, oil and point in words."""
+    by = "" if request.cfd is None else ", OpenFOAM"
     place = f"{FORCE.text(request.load)} a ball, {SPEED.text(request.speed)}, {TEMPERATURE.text(request.temperature)}"
-    return f"{request.bearing.title}, {request.oil.title}: {place}"
+    return f"{request.bearing.title}, {request.oil.title}{by}: {place}"
 
 
 def _json(solutions: dict[str, PointSolution]) -> str:
