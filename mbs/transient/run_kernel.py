@@ -102,6 +102,14 @@ def _kind(arrays: type) -> Kind:
     return {kind.arrays: kind for kind in KINDS.values()}[arrays]
 
 
+def _counted(function: Any) -> Any:
+    """Function of a kind, which may make arrays where it says nothing else: one of a user's own, by `numba.njit`."""
+    options = getattr(function, "targetoptions", None)  # there is none under NUMBA_DISABLE_JIT
+    if options is not None:
+        options.setdefault("_nrt", True)
+    return function
+
+
 def all_answer(blocks: tuple[Any, ...], moment: Moment, motion: FloatArray, answers: Answers) -> int:
     """Answers of all elements: each block by the function of its kind.
 
@@ -132,7 +140,7 @@ def _all_answer(blocks: Any, moment: Any, motion: Any, answers: Any) -> Callable
             return FOUND
 
         return none
-    answer = _kind(blocks[0].instance_class).answer
+    answer = _counted(_kind(blocks[0].instance_class).answer)
 
     def first_and_rest(blocks: Any, moment: Any, motion: Any, answers: Any) -> int:
         status = answer(blocks[0], moment, motion, answers)
@@ -168,7 +176,7 @@ def _all_accept(blocks: Any, moment: Any) -> Callable[..., None]:
             return
 
         return none
-    accept = _kind(blocks[0].instance_class).accept
+    accept = _counted(_kind(blocks[0].instance_class).accept)
     if accept is None:
 
         def rest(blocks: Any, moment: Any) -> None:
@@ -208,7 +216,7 @@ def _all_powers(blocks: Any, moment: Any, motion: Any, answers: Any, out: Any) -
             return
 
         return none
-    powers = _kind(blocks[0].instance_class).powers
+    powers = _counted(_kind(blocks[0].instance_class).powers)
     if powers is None:
 
         def rest(blocks: Any, moment: Any, motion: Any, answers: Any, out: Any) -> None:

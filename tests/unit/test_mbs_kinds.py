@@ -53,7 +53,8 @@ class Cubics(NamedTuple):
 
 @njit(error_model="numpy")
 def cubics_answer(cubics, moment, motion, answers):
-    """Forces and slopes."""
+    """Forces and slopes, by an array of its own, as compiled code of others may have one."""
+    shares = np.empty(2)
     for i in range(cubics.firsts.size):
         first = cubics.firsts[i]
         k, b, c, part = cubics.numbers[i, 0], cubics.numbers[i, 1], cubics.numbers[i, 2], cubics.numbers[i, 3]
@@ -61,7 +62,8 @@ def cubics_answer(cubics, moment, motion, answers):
         if not abs(y) < 1.0:
             return NO_SOLUTION
         factor = 1.0 + part * math.sin(moment.angle)
-        answers.force[first] = -(k * y + b * y**3) * factor - c * rate
+        shares[0], shares[1] = k * y, b * y**3
+        answers.force[first] = -shares.sum() * factor - c * rate
         answers.slopes[first, first] = moment.by_q * (k + 3.0 * b * y * y) * factor + moment.by_v * c
         answers.outside[cubics.places[i]] += abs(y) > 2e-4
     return FOUND
