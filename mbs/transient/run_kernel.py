@@ -21,7 +21,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numba.extending import overload
@@ -37,6 +37,8 @@ from mbs.transient.run_arrays import Course, Energies, Linear, Numbers, Records,
 
 DONE, TOO_LARGE = FOUND, 3
 """How `advance` ended, besides `NO_SOLUTION` and `IN_PYTHON`: all steps made; error above the tolerance."""
+
+_F = TypeVar("_F")
 
 _OPTIONS: Any = {"error_model": "numpy", "_nrt": False}
 """See `ehdmaps.compiled.njit`."""
@@ -102,7 +104,7 @@ def _kind(arrays: type) -> Kind:
     return {kind.arrays: kind for kind in KINDS.values()}[arrays]
 
 
-def _counted(function: Any) -> Any:
+def _counted(function: _F) -> _F:
     """Function of a kind, which may make arrays where it says nothing else: one of a user's own, by `numba.njit`."""
     options = getattr(function, "targetoptions", None)  # there is none under NUMBA_DISABLE_JIT
     if options is not None:
