@@ -139,7 +139,11 @@ def parser() -> argparse.ArgumentParser:
         metavar="RATIO",
         help="limiting stress over pressure, of --shear limiting or --slide-to-roll FROM TO POINTS; default: 0.05",
     )
-    solve.add_argument("--solver", metavar="NAME", help=_SOLVER)
+    solve.add_argument(
+        "--solver",
+        metavar="NAME",
+        help=_SOLVER + "; or roller, roller:PROFILE: whole rollers under --load, with their ends",
+    )
     solve.add_argument(
         "--films", metavar="FILMS", help="of balls: solved | table; table: read from the film table; default: solved"
     )
@@ -335,6 +339,12 @@ def _command(arguments: argparse.Namespace) -> tuple[str, int]:
 
             return run_points(arguments, source)
     _place_bearing(arguments)
+    if arguments.command == "solve" and (arguments.solver or "").startswith("roller"):
+        from ehdmaps.jobs.solve.roller_ends import is_roller
+        from ehdmaps.jobs.solve.roller_ends import run as solve_rollers
+
+        if is_roller(arguments.solver):
+            return solve_rollers(arguments)
     result: tuple[str, int] = importlib.import_module(f"ehdmaps.jobs.commands.{arguments.command}").run(arguments)
     return result
 

@@ -33,6 +33,7 @@ from mbs.bearings.contact_report import BearingPoint
 from mbs.bearings.films import SIDES, FilmSource, FormulaFilms, MapFilms
 from mbs.bearings.laws import Law
 from mbs.bearings.thermal import BearingState, Mounting, operating_clearance
+from mbs.commands.one_bearing.shared import read_profile_text
 from mbs.commands.one_bearing.values import (
     LOADS,
     MOST_POINTS,
@@ -65,7 +66,6 @@ from mbs.scene.contact_laws import (
 )
 from mbs.scene.fields import FORCE, MICROMETRE
 from mbs.scene.map_set import TABLE_LAW, geometry_problems, structure_words
-from mbs.scene.profiles import profile_from_text
 
 if TYPE_CHECKING:
     from ehdmaps.maps.emap import EHDMap
@@ -406,7 +406,7 @@ def _sliced(
 ) -> Bearing | None:
     """The bearing with clearance, profile and slices; without the last three where they are wrong."""
     before = len(problems)
-    profile = profile_from_text(arguments.profile, given.geometry if given else None, problems)
+    profile = read_profile_text(arguments.profile, given.geometry if given else None, problems)
     slices = read_whole("--slices", arguments.slices, 1, MOST_COUPLED if arguments.coupled else MOST_SLICES, problems)
     if given is None:
         return None

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ehdmaps.jobs.problem import read_contacts
+from ehdmaps.jobs.profiles import read_profile
 from ehdmaps.jobs.supply import read_supply
 from ehdmaps.jobs.table import Table
 from ehdmaps.physics.bearing import BearingGeometry
@@ -16,7 +17,6 @@ from mbs.bearings.thermal import EXPANSIONS, STEEL_EXPANSION, GivenTemperatures,
 from mbs.scene import fields
 from mbs.scene.fields import DEGREE, MICROMETRE
 from mbs.scene.matrices import MatrixSpec, read_table_bearing
-from mbs.scene.profiles import read_profile
 from mbs.scene.shafts.standing import read_rings
 from mbs.scene.specs import RIB_KEYS, BallSpec, BearingSpec, TaperedSpec
 

@@ -100,6 +100,7 @@ def test_refusals(capsys, here, command, words) -> None:
         (("NA4908", "--axial", "1 kN"), "needles none"),
         (("NJ308", "--axial=-1 kN"), "--axial: got -1000 N; allowed: above zero: NJ carries one way"),
         (("NUP210", "--axial", "0 N"), "--axial: got 0 N; allowed: not zero"),
+        (("NUP210", "--axial", "1 kN", "--profile", "isso"), "--profile: got 'isso' (did you mean 'iso'?)"),
         (("NUP210", "--axial", "1 kN", "--coupled"), "--coupled: not for ribbed roller bearings"),
     ],
 )
@@ -111,7 +112,8 @@ def test_ribs_are_refused_where_there_are_none(capsys, here, command, words) -> 
 def test_ribs_of_cylindrical_rollers(capsys, here) -> None:
     """Loads of the table are in balance with the axial load: of the equilibrium."""
     command = ("NUP 210 ECP", "--axial=-3 kN", "--load", "5 kN", "--speed", "3000 rpm", "--clearance", "20 um")
-    status, out, err = run(capsys, *command, "-o", "out.nc")
+    status, out, err = run(capsys, *command, "-o", "out.nc", "--profile", "{ crown_drop = '8 um' }")
+    assert "profile crowned with a radius of" in out
     assert (status, err) == (0, "")
     for words in ("clearance 20 um; ribs carry both ways, open by 0.5 deg", "0.5 Fr = 2500 N", "no axial clearance"):
         assert words in out

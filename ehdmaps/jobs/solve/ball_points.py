@@ -325,8 +325,8 @@ def _table(request: _Request, solutions: dict[str, PointSolution]) -> str:
     rows: list[tuple[str, str, list[str]]] = [
         ("status", "", [solution.status.word for solution in found]),
         ("ellipticity", "", [f"{solution.ellipse.ellipticity:.4g}" for solution in found]),
-        ("M", "", [_shown(solution.load_number, math.nan, plain) for solution in found]),
-        ("L", "", [_shown(solution.oil_number, math.nan, plain) for solution in found]),
+        ("M", "", [shown_with_error(solution.load_number, math.nan, plain) for solution in found]),
+        ("L", "", [shown_with_error(solution.oil_number, math.nan, plain) for solution in found]),
         ("Hertz semi-axes", LENGTH.unit, [f"{LENGTH.value(a):.4g} x {LENGTH.value(b):.4g}" for a, b in axes]),
         (
             "Hertz pressure",
@@ -335,7 +335,7 @@ def _table(request: _Request, solutions: dict[str, PointSolution]) -> str:
         ),
     ]
     for label, name, display in NUMBERS:
-        shown = [_shown(getattr(each, name), getattr(each, f"{name}_error"), display) for each in found]
+        shown = [shown_with_error(getattr(each, name), getattr(each, f"{name}_error"), display) for each in found]
         rows.append((label, display.unit, shown))
     rows.append(
         (
@@ -366,12 +366,22 @@ def _over_frequency(name: str, solution: PointSolution) -> list[str]:
     lines = [f"{name}: {'frequency, Hz':>14s}{f'k, {SPRING.unit}':>24s}{f'c, {DAMPER.unit}':>24s}"]
     columns = (response.stiffness, response.stiffness_error, response.damping, response.damping_error)
     for frequency, k, k_error, c, c_error in zip(response.frequencies, *columns, strict=True):
-        lines.append(f"{frequency:21.5g}{_shown(k, k_error, SPRING):>24s}{_shown(c, c_error, DAMPER):>24s}")
+        lines.append(
+            f"{frequency:21.5g}{shown_with_error(k, k_error, SPRING):>24s}{shown_with_error(c, c_error, DAMPER):>24s}"
+        )
     return lines
 
 
-def _shown(value: float, error: float, display: Display) -> str:
-    """A number with its error in per cent."""
+def shown_with_error(value: float, error: float, display: Display) -> str:
+    """A number with its error in per cent; a dash where there is none.
+
+    Parameters
+    ----------
+    value, error : float
+        Number in SI, and its error relative to it, NaN for none.
+    display : Display
+        Unit that is shown.
+    """
     if not math.isfinite(value):
         return "-"
     text = f"{display.value(value):.5g}"

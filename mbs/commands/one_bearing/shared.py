@@ -6,7 +6,9 @@ import argparse
 from collections.abc import Sequence
 
 from ehdmaps.errors import InputError
+from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
+from ehdmaps.physics.surface import CrownedProfile, TabulatedProfile
 from mbs.scene.contact_laws import HERTZ_FORMS, Damper, hertz_damper
 
 CELSIUS_40, ROUGHNESS = 313.15, 0.3e-6
@@ -71,6 +73,27 @@ def read_damper(law: str | None, kind: str, more: str, problems: list[str]) -> D
     if damper is None:
         problems.append(f"--law: got {law!r:.60} for a {kind}; allowed: hertz, {HERTZ_FORMS}{more}")
     return damper
+
+
+def read_profile_text(
+    text: str, geometry: BearingGeometry | None, problems: list[str]
+) -> str | CrownedProfile | TabulatedProfile:
+    """The profile of cylindrical rollers; "iso" where a problem was noted.
+
+    Parameters
+    ----------
+    text : str
+        Value as a scene writes it.
+    geometry : BearingGeometry or None
+        Geometry of the bearing; None where a problem of it was noted.
+    problems : list of str
+        What is wrong; added to.
+    """
+    if text in ("iso", "straight"):
+        return text
+    from ehdmaps.jobs.profiles import profile_from_text  # with the reader of tables, which names do not need
+
+    return profile_from_text(text, geometry, problems)
 
 
 def read_oil(name: str | None, temperature: float, problems: list[str]) -> Lubricant | None:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from ehdmaps.errors import InputError
 from ehdmaps.outputs import output_problems
+from ehdmaps.physics.catalogue import designated
 from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
 from ehdmaps.physics.rollers.ribbed_geometry import RibbedGeometry, ribbed_estimate, ribbed_way
 from ehdmaps.physics.rollers.tapered_catalogue import tapered_estimate
@@ -17,7 +18,14 @@ from ehdmaps.units import RPM, TEMPERATURE
 from mbs.bearings.tapered.tapered_bearing import MOST_SLICES, SLICES, TaperedForce
 from mbs.bearings.tapered.tapered_point import TaperedPoint, tapered_point
 from mbs.commands.one_bearing.linear_files import count_problems, is_linear, linear_outputs, write_linear
-from mbs.commands.one_bearing.shared import CELSIUS_40, ROUGHNESS, read_damper, read_oil, refuse_others
+from mbs.commands.one_bearing.shared import (
+    CELSIUS_40,
+    ROUGHNESS,
+    read_damper,
+    read_oil,
+    read_profile_text,
+    refuse_others,
+)
 from mbs.commands.one_bearing.tapered_table import (
     TaperedDescription,
     tapered_dataset,
@@ -117,7 +125,9 @@ def read_tapered(arguments: argparse.Namespace) -> TaperedRequest:
     films = chosen.get("law") == TABLE_LAW
     damper = Damper() if films else read_damper(chosen.get("law"), kind, f", {TABLE_LAW}", problems)
     profile = arguments.profile
-    if profile not in ("iso", "straight"):
+    if isinstance(geometry, RibbedGeometry):
+        profile = read_profile_text(profile, designated(arguments.bearing), problems)
+    elif profile not in ("iso", "straight"):
         problems.append(f"--profile: got {profile!r:.60} for a {kind}; allowed: iso, straight")
     slices = SLICES if arguments.slices == "41" else read_whole("--slices", arguments.slices, 2, MOST_SLICES, problems)
     temperature = float(chosen.get("temperature", CELSIUS_40))

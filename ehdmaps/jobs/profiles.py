@@ -1,4 +1,4 @@
-"""The profile of rollers, a key of a bearing in a scene or a text: by name, as an arc, or as a table."""
+"""The profile of rollers, of a bearing in a scene or as text on a command line: by name, as an arc, or as a table."""
 
 from __future__ import annotations
 
@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.surface import CrownedProfile, TabulatedProfile
-from ehdmaps.units import LENGTH, closest, short
-from mbs.scene.fields import MICROMETRE
+from ehdmaps.units import FILM, LENGTH, closest, short
 
 if TYPE_CHECKING:
     from ehdmaps.jobs.table import Table
@@ -99,7 +98,7 @@ def _crowned(table: Table, geometry: BearingGeometry | None) -> CrownedProfile |
     if "crown_radius" in table:
         radius = table.quantity("crown_radius", "m", 1e-3, 1e6, LENGTH)
         return None if radius is None else CrownedProfile(radius, straight)
-    drop = table.quantity("crown_drop", "m", 1e-9, 1e-2, MICROMETRE)
+    drop = table.quantity("crown_drop", "m", 1e-9, 1e-2, FILM)
     if drop is None or geometry is None:
         return None
     return CrownedProfile.of_drop(drop, geometry.roller_length, straight)
