@@ -15,6 +15,7 @@ from mbs import assemble, parse_scene, read_scene
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.ball_point import ball_point
 from mbs.bearings.balls.laws import dry_law
+from mbs.cli import main
 from mbs.linearised.modes import modes
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
@@ -191,3 +192,13 @@ def test_wrong_bearings_and_laws_are_all_said():
         assemble(read_scene("electric_drive"), "table", supply=OilSupply(5e-6))
     with pytest.raises(InputError, match=r"got the law 'formula' for a ball bearing; allowed: hertz"):
         assemble(read_scene("electric_drive"), "formula")
+
+
+def test_check_says_how_each_bearing_stands(capsys):
+    assert main(["check", "spindle", "--law", "hertz"]) == 0
+    said = capsys.readouterr().out
+    for words in (
+        "bearing front: 7014C (estimated), 20 balls, clearance 0 um, contact angle 15 deg, inner ring offset by 12 um,",
+        "bearing rear_inside: 7012C (estimated), 19 balls, clearance 0 um, contact angle 15 deg, mirrored, shaft:sleeve",
+    ):
+        assert words in said

@@ -18,7 +18,7 @@ from mbs.output.model_text import heading
 from mbs.scene.assembly import Model
 from mbs.scene.fields import HERTZ, MICROMETRE
 from mbs.scene.scene import Scene
-from mbs.scene.specs import BearingSpec, RigidSpec, ShaftSpec
+from mbs.scene.specs import BallSpec, BearingSpec, RigidSpec, ShaftSpec, TaperedSpec
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
@@ -60,16 +60,31 @@ def _words(spec: object) -> str:
 
 
 def _bearings(model: Model) -> Iterator[str]:
-    """Lines of the roller bearings with their oil and films."""
+    """Lines of the bearings; of cylindrical rollers with their oil and films."""
     for spec in model.scene.bearings:
         yield (
             f"  bearing {spec.name}: {spec.geometry.title}{' (estimated)' if spec.geometry.estimated else ''}, "
             f"{spec.geometry.rollers} rollers, clearance {MICROMETRE.text(spec.geometry.diametral_clearance)}, "
             f"{_where(model.scene, spec)}; {model.films[spec.name].words}"
         )
+    for other in (*model.scene.balls, *model.scene.tapered):
+        yield f"  bearing {other.name}: {_located(other)}, {_where(model.scene, other)}"
 
 
-def _where(scene: Scene, spec: BearingSpec) -> str:
+def _located(spec: BallSpec | TaperedSpec) -> str:
+    """What holds a ring along the axis too: the bearing, its elements, and how it stands."""
+    geometry, angle = spec.geometry, math.degrees(spec.geometry.contact_angle)
+    estimated = " (estimated)" if geometry.estimated else ""
+    if isinstance(spec, BallSpec):
+        words = [f"{spec.geometry.balls} balls", f"clearance {MICROMETRE.text(spec.geometry.clearance)}"]
+    else:
+        words = [f"{spec.geometry.rollers} rollers"]
+    words += [f"contact angle {abs(angle):.3g} deg"] * (angle != 0.0) + ["mirrored"] * (angle < 0.0)
+    words += [f"inner ring offset by {MICROMETRE.text(spec.axial_offset)}"] * (spec.axial_offset != 0.0)
+    return f"{geometry.title}{estimated}, {', '.join(words)}"
+
+
+def _where(scene: Scene, spec: BearingSpec | BallSpec | TaperedSpec) -> str:
     """Places of a bearing; on a shaft with the position along it."""
     body, _, frame = spec.inner.partition(":")
     shaft = next((entry for entry in scene.bodies if isinstance(entry, ShaftSpec) and entry.name == body), None)
