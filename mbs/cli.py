@@ -284,7 +284,7 @@ def _variants(command: argparse.ArgumentParser) -> None:
 def _bearing(top: Program) -> None:
     """Add the command on one bearing, without a scene."""
     words = "one bearing without a scene: stiffness, damping, loads of rollers or balls, pressures, films"
-    chosen = _choices("films", "load-factor", "start-angle")
+    chosen = _choices("load-factor", "start-angle")
     command = top.add_command(_LOOK, "bearing", words, chosen)
     command.add_argument(
         "bearing", metavar="BEARING", help="N1014, NU308, 6208, 7208B, or a TOML file with [bearing] (a job)"

@@ -161,6 +161,8 @@ def read_request(arguments: argparse.Namespace) -> BearingRequest:
     problems: list[str] = []
     given = _bearing(arguments.bearing, problems)
     chosen = read_choices(arguments, problems)
+    if "films" in chosen:
+        problems.append("--films: not for one bearing of rollers, whose K and C are those of slow motion; leave it out")
     emap = _map(chosen.get("map"), problems)
     law = _law(chosen.get("law"), "map" in chosen, problems)
     emap = _structured(emap, law, chosen, problems)

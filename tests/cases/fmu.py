@@ -45,7 +45,7 @@ class Unit:
         model = kind(
             guid=self.description.guid,
             unzipDirectory=str(self.folder),
-            modelIdentifier=self.description.modelExchange.modelIdentifier,  # that of Co-Simulation, too
+            modelIdentifier=self.description.coSimulation.modelIdentifier,  # that of Model Exchange, too
             instanceName="one",
         )
         model.instantiate()

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from mbs import assemble, read_scene
-from mbs.bearings.balls.ball_block import FELT, BallBlock, balls_accept, balls_answer
+from mbs.bearings.balls.ball_block import FELT
 from mbs.bearings.balls.normal_law import contact
-from mbs.model.blocks import FOUND, Answers, Member, Moment
 from mbs.model.elements import Operation
+from tests.cases.ball_runs import driven
 
 RPM = math.pi / 30.0
 PLACE = np.array([95e-6, -3e-6, 1e-6, 0.0, 2e-5, -4e-5])
@@ -20,24 +20,6 @@ PLACE = np.array([95e-6, -3e-6, 1e-6, 0.0, 2e-5, -4e-5])
 @pytest.fixture(scope="module")
 def element():
     return assemble(read_scene("electric_drive"), "table").balls[0]
-
-
-def driven(element, speed, path, step):
-    """Forces (n, 5) in compiled code along a path (n, 6) of even steps from films at rest, and least inner loads."""
-    _, states = element.advance(None, path[0], np.zeros(6), Operation(speed))
-    block = BallBlock([Member(element, 0, 0)])
-    block.begin(np.array([speed]))
-    block.resume([states])
-    arrays, sound = block.prepare(0, 1)
-    assert sound[0]
-    forces, least = np.empty((len(path), 5)), math.inf
-    for i, place in enumerate(path):
-        found = Answers(forces[i], np.zeros((5, 5)), np.zeros(1, dtype=np.int64))
-        moment = Moment(0, step * i, speed, 0.0, 1.0, 0.0)
-        assert balls_answer(arrays, moment, np.array([place[FELT], np.zeros(5)]), found) == FOUND
-        balls_accept(arrays, moment)
-        least = min(least, float(arrays.rows[0, :9, 10].min()))
-    return forces, least
 
 
 @pytest.mark.parametrize(("rpm", "hertz"), [(600.0, 3e3), (6000.0, 4e3)])

@@ -110,32 +110,21 @@ int component_begin(component *of) {
 }
 
 #if FMU_MEMORY
-#define LONGEST_STEP 5e-6 /* of films in co-simulation [s]: damping at 3 kHz is right within half a per cent */
-#define MOST_FILM_STEPS 400
-
-/* Place of the ring along a direction at a part of a step: cubic by the velocities at both ends, straight where these are
- * not the rates of this motion, or not given. Their mean differs from that of a motion at f by (2 pi f step)^2/12. */
-static double place_at(const snapshot *now, int i, double part, double step) {
-    const double begin = now->former[POSE_Y + i], change = now->values[POSE_Y + i] - begin;
-    const double first = step * now->former[VELOCITY_Y + i], last = step * now->values[VELOCITY_Y + i];
-    const double largest = fmax(fabs(change), fmax(fabs(first), fabs(last)));
-    const double bend = (1.0 - part) * (first - change) - part * (last - change);
-    const int fits = fabs(0.5 * (first + last) - change) <= 0.5 * largest;
-    return begin + part * (change + (fits ? (1.0 - part) * bend : 0.0));
-}
+#include "path.h"
 
 int component_step(component *of, double step) {
     double pose[6] = {0.0};
     const snapshot before = of->now;
-    const double wanted = ceil(step / LONGEST_STEP * (1.0 - 1e-9)); /* rounding makes no further step */
-    const int count = wanted < MOST_FILM_STEPS ? (int)wanted : MOST_FILM_STEPS;
+    const int count = film_steps(step);
     if (!(step > 0.0)) return component_update(of);
     int status = law_for(of, of->now.values);
     if (!of->now.begun) follow(&of->now);
     const double begin = cage_angle_of(of->now.former), turn = cage_angle_of(of->now.values) - begin;
     for (int n = 1; n <= count && !EHD_REFUSES(status); n++) {
         const double part = (double)n / count;
-        for (int i = 0; i < 4; i++) pose[DIRECTION[i]] = place_at(&of->now, i, part, step);
+        for (int i = 0; i < 4; i++)
+            pose[DIRECTION[i]] = place_between(of->now.former[POSE_Y + i], of->now.values[POSE_Y + i],
+                                               of->now.former[VELOCITY_Y + i], of->now.values[VELOCITY_Y + i], part, step);
         status |= ehd_bearing_advance(&of->bearing, &of->film, step / count, of->now.last_step, pose,
                                       begin + part * turn, of->now.films, of->stepped, &of->result);
         memcpy(of->now.films, of->stepped, sizeof of->stepped);

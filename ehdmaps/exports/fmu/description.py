@@ -55,6 +55,8 @@ def model_description(
     sources: tuple[str, ...],
     start: Mapping[str, float],
     films: Sequence[str] = (),
+    *,
+    exchanges: bool = True,
 ) -> str:
     """Text of modelDescription.xml.
 
@@ -72,6 +74,8 @@ def model_description(
         Values at the start of variables that do not start at zero.
     films : sequence of str
         Names of the states of films with memory.
+    exchanges : bool
+        Whether there is Model Exchange, beside Co-Simulation.
     """
     second = fmi == "2"
     root = ElementTree.Element(
@@ -87,7 +91,7 @@ def model_description(
             **({"numberOfEventIndicators": "0"} if second else {}),
         },
     )
-    for name in ("ModelExchange", "CoSimulation"):
+    for name in ("ModelExchange", "CoSimulation") if exchanges else ("CoSimulation",):
         state = "FMUstate" if second else "FMUState"
         interface = ElementTree.SubElement(
             root,

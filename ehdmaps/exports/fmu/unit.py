@@ -51,6 +51,8 @@ class Content:
         What happens outside of what the law was made for, for people.
     header : tuple of str
         Lines that say where the unit comes from.
+    exchanges : bool
+        Whether there is Model Exchange, beside Co-Simulation.
     """
 
     words: str
@@ -63,6 +65,7 @@ class Content:
     sentences: tuple[str, ...]
     beyond: str
     header: tuple[str, ...]
+    exchanges: bool = True
 
 
 def write_unit(path: Path, content: Content, fmi: str, sources_only: bool = False) -> str:
@@ -107,7 +110,7 @@ def _identity(content: Content, stem: str, fmi: str) -> Identity:
 def _unit_files(content: Content, identity: Identity, fmi: str) -> dict[str, str]:
     """Return all files of a unit but its binaries."""
     own = files("ehdmaps.exports.fmu")
-    texts = {f"fmi{fmi}.c": own / f"fmi{fmi}.c"}
+    texts = {name: own / name for name in (f"fmi{fmi}.c", "path.h")}
     texts |= {entry.name: entry for entry in (own / "headers").iterdir() if entry.name.startswith(f"fmi{fmi}")}
     written = {**content.sources, **{name: entry.read_text(encoding="utf-8") for name, entry in texts.items()}}
     written["identity.h"] = (
@@ -118,7 +121,9 @@ def _unit_files(content: Content, identity: Identity, fmi: str) -> dict[str, str
         written["buildDescription.xml"] = build_description(identity, to_compile)
     return {
         **{f"{_SOURCES}{name}": text for name, text in written.items()},
-        _DESCRIPTION: model_description(fmi, identity, content.variables, to_compile, content.start, content.films),
+        _DESCRIPTION: model_description(
+            fmi, identity, content.variables, to_compile, content.start, content.films, exchanges=content.exchanges
+        ),
         "documentation/index.html": _page(identity, content),
     }
 

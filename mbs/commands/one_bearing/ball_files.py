@@ -37,6 +37,8 @@ class BallExport:
         Speed of the outer ring [rad/s].
     films : callable or None
         Law with the films of an entrainment speed [m/s]; None where the law is dry.
+    memory : bool
+        Whether films have a memory.
     """
 
     force: BallForce
@@ -44,6 +46,7 @@ class BallExport:
     points: Sequence[BallPoint]
     outer_speed: float
     films: Callable[[float], BallLaw] | None
+    memory: bool = False
 
 
 def is_export(path: str | None) -> bool:
@@ -55,6 +58,17 @@ def is_export(path: str | None) -> bool:
         Path of -o.
     """
     return is_linear(path) or ending_of(path) in (SOURCE, UNIT)
+
+
+def has_memory(path: str | None) -> bool:
+    """Tell whether films may have a memory in a file.
+
+    Parameters
+    ----------
+    path : str or None
+        Path of -o.
+    """
+    return ending_of(path) in (SOURCE, UNIT)
 
 
 def ball_outputs(path: str | None) -> tuple[Output, ...]:
@@ -128,8 +142,9 @@ def _speed_laws(given: BallExport) -> tuple[SpeedLaws, str]:
     turning = [u for u in asked if u > 0.0]
     if given.films is None or not turning:
         return dry_speed_laws(given.force.law), "films: none, dry contacts"
-    laws = film_speed_laws(given.films, min(turning), max(turning))
-    words = f"films: at {laws.speeds.size} entrainment speeds from {min(turning):.6g} to {max(turning):.6g} m/s"
+    laws = film_speed_laws(given.films, min(turning), max(turning), memory=given.memory)
+    kind = "films with memory" if laws.memory else "films"
+    words = f"{kind}: at {laws.speeds.size} entrainment speeds from {min(turning):.6g} to {max(turning):.6g} m/s"
     if laws.speeds.size == 1:
         return laws, f"{words}; held at any other"
     load, stiffness, damping = error_between(laws, given.films)

@@ -20,7 +20,7 @@ from ehdmaps.units import RPM, TEMPERATURE
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.ball_point import BallPoint, ball_point
 from mbs.bearings.balls.laws import BallLaw, dry_law
-from mbs.commands.one_bearing.ball_files import BallExport, ball_outputs, is_export, write_export
+from mbs.commands.one_bearing.ball_files import BallExport, ball_outputs, has_memory, is_export, write_export
 from mbs.commands.one_bearing.linear_files import count_problems
 from mbs.commands.one_bearing.shared import CELSIUS_40, ROUGHNESS, read_damper, read_oil, refuse_others
 from mbs.commands.one_bearing.values import (
@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 FILMS, TABLE = "films", "table"
 """Laws of contacts with films at each speed: read from the table of points, and solved where it has none; or read."""
 
-_TAKEN = ("law", "clearance", "temperature", "roughness")
+_TAKEN = ("law", "clearance", "temperature", "roughness", "films")
 """Choices that ball bearings take."""
 
 
@@ -69,6 +69,8 @@ class BallRequest:
         Speeds of the inner ring [rad/s].
     outer_speed : float
         Speed of the outer ring [rad/s].
+    memory : bool
+        Whether the films of a file for another program have a memory.
     description : BallDescription
         The same in words.
     """
@@ -81,6 +83,7 @@ class BallRequest:
     way: tuple[float, float]
     speeds: tuple[float, ...]
     outer_speed: float
+    memory: bool
     description: BallDescription
 
 
@@ -108,6 +111,10 @@ def read_balls(arguments: argparse.Namespace) -> BallRequest:
     law = chosen.get("law")
     films = law if law in (FILMS, TABLE) else ""
     more = f", {FILMS}, {TABLE}; maps are of line contacts"
+    if "films" in chosen and not (films and has_memory(arguments.output)):
+        problems.append(
+            f"--films: got {chosen['films']!r} for a ball bearing; allowed: with --law {TABLE} and -o NAME.c, NAME.fmu"
+        )
     damper = Damper() if films else read_damper(chosen.get("law"), "ball bearing", more, problems)
     temperature = float(chosen.get("temperature", CELSIUS_40))
     oil = read_oil(arguments.oil, temperature, problems)
@@ -144,6 +151,7 @@ def read_balls(arguments: argparse.Namespace) -> BallRequest:
         way=way,
         speeds=speeds,
         outer_speed=outer,
+        memory=chosen.get("films") == "memory",
         description=BallDescription(
             law=f"films of {oil.title}, {source[films]}"
             if films
@@ -208,7 +216,8 @@ def _exported(request: BallRequest, points: list[BallPoint]) -> BallExport:
     def films(entrainment_speed: float) -> BallLaw:
         return _films(request, entrainment_speed).law
 
-    return BallExport(request.force, request.description, points, request.outer_speed, films if request.films else None)
+    made = films if request.films else None
+    return BallExport(request.force, request.description, points, request.outer_speed, made, request.memory)
 
 
 def _at_speed(request: BallRequest, speed: float) -> tuple[BallForce, BallFilms | None]:

@@ -20,6 +20,7 @@
 typedef struct given {
     double d[2], centrifugal, traction, rest;
     const ehd_contact *inner, *outer;
+    const double *held_inner, *held_outer; /* see contact_of */
 } given;
 
 /* Forces on a ball at a place, and what they come from: what is left of them, and the sum of their sizes [N]; minus the
@@ -32,8 +33,8 @@ static state state_at(const given *of, double x, double r) {
     state s;
     const double reach = sqrt(x * x + r * r), dx = of->d[0] - x, dr = of->d[1] - r;
     const double distance = most(sqrt(dx * dx + dr * dr), 1e-300);
-    const contact_state outer = contact_of(of->outer, reach - OUTER_ARM);
-    const contact_state inner = contact_of(of->inner, distance - INNER_ARM);
+    const contact_state outer = contact_of(of->outer, reach - OUTER_ARM, of->held_outer);
+    const contact_state inner = contact_of(of->inner, distance - INNER_ARM, of->held_inner);
     const double qo = outer.load, ko = outer.stiffness, qi = inner.load, ki = inner.stiffness;
     const double one_o = 1.0 / reach, one_i = 1.0 / distance;
     const double ox = x * one_o, orr = r * one_o, ix = dx * one_i, ir = dr * one_i;

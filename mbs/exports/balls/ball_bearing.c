@@ -31,8 +31,8 @@ int ehd_bearing_make(ehd_bearing *bearing, double clearance, int mirrored) {
 
 double ehd_cage(double inner, double outer) { return EHD_CAGE_INNER * inner + EHD_CAGE_OUTER * outer; }
 
-/* Speed of the cage of pure rolling at the mean contact angles of both sides, by the loads of the balls. */
-static double rolling(const ehd_balls *balls, double inner, double outer) {
+/* Mean contact angles of both sides, by the loads of the balls; zero without load. */
+static void mean_angles(const ehd_balls *balls, double angle[2]) {
     double load_i = 0.0, load_o = 0.0, angle_i = 0.0, angle_o = 0.0;
     for (int j = 0; j < EHD_BALLS; j++) {
         const ehd_ball *ball = &balls->ball[j];
@@ -41,9 +41,14 @@ static double rolling(const ehd_balls *balls, double inner, double outer) {
         angle_i += ball->inner_load * ball->inner_angle;
         angle_o += ball->outer_load * ball->outer_angle;
     }
+    angle[0] = load_i > 0.0 ? angle_i / load_i : 0.0;
+    angle[1] = load_o > 0.0 ? angle_o / load_o : 0.0;
+}
+
+/* Speed of the cage of pure rolling at the mean contact angles of both sides. */
+static double rolling(const double angle[2], double inner, double outer) {
     const double ratio = EHD_BALL_DIAMETER / EHD_PITCH_DIAMETER;
-    const double at_inner = 1.0 - ratio * cos(load_i > 0.0 ? angle_i / load_i : 0.0);
-    const double at_outer = 1.0 + ratio * cos(load_o > 0.0 ? angle_o / load_o : 0.0);
+    const double at_inner = 1.0 - ratio * cos(angle[0]), at_outer = 1.0 + ratio * cos(angle[1]);
     return (inner * at_inner + outer * at_outer) / (at_inner + at_outer);
 }
 
@@ -75,16 +80,17 @@ static void add_matrix(double sum[6][6], const double m[4], const double way[6][
                          way[i][1] * (m[2] * way[k][0] + m[3] * way[k][1]);
 }
 
-int ehd_bearing_at(const ehd_bearing *bearing, const ehd_law *law, ehd_balls *balls, const double pose[6],
-                   const double velocity[6], double cage_angle, double cage_speed, double outer_speed,
-                   ehd_bearing_force *result) {
+/* ehd_bearing_at; held: what the films of the inner and the outer contact of each ball hold over a step, or null. */
+static int bearing_at(const ehd_bearing *bearing, const ehd_law *law, ehd_balls *balls, const double pose[6],
+                      const double velocity[6], double cage_angle, double cage_speed, double outer_speed,
+                      const double (*held)[2][3], ehd_bearing_force *result) {
     if (!result) return EHD_BAD_ARGUMENT;
     if (!bearing || !law || !law->made || !balls || !pose || !(fabs(cage_speed) <= FASTEST) ||
         !(fabs(outer_speed) <= FASTEST))
         return no_force(result, EHD_BAD_ARGUMENT);
     const int problem = problem_of(bearing, pose, velocity, cage_angle);
     if (problem) return no_force(result, problem);
-    given of = {{0.0, 0.0}, 0.0, 0.0, 0.0, &law->inner, &law->outer};
+    given of = {{0.0, 0.0}, 0.0, 0.0, 0.0, &law->inner, &law->outer, NULL, NULL};
     of.centrifugal = CENTRIFUGAL * cage_speed * cage_speed;
     /* traction of rings that turn against each other would drive an idle ball out of its groove: G >= -F_c Dw/4 */
     const double moment = most(GYROSCOPIC * cage_speed * (cage_speed - outer_speed),
@@ -103,6 +109,10 @@ int ehd_bearing_at(const ehd_bearing *bearing, const ehd_law *law, ehd_balls *ba
                                   {-bearing->arm * c, 0.0}};
         of.d[0] = bearing->axial + pose[0] + bearing->arm * (pose[4] * s - pose[5] * c);
         of.d[1] = bearing->radial + pose[1] * c + pose[2] * s;
+        if (held) {
+            of.held_inner = held[j][0];
+            of.held_outer = held[j][1];
+        }
         int found = place_ball(&of, ball);
         if (!found) { /* once more, from nothing */
             memset(ball, 0, sizeof *ball);
@@ -124,6 +134,12 @@ int ehd_bearing_at(const ehd_bearing *bearing, const ehd_law *law, ehd_balls *ba
     return law->status | (largest > law->highest ? EHD_ABOVE_LOAD : EHD_OK);
 }
 
+int ehd_bearing_at(const ehd_bearing *bearing, const ehd_law *law, ehd_balls *balls, const double pose[6],
+                   const double velocity[6], double cage_angle, double cage_speed, double outer_speed,
+                   ehd_bearing_force *result) {
+    return bearing_at(bearing, law, balls, pose, velocity, cage_angle, cage_speed, outer_speed, NULL, result);
+}
+
 int ehd_bearing_call(const ehd_bearing *bearing, ehd_law *law, ehd_balls *balls, const double pose[6],
                      const double velocity[6], double cage_angle, double inner_speed, double outer_speed,
                      ehd_bearing_force *result) {
@@ -138,7 +154,9 @@ int ehd_bearing_call(const ehd_bearing *bearing, ehd_law *law, ehd_balls *balls,
             ehd_bearing_at(bearing, law, balls, pose, velocity, cage_angle, cage, outer_speed, result);
         if (EHD_REFUSES(status)) return status;
         const double before = cage;
-        cage = rolling(balls, inner_speed, outer_speed);
+        double angle[2];
+        mean_angles(balls, angle);
+        cage = rolling(angle, inner_speed, outer_speed);
         if (fabs(cage - before) <= CAGE_ERROR * fastest) return status;
     }
     return no_force(result, EHD_NO_BALANCE);

@@ -8,7 +8,7 @@
  *
  * Ball j stands at cage_angle + 2 pi j/EHD_BALLS, from y towards z. Each ball is in balance with both raceways, its
  * centrifugal load and its gyroscopic moment, which traction at the outer raceway holds. Balls have no inertia beside
- * that; films have no memory.
+ * that.
  *
  *     static ehd_law law;     // all zero before the first call
  *     static ehd_balls balls; // the same
@@ -54,6 +54,7 @@ typedef struct ehd_bearing {
 typedef struct ehd_contact {
     double coefficient, damping, damping_time, centre, scale, first, step;
     double table[EHD_ROWS + 1][4];
+    double springs[EHD_MEMORY ? EHD_ROWS : 1][4]; /* of films with memory, by node: see ball_films */
 } ehd_contact;
 
 /* The laws of both contacts at one entrainment speed; made by ehd_prepare. All zero before the first call. */

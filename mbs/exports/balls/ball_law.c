@@ -22,14 +22,16 @@ const char *ehd_status_text(int status) {
 
 size_t ehd_law_size(void) { return sizeof(ehd_law); }
 
-/* Load, stiffness and damping of a contact at rest. */
+/* Load, stiffness and damping of a contact at rest; with memory, at the end of a step over which the film holds a force
+ * [N] and a spring [N/m] beyond an approach [m]. */
 typedef struct contact_state {
     double load, stiffness, damping;
 } contact_state;
 
 #if DRY
-static contact_state contact_of(const ehd_contact *law, double approach) {
+static contact_state contact_of(const ehd_contact *law, double approach, const double *held) {
     contact_state found = {0.0, 0.0, 0.0};
+    (void)held;
     if (approach > 0.0) {
         const double root = law->coefficient * sqrt(approach);
         found.load = root * approach;
@@ -39,7 +41,7 @@ static contact_state contact_of(const ehd_contact *law, double approach) {
     return found;
 }
 #else
-static contact_state contact_of(const ehd_contact *law, double approach) {
+static contact_state contact_of(const ehd_contact *law, double approach, const double *held) {
     contact_state found;
     const double zeta = (approach - law->centre) / law->scale, place = (asinh(zeta) - law->first) / law->step;
     const int last = EHD_ROWS - 1, at = place > 0.0 ? (place < last ? (int)place : last) : 0;
@@ -64,6 +66,14 @@ static contact_state contact_of(const ehd_contact *law, double approach) {
     found.load = root * g;
     found.stiffness = 1.5 * root * g * slope / (law->scale * law->step * sqrt(1.0 + zeta * zeta));
     found.damping = exp(damping);
+    if (held && held[1] > 0.0) { /* the film's springs over a step: f beside the load p, and sqrt(f^2 + p^2) if pulled */
+        const double more = held[0] + held[1] * (approach - held[2]), load = found.load;
+        const double size = sqrt(more * more + load * load);
+        found.damping = 0.0;
+        found.load = more >= 0.0 ? load + more : load * load / (size - more);
+        found.stiffness = more >= 0.0 ? found.stiffness + held[1]
+                                      : (held[1] * found.load + found.stiffness * load) / size;
+    }
     return found;
 }
 #endif
@@ -78,7 +88,7 @@ static double approach_of(const ehd_contact *law, double load, double start) {
 #else
     double low = law->centre - 1e3 * law->scale, high = g + 1e3 * law->scale;
     for (int i = 0; i < 20; i++) {
-        const contact_state found = contact_of(law, start);
+        const contact_state found = contact_of(law, start, NULL);
         if (!(found.load > 0.0 && found.stiffness > 0.0)) break;
         const double lacking = log(load / found.load);
         if (fabs(lacking) <= 1e-12) return start;
@@ -86,7 +96,7 @@ static double approach_of(const ehd_contact *law, double load, double start) {
     }
     for (int i = 0; i < 200 && high - low > 1e-15 * law->scale; i++) {
         const double middle = 0.5 * (low + high);
-        if (contact_of(law, middle).load < load)
+        if (contact_of(law, middle, NULL).load < load)
             low = middle;
         else
             high = middle;
@@ -134,6 +144,24 @@ static void side_at(ehd_contact *side, const double (*table)[EHD_ROWS][4], const
     }
 }
 
+#if EHD_MEMORY
+/* Springs of the films at each node: shares of the damping straight between two speeds, and the longest time as all else. */
+static void springs_of(ehd_contact *side, const double (*table)[EHD_ROWS][4], double x, int first, int count,
+                       const double weight[NEIGHBOURS]) {
+    const int low = x < EHD_SPEEDS - 1 ? (int)x : EHD_SPEEDS - 1, high = low + 1 < EHD_SPEEDS ? low + 1 : low;
+    for (int row = 0; row < EHD_ROWS; row++) {
+        double time = 0.0;
+        for (int i = 0; i < count; i++) time += weight[i] * table[first + i][row][3];
+        time = exp(time);
+        for (int r = 0; r < 3; r++) {
+            const double share = table[low][row][r] + (x - low) * (table[high][row][r] - table[low][row][r]);
+            side->springs[row][r] = share * exp(side->table[row][2]) / (TIMES[r] * time);
+        }
+        side->springs[row][3] = time;
+    }
+}
+#endif
+
 static int law_at(ehd_law *law, double u) {
     const double held = least(most(u, EHD_LOWEST_SPEED), EHD_HIGHEST_SPEED);
     const int count = EHD_SPEEDS < NEIGHBOURS ? EHD_SPEEDS : NEIGHBOURS;
@@ -143,6 +171,10 @@ static int law_at(ehd_law *law, double u) {
     const int first = weights_of(x, weight);
     side_at(&law->inner, INNER_TABLE + first, INNER_PLACE + first, &INNER, count, weight);
     side_at(&law->outer, OUTER_TABLE + first, OUTER_PLACE + first, &OUTER, count, weight);
+#if EHD_MEMORY
+    springs_of(&law->inner, INNER_SPRINGS, x, first, count, weight);
+    springs_of(&law->outer, OUTER_SPRINGS, x, first, count, weight);
+#endif
     law->highest = MOST_LOAD;
     return fabs(u - held) > SAME_SPEED * held ? EHD_OUTSIDE_SPEED : EHD_OK;
 }

@@ -13,13 +13,18 @@ from ehdmaps.exports.c.text import comment, define, number, renamed, template
 from ehdmaps.outputs import Kind, has_mark, write_text
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.normal_law import NormalLaw
+from mbs.bearings.balls.response import TIMES
 from mbs.exports.balls.speed_laws import SpeedLaws
 
 SOURCE = Kind("a ball bearing in C made by ehdmaps", (".c",), has_mark)
 HEADER = Kind("the header of a ball bearing in C made by ehdmaps", (".h",), has_mark)
 
 _BODIES = ("ball_law", "ball_balance", "ball_bearing")
+_FILMS = "ball_films"
 _INCLUDES = ("float.h", "math.h", "stddef.h", "string.h")
+SHORTER = tuple(float(time / TIMES[-1]) for time in TIMES)
+"""Times of the springs of a film over the longest one."""
+
 _WORDS = re.compile(r"[^a-z0-9_]+")
 
 
@@ -99,17 +104,18 @@ def source_texts(
             "export of a ball bearing, contact angle: got one below zero; allowed: >= 0; the source mirrors it"
         )
     banner, guard = comment(header), "EHD_BALL_BEARING_H"
+    memory = [_FILMS] if laws.memory else []
     top = [
         banner, f"#ifndef {guard}\n#define {guard}\n\n#include <stddef.h>\n",
         _public_numbers(force, laws),
         '#ifdef __cplusplus\nextern "C" {\n#endif\n',
-        template("mbs.exports.balls", "ball_bearing.h"),
+        *(template("mbs.exports.balls", f"{body}.h") for body in ("ball_bearing", *memory)),
         f"#ifdef __cplusplus\n}}\n#endif\n\n#endif /* {guard} */\n",
     ]  # fmt: skip
     source = [
         banner, "".join(f"#include <{name}>\n" for name in _INCLUDES) + "\n#include \"@HEADER@\"\n",
         _private_numbers(force, laws),
-        *(template("mbs.exports.balls", f"{body}.c") for body in _BODIES),
+        *(template("mbs.exports.balls", f"{body}.c") for body in (*_BODIES, *memory)),
     ]  # fmt: skip
     texts = {"h": "\n".join(top), "c": "\n".join(source)}
     return {name: renamed(text, prefix).replace("@HEADER@", include) for name, text in texts.items()}
@@ -132,6 +138,7 @@ def _public_numbers(force: BallForce, laws: SpeedLaws) -> str:
             define("EHD_SPEEDS", int(laws.speeds.size), "entrainment speeds of the films; 0 for dry contacts"),
             define("EHD_LOWEST_SPEED", float(slow), "the first of them [m/s]"),
             define("EHD_HIGHEST_SPEED", float(fast), "the last of them [m/s]"),
+            define("EHD_MEMORY", int(laws.memory), "1: films have a memory, see ehd_films"),
             define("EHD_ROWS", int(laws.tables.shape[2]), "nodes of approaches of a film; 0 for dry contacts"),
         )
     )
@@ -154,6 +161,11 @@ def _private_numbers(force: BallForce, laws: SpeedLaws) -> str:
             + define("FIRST_LOG_SPEED", math.log(laws.speeds[0]), "ln of the first speed")
             + define("SPEEDS_PER_LOG", laws.per_log, "speeds in a unit of ln u")
         )
+        if laws.memory:
+            times = ", ".join(map(number, SHORTER))
+            parts.append(
+                f"/* Of the springs of a film, over the longest. */\nstatic const double TIMES[3] = {{{times}}};\n"
+            )
         for side, name in enumerate(("INNER", "OUTER")):
             places, tables = laws.places[:, side], laws.tables[:, side]
             parts += [
@@ -165,6 +177,13 @@ def _private_numbers(force: BallForce, laws: SpeedLaws) -> str:
                 + "".join(_table(table) for table in tables)
                 + "};\n",
             ]
+            if laws.memory:
+                parts.append(
+                    f"/* By speed and node: parts of the damping that the springs have, ln of the longest time. */\n"
+                    f"static const double {name}_SPRINGS[EHD_SPEEDS][EHD_ROWS][4] = {{\n"
+                    + "".join(_table(table) for table in laws.springs[:, side])
+                    + "};\n"
+                )
     return "\n".join(parts)
 
 
@@ -179,4 +198,4 @@ def _contact(name: str, law: NormalLaw) -> str:
     values = ", ".join(
         map(number, (law.coefficient, law.damping, law.damping_time, law.centre, law.scale, law.first, law.step))
     )
-    return f"static const ehd_contact {name} = {{{values}, {{{{0.0}}}}}};\n"
+    return f"static const ehd_contact {name} = {{{values}, {{{{0.0}}}}, {{{{0.0}}}}}};\n"

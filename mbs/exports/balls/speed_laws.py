@@ -8,15 +8,18 @@ nearest ones.
 
 from __future__ import annotations
 
+import dataclasses
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import SolverError
 from mbs.bearings.balls.ball_block import on_grid
+from mbs.bearings.balls.ball_memory import SPRINGS
 from mbs.bearings.balls.laws import NODES, BallLaw
 from mbs.bearings.balls.normal_law import NormalLaw, contact, load_approach
 
@@ -49,6 +52,9 @@ class SpeedLaws:
         Their centres and scales [m].
     highest : float
         Load up to which all of them were made [N].
+    springs : array (n, 2, nodes, 4), or none (0, 2, 0, 4)
+        Springs of films with memory: the part of the damping that each has, and ln of the longest of their times [s], see
+        `mbs.bearings.balls.response`.
     """
 
     inner: NormalLaw
@@ -57,6 +63,12 @@ class SpeedLaws:
     tables: FloatArray
     places: FloatArray
     highest: float
+    springs: FloatArray = field(default_factory=lambda: np.zeros((0, 2, 0, SPRINGS + 1)))
+
+    @property
+    def memory(self) -> bool:
+        """True where films have a memory."""
+        return self.springs.size > 0
 
     @property
     def dry(self) -> bool:
@@ -101,7 +113,9 @@ def dry_speed_laws(law: BallLaw) -> SpeedLaws:
     return SpeedLaws(law.inner, law.outer, np.zeros(0), np.zeros((0, 2, 0, 4)), np.zeros((0, 2, 2)), math.inf)
 
 
-def film_speed_laws(films: Callable[[float], BallLaw], slowest: float, fastest: float) -> SpeedLaws:
+def film_speed_laws(
+    films: Callable[[float], BallLaw], slowest: float, fastest: float, *, memory: bool = False
+) -> SpeedLaws:
     """Laws with films from one speed to another.
 
     Parameters
@@ -111,10 +125,13 @@ def film_speed_laws(films: Callable[[float], BallLaw], slowest: float, fastest: 
     slowest, fastest : float
         Entrainment speeds [m/s], > 0. Where they are alike the law is that of the speed, on its own nodes.
 
+    memory : bool
+        Whether films have a memory.
+
     Raises
     ------
     SolverError
-        If a speed has no films.
+        If a speed has no films, or none over frequency for a memory.
     """
     count = 1 if fastest == slowest else max(NEIGHBOURS, 1 + math.ceil(math.log(fastest / slowest) / STEP))
     speeds = np.geomspace(slowest, fastest, count)
@@ -122,14 +139,22 @@ def film_speed_laws(films: Callable[[float], BallLaw], slowest: float, fastest: 
     lowest, highest = max(law.loads[0] for law in laws), min(law.loads[1] for law in laws)
     inner, inner_tables, inner_places = _side([law.inner for law in laws], lowest, highest)
     outer, outer_tables, outer_places = _side([law.outer for law in laws], lowest, highest)
-    return SpeedLaws(
-        inner,
-        outer,
-        speeds,
-        np.stack((inner_tables, outer_tables), axis=1),
-        np.stack((inner_places, outer_places), axis=1),
-        highest,
-    )
+    tables = np.stack((inner_tables, outer_tables), axis=1)
+    made = SpeedLaws(inner, outer, speeds, tables, np.stack((inner_places, outer_places), axis=1), highest)
+    return dataclasses.replace(made, springs=_springs(laws, made)) if memory else made
+
+
+def _springs(laws: Sequence[BallLaw], made: SpeedLaws) -> FloatArray:
+    """Springs of films with memory at all speeds and nodes."""
+    if not all(law.responses for law in laws):
+        raise SolverError("films of balls with memory: some have no response over frequency; take --law table")
+    found = np.zeros((*made.tables.shape[:3], SPRINGS + 1))
+    for n, law in enumerate(laws):
+        for side, (one, response) in enumerate(zip((made.inner, made.outer), law.responses, strict=True)):
+            load = one.coefficient * np.exp(1.5 * made.tables[n, side, :, 0])
+            springs = response.springs(np.maximum(load, 1e-300))
+            found[n, side] = np.column_stack([springs.shares, np.log(springs.times[:, -1])])
+    return found
 
 
 def error_between(laws: SpeedLaws, films: Callable[[float], BallLaw]) -> tuple[float, float, float]:

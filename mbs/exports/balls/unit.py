@@ -39,9 +39,20 @@ MOTION = (
     "The balls stand where the spins bring them, with a cage in pure rolling at the nominal contact angle; the first "
     "one stands on the y axis at spins of zero. Their centrifugal load and gyroscopic moment are those of a cage in "
     "pure rolling at the contact angles of the pose.",
-    "Each ball is in balance at once and films follow at once: there are no states.",
 )
 """Axes, signs and what is left out, for people."""
+
+SLOW = "Each ball is in balance at once and films follow at once: there are no states."
+"""What units without memory say."""
+
+MEMORY = (
+    "Each ball is in balance at once. Films need time to follow: each contact has three springs in series with "
+    "dampers, which begin at rest; Co-Simulation alone has them. The inputs that are set before a step are those of "
+    "its end: the ring moves there from the inputs of the last step (of the initialization at first), along a cubic by "
+    "the velocities, or straight where they are not given, and the unit takes steps of up to 5 us of its own. The "
+    "derivatives by the pose are those of films that have no time to give way, those by the velocity are zero."
+)
+"""What units with memory say."""
 
 BEYOND = (
     "Poses where no raceway is are discarded. Slower and faster than the speeds of the export its films are held, and "
@@ -96,7 +107,8 @@ def write_ball_unit(
             **{name: template("mbs.exports.balls", f"unit_files/{name}") for name in ("component.c", "component.h")},
         },
         defines=f"#define FMU_START {{{values}}} /* of all variables */\n",
-        sentences=(*MOTION, LAG),
+        sentences=(*MOTION, MEMORY if laws.memory else SLOW, LAG),
+        exchanges=not laws.memory,
         beyond=BEYOND,
         header=tuple(header),
     )

@@ -19,6 +19,7 @@ component *component_make(void) {
 
 void component_reset(component *of) {
     snapshot start;
+    memset(&start, 0, sizeof start);
     memcpy(start.values, START, sizeof start.values);
     component_restore(of, &start);
 }
@@ -29,36 +30,103 @@ void component_restore(component *of, const snapshot *kept) {
     of->made = 0;
 }
 
-/* Force of some values. Balls start from nothing, so that it hangs on these values alone. */
-static int force_of(component *of, const double *values, ehd_bearing_force *result) {
-    double pose[6] = {0.0}, velocity[6] = {0.0};
-    const double cage_angle = ehd_cage(values[INNER_ANGLE], values[OUTER_ANGLE]);
+/* Make the bearing that some values ask for. */
+static int bearing_for(component *of, const double *values) {
     if (!of->made || of->bearing.clearance != values[CLEARANCE]) {
         of->made = 0;
         if (ehd_bearing_make(&of->bearing, values[CLEARANCE], values[MIRRORED] != 0.0)) return EHD_BAD_ARGUMENT;
         of->made = 1;
     }
+    return EHD_OK;
+}
+
+/* Force of some values. Balls start from nothing, so that it hangs on these values alone; or on films that have begun,
+ * which are springs after no time. */
+static int force_of(component *of, const double *values, ehd_bearing_force *result) {
+    double pose[6] = {0.0}, velocity[6] = {0.0};
+    const double cage_angle = ehd_cage(values[INNER_ANGLE], values[OUTER_ANGLE]);
+    if (bearing_for(of, values)) return EHD_BAD_ARGUMENT;
     for (int i = 0; i < 5; i++) {
         pose[DIRECTION[i]] = values[POSE_X + i];
         velocity[DIRECTION[i]] = values[VELOCITY_X + i];
     }
+#if EHD_MEMORY
+    if (of->now.begun) {
+        of->balls = of->now.balls;
+        ehd_prepare(&of->law, EHD_ENTRAINMENT * (values[INNER_SPEED] - values[OUTER_SPEED]));
+        return ehd_films_look(&of->bearing, &of->law, &of->balls, &of->now.films, 0.0, pose, cage_angle,
+                              values[INNER_SPEED], values[OUTER_SPEED], result);
+    }
+#endif
     memset(&of->balls, 0, sizeof of->balls);
     return ehd_bearing_call(&of->bearing, &of->law, &of->balls, pose, velocity, cage_angle, values[INNER_SPEED],
                             values[OUTER_SPEED], result);
 }
 
-int component_update(component *of) {
-    if (!of->stale) return of->status;
-    of->status = force_of(of, of->now.values, &of->result);
+/* Take note of a status, with outputs. */
+static int told(component *of, int status) {
+    of->status = status;
     for (int i = 0; i < OUTPUTS; i++)
         of->now.values[FIRST_OUTPUT + i] = EHD_REFUSES(of->status) ? NAN : of->result.force[DIRECTION[i]];
     of->stale = 0;
-    return of->status;
+    return status;
 }
 
+int component_update(component *of) {
+    return of->stale ? told(of, force_of(of, of->now.values, &of->result)) : of->status;
+}
+
+#if EHD_MEMORY
+#include "path.h"
+
+/* From here on the inputs of now are those of the last step. */
+static void follow(snapshot *now) { memcpy(now->former, now->values, sizeof now->former); }
+
+int component_begin(component *of) {
+    of->now.begun = 0;
+    of->stale = 1;
+    const int status = component_update(of);
+    if (EHD_REFUSES(status)) return status;
+    ehd_films_begin(&of->law, &of->balls, &of->now.films);
+    of->now.balls = of->balls;
+    of->now.begun = 1;
+    follow(&of->now);
+    return status;
+}
+
+int component_step(component *of, double step) {
+    const snapshot before = of->now;
+    snapshot *now = &of->now;
+    const int count = film_steps(step);
+    int status = EHD_OK;
+    if (!(step > 0.0)) return component_update(of);
+    if (!now->begun) status = component_begin(of);
+    if (!EHD_REFUSES(status)) status |= bearing_for(of, now->values);
+    if (!EHD_REFUSES(status))
+        status |= ehd_prepare(&of->law, EHD_ENTRAINMENT * (now->values[INNER_SPEED] - now->values[OUTER_SPEED]));
+    const double begin = ehd_cage(now->former[INNER_ANGLE], now->former[OUTER_ANGLE]);
+    const double turn = ehd_cage(now->values[INNER_ANGLE], now->values[OUTER_ANGLE]) - begin;
+    for (int n = 1; n <= count && !EHD_REFUSES(status); n++) {
+        const double part = (double)n / count;
+        double pose[6] = {0.0};
+        for (int i = 0; i < 5; i++)
+            pose[DIRECTION[i]] = place_between(now->former[POSE_X + i], now->values[POSE_X + i],
+                                               now->former[VELOCITY_X + i], now->values[VELOCITY_X + i], part, step);
+        status |= ehd_films_step(&of->bearing, &of->law, &now->balls, &now->films, step / count, pose,
+                                 begin + part * turn, now->values[INNER_SPEED], now->values[OUTER_SPEED], &of->result);
+    }
+    if (EHD_REFUSES(status)) {
+        component_restore(of, &before);
+        return status;
+    }
+    follow(now);
+    return told(of, status);
+}
+#else
 int component_begin(component *of) { return (void)of, EHD_OK; }
 
 int component_step(component *of, double step) { return (void)step, component_update(of); }
+#endif
 
 int component_set(component *of, unsigned reference, double value) {
     if (reference == TIME || reference >= FIRST_OUTPUT || !(fabs(value) <= DBL_MAX)) return 0;
@@ -106,8 +174,12 @@ static double quotient_of(component *of, unsigned unknown, unsigned known) {
 
 int component_derivative(component *of, unsigned unknown, unsigned known, double *derivative) {
     *derivative = NAN;
-    const int status = component_update(of), row = DIRECTION[unknown - FIRST_OUTPUT];
+    const int row = DIRECTION[unknown - FIRST_OUTPUT];
+    int status = component_update(of);
     if (EHD_REFUSES(status)) return status;
+#if EHD_MEMORY /* of a step there is another stiffness */
+    if (of->now.begun && EHD_REFUSES(status = force_of(of, of->now.values, &of->result))) return status;
+#endif
     *derivative = 0.0;
     if (known >= INNER_ANGLE && known <= CLEARANCE)
         *derivative = quotient_of(of, unknown, known);

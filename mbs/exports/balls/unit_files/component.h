@@ -1,6 +1,6 @@
 /* ---------------------------------------------------------------------------------------------------------------------
  * A ball bearing as a component of a simulation, whatever the version of the interface: variables by number, the force
- * that follows from them, its directional derivatives. There are no states.
+ * that follows from them, its directional derivatives. Films with memory go on by the steps of co-simulation.
  * ------------------------------------------------------------------------------------------------------------------ */
 #ifndef COMPONENT_H
 #define COMPONENT_H
@@ -25,7 +25,7 @@ enum {
 #define FIRST_OUTPUT FORCE_X
 #define OUTPUTS (VARIABLES - FIRST_OUTPUT)
 
-/* Films have no memory. */
+/* No states of the interface. */
 #define FILMS 0
 #define FIRST_STATE VARIABLES
 #define FIRST_RATE VARIABLES
@@ -35,6 +35,12 @@ enum {
 /* All that a component has to remember. */
 typedef struct snapshot {
     double values[VARIABLES];
+#if EHD_MEMORY
+    int begun;                   /* whether films have left the rest in which they begin */
+    double former[INNER_SPEED];  /* poses, velocities and spins at the end of the last step */
+    ehd_films films;
+    ehd_balls balls;
+#endif
 } snapshot;
 
 /* What a component remembers, and what it has found from it. */
@@ -45,7 +51,7 @@ typedef struct component {
     int made;   /* whether the bearing is that of the parameters */
     ehd_bearing bearing;
     ehd_law law;
-    ehd_balls balls;
+    ehd_balls balls; /* of the last call */
     ehd_bearing_force result;
 } component;
 
@@ -58,10 +64,12 @@ void component_reset(component *of);
 /* Go back, or on, to a state that was kept. */
 void component_restore(component *of, const snapshot *kept);
 
-/* The start is over. */
+/* The start is over: films with memory begin at rest in the inputs of now. */
 int component_begin(component *of);
 
-/* A step of co-simulation over a time [s]: the inputs of now are those of its end. Returns the status. */
+/* A step of co-simulation over a time [s]: the inputs of now are those of its end. Films with memory follow a ring that
+ * moves there from the inputs of the last step; speeds are those of now all along. Returns the status; where it refuses,
+ * nothing has changed. */
 int component_step(component *of, double step);
 
 /* Bring the outputs up to date. Returns the status; outputs are NaN where it refuses. */
@@ -77,7 +85,8 @@ int component_get(const component *of, unsigned reference, double *value);
 int component_is_unknown(unsigned reference);
 
 /* Derivative of an output by an input. By pose and velocity it is -K and -C, at speeds that are held, that of the cage
- * included; by spins, speeds and clearance it is a quotient of differences. Returns a status; the derivative is NaN where
+ * included; by spins, speeds and clearance it is a quotient of differences. Films
+ * with memory are springs there, without time to give way. Returns a status; the derivative is NaN where
  * that refuses, and zero by variables that have no part in it. */
 int component_derivative(component *of, unsigned unknown, unsigned known, double *derivative);
 

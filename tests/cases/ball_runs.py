@@ -1,0 +1,29 @@
+"""Ball bearings with memory along a path in compiled code."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from mbs.bearings.balls.ball_block import FELT, BallBlock, balls_accept, balls_answer
+from mbs.model.blocks import FOUND, Answers, Member, Moment
+from mbs.model.elements import Operation
+
+
+def driven(element, speed, path, step):
+    """Forces (n, 5) in compiled code along a path (n, 6) of even steps from films at rest, and least inner loads."""
+    _, states = element.advance(None, path[0], np.zeros(6), Operation(speed))
+    block = BallBlock([Member(element, 0, 0)])
+    block.begin(np.array([speed]))
+    block.resume([states])
+    arrays, sound = block.prepare(0, 1)
+    assert sound[0]
+    forces, least = np.empty((len(path), 5)), math.inf
+    for i, place in enumerate(path):
+        found = Answers(forces[i], np.zeros((5, 5)), np.zeros(1, dtype=np.int64))
+        moment = Moment(0, step * i, speed, 0.0, 1.0, 0.0)
+        assert balls_answer(arrays, moment, np.array([place[FELT], np.zeros(5)]), found) == FOUND
+        balls_accept(arrays, moment)
+        least = min(least, float(arrays.rows[0, : arrays.counts[0], 10].min()))
+    return forces, least

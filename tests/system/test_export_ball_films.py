@@ -1,0 +1,151 @@
+"""Units of ball bearings whose films have a memory, by FMPy: against the element in time, linear analyses, energy."""
+
+from __future__ import annotations
+
+import math
+from unittest import mock
+
+import numpy as np
+import pytest
+from fmpy import simulate_fmu
+from fmpy.validation import validate_fmu
+
+from ehdmaps.exports.fmu.binaries import platforms
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.point.ball_catalogue import ball_estimate
+from mbs.bearings.balls.ball_bearing import BallForce
+from mbs.bearings.balls.ball_element import MachineBalls
+from mbs.bearings.balls.films import ball_films
+from mbs.bearings.balls.laws import dry_law
+from mbs.cli import main
+from mbs.model.elements import Operation
+from tests.cases.ball_runs import driven
+from tests.cases.fmu import Unit
+
+SPEED, WARM, STEP = 3000.0 * math.pi / 30.0, 333.15, 5e-6
+FORCES = ("force.x", "force.y", "force.z", "moment.y", "moment.z")
+POSE = ["pose.x", "pose.y", "pose.z", "pose.theta_y", "pose.theta_z"]
+FELT = [0, 1, 2, 4, 5]
+PLACE = np.array([95e-6, -3e-6, 1e-6, 0.0, 2e-5, -4e-5])
+
+
+@pytest.fixture(scope="module")
+def element():
+    geometry = ball_estimate("6208")
+    law = ball_films(geometry, Lubricant.named("FVA3"), geometry.entrainment_speed(SPEED), WARM, solves=False).law
+
+    def films(inner, outer):
+        return law
+
+    return MachineBalls("b", "i", "o", BallForce(geometry, dry_law(geometry)), films=films, memory="memory")
+
+
+@pytest.fixture(scope="module")
+def units(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("films")
+    words = ("--load", "1 kN", "--axial", "2 kN", "--temperature", "60 degC", "--speed", "3000 rpm", "--law", "table")
+    with mock.patch("ehdmaps.exports.fmu.unit.platforms", return_value=platforms()[:1]):
+        for name in ("2.fmu", "3.fmi3.fmu"):
+            assert main(["bearing", "6208", *words, "--films", "memory", "-o", str(folder / name)]) == 0
+    return {name[0]: folder / name for name in ("2.fmu", "3.fmi3.fmu")}
+
+
+@pytest.fixture(scope="module")
+def unpacked(units, tmp_path_factory):
+    return {fmi: Unit(units[fmi], tmp_path_factory.mktemp(f"unit{fmi}")) for fmi in units}
+
+
+def stepped(unit, path, step=STEP):
+    """Forces (n, 5) along a path (n, 6) of even steps, from films at rest in its first place."""
+    model = unit.stepped([*POSE, "speed.inner"], [*path[0][FELT], SPEED])
+    forces = [unit.get(model, FORCES)]
+    for n, place in enumerate(path[1:]):
+        unit.put(model, POSE, list(place[FELT]))
+        model.doStep(n * step, step)
+        forces.append(unit.get(model, FORCES))
+    model.freeInstance()
+    return np.array(forces)
+
+
+@pytest.mark.parametrize("fmi", ["2", "3"])
+def test_unit_in_time_is_the_element(units, unpacked, element, fmi):
+    """Up to 60 um within 0.2 ms, so that balls lift off: both end in the balance of the balls to 1e-9, and the last
+    speed of the cage is found to 1e-8."""
+    assert validate_fmu(str(units[fmi])) == []
+    turn = np.linspace(0.0, 4.0 * math.pi, 81)
+    path = PLACE + np.outer(np.sin(turn), [-60e-6, 20e-6, 10e-6, 0.0, 1e-4, -5e-5])
+    wanted, least = driven(element, SPEED, path, STEP)
+    found = stepped(unpacked[fmi], path)
+    assert least < 1e-3 * np.abs(wanted).max()
+    slow = np.array([element.evaluate(place, np.zeros(6), Operation(SPEED)).force[FELT] for place in path[::8]])
+    largest = np.abs(wanted).max(axis=0)
+    assert np.all(np.abs(wanted[::8] - slow).max(axis=0) > 5e-3 * largest)
+    np.testing.assert_array_less(np.abs(found - wanted).max(axis=0), 1e-7 * largest)
+
+
+def test_small_oscillations_are_those_of_linear_analyses(unpacked, element):
+    """As in runs of the package: the step, of second order, leaves 3e-4 of Z."""
+    count, periods, size = 80, 8, 1e-9
+    hertz, turn = 1.0 / (count * STEP), 2.0 * math.pi / count * np.arange(periods * count + 1)
+    path = np.tile(PLACE, (turn.size, 1))
+    path[:, 1] += size * np.sin(turn)
+    last = slice(-2 * count, None)
+    forces = stepped(unpacked["2"], path)
+    found = -1j * (forces[last] * np.exp(-1j * turn[last])[:, None]).sum(axis=0) / (count * size)
+    operation, s = Operation(SPEED), 2j * math.pi * hertz
+    rest = element.evaluate(PLACE, np.zeros(6), operation)
+    linear = (rest.stiffness + s * rest.damping)[1, 1]
+    linear += element.relaxation(PLACE, operation).more(np.array([s]))[0, 1, 1]
+    assert abs(found[1] / linear - 1.0) < 4e-4
+
+
+def test_closed_paths_take_energy_and_long_steps_are_many(unpacked):
+    """Work of the second round, by the trapezoidal rule; a step of 20 us is four of 5 us along a straight line."""
+    turn = 2.0 * math.pi / 100 * np.arange(201)
+    path = PLACE + np.outer(np.sin(turn), [-40e-6, 0.0, 0.0, 0.0, 0.0, 0.0])
+    path[:, 1] += 5e-6 * np.cos(2.0 * turn)
+    forces = stepped(unpacked["2"], path)
+    work = -0.5 * (forces[101:] + forces[100:-1]) * np.diff(path[100:, FELT], axis=0)
+    assert work.sum() > 1e-3 * np.abs(work).sum()
+    coarse = path[::4]
+    fine = np.array([np.interp(np.arange(201) / 4.0, np.arange(51), column) for column in coarse.T]).T
+    long = stepped(unpacked["2"], coarse, 4.0 * STEP)
+    np.testing.assert_allclose(long[1:], stepped(unpacked["2"], fine)[4::4], rtol=1e-7, atol=1e-6)
+
+
+def test_states_are_kept_and_rest_is_that_of_the_export(units, unpacked):
+    """FMPy's own loop begins in equilibrium; a state that was kept gives the same steps; no Model Exchange."""
+    found = simulate_fmu(str(units["2"]), stop_time=1e-4, output_interval=2e-5)
+    np.testing.assert_allclose(found["force.x"], -2000.0, rtol=1e-6)
+    unit = unpacked["2"]
+    assert unit.description.modelExchange is None
+    model, seen = unit.stepped([*POSE, "speed.inner"], [*PLACE[FELT], SPEED]), []
+    kept = model.getFMUState()
+    for _ in range(2):
+        unit.put(model, POSE, list(PLACE[FELT] + np.array([2e-6, 0.0, 0.0, 0.0, 0.0])))
+        model.doStep(0.0, STEP)
+        seen.append(unit.get(model, FORCES))
+        model.setFMUState(kept)
+    model.freeFMUState(kept)
+    np.testing.assert_array_equal(*seen)
+    model.freeInstance()
+
+
+@pytest.mark.parametrize(("law", "output"), [("hertz", "x.c"), ("table", "x.nc")])
+def test_memory_is_for_units_with_films(capsys, law, output):
+    words = (
+        "bearing",
+        "6208",
+        "--load",
+        "1 kN",
+        "--speed",
+        "3000 rpm",
+        "--law",
+        law,
+        "--films",
+        "memory",
+        "-o",
+        output,
+    )
+    assert main(list(words)) == 2
+    assert "allowed: with --law table and -o NAME.c, NAME.fmu" in capsys.readouterr().err
