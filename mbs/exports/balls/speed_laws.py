@@ -53,8 +53,8 @@ class SpeedLaws:
     highest : float
         Load up to which all of them were made [N].
     springs : array (n, 2, nodes, 4), or none (0, 2, 0, 4)
-        Springs of films with memory: the part of the damping that each has, and ln of the longest of their times [s], see
-        `mbs.bearings.balls.response`.
+        Springs of films with memory: the part of the damping that each has, and ln of the longest of their times [s],
+        see `mbs.bearings.balls.response`.
     """
 
     inner: NormalLaw
