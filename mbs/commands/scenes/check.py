@@ -67,7 +67,8 @@ def _bearings(model: Model) -> Iterator[str]:
             f"{spec.geometry.rollers} rollers, clearance {MICROMETRE.text(spec.geometry.diametral_clearance)}, "
             f"{_where(model.scene, spec)}; {model.films[spec.name].words}"
         )
-    for other in (*model.scene.balls, *model.scene.tapered):
+    others: tuple[BallSpec | TaperedSpec, ...] = (*model.scene.balls, *model.scene.tapered)
+    for other in others:
         yield f"  bearing {other.name}: {_located(other)}, {_where(model.scene, other)}"
 
 
