@@ -236,7 +236,7 @@ def _laws(
         laws += opened_maps(paths, scene, problems)
     if laws or names or paths:
         return laws
-    with_films = scene.lubricant is not None and (scene.bearings or scene.balls)
+    with_films = scene.lubricant is not None and (scene.bearings or scene.balls or scene.tapered)
     try:
         return [named_law(TABLE_LAW if with_films else "hertz", scene)]
     except InputError as error:

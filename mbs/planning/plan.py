@@ -232,7 +232,10 @@ def _dry_model(scene: Scene, settings: PlanSettings) -> Model:
             "analyses without --auto, with --law table, which reads their films from the film table of points"
         )
     elif scene.tapered and not scene.bearings:
-        problems.append("got tapered roller bearings alone, which are dry; allowed: analyses without --auto")
+        problems.append(
+            "got tapered or ribbed rollers alone, whose films are read from the film table: there is no map to plan or "
+            "to choose; allowed: analyses without --auto"
+        )
     elif not scene.bearings:
         problems.append("got no bearing; allowed: at least one [[bearings]], which is what a map is for")
     if warm := [entry.name for entry in scene.bearings if entry.thermal is not None]:

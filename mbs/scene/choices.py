@@ -123,6 +123,9 @@ LACKS = {
 }
 """What is said where no law is concerned."""
 
+TAPERED_LACK = "with tapered or ribbed rollers alone; allowed: [supply] and [surface] of the scene; films are slow ones"
+"""The same of films of tapered rollers."""
+
 BALLS_LACK = "with ball bearings alone; allowed: none of it: their films are of one oil, flooded"
 """What is said of the same where balls have films."""
 
@@ -654,8 +657,10 @@ def combinations(
             continue
         if choice.concerned in LACKS and not any(choice.concerns(one.subject) for one in found):
             got, scene = ", ".join(map(choice.text, several)), found[0].subject.scene
-            of_rollers = scene.balls and not scene.bearings and choice.concerned != "relaxing"
-            lacks = BALLS_LACK if of_rollers else LACKS[choice.concerned]
+            of_others = not scene.bearings and choice.concerned != "relaxing"
+            lacks = LACKS[choice.concerned]
+            if of_others and (scene.balls or scene.tapered):
+                lacks = BALLS_LACK if scene.balls else TAPERED_LACK
             problems.append(f"--{choice.name}: got {got} {lacks}")
             continue
         found = [entry for one in found for entry in _each(one, choice, several, problems)]

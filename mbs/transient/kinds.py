@@ -14,8 +14,8 @@ from mbs.bearings.balls.ball_element import MachineBalls
 from mbs.bearings.bearing_block import BEARINGS, ROLLERS
 from mbs.bearings.bearing_element import BearingElement, MemoryBearing, MemoryRollers, RollerElement
 from mbs.bearings.memory_block import MEMORY_BEARINGS, MEMORY_ROLLERS
-from mbs.bearings.tapered.tapered_bearing import TaperedElement
 from mbs.bearings.tapered.tapered_block import TAPERED
+from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.gears.gear import GearMesh
 from mbs.gears.gear_block import GEAR_MESHES
 from mbs.model.blocks import Kind

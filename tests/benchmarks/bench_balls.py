@@ -6,7 +6,7 @@ A 6208 of 9 balls under combined displacements: dry with a damper, and with film
 a memory over a step. Compiled is what a compiled integrator pays a call, processor time; the ring stands, or moves by
 up to 10 nm a call. The error is that of the stiffness against central differences of 2 nm.
 
---runs: a stiff rotor on two 6208, on two NU208 of 21 slices whose rings tilt, and without bearings but springs, at one
+--runs: a stiff rotor on two 6208, two NU208 and two 32208 of 21 slices whose rings tilt, and springs alone, at one
 speed in steps of 20 us: processor time of a step, without what a run takes to begin, and what a bearing adds to it.
 """
 
@@ -81,6 +81,8 @@ ROLLERS = (
     'geometry = { estimate = "NU208", basic_static_rating = "53 kN", diametral_clearance = "-5 um" }\nslices = 21\n'
     'start_angle = "3 deg"'
 )
+TAPERED = 'bearing = "32208"\naxial_offset = "10 um"\n'
+"""The right one is turned round."""
 
 
 @njit
@@ -111,6 +113,8 @@ def stiffness_error(force: BallForce, speed: float) -> float:
 def run_cost(part: str, law: str, films: Films | None = None) -> float:
     """Processor time of a step [s] at one speed, between springs or two bearings with a law, by runs of two lengths."""
     parts = [part.replace("{name}", name) for name in ("left", "right")]
+    if TAPERED in parts[1]:
+        parts[1] = parts[1].replace('"10 um"', '"-10 um"\nmirrored = true')
     model = assemble(parse_scene(MACHINE + "".join(parts), "rotor", "rotor.toml"), law, films=films)
     start, settings = equilibrium(model.system, model.operation).displacement, Settings(step=2e-5, sample=1e-3)
     speed, taken = SpeedProfile.constant(model.operation.speed), []
@@ -129,7 +133,7 @@ def runs() -> None:
     """Print the cost of bearings in runs."""
     bare = run_cost(SPRING, "hertz")
     print(f"a step, us; what a bearing adds to the {1e6 * bare:.1f} us of the rotor between springs")
-    for name, lines in (("6208", BALLS), ("NU208", ROLLERS)):
+    for name, lines in (("6208", BALLS), ("NU208", ROLLERS), ("32208", TAPERED)):
         for law, films in (("hertz:1.25e-5 s", None), ("table", "slow"), ("table", "memory")):
             if films == "memory" and name != "6208":
                 continue

@@ -10,7 +10,8 @@ import pytest
 from ehdmaps.errors import InputError
 from ehdmaps.physics.rollers.ribbed_geometry import ribbed_estimate
 from mbs import assemble, parse_scene
-from mbs.bearings.tapered.tapered_bearing import TaperedElement, TaperedForce
+from mbs.bearings.tapered.tapered_bearing import TaperedForce
+from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.linearised.modes import modes
 from mbs.model.equilibrium import equilibrium
 
@@ -104,9 +105,11 @@ def test_refusals(keys, words) -> None:
     assert words in str(caught.value)
 
 
-def test_laws_with_films_are_refused() -> None:
-    with pytest.raises(InputError, match=r"got the law 'formula' for a ribbed roller bearing; allowed: hertz"):
-        assemble(
-            parse_scene(text().replace("[[loads]]", '[lubricant]\nname = "FVA3"\n[[loads]]'), "rotor", "rotor.toml"),
-            "formula",
-        )
+def test_lines_have_films() -> None:
+    oil = '[lubricant]\nname = "FVA3"\n[[loads]]'
+    machine = assemble(parse_scene(text().replace("[[loads]]", oil), "rotor", "rotor.toml"), "table")
+    assert "ribbed roller bearings with films from the film table" in machine.law
+    balance, dry = (equilibrium(one.system, one.operation) for one in (machine, model()))
+    # the film carries beside the loaded zone, and adds to what rings approach there
+    assert balance.forces[0][1] == pytest.approx(dry.forces[0][1], rel=1e-9)
+    assert balance.element_damping[0][1, 1] > 100.0

@@ -9,8 +9,9 @@ import pytest
 
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.rollers.tapered_catalogue import tapered_estimate
-from mbs.bearings.tapered import tapered_bearing
-from mbs.bearings.tapered.tapered_bearing import TaperedElement, TaperedForce
+from mbs.bearings.tapered import tapered_element
+from mbs.bearings.tapered.tapered_bearing import TaperedForce
+from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.model.elements import Operation
 
 FORCE = TaperedForce(tapered_estimate("32208"), slices=5)
@@ -61,7 +62,7 @@ def test_the_element_takes_offset_and_speeds() -> None:
     total = loads.slices.sum(axis=2) * FORCE.geometry.roller_length / 5
     np.testing.assert_allclose(total, loads.load[:2], rtol=1e-9)
     assert found.force[0] == pytest.approx(-float(loads.load[1].sum()) * FORCE.shape.cup[0], rel=1e-9)
-    assert element.excitation.harmonics == tapered_bearing.HARMONICS
+    assert element.excitation.harmonics == tapered_element.HARMONICS
 
 
 def test_rollers_of_loose_rings_lie_in_the_cup() -> None:

@@ -75,6 +75,7 @@ name = "weight"
 on = "rotor"
 force = ["0 N", "-4000 N", "0 N"]
 """
+WEAR = '[laws.x]\nstiffness = "1e8 N/m"\ndamping = "1e3 N s/m"\n'
 O_PAIR = {"left": 'axial_offset = "15 um"', "right": 'axial_offset = "-15 um"\nmirrored = true'}
 X_PAIR = {"left": 'axial_offset = "-15 um"\nmirrored = true', "right": 'axial_offset = "15 um"'}
 
@@ -148,8 +149,7 @@ def test_runs_in_time_stay_in_the_equilibrium_and_say_where_rings_come_apart() -
         ({"bearing": "32299"}, "hertz", "bearing: got '32299'"),
         ({"left": "mirrored = 1"}, "hertz", "mirrored: got 1; allowed: true, false"),
         ({"outer": "rotor:left"}, "hertz", "got rotor:right and rotor:left; allowed: rings on two bodies"),
-        ({}, "table", "got the law 'table' for a tapered roller bearing; allowed: hertz"),
-        ({}, "formula", "got the law 'formula' for a tapered roller bearing"),
+        ({"more": WEAR}, "constant:x", "got the law 'constant:x' for a tapered roller bearing; allowed: hertz"),
         ({"left": 'diametral_clearance = "5 um"'}, "hertz", "diametral_clearance"),
     ],
 )
@@ -159,7 +159,7 @@ def test_refusals(keys, law, words) -> None:
     assert words in str(caught.value)
 
 
-def test_tapered_rollers_stay_dry_beside_films_of_balls() -> None:
+def test_tapered_rollers_have_films_beside_those_of_balls() -> None:
     oil = '[lubricant]\nname = "ISO VG 15"\n'
     scene = (
         text(**O_PAIR)
@@ -167,4 +167,4 @@ def test_tapered_rollers_stay_dry_beside_films_of_balls() -> None:
         .replace("[operation]", oil + "[operation]")
     )
     machine = assemble(parse_scene(scene, "rotor", "rotor.toml"), "table")
-    assert "tapered roller bearings dry and without damping: they have no films" in machine.law
+    assert "flooded, films with memory; tapered roller bearings with films from the film table" in machine.law

@@ -7,6 +7,7 @@
 `ball_element`         a bearing in a machine: films of its speed, the cage that its balls ask for
 `ball_speed`           speed of the cage by contact angles, loads of the balls by that, their work
 `ball_block`           ball bearings in compiled runs
+`film_tables`          laws over the speed for compiled runs
 `films`                films of both contacts at one speed, solved at some loads, and the law that they make
 `ball_point`           an operating point: equilibrium, speed of the cage, pressures, films
 =====================  ================================================================================================

@@ -2,7 +2,8 @@
 
 The cage follows a step later: its speed, by which balls have their centrifugal load and gyroscopic moment, is that of
 pure rolling at the contact angles of the step before. Films change with the speed: their laws are made at nodes that
-lie evenly in its logarithm, on one grid of approaches, and blended straight between two nodes.
+lie evenly in its logarithm, on one grid of approaches, and blended straight between two nodes, see
+`mbs.bearings.balls.film_tables`.
 """
 
 from __future__ import annotations
@@ -16,7 +17,6 @@ import numpy as np
 
 from ehdmaps.arrays import BoolArray, FloatArray, IntArray
 from ehdmaps.compiled import njit
-from ehdmaps.errors import EhdmapsError
 from mbs.bearings.balls.ball_bearing import NEGLIGIBLE
 from mbs.bearings.balls.ball_element import BallStates, MachineBalls
 from mbs.bearings.balls.ball_kernel import (
@@ -28,59 +28,18 @@ from mbs.bearings.balls.ball_kernel import (
     ball_force,
     write_angles,
 )
-from mbs.bearings.balls.ball_memory import SPRINGS, FilmsOfBalls, go_on, hold, springs_at
+from mbs.bearings.balls.ball_memory import SPRINGS, FilmsOfBalls, go_on, hold
 from mbs.bearings.balls.ball_speed import ball_loads, dry_energy, mean_angles, rolling, speed_work, turned_by
-from mbs.bearings.balls.laws import NODES, BallLaw
+from mbs.bearings.balls.film_tables import FilmLaws, FilmTables, blend, film_tables, law_of
+from mbs.bearings.balls.laws import NODES
 from mbs.bearings.balls.normal_law import HELD, NormalLaw, contact, load_approach
-from mbs.bearings.speed_tables import Course, CourseOfFilms, FilmBlock, Made, Prepared, SpeedWindow, course_of, shared
+from mbs.bearings.speed_tables import Course, CourseOfFilms, FilmBlock, Prepared, course_of, shared
 from mbs.model.blocks import FOUND, IN_PYTHON, NO_SOLUTION, Answers, Kind, Member, Moment
 
 FELT = np.array([0, 1, 2, 4, 5])
 """Displacements of its port that a ball bearing feels."""
 
-STEP = 0.04
-"""Distance of the nodes in ln of the speed: blends are wrong by less than 1e-4 of the load, see the tests."""
-
-SLOTS = 32
-"""How many laws are held."""
-
-_LOWEST = 1.0
-"""Speed at which nodes change from even in its logarithm to even in the speed [rad/s]; no film is read that low."""
-
-_WIDENED = 3.0
-"""Factor by which a grid goes beyond the speeds for which it is made."""
-
-_LAW_NUMBERS = len(NormalLaw._fields) - 1
 _REST_STEPS = 20
-
-
-class BallFilmTables(NamedTuple):
-    """Laws at nodes over the speed, and those in use; a film is that of both contacts of bearings that are alike.
-
-    Attributes
-    ----------
-    tables, numbers : array (films, slots, 2, rows, 4), (films, slots, 2, 10)
-        Numbers of `NormalLaw` of the inner and the outer contact; without rows for dry contacts.
-    most, lengths : array (films, slots)
-        Highest load for which the law was made [N]; rows that it has, none where it is dry.
-    table, current, highest, length : array (films, 2, rows, 4), (films, 2, 10), (films,), (films,)
-        The laws in use.
-    in_use : array (films, 2)
-        Node and weight of those.
-    springs : array (films, slots, 2, rows, SPRINGS + 1)
-        Springs of films with memory at the rows of the tables, see `mbs.bearings.balls.ball_memory`; else no rows.
-    """
-
-    tables: FloatArray
-    numbers: FloatArray
-    most: FloatArray
-    lengths: IntArray
-    table: FloatArray
-    current: FloatArray
-    highest: FloatArray
-    length: IntArray
-    in_use: FloatArray
-    springs: FloatArray
 
 
 class Balls(NamedTuple):
@@ -122,7 +81,7 @@ class Balls(NamedTuple):
         Times at the end of that step, and of the step for which they hold [s].
     rooms, matrices : array (3, 6), (2, 6, 6)
         Room for a bearing's pose, numbers and force, and for its stiffness and damping.
-    films : BallFilmTables
+    films : FilmTables
         Laws of the contacts.
     course : Course
         Places of the steps on the tables.
@@ -159,41 +118,12 @@ class Balls(NamedTuple):
     clock: FloatArray
     rooms: FloatArray
     matrices: FloatArray
-    films: BallFilmTables
+    films: FilmTables
     course: Course
 
 
 @njit(error_model="numpy", _nrt=False, forceinline=True)
-def _blend(films: BallFilmTables, film: int, node: int, weight: float) -> None:
-    """Bring the laws in use to a place between two nodes."""
-    if films.in_use[film, 0] == node and films.in_use[film, 1] == weight:
-        return
-    films.in_use[film, 0], films.in_use[film, 1] = node, weight
-    other = (node + 1) % films.numbers.shape[1] if weight > 0.0 else node
-    low, high = films.numbers[film, node].reshape(-1), films.numbers[film, other].reshape(-1)
-    current = films.current[film].reshape(-1)
-    for i in range(current.size):
-        current[i] = low[i] + weight * (high[i] - low[i])
-    films.highest[film] = min(films.most[film, node], films.most[film, other])
-    films.length[film] = films.lengths[film, node]
-    if films.length[film] == 0:
-        return
-    low, high = films.tables[film, node].reshape(-1), films.tables[film, other].reshape(-1)
-    table = films.table[film].reshape(-1)
-    for i in range(table.size):
-        table[i] = low[i] + weight * (high[i] - low[i])
-
-
-@njit(error_model="numpy", _nrt=False, forceinline=True)
-def _law_of(films: BallFilmTables, film: int, side: int) -> NormalLaw:
-    """The law in use of a side."""
-    n = films.current[film, side]
-    table = films.table[film, side, : films.length[film]]
-    return NormalLaw(n[0], n[1], n[2], n[3], n[4], n[5], n[6], 0.0, 0.0, 0.0, table)
-
-
-@njit(error_model="numpy", _nrt=False, forceinline=True)
-def _read_springs(films: BallFilmTables, film: int, side: int, at: float, out: FloatArray) -> None:
+def _read_springs(films: FilmTables, film: int, side: int, at: float, out: FloatArray) -> None:
     """Write the springs of a contact at a place on its table, straight between rows and nodes; held beyond the ends."""
     last = films.length[film] - 1
     if last < 1:
@@ -279,7 +209,7 @@ def _on_ring(balls: Balls, b: int, moment: Moment, motion: FloatArray, answers: 
     if s[0] * (s[0] + pose[0]) < 0.0:  # an angular contact bearing beyond its middle, where it has no raceway
         return TOO_FAR
     shape = BallShape(s[0], s[1], s[2], s[3], s[4], s[5], s[6])
-    inner, outer = _law_of(balls.films, film, 0), _law_of(balls.films, film, 1)
+    inner, outer = law_of(balls.films, film, 0), law_of(balls.films, film, 1)
     cage, ring = balls.cages[b] * moment.speed, balls.spins[b, 1] * moment.speed
     centrifugal, factor = ball_loads(balls.masses[b], cage, ring)
     rest = rest_approach(outer, centrifugal, balls.rests[b])
@@ -336,7 +266,7 @@ def balls_answer(balls: Balls, moment: Moment, motion: FloatArray, answers: Answ
     """
     course, films = balls.course, balls.films
     for film in range(films.highest.size):
-        _blend(films, film, course.nodes[moment.step, film], course.weights[moment.step, film])
+        blend(films, film, course.nodes[moment.step, film], course.weights[moment.step, film])
     if balls.clock[1] != moment.time:
         balls.clock[1] = moment.time
         _hold_all(balls, moment.time - balls.clock[0])
@@ -389,127 +319,6 @@ def balls_powers(balls: Balls, moment: Moment, motion: FloatArray, answers: Answ
         out[balls.places[b], 0], out[balls.places[b], 1] = balls.powers[b, 0], balls.powers[b, 1] + balls.works[b]
 
 
-@njit(error_model="numpy", _nrt=False)
-def on_grid(law: NormalLaw, grid: NormalLaw, out: FloatArray) -> None:
-    """Write the table of a law on another grid of approaches.
-
-    Parameters
-    ----------
-    law : NormalLaw
-        Law with a film.
-    grid : NormalLaw
-        Grid: its centre, scale, first node and step.
-    out : array (nodes, 4)
-        Table, written.
-    """
-    rows = out.shape[0]
-    for i in range(rows):
-        z = grid.first + grid.step * i
-        load, k, c = contact(law, grid.centre + grid.scale * math.sinh(z))
-        out[i, 0] = 2.0 / 3.0 * math.log(load / law.coefficient)
-        out[i, 1] = 2.0 / 3.0 * k / load * grid.scale * math.cosh(z) * grid.step
-        out[i, 2] = math.log(c)
-    for i in range(rows):
-        low, high = max(i - 1, 0), min(i + 1, rows - 1)
-        out[i, 3] = (out[high, 2] - out[low, 2]) / (high - low)
-
-
-def _sides(law: BallLaw) -> tuple[NormalLaw, NormalLaw]:
-    """Inner and outer."""
-    return law.inner, law.outer
-
-
-class _Laws:
-    """Laws of one film at the nodes of a window of speeds.
-
-    Parameters
-    ----------
-    element : MachineBalls
-        One of the bearings with the film.
-    """
-
-    def __init__(self, element: MachineBalls) -> None:
-        self._element = element
-        self.varies = element.films is not None and element.inner_spin != element.outer_spin
-        self._window = SpeedWindow(STEP, SLOTS, _LOWEST, self.varies)
-        self._grids: tuple[NormalLaw, ...] = ()
-        self._reach = math.inf, 0.0
-
-    def law(self, speed: float) -> BallLaw:
-        """The law at a speed [rad/s]."""
-        return self._element.law_at(speed)
-
-    def begin(self, speeds: FloatArray) -> None:
-        """Choose the grid of approaches for some speeds and those near: that of the laws at both ends.
-
-        Parameters
-        ----------
-        speeds : array (n,)
-            Speeds [rad/s].
-        """
-        low, high = float(np.abs(speeds).min()), float(np.abs(speeds).max())
-        if not self.varies or low == high or (self._reach[0] <= low and high <= self._reach[1]):
-            return
-        for widened in (_WIDENED, 1.0):  # speeds to come need not have films
-            reach = low / widened, high * widened
-            try:
-                ends = self.law(reach[0]), self.law(reach[1])
-            except EhdmapsError:
-                continue  # the step that asks for it will be told why
-            if not (ends[0].dry or ends[1].dry):
-                self._grids = tuple(_over(*pair) for pair in zip(*map(_sides, ends), strict=True))
-                self._reach, self._window = reach, SpeedWindow(STEP, SLOTS, _LOWEST)
-                return
-
-    def places(self, speeds: FloatArray) -> tuple[IntArray, FloatArray]:
-        """Nodes and weights of speeds [rad/s]."""
-        return self._window.places(speeds)
-
-    def prepare(
-        self, films: BallFilmTables, film: int, speeds: FloatArray, nodes: IntArray, weights: FloatArray
-    ) -> Prepared:
-        """Make the laws for the first of some speeds, see `SpeedWindow.prepare`."""
-
-        def make(slot: int, speed: float, alone: bool) -> Made:
-            return self._made(films, film, slot, speed, alone)
-
-        return self._window.prepare(speeds, nodes, weights, make)
-
-    def _made(self, films: BallFilmTables, film: int, slot: int, speed: float, alone: bool) -> Made:
-        """Write the laws of a node."""
-        try:
-            law = self.law(speed)
-        except EhdmapsError:
-            return Made(sound=False)
-        films.most[film, slot], films.lengths[film, slot] = law.loads[1], 0 if law.dry else NODES
-        for side, one in enumerate(_sides(law)):
-            numbers, table = films.numbers[film, slot, side], films.tables[film, slot, side]
-            if alone or law.dry:
-                numbers[:] = one[:_LAW_NUMBERS]
-                table[: one.table.shape[0]] = one.table
-            elif self._grids:
-                numbers[:] = self._grids[side][:_LAW_NUMBERS]
-                on_grid(one, self._grids[side], table)
-            else:
-                return Made(sound=False)
-            if self._element.relaxes and not law.dry:
-                load, c = one.coefficient * np.exp(1.5 * table[:, 0]), np.exp(table[:, 2])
-                films.springs[film, slot, side] = springs_at(law.responses[side], load, c)
-        return Made(sound=True, kind=int(law.dry))
-
-
-def _over(slow: NormalLaw, fast: NormalLaw) -> NormalLaw:
-    """Grid of approaches that holds those of two laws."""
-    ends = []
-    for law in (slow, fast):
-        z = law.first + law.step * np.array([0.0, law.table.shape[0] - 1.0])
-        ends.append(law.centre + law.scale * np.sinh(z))
-    centre, scale = 0.5 * (slow.centre + fast.centre), math.sqrt(slow.scale * fast.scale)
-    first = math.asinh((min(end[0] for end in ends) - centre) / scale)
-    last = math.asinh((max(end[1] for end in ends) - centre) / scale)
-    return fast._replace(centre=centre, scale=scale, first=first, step=(last - first) / (NODES - 1))
-
-
 class BallBlock(FilmBlock[Balls]):
     """The ball bearings of a run; see `mbs.model.blocks.StatefulBlock`.
 
@@ -522,7 +331,7 @@ class BallBlock(FilmBlock[Balls]):
     def __init__(self, members: Sequence[Member]) -> None:
         elements: list[MachineBalls] = [member.element for member in members]
         films_of, firsts = shared(one.film_key for one in elements)
-        self._laws = [_Laws(elements[first]) for first in firsts]
+        self._laws = [FilmLaws(elements[first], NODES) for first in firsts]
         arrays = _gather(members, films_of, self._laws)
         films = arrays.films
 
@@ -577,23 +386,11 @@ class BallBlock(FilmBlock[Balls]):
         return arrays.forces[b, :z], arrays.springs[b, :z], arrays.approaches[b, :z]
 
 
-def _gather(members: Sequence[Member], films_of: list[int], laws: Sequence[_Laws]) -> Balls:
+def _gather(members: Sequence[Member], films_of: list[int], laws: Sequence[FilmLaws]) -> Balls:
     """Arrays of some bearings."""
     elements: list[MachineBalls] = [member.element for member in members]
     count, most = len(elements), max((one.force.geometry.balls for one in elements), default=0)
-    rows, slots = (NODES, SLOTS) if any(one.varies for one in laws) else (0, 1)
-    films = BallFilmTables(
-        tables=np.zeros((len(laws), slots, 2, rows, 4)),
-        numbers=np.zeros((len(laws), slots, 2, _LAW_NUMBERS)),
-        most=np.zeros((len(laws), slots)),
-        lengths=np.zeros((len(laws), slots), dtype=np.int64),
-        table=np.zeros((len(laws), 2, rows, 4)),
-        current=np.zeros((len(laws), 2, _LAW_NUMBERS)),
-        highest=np.zeros(len(laws)),
-        length=np.zeros(len(laws), dtype=np.int64),
-        in_use=np.full((len(laws), 2), -1.0),
-        springs=np.zeros((len(laws), slots, 2, rows if any(one.relaxes for one in elements) else 0, SPRINGS + 1)),
-    )
+    films = film_tables(laws, NODES, any(one.relaxes for one in elements))
     cos, sin = np.zeros((2, count, most))
     for b, one in enumerate(elements):
         cos[b, : one.force.geometry.balls], sin[b, : one.force.geometry.balls] = one.force.directions

@@ -112,6 +112,11 @@ class MachineBalls(BallElement):
         return (*law, self.inner_spin, self.outer_spin, self.relaxes)
 
     @property
+    def varies(self) -> bool:
+        """Tell whether it has films that change with the speed."""
+        return self.films is not None and self.inner_spin != self.outer_spin
+
+    @property
     def relaxes(self) -> bool:
         """Tell whether its films have a memory."""
         return self.memory == "memory" and self.films is not None

@@ -2,7 +2,8 @@
 
 =====================  ================================================================================================
 `tapered_kernel`       the balance of each roller, and the sums over rollers: force, stiffness, damping
-`tapered_bearing`      the force element; loads of the rollers
+`tapered_bearing`      the force; loads of the rollers
+`tapered_element`      a bearing in a machine: films of its speed
 `tapered_energy`       energy of dry contacts, and the work of speed
 `tapered_block`        the bearings of a compiled run
 `line_film`            films of both raceways at one speed as tables for the kernel

@@ -8,6 +8,8 @@ balance, and so is all memory of films.
 
 from __future__ import annotations
 
+import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,10 +18,11 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
-from mbs.bearings.balls.normal_law import NormalLaw
+from mbs.bearings.balls.normal_law import NormalLaw, empty_table
 
 if TYPE_CHECKING:
     from ehdmaps.maps.law import ContactLaw
+    from mbs.bearings.balls.response import ContactResponse
 
 NODES, KNEE = 1200, 0.3e-6
 """Nodes, and the width about approach zero in which they lie dense: films begin to carry there [m]."""
@@ -28,6 +31,38 @@ LOADS = (1e2, 2e6)
 """Lowest and highest load of the tables [N/m]; they go on straight in the logarithms."""
 
 _FAR = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class LineFilms:
+    """Laws of both lines of a roller at one speed.
+
+    Attributes
+    ----------
+    inner, outer : NormalLaw
+        Laws of the whole roller at cone and cup; without tables for dry lines.
+    loads : (float, float)
+        Lowest and highest load of a roller for which both were made [N]; 0 and infinity for dry lines.
+    """
+
+    inner: NormalLaw
+    outer: NormalLaw
+    loads: tuple[float, float] = (0.0, math.inf)
+
+    @property
+    def dry(self) -> bool:
+        """True where neither line has a film."""
+        return self.inner.table.size == 0 and self.outer.table.size == 0
+
+    @property
+    def responses(self) -> tuple[ContactResponse, ...]:
+        """None: films have the stiffness and damping of slow motion."""
+        return ()
+
+
+_DRY = NormalLaw(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, empty_table())
+DRY_LINES = LineFilms(_DRY, _DRY)
+"""Lines without films."""
 
 
 def cylinder_of(geometry: TaperedGeometry) -> BearingGeometry:
@@ -56,6 +91,31 @@ def cylinder_of(geometry: TaperedGeometry) -> BearingGeometry:
         geometry.rollers,
         0.0,
     )
+
+
+def line_films(
+    laws: tuple[ContactLaw, ContactLaw], length: float, entrainment_speed: float, temperature: float
+) -> LineFilms:
+    """Laws of both lines at a speed; dry ones where nothing rolls.
+
+    Parameters
+    ----------
+    laws : (ContactLaw, ContactLaw)
+        Laws of the contacts of `cylinder_of` a bearing, "inner" and "outer".
+    length : float
+        Length of the roller [m].
+    entrainment_speed, temperature : float
+        u [m/s], T [K].
+
+    Raises
+    ------
+    InputError
+        If a law has no load that rises through the range of the table.
+    """
+    if entrainment_speed == 0.0:
+        return DRY_LINES
+    inner, outer = (line_film(law, length, entrainment_speed, temperature) for law in laws)
+    return LineFilms(inner, outer, (LOADS[0] * length, LOADS[1] * length))
 
 
 def line_film(law: ContactLaw, length: float, entrainment_speed: float, temperature: float) -> NormalLaw:

@@ -18,11 +18,11 @@ ISO/TS 16281:2008. J. M. de Mul, J. M. Vree, D. A. Maas, Journal of Tribology 11
 
 from __future__ import annotations
 
+import copy
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -33,10 +33,9 @@ from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.physics.surface import iso_profile
-from mbs.bearings.balls.ball_speed import turned_by
-from mbs.bearings.balls.normal_law import NormalLaw, contact, empty_table
+from mbs.bearings.balls.normal_law import contact
 from mbs.bearings.laws import roller_coefficient
-from mbs.bearings.tapered.tapered_energy import TaperedStates, dry_energy, place_work
+from mbs.bearings.tapered.line_film import DRY_LINES, LineFilms
 from mbs.bearings.tapered.tapered_kernel import (
     COLUMNS,
     FIRST_RIB,
@@ -48,15 +47,11 @@ from mbs.bearings.tapered.tapered_kernel import (
     roller_work,
     tapered_force,
 )
-from mbs.model.elements import Excitation, Forces, OnRings, Operation, Port, Powers
 
 FASTEST = 2e4
 """Largest accepted speed of a ring [rad/s]."""
 
 SLICES, MOST_SLICES = 21, 1000
-
-HARMONICS = 3
-"""Multiples of the passing frequency of the rollers that are worth following."""
 
 FARTHEST = 0.1
 """Largest accepted displacement over the roller's diameter: bodies are linear."""
@@ -98,8 +93,8 @@ class TaperedForce:
         Constant damping of each contact of a roller while it carries load [N s/m], >= 0.
     damping_time : float
         Damping over stiffness of each contact [s], >= 0.
-    films : (NormalLaw, NormalLaw), optional
-        Tables of cone and cup with films at one speed, see `line_film`; dry lines without.
+    films : LineFilms
+        Laws of the lines with films at one speed; dry lines if left out.
     profile : {"iso", "straight"} or callable
         Profile of the rollers on one side [m], by name or over the distance from the middle [m].
     slices : int
@@ -132,7 +127,7 @@ class TaperedForce:
         damping: float = 0.0,
         damping_time: float = 0.0,
         *,
-        films: tuple[NormalLaw, NormalLaw] | None = None,
+        films: LineFilms = DRY_LINES,
         profile: str | Callable[[FloatArray], FloatArray] = "iso",
         slices: int = SLICES,
         material: Material = STEEL,
@@ -181,16 +176,31 @@ class TaperedForce:
         )
         # each raceway takes half of the total approach at the same load
         single = 2.0 ** (10.0 / 9.0) * roller_coefficient(length, material)
-        dry = NormalLaw(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, empty_table())
-        cone, cup = (dry, dry) if films is None else films
         self.films = films
-        self.laws = RollerLaws(single, single, self.damping, self.damping_time, cup, cone)
+        self.laws = RollerLaws(single, single, self.damping, self.damping_time, films.outer, films.inner)
         self._angles, self._way = places, way
         self._kernel = tapered_force if compiled else in_python(tapered_force)
-        self._places = np.full((geometry.rollers, 3), np.nan)
-        self._rollers = np.zeros((geometry.rollers, COLUMNS))
+        self._begin()
+
+    def _begin(self) -> None:
+        """Make the arrays that the kernel writes."""
+        self._places = np.full((self.geometry.rollers, 3), np.nan)
+        self._rollers = np.zeros((self.geometry.rollers, COLUMNS))
         self._out = np.zeros(6), np.zeros((6, 6)), np.zeros((6, 6))
         self._work = roller_work(len(self.ribs))
+
+    def with_films(self, films: LineFilms) -> TaperedForce:
+        """The same bearing with other films.
+
+        Parameters
+        ----------
+        films : LineFilms
+            Laws of the lines.
+        """
+        other = copy.copy(self)
+        other.films, other.laws = films, self.laws._replace(cup_film=films.outer, cone_film=films.inner)
+        other._begin()
+        return other
 
     def speed_loads(
         self, inner_speed: float, outer_speed: float = 0.0, cage_speed: float | None = None
@@ -298,8 +308,9 @@ class TaperedForce:
             depth = approach[:, None] + moved[2][:, None] * shape.levers - shape.profile
             each = (self.laws.cone, self.laws.cup)[side] / self.geometry.roller_length
             slices[side] = each * np.maximum(depth, 0.0) ** (10.0 / 9.0)
-            if self.films is not None:
-                loads = [contact(self.films[side], g)[0] for g in depth.ravel().tolist()]
+            if not self.films.dry:
+                law = (self.films.inner, self.films.outer)[side]
+                loads = [contact(law, g)[0] for g in depth.ravel().tolist()]
                 slices[side] = np.reshape(loads, depth.shape) / self.geometry.roller_length
         half, diameter = self.geometry.half_cone_angle, self.geometry.roller_diameter
         centre = (self._way * rows[6:8] + 0.5 * diameter * math.sin(half)) * math.cos(half)
@@ -349,123 +360,3 @@ def _six(values: npt.ArrayLike, name: str) -> FloatArray:
     if array.shape != (6,):
         raise InputError(f"bearing, {name}: got an array of shape {array.shape}; allowed: (6,)")
     return array
-
-
-@dataclass(frozen=True, eq=False)
-class TaperedElement(OnRings):
-    """A tapered roller bearing between an inner and an outer ring.
-
-    Attributes
-    ----------
-    name : str
-        Name for messages and results.
-    inner, outer : str
-        Places in the plane of the middles of the rollers.
-    force : TaperedForce
-        The force.
-    inner_spin, outer_spin : float
-        Speeds of the rings as multiples of the system's.
-    start_angle : float
-        Angle of the first roller from y at the beginning [rad].
-    axial_offset : float
-        Way of the inner ring along x against the outer one where both places have not moved [m]: preload by
-        displacement, or play.
-    """
-
-    locating: ClassVar[bool] = True
-    name: str
-    inner: str
-    outer: str
-    force: TaperedForce
-    inner_spin: float = 1.0
-    outer_spin: float = 0.0
-    start_angle: float = 0.0
-    axial_offset: float = 0.0
-
-    @property
-    def ports(self) -> tuple[Port, ...]:
-        """Displacement of the inner ring against the outer one."""
-        return (Port(self.inner, self.outer),)
-
-    @property
-    def excitation(self) -> Excitation | None:
-        """The passing of the rollers; None for a cage that stands."""
-        order = self.force.geometry.rollers * abs(self.cage_turn)
-        return Excitation(order, HARMONICS, rank=1) if order > 0.0 else None
-
-    @cached_property
-    def cage_turn(self) -> float:
-        """Speed of the cage as a multiple of the system's."""
-        return self.force.geometry.cage_speed(self.inner_spin, self.outer_spin)
-
-    def conditions(self, operation: Operation) -> dict[str, float]:
-        """Angle of the cage and speeds, by the names that the force takes."""
-        return {
-            "cage_angle": self.start_angle + self.cage_turn * operation.angle,
-            "inner_speed": self.inner_spin * operation.speed,
-            "outer_speed": self.outer_spin * operation.speed,
-        }
-
-    def pose(self, displacement: FloatArray) -> FloatArray:
-        """Pose of the inner ring in the outer one by their displacement (6,)."""
-        pose = displacement.copy()
-        pose[0] += self.axial_offset
-        return pose
-
-    def rollers(self, displacement: FloatArray, operation: Operation) -> TaperedLoads:
-        """Loads of all rollers at rest at the displacement (6,) of the inner ring against the outer one."""
-        return self.force.rollers(self.pose(displacement), **self.conditions(operation))
-
-    def advance(
-        self, states: Any, displacement: FloatArray, velocity: FloatArray, operation: Operation
-    ) -> tuple[Forces, Any]:
-        """The same at the end of a step in time, see `Element.advance`.
-
-        Parameters
-        ----------
-        states : TaperedStates or None
-            States after the last step.
-        displacement, velocity, operation
-            What `Element.advance` takes.
-
-        Raises
-        ------
-        AnalysisError
-            Where the rings have come apart.
-        """
-        try:
-            answer = self.evaluate(displacement, velocity, operation)
-        except InputError as error:
-            raise AnalysisError(
-                f"bearing {self.name!r}: its rings are apart at {operation.time:.6g} s ({error}): preload is lost; "
-                "take more preload, or smaller loads"
-            ) from error
-        rollers = self.force.last_rollers
-        step = 0.0 if states is None else operation.time - states.time
-        last = np.zeros((rollers.shape[0], 4)) if states is None else states.last.copy()
-        conditions = self.conditions(operation)
-        loads = self.force.speed_loads(conditions["inner_speed"], conditions["outer_speed"])
-        work = place_work(rollers, loads, last)
-        slowed = answer.damping @ velocity
-        turning = turned_by(self.pose(displacement), answer.force + slowed) * self.cage_turn * operation.speed
-        return answer, TaperedStates(
-            time=operation.time,
-            last=last,
-            dissipated=float(velocity @ slowed),
-            driven=turning + (work / step if step > 0.0 else 0.0),
-            stored=dry_energy(self.force.laws, self.force.shape, rollers),
-        )
-
-    def powers(
-        self, states: Any, force: FloatArray, displacement: FloatArray, velocity: FloatArray, operation: Operation
-    ) -> Powers | None:
-        """Power that contacts dissipate, and that cage and speed bring in, see `Element.powers`."""
-        return Powers(states.dissipated, states.driven)
-
-    def stored(self, states: Any, displacement: FloatArray, operation: Operation) -> float | None:
-        """Energy of its dry contacts [J], see `Element.stored`."""
-        return float(states.stored)
-
-    def evaluate(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> Forces:
-        """Force on the inner ring, stiffness and damping, see `Element.evaluate`."""
-        return Forces(*self.force(self.pose(displacement), velocity, **self.conditions(operation)))

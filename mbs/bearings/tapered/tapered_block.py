@@ -1,4 +1,7 @@
-"""Tapered roller bearings in compiled runs: the kernel of a bearing alone, see `mbs.model.blocks`."""
+"""Tapered roller bearings in compiled runs: the kernel of a bearing alone, see `mbs.model.blocks`.
+
+Films change with the speed: see `mbs.bearings.balls.film_tables`.
+"""
 
 from __future__ import annotations
 
@@ -11,8 +14,11 @@ import numpy as np
 from ehdmaps.arrays import BoolArray, FloatArray, IntArray
 from ehdmaps.compiled import njit
 from mbs.bearings.balls.ball_speed import turned_by
-from mbs.bearings.balls.normal_law import NormalLaw, empty_table
-from mbs.bearings.tapered.tapered_bearing import FASTEST, TaperedElement, TaperedForce
+from mbs.bearings.balls.film_tables import FilmLaws, FilmTables, blend, film_tables, law_of
+from mbs.bearings.speed_tables import Course, CourseOfFilms, FilmBlock, Prepared, course_of, shared
+from mbs.bearings.tapered.line_film import NODES
+from mbs.bearings.tapered.tapered_bearing import FASTEST, TaperedForce
+from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.bearings.tapered.tapered_energy import TaperedStates, dry_energy, place_work
 from mbs.bearings.tapered.tapered_kernel import (
     COLUMNS,
@@ -37,8 +43,9 @@ class Tapered(NamedTuple):
 
     Attributes
     ----------
-    firsts, places, counts, slices : array (bearings,), of int
-        First of what each feels, its place among all elements, how many rollers it has, and how many slices these.
+    firsts, places, films_of, counts, slices : array (bearings,), of int
+        First of what each feels, its place among all elements, its film, how many rollers it has, and how
+        many slices these.
     starts, turns, offsets : array (bearings,)
         Angle of the first roller [rad], cage angle by that of the system, axial offset [m].
     fastest : array (bearings,)
@@ -65,12 +72,17 @@ class Tapered(NamedTuple):
         What `place_work` keeps of the last step, its time [s], and its work by that time [W].
     work : RollerWork
         Work space.
-    no_table : array (0, 4)
-        Table of a dry contact.
+    rooms, matrices : array (3, 6), (2, 6, 6)
+        Room for a bearing's pose, loads and force, and for its stiffness and damping.
+    films : FilmTables
+        Laws of the lines.
+    course : Course
+        Places of the steps on the tables.
     """
 
     firsts: IntArray
     places: IntArray
+    films_of: IntArray
     counts: IntArray
     slices: IntArray
     starts: FloatArray
@@ -95,15 +107,18 @@ class Tapered(NamedTuple):
     times: FloatArray
     works: FloatArray
     work: RollerWork
-    no_table: FloatArray
+    rooms: FloatArray
+    matrices: FloatArray
+    films: FilmTables
+    course: Course
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False)
 def _on_ring(tapered: Tapered, b: int, moment: Moment, motion: FloatArray, answers: Answers) -> int:
     """Write the answer of a bearing; status as of `tapered_force`."""
     i, z, n, x, y = tapered.firsts[b], tapered.counts[b], tapered.slices[b], motion[0], motion[1]
-    pose, loads = np.empty(6), np.empty(3)
-    force, stiffness, damping = np.empty(6), np.empty((6, 6)), np.empty((6, 6))
+    pose, loads, force = tapered.rooms[0], tapered.rooms[1], tapered.rooms[2]
+    stiffness, damping = tapered.matrices[0], tapered.matrices[1]
     pose[0], pose[1], pose[2], pose[3] = x[i] + tapered.offsets[b], x[i + 1], x[i + 2], 0.0
     pose[4], pose[5] = x[i + 3], x[i + 4]
     if not abs(moment.speed) <= tapered.fastest[b]:
@@ -117,8 +132,9 @@ def _on_ring(tapered: Tapered, b: int, moment: Moment, motion: FloatArray, answe
         s[0], (s[1], s[2]), (s[3], s[4]), ribs, tapered.levers[b, :n], tapered.profiles[b, :n],
         tapered.cos[b, :z], tapered.sin[b, :z], s[5], s[6],
     )  # fmt: skip
-    dry = NormalLaw(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, tapered.no_table)
-    laws = RollerLaws(c[0], c[1], c[2], c[3], dry, dry)
+    film = tapered.films_of[b]
+    cone, cup = law_of(tapered.films, film, 0), law_of(tapered.films, film, 1)
+    laws = RollerLaws(c[0], c[1], c[2], c[3], cup, cone)
     square = moment.speed * moment.speed
     loads[0], loads[1], loads[2] = 0.0, tapered.loads[b, 0] * square, tapered.loads[b, 1] * square
     angle = tapered.starts[b] + tapered.turns[b] * moment.angle
@@ -150,7 +166,7 @@ def _on_ring(tapered: Tapered, b: int, moment: Moment, motion: FloatArray, answe
     return found
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False)
 def tapered_answer(tapered: Tapered, moment: Moment, motion: FloatArray, answers: Answers) -> int:
     """Forces and slopes of all tapered roller bearings; see `mbs.model.blocks.Kind`.
 
@@ -165,14 +181,22 @@ def tapered_answer(tapered: Tapered, moment: Moment, motion: FloatArray, answers
     answers : Answers
         Answers of all elements, filled.
     """
+    course, films = tapered.course, tapered.films
+    for film in range(films.highest.size):
+        blend(films, film, course.nodes[moment.step, film], course.weights[moment.step, film])
     for b in range(tapered.firsts.size):
         found = _on_ring(tapered, b, moment, motion, answers)
         if found < 0:
             return IN_PYTHON if found == TOO_FAR else NO_SOLUTION
+        largest = 0.0
+        for j in range(tapered.counts[b]):
+            largest = max(largest, tapered.rows[b, j, 3], tapered.rows[b, j, 4])
+        if largest > films.highest[tapered.films_of[b]]:
+            answers.outside[tapered.places[b]] += 1
     return FOUND
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False)
 def tapered_accept(tapered: Tapered, moment: Moment) -> None:
     """Take note of a step that was made: places of the rollers for the work of their loads.
 
@@ -189,7 +213,7 @@ def tapered_accept(tapered: Tapered, moment: Moment) -> None:
         tapered.times[b], tapered.works[b] = moment.time, work / h if h > 0.0 else 0.0
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False)
 def tapered_powers(tapered: Tapered, moment: Moment, motion: FloatArray, answers: Answers, out: FloatArray) -> None:
     """Write what contacts dissipate, and what cage and speed bring in; see `mbs.model.blocks.Kind`.
 
@@ -205,7 +229,7 @@ def tapered_powers(tapered: Tapered, moment: Moment, motion: FloatArray, answers
         out[place, 0], out[place, 1] = tapered.powers[b, 0], tapered.powers[b, 1] + tapered.works[b]
 
 
-class TaperedBlock:
+class TaperedBlock(FilmBlock[Tapered]):
     """The tapered roller bearings of a run; see `mbs.model.blocks.StatefulBlock`.
 
     Parameters
@@ -216,14 +240,21 @@ class TaperedBlock:
 
     def __init__(self, members: Sequence[Member]) -> None:
         self._elements: list[TaperedElement] = [member.element for member in members]
-        self._arrays = _gather(members)
+        films_of, firsts = shared(one.film_key for one in self._elements)
+        self._laws = [FilmLaws(self._elements[first], NODES) for first in firsts]
+        arrays = _gather(members, films_of, self._laws)
+        films = arrays.films
+
+        def make(film: int, speeds: FloatArray, nodes: IntArray, weights: FloatArray) -> Prepared:
+            return self._laws[film].prepare(films, film, speeds, nodes, weights)
+
+        super().__init__(CourseOfFilms([one.places for one in self._laws], make), arrays)
 
     def begin(self, speeds: FloatArray) -> None:
-        """Take no note: nothing depends on them."""
-
-    def prepare(self, first: int, last: int) -> tuple[Tapered, BoolArray]:
-        """Prepare all steps at once."""
-        return self._arrays, np.ones(last - first, dtype=np.bool_)
+        """Find the places of the speeds [rad/s] on the tables, and the grids of these."""
+        for one in self._laws:
+            one.begin(speeds)
+        super().begin(speeds)
 
     def states(self) -> Sequence[TaperedStates]:
         """States of each bearing after the last step."""
@@ -252,7 +283,7 @@ class TaperedBlock:
             self._arrays.last[b, : one.last.shape[0]] = one.last
 
 
-def _gather(members: Sequence[Member]) -> Tapered:
+def _gather(members: Sequence[Member], films_of: list[int], laws: Sequence[FilmLaws]) -> Tapered:
     """Arrays of some bearings."""
     elements: list[TaperedElement] = [member.element for member in members]
     forces: list[TaperedForce] = [one.force for one in elements]
@@ -276,6 +307,7 @@ def _gather(members: Sequence[Member]) -> Tapered:
     return Tapered(
         firsts=np.array([member.first for member in members], dtype=np.int64),
         places=np.array([member.place for member in members], dtype=np.int64),
+        films_of=np.array(films_of, dtype=np.int64),
         counts=counts,
         slices=slices,
         starts=np.array([one.start_angle for one in elements], dtype=np.float64),
@@ -302,7 +334,10 @@ def _gather(members: Sequence[Member]) -> Tapered:
         times=np.zeros(count),
         works=np.zeros(count),
         work=roller_work(MOST_RIBS),
-        no_table=empty_table(),
+        rooms=np.zeros((3, 6)),
+        matrices=np.zeros((2, 6, 6)),
+        films=film_tables(laws, NODES, relaxes=False),
+        course=course_of(0, len(laws)),
     )
 
 

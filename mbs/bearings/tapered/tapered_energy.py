@@ -41,7 +41,7 @@ class TaperedStates(NamedTuple):
     stored: float
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False)
 def place_work(rollers: FloatArray, loads: tuple[float, float], last: FloatArray) -> float:
     """Work of the centrifugal loads and gyroscopic moments since the last call [J], by the trapezoidal rule.
 

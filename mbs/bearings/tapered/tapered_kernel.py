@@ -134,7 +134,7 @@ class RollerLaws(NamedTuple):
     cone_film: NormalLaw
 
 
-@njit(error_model="numpy", fastmath=FAST)
+@njit(error_model="numpy", fastmath=FAST, _nrt=False)
 def _dry_line(
     law: tuple[float, float, float],
     approach: float,
@@ -167,7 +167,7 @@ def _dry_line(
     sums[7] = damper * nbb + time * sums[4]
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False)
 def _line(
     coefficient: float,
     film: NormalLaw,
@@ -201,7 +201,7 @@ def _line(
         sums[7] += c * lever * lever
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False)
 def _add(normal: tuple[float, float], sums: FloatArray, first: int, matrix: FloatArray) -> None:
     """Add k n n' of a contact to a matrix (3, 3): sums [first] k, k b, k b b."""
     k, kb, kbb = sums[first], sums[first + 1], sums[first + 2]
@@ -217,7 +217,7 @@ def _add(normal: tuple[float, float], sums: FloatArray, first: int, matrix: Floa
     matrix[2, 2] += kbb
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False)
 def _solve(m: FloatArray, b: FloatArray, out: FloatArray) -> None:
     """Solve M out = b for a symmetric positive M (3, 3), by its Cholesky factors."""
     l00 = math.sqrt(m[0, 0])
@@ -290,7 +290,7 @@ def roller_work(ribs: int) -> RollerWork:
     )
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False)
 def _state(
     d: tuple[float, float, float],
     v: FloatArray,
@@ -327,14 +327,14 @@ def _state(
     return size
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False)
 def _left(w: RollerWork, length: float) -> float:
     """Size of the force that is left [N]; moments over half of the length of the roller."""
     left: float = max(abs(w.rest[0]), abs(w.rest[1]), abs(w.rest[2]) / length)
     return left
 
 
-@njit(error_model="numpy", forceinline=True)
+@njit(error_model="numpy", _nrt=False, forceinline=True)
 def place_roller(
     d: tuple[float, float, float],
     loads: FloatArray,
@@ -436,7 +436,7 @@ def place_roller(
     return found
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False)
 def _matrices(shape: TaperedShape, w: RollerWork) -> None:
     """A, M = A + B, and the dampers' sums, from the sums of the contacts."""
     w.inner[:] = 0.0
@@ -459,7 +459,7 @@ def _matrices(shape: TaperedShape, w: RollerWork) -> None:
             _add(normal, sums, 5, w.damped_inner)
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False)
 def _answer(shape: TaperedShape, soft: float, length: float, w: RollerWork) -> None:
     """Stiffness and damping of a roller in balance."""
     w.plane[:] = 0.0
@@ -493,7 +493,7 @@ def _answer(shape: TaperedShape, soft: float, length: float, w: RollerWork) -> N
             w.plane[1, i, j] = damping
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False)
 def _on_ring(plane: FloatArray, c: float, s: float, radius: float, matrix: FloatArray) -> None:
     """Add the symmetric matrix (3, 3) of a roller to the upper half of that of the ring (6, 6).
 
@@ -520,7 +520,7 @@ def _on_ring(plane: FloatArray, c: float, s: float, radius: float, matrix: Float
     matrix[5, 5] += c * c * turn
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", _nrt=False)
 def tapered_force(
     pose: FloatArray,
     cage_angle: float,

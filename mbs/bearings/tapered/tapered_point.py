@@ -24,7 +24,8 @@ from ehdmaps.physics.rollers.tapered_catalogue import tapered_ratings
 from ehdmaps.units import PRESSURE
 from mbs.bearings.films import FormulaFilms
 from mbs.bearings.tapered.reference_load import reference_load
-from mbs.bearings.tapered.tapered_bearing import TaperedElement, TaperedForce, TaperedLoads
+from mbs.bearings.tapered.tapered_bearing import TaperedForce, TaperedLoads
+from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import Load, Operation
 from mbs.model.equilibrium import equilibrium

@@ -217,30 +217,14 @@ def tapered_points(request: TaperedRequest) -> list[list[TaperedPoint]]:
 
 def _forces(request: TaperedRequest) -> list[TaperedForce]:
     """The force at each speed of the inner ring, with the films of the speed; dry where nothing rolls."""
-    geometry, kelvin = request.force.geometry, request.description.temperature
+    geometry = request.force.geometry
     speeds = [geometry.entrainment_speed(speed, request.outer_speed) for speed in request.speeds]
     if not request.films or not max(speeds) > 0.0:
         return [request.force] * len(speeds)
-    from ehdmaps.jobs.make.table_law import table_map
-    from mbs.bearings.tapered.line_film import LOADS as LINE_LOADS
-    from mbs.bearings.tapered.line_film import cylinder_of, line_film
+    from mbs.scene.tapered.films import FilmsOfLines, OilOfLines
 
-    slowest = min(speed for speed in speeds if speed > 0.0)
-    emap = table_map(
-        cylinder_of(geometry), request.oil, LINE_LOADS, (0.9 * slowest, 1.1 * max(speeds)), (kelvin, kelvin)
-    )
-    laws = emap.law("inner", "clamp"), emap.law("outer", "clamp")
-    return [
-        TaperedForce(
-            geometry,
-            films=(tables[0], tables[1]),
-            profile=request.force.profile,
-            slices=request.force.positions.size,
-        )
-        if u > 0.0 and (tables := [line_film(law, geometry.roller_length, u, kelvin) for law in laws])
-        else request.force
-        for u in speeds
-    ]
+    films = FilmsOfLines(geometry, OilOfLines("table", request.oil, request.description.temperature, max(speeds)))
+    return [request.force.with_films(films(speed, request.outer_speed)) for speed in request.speeds]
 
 
 def _geometry(source: str, clearance: float, problems: list[str]) -> TaperedGeometry | None:

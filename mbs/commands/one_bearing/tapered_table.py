@@ -12,7 +12,7 @@ import numpy as np
 from ehdmaps.physics.rollers.ribbed_geometry import RibbedGeometry
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from ehdmaps.units import DAMPER, FILM, PRESSURE, RPM, SPRING, TEMPERATURE
-from mbs.bearings.tapered.tapered_bearing import TaperedElement
+from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.bearings.tapered.tapered_point import RIB_FRICTION, SIDES, TaperedPoint
 from mbs.output.bearing_table import regime, shown, smallest, warning_lines, write_csv
 from mbs.output.files import described

@@ -18,8 +18,8 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import SolverError
-from mbs.bearings.balls.ball_block import on_grid
 from mbs.bearings.balls.ball_memory import SPRINGS
+from mbs.bearings.balls.film_tables import on_grid
 from mbs.bearings.balls.laws import NODES, BallLaw
 from mbs.bearings.balls.normal_law import NormalLaw, contact, load_approach
 

@@ -5,15 +5,19 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ehdmaps.errors import InputError
+from ehdmaps.physics.oil_supply import FLOODED
 from ehdmaps.physics.rollers.ribbed_geometry import RibbedGeometry
+from ehdmaps.physics.surface import SMOOTH
+from ehdmaps.units import TEMPERATURE
 from mbs.scene.specs import TaperedSpec
 
 if TYPE_CHECKING:
     from mbs.scene.contact_laws import ContactLaws
     from mbs.scene.surroundings import Built, Surroundings
+    from mbs.scene.tapered.films import FilmsOfLines, OilOfLines
 
-_FILMS = ("table", "map")
-"""Laws with films, beside which tapered rollers stay dry."""
+FILMS = ("table", "map", "formula")
+"""Laws with which lines have films: of the formula, else from the film table."""
 
 
 def tapered_problems(spec: TaperedSpec, surroundings: Surroundings) -> list[str]:
@@ -32,17 +36,24 @@ def tapered_problems(spec: TaperedSpec, surroundings: Surroundings) -> list[str]
     if spec.inner.partition(":")[0] == spec.outer.partition(":")[0]:
         problems.append(f"bearing {spec.name!r}: got {spec.inner} and {spec.outer}; allowed: rings on two bodies")
     laws = surroundings.laws
+    if laws.chosen in FILMS:
+        oil, kelvin = laws.scene.lubricant, surroundings.temperature
+        if oil is None:
+            return [*problems, f"bearing {spec.name!r}: films need the oil of the scene; add [lubricant]"]
+        try:
+            oil.at(kelvin)
+        except InputError as error:
+            problems += [f"bearing {spec.name!r}, {TEMPERATURE.text(kelvin)}: {problem}" for problem in error.problems]
+        return problems
     try:
         if hertz_damper(laws.chosen) is not None:
             return problems
     except InputError:
         return problems  # said of the law itself
-    others = laws.scene.bearings or laws.scene.balls
-    if not (laws.chosen in _FILMS and others):
-        problems.append(
-            f"bearing {spec.name!r}: got the law {laws.chosen!r:.60} for a {_kind(spec)}; allowed: hertz, "
-            f"{HERTZ_FORMS}; table and map beside other bearings, whose films they are"
-        )
+    problems.append(
+        f"bearing {spec.name!r}: got the law {laws.chosen!r:.60} for a {_kind(spec)}; allowed: hertz, "
+        f"{HERTZ_FORMS}, table, formula"
+    )
     return problems
 
 
@@ -54,11 +65,16 @@ def tapered_law_words(laws: ContactLaws) -> str:
     laws : ContactLaws
         Laws in force, without problems.
     """
-    from mbs.scene.contact_laws import hertz_damper
+    from mbs.scene.contact_laws import hertz_damper, surface_label
 
     kinds = " and ".join(dict.fromkeys(f"{_kind(spec)}s" for spec in laws.scene.tapered))
-    if laws.chosen in _FILMS:
-        return f"{kinds} dry and without damping: they have no films"
+    if laws.chosen in FILMS:
+        films = _oil_of_lines(laws, 0.0)
+        source = "film formula moes" if films.law == "formula" else "films from the film table"
+        return (
+            f"{kinds} with {source} at radius and speed of the middle of rollers, {films.oil.title}, "
+            f"{films.supply.label}, {surface_label(films.surface)}, slow films, ribs dry"
+        )
     damper = hertz_damper(laws.chosen)
     words = f", {damper.words} of each contact" if damper is not None and damper.words else ""
     return f"{kinds} dry Hertz{words}"
@@ -79,12 +95,14 @@ def build_tapered(spec: TaperedSpec, surroundings: Surroundings) -> Built:
     surroundings : Surroundings
         What it is built into.
     """
-    from mbs.bearings.tapered.tapered_bearing import TaperedElement, TaperedForce
+    from mbs.bearings.tapered.tapered_bearing import TaperedForce
+    from mbs.bearings.tapered.tapered_element import TaperedElement
     from mbs.scene.contact_laws import Damper, hertz_damper
     from mbs.scene.surroundings import Built
 
-    chosen = surroundings.laws.chosen
-    damper = (None if chosen in _FILMS else hertz_damper(chosen)) or Damper()
+    laws, spin = surroundings.laws, surroundings.places.spin
+    has_films = laws.chosen in FILMS
+    damper = (None if has_films else hertz_damper(laws.chosen)) or Damper()
     element = TaperedElement(
         name=spec.name,
         inner=spec.inner,
@@ -92,9 +110,35 @@ def build_tapered(spec: TaperedSpec, surroundings: Surroundings) -> Built:
         force=TaperedForce(
             spec.geometry, damper.constant, damper.time, profile=spec.profile, slices=max(spec.slices, 2)
         ),
-        inner_spin=surroundings.places.spin(spec.inner),
-        outer_spin=surroundings.places.spin(spec.outer),
+        inner_spin=spin(spec.inner),
+        outer_spin=spin(spec.outer),
         start_angle=spec.start_angle,
         axial_offset=spec.axial_offset,
+        films=_films(spec, surroundings) if has_films else None,
     )
     return Built(element, element)
+
+
+def _films(spec: TaperedSpec, surroundings: Surroundings) -> FilmsOfLines:
+    """Laws of the lines of a bearing over the speeds of its rings."""
+    from mbs.scene.tapered.films import FilmsOfLines
+
+    scene = surroundings.laws.scene
+    spin = max((abs(body.spin) for body in scene.bodies), default=0.0) * scene.fastest
+    # rings turn against each other at most
+    fastest = abs(spec.geometry.entrainment_speed(spin, -spin))
+    return FilmsOfLines(spec.geometry, _oil_of_lines(surroundings.laws, surroundings.temperature, fastest))
+
+
+def _oil_of_lines(laws: ContactLaws, temperature: float, fastest: float = 0.0) -> OilOfLines:
+    """Films of the law in force."""
+    from mbs.scene.tapered.films import OilOfLines
+
+    return OilOfLines(
+        "formula" if laws.chosen == "formula" else "table",
+        laws.lubricant,
+        temperature,
+        fastest,
+        laws.asked_supply or laws.scene.supply or FLOODED,
+        laws.surface or laws.scene.surface or SMOOTH,
+    )

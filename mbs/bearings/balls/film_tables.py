@@ -1,0 +1,303 @@
+"""Laws of two contacts over the speed, for compiled runs: at nodes, on one grid of approaches, blended between nodes.
+
+Nodes lie evenly in the logarithm of the speed. The laws are `mbs.bearings.balls.normal_law.NormalLaw`: those of a ball
+in its grooves, and of lines in slices.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.compiled import njit
+from ehdmaps.errors import EhdmapsError
+from mbs.bearings.balls.ball_memory import SPRINGS, springs_at
+from mbs.bearings.balls.normal_law import NormalLaw, contact
+from mbs.bearings.balls.response import ContactResponse
+from mbs.bearings.speed_tables import Made, Prepared, SpeedWindow
+
+STEP = 0.04
+"""Distance of the nodes in ln of the speed: blends are wrong by less than 1e-4 of the load, see the tests."""
+
+SLOTS = 32
+"""How many laws are held."""
+
+_LOWEST = 1.0
+"""Speed at which nodes change from even in its logarithm to even in the speed [rad/s]; no film is read that low."""
+
+_WIDENED = 3.0
+"""Factor by which a grid goes beyond the speeds for which it is made."""
+
+
+_LAW_NUMBERS = len(NormalLaw._fields) - 1
+
+
+class FilmTables(NamedTuple):
+    """Laws at nodes over the speed, and those in use; a film is that of both contacts of bearings that are alike.
+
+    Attributes
+    ----------
+    tables, numbers : array (films, slots, 2, rows, 4), (films, slots, 2, 10)
+        Numbers of `NormalLaw` of the inner and the outer contact; without rows for dry contacts.
+    most, lengths : array (films, slots)
+        Highest load for which the law was made [N]; rows that it has, none where it is dry.
+    table, current, highest, length : array (films, 2, rows, 4), (films, 2, 10), (films,), (films,)
+        The laws in use.
+    in_use : array (films, 2)
+        Node and weight of those.
+    springs : array (films, slots, 2, rows, SPRINGS + 1)
+        Springs of films with memory at the rows of the tables, see `mbs.bearings.balls.ball_memory`; else no rows.
+    """
+
+    tables: FloatArray
+    numbers: FloatArray
+    most: FloatArray
+    lengths: IntArray
+    table: FloatArray
+    current: FloatArray
+    highest: FloatArray
+    length: IntArray
+    in_use: FloatArray
+    springs: FloatArray
+
+
+class PairLaw(Protocol):
+    """Laws of the inner and the outer contact at one speed, such as `mbs.bearings.balls.laws.BallLaw`."""
+
+    @property
+    def inner(self) -> NormalLaw:
+        """Law of the inner contact."""
+
+    @property
+    def outer(self) -> NormalLaw:
+        """Law of the outer contact."""
+
+    @property
+    def loads(self) -> tuple[float, float]:
+        """Lowest and highest load for which both were made [N]."""
+
+    @property
+    def responses(self) -> tuple[ContactResponse, ...]:
+        """Films of both contacts over frequency; none where they are not known."""
+
+    @property
+    def dry(self) -> bool:
+        """Sign of contacts without films."""
+
+
+class WithFilms(Protocol):
+    """Bearing whose laws depend on the speed of its system."""
+
+    @property
+    def varies(self) -> bool:
+        """Sign of films that change with the speed."""
+
+    @property
+    def relaxes(self) -> bool:
+        """Sign of films with memory."""
+
+    def law_at(self, speed: float) -> PairLaw:
+        """Law at a speed of the system [rad/s]."""
+
+
+@njit(error_model="numpy", _nrt=False, forceinline=True)
+def blend(films: FilmTables, film: int, node: int, weight: float) -> None:
+    """Bring the laws in use to a place between two nodes.
+
+    Parameters
+    ----------
+    films : FilmTables
+        The laws; those in use are written.
+    film, node : int
+        Which film, and the slot of the node below the speed.
+    weight : float
+        Part of the way to the next node.
+    """
+    if films.in_use[film, 0] == node and films.in_use[film, 1] == weight:
+        return
+    films.in_use[film, 0], films.in_use[film, 1] = node, weight
+    other = (node + 1) % films.numbers.shape[1] if weight > 0.0 else node
+    low, high = films.numbers[film, node].reshape(-1), films.numbers[film, other].reshape(-1)
+    current = films.current[film].reshape(-1)
+    for i in range(current.size):
+        current[i] = low[i] + weight * (high[i] - low[i])
+    films.highest[film] = min(films.most[film, node], films.most[film, other])
+    films.length[film] = films.lengths[film, node]
+    if films.length[film] == 0:
+        return
+    low, high = films.tables[film, node].reshape(-1), films.tables[film, other].reshape(-1)
+    table = films.table[film].reshape(-1)
+    for i in range(table.size):
+        table[i] = low[i] + weight * (high[i] - low[i])
+
+
+@njit(error_model="numpy", _nrt=False, forceinline=True)
+def law_of(films: FilmTables, film: int, side: int) -> NormalLaw:
+    """The law in use of a side, inner or outer.
+
+    Parameters
+    ----------
+    films : FilmTables
+        The laws.
+    film, side : int
+        Which film, and which contact.
+    """
+    n = films.current[film, side]
+    table = films.table[film, side, : films.length[film]]
+    return NormalLaw(n[0], n[1], n[2], n[3], n[4], n[5], n[6], 0.0, 0.0, 0.0, table)
+
+
+@njit(error_model="numpy", _nrt=False)
+def on_grid(law: NormalLaw, grid: NormalLaw, out: FloatArray) -> None:
+    """Write the table of a law on another grid of approaches.
+
+    Parameters
+    ----------
+    law : NormalLaw
+        Law with a film.
+    grid : NormalLaw
+        Grid: its centre, scale, first node and step.
+    out : array (nodes, 4)
+        Table, written.
+    """
+    rows = out.shape[0]
+    for i in range(rows):
+        z = grid.first + grid.step * i
+        load, k, c = contact(law, grid.centre + grid.scale * math.sinh(z))
+        out[i, 0] = 2.0 / 3.0 * math.log(load / law.coefficient)
+        out[i, 1] = 2.0 / 3.0 * k / load * grid.scale * math.cosh(z) * grid.step
+        out[i, 2] = math.log(c)
+    for i in range(rows):
+        low, high = max(i - 1, 0), min(i + 1, rows - 1)
+        out[i, 3] = (out[high, 2] - out[low, 2]) / (high - low)
+
+
+def _sides(law: PairLaw) -> tuple[NormalLaw, NormalLaw]:
+    """Inner and outer."""
+    return law.inner, law.outer
+
+
+class FilmLaws:
+    """Laws of one film at the nodes of a window of speeds.
+
+    Parameters
+    ----------
+    element : WithFilms
+        One of the bearings with the film.
+    rows : int
+        Rows of the tables.
+    """
+
+    def __init__(self, element: WithFilms, rows: int) -> None:
+        self._element, self._rows = element, rows
+        self.varies = element.varies
+        self._window = SpeedWindow(STEP, SLOTS, _LOWEST, self.varies)
+        self._grids: tuple[NormalLaw, ...] = ()
+        self._reach = math.inf, 0.0
+
+    def law(self, speed: float) -> PairLaw:
+        """The law at a speed [rad/s]."""
+        return self._element.law_at(speed)
+
+    def begin(self, speeds: FloatArray) -> None:
+        """Choose the grid of approaches for some speeds and those near: that of the laws at both ends.
+
+        Parameters
+        ----------
+        speeds : array (n,)
+            Speeds [rad/s].
+        """
+        low, high = float(np.abs(speeds).min()), float(np.abs(speeds).max())
+        if not self.varies or low == high or (self._reach[0] <= low and high <= self._reach[1]):
+            return
+        for widened in (_WIDENED, 1.0):  # speeds to come need not have films
+            reach = low / widened, high * widened
+            try:
+                ends = self.law(max(reach[0], _LOWEST * STEP)), self.law(reach[1])
+            except EhdmapsError:
+                continue  # the step that asks for it will be told why
+            if not (ends[0].dry or ends[1].dry):
+                pairs = zip(*map(_sides, ends), strict=True)
+                self._grids = tuple(_over(slow, fast, self._rows) for slow, fast in pairs)
+                self._reach, self._window = reach, SpeedWindow(STEP, SLOTS, _LOWEST)
+                return
+
+    def places(self, speeds: FloatArray) -> tuple[IntArray, FloatArray]:
+        """Nodes and weights of speeds [rad/s]."""
+        return self._window.places(speeds)
+
+    def prepare(
+        self, films: FilmTables, film: int, speeds: FloatArray, nodes: IntArray, weights: FloatArray
+    ) -> Prepared:
+        """Make the laws for the first of some speeds, see `SpeedWindow.prepare`."""
+
+        def make(slot: int, speed: float, alone: bool) -> Made:
+            return self._made(films, film, slot, speed, alone)
+
+        return self._window.prepare(speeds, nodes, weights, make)
+
+    def _made(self, films: FilmTables, film: int, slot: int, speed: float, alone: bool) -> Made:
+        """Write the laws of a node."""
+        try:
+            law = self.law(speed)
+        except EhdmapsError:
+            return Made(sound=False)
+        films.most[film, slot], films.lengths[film, slot] = law.loads[1], 0 if law.dry else self._rows
+        for side, one in enumerate(_sides(law)):
+            numbers, table = films.numbers[film, slot, side], films.tables[film, slot, side]
+            if alone or law.dry:
+                numbers[:] = one[:_LAW_NUMBERS]
+                table[: one.table.shape[0]] = one.table
+            elif self._grids:
+                numbers[:] = self._grids[side][:_LAW_NUMBERS]
+                on_grid(one, self._grids[side], table)
+            else:
+                return Made(sound=False)
+            if self._element.relaxes and not law.dry:
+                load, c = one.coefficient * np.exp(1.5 * table[:, 0]), np.exp(table[:, 2])
+                films.springs[film, slot, side] = springs_at(law.responses[side], load, c)
+        return Made(sound=True, kind=int(law.dry))
+
+
+def _over(slow: NormalLaw, fast: NormalLaw, rows: int) -> NormalLaw:
+    """Grid of approaches that holds those of two laws."""
+    ends = []
+    for law in (slow, fast):
+        z = law.first + law.step * np.array([0.0, law.table.shape[0] - 1.0])
+        ends.append(law.centre + law.scale * np.sinh(z))
+    centre, scale = 0.5 * (slow.centre + fast.centre), math.sqrt(slow.scale * fast.scale)
+    first = math.asinh((min(end[0] for end in ends) - centre) / scale)
+    last = math.asinh((max(end[1] for end in ends) - centre) / scale)
+    return fast._replace(centre=centre, scale=scale, first=first, step=(last - first) / (rows - 1))
+
+
+def film_tables(laws: Sequence[FilmLaws], rows: int, relaxes: bool) -> FilmTables:
+    """Room for the laws of some films.
+
+    Parameters
+    ----------
+    laws : sequence of FilmLaws
+        The films.
+    rows : int
+        Rows of the tables, where any of them varies.
+    relaxes : bool
+        Whether any of them has a memory.
+    """
+    count = len(laws)
+    rows, slots = (rows, SLOTS) if any(one.varies for one in laws) else (0, 1)
+    return FilmTables(
+        tables=np.zeros((count, slots, 2, rows, 4)),
+        numbers=np.zeros((count, slots, 2, _LAW_NUMBERS)),
+        most=np.zeros((count, slots)),
+        lengths=np.zeros((count, slots), dtype=np.int64),
+        table=np.zeros((count, 2, rows, 4)),
+        current=np.zeros((count, 2, _LAW_NUMBERS)),
+        highest=np.zeros(count),
+        length=np.zeros(count, dtype=np.int64),
+        in_use=np.full((count, 2), -1.0),
+        springs=np.zeros((count, slots, 2, rows if relaxes else 0, SPRINGS + 1)),
+    )

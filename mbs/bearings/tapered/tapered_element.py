@@ -1,0 +1,208 @@
+"""A bearing of tapered rollers, or of rollers between ribs, in a machine: quasi-static, with the films of its speed.
+
+Films have the stiffness and damping of slow motion at any frequency.
+"""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, ClassVar
+
+import numpy as np
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import AnalysisError, EhdmapsError, InputError
+from ehdmaps.units import RPM
+from mbs.bearings.balls.ball_speed import turned_by
+from mbs.bearings.tapered.line_film import DRY_LINES, LineFilms
+from mbs.bearings.tapered.tapered_bearing import TaperedForce, TaperedLoads
+from mbs.bearings.tapered.tapered_energy import TaperedStates, dry_energy, place_work
+from mbs.model.elements import Excitation, Forces, OnRings, Operation, Port, Powers
+
+HARMONICS = 3
+"""Multiples of the passing frequency of the rollers that are worth following."""
+
+MOST_SPEEDS = 64
+"""Speeds whose films are kept."""
+
+
+@dataclass(frozen=True, eq=False)
+class TaperedElement(OnRings):
+    """A tapered roller bearing between an inner and an outer ring, or one of rollers between ribs.
+
+    Attributes
+    ----------
+    name : str
+        Name for messages and results.
+    inner, outer : str
+        Places in the plane of the middles of the rollers.
+    force : TaperedForce
+        The force, dry.
+    inner_spin, outer_spin : float
+        Speeds of the rings as multiples of the system's.
+    start_angle : float
+        Angle of the first roller from y at the beginning [rad].
+    axial_offset : float
+        Way of the inner ring along x against the outer one where both places have not moved [m]: preload by
+        displacement, or play.
+    films : callable or None
+        Law of both lines at two speeds of the rings [rad/s]; None for dry lines. Bearings whose `films` are equal share
+        them.
+    """
+
+    locating: ClassVar[bool] = True
+    name: str
+    inner: str
+    outer: str
+    force: TaperedForce
+    inner_spin: float = 1.0
+    outer_spin: float = 0.0
+    start_angle: float = 0.0
+    axial_offset: float = 0.0
+    films: Callable[[float, float], LineFilms] | None = None
+    _made: OrderedDict[float, TaperedForce] = field(default_factory=OrderedDict, init=False, repr=False)
+
+    @property
+    def film_key(self) -> tuple[object, ...]:
+        """Key that bearings with the same law at all speeds have in common."""
+        law = (None,) if self.films is None else (self.films,)
+        return (*law, self.inner_spin, self.outer_spin)
+
+    @property
+    def varies(self) -> bool:
+        """Tell whether it has films that change with the speed."""
+        return self.films is not None and self.inner_spin != self.outer_spin
+
+    @property
+    def relaxes(self) -> bool:
+        """False: films are those of slow motion at any frequency."""
+        return False
+
+    def law_at(self, speed: float) -> LineFilms:
+        """The law of both lines at a speed of the system [rad/s]; dry where nothing rolls.
+
+        Raises
+        ------
+        AnalysisError
+            Where there are no films at that speed.
+        """
+        if self.films is None or abs(speed) * abs(self.inner_spin - self.outer_spin) == 0.0:
+            return DRY_LINES
+        try:
+            return self.films(self.inner_spin * abs(speed), self.outer_spin * abs(speed))
+        except EhdmapsError as error:
+            raise AnalysisError(
+                f"bearing {self.name!r}: no films at {RPM.text(abs(speed))} of the system ({error}); take another oil, "
+                "temperature or speed, or dry contacts: --law 'hertz:1.25e-5 s'"
+            ) from error
+
+    def force_at(self, operation: Operation) -> TaperedForce:
+        """The force with the films of a speed; errors as of `law_at`."""
+        speed = abs(operation.speed)
+        if self.films is None:
+            return self.force
+        if speed not in self._made:
+            self._made[speed] = self.force.with_films(self.law_at(speed))
+            if len(self._made) > MOST_SPEEDS:
+                self._made.popitem(last=False)
+        return self._made[speed]
+
+    @property
+    def ports(self) -> tuple[Port, ...]:
+        """Displacement of the inner ring against the outer one."""
+        return (Port(self.inner, self.outer),)
+
+    @property
+    def excitation(self) -> Excitation | None:
+        """The passing of the rollers; None for a cage that stands."""
+        order = self.force.geometry.rollers * abs(self.cage_turn)
+        return Excitation(order, HARMONICS, rank=1) if order > 0.0 else None
+
+    @cached_property
+    def cage_turn(self) -> float:
+        """Speed of the cage as a multiple of the system's."""
+        return self.force.geometry.cage_speed(self.inner_spin, self.outer_spin)
+
+    def conditions(self, operation: Operation) -> dict[str, float]:
+        """Angle of the cage and speeds, by the names that the force takes."""
+        return {
+            "cage_angle": self.start_angle + self.cage_turn * operation.angle,
+            "inner_speed": self.inner_spin * operation.speed,
+            "outer_speed": self.outer_spin * operation.speed,
+        }
+
+    def pose(self, displacement: FloatArray) -> FloatArray:
+        """Pose of the inner ring in the outer one by their displacement (6,)."""
+        pose = displacement.copy()
+        pose[0] += self.axial_offset
+        return pose
+
+    def rollers(self, displacement: FloatArray, operation: Operation) -> TaperedLoads:
+        """Loads of all rollers at rest at the displacement (6,) of the inner ring against the outer one."""
+        return self.force_at(operation).rollers(self.pose(displacement), **self.conditions(operation))
+
+    def advance(
+        self, states: Any, displacement: FloatArray, velocity: FloatArray, operation: Operation
+    ) -> tuple[Forces, Any]:
+        """The same at the end of a step in time, see `Element.advance`.
+
+        Parameters
+        ----------
+        states : TaperedStates or None
+            States after the last step.
+        displacement, velocity, operation
+            What `Element.advance` takes.
+
+        Raises
+        ------
+        AnalysisError
+            Where the rings have come apart.
+        """
+        try:
+            answer = self.evaluate(displacement, velocity, operation)
+        except InputError as error:
+            raise AnalysisError(
+                f"bearing {self.name!r}: its rings are apart at {operation.time:.6g} s ({error}): preload is lost; "
+                "take more preload, or smaller loads"
+            ) from error
+        rollers = self.force_at(operation).last_rollers
+        step = 0.0 if states is None else operation.time - states.time
+        last = np.zeros((rollers.shape[0], 4)) if states is None else states.last.copy()
+        conditions = self.conditions(operation)
+        loads = self.force.speed_loads(conditions["inner_speed"], conditions["outer_speed"])
+        work = place_work(rollers, loads, last)
+        slowed = answer.damping @ velocity
+        turning = turned_by(self.pose(displacement), answer.force + slowed) * self.cage_turn * operation.speed
+        return answer, TaperedStates(
+            time=operation.time,
+            last=last,
+            dissipated=float(velocity @ slowed),
+            driven=turning + (work / step if step > 0.0 else 0.0),
+            stored=dry_energy(self.force.laws, self.force.shape, rollers),
+        )
+
+    def powers(
+        self, states: Any, force: FloatArray, displacement: FloatArray, velocity: FloatArray, operation: Operation
+    ) -> Powers | None:
+        """Power that contacts dissipate, and that cage and speed bring in; None with films, see `Element.powers`."""
+        return None if self.films is not None else Powers(states.dissipated, states.driven)
+
+    def stored(self, states: Any, displacement: FloatArray, operation: Operation) -> float | None:
+        """Energy of its dry contacts [J]; None with films, see `Element.stored`."""
+        return None if self.films is not None else float(states.stored)
+
+    def evaluate(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> Forces:
+        """Force on the inner ring, stiffness and damping; whether loads are beyond those of the films.
+
+        Parameters
+        ----------
+        displacement, velocity, operation
+            What `Element.evaluate` takes.
+        """
+        force = self.force_at(operation)
+        answer = force(self.pose(displacement), velocity, **self.conditions(operation))
+        outside = self.films is not None and bool(force.last_rollers[:, 3:5].max() > force.films.loads[1])
+        return Forces(*answer, outside)

@@ -1,0 +1,107 @@
+"""Films of tapered rollers, and of rollers between ribs: laws of lines at the middle of a roller, over the speed.
+
+They are those of a cylindrical roller bearing with the same contacts, `mbs.bearings.tapered.line_film.cylinder_of`:
+from the film table, or of the formula.
+"""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.oil_supply import FLOODED, OilSupply
+from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
+from ehdmaps.physics.surface import SMOOTH, Surface
+from mbs.bearings.tapered.line_film import LOADS, LineFilms, cylinder_of, line_films
+
+if TYPE_CHECKING:
+    from ehdmaps.maps.law import ContactLaw
+
+_SPEEDS, _BEYOND = (0.05, 10.0), 1.05
+"""Entrainment speeds of the laws [m/s], and how far they go beyond what is asked for."""
+
+
+@dataclass(frozen=True)
+class OilOfLines:
+    """Films that lines of a bearing are to have.
+
+    Attributes
+    ----------
+    law : {"table", "formula"}
+        Source of the films: the film table, or the formula of Moes.
+    oil : Lubricant
+        The oil.
+    temperature : float
+        Temperature of the raceways [K].
+    fastest : float
+        Highest entrainment speed that is asked for [m/s].
+    supply, surface : OilSupply, Surface
+        Oil supply and surfaces of the contacts.
+    """
+
+    law: Literal["table", "formula"]
+    oil: Lubricant
+    temperature: float
+    fastest: float = 0.0
+    supply: OilSupply = FLOODED
+    surface: Surface = SMOOTH
+
+
+@dataclass(frozen=True)
+class FilmsOfLines:
+    """Laws of both lines of a roller by the speeds of the rings.
+
+    Attributes
+    ----------
+    geometry : TaperedGeometry
+        The bearing.
+    films : OilOfLines
+        What films it has.
+    """
+
+    geometry: TaperedGeometry
+    films: OilOfLines
+
+    def __call__(self, inner_speed: float, outer_speed: float) -> LineFilms:
+        """Laws at speeds of the inner and the outer ring [rad/s]."""
+        u = abs(self.geometry.entrainment_speed(inner_speed, outer_speed))
+        return _films_at(cylinder_of(self.geometry), self.films, u)
+
+
+@functools.lru_cache(maxsize=512)
+def _films_at(cylinder: BearingGeometry, films: OilOfLines, u: float) -> LineFilms:
+    """Laws at an entrainment speed [m/s]; alike bearings have them made once."""
+    return line_films(_laws(cylinder, films), cylinder.roller_length, u, films.temperature)
+
+
+@functools.lru_cache(maxsize=16)
+def _laws(cylinder: BearingGeometry, films: OilOfLines) -> tuple[ContactLaw, ContactLaw]:
+    """Laws of the inner and the outer contact, held where the table ends."""
+    speeds = _SPEEDS[0], max(_SPEEDS[1], _BEYOND * films.fastest)
+    if films.law == "formula":
+        from mbs.bearings import laws
+        from mbs.bearings.bearing import Bearing
+
+        inner, outer = (
+            laws.formula(
+                Bearing(cylinder),
+                films.oil,
+                load=LOADS,
+                entrainment_speed=speeds,
+                kind=kind,
+                outside="clamp",
+                supply=films.supply,
+                surface=films.surface,
+            )
+            for kind in ("inner", "outer")
+        )
+        return inner, outer
+    from ehdmaps.jobs.make.table_law import TEMPERATURES, table_map
+
+    temperatures = min(TEMPERATURES[0], films.temperature), max(TEMPERATURES[1], films.temperature)
+    emap = table_map(cylinder, films.oil, LOADS, speeds, temperatures)
+    inner, outer = (emap.law(kind, "clamp", supply=films.supply, surface=films.surface) for kind in ("inner", "outer"))
+    return inner, outer
