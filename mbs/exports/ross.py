@@ -1,6 +1,7 @@
 """Target `ross`: a bearing for ROSS, the rotordynamics library, as the file that `BearingElement.load` reads.
 
-In ROSS x and y are radial and z is axial. ROSS 2 calls the axis of spin speeds `frequency`; ROSS 3 has both axes,
+In ROSS x and y are radial and z is axial. ROSS 2 has one axis, `frequency`, for spin speeds or for
+frequencies; ROSS 3 has both axes,
 `speed` and `frequency`, and tables over both. Source: documentation of ross-rotordynamics 2.3 and 3.1, class
 BearingElement.
 """
@@ -35,6 +36,11 @@ _NOTES = (
     "read by: ross.BearingElement.load(FILE)",
 )
 
+_AT_FREQUENCY = (
+    "tables are over the frequency of the oscillation, at one speed: rotor.A(SPEED, FREQUENCY) reads them there, other "
+    "analyses of ROSS 2 at the frequency of turning"
+)
+
 _VERSIONS = ("2", "3")
 
 
@@ -52,15 +58,17 @@ def _text(bearing: LinearBearing, header: tuple[str, ...], arguments: argparse.N
     node = arguments.node
     if not (node.isascii() and node.isdigit() and len(node) < 7):
         problems.append(f"--node: got {node!r:.60}; allowed: a whole number from 0 to 999999")
-    if arguments.ross == "2" and bearing.frequencies.size > 1:
+    if arguments.ross == "2" and bearing.frequencies.size > 1 and bearing.speeds.size > 1:
         problems.append(
-            f"--frequency: got {bearing.frequencies.size} values; ROSS 2 takes one; allowed: one, or --ross 3"
+            f"--frequency: got {bearing.frequencies.size} values for {bearing.speeds.size} speeds; ROSS 2 takes one of "
+            "both; allowed: one frequency, one speed, or --ross 3"
         )
     if problems:
         raise InputError(problems)
     name = re.sub(r"[^A-Za-z0-9]+", "_", bearing.name).strip("_") or "bearing"
     axes = _axes(bearing, arguments.ross)
-    lines = [f"# {line}" for line in (*header, *_NOTES, *bearing.left_out(axial_terms=True))]
+    notes = (*_NOTES, _AT_FREQUENCY) if arguments.ross == "2" and bearing.frequencies.size > 1 else _NOTES
+    lines = [f"# {line}" for line in (*header, *notes, *bearing.left_out(axial_terms=True))]
     lines += ["", f"[BearingElement_{name}]", f"n = {int(node)}", f'tag = "{name} at {int(node)}"', "scale_factor = 1"]
     lines += [f"{key} = {_array(values)}" for key, values in axes.items()]
     shape = [axis.size for axis in axes.values()]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import tomllib
 from unittest import mock
 
 import numpy as np
@@ -15,12 +16,14 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.ball_element import MachineBalls
+from mbs.bearings.balls.ball_point import ball_point
 from mbs.bearings.balls.films import ball_films
 from mbs.bearings.balls.laws import dry_law
 from mbs.cli import main
 from mbs.model.elements import Operation
 from tests.cases.ball_runs import driven
 from tests.cases.fmu import Unit
+from tests.unit.test_ball_relaxing import by_hand
 
 SPEED, WARM, STEP = 3000.0 * math.pi / 30.0, 333.15, 5e-6
 FORCES = ("force.x", "force.y", "force.z", "moment.y", "moment.z")
@@ -131,6 +134,31 @@ def test_states_are_kept_and_rest_is_that_of_the_export(units, unpacked):
     model.freeInstance()
 
 
+@pytest.mark.parametrize("rpm", [("3000",), ("3000", "6000", "2")])
+def test_file_for_ross_is_contacts_in_series(tmp_path, rpm):
+    """K and C of one speed over frequency, and of several at their turning, against complex stiffness by hand: its
+    traction is not symmetrical, which moves K by less than 1e-5."""
+    output, rows = tmp_path / "b.toml", [0, 11, 34] if len(rpm) == 1 else [0, 1]
+    words = f"bearing 6208 --load 1kN --axial 2kN --temperature 60degC --law table --films memory -o {output} --speed"
+    assert main([*words.split(), *(f"{value} rpm" if float(value) > 10.0 else value for value in rpm)]) == 0
+    (written,) = tomllib.loads(output.read_text()).values()
+    geometry = ball_estimate("6208")
+    for row in rows:
+        at = written["frequency"][row]
+        speed = at if len(rpm) > 1 else SPEED
+        u = geometry.entrainment_speed(speed)
+        law = ball_films(geometry, Lubricant.named("FVA3"), u, WARM, solves=False).law
+        point = ball_point(BallForce(geometry, law), (2000.0, 1000.0, 0.0), speed)
+        conditions = {"inner_speed": speed, "cage_speed": point.cage_speed}
+        balls = point.force.balls(point.pose, **conditions)
+        traction = point.force.kernel_arguments(**conditions)[0][2]
+        z = by_hand(point.force, balls, traction, 1j * max(at, 1e-3))
+        for term, axis in (("xx", 1), ("yy", 2), ("zz", 0)):
+            found = written[f"k{term}"][row] + 1j * max(at, 1e-3) * written[f"c{term}"][row]
+            assert abs(found / z[axis, axis] - 1.0) < 1e-5
+            assert found.imag == pytest.approx(z[axis, axis].imag, rel=1e-3)
+
+
 @pytest.mark.parametrize(("law", "output"), [("hertz", "x.c"), ("table", "x.nc")])
 def test_memory_is_for_units_with_films(capsys, law, output):
     words = (
@@ -148,4 +176,4 @@ def test_memory_is_for_units_with_films(capsys, law, output):
         output,
     )
     assert main(list(words)) == 2
-    assert "allowed: with --law table and -o NAME.c, NAME.fmu" in capsys.readouterr().err
+    assert "allowed: with --law table and -o NAME.c, NAME.fmu, NAME.toml" in capsys.readouterr().err

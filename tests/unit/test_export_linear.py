@@ -406,7 +406,11 @@ def test_ansys_has_its_columns(path, tmp_path):
     [
         ("ross", [], "--speed: it is missing"),
         ("ross", ["--speed", "400 rpm", "--node", "-1"], "--node: got '-1'"),
-        ("ross", ["--speed", "400 rpm", "--frequency", "1 Hz", "2 Hz", "2"], "ROSS 2 takes one"),
+        (
+            "ross",
+            ["--speed", "400 rpm", "500 rpm", "2", "--frequency", "1 Hz", "2 Hz", "2"],
+            "ROSS 2 takes one of both",
+        ),
         ("ross", ["--speed", "60000 rpm"], "outside of the map"),
         ("ross", ["--speed", "400 rpm", "--films", "none"], "--films: got 'none'"),
         ("ross", ["--speed", "400 rpm", "--start-angle", "5 mm"], "--start-angle"),

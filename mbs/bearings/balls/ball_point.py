@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ehdmaps.arrays import FloatArray
+from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.film_formulas import hamrock_dowson_central, hamrock_dowson_minimum
@@ -234,6 +234,26 @@ def ball_point(
             )
         ),
     )
+
+
+def ball_dynamic_stiffness(point: BallPoint, omega: FloatArray) -> ComplexArray:
+    """Dynamic stiffness K + i omega C of films with memory, shape (n, 6, 6); that of slow motion without responses.
+
+    Parameters
+    ----------
+    point : BallPoint
+        The equilibrium.
+    omega : array (n,)
+        Circular frequencies of small oscillations [rad/s].
+    """
+    from mbs.bearings.balls.relaxing import ball_relaxation
+
+    force, s = point.force, np.asarray(1j * omega, dtype=np.complex128)
+    speeds = {"inner_speed": point.inner_speed, "outer_speed": point.outer_speed, "cage_speed": point.cage_speed}
+    balls = force.balls(point.pose, **speeds)
+    numbers, _ = force.kernel_arguments(**speeds)
+    relaxation = ball_relaxation(force.law, force.shape, force.last_balls, float(numbers[2]), balls.angle)
+    return np.asarray(point.stiffness + s[:, None, None] * point.damping + relaxation.more(s))
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,11 +6,21 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ehdmaps.outputs import Output
 from ehdmaps.units import TEMPERATURE
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.laws import BallLaw
-from mbs.commands.one_bearing.linear_files import around, ending_of, header_of, is_linear, linear_outputs, write_linear
+from mbs.commands.one_bearing.linear_files import (
+    Oscillating,
+    around,
+    ending_of,
+    header_of,
+    is_linear,
+    linear_outputs,
+    write_linear,
+)
 from mbs.output.ball_table import BallDescription, ball_heading
 
 if TYPE_CHECKING:
@@ -19,6 +29,12 @@ if TYPE_CHECKING:
 
 SOURCE, UNIT = ".c", ".fmu"
 """Endings of files that hold the bearing itself."""
+
+ROSS = ".toml"
+"""Ending of files that may hold K and C of films with memory."""
+
+FREQUENCIES = np.array([0.0, *np.geomspace(10.0, 2e4, 34)])
+"""Frequencies of films with memory at one speed [Hz], ten in a decade: K and C are cubics between them in ROSS."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +84,7 @@ def has_memory(path: str | None) -> bool:
     path : str or None
         Path of -o.
     """
-    return ending_of(path) in (SOURCE, UNIT)
+    return ending_of(path) in (ROSS, SOURCE, UNIT)
 
 
 def ball_outputs(path: str | None) -> tuple[Output, ...]:
@@ -110,7 +126,8 @@ def write_export(path: str, given: BallExport) -> str:
     """
     heading = ball_heading(given.description, given.points[0])
     if is_linear(path):
-        return write_linear(path, given.force.geometry.name, heading, given.points, given.outer_speed)
+        oscillating = _oscillating(given) if given.memory else None
+        return write_linear(path, given.force.geometry.name, heading, given.points, given.outer_speed, oscillating)
     laws, words = _speed_laws(given)
     header = (
         *header_of(heading),
@@ -131,6 +148,23 @@ def write_export(path: str, given: BallExport) -> str:
     return write_ball_unit(
         path, given.force, laws, start, (*header, *around(given.points), "start: the first of the speeds")
     )
+
+
+def _oscillating(given: BallExport) -> Oscillating:
+    """K and C of films with memory: of one speed over frequency, of several at the frequency of turning of each."""
+    from mbs.bearings.balls.ball_point import ball_dynamic_stiffness
+
+    one = len(given.points) == 1
+    found = []
+    for point in given.points:
+        omega = 2.0 * np.pi * FREQUENCIES if one else np.array([abs(point.inner_speed)])
+        z = ball_dynamic_stiffness(point, omega)
+        rate = z.imag / np.where(omega > 0.0, omega, 1.0)[:, None, None]
+        found.append([z.real, np.where(omega[:, None, None] > 0.0, rate, point.damping)])
+    if one:
+        return Oscillating("of films with memory over the frequency, 0: slow motion", FREQUENCIES, np.array(found))
+    words = "of films with memory at the frequency of turning of the inner ring: of unbalances"
+    return Oscillating(words, np.zeros(1), np.array(found))
 
 
 def _speed_laws(given: BallExport) -> tuple[SpeedLaws, str]:

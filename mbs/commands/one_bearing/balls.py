@@ -113,7 +113,8 @@ def read_balls(arguments: argparse.Namespace) -> BallRequest:
     more = f", {FILMS}, {TABLE}; maps are of line contacts"
     if "films" in chosen and not (films and has_memory(arguments.output)):
         problems.append(
-            f"--films: got {chosen['films']!r} for a ball bearing; allowed: with --law {TABLE} and -o NAME.c, NAME.fmu"
+            f"--films: got {chosen['films']!r} for a ball bearing; allowed: with --law {TABLE} and -o NAME.c, "
+            "NAME.fmu, NAME.toml"
         )
     damper = Damper() if films else read_damper(chosen.get("law"), "ball bearing", more, problems)
     temperature = float(chosen.get("temperature", CELSIUS_40))

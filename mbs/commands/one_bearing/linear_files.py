@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
@@ -132,7 +132,32 @@ def around(points: Sequence[AtLoad]) -> tuple[str, ...]:
     )
 
 
-def write_linear(path: str, name: str, heading: Sequence[str], points: Sequence[AtLoad], outer_speed: float) -> str:
+class Oscillating(NamedTuple):
+    """Stiffness and damping of points for oscillations, in place of those of slow motion.
+
+    Attributes
+    ----------
+    words : str
+        Frequencies, for people.
+    frequencies : array (m,)
+        Frequencies [Hz]; zero alone where each speed has its own.
+    matrices : array (points, 2, m, 6, 6)
+        K and C.
+    """
+
+    words: str
+    frequencies: FloatArray
+    matrices: FloatArray
+
+
+def write_linear(
+    path: str,
+    name: str,
+    heading: Sequence[str],
+    points: Sequence[AtLoad],
+    outer_speed: float,
+    oscillating: Oscillating | None = None,
+) -> str:
     """Write stiffness and damping over speed for a linear program, and return what was written in words.
 
     Parameters
@@ -147,6 +172,8 @@ def write_linear(path: str, name: str, heading: Sequence[str], points: Sequence[
         Points at the one load, over the speeds.
     outer_speed : float
         Speed of the outer ring [rad/s].
+    oscillating : Oscillating or None
+        K and C for oscillations; None for those of slow motion.
 
     Raises
     ------
@@ -157,11 +184,13 @@ def write_linear(path: str, name: str, heading: Sequence[str], points: Sequence[
 
     program = _format(path)
     load, *notes = around(points)
-    slow = "K and C of slow motion; the outer ring turns with " + RPM.text(outer_speed)
-    matrices = np.array([[point.stiffness, point.damping] for point in points])[:, None]
-    speeds = np.array([point.inner_speed for point in points])
-    bearing = LinearBearing(name, speeds, np.zeros(1), matrices[:, :, 0], matrices[:, :, 1])
-    write_text(path, program.plain(bearing, (*header_of(heading), load, slow, *notes)), program.kind)
+    if oscillating is None:
+        matrices = np.array([[point.stiffness, point.damping] for point in points])[:, :, None]
+        oscillating = Oscillating("of slow motion", np.zeros(1), matrices)
+    motion = f"K and C {oscillating.words}; the outer ring turns with {RPM.text(outer_speed)}"
+    speeds, matrices = np.array([point.inner_speed for point in points]), oscillating.matrices
+    bearing = LinearBearing(name, speeds, oscillating.frequencies, matrices[:, 0], matrices[:, 1])
+    write_text(path, program.plain(bearing, (*header_of(heading), load, motion, *notes)), program.kind)
     return f"{path}: written"
 
 
