@@ -54,7 +54,7 @@ class TestRoss:
             whole[0, :, 0, 0] = 1e8
             elements.append(MatrixSpec(ball.name, ball.inner, whole[0], whole[1], ball.outer, speeds))
         bodies = [
-            dataclasses.replace(body, cutoff=40e3, largest_element=0.01, damping_ratio=0.0)
+            dataclasses.replace(body, cutoff=50e3, largest_element=0.01, damping_ratio=0.0)
             if isinstance(body, ShaftSpec)
             else body
             for body in scene.bodies
@@ -62,14 +62,13 @@ class TestRoss:
         return assemble(dataclasses.replace(scene, elements=elements, bodies=bodies), "hertz")
 
     def test_eigenvalues(self, on_tables):
-        """Modes above 40 kHz are left out, which is 1e-5 at 750 Hz, and 1.6e-4 at the last two, of 2.8 kHz."""
+        """To 2.8 kHz. Modes above 50 kHz are left out; above 40 kHz it would be 1.6e-4 of the last two."""
         for speed, pairs in zip(ROSS["speeds"], ROSS["ross"]["eigenvalues"], strict=True):
             wanted = np.array(pairs) @ np.array([1, 1j])
             found = modes(equilibrium(on_tables.system, Operation(speed))).eigenvalues
             nearest = found[np.argmin(np.abs(found[:, None] - wanted), axis=0)]
             assert len(set(nearest.tolist())) == wanted.size
-            assert np.max(np.abs(nearest / wanted - 1.0)[:4]) < 5e-5
-            assert np.max(np.abs(nearest / wanted - 1.0)) < 2e-4
+            assert np.max(np.abs(nearest / wanted - 1.0)) < 4e-5
 
     def test_unbalance(self, on_tables):
         (response,) = order_responses(lambda speed: on_tables.system, np.array(ROSS["speeds"]))
