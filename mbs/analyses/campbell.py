@@ -7,7 +7,6 @@ at rest, in the mean with their stiffness (of damping: with their damping) as we
 from __future__ import annotations
 
 import dataclasses
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
@@ -16,6 +15,7 @@ import numpy as np
 import xarray as xr
 
 from ehdmaps.arrays import BoolArray, FloatArray
+from ehdmaps.compiling import stopwatch
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.figures import typeset
 from ehdmaps.maps.law import ContactLaw
@@ -187,7 +187,7 @@ class LawRun:
     modes : Sweep or None
         Modes of the linear system at some speeds of the run, if they were asked for.
     seconds : float
-        How long the run took [s].
+        How long the run took, without compiling [s].
     level_error : tuple of array, shape (windows,), or None
         Band of the sum level of each sensor, either way [dB]: its largest difference in runs whose laws are wrong by
         the errors that the map states. None where no such runs were asked for, or the law states no errors.
@@ -502,9 +502,9 @@ class _Made(NamedTuple):
 
 def _one(model: Model, look: _Look, told: Callable[[int], None], with_modes: bool, check: bool = True) -> _Made:
     """Run up with one law, and check its step; all sensors of the scene are recorded."""
-    begin = time.perf_counter()
+    elapsed = stopwatch()
     record = recorded_run(model, look.course, model.scene.sensors, told, marks=check)
-    seconds = time.perf_counter() - begin
+    seconds = elapsed()
     checked = step_check(model, look.course, record, look.settings.highest) if check else None
     settings, orders = look.settings, [order for order, _ in look.orders]
     spectra = []

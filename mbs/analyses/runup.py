@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import math
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
@@ -12,6 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import xarray as xr
 
+from ehdmaps.compiling import stopwatch
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.units import RPM
 from mbs.analyses.case import Case, Failed, Progress, side_by_side, silent
@@ -55,7 +55,7 @@ class RunUpResult:
         Recorded forces and signals, motion of the coordinates where asked for, and how often each element was outside
         its map.
     seconds : float
-        How long the integration took [s].
+        How long the integration took, without compiling [s].
     dataset : xarray.Dataset
         What `mbs runup -o` writes.
     unsound : tuple of Unsound
@@ -157,7 +157,7 @@ def _run(model: Model, told: Callable[[int], None], settings: RunUp | None = Non
     course, model = _course(model, settings), held(model)
     start = equilibrium(model.system, Operation(course.speed.at(0.0)[0]))
     steps, sensors = course.settings.steps_per_sample, model.scene.sensors
-    begin = time.perf_counter()
+    elapsed = stopwatch()
     record = run_system(
         model.system,
         course_of(model, course),
@@ -168,7 +168,7 @@ def _run(model: Model, told: Callable[[int], None], settings: RunUp | None = Non
         progress=lambda done: told(done * steps),
         options=dataclasses.replace(_KEPT, states=states),
     )
-    seconds = time.perf_counter() - begin
+    seconds = elapsed()
     dataset = with_energy(run_dataset(model.system, record), record.energy)
     dataset = with_states(dataset, states_of(model))
     dataset = described(dataset, **law_attributes(model))

@@ -153,6 +153,7 @@ ALLOWED = {
     "mbs.scene.scene": {
         "ehdmaps.exports",
         "ehdmaps.arrays",
+        "ehdmaps.compiling",
         "ehdmaps.choices",
         "ehdmaps.provenance",
         "ehdmaps.interrupts",

@@ -73,7 +73,7 @@ def _bearings(model: Model) -> Iterator[str]:
 
 
 def _located(spec: BallSpec | TaperedSpec) -> str:
-    """What holds a ring along the axis too: the bearing, its elements, and how it stands."""
+    """Bearing that holds a ring along the axis too: its elements, and how it stands."""
     geometry, angle = spec.geometry, math.degrees(spec.geometry.contact_angle)
     estimated = " (estimated)" if geometry.estimated else ""
     if isinstance(spec, BallSpec):
