@@ -61,6 +61,9 @@ LOAD_NUMBERS = (0.3, 2000.0)
 HALF_LENGTHS = (4.0, 400.0)
 """Half of the length over half the width of the contact that is solved."""
 
+AT_THE_END = "; the dry contact reaches the end of the roller, where no film is held: take a deeper profile"
+"""Words on rollers whose profile does not relieve their ends."""
+
 _RELIEF = 0.02
 """Part of the half length before a sharp end beyond which no place is refined."""
 
@@ -268,6 +271,7 @@ def solve_roller(
         steps += taken
         if not found.status.usable:
             reason = f"Newton {found.status.word} at M = {M:.4g}, L = {L:.4g} from every start tried"
+            reason += AT_THE_END if end > (1.0 - _RELIEF) * 0.5 * roller.length else ""
             return RollerSolution(found.status, reason, *where, steps=steps, solve_seconds=seconds())
         states.append(found)
         numbers.append(numbers_beside(found, -dry.height, dry_compliance(grid, problem.load)))

@@ -119,6 +119,9 @@ def test_what_is_not_solved_says_why() -> None:
         found = solve_roller(roller, OIL, load, speed, KELVIN)
         assert not found.status.usable and words in found.reason and math.isnan(found.minimum_film)
     assert "Hertz pressure" in solve_roller(roller, OIL, 3e5, SPEED, KELVIN).reason
+    loaded = dataclasses.replace(roller, profile=CrownedProfile.of_drop(1e-6, LENGTH))
+    found = solve_roller(loaded, OIL, 3000.0, SPEED, KELVIN, Resolution((24, 12), (30, 15)))
+    assert found.status.word == "stagnated" and "the dry contact reaches the end of the roller" in found.reason
     for values, words in (((0.0, 2.0), "load: got 0.0"), ((10.0, math.nan), "entrainment_speed: got nan")):
         with pytest.raises(InputError, match=words):
             solve_roller(roller, OIL, *values, KELVIN)
