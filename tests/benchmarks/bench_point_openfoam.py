@@ -64,7 +64,7 @@ def main() -> None:
     options = parser.parse_args()
     solver = OpenFoamPointSolver(columns=options.columns, lines=options.lines)
     print(f"{options.columns} x {options.lines} columns of half of the contact, two thirds each way for the estimates")
-    print(f"{'OpenFOAM less reynolds, % (stated)':34s}{'h, nm':>8s}" + "".join(f"{x:>15s}" for x in HEADS) + "     s")
+    print(f"{'OpenFOAM less reynolds, % (stated)':34s}{'h, nm':>8s}" + "".join(f"{x:>15s}" for x in HEADS))
     groups = {
         "moderate": drawn(6, options.seed, (10.0, 300.0)),
         "light": drawn(2, options.seed + 1, (3.0, 10.0)),
@@ -86,7 +86,7 @@ def main() -> None:
                 cells += f"{100 * difference:+7.2f} ({100 * stated:4.2g}){'!' if abs(difference) > stated else ' '}"
                 row.append(abs(difference))
             apart.append(row)
-            print(f"{line:34s}{1e9 * cfd.central_film:8.1f}{cells} {cfd.solve_seconds:5.1f}", flush=True)
+            print(f"{line:34s}{1e9 * cfd.central_film:8.1f}{cells} {cfd.solve_seconds:5.1f} s", flush=True)
     print(f"{'median of all':42s}" + "".join(f"{100 * x:8.2f}       " for x in np.median(apart, axis=0)))
     print(f"{'largest':42s}" + "".join(f"{100 * x:8.2f}       " for x in np.max(apart, axis=0)))
     ladder(groups["moderate"][0])
