@@ -302,7 +302,9 @@ def _film(
 
     offset, central = results.film_offset[1], results.central_film[1]
     compliance, loss = results.compliance[1], results.loss_compliance[1]
-    central_error, offset_error = error(results.central_film), error(results.film_offset)
+    # of both films either may change its sign
+    offset_error = error(results.film_offset)
+    central_error = max(error(results.central_film), offset_error)
     # both change sign over load and oil: their differences say little alone
     compliance_error = max(1.5 * error(results.compliance), 0.5 * central_error)
     loss_error = max(2.0 * error(results.loss_compliance), 2.0 * central_error)

@@ -58,7 +58,7 @@ def of_a_bearing(count: int, seed: int) -> list[Place]:
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--seed", type=int, default=2112)
+    parser.add_argument("--seed", type=int, default=31)
     parser.add_argument("--columns", type=int, default=96)
     parser.add_argument("--lines", type=int, default=36)
     options = parser.parse_args()

@@ -58,10 +58,6 @@ Foam::pointFilm::pointFilm
             gap_[layout.cell(i, j)] = gapAt(layout.centreX(i), layout.centreY(j));
         }
     }
-    auto centre = [&](const label i)
-    {
-        return i < 0 ? 2*layout.x[0] - layout.centreX(0) : layout.centreX(i);
-    };
     for (label k = 0; k <= nx; ++k)
     {
         // columns k-2, k-1, k and the ambient oil before the first one
@@ -78,11 +74,30 @@ Foam::pointFilm::pointFilm
         }
         else
         {
-            const scalar a = centre(k - 2), b = centre(k - 1), c = centre(k), x = layout.x[k];
-            const scalar first = (x - b)*(x - c)/((a - b)*(a - c));
-            (k == 1 ? w[3] : w[0]) = first;
-            w[1] = (x - a)*(x - c)/((b - a)*(b - c));
-            w[2] = (x - a)*(x - b)/((c - a)*(c - b));
+            // of the parabola with these means over the columns
+            auto at = [&](const label m) { return m < 0 ? 2*layout.x[0] - layout.x[1] : layout.x[m]; };
+            FixedList<scalar, 4> face, slope;
+            for (label m = 0; m < 4; ++m) face[m] = at(k - 2 + m);
+            for (label m = 0; m < 4; ++m)
+            {
+                // derivative at the third face of the cubic that is 1 at one face, 0 at the others
+                scalar derivative = 0;
+                for (label left = 0; left < 4; ++left)
+                {
+                    if (left == m) continue;
+                    scalar term = 1/(face[m] - face[left]);
+                    for (label other = 0; other < 4; ++other)
+                    {
+                        if (other != m && other != left) term *= (face[2] - face[other])/(face[m] - face[other]);
+                    }
+                    derivative += term;
+                }
+                slope[m] = derivative;
+            }
+            const scalar third = (face[3] - face[2])*slope[3], second = (face[2] - face[1])*(slope[2] + slope[3]);
+            (k == 1 ? w[3] : w[0]) = 1 - second - third;
+            w[1] = second;
+            w[2] = third;
         }
     }
 }
