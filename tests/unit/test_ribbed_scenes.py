@@ -14,6 +14,7 @@ from mbs.bearings.tapered.tapered_bearing import TaperedForce
 from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.linearised.modes import modes
 from mbs.model.equilibrium import equilibrium
+from tests.cases import commands
 
 MASS = 20.0
 CROWN = 'profile = { crown_drop = "6 um" }'
@@ -78,6 +79,13 @@ def test_keys_and_choices_reach_the_ribs() -> None:
     assert mirrored.scene.tapered[0].geometry.carries == "-x"
     assert equilibrium(mirrored.system, mirrored.operation).displacement[0] < -10e-6
     assert mirrored.law == "ribbed roller bearings dry Hertz"
+
+
+def test_mbs_check_says_how_ribs_carry(capsys, tmp_path) -> None:
+    scene = tmp_path / "rotor.toml"
+    scene.write_text(text("NJ210", 'mirrored = true\naxial_clearance = "30 um"'), encoding="utf-8")
+    status, out, _ = commands.run(capsys, "check", str(scene))
+    assert status == 0 and "16 rollers, clearance 0 um, ribs carry along -x, axial clearance 30 um, rotor in" in out
 
 
 def test_a_shaft_held_along_x_has_bearings_without_ribs() -> None:

@@ -94,6 +94,11 @@ class RibbedGeometry(TaperedGeometry):
             raise InputError(problems)
 
     @property
+    def ways(self) -> str:
+        """Way in which an axial force on the inner ring is carried, in words."""
+        return {"both": "both ways", "+x": "along x", "-x": "along -x"}[self.carries]
+
+    @property
     def raceway_play(self) -> float:
         """Distance of a roller in the middle of its play from either raceway, where nothing has moved [m]."""
         return 0.25 * self.diametral_clearance

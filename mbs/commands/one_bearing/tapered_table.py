@@ -247,9 +247,8 @@ def tapered_heading(description: TaperedDescription, point: TaperedPoint) -> lis
 def _angles(geometry: TaperedGeometry) -> str:
     """Contact angle and cones, or ribs."""
     if isinstance(geometry, RibbedGeometry):
-        ways = {"both": "both ways", "+x": "along x", "-x": "along -x"}[geometry.carries]
         return (
-            f"clearance {1e6 * geometry.diametral_clearance:.4g} um; ribs carry {ways}, open by "
+            f"clearance {1e6 * geometry.diametral_clearance:.4g} um; ribs carry {geometry.ways}, open by "
             f"{DEGREE.value(geometry.rib_angle):.3g} deg against spherical ends (assumed)"
         )
     angles = [DEGREE.value(x) for x in (geometry.cup_angle, geometry.half_cone_angle, geometry.cone_angle)]

@@ -6,6 +6,7 @@ import argparse
 import math
 from collections.abc import Iterator
 
+from ehdmaps.physics.rollers.ribbed_geometry import RibbedGeometry
 from ehdmaps.units import LENGTH, RPM
 from mbs.analyses.campbell import campbell_problems
 from mbs.analyses.hammer import hammer_problems
@@ -80,6 +81,10 @@ def _located(spec: BallSpec | TaperedSpec) -> str:
         words = [f"{spec.geometry.balls} balls", f"clearance {MICROMETRE.text(spec.geometry.clearance)}"]
     else:
         words = [f"{spec.geometry.rollers} rollers"]
+        if isinstance(spec.geometry, RibbedGeometry):
+            axial = MICROMETRE.text(spec.geometry.axial_clearance)
+            words.append(f"clearance {MICROMETRE.text(spec.geometry.diametral_clearance)}")
+            words.append(f"ribs carry {spec.geometry.ways}, axial clearance {axial}")
     words += [f"contact angle {abs(angle):.3g} deg"] * (angle != 0.0) + ["mirrored"] * (angle < 0.0)
     words += [f"inner ring offset by {MICROMETRE.text(spec.axial_offset)}"] * (spec.axial_offset != 0.0)
     return f"{geometry.title}{estimated}, {', '.join(words)}"
