@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,6 +17,9 @@ from mbs.model.elements import Element, Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.model.relaxation import FILM_WORDS, NOTABLE, Films, Relaxation
 from mbs.scene.assembly import Model
+
+if TYPE_CHECKING:
+    from mbs.bearings.tapered.tapered_element import TaperedElement
 
 
 def film_errors(
@@ -42,7 +46,48 @@ def film_errors(
         element, ports = connected.element, connected.transform @ displacement
         error = film_error(element, ports, operation, films or model.memory, speeds[element.name] == 0.0)
         found += [] if error is None else [error]
+    if model.scene.tapered:
+        from mbs.bearings.tapered.tapered_element import TaperedElement  # with kernels that others do not need
+
+        for index in system.select(TaperedElement):
+            connected = system.elements[index]
+            element, ports = connected.element, connected.transform @ displacement
+            error = line_error(element, ports, operation) if isinstance(element, TaperedElement) else None
+            found += [] if error is None else [error]
     return found
+
+
+def line_error(element: TaperedElement, ports: FloatArray, operation: Operation) -> FilmError | None:
+    """Estimated error of the slow films of tapered rollers along their load; None without films, and without a load.
+
+    Parameters
+    ----------
+    element : TaperedElement
+        The bearing.
+    ports : array, shape (6,)
+        Displacement of its inner ring against the outer one at the equilibrium.
+    operation : Operation
+        Speed and angle.
+    """
+    if element.films is None:
+        return None
+    forces = element.evaluate(ports, np.zeros(6), operation)
+    load = float(np.linalg.norm(forces.force[:3]))
+    if load == 0.0:
+        return None
+    motion = np.array([*(forces.force[:3] / load), 0.0, 0.0, 0.0])
+    relaxation, natural = element.film_relaxation(ports, operation) or (None, np.zeros(0))
+    return FilmError(
+        bearing=element.name,
+        films="slow",
+        at_rest=relaxation is None,
+        stiffness=float(motion @ forces.stiffness @ motion),
+        damping=float(motion @ forces.damping @ motion),
+        springs=np.zeros(0) if relaxation is None else (relaxation.rows @ motion) ** 2,
+        times=np.zeros(0) if relaxation is None else relaxation.times,
+        natural=natural,
+        may_relax=False,
+    )
 
 
 def film_error(

@@ -15,7 +15,9 @@ from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from mbs import assemble, parse_scene
+from mbs.analyses.film_errors import film_error, film_errors, line_error
 from mbs.bearings.bearing import Bearing
+from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.tapered.line_film import LOADS, LineFilms, line_films
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
@@ -191,3 +193,32 @@ def test_run_up_from_rest_with_films_stays_compiled():
     axial = np.abs(done.forces[0][:, 0])
     assert axial[-1] > 1.2 * axial[0]
     assert done.energy.elements[0].told is False
+
+
+def test_films_of_slow_motion_say_from_where_they_are_wrong(emap, films):
+    """Springs in series have the dampers that act in slow motion, so that their sum is C, to what the table of damping
+    is wrong at its corners. Without an angle the error is that of the cylindrical element, whose slices have both
+    contacts in series: one relaxation time for two that are alike within a tenth."""
+    machine = scene()
+    balance = equilibrium(machine.system, machine.operation)
+    element = machine.system.elements[0].element
+    ports = machine.system.elements[0].transform @ balance.displacement
+    relaxation, _ = element.film_relaxation(ports, machine.operation)
+    damping, free = balance.element_damping[0], np.ix_(FELT, FELT)
+    assert np.max(np.abs(relaxation.damping - damping)[free]) < 1e-6 * np.max(np.abs(damping))
+    rest = film_errors(machine, balance.displacement, Operation(0.0))
+    assert rest[0].at_rest and rest[0].at(1e3) == 0.0
+    assert film_errors(scene("hertz"), balance.displacement, machine.operation) == []
+
+    plain = TaperedForce(TaperedGeometry("plain", 10e-3, 15e-3, 60e-3, 17, 0.0), profile="straight")
+    ours = TaperedElement("ours", "ring", "ground", plain, films=lambda *_: films)
+    bearing = Bearing(CYLINDER, "straight", 21)
+    theirs = BearingElement(
+        "theirs", "ring", "ground", bearing, BearingForce(bearing, emap.law("series", "clamp")), WARM, films="slow"
+    )
+    at = Operation(U / CYLINDER.entrainment_speed(1.0))
+    one, other = line_error(ours, POSE, at), film_error(theirs, POSE, at, "slow", False)
+    frequencies, plain_error = np.geomspace(100.0, 1e4, 5), dataclasses.replace(other, contacts=())
+    np.testing.assert_allclose(one.error(frequencies), plain_error.error(frequencies), rtol=0.1)
+    assert one.frequency == pytest.approx(plain_error.frequency, rel=0.1)
+    assert not one.may_relax

@@ -21,7 +21,7 @@ from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from mbs.bearings.balls.normal_law import NormalLaw, empty_table
 
 if TYPE_CHECKING:
-    from ehdmaps.maps.law import ContactLaw
+    from ehdmaps.maps.law import ContactLaw, LawAtPoint
     from mbs.bearings.balls.response import ContactResponse
 
 NODES, KNEE = 1200, 0.3e-6
@@ -43,11 +43,14 @@ class LineFilms:
         Laws of the whole roller at cone and cup; without tables for dry lines.
     loads : (float, float)
         Lowest and highest load of a roller for which both were made [N]; 0 and infinity for dry lines.
+    points : tuple of LawAtPoint
+        Laws of which both were made, inner and outer; none for dry lines.
     """
 
     inner: NormalLaw
     outer: NormalLaw
     loads: tuple[float, float] = (0.0, math.inf)
+    points: tuple[LawAtPoint, ...] = ()
 
     @property
     def dry(self) -> bool:
@@ -115,7 +118,8 @@ def line_films(
     if entrainment_speed == 0.0:
         return DRY_LINES
     inner, outer = (line_film(law, length, entrainment_speed, temperature) for law in laws)
-    return LineFilms(inner, outer, (LOADS[0] * length, LOADS[1] * length))
+    points = tuple(law.at(entrainment_speed, temperature) for law in laws)
+    return LineFilms(inner, outer, (LOADS[0] * length, LOADS[1] * length), points)
 
 
 def line_film(law: ContactLaw, length: float, entrainment_speed: float, temperature: float) -> NormalLaw:

@@ -178,7 +178,7 @@ class TaperedForce:
         single = 2.0 ** (10.0 / 9.0) * roller_coefficient(length, material)
         self.films = films
         self.laws = RollerLaws(single, single, self.damping, self.damping_time, films.outer, films.inner)
-        self._angles, self._way = places, way
+        self.angles, self._way = places, way
         self._kernel = tapered_force if compiled else in_python(tapered_force)
         self._begin()
 
@@ -300,7 +300,7 @@ class TaperedForce:
         """
         self._evaluated(pose, cage_angle, inner_speed, outer_speed, cage_speed)
         rows, shape = self._rollers.T.copy(), self.shape
-        angle = np.angle(np.exp(1j * (self._angles + cage_angle)))
+        angle = np.angle(np.exp(1j * (self.angles + cage_angle)))
         place, ring = rows[9:12], rows[12:15]
         slices = np.zeros((2, angle.size, self.positions.size))
         for side, (normal, moved) in enumerate(((shape.cone, ring - place), (shape.cup, place))):

@@ -21,6 +21,7 @@ from mbs.bearings.tapered.line_film import DRY_LINES, LineFilms
 from mbs.bearings.tapered.tapered_bearing import TaperedForce, TaperedLoads
 from mbs.bearings.tapered.tapered_energy import TaperedStates, dry_energy, place_work
 from mbs.model.elements import Excitation, Forces, OnRings, Operation, Port, Powers
+from mbs.model.relaxation import Relaxation
 
 HARMONICS = 3
 """Multiples of the passing frequency of the rollers that are worth following."""
@@ -109,6 +110,25 @@ class TaperedElement(OnRings):
             if len(self._made) > MOST_SPEEDS:
                 self._made.popitem(last=False)
         return self._made[speed]
+
+    def film_relaxation(self, displacement: FloatArray, operation: Operation) -> tuple[Relaxation, FloatArray] | None:
+        """Relaxation that its films would have, and natural times of its lines [s]; None without films.
+
+        Parameters
+        ----------
+        displacement : array (6,)
+            Displacement of the inner ring against the outer one.
+        operation : Operation
+            Speed and angle.
+        """
+        force = self.force_at(operation)
+        if force.films.dry:
+            return None
+        from mbs.bearings.tapered.tapered_relaxing import line_relaxation  # with the kernels of films with memory
+
+        conditions = self.conditions(operation)
+        force(self.pose(displacement), **conditions)
+        return line_relaxation(force, conditions["cage_angle"])
 
     @property
     def ports(self) -> tuple[Port, ...]:

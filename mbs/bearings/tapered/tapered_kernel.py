@@ -39,8 +39,8 @@ NOT_FINITE, TOO_FAR, NO_BALANCE = -1, -2, -3
 """What `tapered_force` finds instead of an answer."""
 
 FIRST_RIB, MOST_RIBS = 15, 4
-_SHARE = FIRST_RIB + MOST_RIBS
-COLUMNS = _SHARE + 9
+FIRST_SHARE = FIRST_RIB + MOST_RIBS
+COLUMNS = FIRST_SHARE + 9
 """Numbers that are kept of a roller, see `place_roller`: loads of its ribs before S."""
 
 _STEPS, _CUTS = 80, 40
@@ -370,7 +370,7 @@ def place_roller(
     # the roller goes with the ring as it did at the last call
     for i in range(3):
         for k in range(3):
-            place[i] += out[_SHARE + 3 * i + k] * (d[k] - out[12 + k])
+            place[i] += out[FIRST_SHARE + 3 * i + k] * (d[k] - out[12 + k])
     size, error = 0.0, math.inf
     if abs(place[0]) + abs(place[1]) + abs(place[2]) < math.inf:
         size = _state(d, place, loads, shape, laws, w)
@@ -432,7 +432,7 @@ def place_roller(
     put(place, out[9:12])
     out[12], out[13], out[14] = d
     for i in range(3):
-        put(w.share[i], out[_SHARE + 3 * i : _SHARE + 3 * i + 3])
+        put(w.share[i], out[FIRST_SHARE + 3 * i : FIRST_SHARE + 3 * i + 3])
     return found
 
 
