@@ -365,7 +365,7 @@ def ball_lines(model: Model, balance: Equilibrium) -> list[str]:
         lines += [
             f"{element.name}: {force[0]:.5g} N along x, {math.hypot(force[1], force[2]):.5g} N across it on the inner "
             f"ring; contact angle {angles[0]:.4g} deg inner, {angles[1]:.4g} outer",
-            f"  {np.count_nonzero(loads[0] > 0.0)} of {loads.shape[1]} balls loaded, {loads[0].min():.4g} to "
+            f"  {at.balls.loaded} of {loads.shape[1]} balls loaded, {loads[0].min():.4g} to "
             f"{loads[0].max():.5g} N at the inner raceway; Hertz pressure up to {PRESSURE.value(pressures[0]):.4g} "
             f"inner, {PRESSURE.text(pressures[1])} outer",
             "  K " + "; C ".join(parts),

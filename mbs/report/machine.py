@@ -201,7 +201,7 @@ def in_short(found: Examination) -> Iterator[str]:
         motion = model.system.relative(ball.inner, ball.outer) @ balance.displacement
         loads = ball.balls(motion, balance.operation)
         yield (
-            f"Ball bearing {ball.name} has {np.count_nonzero(loads.load[0] > 0.0)} of {loads.angle.size} balls loaded, "
+            f"Ball bearing {ball.name} has {loads.loaded} of {loads.angle.size} balls loaded, "
             f"up to {shown(FORCE, float(loads.load[0].max()))} on one."
         )
     if isinstance(found.modes, str):

@@ -19,6 +19,7 @@ from mbs.cli import main
 from mbs.linearised.modes import modes
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
+from mbs.output.ball_table import ball_lines
 from mbs.scene.matrices import MatrixSpec
 
 LAW = "hertz:1.25e-5 s"
@@ -202,3 +203,22 @@ def test_check_says_how_each_bearing_stands(capsys):
         "bearing rear_inside: 7012C (estimated), 19 balls, clearance 0 um, contact angle 15 deg, mirrored,",
     ):
         assert words in said
+
+
+def test_balls_that_hardly_touch_are_not_loaded():
+    """Films of a loose bearing carry some load at every ball; those above 1 % of the highest count."""
+    loose = 'diametral_clearance = "25 um"'
+    given = text(left=loose, right=loose, loads=False) + """
+[lubricant]
+name = "ISO VG 32"
+[[loads]]
+name = "weight"
+on = "rotor"
+force = ["0 N", "-1 kN", "0 N"]
+"""
+    machine = assemble(parse_scene(given, "rotor", "rotor.toml"), "table")
+    rest = equilibrium(machine.system, machine.operation)
+    place = machine.system.relative("rotor:left", "ground") @ rest.displacement
+    loads = machine.balls[0].balls(place, machine.operation)
+    assert np.all(loads.load[0] > 0.0) and loads.loaded < loads.angle.size
+    assert f"  {loads.loaded} of {loads.angle.size} balls loaded" in "\n".join(ball_lines(machine, rest))

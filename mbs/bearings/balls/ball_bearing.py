@@ -56,6 +56,10 @@ HARMONICS = 3
 """Multiples of the passing frequency of the balls that are worth following."""
 
 
+LOADED = 0.01
+"""Part of the highest load from which on a ball counts as loaded."""
+
+
 @dataclass(frozen=True, eq=False)
 class BallLoads:
     """State of all balls at one pose.
@@ -76,6 +80,11 @@ class BallLoads:
     load: FloatArray
     contact_angle: FloatArray
     approach: FloatArray
+
+    @property
+    def loaded(self) -> int:
+        """Number of balls that carry more than 1 % of the highest inner load: films that hardly touch carry some."""
+        return int(np.count_nonzero(self.load[0] > LOADED * self.load[0].max()))
 
     def mean_angle(self, side: int) -> float:
         """Mean contact angle of a side, 0 the inner one, by the loads of its balls [rad]; zero without load."""

@@ -103,8 +103,7 @@ class BallPoint:
     @property
     def loaded(self) -> int:
         """Number of balls that carry more than 1 % of the highest inner load."""
-        inner = self.balls.load[0]
-        return int(np.count_nonzero(inner > 0.01 * inner.max()))
+        return self.balls.loaded
 
     @property
     def axes(self) -> FloatArray:
