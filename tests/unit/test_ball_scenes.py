@@ -208,7 +208,9 @@ def test_check_says_how_each_bearing_stands(capsys):
 def test_balls_that_hardly_touch_are_not_loaded():
     """Films of a loose bearing carry some load at every ball; those above 1 % of the highest count."""
     loose = 'diametral_clearance = "25 um"'
-    given = text(left=loose, right=loose, loads=False) + """
+    given = (
+        text(left=loose, right=loose, loads=False)
+        + """
 [lubricant]
 name = "ISO VG 32"
 [[loads]]
@@ -216,6 +218,7 @@ name = "weight"
 on = "rotor"
 force = ["0 N", "-1 kN", "0 N"]
 """
+    )
     machine = assemble(parse_scene(given, "rotor", "rotor.toml"), "table")
     rest = equilibrium(machine.system, machine.operation)
     place = machine.system.relative("rotor:left", "ground") @ rest.displacement
