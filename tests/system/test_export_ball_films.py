@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import tomllib
 from unittest import mock
@@ -11,6 +12,7 @@ import pytest
 from fmpy import simulate_fmu
 from fmpy.validation import validate_fmu
 
+from ehdmaps.errors import SolverError
 from ehdmaps.exports.fmu.binaries import platforms
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
@@ -20,7 +22,9 @@ from mbs.bearings.balls.ball_point import ball_point
 from mbs.bearings.balls.films import ball_films
 from mbs.bearings.balls.laws import dry_law
 from mbs.cli import main
+from mbs.commands.one_bearing.ball_files import BallExport, write_export
 from mbs.model.elements import Operation
+from mbs.output.ball_table import BallDescription
 from tests.cases.ball_runs import driven
 from tests.cases.fmu import Unit
 from tests.unit.test_ball_relaxing import by_hand
@@ -177,3 +181,15 @@ def test_memory_is_for_units_with_films(capsys, law, output):
     )
     assert main(list(words)) == 2
     assert "allowed: with --law table and -o NAME.c, NAME.fmu, NAME.toml" in capsys.readouterr().err
+
+
+def test_solved_films_have_no_memory():
+    geometry = ball_estimate("6208")
+    law = ball_films(geometry, Lubricant.named("FVA3"), geometry.entrainment_speed(SPEED), WARM, solves=False).law
+    force = BallForce(geometry, dataclasses.replace(law, responses=()))
+    point = ball_point(force, (2000.0, 1000.0, 0.0), SPEED)
+    description = BallDescription("films", "", 0.0, WARM, 0.3e-6, False, ())
+    given = BallExport(force, description, [point], 0.0, lambda u: force.law, True)
+    for name in ("x.toml", "x.c"):
+        with pytest.raises(SolverError, match="no response over frequency"):
+            write_export(name, given)

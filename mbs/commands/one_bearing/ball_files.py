@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ehdmaps.errors import SolverError
 from ehdmaps.outputs import Output
-from ehdmaps.units import TEMPERATURE
+from ehdmaps.units import RPM, TEMPERATURE
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.laws import BallLaw
 from mbs.commands.one_bearing.linear_files import (
@@ -157,6 +158,11 @@ def _oscillating(given: BallExport) -> Oscillating:
     one = len(given.points) == 1
     found = []
     for point in given.points:
+        if not (point.force.law.dry or point.force.law.responses):
+            raise SolverError(
+                f"films with memory at {RPM.text(point.inner_speed)}: those that are solved have no response over "
+                "frequency; take speeds and oils that --law table has, or leave --films out"
+            )
         omega = 2.0 * np.pi * FREQUENCIES if one else np.array([abs(point.inner_speed)])
         z = ball_dynamic_stiffness(point, omega)
         rate = z.imag / np.where(omega > 0.0, omega, 1.0)[:, None, None]
