@@ -337,7 +337,7 @@ def _bearing(top: Program) -> None:
         "-o",
         "--output",
         metavar="OUT.nc",
-        help="result as netCDF, a row a point as .csv; balls also .toml | .bdf | .inp | .txt | .c | .fmu",
+        help="result as netCDF, a row a point as .csv; balls, tapered also .toml | .bdf | .inp | .txt | .c | .fmu",
     )
     command.add_argument("--plot", metavar="FIG.png", help="figure; also .pdf, .svg")
 

@@ -1,4 +1,4 @@
-"""A ball bearing in C as a library for Python: what compiles it, and what calls it."""
+"""A bearing of balls or tapered rollers in C as a library for Python: what compiles it, and what calls it."""
 
 from __future__ import annotations
 
@@ -30,16 +30,19 @@ def compiled_balls(source: Path) -> Path:
 
 
 class BallKernel:
-    """A bearing, with the laws and the balls of its last call."""
+    """A bearing, with the laws and the balls, or rollers, of its last call."""
 
-    def __init__(self, library: Path, prefix: str) -> None:
+    def __init__(self, library: Path, prefix: str, bodies: str = "balls") -> None:
         self._functions = {}
         loaded = ctypes.CDLL(str(library))
         for name, arguments in _ARGUMENTS.items():
+            if bodies != "balls" and name == "bearing_at":
+                continue
             self._functions[name] = getattr(loaded, f"{prefix}_{name}")
             self._functions[name].argtypes = arguments
         self._room = {}
-        for name in ("bearing", "law", "balls"):
+        self._bodies = bodies
+        for name in ("bearing", "law", bodies):
             size = getattr(loaded, f"{prefix}_{name}_size")
             size.restype = ctypes.c_size_t
             self._room[name] = ctypes.create_string_buffer(size())
@@ -48,7 +51,7 @@ class BallKernel:
 
     def make(self, clearance: float, mirrored: bool = False) -> int:
         """Make the bearing, with balls that start from nothing."""
-        ctypes.memset(self._room["balls"], 0, len(self._room["balls"]))
+        ctypes.memset(self._room[self._bodies], 0, len(self._room[self._bodies]))
         return int(self._functions["bearing_make"](self._room["bearing"], clearance, int(mirrored)))
 
     def prepare(self, u: float) -> int:
@@ -70,7 +73,7 @@ class BallKernel:
     def _asked(self, name: str, pose: FloatArray, velocity: FloatArray, *numbers: float) -> tuple[int, FloatArray]:
         found, given = np.empty(79), np.ascontiguousarray([pose, velocity], dtype=np.float64)
         places = given[0].ctypes.data, given[1].ctypes.data
-        room = [self._room[each] for each in ("bearing", "law", "balls")]
+        room = [self._room[each] for each in ("bearing", "law", self._bodies)]
         status = self._functions[name](*room, *places, *numbers, found.ctypes.data)
         self.cage_speed = float(found[78])
         return int(status), found[:78].reshape(13, 6)

@@ -75,7 +75,8 @@ def test_what_source_distribution_and_wheel_hold(distributions):
     outside = {name.partition("/")[0] for name in names} - {"ehdmaps", "mbs"}
     assert {name.rpartition(".")[2] for name in outside} == {"data", "dist-info"}
     assert "ehdmaps/jobs/shipped/nu308.toml" in names and "mbs/systems/gearbox.toml" in names
-    balls = {f"mbs/exports/balls/{name}" for name in ("ball_law.c", "ball_bearing.h", "unit_files/component.c")}
+    balls = {f"mbs/exports/balls/{name}" for name in ("contact_law.c", "ball_bearing.h", "unit_files/component.c")}
+    balls |= {f"mbs/exports/tapered/tapered_{name}" for name in ("balance.c", "bearing.c", "bearing.h")}
     assert balls <= set(names)
     assert not [name for name in names if name.endswith((".png", ".pyc")) or "/tests/" in name]
     cases = {name.partition(GPL)[2]: name for name in names if GPL in name}

@@ -58,7 +58,7 @@ def exported(tmp_path_factory):
         geometry = ball_estimate(name)
         ends = (geometry.entrainment_speed(rpm * RPM) for rpm in (1000.0, 6000.0))
         dry = dry_law(geometry, damping_time=DAMPER)
-        laws = film_speed_laws(films(geometry), *ends) if filmed else dry_speed_laws(dry)
+        laws = film_speed_laws(films(geometry), *ends) if filmed else dry_speed_laws(dry.inner, dry.outer)
         source = folder / f"{name}.c"
         write_source(source, BallForce(geometry, dry), laws, ("made by ehdmaps",))
         found[name] = geometry, laws, BallKernel(compiled_balls(source), f"ball_{name}".lower())
@@ -280,7 +280,7 @@ def test_two_files_of_a_source(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     Path("b.h").write_text("mine")
     assert main(["bearing", "7208B", *LOAD, *FAST, "-o", "b.c"]) == 2
-    assert "b.h, which is there and is not the header of a ball bearing" in capsys.readouterr().err
+    assert "b.h, which is there and is not the header of a bearing" in capsys.readouterr().err
     assert sorted(path.name for path in Path().iterdir()) == ["b.h"]
     assert main(["bearing", "7208B", *LOAD, "--load", "1 kN", *FAST, "-o", "c.c"]) == 2
     assert "-o: got c.c for 2 loads and 1 speeds; allowed: one load" in capsys.readouterr().err
@@ -298,4 +298,4 @@ def test_mirrored_bearings_are_not_exported_twice():
     geometry = dataclasses.replace(ball_estimate("7208B"), contact_angle=-0.7)
     law = dry_law(geometry)
     with pytest.raises(InputError, match="contact angle: got one below zero"):
-        source_texts(BallForce(geometry, law), dry_speed_laws(law), ())
+        source_texts(BallForce(geometry, law), dry_speed_laws(law.inner, law.outer), ())

@@ -277,6 +277,18 @@ class TaperedGeometry:
         mean_square = 0.25 * self.roller_diameter**2 + slope**2 / 3.0
         return material.density * math.pi * self.roller_length * mean_square
 
+    def roller_inertia(self, material: Material) -> tuple[float, float]:
+        """Moments of inertia of a roller about its axis and across it, as of a cylinder [kg m2].
+
+        Parameters
+        ----------
+        material : Material
+            Material of the rollers.
+        """
+        mass = self.roller_mass(material)
+        along = 0.125 * mass * self.roller_diameter**2
+        return along, 0.5 * along + mass * self.roller_length**2 / 12.0
+
     def radius_at(self, place: float, side: int) -> float:
         """Reduced radius of a line contact across the roller [m], of cones by their radii of curvature.
 

@@ -226,9 +226,8 @@ class TaperedForce:
                 f"{geometry.kind}, speeds: got {inner_speed!r}, {outer_speed!r} and {cage!r} rad/s; allowed: finite "
                 f"numbers, at most {FASTEST:g} rad/s either way"
             )
-        mass, diameter = geometry.roller_mass(self.material), geometry.roller_diameter
-        along = 0.125 * mass * diameter**2
-        across = 0.5 * along + mass * geometry.roller_length**2 / 12.0
+        mass = geometry.roller_mass(self.material)
+        along, across = geometry.roller_inertia(self.material)
         sine, cosine = math.sin(geometry.axis_angle), math.cos(geometry.axis_angle)
         spin = geometry.roller_speed(inner_speed, outer_speed) + cage * cosine
         moment = cage * sine * (along * spin - across * cage * cosine)

@@ -9,27 +9,25 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ehdmaps.errors import SolverError
-from ehdmaps.outputs import Output
-from ehdmaps.units import RPM, TEMPERATURE
+from ehdmaps.units import RPM
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.laws import BallLaw
-from mbs.commands.one_bearing.linear_files import (
-    Oscillating,
-    around,
-    ending_of,
-    header_of,
-    is_linear,
-    linear_outputs,
-    write_linear,
+from mbs.commands.one_bearing.bearing_files import (
+    DRY,
+    SOURCE,
+    UNIT,
+    bearing_header,
+    film_words,
+    start_of,
+    turning_speeds,
+    unit_header,
 )
+from mbs.commands.one_bearing.linear_files import Oscillating, ending_of, is_linear, write_linear
 from mbs.output.ball_table import BallDescription, ball_heading
 
 if TYPE_CHECKING:
     from mbs.bearings.balls.ball_point import BallPoint
     from mbs.exports.balls.speed_laws import SpeedLaws
-
-SOURCE, UNIT = ".c", ".fmu"
-"""Endings of files that hold the bearing itself."""
 
 ROSS = ".toml"
 """Ending of files that may hold K and C of films with memory."""
@@ -66,17 +64,6 @@ class BallExport:
     memory: bool = False
 
 
-def is_export(path: str | None) -> bool:
-    """Test whether a result is a file for another program.
-
-    Parameters
-    ----------
-    path : str or None
-        Path of -o.
-    """
-    return is_linear(path) or ending_of(path) in (SOURCE, UNIT)
-
-
 def has_memory(path: str | None) -> bool:
     """Tell whether films may have a memory in a file.
 
@@ -86,26 +73,6 @@ def has_memory(path: str | None) -> bool:
         Path of -o.
     """
     return ending_of(path) in (ROSS, SOURCE, UNIT)
-
-
-def ball_outputs(path: str | None) -> tuple[Output, ...]:
-    """All files that -o asks for.
-
-    Parameters
-    ----------
-    path : str or None
-        Path of -o.
-    """
-    ending = ending_of(path)
-    if path is not None and ending == SOURCE:
-        from mbs.exports.balls import source
-
-        return Output("-o", path, source.SOURCE), Output("-o", str(source.header_of(path)), source.HEADER)
-    if ending == UNIT:
-        from ehdmaps.exports.fmu.unit import UNIT as KIND_OF_UNITS
-
-        return (Output("-o", path, KIND_OF_UNITS),)
-    return linear_outputs(path, (SOURCE, UNIT))
 
 
 def write_export(path: str, given: BallExport) -> str:
@@ -130,25 +97,14 @@ def write_export(path: str, given: BallExport) -> str:
         oscillating = _oscillating(given) if given.memory else None
         return write_linear(path, given.force.geometry.name, heading, given.points, given.outer_speed, oscillating)
     laws, words = _speed_laws(given)
-    header = (
-        *header_of(heading),
-        f"temperature: {TEMPERATURE.text(given.description.temperature)}",
-        f"law: {given.description.law}",
-        words,
-    )
+    header = bearing_header(heading, given.description.temperature, given.description.law, words)
     if ending_of(path) == SOURCE:
         from mbs.exports.balls.source import write_source
 
         return write_source(path, given.force, laws, header)
     from mbs.exports.balls.unit import write_ball_unit
 
-    point = given.points[0]
-    names = ("pose.x", "pose.y", "pose.z", "", "pose.theta_y", "pose.theta_z")
-    start = {name: float(value) for name, value in zip(names, point.pose, strict=True) if name}
-    start |= {"speed.inner": point.inner_speed, "speed.outer": point.outer_speed}
-    return write_ball_unit(
-        path, given.force, laws, start, (*header, *around(given.points), "start: the first of the speeds")
-    )
+    return write_ball_unit(path, given.force, laws, start_of(given.points[0]), unit_header(header, given.points))
 
 
 def _oscillating(given: BallExport) -> Oscillating:
@@ -175,20 +131,11 @@ def _oscillating(given: BallExport) -> Oscillating:
 
 def _speed_laws(given: BallExport) -> tuple[SpeedLaws, str]:
     """Laws over the speeds of the points, and what they are in words."""
-    from mbs.exports.balls.speed_laws import LIGHT, dry_speed_laws, error_between, film_speed_laws
+    from mbs.exports.balls.speed_laws import dry_speed_laws, film_speed_laws
 
-    geometry = given.force.geometry
-    asked = [geometry.entrainment_speed(point.inner_speed, point.outer_speed) for point in given.points]
-    turning = [u for u in asked if u > 0.0]
-    if given.films is None or not turning:
-        return dry_speed_laws(given.force.law), "films: none, dry contacts"
-    laws = film_speed_laws(given.films, min(turning), max(turning), memory=given.memory)
-    kind = "films with memory" if laws.memory else "films"
-    words = f"{kind}: at {laws.speeds.size} entrainment speeds from {min(turning):.6g} to {max(turning):.6g} m/s"
-    if laws.speeds.size == 1:
-        return laws, f"{words}; held at any other"
-    load, stiffness, damping = error_between(laws, given.films)
-    return laws, (
-        f"{words}, held beyond; between them right within {load:.1e} of the load, {stiffness:.1e} of the stiffness and "
-        f"{damping:.1e} of the damping of a contact, from {LIGHT:.0%} of its highest load on"
-    )
+    ends = turning_speeds(given.force.geometry, given.points, given.outer_speed)
+    if given.films is None or ends is None:
+        law = given.force.law
+        return dry_speed_laws(law.inner, law.outer), DRY
+    laws = film_speed_laws(given.films, *ends, memory=given.memory)
+    return laws, film_words(laws, given.films)

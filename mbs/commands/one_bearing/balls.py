@@ -20,7 +20,8 @@ from ehdmaps.units import RPM, TEMPERATURE
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.ball_point import BallPoint, ball_point
 from mbs.bearings.balls.laws import BallLaw, dry_law
-from mbs.commands.one_bearing.ball_files import BallExport, ball_outputs, has_memory, is_export, write_export
+from mbs.commands.one_bearing.ball_files import BallExport, has_memory, write_export
+from mbs.commands.one_bearing.bearing_files import bearing_outputs, is_export
 from mbs.commands.one_bearing.linear_files import count_problems
 from mbs.commands.one_bearing.shared import CELSIUS_40, ROUGHNESS, read_damper, read_oil, refuse_others
 from mbs.commands.one_bearing.values import (
@@ -125,7 +126,7 @@ def read_balls(arguments: argparse.Namespace) -> BallRequest:
             geometry = dataclasses.replace(geometry, clearance=float(clearance))
         except InputError as error:
             problems += [f"--clearance: {problem}" for problem in error.problems]
-    problems += output_problems(ball_outputs(arguments.output), [])
+    problems += output_problems(bearing_outputs(arguments.output), [])
     one_load = is_export(arguments.output)
     problems += count_problems(arguments.output, len(loads), len(speeds), of_one_load=one_load)
     if problems or geometry is None or damper is None or oil is None:

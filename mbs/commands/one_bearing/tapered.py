@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -15,9 +16,11 @@ from ehdmaps.physics.rollers.ribbed_geometry import RibbedGeometry, ribbed_estim
 from ehdmaps.physics.rollers.tapered_catalogue import tapered_estimate
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from ehdmaps.units import RPM, TEMPERATURE
+from mbs.bearings.tapered.line_film import LineFilms
 from mbs.bearings.tapered.tapered_bearing import MOST_SLICES, SLICES, TaperedForce
 from mbs.bearings.tapered.tapered_point import TaperedPoint, tapered_point
-from mbs.commands.one_bearing.linear_files import count_problems, is_linear, linear_outputs, write_linear
+from mbs.commands.one_bearing.bearing_files import bearing_outputs, is_export
+from mbs.commands.one_bearing.linear_files import count_problems
 from mbs.commands.one_bearing.shared import (
     CELSIUS_40,
     ROUGHNESS,
@@ -26,10 +29,10 @@ from mbs.commands.one_bearing.shared import (
     read_profile_text,
     refuse_others,
 )
+from mbs.commands.one_bearing.tapered_files import TaperedExport, write_export
 from mbs.commands.one_bearing.tapered_table import (
     TaperedDescription,
     tapered_dataset,
-    tapered_heading,
     tapered_text,
     write_tapered_csv,
 )
@@ -132,8 +135,9 @@ def read_tapered(arguments: argparse.Namespace) -> TaperedRequest:
     slices = SLICES if arguments.slices == "41" else read_whole("--slices", arguments.slices, 2, MOST_SLICES, problems)
     temperature = float(chosen.get("temperature", CELSIUS_40))
     oil = read_oil(arguments.oil, temperature, problems)
-    problems += output_problems(linear_outputs(arguments.output), [])
-    problems += count_problems(arguments.output, len(loads), len(speeds))
+    problems += output_problems(bearing_outputs(arguments.output), [])
+    one_load = is_export(arguments.output)
+    problems += count_problems(arguments.output, len(loads), len(speeds), of_one_load=one_load)
     if problems or geometry is None or damper is None or oil is None or slices is None:
         raise InputError(tuple(dict.fromkeys(problems)))
     roughness = chosen["roughness"].roughness if "roughness" in chosen else ROUGHNESS
@@ -184,9 +188,11 @@ def run_tapered(arguments: argparse.Namespace) -> tuple[str, int]:
 
 def _written(path: str, request: TaperedRequest, points: list[list[TaperedPoint]]) -> str:
     """Write the file of -o, and return what was written in words."""
-    if is_linear(path):
-        heading = tapered_heading(request.description, points[0][0])
-        return write_linear(path, request.force.geometry.name, heading, points[0], request.outer_speed)
+    if is_export(path):
+        films = _films(request) if request.films else None
+        return write_export(
+            path, TaperedExport(request.force, request.description, points[0], request.outer_speed, films)
+        )
     dataset = tapered_dataset(request.description, points)
     if Path(path).suffix.lower() == ".csv":
         write_tapered_csv(dataset, path)
@@ -217,14 +223,23 @@ def tapered_points(request: TaperedRequest) -> list[list[TaperedPoint]]:
 
 def _forces(request: TaperedRequest) -> list[TaperedForce]:
     """The force at each speed of the inner ring, with the films of the speed; dry where nothing rolls."""
+    films = _films(request) if request.films else None
+    if films is None:
+        return [request.force] * len(request.speeds)
+    speeds = [request.force.geometry.entrainment_speed(speed, request.outer_speed) for speed in request.speeds]
+    return [request.force.with_films(films(u)) for u in speeds]
+
+
+def _films(request: TaperedRequest) -> Callable[[float], LineFilms] | None:
+    """Laws of both lines by the entrainment speed [m/s]; None where nothing rolls."""
     geometry = request.force.geometry
-    speeds = [geometry.entrainment_speed(speed, request.outer_speed) for speed in request.speeds]
-    if not request.films or not max(speeds) > 0.0:
-        return [request.force] * len(speeds)
+    fastest = max(geometry.entrainment_speed(speed, request.outer_speed) for speed in request.speeds)
+    if not fastest > 0.0:
+        return None
     from mbs.scene.tapered.films import FilmsOfLines, OilOfLines
 
-    films = FilmsOfLines(geometry, OilOfLines("table", request.oil, request.description.temperature, max(speeds)))
-    return [request.force.with_films(films(speed, request.outer_speed)) for speed in request.speeds]
+    films = FilmsOfLines(geometry, OilOfLines("table", request.oil, request.description.temperature, fastest))
+    return lambda u: films(u / geometry.entrainment_speed(1.0), 0.0)
 
 
 def _geometry(source: str, clearance: float, problems: list[str]) -> TaperedGeometry | None:

@@ -6,6 +6,7 @@
 | `source` | the bearing in C: templates, in which its mathematics is, and its numbers |
 | `unit` | the bearing as a unit, by the kernel in C |
 
-The files `ball_*.c` and `ball_bearing.h` are `mbs.bearings.balls` in C; those of the folder `unit_files` make a unit of
-it, in place of their namesakes of `ehdmaps.exports.fmu`.
+The files `ball_*.c` and `ball_bearing.h` are `mbs.bearings.balls` in C, with the laws of `contact_law`; those of the
+folder `unit_files` make a unit of it, in place of their namesakes of `ehdmaps.exports.fmu`. Tapered rollers,
+`mbs.exports.tapered`, share laws and unit.
 """

@@ -15,6 +15,33 @@
 #define ROUGH_BALANCE 1e-9
 #define ROUND_OFF 1e-15
 
+/* Approach at which a contact carries a load, from a start near it [m]; zero without load. */
+static double approach_of(const ehd_contact *law, double load, double start) {
+    if (!(load > 0.0)) return 0.0;
+    const double g = pow(load / law->coefficient, 2.0 / 3.0);
+#if DRY
+    (void)start;
+    return g;
+#else
+    double low = law->centre - 1e3 * law->scale, high = g + 1e3 * law->scale;
+    for (int i = 0; i < 20; i++) {
+        const contact_state found = contact_of(law, start, NULL);
+        if (!(found.load > 0.0 && found.stiffness > 0.0)) break;
+        const double lacking = log(load / found.load);
+        if (fabs(lacking) <= 1e-12) return start;
+        start += lacking * found.load / found.stiffness;
+    }
+    for (int i = 0; i < 200 && high - low > 1e-15 * law->scale; i++) {
+        const double middle = 0.5 * (low + high);
+        if (contact_of(law, middle, NULL).load < load)
+            low = middle;
+        else
+            high = middle;
+    }
+    return 0.5 * (low + high);
+#endif
+}
+
 /* What acts on a ball beside its contacts [N], where a ball with its centrifugal load alone is in its approach [m], and
  * the place of the inner groove's centre [m]. */
 typedef struct given {

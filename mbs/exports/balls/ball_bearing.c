@@ -2,7 +2,6 @@
  * The bearing
  * ------------------------------------------------------------------------------------------------------------------ */
 
-#define FASTEST 2e4        /* speed of a ring [rad/s] */
 #define NEGLIGIBLE 1e-11   /* approach of a dry contact under a centrifugal load that is left out [m] */
 #define CAGE_ERROR 1e-8    /* of the speed of the cage, over the faster ring's */
 #define MOST_TURNS 40      /* until it is found */
@@ -29,8 +28,6 @@ int ehd_bearing_make(ehd_bearing *bearing, double clearance, int mirrored) {
     return EHD_OK;
 }
 
-double ehd_cage(double inner, double outer) { return EHD_CAGE_INNER * inner + EHD_CAGE_OUTER * outer; }
-
 /* Mean contact angles of both sides, by the loads of the balls; zero without load. */
 static void mean_angles(const ehd_balls *balls, double angle[2]) {
     double load_i = 0.0, load_o = 0.0, angle_i = 0.0, angle_o = 0.0;
@@ -52,20 +49,10 @@ static double rolling(const double angle[2], double inner, double outer) {
     return (inner * at_inner + outer * at_outer) / (at_inner + at_outer);
 }
 
-static int no_force(ehd_bearing_force *result, int status) {
-    for (int i = 0; i < 6; i++) {
-        result->force[i] = NAN;
-        for (int k = 0; k < 6; k++) result->stiffness[i][k] = result->damping[i][k] = NAN;
-    }
-    result->cage_speed = NAN;
-    return status;
-}
-
 /* What is wrong about a pose, a velocity, which may be a null pointer, and an angle of the cage. */
 static int problem_of(const ehd_bearing *bearing, const double *pose, const double *velocity, double cage_angle) {
-    int finite = is_finite(cage_angle), near = 1;
-    for (int i = 0; i < 6; i++) finite = finite && is_finite(pose[i]) && (!velocity || is_finite(velocity[i]));
-    if (!finite) return EHD_NOT_FINITE;
+    int near = 1;
+    if (!is_finite(cage_angle) || !finite_motion(pose, velocity)) return EHD_NOT_FINITE;
     for (int i = 0; i < 3; i++) near = near && fabs(pose[i]) <= bearing->most_travel;
     for (int i = 4; i < 6; i++) near = near && fabs(pose[i]) <= bearing->most_tilt;
     return near && bearing->axial * (bearing->axial + pose[0]) >= 0.0 ? EHD_OK : EHD_TOO_FAR;

@@ -22,22 +22,6 @@
  * threads at once, each with structures of its own.
  * ------------------------------------------------------------------------------------------------------------------ */
 
-/* What a call found: a sum of these, 0 where all is well. */
-enum {
-    EHD_OK = 0,
-    EHD_ABOVE_LOAD = 1,    /* more load than films were made for: they go on straight in the logarithms */
-    EHD_OUTSIDE_SPEED = 2, /* slower or faster than films were made for: those at the end of the speeds are held */
-    EHD_NOT_FINITE = 8,    /* an argument is NaN or infinite */
-    EHD_TOO_FAR = 32,      /* a pose beyond reason, or an angular contact bearing beyond its middle: it has no raceway */
-    EHD_BAD_ARGUMENT = 64, /* a null pointer, a clearance, or a speed beyond 20 000 rad/s */
-    EHD_NO_BALANCE = 128   /* no balance of a ball, or no steady speed of the cage, was found */
-};
-
-#define EHD_REFUSED (EHD_NOT_FINITE | EHD_TOO_FAR | EHD_BAD_ARGUMENT | EHD_NO_BALANCE)
-
-/* Whether a status refuses: all results of such a call are NaN. The other ones tell. */
-#define EHD_REFUSES(status) (((status) & EHD_REFUSED) != 0)
-
 /* What does not change of a bearing; made by ehd_bearing_make. */
 typedef struct ehd_bearing {
     double clearance;
@@ -47,23 +31,6 @@ typedef struct ehd_bearing {
     double most_travel, most_tilt;           /* largest accepted displacement [m] and tilt [rad] */
     double cosine[EHD_BALLS], sine[EHD_BALLS]; /* directions of the balls in the cage */
 } ehd_bearing;
-
-/* Law of a contact: F = coefficient g^(3/2), g the approach where it is dry, else from a table over
- * z = asinh((approach - centre)/scale): ln g and its slope by node, ln c and its slope. A dry contact with load has
- * c = damping + damping_time k. */
-typedef struct ehd_contact {
-    double coefficient, damping, damping_time, centre, scale, first, step;
-    double table[EHD_ROWS + 1][4];
-    double springs[EHD_MEMORY ? EHD_ROWS : 1][4]; /* of films with memory, by node: see ball_films */
-} ehd_contact;
-
-/* The laws of both contacts at one entrainment speed; made by ehd_prepare. All zero before the first call. */
-typedef struct ehd_law {
-    int made, status;
-    double u;       /* entrainment speed [m/s] */
-    double highest; /* load up to which films were made [N] */
-    ehd_contact inner, outer;
-} ehd_law;
 
 /* A ball in balance. */
 typedef struct ehd_ball {
@@ -82,25 +49,11 @@ typedef struct ehd_balls {
     ehd_ball ball[EHD_BALLS];
 } ehd_balls;
 
-/* Force on the inner ring, and its derivatives at speeds that are held: stiffness = -dforce/dpose at rest, damping =
- * -dforce/dvelocity, by rows; and the speed of the cage by which that is [rad/s]. */
-typedef struct ehd_bearing_force {
-    double force[6], stiffness[6][6], damping[6][6];
-    double cage_speed;
-} ehd_bearing_force;
-
 /* Make a bearing.
  *
  * clearance: diametral clearance in force [m], < 0 for preload; EHD_CLEARANCE is the one of the export. mirrored: 0, or
  * 1 for an angular contact bearing that stands the other way round, and carries an axial force on the inner ring in -x. */
 int ehd_bearing_make(ehd_bearing *bearing, double clearance, int mirrored);
-
-/* Laws at an entrainment speed [m/s], which is EHD_ENTRAINMENT |inner_speed - outer_speed|. Films are cubics of ln u
- * between the speeds of the table, and are held beyond. Does nothing where the speed is that of the last call. */
-int ehd_prepare(ehd_law *law, double u);
-
-/* Speed or angle of the cage in pure rolling at the nominal contact angle, by those of the rings. */
-double ehd_cage(double inner, double outer);
 
 /* Force, stiffness and damping at speeds of the rings and of the cage [rad/s] and a prepared law. velocity may be a null
  * pointer: at rest. The force is linear in it. */
@@ -116,8 +69,4 @@ int ehd_bearing_call(const ehd_bearing *bearing, ehd_law *law, ehd_balls *balls,
 
 /* Sizes in bytes, for callers in other languages. */
 size_t ehd_bearing_size(void);
-size_t ehd_law_size(void);
 size_t ehd_balls_size(void);
-
-/* Name of the gravest part of a status, for messages; never null. */
-const char *ehd_status_text(int status);

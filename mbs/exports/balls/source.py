@@ -1,10 +1,10 @@
-"""A ball bearing in C: templates, in which its mathematics is, and the numbers of one bearing."""
+"""A ball bearing in C: templates, in which its mathematics is, and the numbers of one bearing; what others share."""
 
 from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from ehdmaps.arrays import FloatArray
@@ -16,11 +16,11 @@ from mbs.bearings.balls.normal_law import NormalLaw
 from mbs.bearings.balls.response import TIMES
 from mbs.exports.balls.speed_laws import SpeedLaws
 
-SOURCE = Kind("a ball bearing in C made by ehdmaps", (".c",), has_mark)
-HEADER = Kind("the header of a ball bearing in C made by ehdmaps", (".h",), has_mark)
+SOURCE = Kind("a bearing in C made by ehdmaps", (".c",), has_mark)
+HEADER = Kind("the header of a bearing in C made by ehdmaps", (".h",), has_mark)
 
-_BODIES = ("ball_law", "ball_balance", "ball_bearing")
-_FILMS = "ball_films"
+_BODIES = ("ball_balance", "ball_bearing")
+_FILMS, _LAW = "ball_films", "contact_law"
 _INCLUDES = ("float.h", "math.h", "stddef.h", "string.h")
 SHORTER = tuple(float(time / TIMES[-1]) for time in TIMES)
 """Times of the springs of a film over the longest one."""
@@ -28,16 +28,18 @@ SHORTER = tuple(float(time / TIMES[-1]) for time in TIMES)
 _WORDS = re.compile(r"[^a-z0-9_]+")
 
 
-def prefix_of(path: str | Path) -> str:
+def prefix_of(path: str | Path, kind: str = "ball") -> str:
     """Prefix of all names in the sources of a file, by its own: `front.c` has `front_bearing_call`.
 
     Parameters
     ----------
     path : str or Path
         File of the source.
+    kind : str
+        What stands before a name that begins with no letter.
     """
     name = _WORDS.sub("_", Path(path).stem.lower())
-    return name if name[:1].isalpha() else f"ball_{name}"
+    return name if name[:1].isalpha() else f"{kind}_{name}"
 
 
 def header_of(path: str | Path) -> Path:
@@ -70,14 +72,33 @@ def write_source(path: str | Path, force: BallForce, laws: SpeedLaws, header: Se
     InputError
         If a file may not be replaced or cannot be written.
     """
-    texts = source_texts(force, laws, header, prefix_of(path), header_of(path).name)
+    return write_texts(path, source_texts(force, laws, header, prefix_of(path), header_of(path).name), prefix_of(path))
+
+
+def write_texts(path: str | Path, texts: Mapping[str, str], prefix: str) -> str:
+    """Write header and source, and return what was written in words.
+
+    Parameters
+    ----------
+    path : str or Path
+        File of the source; the header goes beside it.
+    texts : mapping of str to str
+        Texts of the header, `h`, and of the source, `c`.
+    prefix : str
+        What all public names begin with.
+
+    Raises
+    ------
+    InputError
+        If a file may not be replaced or cannot be written.
+    """
     write_text(header_of(path), texts["h"], HEADER)
     write_text(path, texts["c"], SOURCE)
-    return f"{path}, {header_of(path)}: written (C99, names begin with {prefix_of(path)}_)"
+    return f"{path}, {header_of(path)}: written (C99, names begin with {prefix}_)"
 
 
 def source_texts(
-    force: BallForce, laws: SpeedLaws, header: Sequence[str], prefix: str = "ehd", include: str = "ball_bearing.h"
+    force: BallForce, laws: SpeedLaws, header: Sequence[str], prefix: str = "ehd", include: str = "bearing.h"
 ) -> dict[str, str]:
     """Texts of the header, `h`, and of the source, `c`.
 
@@ -103,28 +124,61 @@ def source_texts(
         raise InputError(
             "export of a ball bearing, contact angle: got one below zero; allowed: >= 0; the source mirrors it"
         )
-    banner, guard = comment(header), "EHD_BALL_BEARING_H"
     memory = [_FILMS] if laws.memory else []
+    headers = [_template(f"{name}.h") for name in ("ball_bearing", *memory)]
+    bodies = [_template(f"{name}.c") for name in (*_BODIES, *memory)]
+    numbers = _public_numbers(force, laws), _private_numbers(force, laws)
+    return joined(header, numbers, headers, bodies, prefix, include)
+
+
+def joined(
+    header: Sequence[str],
+    numbers: tuple[str, str],
+    headers: Sequence[str],
+    bodies: Sequence[str],
+    prefix: str,
+    include: str,
+) -> dict[str, str]:
+    """Texts of the header, `h`, and of the source, `c`, with the laws of contacts.
+
+    Parameters
+    ----------
+    header : sequence of str
+        Lines that say where it comes from, put first.
+    numbers : (str, str)
+        Constants that callers may read, and those that only the functions read.
+    headers, bodies : sequence of str
+        Declarations and functions of the bearing.
+    prefix : str
+        What all public names begin with, in lower case.
+    include : str
+        Name of the header.
+    """
+    banner, guard = comment(header), "EHD_BEARING_H"
     top = [
         banner, f"#ifndef {guard}\n#define {guard}\n\n#include <stddef.h>\n",
-        _public_numbers(force, laws),
+        numbers[0],
         '#ifdef __cplusplus\nextern "C" {\n#endif\n',
-        *(template("mbs.exports.balls", f"{body}.h") for body in ("ball_bearing", *memory)),
+        _template(f"{_LAW}.h"), *headers,
         f"#ifdef __cplusplus\n}}\n#endif\n\n#endif /* {guard} */\n",
     ]  # fmt: skip
     source = [
         banner, "".join(f"#include <{name}>\n" for name in _INCLUDES) + "\n#include \"@HEADER@\"\n",
-        _private_numbers(force, laws),
-        *(template("mbs.exports.balls", f"{body}.c") for body in (*_BODIES, *memory)),
+        numbers[1],
+        _template(f"{_LAW}.c"), *bodies,
     ]  # fmt: skip
     texts = {"h": "\n".join(top), "c": "\n".join(source)}
     return {name: renamed(text, prefix).replace("@HEADER@", include) for name, text in texts.items()}
 
 
+def _template(name: str) -> str:
+    """Text of a file of this package."""
+    return template("mbs.exports.balls", name)
+
+
 def _public_numbers(force: BallForce, laws: SpeedLaws) -> str:
     """Constants that callers may read."""
     geometry = force.geometry
-    slow, fast = (laws.speeds[0], laws.speeds[-1]) if laws.speeds.size else (0.0, math.inf)
     return "".join(
         (
             define("EHD_BALLS", geometry.balls, "number of balls"),
@@ -135,6 +189,22 @@ def _public_numbers(force: BallForce, laws: SpeedLaws) -> str:
             define("EHD_CAGE_INNER", 0.5 * (1.0 - geometry.gamma), "turns of the cage for each of the inner ring"),
             define("EHD_CAGE_OUTER", 0.5 * (1.0 + geometry.gamma), "turns of the cage for each of the outer ring"),
             define("EHD_ENTRAINMENT", geometry.entrainment_speed(1.0, 0.0), "entrainment speed [m/rad], see below"),
+            public_law(laws),
+        )
+    )
+
+
+def public_law(laws: SpeedLaws) -> str:
+    """Constants of the laws that callers may read.
+
+    Parameters
+    ----------
+    laws : SpeedLaws
+        Laws of the contacts.
+    """
+    slow, fast = (laws.speeds[0], laws.speeds[-1]) if laws.speeds.size else (0.0, math.inf)
+    return "".join(
+        (
             define("EHD_SPEEDS", int(laws.speeds.size), "entrainment speeds of the films; 0 for dry contacts"),
             define("EHD_LOWEST_SPEED", float(slow), "the first of them [m/s]"),
             define("EHD_HIGHEST_SPEED", float(fast), "the last of them [m/s]"),
@@ -153,8 +223,20 @@ def _private_numbers(force: BallForce, laws: SpeedLaws) -> str:
         + define("OUTER_ARM", shape.outer_arm, "the same of the outer one [m]")
         + define("CENTRIFUGAL", masses[0], "centrifugal load of a ball over the square of the cage's speed [kg m]")
         + define("GYROSCOPIC", masses[1], "the same of its gyroscopic moment [kg m2]"),
-        _contact("INNER", laws.inner) + _contact("OUTER", laws.outer),
+        private_law(laws),
     ]
+    return "\n".join(parts)
+
+
+def private_law(laws: SpeedLaws) -> str:
+    """Constants and tables of the laws that only the functions read.
+
+    Parameters
+    ----------
+    laws : SpeedLaws
+        Laws of the contacts.
+    """
+    parts = [_contact("INNER", laws.inner) + _contact("OUTER", laws.outer)]
     if not laws.dry:
         parts.append(
             define("MOST_LOAD", laws.highest, "load up to which films were made [N]")

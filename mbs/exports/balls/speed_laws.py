@@ -19,7 +19,7 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import SolverError
 from mbs.bearings.balls.ball_memory import SPRINGS
-from mbs.bearings.balls.film_tables import on_grid
+from mbs.bearings.balls.film_tables import PairLaw, on_grid
 from mbs.bearings.balls.laws import NODES, BallLaw
 from mbs.bearings.balls.normal_law import NormalLaw, contact, load_approach
 
@@ -27,7 +27,7 @@ STEP = 0.2
 """Largest distance of two speeds in ln u: with it loads are right within some 1e-4 between them."""
 
 NEIGHBOURS = 4
-"""Most speeds of the table that a place between them takes; as in `ball_law.c`."""
+"""Most speeds of the table that a place between them takes; as in `contact_law.c`."""
 
 LIGHT = 1e-2
 """Part of the highest load from which on the error between speeds is stated."""
@@ -102,19 +102,24 @@ class SpeedLaws:
         return BallLaw("films", inner, outer, (0.0, self.highest))
 
 
-def dry_speed_laws(law: BallLaw) -> SpeedLaws:
+def dry_speed_laws(inner: NormalLaw, outer: NormalLaw) -> SpeedLaws:
     """Laws without films.
 
     Parameters
     ----------
-    law : BallLaw
-        The dry law.
+    inner, outer : NormalLaw
+        The dry laws of both contacts.
     """
-    return SpeedLaws(law.inner, law.outer, np.zeros(0), np.zeros((0, 2, 0, 4)), np.zeros((0, 2, 2)), math.inf)
+    return SpeedLaws(inner, outer, np.zeros(0), np.zeros((0, 2, 0, 4)), np.zeros((0, 2, 2)), math.inf)
 
 
 def film_speed_laws(
-    films: Callable[[float], BallLaw], slowest: float, fastest: float, *, memory: bool = False
+    films: Callable[[float], PairLaw],
+    slowest: float,
+    fastest: float,
+    *,
+    memory: bool = False,
+    dry: Callable[[float], float] | None = None,
 ) -> SpeedLaws:
     """Laws with films from one speed to another.
 
@@ -124,9 +129,10 @@ def film_speed_laws(
         Law with the films of an entrainment speed [m/s].
     slowest, fastest : float
         Entrainment speeds [m/s], > 0. Where they are alike the law is that of the speed, on its own nodes.
-
     memory : bool
         Whether films have a memory.
+    dry : callable, optional
+        Approach [m] of a dry contact by its load [N]; that of balls if left out.
 
     Raises
     ------
@@ -137,14 +143,14 @@ def film_speed_laws(
     speeds = np.geomspace(slowest, fastest, count)
     laws = [films(float(speed)) for speed in speeds]
     lowest, highest = max(law.loads[0] for law in laws), min(law.loads[1] for law in laws)
-    inner, inner_tables, inner_places = _side([law.inner for law in laws], lowest, highest)
-    outer, outer_tables, outer_places = _side([law.outer for law in laws], lowest, highest)
+    inner, inner_tables, inner_places = _side([law.inner for law in laws], lowest, highest, dry)
+    outer, outer_tables, outer_places = _side([law.outer for law in laws], lowest, highest, dry)
     tables = np.stack((inner_tables, outer_tables), axis=1)
     made = SpeedLaws(inner, outer, speeds, tables, np.stack((inner_places, outer_places), axis=1), highest)
     return dataclasses.replace(made, springs=_springs(laws, made)) if memory else made
 
 
-def _springs(laws: Sequence[BallLaw], made: SpeedLaws) -> FloatArray:
+def _springs(laws: Sequence[PairLaw], made: SpeedLaws) -> FloatArray:
     """Springs of films with memory at all speeds and nodes."""
     if not all(law.responses for law in laws):
         raise SolverError("films of balls with memory: some have no response over frequency; take --law table")
@@ -157,7 +163,9 @@ def _springs(laws: Sequence[BallLaw], made: SpeedLaws) -> FloatArray:
     return found
 
 
-def error_between(laws: SpeedLaws, films: Callable[[float], BallLaw]) -> tuple[float, float, float]:
+def error_between(
+    laws: SpeedLaws, films: Callable[[float], PairLaw], *, of_largest: bool = False
+) -> tuple[float, float, float]:
     """Largest relative errors of load, stiffness and damping in the middles between the speeds of a table.
 
     Loads are from `LIGHT` of the highest one to that.
@@ -168,16 +176,21 @@ def error_between(laws: SpeedLaws, films: Callable[[float], BallLaw]) -> tuple[f
         The table, with films.
     films : callable
         What it was made of.
+    of_largest : bool
+        Whether errors of the damping are parts of its largest value among these loads.
     """
     worst = np.zeros(3)
+    loads = np.geomspace(LIGHT, 1.0, 25) * laws.highest
     for speed in np.sqrt(laws.speeds[1:] * laws.speeds[:-1]).tolist():
         found, wanted = laws.at(speed), films(speed)
         for name in ("inner", "outer"):
             one, other = getattr(found, name), getattr(wanted, name)
-            for load in np.geomspace(LIGHT, 1.0, 25) * laws.highest:
-                approach = load_approach(other, float(load))
-                ratio = np.array(contact(one, approach)) / np.array(contact(other, approach))
-                worst = np.maximum(worst, np.abs(ratio - 1.0))
+            places = [load_approach(other, float(load)) for load in loads]
+            values, exact = (np.array([contact(law, place) for place in places]) for law in (one, other))
+            sizes = exact.copy()
+            if of_largest:
+                sizes[:, 2] = exact[:, 2].max()
+            worst = np.maximum(worst, np.max(np.abs((values - exact) / sizes), axis=0))
     load, stiffness, damping = worst.tolist()
     return load, stiffness, damping
 
@@ -194,12 +207,15 @@ def _weights(place: float, speeds: int) -> tuple[int, FloatArray]:
     return first, weights
 
 
-def _side(laws: list[NormalLaw], lowest: float, highest: float) -> tuple[NormalLaw, FloatArray, FloatArray]:
+def _side(
+    laws: list[NormalLaw], lowest: float, highest: float, dry: Callable[[float], float] | None
+) -> tuple[NormalLaw, FloatArray, FloatArray]:
     """Nodes, tables and places of one contact at all speeds."""
     if len(laws) == 1:
         return laws[0], laws[0].table[None], np.array([[laws[0].centre, laws[0].scale]])
     middle, ends = math.sqrt(lowest * highest), (lowest, _BEYOND * highest)
-    offsets = [(middle / law.coefficient) ** (2.0 / 3.0) - load_approach(law, middle) for law in laws]
+    bare = [(middle / law.coefficient) ** (2.0 / 3.0) if dry is None else dry(middle) for law in laws]
+    offsets = [approach - load_approach(law, middle) for approach, law in zip(bare, laws, strict=True)]
     places = np.array([[-offset, _SCALE * offset] for offset in offsets])
     reach = [
         math.asinh((load_approach(law, load) - centre) / scale)

@@ -91,24 +91,65 @@ def write_ball_unit(
     InputError
         If a compiler fails, or the file may not be written.
     """
-    place, geometry = Path(path), force.geometry
-    texts = source_texts(force, laws, header)
-    begin = {**start, "clearance": geometry.clearance}
-    values = ", ".join(number(begin.get(variable.name, 0.0)) for variable in BALL_VARIABLES)
+    texts, title = source_texts(force, laws, header), f"Ball bearing {force.geometry.title}"
+    begin = {**start, "clearance": force.geometry.clearance}
+    sentences = (*MOTION, MEMORY if laws.memory else SLOW)
+    return write_bearing_unit(path, title, texts, BALL_VARIABLES, begin, sentences, header, exchanges=not laws.memory)
+
+
+def write_bearing_unit(
+    path: str | Path,
+    title: str,
+    texts: Mapping[str, str],
+    variables: tuple[Variable, ...],
+    start: Mapping[str, float],
+    sentences: tuple[str, ...],
+    header: Sequence[str],
+    *,
+    exchanges: bool = True,
+) -> str:
+    """Write a unit of a bearing by its kernel in C, and return what was written in words.
+
+    Parameters
+    ----------
+    path : str or Path
+        File of the unit.
+    title : str
+        What it is.
+    texts : mapping of str to str
+        Texts of the header, `h`, and of the source, `c`.
+    variables : tuple of Variable
+        Variables, in the order of `component.h`.
+    start : mapping of str to float
+        Values at the start, by the names of the variables; zero where they are left out.
+    sentences : tuple of str
+        Axes, signs and what is left out, for people.
+    header : sequence of str
+        Lines that say where it comes from.
+    exchanges : bool
+        Whether there is Model Exchange, beside Co-Simulation.
+
+    Raises
+    ------
+    InputError
+        If a compiler fails, or the file may not be written.
+    """
+    place = Path(path)
+    values = ", ".join(number(start.get(variable.name, 0.0)) for variable in variables)
     content = Content(
-        words=f"Ball bearing {geometry.title}",
+        words=title,
         checksum=hashlib.sha256(texts["c"].encode()).hexdigest(),
-        variables=BALL_VARIABLES,
-        start=begin,
+        variables=variables,
+        start=start,
         films=(),
         sources={
-            "ball_bearing.h": texts["h"],
-            "ball_bearing.c": texts["c"],
+            "bearing.h": texts["h"],
+            "bearing.c": texts["c"],
             **{name: template("mbs.exports.balls", f"unit_files/{name}") for name in ("component.c", "component.h")},
         },
         defines=f"#define FMU_START {{{values}}} /* of all variables */\n",
-        sentences=(*MOTION, MEMORY if laws.memory else SLOW, LAG),
-        exchanges=not laws.memory,
+        sentences=(*sentences, LAG),
+        exchanges=exchanges,
         beyond=BEYOND,
         header=tuple(header),
     )

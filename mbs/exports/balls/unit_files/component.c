@@ -8,7 +8,7 @@
 
 static const double START[VARIABLES] = FMU_START;
 
-/* Place of each of the five directions in the poses and forces of ball_bearing.h. */
+/* Place of each of the five directions in the poses and forces of bearing.h. */
 static const int DIRECTION[5] = {0, 1, 2, 4, 5};
 
 component *component_make(void) {
@@ -32,15 +32,16 @@ void component_restore(component *of, const snapshot *kept) {
 
 /* Make the bearing that some values ask for. */
 static int bearing_for(component *of, const double *values) {
-    if (!of->made || of->bearing.clearance != values[CLEARANCE]) {
+    if (!of->made || of->play != values[PLAY]) {
         of->made = 0;
-        if (ehd_bearing_make(&of->bearing, values[CLEARANCE], values[MIRRORED] != 0.0)) return EHD_BAD_ARGUMENT;
+        if (ehd_bearing_make(&of->bearing, values[PLAY], values[MIRRORED] != 0.0)) return EHD_BAD_ARGUMENT;
         of->made = 1;
+        of->play = values[PLAY];
     }
     return EHD_OK;
 }
 
-/* Force of some values. Balls start from nothing, so that it hangs on these values alone; or on films that have begun,
+/* Force of some values. Bodies start from nothing, so that it hangs on these values alone; or on films that have begun,
  * which are springs after no time. */
 static int force_of(component *of, const double *values, ehd_bearing_force *result) {
     double pose[6] = {0.0}, velocity[6] = {0.0};
@@ -52,14 +53,14 @@ static int force_of(component *of, const double *values, ehd_bearing_force *resu
     }
 #if EHD_MEMORY
     if (of->now.begun) {
-        of->balls = of->now.balls;
+        of->bodies = of->now.bodies;
         ehd_prepare(&of->law, EHD_ENTRAINMENT * (values[INNER_SPEED] - values[OUTER_SPEED]));
-        return ehd_films_look(&of->bearing, &of->law, &of->balls, &of->now.films, 0.0, pose, cage_angle,
+        return ehd_films_look(&of->bearing, &of->law, &of->bodies, &of->now.films, 0.0, pose, cage_angle,
                               values[INNER_SPEED], values[OUTER_SPEED], result);
     }
 #endif
-    memset(&of->balls, 0, sizeof of->balls);
-    return ehd_bearing_call(&of->bearing, &of->law, &of->balls, pose, velocity, cage_angle, values[INNER_SPEED],
+    memset(&of->bodies, 0, sizeof of->bodies);
+    return ehd_bearing_call(&of->bearing, &of->law, &of->bodies, pose, velocity, cage_angle, values[INNER_SPEED],
                             values[OUTER_SPEED], result);
 }
 
@@ -87,8 +88,8 @@ int component_begin(component *of) {
     of->stale = 1;
     const int status = component_update(of);
     if (EHD_REFUSES(status)) return status;
-    ehd_films_begin(&of->law, &of->balls, &of->now.films);
-    of->now.balls = of->balls;
+    ehd_films_begin(&of->law, &of->bodies, &of->now.films);
+    of->now.bodies = of->bodies;
     of->now.begun = 1;
     follow(&of->now);
     return status;
@@ -112,7 +113,7 @@ int component_step(component *of, double step) {
         for (int i = 0; i < 5; i++)
             pose[DIRECTION[i]] = place_between(now->former[POSE_X + i], now->values[POSE_X + i],
                                                now->former[VELOCITY_X + i], now->values[VELOCITY_X + i], part, step);
-        status |= ehd_films_step(&of->bearing, &of->law, &now->balls, &now->films, step / count, pose,
+        status |= ehd_films_step(&of->bearing, &of->law, &now->bodies, &now->films, step / count, pose,
                                  begin + part * turn, now->values[INNER_SPEED], now->values[OUTER_SPEED], &of->result);
     }
     if (EHD_REFUSES(status)) {
@@ -149,7 +150,7 @@ int component_is_unknown(unsigned reference) { return reference >= FIRST_OUTPUT 
 
 /* Step of a quotient of differences. */
 static double step_of(unsigned input, double value) {
-    if (input == CLEARANCE) return 1e-9;
+    if (input == PLAY) return 1e-9;
     return input < INNER_SPEED ? 1e-5 : 1e-4 * (1.0 + fabs(value));
 }
 
@@ -181,7 +182,7 @@ int component_derivative(component *of, unsigned unknown, unsigned known, double
     if (of->now.begun && EHD_REFUSES(status = force_of(of, of->now.values, &of->result))) return status;
 #endif
     *derivative = 0.0;
-    if (known >= INNER_ANGLE && known <= CLEARANCE)
+    if (known >= INNER_ANGLE && known <= PLAY)
         *derivative = quotient_of(of, unknown, known);
     else if (known >= POSE_X && known <= POSE_THETA_Z)
         *derivative = -of->result.stiffness[row][DIRECTION[known - POSE_X]];

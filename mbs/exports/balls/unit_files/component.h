@@ -1,12 +1,19 @@
 /* ---------------------------------------------------------------------------------------------------------------------
- * A ball bearing as a component of a simulation, whatever the version of the interface: variables by number, the force
- * that follows from them, its directional derivatives. Films with memory go on by the steps of co-simulation.
+ * A bearing of balls or tapered rollers as a component of a simulation, whatever the version of the interface: variables
+ * by number, the force that follows from them, its directional derivatives. Films with memory go on by the steps of
+ * co-simulation.
  * ------------------------------------------------------------------------------------------------------------------ */
 #ifndef COMPONENT_H
 #define COMPONENT_H
 
-#include "ball_bearing.h"
+#include "bearing.h"
 #include "identity.h"
+
+#ifdef EHD_BALLS
+typedef ehd_balls bodies;
+#else
+typedef ehd_rollers bodies;
+#endif
 
 /* The variables, by their value references. */
 enum {
@@ -15,7 +22,7 @@ enum {
     VELOCITY_X, VELOCITY_Y, VELOCITY_Z, VELOCITY_THETA_Y, VELOCITY_THETA_Z, /* their rates */
     INNER_ANGLE, OUTER_ANGLE,                                               /* spins of the rings [rad] */
     INNER_SPEED, OUTER_SPEED,                                               /* their rates [rad/s] */
-    CLEARANCE,                                                              /* diametral [m]; a parameter */
+    PLAY,                                                                   /* as ehd_bearing_make has it [m] */
     MIRRORED,                                                               /* 0 or 1; a parameter */
     FORCE_X, FORCE_Y, FORCE_Z, MOMENT_Y, MOMENT_Z,                          /* on the inner ring [N], [N m] */
     VARIABLES
@@ -39,7 +46,7 @@ typedef struct snapshot {
     int begun;                   /* whether films have left the rest in which they begin */
     double former[INNER_SPEED];  /* poses, velocities and spins at the end of the last step */
     ehd_films films;
-    ehd_balls balls;
+    bodies bodies;
 #endif
 } snapshot;
 
@@ -47,11 +54,12 @@ typedef struct snapshot {
 typedef struct component {
     snapshot now;
     int stale;  /* whether outputs are older than inputs */
-    int status; /* of the last call, see ball_bearing.h */
+    int status; /* of the last call, see bearing.h */
     int made;   /* whether the bearing is that of the parameters */
+    double play;
     ehd_bearing bearing;
     ehd_law law;
-    ehd_balls balls; /* of the last call */
+    bodies bodies; /* of the last call */
     ehd_bearing_force result;
 } component;
 
@@ -85,7 +93,7 @@ int component_get(const component *of, unsigned reference, double *value);
 int component_is_unknown(unsigned reference);
 
 /* Derivative of an output by an input. By pose and velocity it is -K and -C, at speeds that are held, that of the cage
- * included; by spins, speeds and clearance it is a quotient of differences. Films
+ * included; by spins, speeds and play it is a quotient of differences. Films
  * with memory are springs there, without time to give way. Returns a status; the derivative is NaN where
  * that refuses, and zero by variables that have no part in it. */
 int component_derivative(component *of, unsigned unknown, unsigned known, double *derivative);

@@ -14,7 +14,7 @@ const char *ehd_status_text(int status) {
     if (status & EHD_BAD_ARGUMENT) return "an argument that is not allowed";
     if (status & EHD_NOT_FINITE) return "numbers that are not finite";
     if (status & EHD_TOO_FAR) return "a pose beyond reason, or rings apart where no raceway is";
-    if (status & EHD_NO_BALANCE) return "no balance of a ball was found";
+    if (status & EHD_NO_BALANCE) return "no balance of a ball or roller was found";
     if (status & EHD_OUTSIDE_SPEED) return "a speed outside of those of the films, which are held";
     if (status & EHD_ABOVE_LOAD) return "a load above those of the films";
     return "no problem";
@@ -28,17 +28,22 @@ typedef struct contact_state {
     double load, stiffness, damping;
 } contact_state;
 
-#if DRY
-static contact_state contact_of(const ehd_contact *law, double approach, const double *held) {
+/* A dry contact of the law F = coefficient g^(3/2), with its damper. */
+static inline contact_state point_of(double coefficient, double damping, double time, double approach) {
     contact_state found = {0.0, 0.0, 0.0};
-    (void)held;
     if (approach > 0.0) {
-        const double root = law->coefficient * sqrt(approach);
+        const double root = coefficient * sqrt(approach);
         found.load = root * approach;
         found.stiffness = 1.5 * root;
-        found.damping = law->damping + law->damping_time * found.stiffness;
+        found.damping = damping + time * found.stiffness;
     }
     return found;
+}
+
+#if DRY
+static contact_state contact_of(const ehd_contact *law, double approach, const double *held) {
+    (void)held;
+    return point_of(law->coefficient, law->damping, law->damping_time, approach);
 }
 #else
 static contact_state contact_of(const ehd_contact *law, double approach, const double *held) {
@@ -77,33 +82,6 @@ static contact_state contact_of(const ehd_contact *law, double approach, const d
     return found;
 }
 #endif
-
-/* Approach at which a contact carries a load, from a start near it [m]; zero without load. */
-static double approach_of(const ehd_contact *law, double load, double start) {
-    if (!(load > 0.0)) return 0.0;
-    const double g = pow(load / law->coefficient, 2.0 / 3.0);
-#if DRY
-    (void)start;
-    return g;
-#else
-    double low = law->centre - 1e3 * law->scale, high = g + 1e3 * law->scale;
-    for (int i = 0; i < 20; i++) {
-        const contact_state found = contact_of(law, start, NULL);
-        if (!(found.load > 0.0 && found.stiffness > 0.0)) break;
-        const double lacking = log(load / found.load);
-        if (fabs(lacking) <= 1e-12) return start;
-        start += lacking * found.load / found.stiffness;
-    }
-    for (int i = 0; i < 200 && high - low > 1e-15 * law->scale; i++) {
-        const double middle = 0.5 * (low + high);
-        if (contact_of(law, middle, NULL).load < load)
-            low = middle;
-        else
-            high = middle;
-    }
-    return 0.5 * (low + high);
-#endif
-}
 
 #if DRY
 static int law_at(ehd_law *law, double u) {
@@ -189,4 +167,24 @@ int ehd_prepare(ehd_law *law, double u) {
     law->u = u;
     law->made = 1;
     return law->status;
+}
+
+#define FASTEST 2e4 /* speed of a ring [rad/s] */
+
+double ehd_cage(double inner, double outer) { return EHD_CAGE_INNER * inner + EHD_CAGE_OUTER * outer; }
+
+/* Whether a pose is finite, and a velocity, which may be a null pointer. */
+static int finite_motion(const double *pose, const double *velocity) {
+    int finite = 1;
+    for (int i = 0; i < 6; i++) finite = finite && is_finite(pose[i]) && (!velocity || is_finite(velocity[i]));
+    return finite;
+}
+
+static int no_force(ehd_bearing_force *result, int status) {
+    for (int i = 0; i < 6; i++) {
+        result->force[i] = NAN;
+        for (int k = 0; k < 6; k++) result->stiffness[i][k] = result->damping[i][k] = NAN;
+    }
+    result->cage_speed = NAN;
+    return status;
 }
