@@ -21,6 +21,7 @@ from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.problem import RING_SPEED_AXIS, SPEED_AXIS
 from ehdmaps.jobs.reader import read_job
 from ehdmaps.jobs.solve.film_output import film_outputs
+from ehdmaps.jobs.solve.options import option_reader
 from ehdmaps.jobs.solve.point_report import point_place, point_record, point_table, supplied_record, supplied_table
 from ehdmaps.jobs.solve.spectrum import spectrum_dataset, spectrum_record, spectrum_table
 from ehdmaps.jobs.solve.traction import (
@@ -184,16 +185,7 @@ def _read(arguments: argparse.Namespace) -> _Request:
     except InputError as error:
         problems.extend(error.problems)
 
-    def read(option: str, text: str | None, unit: str, low: float, high: float, display: Display) -> float | None:
-        try:
-            value = quantity(text, unit)
-        except InputError as error:
-            problems.append(f"{option}: {error.problems[0]}")
-            return None
-        if low <= value <= high:
-            return value
-        problems.append(f"{option}: got {text!r}; allowed: {display.text(low)} to {display.text(high)}")
-        return None
+    read = option_reader(problems, None)
 
     # of a load that does not read nobody knows whether it needs a length
     total = _is_of_unit(arguments.load, "N")

@@ -15,6 +15,7 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.compiling import stopwatch
 from ehdmaps.errors import InputError
+from ehdmaps.jobs.solve.options import option_reader
 from ehdmaps.outputs import FIGURE, Output, output_problems
 from ehdmaps.physics.contact import OIL_TEMPERATURES
 from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
@@ -26,7 +27,7 @@ from ehdmaps.physics.solution import Status
 from ehdmaps.physics.spectrum import HIGHEST_FREQUENCY, LOWEST_FREQUENCY, MOST_FREQUENCIES
 from ehdmaps.point.solver import PointResponse, PointSolution, solve
 from ehdmaps.program import tell
-from ehdmaps.units import DAMPER, FILM, LENGTH, PRESSURE, RPM, SPEED, SPRING, TEMPERATURE, Display, quantity, short
+from ehdmaps.units import DAMPER, FILM, LENGTH, PRESSURE, RPM, SPEED, SPRING, TEMPERATURE, Display, short
 
 if TYPE_CHECKING:
     from ehdmaps.jobs.solve.cfd_points import CfdPoints
@@ -184,16 +185,7 @@ def _read(arguments: argparse.Namespace) -> _Request:
     by_cfd = arguments.solver == OPENFOAM
     problems += _of_the_other_solver(arguments, by_cfd)
 
-    def read(option: str, text: str, unit: str, low: float, high: float, display: Display) -> float:
-        try:
-            value = quantity(text, unit)
-        except InputError as error:
-            problems.append(f"{option}: {error.problems[0]}")
-            return math.nan
-        if low <= value <= high:
-            return value
-        problems.append(f"{option}: got {text!r}; allowed: {display.text(low)} to {display.text(high)}")
-        return math.nan
+    read = option_reader(problems, math.nan)
 
     bearing: BallGeometry | None = None
     oil: Lubricant | None = None

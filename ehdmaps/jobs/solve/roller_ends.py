@@ -18,11 +18,12 @@ from ehdmaps.jobs.problem import SPEED_AXIS
 from ehdmaps.jobs.profiles import RollerProfile, profile_from_text
 from ehdmaps.jobs.reader import read_job
 from ehdmaps.jobs.solve.ball_points import FORCE, shown_with_error
+from ehdmaps.jobs.solve.options import option_reader
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import OIL_TEMPERATURES
 from ehdmaps.physics.surface import iso_profile
 from ehdmaps.point.finite_roller import FiniteRoller, RollerSolution, solve_roller
-from ehdmaps.units import DAMPER, FILM, LENGTH, PRESSURE, RPM, SPEED, SPRING, TEMPERATURE, Display, quantity
+from ehdmaps.units import DAMPER, FILM, LENGTH, PRESSURE, RPM, SPEED, SPRING, TEMPERATURE
 
 NAME = "roller"
 """Word of --solver; behind a colon a profile, as `mbs bearing --profile` has it."""
@@ -121,16 +122,7 @@ def _read(arguments: argparse.Namespace) -> _Request:
         if np.max(np.abs(profile(places) - profile(-places))) > _ROUND_OFF * bearing.roller_diameter:
             problems.append(f"--solver {NAME}: got a profile that differs on both sides; allowed: alike on both")
 
-    def read(option: str, text: str, unit: str, low: float, high: float, display: Display) -> float:
-        try:
-            value = quantity(text, unit)
-        except InputError as error:
-            problems.append(f"{option}: {error.problems[0]}")
-            return math.nan
-        if low <= value <= high:
-            return value
-        problems.append(f"{option}: got {text!r}; allowed: {display.text(low)} to {display.text(high)}")
-        return math.nan
+    read = option_reader(problems, math.nan)
 
     load = read("--load", arguments.load, "N", 1e-3, 1e9, FORCE)
     if any(unit in arguments.speed for unit in ("rpm", "rad")):
