@@ -20,6 +20,7 @@ from mbs.bearings.tapered.line_film import LineFilms, line_film
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
 from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.cli import main
+from mbs.exports.balls.speed_laws import error_between
 from mbs.exports.tapered.source import exported_play, line_speed_laws, source_texts, write_source
 from mbs.model.elements import Operation
 from tests.cases.c_balls import BallKernel, compiled_balls
@@ -54,25 +55,23 @@ def turned(geometry):
     return mirrored_ribs(geometry)
 
 
-def made_up(u, temperature):
-    """A film of some shape for `line_film`: offset and damping by the speed, no load without it."""
-
-    def evaluate(delta, rate):
-        x, bend = delta + 0.5e-6 * u**0.7, 0.2e-6 * u**0.5
-        root = np.sqrt(x * x + bend * bend)
-        g = 0.5 * (x + root)
-        return 3e10 * g ** (10.0 / 9.0), 10.0 / 9.0 * 3e10 * g ** (1.0 / 9.0) * g / root, 2e5 + 1e5 * rate + 4e9 * g / u
-
-    return SimpleNamespace(evaluate=evaluate)
-
-
 def films_of(geometry):
-    """Lines with these films by the entrainment speed."""
+    """Lines with films of some shape by the entrainment speed: offset, soft begin and damping."""
+    length = geometry.roller_length
+    stiff = TaperedForce(geometry).laws.cone / length
+
+    def made_up(u, temperature):
+        def evaluate(delta, rate):
+            x, bend = delta + 0.5e-6 * u**0.7, 0.2e-6 * u**0.5
+            root = np.sqrt(x * x + bend * bend)
+            g = 0.5 * (x + root)
+            return stiff * g ** (10.0 / 9.0), stiff * 10.0 / 9.0 * g ** (10.0 / 9.0) / root, 2e5 + 4e9 * g / u + rate
+
+        return SimpleNamespace(evaluate=evaluate)
 
     def films(u):
-        made = line_film(SimpleNamespace(at=made_up), geometry.roller_length, u, 313.15)
-        loads = (1e2 * geometry.roller_length, 2e6 * geometry.roller_length)
-        return LineFilms(made, made, loads)
+        made = line_film(SimpleNamespace(at=made_up), length, u, 313.15)
+        return LineFilms(made, made, (1e2 * length, 2e6 * length))
 
     return films
 
@@ -143,6 +142,16 @@ def test_stiffness_is_the_derivative_of_the_force(exported, name):
         quotient = (behind - ahead) / (2.0 * step[axis])
         column = found[1:7, axis]
         assert np.max(np.abs(quotient - column) / ARM) < 1e-5 * np.max(np.abs(column) / ARM)
+
+
+def test_films_between_the_speeds(exported):
+    """The polynomial of four speeds in ln u; stiffness at the ends of the tables, where it goes on straight."""
+    force, laws, _ = exported["30205"]
+    assert laws.speeds.size > 20
+    load, stiffness, damping = error_between(laws, films_of(force.geometry), of_largest=True)
+    assert 0.0 < load < 5e-5
+    assert stiffness < 2e-3
+    assert damping < 2e-4
 
 
 def test_statuses(exported):

@@ -34,6 +34,7 @@ LIGHT = 1e-2
 
 _SCALE = 0.5
 _BEYOND = 3.0
+_LEAST = 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,6 +121,7 @@ def film_speed_laws(
     *,
     memory: bool = False,
     dry: Callable[[float], float] | None = None,
+    step: float = STEP,
 ) -> SpeedLaws:
     """Laws with films from one speed to another.
 
@@ -133,13 +135,15 @@ def film_speed_laws(
         Whether films have a memory.
     dry : callable, optional
         Approach [m] of a dry contact by its load [N]; that of balls if left out.
+    step : float
+        Largest distance of two speeds in ln u.
 
     Raises
     ------
     SolverError
         If a speed has no films, or none over frequency for a memory.
     """
-    count = 1 if fastest == slowest else max(NEIGHBOURS, 1 + math.ceil(math.log(fastest / slowest) / STEP))
+    count = 1 if fastest == slowest else max(NEIGHBOURS, 1 + math.ceil(math.log(fastest / slowest) / step))
     speeds = np.geomspace(slowest, fastest, count)
     laws = [films(float(speed)) for speed in speeds]
     lowest, highest = max(law.loads[0] for law in laws), min(law.loads[1] for law in laws)
@@ -216,6 +220,10 @@ def _side(
     middle, ends = math.sqrt(lowest * highest), (lowest, _BEYOND * highest)
     bare = [(middle / law.coefficient) ** (2.0 / 3.0) if dry is None else dry(middle) for law in laws]
     offsets = [approach - load_approach(law, middle) for approach, law in zip(bare, laws, strict=True)]
+    if dry is not None:  # thinner films than this law of dry lines is right keep a scale
+        offsets = [
+            0.5 * (h + math.hypot(h, 2.0 * _LEAST * approach)) for h, approach in zip(offsets, bare, strict=True)
+        ]
     places = np.array([[-offset, _SCALE * offset] for offset in offsets])
     reach = [
         math.asinh((load_approach(law, load) - centre) / scale)

@@ -16,6 +16,9 @@ from mbs.bearings.tapered.tapered_bearing import TaperedForce
 from mbs.exports.balls.source import header_of, joined, prefix_of, private_law, public_law, write_texts
 from mbs.exports.balls.speed_laws import SpeedLaws, dry_speed_laws, film_speed_laws
 
+STEP = 0.1
+"""Largest distance of two speeds in ln u: half that of balls, as damping of lines bends sharply over the load."""
+
 _BODIES = ("tapered_balance.c", "tapered_bearing.c")
 
 
@@ -40,7 +43,7 @@ def line_speed_laws(
     """
     laws = force.laws
     if films is not None:
-        return film_speed_laws(films, *speeds, dry=lambda load: float((load / laws.cone) ** 0.9))
+        return film_speed_laws(films, *speeds, dry=lambda load: float((load / laws.cone) ** 0.9), step=STEP)
     inner, outer = (
         NormalLaw(c, laws.damping, laws.damping_time, 0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, empty_table())
         for c in (laws.cone, laws.cup)
