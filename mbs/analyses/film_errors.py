@@ -52,13 +52,14 @@ def film_errors(
         for index in system.select(TaperedElement):
             connected = system.elements[index]
             element, ports = connected.element, connected.transform @ displacement
-            error = line_error(element, ports, operation) if isinstance(element, TaperedElement) else None
+            assert isinstance(element, TaperedElement)
+            error = line_error(element, ports, operation, films or element.memory)
             found += [] if error is None else [error]
     return found
 
 
-def line_error(element: TaperedElement, ports: FloatArray, operation: Operation) -> FilmError | None:
-    """Estimated error of the slow films of tapered rollers along their load; None without films, and without a load.
+def line_error(element: TaperedElement, ports: FloatArray, operation: Operation, films: Films) -> FilmError | None:
+    """Estimated error of the films of tapered rollers along their load; None without films, and without a load.
 
     Parameters
     ----------
@@ -68,6 +69,8 @@ def line_error(element: TaperedElement, ports: FloatArray, operation: Operation)
         Displacement of its inner ring against the outer one at the equilibrium.
     operation : Operation
         Speed and angle.
+    films : {"slow", "memory"}
+        Films whose error is estimated; with memory by the slices one by one as they move in slow motion.
     """
     if element.films is None:
         return None
@@ -76,17 +79,19 @@ def line_error(element: TaperedElement, ports: FloatArray, operation: Operation)
     if load == 0.0:
         return None
     motion = np.array([*(forces.force[:3] / load), 0.0, 0.0, 0.0])
-    relaxation, natural = element.film_relaxation(ports, operation) or (None, np.zeros(0))
+    slices = element.film_slices(ports, operation)
+    relaxation, natural = slices or (element.film_relaxation(ports, operation), np.zeros(0))
+    if films == "slow":
+        relaxation = element.film_relaxation(ports, operation)
     return FilmError(
         bearing=element.name,
-        films="slow",
-        at_rest=relaxation is None,
+        films=films,
+        at_rest=slices is None,
         stiffness=float(motion @ forces.stiffness @ motion),
         damping=float(motion @ forces.damping @ motion),
-        springs=np.zeros(0) if relaxation is None else (relaxation.rows @ motion) ** 2,
-        times=np.zeros(0) if relaxation is None else relaxation.times,
+        springs=(relaxation.rows @ motion) ** 2,
+        times=relaxation.times,
         natural=natural,
-        may_relax=False,
     )
 
 

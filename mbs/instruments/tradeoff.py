@@ -128,7 +128,7 @@ def tradeoff(
     if (scene.balls or scene.tapered) and not scene.bearings:
         kind = "ball bearings" if scene.balls else "tapered or ribbed rollers"
         raise InputError(
-            f"{scene.name}: got {kind} alone, which have neither maps, memory nor slices to choose; allowed: "
+            f"{scene.name}: got {kind} alone, which have neither maps nor slices to choose; allowed: "
             "laws side by side, such as mbs sweep or campbell with --law hertz --law table, and mbs runup, which "
             "states the error of its step"
         )

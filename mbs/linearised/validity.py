@@ -90,8 +90,6 @@ class FilmError:
         Natural time of each slice [s].
     contacts : tuple of LoadedContacts
         The loaded slices; none of a law whose map holds no response.
-    may_relax : bool
-        Whether the analysis may have films with memory.
     """
 
     bearing: str
@@ -103,7 +101,6 @@ class FilmError:
     times: FloatArray
     natural: FloatArray
     contacts: tuple[LoadedContacts, ...] = ()
-    may_relax: bool = True
 
     def error(self, frequencies: FloatArray) -> FloatArray:
         """Estimated |dZ/Z| at frequencies (k,) [Hz]; 0 at rest."""

@@ -218,7 +218,7 @@ def _film_line(entry: FilmError, frequency: float, words: str) -> str:
     if error <= NOTABLE:
         return line
     more = f"warning: {line}, from {entry.frequency:.4g} Hz on more than {100.0 * NOTABLE:g} %"
-    hint = entry.films == "slow" and entry.may_relax
+    hint = entry.films == "slow"
     return more + ("; with --films memory films follow at their own frequency" if hint else "")
 
 

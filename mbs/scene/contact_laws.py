@@ -334,12 +334,7 @@ class ContactLaws:
 
     def _memory_problems(self) -> list[str]:
         """Reasons why films cannot relax."""
-        if self.scene.tapered and not (self.scene.bearings or self.scene.balls):
-            return [
-                "--films: got 'memory' with tapered or ribbed rollers alone, whose films have stiffness and damping of "
-                "slow motion; allowed: slow"
-            ]
-        if self.chosen == TABLE_LAW:  # of ball bearings alone
+        if self.chosen == TABLE_LAW:  # without bearings like NU
             return []
         if not self._has_films:
             got = f"--films: got 'memory' with the law {self.chosen!r:.60}"

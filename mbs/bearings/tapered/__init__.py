@@ -4,7 +4,7 @@
 `tapered_kernel`       the balance of each roller, and the sums over rollers: force, stiffness, damping
 `tapered_bearing`      the force; loads of the rollers
 `tapered_element`      a bearing in a machine: films of its speed
-`tapered_relaxing`     what films of slow motion leave out, estimated
+`tapered_relaxing`     films with memory in linear analyses
 `tapered_energy`       energy of dry contacts, and the work of speed
 `tapered_block`        the bearings of a compiled run
 `line_film`            films of both raceways at one speed as tables for the kernel

@@ -2,8 +2,7 @@
 
 Any law of lines serves: of a map, of the film table, of a formula. It is asked for a cylindrical roller bearing whose
 two reduced radii and roller length are those of the middle of a roller, `cylinder_of`, at the speed of the middle.
-Radius and speed grow towards the large end, by some 5 % at its very end, and films with them: that is left out in the
-balance, and so is all memory of films.
+Radius and speed grow towards the large end, by some 5 % at its very end, and films with them: that is left out.
 """
 
 from __future__ import annotations
@@ -59,7 +58,7 @@ class LineFilms:
 
     @property
     def responses(self) -> tuple[ContactResponse, ...]:
-        """None: films have the stiffness and damping of slow motion."""
+        """None: in time films have the stiffness and damping of slow motion."""
         return ()
 
 

@@ -1,6 +1,6 @@
 """A bearing of tapered rollers, or of rollers between ribs, in a machine: quasi-static, with the films of its speed.
 
-Films have the stiffness and damping of slow motion at any frequency.
+Films may have a memory in linear analyses; in time they have the stiffness and damping of slow motion.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from mbs.bearings.tapered.line_film import DRY_LINES, LineFilms
 from mbs.bearings.tapered.tapered_bearing import TaperedForce, TaperedLoads
 from mbs.bearings.tapered.tapered_energy import TaperedStates, dry_energy, place_work
 from mbs.model.elements import Excitation, Forces, OnRings, Operation, Port, Powers
-from mbs.model.relaxation import Relaxation
+from mbs.model.relaxation import Films, Relaxation
 
 HARMONICS = 3
 """Multiples of the passing frequency of the rollers that are worth following."""
@@ -52,6 +52,8 @@ class TaperedElement(OnRings):
     films : callable or None
         Law of both lines at two speeds of the rings [rad/s]; None for dry lines. Bearings whose `films` are equal share
         them.
+    memory : {"slow", "memory"}
+        Whether films of linear analyses have stiffness and damping of slow motion, or relax.
     """
 
     locating: ClassVar[bool] = True
@@ -64,6 +66,7 @@ class TaperedElement(OnRings):
     start_angle: float = 0.0
     axial_offset: float = 0.0
     films: Callable[[float, float], LineFilms] | None = None
+    memory: Films = "slow"
     _made: OrderedDict[float, TaperedForce] = field(default_factory=OrderedDict, init=False, repr=False)
 
     @property
@@ -79,7 +82,7 @@ class TaperedElement(OnRings):
 
     @property
     def relaxes(self) -> bool:
-        """False: films are those of slow motion at any frequency."""
+        """False: in time films are those of slow motion."""
         return False
 
     def law_at(self, speed: float) -> LineFilms:
@@ -111,8 +114,14 @@ class TaperedElement(OnRings):
                 self._made.popitem(last=False)
         return self._made[speed]
 
-    def film_relaxation(self, displacement: FloatArray, operation: Operation) -> tuple[Relaxation, FloatArray] | None:
-        """Relaxation that its films would have, and natural times of its lines [s]; None without films.
+    def relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
+        """Relaxation of the films of both lines of all rollers, where they relax, see `Element.relaxation`."""
+        if self.memory != "memory" or self.films is None:
+            return None
+        return self.film_relaxation(displacement, operation)
+
+    def film_relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation:
+        """Relaxation that its films have with memory.
 
         Parameters
         ----------
@@ -121,14 +130,29 @@ class TaperedElement(OnRings):
         operation : Operation
             Speed and angle.
         """
-        force = self.force_at(operation)
-        if force.films.dry:
-            return None
         from mbs.bearings.tapered.tapered_relaxing import line_relaxation  # with the kernels of films with memory
 
-        conditions = self.conditions(operation)
+        return line_relaxation(*self._at(displacement, operation))
+
+    def film_slices(self, displacement: FloatArray, operation: Operation) -> tuple[Relaxation, FloatArray] | None:
+        """Relaxation of its slices one by one, and their natural times [s], for estimates; None where nothing rolls.
+
+        Parameters
+        ----------
+        displacement, operation
+            The same as of `film_relaxation`.
+        """
+        if self.force_at(operation).films.dry:
+            return None
+        from mbs.bearings.tapered.tapered_relaxing import slice_relaxation
+
+        return slice_relaxation(*self._at(displacement, operation))
+
+    def _at(self, displacement: FloatArray, operation: Operation) -> tuple[TaperedForce, float]:
+        """The force after a call at a displacement, and the angle of the cage [rad]."""
+        force, conditions = self.force_at(operation), self.conditions(operation)
         force(self.pose(displacement), **conditions)
-        return line_relaxation(force, conditions["cage_angle"])
+        return force, conditions.get("cage_angle", 0.0)
 
     @property
     def ports(self) -> tuple[Port, ...]:

@@ -9,6 +9,7 @@ from ehdmaps.physics.oil_supply import FLOODED
 from ehdmaps.physics.rollers.ribbed_geometry import RibbedGeometry
 from ehdmaps.physics.surface import SMOOTH
 from ehdmaps.units import TEMPERATURE
+from mbs.model.relaxation import FILM_WORDS
 from mbs.scene.specs import TaperedSpec
 
 if TYPE_CHECKING:
@@ -73,11 +74,16 @@ def tapered_law_words(laws: ContactLaws) -> str:
         source = "film formula moes" if films.law == "formula" else "films from the film table"
         return (
             f"{kinds} with {source} at radius and speed of the middle of rollers, {films.oil.title}, "
-            f"{films.supply.label}, {surface_label(films.surface)}, slow films, ribs dry"
+            f"{films.supply.label}, {surface_label(films.surface)}, {_memory_words(laws)}, ribs dry"
         )
     damper = hertz_damper(laws.chosen)
     words = f", {damper.words} of each contact" if damper is not None and damper.words else ""
     return f"{kinds} dry Hertz{words}"
+
+
+def _memory_words(laws: ContactLaws) -> str:
+    """Whether films relax, and where."""
+    return FILM_WORDS[laws.memory] + (" in linear analyses, slow in time" if laws.memory == "memory" else "")
 
 
 def _kind(spec: TaperedSpec) -> str:
@@ -115,6 +121,7 @@ def build_tapered(spec: TaperedSpec, surroundings: Surroundings) -> Built:
         start_angle=spec.start_angle,
         axial_offset=spec.axial_offset,
         films=_films(spec, surroundings) if has_films else None,
+        memory=laws.memory if has_films else "slow",
     )
     return Built(element, element)
 
