@@ -16,7 +16,7 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.rollers.ribbed_geometry import ribbed_estimate
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from mbs import assemble, parse_scene
-from mbs.analyses.film_errors import film_error, film_errors, line_error
+from mbs.analyses.film_errors import film_course, film_error, film_errors, line_error, notable_from
 from mbs.bearings.balls.normal_law import contact
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement
@@ -229,6 +229,10 @@ def test_films_of_slow_motion_say_from_where_they_are_wrong(emap, films):
     theirs = dataclasses.replace(film_error(theirs, POSE, at, "memory", False), contacts=())
     np.testing.assert_allclose(kept, theirs.error(frequencies), rtol=0.1)
     assert film_errors(machine, balance.displacement, machine.operation)[0].films == "memory"
+    # runs in time have slow films
+    (line,) = film_course(machine, (500.0,))
+    (at_slow,) = notable_from(scene(films="slow"), np.array([500.0]))
+    assert line.startswith("slow films: ") and f" {at_slow:.4g} Hz at " in line
 
 
 def by_hand(force, cage_angle, s):

@@ -82,7 +82,7 @@ def tapered_law_words(laws: ContactLaws) -> str:
 
 
 def _memory_words(laws: ContactLaws) -> str:
-    """Whether films relax, and where."""
+    """Kind of their films, for people."""
     return FILM_WORDS[laws.memory] + (" in linear analyses, slow in time" if laws.memory == "memory" else "")
 
 
