@@ -217,13 +217,14 @@ def solve_roller(
     Raises
     ------
     InputError
-        If load or speed is no number above zero, the profile has no depths, or the oil has no temperature like that.
+        If load or speed is no number above zero, the fine grid is not finer than the coarse one both ways, the profile
+        has no depths, or the oil has no temperature like that.
 
     Examples
     --------
     >>> from ehdmaps.physics.lubricant import Lubricant
     >>> roller = FiniteRoller(5.5e-3, 14e-3, 230.769e9, CrownedProfile.of_drop(10e-6, 14e-3, 12.6e-3))
-    >>> found = solve_roller(roller, Lubricant.named("FVA3"), 500.0, 2.0, 333.15, Resolution((34, 12), (34, 16)))
+    >>> found = solve_roller(roller, Lubricant.named("FVA3"), 500.0, 2.0, 333.15, Resolution((24, 10), (36, 15)))
     >>> found.status.word, found.minimum_film < found.middle_film < found.central_film
     ('converged', True)
     """
@@ -232,6 +233,11 @@ def solve_roller(
         for name, value, unit in (("load", load, "N"), ("entrainment_speed", entrainment_speed, "m/s"))
         if not (isinstance(value, int | float) and math.isfinite(value) and value > 0.0)
     ]
+    if not all(fine > coarse for fine, coarse in zip(resolution.fine, resolution.coarse, strict=True)):
+        problems.append(
+            f"finite roller, resolution: got cells {resolution.coarse} and {resolution.fine}; allowed: more in the "
+            "second grid, along and across, as errors are stated by both"
+        )
     if problems:
         raise InputError(problems)
     state = lubricant.at(temperature)

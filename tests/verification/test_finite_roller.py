@@ -126,6 +126,8 @@ def test_what_is_not_solved_says_why() -> None:
     for values, words in (((0.0, 2.0), "load: got 0.0"), ((10.0, math.nan), "entrainment_speed: got nan")):
         with pytest.raises(InputError, match=words):
             solve_roller(roller, OIL, *values, KELVIN)
+    with pytest.raises(InputError, match=r"resolution: got cells \(34, 12\) and \(34, 16\); allowed: more"):
+        solve_roller(roller, OIL, 10.0, 2.0, KELVIN, Resolution((34, 12), (34, 16)))
     with pytest.raises(InputError, match=r"(?s)radius: got -1.0 m.*length: got 0.0 m"):
         FiniteRoller(-1.0, 0.0, MODULUS, ROUNDED)
     with pytest.raises(InputError, match="profile: got no depth at every place"):

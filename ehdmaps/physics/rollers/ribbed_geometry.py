@@ -234,7 +234,7 @@ def axial_limit(designation: str) -> float | None:
     Examples
     --------
     >>> [round(axial_limit(name)) for name in ("NUP210", "NJ308")]
-    [3842, 4831]
+    [3842, 4830]
     """
     entry = boundary(designation)
     if entry is None or not entry.series:
