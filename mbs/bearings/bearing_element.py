@@ -7,6 +7,7 @@ or need time: then each slice of each side of a contact has a state in runs.
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -234,6 +235,17 @@ class BearingElement(RingElement):
             )
         conditions, load = self.conditions(operation), self.centrifugal_load(operation)
         return self.force.rollers(displacement, **conditions, centrifugal_load=load)
+
+    @property
+    def entrainment_rate(self) -> float:
+        """See `OnRings.entrainment_rate`."""
+        return self.rates[1]
+
+    def largest_load(self, displacement: FloatArray, operation: Operation) -> float:
+        """See `OnRings.largest_load`; NaN of forces that are no `BearingForce`."""
+        if not isinstance(self.force, BearingForce):
+            return math.nan
+        return float(self.rollers(displacement, operation).load_per_length.max())
 
     def relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
         """Relaxation of the films, where they relax, see `Element.relaxation`."""

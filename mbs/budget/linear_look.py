@@ -1,4 +1,4 @@
-"""Results that a user looks at in a linear system: frequencies, damping ratios, heights of responses, roller loads.
+"""Results that a user looks at in a linear system: frequencies, damping ratios, heights of responses, contact loads.
 
 Two systems are compared mode by mode. Modes belong together by their shapes in the coordinates that both systems have,
 weighted with the mass (modal assurance); a mode without a partner is said to be lost, and is in no error.
@@ -17,13 +17,12 @@ from scipy.optimize import linear_sum_assignment
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import AnalysisError
 from mbs.analyses.operating import operating
-from mbs.bearings.bearing_force import BearingForce
 from mbs.linearised.averaged import steady_system
 from mbs.linearised.linear import frequency_response, with_peaks
 from mbs.linearised.modes import Modes, modes
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
-from mbs.scene.assembly import Model, ring_motions
+from mbs.scene.assembly import Model
 
 LEAST_ASSURANCE = 0.5
 """Modal assurance above which two modes are one."""
@@ -53,7 +52,9 @@ class LinearLook:
     levels : array, shape (frequencies, responses)
         Response of each sensor to each input [dB re 1 of its unit].
     loads : array, shape (bearings,)
-        Load of the most loaded slice of each bearing [N/m].
+        Load of the most loaded contact of each bearing: per length of a slice [N/m], or of a ball [N].
+    bearings : tuple of str
+        Names of these bearings.
     seconds : float
         Processor time of equilibrium, modes and responses [s].
     """
@@ -63,6 +64,7 @@ class LinearLook:
     frequencies: FloatArray
     levels: FloatArray
     loads: FloatArray
+    bearings: tuple[str, ...]
     seconds: float
 
 
@@ -189,15 +191,13 @@ def linear_look(model: Model, angle: float = 0.0) -> LinearLook:
     frequencies = with_peaks(asked, found.eigenvalues)
     responses = np.abs(frequency_response(balance, scene.inputs, scene.sensors, frequencies))
     seconds = time.process_time() - begin
-    loads = [
-        float(bearing.rollers(motion, balance.operation).load_per_length.max())
-        for bearing, motion in ring_motions(model, balance.displacement)
-        if isinstance(bearing.force, BearingForce)
-    ]
-    if not all(load > 0.0 for load in loads):
+    found_loads = model.largest_loads(balance.displacement, balance.operation)
+    known = ~np.isnan(found_loads)
+    if not np.all(found_loads[known] > 0.0):
         raise AnalysisError("a bearing carries no load at its equilibrium, so that nothing can be compared with it")
     levels = 20.0 * np.log10(np.maximum(responses, 1e-300)).reshape(frequencies.size, math.prod(responses.shape[1:]))
-    return LinearLook(balance, found, frequencies, np.asarray(levels), np.array(loads), seconds)
+    names = tuple(entry.name for entry, there in zip(model.on_rings, known, strict=True) if there)
+    return LinearLook(balance, found, frequencies, np.asarray(levels), found_loads[known], names, seconds)
 
 
 def _highest(look: LinearLook, column: int, frequency: float) -> float:

@@ -27,7 +27,7 @@ from mbs.scene.contact_laws import law_label
 from mbs.scene.fields import HERTZ, MICROMETRE
 from mbs.scene.map_set import TABLE_LAW
 
-FREQUENCY, DAMPING, HEIGHT, LOAD = "frequency", "damping ratio", "response peak", "roller load"
+FREQUENCY, DAMPING, HEIGHT, LOAD = "frequency", "damping ratio", "response peak", "contact load"
 
 LINEAR = (Judged(FREQUENCY), Judged(DAMPING), Judged(HEIGHT, "dB"), Judged(LOAD))
 """What is compared in a linear analysis."""
@@ -163,10 +163,11 @@ def _laws(base: Subject) -> Iterator[Tried]:
     """Laws from dry to the most complete one."""
     memory = base.law
     has_map = memory.name != "formula"
+    has_formula = has_map and not base.scene.balls  # balls have none
     laws = [
         (LawChoice(law_label("hertz"), "hertz"), not has_map),
         (LawChoice(f"{law_label('hertz')}, usual damper", DAMPER), False),
-        *([(LawChoice(law_label("formula"), "formula", films="memory"), False)] if has_map else []),
+        *([(LawChoice(law_label("formula"), "formula", films="memory"), False)] if has_formula else []),
         (dataclasses.replace(memory, label=f"{memory.label}, slow films", films="slow"), False),
         (dataclasses.replace(memory, label=f"{memory.label}, memory"), has_map),
     ]
@@ -178,6 +179,8 @@ def _laws(base: Subject) -> Iterator[Tried]:
 
 def _supplies(base: Subject) -> Iterator[Tried]:
     """Oil supplies, by the reference law."""
+    if base.scene.balls:  # whose films are flooded
+        return
     given = set(base.model().supplies.values())
     for text in SUPPLIES:
         supply = supply_from_text(text)
@@ -218,8 +221,6 @@ def differences_row(
 ) -> Choice:
     """Make a row from its errors at the modes, peaks and bearings of the reference; arguments as of `linear_row`."""
     modes = [HERTZ.text(value) for value in beside.look.modes.frequency[beside.chosen]]
-    sensors = beside.look.balance.system
-    bearings = [entry.element.name for entry in sensors.elements][: load.size]
     peaks = [HERTZ.text(at) for _, at in beside.peaks]
     missing = tuple(
         f"no mode like that of {name}" for name, value in zip(modes, frequency, strict=True) if np.isnan(value)
@@ -228,7 +229,7 @@ def differences_row(
         FREQUENCY: ErrorSummary.of(frequency, modes),
         DAMPING: ErrorSummary.of(damping, modes),
         HEIGHT: ErrorSummary.of(height, peaks),
-        LOAD: ErrorSummary.of(load, bearings),
+        LOAD: ErrorSummary.of(load, list(beside.look.bearings)),
     }
     kept = {name: found for name, found in errors.items() if found.points}
     return Choice(

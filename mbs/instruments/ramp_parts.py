@@ -92,6 +92,8 @@ class PartRun:
         Sum level of each sensor [dB].
     forces : array, shape (bearings,)
         Root mean square of the oscillating force of each bearing, across its axis [N].
+    bearings : tuple of str
+        Names of the bearings.
     steps : int
         Steps made.
     outside : int
@@ -103,6 +105,7 @@ class PartRun:
     speeds: FloatArray
     levels: FloatArray
     forces: FloatArray
+    bearings: tuple[str, ...]
     steps: int
     outside: int
     seconds: float
@@ -202,10 +205,12 @@ def run_part(subject: Subject, ramp: Ramp, part: RampPart) -> PartRun:
         speeds = found.speeds[seen][order]
         levels.append(found.sum_level[seen][order])
     late = record.time >= part.begin - part.start
-    across = [record.forces[index][late][:, 1:3] for index in range(len(model.bearings))]
+    places = {entry.element.name: index for index, entry in enumerate(model.system.elements)}
+    names = tuple(entry.name for entry in model.on_rings)
+    across = [record.forces[places[name]][late][:, 1:3] for name in names]
     forces = [float(np.sqrt(np.sum(np.var(force, axis=0)))) for force in across]
     outside = sum(record.outside.values())
-    return PartRun(speeds, np.array(levels), np.array(forces), record.steps, outside, seconds)
+    return PartRun(speeds, np.array(levels), np.array(forces), names, record.steps, outside, seconds)
 
 
 def _coarsest(course: RunUp, highest: float) -> float:

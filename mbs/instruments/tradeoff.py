@@ -125,13 +125,6 @@ def tradeoff(
     AnalysisError
         If the reference has no equilibrium.
     """
-    if (scene.balls or scene.tapered) and not scene.bearings:
-        kind = "ball bearings" if scene.balls else "tapered or ribbed rollers"
-        raise InputError(
-            f"{scene.name}: got {kind} alone, which have neither maps nor slices to choose; allowed: "
-            "laws side by side, such as mbs sweep or campbell with --law hertz --law table, and mbs runup, which "
-            "states the error of its step"
-        )
     settings = settings or TradeoffSettings(scene.campbell)
     maps = [law for law in laws if law.maps is not None]
     films = maps[0] if maps else named_law(TABLE_LAW if scene.lubricant is not None else "formula", scene)
@@ -152,8 +145,8 @@ def tradeoff(
         choices += [_run_choice(one, measure) for one in tried]
     measure.finish()
     lines = [
-        f"linear: modes and responses up to {HERTZ.text(settings.campbell.highest)} at {RPM.text(scene.speed)}; roller "
-        "load: of the most loaded slice of each bearing; cost: processor time of one analysis"
+        f"linear: modes and responses up to {HERTZ.text(settings.campbell.highest)} at {RPM.text(scene.speed)}; "
+        "contact load: of the most loaded slice or ball of each bearing; cost: processor time of one analysis"
     ]
     if ramp is not None:
         lines += _run_frame(base, ramp, parts)
@@ -258,7 +251,7 @@ def _values(scene: Scene, key: str, highest: float) -> tuple[list[float | int], 
         values = [own * factor for factor in (*COARSER, 1.0, *FINER) if own * factor <= longest]
         return list(values[:-1]), values[-1], own
     if key == "slices":
-        many = max((entry.slices for entry in scene.bearings), default=0)
+        many = max([0, *(entry.slices for entry in scene.bearings), *(entry.slices for entry in scene.tapered)])
         found = sorted({*SLICES[:-1], many, 2 * many - 1 if many > SLICES[-2] else SLICES[-1]})
         return ([], 0, 0) if not many else (list(found[:-1]), found[-1], many)
     top = changes.cutoff_of(scene)
@@ -400,7 +393,7 @@ def _run_choice(one: Tried, measure: _Measured) -> Choice:
     speeds = [RPM.text(speed) for own in reference for speed in own.speeds.tolist()]
     with np.errstate(divide="ignore", invalid="ignore"):
         forces = [20.0 * np.log10(run.forces / own.forces) for own, run in zip(reference, found, strict=True)]
-    names = [entry.name for entry in one.subject.scene.bearings]
+    names = reference[0].bearings
     places = [f"{name}, {RPM.text(own.speeds[0])}" for own in reference for name in names]
     errors = {LEVEL: ErrorSummary.of(levels, speeds), FORCE: ErrorSummary.of(np.concatenate(forces), places)}
     kept = {name: found for name, found in errors.items() if found.points}

@@ -6,6 +6,7 @@ are at the same point of the system, so that forces and moments balance without 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, ClassVar, Literal, NamedTuple, Protocol
@@ -267,6 +268,28 @@ class OnRings(ElementDefaults):
     """
 
     locating: ClassVar[bool] = False
+
+    @property
+    def entrainment_rate(self) -> float:
+        """Entrainment speed of its contacts by the speed of the system [m]; 0 where nothing rolls, or none is known."""
+        return 0.0
+
+    def largest_load(self, displacement: FloatArray, operation: Operation) -> float:
+        """Load of its most loaded contact at rest, in the unit of its law; NaN where none is known.
+
+        Parameters
+        ----------
+        displacement : array (6,)
+            Displacement of the inner ring against the outer one.
+        operation : Operation
+            Speed and angle.
+
+        Returns
+        -------
+        float
+            Load of a ball [N], or load per length of a slice of a roller [N/m].
+        """
+        return math.nan
 
 
 @dataclass(frozen=True, eq=False)

@@ -36,8 +36,11 @@ from mbs.scene.turning import turning_loads, with_places
 if TYPE_CHECKING:
     from ehdmaps.maps.emap import EHDMap
     from mbs.bearings.balls.ball_element import MachineBalls
+    from mbs.bearings.tapered.tapered_element import TaperedElement
     from mbs.gears.gear import GearMesh
 
+AnyBearing: TypeAlias = "BearingElement | MachineBalls | TaperedElement"
+"""A bearing in a system, of any kind."""
 
 _ROUND_OFF = 1e-9
 
@@ -160,6 +163,29 @@ class Model:
     def warnings(self) -> list[str]:
         """Warnings of every analysis about the machine and its law: oils that contradict each other."""
         return oil_warnings(self.oils, self.scene.lubricant)
+
+    @property
+    def on_rings(self) -> tuple[AnyBearing, ...]:
+        """Bearings of all kinds: those of `bearings`, then the others in the order of the elements."""
+        others = {entry.name for entry in self.scene.balls} | {entry.name for entry in self.scene.tapered}
+        found = [entry.element for entry in self.system.elements if entry.element.name in others]
+        return (*self.bearings, *cast("list[AnyBearing]", found))
+
+    def largest_loads(self, displacement: FloatArray, operation: Operation) -> FloatArray:
+        """Load of the most loaded contact of each of `on_rings`, see `OnRings.largest_load`.
+
+        Parameters
+        ----------
+        displacement : array (n,)
+            Displacement of all coordinates.
+        operation : Operation
+            Speed and angle.
+        """
+        loads = [
+            entry.largest_load(self.system.relative(entry.inner, entry.outer) @ displacement, operation)
+            for entry in self.on_rings
+        ]
+        return np.array(loads, dtype=np.float64)
 
     @property
     def operation(self) -> Operation:

@@ -238,7 +238,6 @@ def test_report_has_the_balls(capsys, tmp_path):
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (("tradeoff",), "neither maps nor slices to choose; allowed: laws side by side"),
         (("plan",), "there is no map to plan or to choose; allowed: analyses without --auto, with --law table"),
         (("statics", "--auto"), "there is no map to plan or to choose"),
         (("modes", "--law", "hertz", "--films", "memory"), "without a law that has films; allowed: with --map, --law"),

@@ -88,7 +88,7 @@ class TestTradeoff:
         assert best.errors["sum level"].largest == 0.0
         assert rows["linear: law", "dry Hertz"].errors["frequency"].largest > 0.0
         assert rows["linear: slices", "5 slices"].default
-        assert rows["linear: slices", "3 slices"].errors["roller load"].largest > 0.0
+        assert rows["linear: slices", "3 slices"].errors["contact load"].largest > 0.0
         # None twice: three laws, a supply more, four things that a scene states, a map with fewer loads, fewer and more
         # slices, all steps with the finest one, and the finest of all, each of two parts.
         steps = sum(group == "run-up: step" for group, _ in rows)
@@ -103,6 +103,24 @@ class TestTradeoff:
         assert bars["5 slices"].errors["frequency"] == rows["linear: slices", "5 slices"].errors["frequency"]
         answers = "\n".join(answer_lines(found))
         assert "a linear analysis: what to use" in answers and "a run-up: what to use" in answers
+
+    def test_a_machine_on_balls_has_rows_of_its_laws(self, monkeypatch):
+        monkeypatch.setattr(analysis, "ANGLES", (1, 2))
+        scene = read_scene("electric_drive")
+        scene = dataclasses.replace(scene, frequencies=scene.frequencies[::20])
+        found = tradeoff(scene, [], settings=TradeoffSettings(scene.campbell, runs=False))
+        rows = {(choice.group, choice.label): choice for choice in found.choices}
+        # no formula, no supply, no slices: balls have none
+        assert {group for group, _ in rows} == {
+            f"linear: {words}" for words in ("law", "what a scene states", "cut-off", "cage angles")
+        }
+        assert all(choice.solved == choice.asked for choice in found.choices)
+        dry, slow, memory = (
+            rows["linear: law", label].errors for label in ("dry Hertz", "film table, slow films", "film table, memory")
+        )
+        assert dry["damping ratio"].largest > slow["damping ratio"].largest > 0.0
+        assert dry["contact load"].points == 2 and dry["contact load"].largest > 0.0
+        assert memory["frequency"].largest == 0.0
 
     def test_the_command_refuses_before_it_measures(self, capsys):
         assert main(["tradeoff", "nu308_rigid", "--sensor", "S9", "--highest", "nonsense"]) == 2

@@ -188,6 +188,15 @@ class MachineBalls(BallElement):
         """See `BallElement.balls`."""
         return self.settled(displacement, operation).balls
 
+    @property
+    def entrainment_rate(self) -> float:
+        """See `OnRings.entrainment_rate`."""
+        return self.force.geometry.entrainment_speed(self.inner_spin, self.outer_spin)
+
+    def largest_load(self, displacement: FloatArray, operation: Operation) -> float:
+        """See `OnRings.largest_load` [N]."""
+        return float(self.balls(displacement, operation).load.max())
+
     def advance(
         self, states: Any, displacement: FloatArray, velocity: FloatArray, operation: Operation
     ) -> tuple[Forces, Any]:

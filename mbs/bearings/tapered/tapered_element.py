@@ -188,6 +188,15 @@ class TaperedElement(OnRings):
         """Loads of all rollers at rest at the displacement (6,) of the inner ring against the outer one."""
         return self.force_at(operation).rollers(self.pose(displacement), **self.conditions(operation))
 
+    @property
+    def entrainment_rate(self) -> float:
+        """See `OnRings.entrainment_rate`."""
+        return self.force.geometry.entrainment_speed(self.inner_spin, self.outer_spin)
+
+    def largest_load(self, displacement: FloatArray, operation: Operation) -> float:
+        """See `OnRings.largest_load` [N/m]."""
+        return float(self.rollers(displacement, operation).slices.max())
+
     def advance(
         self, states: Any, displacement: FloatArray, velocity: FloatArray, operation: Operation
     ) -> tuple[Forces, Any]:
