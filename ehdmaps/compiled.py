@@ -28,7 +28,7 @@ from typing import Any, TypeVar, overload
 
 import numba
 from llvmlite import binding
-from numba.core import config
+from numba.core import config, runtime
 
 from ehdmaps.outputs import cache_folder
 from ehdmaps.program import tell
@@ -49,6 +49,7 @@ USED_AGAIN = 3600.0
 """Seconds after which a use of a folder is noted once more."""
 
 _config: Any = config
+_runtime: Any = runtime
 
 COMPILES = not _config.DISABLE_JIT
 """Whether functions are compiled; not under ``NUMBA_DISABLE_JIT=1``, for debuggers and for coverage of the kernels."""
@@ -100,7 +101,7 @@ def njit(function: Callable[..., Any] | None = None, /, *, cache: bool = True, *
     kept = dispatcher._cache
     if not Path(kept.cache_path).is_relative_to(folder):  # it can no longer be written, and numba chose another one
         return numba.njit(**options)(function)
-    kept.load_overload = functools.partial(_load, kept.load_overload, kept.flush)
+    kept.load_overload = functools.partial(_load, functools.partial(_read, kept), kept.flush)
     kept.save_overload = functools.partial(_save, kept.save_overload, folder)
     return dispatcher
 
@@ -118,6 +119,16 @@ def _load(load: Callable[..., Any], flush: Callable[[], None], *arguments: Any) 
         with contextlib.suppress(OSError):
             flush()
         return None
+
+
+def _read(kept: Any, signature: Any, context: Any) -> Any:
+    """Read kept code as `load_overload` of numba does, but for what it prepares for compiling: a fifth of a second.
+
+    Whatever compiles later prepares that itself. Kept code needs numba's counts of references alone.
+    """
+    _runtime.rtsys.initialize(context)
+    with kept._guard_against_spurious_io_errors():
+        return kept._load_overload(signature, context)
 
 
 def _save(save: Callable[..., Any], folder: Path, *arguments: Any) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -21,6 +22,9 @@ _WITHIN = np.array([4e-4, 2.5e-3, 1.5e-2, 3.1e-2, 4.1e-2, 7.9e-2])
 """Error of the complex stiffness of a contact with memory beside the film solver, by omega times its natural time
 sqrt(b^2 + 2 h R)/u: 95 of 100 random contacts of NU308 and N1014 are below, with three oils of 12 to 30 1/GPa, 20 to
 100 degC (`python -m tests.benchmarks.film_memory`)."""
+
+_AT_ONCE = 50
+"""Frequencies at which an error is looked at together, from low ones on."""
 
 
 def memory_error(place: FloatArray) -> FloatArray:
@@ -139,12 +143,14 @@ class FilmError:
         """The error at one frequency [Hz]."""
         return float(self.error(np.array([frequency]))[0])
 
-    @property
+    @cached_property
     def frequency(self) -> float:
         """Lowest frequency at which the error is `NOTABLE` [Hz], between 1 Hz and 1 MHz; infinite if it never is."""
-        grid = np.geomspace(1.0, 1e6, 601)
-        above = np.flatnonzero(self.error(grid) > NOTABLE)
-        return float(grid[above[0]]) if above.size else math.inf
+        for part in np.split(np.geomspace(1.0, 1e6, 601), range(1, 601, _AT_ONCE)):
+            above = np.flatnonzero(self.error(part) > NOTABLE)
+            if above.size:
+                return float(part[above[0]])
+        return math.inf
 
 
 @dataclass(frozen=True)

@@ -118,6 +118,19 @@ def _own(module):
 
 
 @pytest.mark.slow
+def test_a_caller_is_compiled_after_its_callee_was_read(site, tmp_path):
+    """Kept code is read without what numba prepares for compiling; whatever compiles afterwards still works."""
+    cache = tmp_path / "cache"
+    code = "from ehdmaps.callee import inner; assert inner(1.0) == 2.0; print(len(inner.stats.cache_hits))"
+    variables = os.environ | {"XDG_CACHE_HOME": str(cache), "PYTHONPATH": str(site)}
+    variables.pop("NUMBA_CACHE_DIR", None)
+    for hits, more in ("0", ""), ("1", "; from ehdmaps.caller import outer; assert outer(1.0) == 3.0"):
+        command = [sys.executable, "-c", code + more]
+        found = subprocess.run(command, capture_output=True, text=True, env=variables, cwd=site, check=True)
+        assert found.stdout.split() == [hits]
+
+
+@pytest.mark.slow
 def test_damaged_code_is_compiled_again(site, tmp_path):
     cache = tmp_path / "cache"
     outer(site, cache)
