@@ -162,9 +162,7 @@ class EHDMap:
         """
         added = dict(zip(LEFT_OUT, (float(stiffness), float(damping)), strict=True))
         dataset = self.dataset.assign_attrs(added)
-        if schema.CHECKSUM in dataset.attrs:
-            dataset.attrs[schema.CHECKSUM] = content_sha256(dataset, self.backbone)
-        return EHDMap(dataset, self.backbone)
+        return self._of_the_same_films(dataset)
 
     def with_surface(self, surface: Surface) -> EHDMap:
         """The same films, whose laws are those of other surfaces where nothing else is asked for.
@@ -192,9 +190,15 @@ class EHDMap:
         dataset.attrs.pop(attribute, None)
         if not usual:
             dataset.attrs[attribute] = text
+        return self._of_the_same_films(dataset)
+
+    def _of_the_same_films(self, dataset: xr.Dataset) -> EHDMap:
+        """A map that differs in attributes of which no table of a law depends: what was made is kept for both."""
         if schema.CHECKSUM in dataset.attrs:
             dataset.attrs[schema.CHECKSUM] = content_sha256(dataset, self.backbone)
-        return EHDMap(dataset, self.backbone)
+        other = EHDMap(dataset, self.backbone)
+        other._laws = self._laws
+        return other
 
     @cached_property
     def contacts(self) -> tuple[LineContact, ...]:
@@ -265,7 +269,7 @@ class EHDMap:
             raise InputError(f"contact law, kind: got {kind!r}; allowed in this map: {', '.join(allowed)}")
         key = kind, outside, supply or self.supply, self.surface if surface is None else surface
         if key in self._laws:
-            return self._laws[key].again()
+            return self._laws[key].again(self.law_errors)
         names = ("inner", "outer") if kind == "series" else (kind,)
         contacts = tuple(by_name[name] for name in names)
         check_loads(self.dataset["load"].values, contacts)

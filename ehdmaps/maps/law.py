@@ -143,6 +143,7 @@ class ContactLaw:
         self.supply = supply
         self.errors = errors
         self._plain = self._law_table()
+        self._parts: list[tuple[ApproachTable, ApproachTable]] = []
         self._latest: LawAtPoint | None = None
 
     @cached_property
@@ -150,7 +151,10 @@ class ContactLaw:
         """Arrays for `ehdmaps.maps.kernels.kernel`, ready for a centrifugal load where the law takes one."""
         if self.kind != "series":
             return self._plain
-        inner, outer = (self._approach_table((contact,)) for contact in self.contacts)
+        if not self._parts:
+            inner, outer = (self._approach_table((contact,)) for contact in self.contacts)
+            self._parts.append((inner, outer))
+        ((inner, outer),) = self._parts
         return self._plain._replace(inner=inner, outer=outer)
 
     @property
@@ -162,9 +166,16 @@ class ContactLaw:
         """Scratch for `kernel.collapse` and `kernel.evaluate`, one for each thread and each `Point` kept."""
         return _workspace(self.table)
 
-    def again(self) -> ContactLaw:
-        """The same law with counts of its own, all zero; films that were read are shared."""
+    def again(self, errors: LawErrors | None = None) -> ContactLaw:
+        """The same law with counts of its own, all zero; films that were read, and its tables, are shared.
+
+        Parameters
+        ----------
+        errors : LawErrors, optional
+            Other bounds of its errors.
+        """
         other = copy.copy(self)
+        other.errors = errors or self.errors
         other._outside, other._latest = self._outside.emptied(), None
         return other
 

@@ -29,7 +29,8 @@ print(getattr(build_meta, f"build_{sys.argv[1]}")(sys.argv[2]))
 
 def done(command, folder, status=0, **more):
     """Run a program, without folders of packages that this process was given; its output."""
-    environment = {name: text for name, text in os.environ.items() if name != "PYTHONPATH"} | more
+    environment = {name: text for name, text in os.environ.items() if name != "PYTHONPATH"}
+    environment |= {"PIP_NO_COMPILE": "1"} | more  # modules are compiled as they are imported
     parts = [str(part) for part in command]
     result = subprocess.run(parts, cwd=folder, env=environment, capture_output=True, text=True, check=False)
     assert result.returncode == status, result.stdout + result.stderr
@@ -42,9 +43,8 @@ def distributions(tmp_path_factory):
     folder = tmp_path_factory.mktemp("a build")
     done([sys.executable, "-m", "venv", "tools"], folder)
     wanted = ["setuptools>=77.0.3"]
-    got = subprocess.run(
-        [folder / "tools/bin/pip", "install", "--quiet", *wanted], capture_output=True, text=True, check=False
-    )
+    install = [folder / "tools/bin/pip", "install", "--quiet", "--no-compile", *wanted]
+    got = subprocess.run(install, capture_output=True, text=True, check=False)
     if got.returncode:
         (pytest.fail if os.environ.get("CI") else pytest.skip)(f"{wanted} cannot be installed: {got.stderr[-300:]}")
     clone = folder / "clone"
@@ -98,8 +98,9 @@ def test_what_source_distribution_and_wheel_hold(distributions):
 def installed(distributions, tmp_path_factory):
     """The wheel in an environment of its own, which borrows what ehdmaps needs; in a folder with blanks and umlauts."""
     folder = tmp_path_factory.mktemp("elsewhere") / "else where, für jede"
-    done([sys.executable, "-m", "venv", folder], folder.parent)
-    done([folder / "bin/pip", "install", "--quiet", "--no-deps", distributions[1]], folder.parent)
+    done([sys.executable, "-m", "venv", "--without-pip", folder], folder.parent)
+    pip = distributions[0].parent / "tools/bin/pip"
+    done([pip, "--python", folder / "bin/python", "install", "--quiet", "--no-deps", distributions[1]], folder.parent)
     (packages,) = folder.glob("lib/python*/site-packages")
     borrowed = [path for path in sys.path if path.endswith("site-packages")]
     (packages / "zz_borrowed.pth").write_text("\n".join(borrowed), encoding="utf-8")
@@ -130,9 +131,9 @@ def test_an_installation_elsewhere_has_its_jobs_scenes_exports_and_solids(instal
             done([program, "check", name], tmp_path)
     code = "import mbs.scene.reader as r; print(*map(r.read_scene, r.shipped_systems()))"
     done([python, "-c", code], tmp_path)
-    # with the finite elements of its housing; in Python, as numba would compile all anew for the new place
-    statics = [installed / "bin/mbs", "statics", "gearbox", "--law", "hertz"]
-    done(statics, tmp_path, NUMBA_DISABLE_JIT="1")
+    # in Python, as numba would compile all anew for the new place; with the finite elements of the housing
+    in_python = {"NUMBA_DISABLE_JIT": "1"}
+    done([installed / "bin/mbs", "statics", "gearbox", "--law", "hertz"], tmp_path, **in_python)
     for target, name in (("csv", "k.csv"), ("c", "c")):
-        done([program, "export", small_map, "--to", target, "-o", name], tmp_path)
+        done([program, "export", small_map, "--to", target, "-o", name], tmp_path, **in_python)
     assert "NU308" in done([program, "solids", "nu308"], tmp_path)

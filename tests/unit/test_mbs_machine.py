@@ -126,7 +126,7 @@ def test_rings_of_other_temperatures_have_films_of_the_table(tmp_path, monkeypat
 def test_three_analyses_of_a_scene_have_three_lists(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     text = (resources.files("mbs") / "systems" / "nu308_rigid.toml").read_text(encoding="utf-8")
-    short = text.replace("slices = 41", "slices = 3").replace('duration = "0.2 s"', 'duration = "0.02 s"')
+    short = text.replace("slices = 41", "slices = 3").replace('duration = "0.2 s"', 'duration = "2 ms"')
     (tmp_path / "short.toml").write_text(short)
     newtonian = ("--auto", "--shear", "newtonian")
     lists = []
