@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 NO_CENTRIFUGAL = "got 'memory' with centrifugal = true; allowed: films with memory without it, or slow films"
 
-NO_MAP = "none stated: the law is not that of a map"
+NO_MAP = "none stated: the law is not that of a map or a film table"
 """What is said where laws state no errors."""
 
 HARMONICS = 3
@@ -109,11 +109,6 @@ class RingElement(OnRings):
             The same as for `film_relaxation`.
         """
         return np.zeros(0)
-
-    @property
-    def error_words(self) -> str:
-        """Name the errors that its law states, for people; empty for laws that state none."""
-        return ""
 
     def contact_groups(self, displacement: FloatArray, operation: Operation) -> tuple[ContactGroup, ...]:
         """Its slices by the law that they have, at rest; none without films.
@@ -271,7 +266,7 @@ class BearingElement(RingElement):
 
     @property
     def error_words(self) -> str:
-        """See `RingElement.error_words`."""
+        """See `OnRings.error_words`."""
         errors = self.film_laws[0].errors if self.film_laws else None
         return "" if errors is None else errors.words
 
@@ -417,7 +412,7 @@ class RollerElement(RingElement):
 
     @property
     def error_words(self) -> str:
-        """See `RingElement.error_words`."""
+        """See `OnRings.error_words`."""
         return self.plain.error_words
 
     def contact_groups(self, displacement: FloatArray, operation: Operation) -> tuple[ContactGroup, ...]:
@@ -483,15 +478,13 @@ def error_words(system: System, film_share: float = 0.0) -> str:
     film_share : float
         Part of the bands that is what films with memory leave out; 0 if that is not in them.
     """
-    bearings = [system.elements[index].element for index in system.select(RingElement)]
+    bearings = [system.elements[index].element for index in system.select(OnRings)]
     if not bearings:
         return ""
-    words = {element.error_words for element in bearings if isinstance(element, RingElement)}
+    words = {element.error_words for element in bearings if isinstance(element, OnRings)}
     if "" in words:
         return NO_MAP
     stated = "; ".join(sorted(words))
-    if len(bearings) < len(system.select(OnRings)):
-        stated += "; without those of ball bearings"
     if film_share == 0.0:
         return f"{stated}; how films relax is not in it"
     films = f"what one relaxation time of a slice leaves out ({100.0 * film_share:.2g} % of the median band)"

@@ -14,7 +14,8 @@ Each changes the dynamic stiffness Z(s) of the system by dZ(s). To first order a
     d lambda = -y' dZ(lambda) x,    with y' Z'(lambda) x = 1,
 
 and a response by dH = -S Z^-1 dZ Z^-1 B. A slice with a film that relaxes has Z = k + s c/(1 + s theta) with
-theta = c/(k_s - k); k_s, the stiffness of the locked film, is held.
+theta = c/(k_s - k); k_s, the stiffness of the locked film, is held. Balls and tapered rollers are in balance between
+their contacts: dZ(s) of such bearings is that of `mbs.model.condensed`.
 
 A band is the sum of the sizes of these changes: of the three kinds, and over the bearings, which share the errors of
 one map. That is the largest change to first order that the bounds allow. Films with memory leave out a part that
@@ -25,6 +26,7 @@ motion, of which they leave out nothing.
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -38,13 +40,14 @@ from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
 from mbs.bearings.bearing_element import RingElement, ring_following
 from mbs.bearings.roller_contacts import ContactGroup
 from mbs.linearised.film_part import FilmPart, film_part
+from mbs.model.condensed import DIRECTIONS, LAW_CHANGES, Condensed
 from mbs.model.elements import OnRings
 from mbs.model.equilibrium import Equilibrium
 
 if TYPE_CHECKING:
     from ehdmaps.maps.law_errors import LawBounds
 
-KINDS = ("stiffness", "damping", "film")
+KINDS = LAW_CHANGES
 """Kinds of changes, in the order in which each bearing has them."""
 
 _State = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
@@ -119,13 +122,32 @@ class _Slices:
 
 
 @dataclass(frozen=True, eq=False)
+class CondensedBearing:
+    """A bearing whose rolling elements are in balance, in a system whose laws change.
+
+    Attributes
+    ----------
+    element : int
+        Which element of the system it is.
+    condensed : Condensed
+        The bearing with the errors of its law.
+    weights : array, shape (changes, 9)
+        Part that each change of the system has in each of its `mbs.model.condensed.DIRECTIONS`.
+    """
+
+    element: int
+    condensed: Condensed
+    weights: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
 class LawBands:
     """Changes that the errors of the laws of a system may make at an equilibrium.
 
     Attributes
     ----------
     changes : tuple of tuple of SliceChange
-        Each change with all slices that it reaches: for each bearing those of `KINDS`.
+        Each change with all slices that it reaches: for each bearing those of `KINDS`, first of bearings in slices.
     films : FilmPart or None
         What films leave out, in groups as those of the changes; None of films without memory.
     """
@@ -134,6 +156,12 @@ class LawBands:
     films: FilmPart | None
     _balance: Equilibrium
     _groups: tuple[_Slices, ...]
+    _condensed: tuple[CondensedBearing, ...] = ()
+
+    def only(self, change: int) -> LawBands:
+        """One of the changes alone, without what films leave out."""
+        of_bearings = tuple(dataclasses.replace(one, weights=one.weights[[change]]) for one in self._condensed)
+        return dataclasses.replace(self, changes=(self.changes[change],), films=None, _condensed=of_bearings)
 
     def eigenvalue_changes(self, eigenvalues: ComplexArray, right: ComplexArray, left: ComplexArray) -> ComplexArray:
         """Change of eigenvalues by each of the changes, shape (changes, modes) [1/s].
@@ -161,6 +189,10 @@ class LawBands:
             shifts[there] -= np.array([part.stiffness for part in parts]) @ product
             shifts[there] -= np.array([part.damping for part in parts]) @ by_damping
             shifts[there] += np.array([part.times for part in parts]) @ by_times
+        for one in self._condensed:
+            transform = self._balance.system.elements[one.element].transform
+            ends = ((transform @ vectors).T[:, :, None] for vectors in (turned, right))
+            shifts -= one.weights @ one.condensed.changes_along(eigenvalues, *ends)[..., 0, 0]
         return shifts
 
     def of_modes(self, eigenvalues: ComplexArray, right: ComplexArray, left: ComplexArray) -> ModeBands:
@@ -190,6 +222,10 @@ class LawBands:
                 for change in self.changes
             ]
         )
+        for one in self._condensed:
+            moved = self._balance.system.elements[one.element].transform @ shapes
+            by_direction = np.einsum("mn,qmn->qn", moved, one.condensed.changes_of_slow_motion[0] @ moved)
+            energy = energy + one.weights @ by_direction
         omega = 2.0 * np.pi * frequency
         swings = omega > 1e-6 * omega.max(initial=0.0)
         band = np.abs(energy).sum(axis=0) / (2.0 * np.where(swings, omega, 1.0)) / (2.0 * np.pi)
@@ -202,7 +238,9 @@ class LawBands:
         for one in self._groups:
             ports = np.flatnonzero(np.any(one.port_rows != 0.0, axis=0))
             active[one.element] = np.union1d(active.get(one.element, ports), ports)
-        return active
+        return active | {
+            one.element: np.flatnonzero(np.any(one.condensed.pose, axis=(0, 1))) for one in self._condensed
+        }
 
     @property
     def ports(self) -> FloatArray:
@@ -257,8 +295,13 @@ class LawBands:
             return moved
 
         s = np.asarray(1j * places, dtype=np.complex128)
-        for change in self.changes:
+        by_balance = [
+            (one.weights, self._by_directions(one, s, logs, motion[:, at], back[:, :, at]))
+            for one, at in ((one, places_of[one.element]) for one in self._condensed)
+        ]
+        for index, change in enumerate(self.changes):
             moved = moved_by([(part.group, _dynamic(self._groups[part.group], part, s)) for part in change])
+            moved += [np.tensordot(weights[index], by_direction, 1) for weights, by_direction in by_balance]
             band += np.abs((np.sum(moved, axis=0) * unit).real)
         by_films = np.zeros_like(band)
         if self.films is not None:
@@ -267,17 +310,32 @@ class LawBands:
             by_films += np.sum(np.abs(moved_by(list(enumerate(doubts)))), axis=0)
         return band + by_films, by_films
 
+    def _by_directions(
+        self, one: CondensedBearing, s: ComplexArray, logs: FloatArray, motion: ComplexArray, back: ComplexArray
+    ) -> ComplexArray:
+        """Change of the responses by each direction of a bearing, of which places s (k,) are looked at."""
+        active = self._active[one.element]
+        at_places = np.moveaxis(one.condensed.changes(s)[:, :, active][..., active], 0, 1)
+        at_all = CubicSpline(np.log(s.imag), at_places)(logs) if s.size > 1 else at_places
+        return np.asarray(np.moveaxis(-back[:, None] @ at_all @ motion[:, None], 1, 0), dtype=np.complex128)
+
     def of_bearings(self) -> FloatArray:
         """Bands of k [N/m] and c [N s/m] of each bearing along its force, either way, shape (2, bearings).
 
-        Those of `mbs.linearised.sweep.along_load`; NaN for a bearing without force, and for balls.
+        Those of `mbs.linearised.sweep.along_load`; NaN for a bearing without force.
         """
         balance, bands = self._balance, []
+        condensed = {one.element: one for one in self._condensed}
         for index in balance.system.select(OnRings):
             radial = balance.forces[index][1:3]
             load = float(np.linalg.norm(radial))
-            if load == 0.0 or not isinstance(balance.system.elements[index].element, RingElement):
+            if load == 0.0:
                 bands.append([np.nan, np.nan])
+                continue
+            if index in condensed:
+                along, one = np.array([0.0, *(radial / load), 0.0, 0.0, 0.0]), condensed[index]
+                by_direction = [along @ part @ along for part in one.condensed.changes_of_slow_motion]
+                bands.append([float(np.abs(one.weights @ part).sum()) for part in by_direction])
                 continue
             stiffness, damping = balance.element_stiffness[index], balance.element_damping[index]
             following = ring_following(stiffness)
@@ -306,14 +364,21 @@ def law_bands(balance: Equilibrium) -> LawBands | None:
     system = balance.system
     slices: list[_Slices] = []
     groups: list[tuple[int, ContactGroup]] = []
-    for index in system.select(RingElement):
+    in_balance: dict[int, Condensed] = {}
+    for index in system.select(OnRings):
         connected = system.elements[index]
-        assert isinstance(connected.element, RingElement)
         ports = connected.transform @ balance.displacement
-        own = connected.element.contact_groups(ports, balance.operation)
-        if not own:
+        element = connected.element
+        if isinstance(element, RingElement):
+            own = [(index, group) for group in element.contact_groups(ports, balance.operation)]
+            groups += own
+            states_errors = bool(own)
+        else:
+            condensed = element.law_errors(ports, balance.operation) if isinstance(element, OnRings) else None
+            in_balance |= {} if condensed is None else {index: condensed}
+            states_errors = condensed is not None
+        if not states_errors:
             return None
-        groups += [(index, group) for group in own]
     bounds: list[LawBounds] = []
     states: list[_State] = []
     for index, group in groups:
@@ -325,16 +390,39 @@ def law_bands(balance: Equilibrium) -> LawBands | None:
         bounds.append(bound)
         transform = system.elements[index].transform
         slices.append(_Slices(index, group.rows @ transform, group.rows, state[2], state[3]))
-    if not groups:
+    if not groups and not in_balance:
         return None
     slopes = [_slopes(group, state) for (_, group), state in zip(groups, states, strict=True)]
     changes: list[tuple[SliceChange, ...]] = []
+    weights: dict[int, list[FloatArray]] = {index: [] for index in in_balance}
+    stiffness = _giving(balance, in_balance)
+
+    def add(change: tuple[SliceChange, ...], given: FloatArray, of: int = -1, kind: str = "") -> None:
+        """Add a change with the places that give way, and with that of the law of a bearing in balance."""
+        changes.append(change)
+        for index, rows in weights.items():
+            part = np.concatenate([system.elements[index].transform @ given, np.zeros(len(KINDS))])
+            part[DIRECTIONS.index(kind) if index == of else slice(0)] = 1.0
+            rows.append(part)
+
     for index in dict.fromkeys(index for index, _ in groups):
         own_groups = [g for g, (of, _) in enumerate(groups) if of == index]
-        changes.append(tuple(_stiffer(g, states[g], bounds[g].stiffness) for g in own_groups))
-        changes.append(tuple(_damped(g, states[g], bounds[g].damping) for g in own_groups))
-        changes.append(_thicker(balance, slices, states, slopes, {g: bounds[g].film_offset for g in own_groups}))
-    return LawBands(tuple(changes), film_part(balance), balance, tuple(slices))
+        add(tuple(_stiffer(g, states[g], bounds[g].stiffness) for g in own_groups), np.zeros(system.size))
+        add(tuple(_damped(g, states[g], bounds[g].damping) for g in own_groups), np.zeros(system.size))
+        thicker = {g: bounds[g].film_offset for g in own_groups}
+        force = np.zeros(system.size)
+        for g, films in thicker.items():
+            force -= slices[g].rows.T @ (states[g][1] * films)
+        given = np.asarray(np.linalg.solve(stiffness, force))
+        add(_moved_slices(slices, slopes, given, thicker), given)
+    for index, one in in_balance.items():
+        add((), np.zeros(system.size), index, "stiffness")
+        add((), np.zeros(system.size), index, "damping")
+        force = system.elements[index].transform.T @ one.forces[DIRECTIONS.index("film")]
+        given = np.asarray(np.linalg.solve(stiffness, force))
+        add(_moved_slices(slices, slopes, given, {}), given, index, "film")
+    bearings = tuple(CondensedBearing(index, one, np.array(weights[index])) for index, one in in_balance.items())
+    return LawBands(tuple(changes), film_part(balance), balance, tuple(slices), bearings)
 
 
 def _sizes(changes: ComplexArray, eigenvalues: ComplexArray) -> FloatArray:
@@ -366,20 +454,23 @@ def _slopes(group: ContactGroup, state: _State) -> _State:
     return load, stiffness, damping, times
 
 
-def _thicker(
-    balance: Equilibrium,
-    slices: Sequence[_Slices],
-    states: Sequence[_State],
-    slopes: Sequence[_State],
-    thicker: dict[int, FloatArray],
-) -> tuple[SliceChange, ...]:
-    """Changes made by thicker films [m] of some groups: the equilibrium gives way, and all loads change with it."""
-    force = np.zeros(balance.system.size)
-    for g, films in thicker.items():
-        force -= slices[g].rows.T @ (states[g][1] * films)
-    stiffness, mass = 0.5 * (balance.stiffness + balance.stiffness.T), balance.system.mass
+def _giving(balance: Equilibrium, in_balance: dict[int, Condensed]) -> FloatArray:
+    """Stiffness by which the equilibrium gives way: cages of bearings in balance follow, with a little mass added."""
+    mass = balance.system.mass
+    stiffness = 0.5 * (balance.stiffness + balance.stiffness.T)
     size = max(float(np.trace(stiffness) / np.trace(mass)), 1.0)
-    given = np.linalg.solve(stiffness + _SOFT * size * mass, force)
+    if in_balance:
+        stiffness = balance.stiffness.copy()
+    for index, one in in_balance.items():
+        transform = balance.system.elements[index].transform
+        stiffness += transform.T @ (-one.forces[:6].T - one.stiffness) @ transform
+    return stiffness + _SOFT * size * mass
+
+
+def _moved_slices(
+    slices: Sequence[_Slices], slopes: Sequence[_State], given: FloatArray, thicker: dict[int, FloatArray]
+) -> tuple[SliceChange, ...]:
+    """Changes of the slices of all groups, by an equilibrium that gives way and thicker films [m] of some of them."""
     changes = []
     for g, (_, by_stiffness, by_damping, by_times) in enumerate(slopes):
         shift = slices[g].rows @ given + thicker.get(g, 0.0)

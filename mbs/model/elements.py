@@ -14,6 +14,7 @@ from typing import Any, ClassVar, Literal, NamedTuple, Protocol
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
+from mbs.model.condensed import Condensed
 from mbs.model.profiles import Constant, LoadProfile
 from mbs.model.relaxation import Relaxation
 
@@ -290,6 +291,23 @@ class OnRings(ElementDefaults):
             Load of a ball [N], or load per length of a slice of a roller [N/m].
         """
         return math.nan
+
+    @property
+    def error_words(self) -> str:
+        """Name the errors that its law states, for people; empty for laws that state none."""
+        return ""
+
+    def law_errors(self, displacement: FloatArray, operation: Operation) -> Condensed | None:
+        """Condense its rolling elements, with what the errors of its law change; None where none are stated.
+
+        Parameters
+        ----------
+        displacement : array, shape (6,)
+            Displacement of the inner ring against the outer one, at rest [m or rad].
+        operation : Operation
+            Speed, angle and time.
+        """
+        return None
 
 
 @dataclass(frozen=True, eq=False)

@@ -24,6 +24,7 @@ from mbs.bearings.balls.ball_memory import FilmsOfBalls
 from mbs.bearings.balls.ball_speed import dry_energy, speed_work, turned_by
 from mbs.bearings.balls.laws import BallLaw
 from mbs.bearings.balls.normal_law import nothing_held
+from mbs.model.condensed import Condensed
 from mbs.model.elements import Forces, Operation, Powers
 from mbs.model.relaxation import Films, Relaxation
 
@@ -183,6 +184,20 @@ class MachineBalls(BallElement):
         numbers, _ = at.force.kernel_arguments(**at.conditions)
         law = at.force.law
         return ball_relaxation(law, at.force.shape, at.force.last_balls, float(numbers[2]), at.balls.angle)
+
+    @property
+    def error_words(self) -> str:
+        """See `OnRings.error_words`."""
+        return "" if self.films is None else "errors of the film table of points"
+
+    def law_errors(self, displacement: FloatArray, operation: Operation) -> Condensed | None:
+        """See `OnRings.law_errors`."""
+        if not self.varies:
+            return None
+        from mbs.bearings.balls.ball_errors import ball_errors
+
+        at, follows = self.settled(displacement, operation), self.cage_spin is None
+        return ball_errors(at.force, at.balls, at.conditions, relaxes=self.relaxes, cage_follows=follows)
 
     def balls(self, displacement: FloatArray, operation: Operation) -> BallLoads:
         """See `BallElement.balls`."""

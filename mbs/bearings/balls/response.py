@@ -70,6 +70,19 @@ class ContactResponse:
         unit = np.exp(np.interp(asked, places, np.log(self._unit)))
         return Springs(shares, np.multiply.outer(unit, TIMES))
 
+    def bounds(self, load: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Errors that the table states of slow motion at loads: of k and c, as parts of them, and of the film [m].
+
+        Parameters
+        ----------
+        load : array (n,)
+            Loads, > 0 [N]; beyond the ends errors are those of the ends.
+        """
+        places, asked, films = np.log(self.loads), np.log(load), self.films
+        stated = (films.errors["stiffness"], films.errors["damping"], films.errors["film_offset"] * films.film_offset)
+        stiffness, damping, film = (np.interp(asked, places, part) for part in stated)
+        return stiffness, damping, film
+
     @cached_property
     def misfit(self) -> FloatArray:
         """Largest |dZ/Z| at the frequencies of the table, of each load (n,)."""

@@ -20,6 +20,7 @@ from mbs.bearings.balls.ball_speed import turned_by
 from mbs.bearings.tapered.line_film import DRY_LINES, LineFilms
 from mbs.bearings.tapered.tapered_bearing import TaperedForce, TaperedLoads
 from mbs.bearings.tapered.tapered_energy import TaperedStates, dry_energy, place_work
+from mbs.model.condensed import Condensed
 from mbs.model.elements import Excitation, Forces, OnRings, Operation, Port, Powers
 from mbs.model.relaxation import Films, Relaxation
 
@@ -147,6 +148,19 @@ class TaperedElement(OnRings):
         from mbs.bearings.tapered.tapered_relaxing import slice_relaxation
 
         return slice_relaxation(*self._at(displacement, operation))
+
+    @property
+    def error_words(self) -> str:
+        """See `OnRings.error_words`."""
+        return str(getattr(self.films, "error_words", ""))
+
+    def law_errors(self, displacement: FloatArray, operation: Operation) -> Condensed | None:
+        """See `OnRings.law_errors`."""
+        if self.force_at(operation).films.dry:
+            return None
+        from mbs.bearings.tapered.roller_errors import roller_errors
+
+        return roller_errors(*self._at(displacement, operation), relaxes=self.memory == "memory")
 
     def _at(self, displacement: FloatArray, operation: Operation) -> tuple[TaperedForce, float]:
         """The force after a call at a displacement, and the angle of the cage [rad]."""

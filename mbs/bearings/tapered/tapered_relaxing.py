@@ -25,7 +25,7 @@ from mbs.bearings.tapered.tapered_bearing import TaperedForce
 from mbs.bearings.tapered.tapered_kernel import FIRST_RIB, FIRST_SHARE
 from mbs.model.relaxation import Relaxation
 
-_SOFT = 2e-14
+SOFT = 2e-14
 """Stiffness, over the sum of the C of both lines, that holds rollers where nothing does, as in the kernel."""
 
 _LEAST = 1e-9
@@ -104,7 +104,7 @@ def line_relaxation(force: TaperedForce, cage_angle: float) -> Relaxation:
     compliance[:, np.arange(lines), np.arange(lines)] += np.where(relaxes, slices.times, 1.0)
     times, turns = np.linalg.eigh(0.5 * (compliance + np.swapaxes(compliance, 1, 2)))
     seen = np.swapaxes(turns, 1, 2) @ (root[:, :, None] * slices.ends)
-    rows = (seen / np.sqrt(times)[:, :, None] @ _by_pose(force, cage_angle)).reshape(-1, 6)
+    rows = (seen / np.sqrt(times)[:, :, None] @ by_pose(force, cage_angle)).reshape(-1, 6)
     size = np.array([1.0, 1.0, 1.0 / abs(force.shape.levers[-1])])
     damping = np.sum((seen * size) ** 2, axis=2).ravel()
     keeps = damping > _LEAST * damping.sum()
@@ -121,7 +121,7 @@ def slice_relaxation(force: TaperedForce, cage_angle: float) -> tuple[Relaxation
         The same as of `line_relaxation`; a force with films.
     """
     slices = line_slices(force)
-    rows = (slices.ends @ _by_pose(force, cage_angle)).reshape(-1, 6)
+    rows = (slices.ends @ by_pose(force, cage_angle)).reshape(-1, 6)
     return relaxing(rows, slices.damping.ravel(), slices.times.ravel()), slices.natural.ravel()
 
 
@@ -134,13 +134,21 @@ def _balance(force: TaperedForce, slices: LineSlices) -> FloatArray:
     normals = np.column_stack([ribs.normals, ribs.levers])
     stiffness = 1.5 * np.cbrt(loads) * np.cbrt(ribs.laws) ** 2
     whole += np.swapaxes(stiffness[:, :, None] * normals, 1, 2) @ normals
-    soft = _SOFT * (force.laws.cup + force.laws.cone)
+    soft = SOFT * (force.laws.cup + force.laws.cone)
     whole += np.diag(soft * np.array([1.0, 1.0, shape.levers[-1] ** 2]))
     return np.asarray(whole)
 
 
-def _by_pose(force: TaperedForce, cage_angle: float) -> FloatArray:
-    """D of each roller by the pose, (Z, 3, 6)."""
+def by_pose(force: TaperedForce, cage_angle: float) -> FloatArray:
+    """D of each roller by the pose of the inner ring, shape (Z, 3, 6).
+
+    Parameters
+    ----------
+    force : TaperedForce
+        The bearing.
+    cage_angle : float
+        Angle of the first roller [rad].
+    """
     angle = force.angles + cage_angle
     c, s = np.cos(angle), np.sin(angle)
     found = np.zeros((angle.size, 3, 6))

@@ -70,6 +70,12 @@ class FilmsOfLines:
         u = abs(self.geometry.entrainment_speed(inner_speed, outer_speed))
         return _films_at(cylinder_of(self.geometry), self.films, u)
 
+    @property
+    def error_words(self) -> str:
+        """Name the errors that its laws state, for people; empty for laws that state none."""
+        errors = _laws(cylinder_of(self.geometry), self.films)[0].errors
+        return "" if errors is None else errors.words
+
 
 @functools.lru_cache(maxsize=512)
 def _films_at(cylinder: BearingGeometry, films: OilOfLines, u: float) -> LineFilms:

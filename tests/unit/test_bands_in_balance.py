@@ -1,0 +1,252 @@
+"""Bands of bearings whose rolling elements are in balance: derivatives beside machines solved again with wrong laws."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections import OrderedDict
+
+import numpy as np
+import pytest
+
+from ehdmaps.jobs.make.table_law import table_map
+from ehdmaps.maps.law import LawAtPoint
+from ehdmaps.maps.law_errors import LawBounds, LawChange
+from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.lubricant import Lubricant
+from mbs import assemble, parse_scene
+from mbs.analyses.campbell import law_changes, with_changed_laws
+from mbs.analyses.modes import modes
+from mbs.bearings.balls.ball_bearing import BallForce
+from mbs.bearings.balls.response import ContactResponse
+from mbs.bearings.bearing_element import NO_MAP
+from mbs.bearings.tapered.line_film import LOADS, line_films
+from mbs.bearings.tapered.tapered_element import TaperedElement
+from mbs.linearised.bands import KINDS, law_bands
+from mbs.linearised.dynamic import newton
+from mbs.linearised.linear import frequency_response, responses, seen_of_loads
+from mbs.linearised.modes import state_modes, undamped_modes
+from mbs.linearised.sweep import along_load
+from mbs.model.condensed import DIRECTIONS
+from mbs.model.elements import OnRings, Operation
+from mbs.model.equilibrium import equilibrium
+
+SCENE = """
+schema = 1
+[operation]
+speed = "6000 rpm"
+temperature = "60 degC"
+[lubricant]
+name = "FVA3"
+[[bodies]]
+name = "rotor"
+freedoms = ["x", "y", "z", "theta_y", "theta_z"]
+spin = 1
+mass = "8 kg"
+polar_inertia = "0.02 kg m^2"
+transverse_inertia = "0.2 kg m^2"
+frames = { left = ["-60 mm", "0 mm", "0 mm"], right = ["60 mm", "0 mm", "0 mm"] }
+[[loads]]
+name = "pull"
+on = "rotor"
+force = ["200 N", "-500 N", "150 N"]
+[[inputs]]
+name = "push"
+on = "rotor:left"
+direction = "y"
+[[sensors]]
+name = "seen"
+on = "rotor:right"
+direction = "z"
+quantity = "acceleration"
+"""
+
+
+def bearing(name, kind, at, more=""):
+    return f'[[bearings]]\nname = "{name}"\nbearing = "{kind}"\ninner = "rotor:{at}"\nouter = "ground"\n{more}\n'
+
+
+PAIR = bearing("left", "7208B", "left", 'axial_offset = "6 um"') + bearing(
+    "right", "7208B", "right", 'mirrored = true\naxial_offset = "-6 um"'
+)
+MIXED = bearing("left", "7208B", "left", 'axial_offset = "6 um"') + bearing(
+    "right", "32208", "right", 'mirrored = true\naxial_offset = "-6 um"'
+)
+ROLLERS = bearing("middle", "NU308", "right", 'diametral_clearance = "0 um"')
+FREQUENCIES = np.geomspace(30.0, 3e3, 5)
+FILM, PART = 1e-12, 1e-5
+"""Steps of films [m] and of damping: beside the changes of places and laws over a film, and beside 1, they are so small
+that central differences leave round-off alone, of about 1e-5 in eigenvalues that are found to 1e-10."""
+
+
+@pytest.fixture
+def even(monkeypatch):
+    """Laws whose k, c and films may be wrong by the whole of them, and by 1 m, at any load."""
+    monkeypatch.setattr(ContactResponse, "bounds", lambda self, load: tuple(np.ones((3, load.size))))
+    monkeypatch.setattr(LawAtPoint, "bounds", lambda self, load: LawBounds(*np.ones((3, load.size))))
+
+
+class Changed:
+    """Films of a bearing by the speeds of its rings, whose laws are changed."""
+
+    def __init__(self, films, change):
+        self.films, self.change = films, change
+
+    def __call__(self, *speeds):
+        return self.change(self.films(*speeds))
+
+
+def wrong(system, name, film, damping):
+    """The system with thicker films [m] and relatively more damping of a bearing in balance."""
+
+    def changed(law):
+        sides = {}
+        for side in ("inner", "outer"):
+            one = getattr(law, side)
+            table = one.table.copy()
+            table[:, 2] += math.log1p(damping)
+            sides[side] = one._replace(table=table, centre=one.centre - film)
+        return dataclasses.replace(law, **sides)
+
+    elements = [connected.element for connected in system.elements]
+    for index, element in enumerate(elements):
+        if element.name == name:
+            made = {"_made": OrderedDict()} if hasattr(element, "balls") else {}
+            elements[index] = dataclasses.replace(element, films=Changed(element.films, changed), **made)
+    return system.with_elements(elements)
+
+
+class Base:
+    """A machine at rest, and what its bands are to be."""
+
+    def __init__(self, text, films, emap=None, lines=None):
+        self.scene = parse_scene(SCENE + text, "rotor", "rotor.toml")
+        self.model = assemble(self.scene, "table" if emap is None else "map", emap, films=films)
+        elements = [connected.element for connected in self.model.system.elements]
+        elements = [
+            dataclasses.replace(one, films=lambda *at: lines) if isinstance(one, TaperedElement) else one
+            for one in elements
+        ]
+        self.model = dataclasses.replace(self.model, system=self.model.system.with_elements(elements))
+        self.operation = Operation(self.scene.speed)
+        self.balance = equilibrium(self.model.system, self.operation, tolerance=1e-13)
+        self.laws = law_bands(self.balance)
+        states = state_modes(self.balance, undamped_modes(self.balance))
+        n, kept = self.model.system.size, np.flatnonzero(states.oscillates)
+        self.shapes, left = states.right[:n, kept], states.left[kept, n : 2 * n]
+        self.values = self.eigenvalues(self.balance, states.eigenvalues[kept])
+        self.found = self.laws.eigenvalue_changes(self.values, self.shapes, left)
+        where = self.scene.inputs, self.scene.sensors
+        self.direct = frequency_response(self.balance, *where, FREQUENCIES)
+        self.back = seen_of_loads(self.balance, states, self.scene.sensors, FREQUENCIES, self.laws.ports)
+        self.motion = self.laws.ports @ responses(self.balance, self.scene.inputs, FREQUENCIES)
+
+    def eigenvalues(self, balance, start):
+        found = [newton(balance, complex(value), self.shapes[:, k]) for k, value in enumerate(start)]
+        return np.array(found)
+
+    def told(self, system):
+        """Eigenvalues, sizes of responses, k and c along the loads of a system solved again."""
+        balance = equilibrium(system, self.operation, self.balance.displacement, tolerance=1e-13)
+        answer = frequency_response(balance, self.scene.inputs, self.scene.sensors, FREQUENCIES)
+        return self.eigenvalues(balance, self.values), np.abs(answer), along_load(balance)[1:]
+
+    def check(self, change, one, other, step):
+        """Central differences of two systems beside the derivatives by a change."""
+        eigenvalues, sizes, sides = (
+            (a - b) / (2.0 * step) for a, b in zip(self.told(one), self.told(other), strict=True)
+        )
+        found, only = self.found[change], self.laws.only(change)
+        assert np.max(np.abs(eigenvalues - found)) < 2e-4 * np.abs(found).max()
+        band, _ = only.of_responses(FREQUENCIES, self.motion, self.back, self.direct)
+        np.testing.assert_allclose(np.abs(sizes), band, atol=2e-4 * band.max())
+        own = only.of_bearings()
+        known = np.isfinite(own)
+        np.testing.assert_allclose(np.abs(sides)[known], own[known], atol=2e-4 * own[known].max())
+
+    def check_bearing(self, name):
+        """Damping and films of a bearing in balance."""
+        one = next(one for one in self.laws._condensed if self.model.system.elements[one.element].element.name == name)
+        for kind, step in (("damping", PART), ("film", FILM)):
+            (change,) = np.flatnonzero(one.weights[:, DIRECTIONS.index(kind)] == 1.0)
+            way = (0.0, step) if kind == "damping" else (step, 0.0)
+            systems = [wrong(self.model.system, name, sign * way[0], sign * way[1]) for sign in (1.0, -1.0)]
+            self.check(change, *systems, step)
+
+
+def test_a_pair_of_ball_bearings_with_memory(even):
+    base = Base(PAIR, "memory")
+    base.check_bearing("left")
+    base.check_bearing("right")
+
+
+@pytest.fixture(scope="module")
+def emap():
+    """Map of NU308 of the speed and temperature of the scene alone."""
+    u = 628.3 * 0.25 * 57.0e-3
+    return table_map(
+        BearingGeometry.named("NU308"), Lubricant.named("FVA3"), LOADS, (0.5 * u, 1.5 * u), (333.15, 333.15)
+    )
+
+
+def test_balls_tapered_and_cylindrical_rollers_move_each_other(even, emap):
+    """Films of slow motion, and tapered rollers with the films of NU308: any law of lines serves."""
+    films = line_films((emap.law("inner", "clamp"), emap.law("outer", "clamp")), 15e-3, 8.0, 333.15)
+    base = Base(MIXED + ROLLERS, "slow", emap, films)
+    base.check_bearing("right")
+    # the film of the cylindrical rollers: of a table of approaches, with kinks in its curvature
+    change, film = KINDS.index("film"), 1e-10  # bearings in slices come first
+    systems = [
+        with_changed_laws(base.model, {"middle": (LawChange(film=sign * film),)}, (1.0, 1.0, 1.0)).system
+        for sign in (1.0, -1.0)
+    ]
+    moved = [base.told(system)[0] for system in systems]
+    found = base.found[change]
+    assert np.max(np.abs((moved[0] - moved[1]) / (2.0 * film) - found)) < 2e-2 * np.abs(found).max()
+
+
+def test_stiffness_at_held_loads(even):
+    """Under an axial load all balls are alike: laws that turn about the approach at rest keep the loads."""
+    model = assemble(parse_scene(SCENE + PAIR, "rotor", "rotor.toml"), "table")
+    element = model.system.elements[model.system.select(OnRings)[0]].element
+    operation, place = Operation(model.scene.speed), np.array([3e-6, 0.0, 0.0, 0.0, 0.0, 0.0])
+    condensed = element.law_errors(place, operation)
+    at = element.settled(place, operation)
+    np.testing.assert_allclose(condensed.stiffness, at.force(at.pose, **at.conditions)[1], rtol=1e-9, atol=1.0)
+    found = []
+    for part in (PART, -PART):
+        sides = {}
+        for i, side in enumerate(("inner", "outer")):
+            law, rest = getattr(at.force.law, side), at.balls.approach[i, 0]
+            sides[side] = law._replace(centre=(law.centre + part * rest) / (1 + part), scale=law.scale / (1 + part))
+        other = BallForce(at.force.geometry, dataclasses.replace(at.force.law, **sides))
+        found.append(other(at.pose, **at.conditions)[1:])
+    by_hand = (np.array(found[0]) - np.array(found[1])) / (2.0 * PART)
+    for hand, changes in zip(by_hand, condensed.changes_of_slow_motion, strict=True):
+        size = np.abs(np.diag(hand))[[0, 1, 4]].max()
+        np.testing.assert_allclose(changes[DIRECTIONS.index("stiffness")], hand, atol=1e-5 * size)
+
+
+def test_bands_are_told_and_dry_or_standing_bearings_have_none():
+    scene = parse_scene(SCENE + PAIR, "rotor", "rotor.toml")
+    model = assemble(scene, "table")
+    result = modes(model, Operation(scene.speed))
+    # the table states about 1 % of k and c: half of that of a frequency at most, and some by thicker films
+    part = result.modes.bands.frequency / result.modes.frequency
+    assert part.min() > 0.0 and part.max() < 0.02
+    assert "film table of points" in result.dataset.attrs["bands"]
+    assert law_changes(model, [scene.speed]) is None
+    assert modes(model, Operation(0.0)).modes.bands is None
+    dry = modes(assemble(scene, "hertz:1e-5 s"), Operation(scene.speed))
+    assert dry.modes.bands is None and dry.dataset.attrs["bands"] == NO_MAP
+
+
+def test_rings_in_their_clearance_hardly_have_bands():
+    """Films fill some of the gap: all loads are tiny, and nothing divides by them."""
+    model = assemble(
+        parse_scene(SCENE + PAIR.replace("6 um", "-2 um").replace("--", ""), "rotor", "rotor.toml"), "table"
+    )
+    element = model.system.elements[model.system.select(OnRings)[0]].element
+    condensed = element.law_errors(np.zeros(6), Operation(model.scene.speed))
+    assert np.all(np.isfinite(condensed.changes(np.array([1j, 1e4j]))))
+    assert np.all(np.isfinite(condensed.forces))
