@@ -18,13 +18,12 @@ loss; six-point Lagrange in ln(speed) and temperature at constant zeta.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-import xarray as xr
 from scipy.interpolate import CubicSpline, PchipInterpolator, PPoly
 
 from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
@@ -141,12 +140,12 @@ class _Responses(NamedTuple):
     errors: FloatArray
 
     @classmethod
-    def of(cls, group: xr.Dataset) -> _Responses | None:
+    def of(cls, group: Mapping[Any, Any]) -> _Responses | None:
         """Those of a group; None where it has none."""
-        if schema.NATURAL not in group.variables:
+        if schema.NATURAL not in group:
             return None
         names = (schema.NATURAL, REAL, IMAGINARY, ERROR)
-        natural, real, imaginary, errors = (np.asarray(group[name].values, dtype=float) for name in names)
+        natural, real, imaginary, errors = (np.asarray(group[name], dtype=float) for name in names)
         return cls(natural, real + 1j * imaginary, errors)
 
 
@@ -157,9 +156,10 @@ class BackboneField:
 
     Parameters
     ----------
-    group : xarray.Dataset
-        Group "backbone" of a map file: film_offset [m], film_compliance [m2/N] and loss_compliance [m2 s/N] of the
-        reference contact over (zeta, reference_speed, temperature), NaN where not solved.
+    group : mapping of str to array
+        Group "backbone" of a map file, or arrays by the names of its variables: film_offset [m], film_compliance
+        [m2/N] and loss_compliance [m2 s/N] of the reference contact over (zeta, reference_speed, temperature), NaN
+        where not solved.
     reference : LineContact
         The reference contact.
     contacts, lubricant
@@ -175,7 +175,7 @@ class BackboneField:
 
     def __init__(
         self,
-        group: xr.Dataset,
+        group: Mapping[Any, Any],
         reference: LineContact,
         contacts: Sequence[LineContact],
         lubricant: Lubricant,
@@ -193,12 +193,12 @@ class BackboneField:
         self._states: dict[float, LubricantState] = {}
         self._reference = reference
         self._solids = replace(contacts[0], radius=reference.radius)
-        self._log_speeds = np.log(np.asarray(group["reference_speed"].values, dtype=float))
-        self._temperatures = np.asarray(group["temperature"].values, dtype=float)
-        zeta = np.asarray(group["zeta"].values, dtype=float)
+        self._log_speeds = np.log(np.asarray(group["reference_speed"], dtype=float))
+        self._temperatures = np.asarray(group["temperature"], dtype=float)
+        zeta = np.asarray(group["zeta"], dtype=float)
         self._first = float(zeta[0])
         nodes = 2 + math.ceil((zeta[-1] - zeta[0]) / LATTICE_STEP)
-        offset, compliance, loss = (np.asarray(group[name].values, dtype=float) for name in FILMS)
+        offset, compliance, loss = (np.asarray(group[name], dtype=float) for name in FILMS)
         self._responses = _Responses.of(group)
         self._zeta, self._films = zeta, (offset, compliance, loss)
         self._start = known_from(zeta, np.isfinite(offset) & np.isfinite(compliance) & np.isfinite(loss))

@@ -6,7 +6,7 @@ do, without the table in between.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from os import PathLike, fspath
@@ -14,7 +14,6 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, get_args
 
 import numpy as np
-import xarray as xr
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, MapError
@@ -46,7 +45,8 @@ from ehdmaps.maps.records import (
     supply_from_json,
     surface_from_json,
 )
-from ehdmaps.maps.rolling_film import RollingFilm, rolling_film
+from ehdmaps.maps.rolling_film import NAMES as ROLLING
+from ehdmaps.maps.rolling_film import LaterLines, RollingFilm, rolling_film
 from ehdmaps.maps.rough_layer import LEAST_SPEED, RoughLayer
 from ehdmaps.maps.usable import check_backbone, check_grid, check_loads
 from ehdmaps.physics.approach import StructuralLaw
@@ -57,6 +57,8 @@ from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.surface import SMOOTH, Surface
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from ehdmaps.maps.edges.continued import ContinuedField
 
 _CLOSED_FORMS = ("formula", "hertz")
@@ -81,8 +83,6 @@ class EHDMap:
 
     Attributes
     ----------
-    dataset : xarray.Dataset
-        All that the map holds; of an old map also the films that follow from it.
     backbone : xarray.Dataset or None
         The refinement lines.
 
@@ -94,8 +94,38 @@ class EHDMap:
 
     def __init__(self, dataset: xr.Dataset, backbone: xr.Dataset | None = None, where: str = "map") -> None:
         validate(dataset, where, backbone)
-        self.dataset = completed(dataset, contacts_of(dataset))
+        self._dataset = completed(dataset, contacts_of(dataset))
         self.backbone = backbone
+
+    @property
+    def dataset(self) -> xr.Dataset:
+        """All that the map holds; of an old map also the films that follow from it."""
+        return self._dataset
+
+    def axis(self, name: str) -> FloatArray:
+        """Values of an axis [N/m], [m/s] or [K], shape (n,).
+
+        Parameters
+        ----------
+        name : {"load", "entrainment_speed", "temperature"}
+            The axis.
+        """
+        return np.asarray(self.dataset[name].values, dtype=np.float64)
+
+    def points(self, name: str) -> FloatArray | None:
+        """A variable at all points, in the order of `ehdmaps.maps.schema.DIMS`; None where the map does not hold it.
+
+        Parameters
+        ----------
+        name : str
+            Such as "central_film".
+        """
+        return self.dataset[name].transpose(*schema.DIMS).values if name in self.dataset else None
+
+    @cached_property
+    def solver(self) -> str:
+        """Name of the solver of its films; empty where it states none."""
+        return str(self.dataset.attrs.get("solver", ""))
 
     def with_structure(
         self,
@@ -272,10 +302,10 @@ class EHDMap:
             return self._laws[key].again(self.law_errors)
         names = ("inner", "outer") if kind == "series" else (kind,)
         contacts = tuple(by_name[name] for name in names)
-        check_loads(self.dataset["load"].values, contacts)
+        check_loads(self.axis("load"), contacts)
         if len(self._laws) >= _MOST_LAWS:
             self._laws.pop(next(iter(self._laws)))
-        goes_on = self.dataset.attrs.get("solver") not in _CLOSED_FORMS
+        goes_on = self.solver not in _CLOSED_FORMS
 
         field = self.film_field(names)
         self._laws[key] = ContactLaw(
@@ -311,7 +341,7 @@ class EHDMap:
     @cached_property
     def law_errors(self) -> LawErrors:
         """Bounds of the errors of the laws of this map."""
-        return LawErrors(self.dataset, self.contacts, self.lubricant)
+        return LawErrors(lambda: self.dataset, self.contacts, self.lubricant)
 
     def film_field(self, contacts: tuple[str, ...] | None = None) -> FilmField:
         """Film between the points, what a law is made from: of the film table, the backbone, or the map's own grid.
@@ -351,13 +381,19 @@ class EHDMap:
 
         Maps of schema 1 and 2 and those of the solvers `formula` and `hertz` hold none, nor do those with holes.
         """
-        lines: xr.Dataset | Callable[[], xr.Dataset] | None = self.backbone
+        lines: xr.Dataset | LaterLines | None = self.backbone
+        axes = [self.axis(name) for name in schema.DIMS[1:]]
+        moving = axes[1] > 0.0
+        found = [values[:, :, moving] for name in ROLLING if (values := self.points(name)) is not None]
+        if len(found) < len(ROLLING) or not np.any(moving):
+            return None
         if self.from_table:
             from ehdmaps.maps.table_field import table_lines
 
-            loads, speeds, kelvins = (self._range(axis) for axis in ("load", "entrainment_speed", "temperature"))
+            loads, speeds, kelvins = (self._range(axis) for axis in schema.DIMS[1:])
             lines = partial(table_lines, self.contacts, self.lubricant, loads, speeds, kelvins, SPEED_REACH)
-        return rolling_film(self.dataset, lines, self.contacts, self.lubricant)
+        axes[1] = axes[1][moving]
+        return rolling_film(np.stack(found), axes, lines, self.contacts, self.lubricant)
 
     @cached_property
     def low_loads(self) -> LowLoads | None:
@@ -411,7 +447,7 @@ class EHDMap:
 
     def _range(self, axis: str) -> tuple[float, float]:
         """Lowest value above zero, and highest value, of an axis."""
-        values = self.dataset[axis].values.astype(np.float64)
+        values = self.axis(axis)
         positive = values[values > 0.0]
         if not positive.size:
             raise MapError(f"map: has a backbone and no {axis} above zero; generate the map again")

@@ -18,10 +18,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, reduce
 from itertools import pairwise
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-import xarray as xr
 from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 
 from ehdmaps.arrays import ComplexArray, FloatArray, IndexArray
@@ -34,6 +33,9 @@ from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import moes_speed_number
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _STEP = 0.02
 _FORGOTTEN = 0.5

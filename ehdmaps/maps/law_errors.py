@@ -23,13 +23,12 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.maps import schema
@@ -39,6 +38,9 @@ from ehdmaps.maps.kernels.tables import ApproachTable
 from ehdmaps.maps.records import MODEL_ERRORS
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 class LawChange(NamedTuple):
@@ -175,28 +177,60 @@ class LawErrors:
 
     Parameters
     ----------
-    dataset : xarray.Dataset
-        The map, with what is derived from its films.
+    dataset : xarray.Dataset or callable
+        The map, with what is derived from its films, or what gives it where errors are asked for.
     contacts : sequence of LineContact
         Contacts of the map, in the order of its first axis.
     lubricant : Lubricant
         Oil of the map, for the place of the damping valley.
     """
 
-    def __init__(self, dataset: xr.Dataset, contacts: Sequence[LineContact], lubricant: Lubricant) -> None:
-        moving = dataset.sel(entrainment_speed=dataset["entrainment_speed"] > 0.0)
-        data = moving.transpose(*schema.DIMS, ...)
+    def __init__(
+        self, dataset: xr.Dataset | Callable[[], xr.Dataset], contacts: Sequence[LineContact], lubricant: Lubricant
+    ) -> None:
+        self._given = dataset
         self._contacts = {contact.name: (index, contact) for index, contact in enumerate(contacts)}
         self._lubricant = lubricant
-        self._logs = np.log(data["load"].values.astype(np.float64))
-        self._log_speeds = np.log(data["entrainment_speed"].values.astype(np.float64))
-        self._temperatures = data["temperature"].values.astype(np.float64)
-        self._checked, self._in_valley = (_Checked.of(dataset.attrs, region) for region in ("", "_valley"))
-        points = dataset.attrs.get("law_check_usable", dataset.attrs.get("tolerance_points"))
-        self.checked_points = 0 if self._checked is None or points is None else int(points)
-        self.left_out = float(dataset.attrs.get(LEFT_OUT[0], 0.0)), float(dataset.attrs.get(LEFT_OUT[1], 0.0))
-        self.has_model_errors = any(name in data for name in MODEL_ERRORS)
-        self._data = data
+
+    @cached_property
+    def _data(self) -> xr.Dataset:
+        """Points with a speed."""
+        dataset = self._given() if callable(self._given) else self._given
+        return dataset.sel(entrainment_speed=dataset["entrainment_speed"] > 0.0).transpose(*schema.DIMS, ...)
+
+    @cached_property
+    def _axes(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Logarithms of loads and speeds, and temperatures."""
+        loads, speeds, kelvins = (self._data[name].values.astype(np.float64) for name in schema.DIMS[1:])
+        return np.log(loads), np.log(speeds), kelvins
+
+    @cached_property
+    def _checked(self) -> _Checked | None:
+        """Findings of the check of the laws."""
+        return _Checked.of(self._data.attrs, "")
+
+    @cached_property
+    def _in_valley(self) -> _Checked | None:
+        """Those in the damping valley."""
+        return _Checked.of(self._data.attrs, "_valley")
+
+    @property
+    def checked_points(self) -> int:
+        """Number of points at which the laws were checked."""
+        attributes = self._data.attrs
+        points = attributes.get("law_check_usable", attributes.get("tolerance_points"))
+        return 0 if self._checked is None or points is None else int(points)
+
+    @property
+    def left_out(self) -> tuple[float, float]:
+        """Relative errors of k and c for physics of known size that the films leave out."""
+        attributes = self._data.attrs
+        return float(attributes.get(LEFT_OUT[0], 0.0)), float(attributes.get(LEFT_OUT[1], 0.0))
+
+    @property
+    def has_model_errors(self) -> bool:
+        """True where the map states errors of its model."""
+        return any(name in self._data for name in MODEL_ERRORS)
 
     @cached_property
     def _read(self) -> tuple[FloatArray, tuple[str, ...]]:
@@ -210,7 +244,7 @@ class LawErrors:
         }
         needed = ("stiffness", "damping", "film_offset")
         found = {name: self._error(name) for name in (*(f"{name}_error" for name in needed), *MODEL_ERRORS)}
-        size = values["stiffness"].size and self._log_speeds.size
+        size = values["stiffness"].size and self._axes[1].size
         unknown = tuple(f"{name}_error" for name in needed if found[f"{name}_error"] is None and size)
         errors = {
             name: np.zeros(values["stiffness"].shape) if error is None else error for name, error in found.items()
@@ -292,7 +326,7 @@ class LawErrors:
             None at standstill, and for maps that have no speed: the contact is dry, of which a map states no errors.
         """
         loads = np.asarray(loads, dtype=np.float64)
-        if speed == 0.0 or not self._log_speeds.size:
+        if speed == 0.0 or not self._axes[1].size:
             return None
         single = [self._of_contact(name, loads, abs(speed), temperature) for name in names]
         for i, name in enumerate(names if added is not None else ()):
@@ -318,11 +352,12 @@ class LawErrors:
     ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
         """Relative errors of k and c, error of the film offset [m], 1/k and the loss compliance of one contact."""
         index, contact = self._contacts[name]
-        log_speed = float(np.clip(np.log(speed), self._log_speeds[0], self._log_speeds[-1]))
-        kelvin = float(np.clip(temperature, self._temperatures[0], self._temperatures[-1]))
-        lines = _at(self._temperatures, kelvin, _at(self._log_speeds, log_speed, self._read[0][index], 2), 2)
+        log_loads, log_speeds, kelvins = self._axes
+        log_speed = float(np.clip(np.log(speed), log_speeds[0], log_speeds[-1]))
+        kelvin = float(np.clip(temperature, kelvins[0], kelvins[-1]))
+        lines = _at(kelvins, kelvin, _at(log_speeds, log_speed, self._read[0][index], 2), 2)
         logs = np.log(np.maximum(loads, 1e-300))
-        k, c, offset, film, compliance, loss, share = (np.interp(logs, self._logs, line) for line in lines)
+        k, c, offset, film, compliance, loss, share = (np.interp(logs, log_loads, line) for line in lines)
         if self._checked is not None:
             valley = valley_loads(contact, self._lubricant, np.array([np.exp(log_speed)]), np.array([kelvin]))[0, 0]
             k, c, offset = (

@@ -22,18 +22,20 @@ import stat
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from os import PathLike, fspath
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import netCDF4
 import numpy as np
 import numpy.typing as npt
-import xarray as xr
 
 from ehdmaps.errors import MapError
 from ehdmaps.maps import schema
 from ehdmaps.maps.records import contacts_of, contradictions
 from ehdmaps.maps.schema import Variable
 from ehdmaps.netcdf_structure import DAMAGE, structure_problem
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _AGAIN = "generate the map again"
 _WHOLE, _REAL, _TEXT = "iu", "iuf", "OSUT"
@@ -376,6 +378,8 @@ def _is_characters(variable: Any) -> bool:
 
 def _dataset(group: Any, entries: Sequence[Variable], attributes: dict[str, Any]) -> xr.Dataset:
     """Read the variables of the table."""
+    import xarray as xr
+
     variables = {entry.name: _variable(group.variables[entry.name], entry) for entry in entries if _has(group, entry)}
     axes = {entry.name for entry in entries if entry.axis}
     return xr.Dataset(
@@ -392,6 +396,8 @@ def _has(group: Any, entry: Variable) -> bool:
 
 def _variable(found: Any, entry: Variable) -> xr.Variable:
     """Read one variable."""
+    import xarray as xr
+
     found.set_auto_maskandscale(False)
     found.set_auto_chartostring(False)
     values = np.asarray(found[...])

@@ -10,10 +10,9 @@ import json
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, is_dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, MapError
@@ -25,6 +24,9 @@ from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.physics.surface import Surface
 from ehdmaps.physics.viscosity import AstmViscosity, ConstantViscosity, ViscosityLaw, VogelViscosity, law_from_record
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _UNREADABLE = (ValueError, KeyError, TypeError, AttributeError, ArithmeticError, RecursionError, InputError)
 """What reading an invalid record raises."""

@@ -21,13 +21,13 @@ a contact law are, or of its own grid at constant load where it has no backbone.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
-import xarray as xr
 from scipy.interpolate import CubicSpline, PPoly
 
 from ehdmaps.arrays import FloatArray
@@ -35,12 +35,15 @@ from ehdmaps.maps.backbone import FEWEST_NODES, LATTICE_STEP, lagrange
 from ehdmaps.maps.film_field import RIGID, FilmField, known_from, load_at
 from ehdmaps.maps.grid_field import lines_by_contact
 from ehdmaps.maps.kernels.splines import mix_lines, spline_weights
-from ehdmaps.maps.schema import BACKBONE_DIMS, DIMS
+from ehdmaps.maps.schema import BACKBONE_DIMS
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.films import RIGID_ROLLING_CONSTANT
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import moes_groups, moes_speed_number, valley_load_number
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply, rolling_ratio
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 NAMES = ("rolling_force", "mass_flow")
 """Variables of the map and of its backbone."""
@@ -291,9 +294,14 @@ class RollingFilm:
         return np.log(np.stack([force, RIGID_FLOW_NUMBER / M]))
 
 
+LaterLines = Callable[[], tuple[Mapping[str, npt.NDArray[Any]], LineContact]]
+"""What makes arrays of a backbone by name, and their reference contact, where they are asked for only."""
+
+
 def rolling_film(
-    dataset: xr.Dataset,
-    backbone: xr.Dataset | Callable[[], xr.Dataset] | None,
+    values: FloatArray,
+    axes: Sequence[FloatArray],
+    backbone: xr.Dataset | LaterLines | None,
     contacts: Sequence[LineContact],
     lubricant: Lubricant,
 ) -> RollingFilm | None:
@@ -301,26 +309,23 @@ def rolling_film(
 
     Parameters
     ----------
-    dataset : xarray.Dataset
-        The map.
+    values : ndarray, shape (2, n_contacts, n_w, n_u, n_T)
+        Both at the points of the map with a speed, by `NAMES`.
+    axes : sequence of ndarray
+        Their loads [N/m], speeds [m/s], > 0, and temperatures [K].
     backbone : xarray.Dataset, callable or None
-        Group of its refinement lines, or what makes it, where it is asked for only, down to rigid films.
+        Group of its refinement lines, or what makes its arrays down to rigid films.
     contacts : sequence of LineContact
         Contacts of the map.
     lubricant : Lubricant
         The oil.
     """
-    moving = dataset.sel(entrainment_speed=dataset["entrainment_speed"] > 0.0)
-    if any(name not in moving for name in NAMES) or not moving.sizes["entrainment_speed"]:
+    if not axes[1].size or not np.all(np.isfinite(values) & (values > 0.0)):
         return None
-    values = np.stack([moving[name].transpose(*DIMS).values for name in NAMES])
-    if not np.all(np.isfinite(values) & (values > 0.0)):
-        return None
-    axes = [moving[name].values.astype(np.float64) for name in DIMS[1:]]
     reader: _Reader | None = None
     start = math.inf
     if callable(backbone):
-        reader, start = _made_later(backbone, contacts, lubricant), RIGID
+        reader, start = _made_later(backbone, lubricant), RIGID
     elif backbone is not None and all(name in backbone for name in NAMES):
         reader, start = _lines_reader(backbone, contacts, lubricant)
     if reader is None:
@@ -329,12 +334,12 @@ def rolling_film(
     return RollingFilm(contacts, lubricant, reader, load_range, temperature_range, start, speed_range)
 
 
-def _made_later(lines: Callable[[], xr.Dataset], contacts: Sequence[LineContact], lubricant: Lubricant) -> _Reader:
+def _made_later(lines: LaterLines, lubricant: Lubricant) -> _Reader:
     """Reader of lines that are made when it is first called."""
 
     @cache
     def reader() -> _Reader:
-        found, _ = _lines_reader(lines(), contacts, lubricant)
+        found = _backbone_reader(*lines(), lubricant)
         assert found is not None  # lines of the film table are whole
         return found
 
@@ -361,18 +366,19 @@ def _lines_reader(
     return lambda contact, *at: readers[contact.name](contact, *at), max(starts)
 
 
-def _backbone_reader(group: xr.Dataset, reference: LineContact, lubricant: Lubricant) -> _Reader | None:
+def _backbone_reader(group: Mapping[Any, Any], reference: LineContact, lubricant: Lubricant) -> _Reader | None:
     """Reader of the backbone; None where a line has too few solved points."""
-    zeta, speeds, kelvins = (group[name].values.astype(np.float64) for name in BACKBONE_DIMS)
+    zeta, speeds, kelvins = (np.asarray(group[name], dtype=np.float64) for name in BACKBONE_DIMS)
     first, log_speeds = float(zeta[0]), np.log(speeds)
     nodes = 2 + math.ceil((zeta[-1] - first) / LATTICE_STEP)
     places = first + LATTICE_STEP * np.arange(nodes)
+    solved_lines = [np.asarray(group[name], dtype=np.float64) for name in NAMES]
     lattices = np.zeros((2, speeds.size * kelvins.size, nodes, 5))
     for j, speed in enumerate(speeds):
         for k, kelvin in enumerate(kelvins):
             units = rolling_units(reference, lubricant, float(speed), float(kelvin))
-            for i, name in enumerate(NAMES):
-                line = group[name].values[:, j, k].astype(np.float64)
+            for i, of_name in enumerate(solved_lines):
+                line = of_name[:, j, k]
                 solved = np.isfinite(line) & (line > 0.0)
                 if np.count_nonzero(solved) < FEWEST_NODES:
                     return None

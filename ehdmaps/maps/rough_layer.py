@@ -42,11 +42,10 @@ import math
 from dataclasses import dataclass
 from enum import Enum
 from functools import lru_cache
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-import xarray as xr
 from scipy.interpolate import CubicSpline
 from scipy.special import erfcx, gamma, ndtr, pbdv
 
@@ -59,6 +58,9 @@ from ehdmaps.physics.hertz import max_pressure
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import moes_groups
 from ehdmaps.physics.surface import Surface
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _SHARPNESS = 4.0
 
@@ -535,6 +537,8 @@ def rough_variables(
         load that the film carries by `ehdmaps.maps.rough_layer`; `mean_distance`, the distance of the mean planes over
         the roughness. NaN where a point has no solution.
     """
+    import xarray as xr
+
     ordered = dataset.transpose(*DIMS, ...)
     loads, speeds, temperatures = (ordered[name].values.astype(np.float64) for name in DIMS[1:])
     share, distance = np.empty((2, *(ordered.sizes[name] for name in DIMS)))

@@ -36,12 +36,14 @@ name it in their dims. The dims of a row that is there already never change: old
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from ehdmaps.physics.solution import Status
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 SCHEMA_VERSION = 7
 """Version of the table; files of this and of all lower versions are read."""
@@ -436,12 +438,16 @@ def backbone(coordinates: dict[str, Any], values: dict[str, Any], attributes: di
 
 def typed(entry: Variable, data: Any) -> xr.Variable:
     """Give an array the dims, type, attributes and encoding of its row."""
+    import xarray as xr  # a third of a second, which laws of the film table do without
+
     array = np.asarray(data, dtype=object if entry.dtype == "str" else entry.dtype)
     return xr.Variable(entry.dims, array, entry.attributes(), entry.encoding())
 
 
 def _built(group: str, coordinates: dict[str, Any], values: dict[str, Any], attributes: dict[str, Any]) -> xr.Dataset:
     """Build a dataset by the rows of a group."""
+    import xarray as xr
+
     return xr.Dataset(
         {name: typed(variable(name, group), data) for name, data in values.items()},
         coords={name: typed(variable(name, group), data) for name, data in coordinates.items()},

@@ -10,21 +10,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-import xarray as xr
+import numpy.typing as npt
 from scipy.interpolate import CubicSpline, PPoly
 
 from ehdmaps.arrays import BoolArray, ComplexArray, FloatArray, IndexArray
 from ehdmaps.errors import MapError
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone import ERROR, IMAGINARY, LOSS_SCALE, REAL, BackboneField, OffsetLine
-from ehdmaps.maps.backbone_plan import NAME, STEPS, plan_backbone, zeta_axis
+from ehdmaps.maps.backbone_plan import STEPS, plan_backbone, zeta_axis
 from ehdmaps.maps.film_field import RIGID, first_loads, lifted_loss
-from ehdmaps.maps.records import reference_json
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.lubricant import Lubricant
@@ -116,8 +114,8 @@ class TableField:
     def _memory(self) -> BackboneField:
         """Lines with responses."""
         contacts, ranges = tuple(self._contacts.values()), (self.load_range, self.speed_range, self.temperature_range)
-        group = table_lines(contacts, self._lubricant, *ranges)
-        return BackboneField(group, replace(contacts[0], name=NAME), contacts, self._lubricant, *ranges)
+        lines, reference = table_lines(contacts, self._lubricant, *ranges)
+        return BackboneField(lines, reference, contacts, self._lubricant, *ranges)
 
     def films(
         self, contact: str, loads: FloatArray, speeds: FloatArray, temperatures: FloatArray
@@ -374,8 +372,8 @@ def table_lines(
     speeds: Range,
     temperatures: Range,
     reach: float = 1.0,
-) -> xr.Dataset:
-    """The group "backbone" of a map, with films and responses read from the film table.
+) -> tuple[dict[str, npt.NDArray[Any]], LineContact]:
+    """Arrays of a backbone by name, with films and responses read from the film table, and its reference contact.
 
     Parameters
     ----------
@@ -406,12 +404,5 @@ def table_lines(
         values[name][at] = response
     status = np.full(shape, schema.NOT_NEEDED, dtype=np.int8)
     status[at] = read.status
-    axes = {"zeta": plan.zeta, "reference_speed": plan.speeds, "temperature": plan.temperatures}
-    return schema.backbone(
-        axes | {schema.NATURAL: NATURAL_FREQUENCIES},
-        {**values, "status": status},
-        {
-            "title": "films of a reference contact, read from the film table",
-            schema.REFERENCE_CONTACT: reference_json(plan.contact),
-        },
-    )
+    axes = (*schema.BACKBONE_DIMS, schema.NATURAL), (plan.zeta, plan.speeds, plan.temperatures, NATURAL_FREQUENCIES)
+    return {**dict(zip(axes[0], map(np.array, axes[1]), strict=True)), **values, "status": status}, plan.contact

@@ -6,9 +6,9 @@ Only what the law reads is looked at: the backbone where a map has one, else the
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from ehdmaps.arrays import BoolArray, FloatArray, IntArray
 from ehdmaps.errors import MapError
@@ -20,6 +20,9 @@ from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.solution import Status
 from ehdmaps.units import LOAD, SPEED, TEMPERATURE
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _SHOWN = 3
 _AGAIN = "generate the map again"

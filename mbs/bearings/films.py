@@ -234,8 +234,7 @@ class MapFilms:
     def __post_init__(self) -> None:
         if tuple(contact.name for contact in self.emap.contacts) != SIDES:
             raise MapError("films: got the map of a bare contact; allowed: a map of a bearing")
-        data = self.emap.dataset.sel(entrainment_speed=self.emap.dataset["entrainment_speed"] > 0.0)
-        missing = sum(int(np.count_nonzero(~np.isfinite(data[name].values))) for name in _VARIABLES)
+        missing = sum(int(np.count_nonzero(~np.isfinite(values))) for values in self._moving(_VARIABLES))
         if missing:
             raise MapError(
                 f"films: the map lacks {missing} values of {', '.join(_VARIABLES)}, at points without a solution; "
@@ -261,7 +260,7 @@ class MapFilms:
 
     def state(self, side: int, load: FloatArray, entrainment_speed: float, temperature: float) -> ContactState:
         """Pressure and films from the map; see `FilmSource.state`."""
-        kelvins = self.emap.dataset["temperature"].values
+        kelvins = self.emap.axis("temperature")
         temperature = float(np.clip(temperature, kelvins[0], kelvins[-1]))
         plain = self._formula.state(side, load, entrainment_speed, temperature)
         loaded = load > 0.0
@@ -303,21 +302,22 @@ class MapFilms:
         number, _ = moes_groups(1.0, speed, state.viscosity, 0.0, contact.radius, contact.reduced_modulus)
         return -math.log(number)
 
+    def _moving(self, names: tuple[str, ...]) -> list[FloatArray]:
+        """Variables at the points with a speed, (2, n_w, n_u, n_T) each; NaN where the map does not hold one."""
+        moving = self.emap.axis("entrainment_speed") > 0.0
+        shape = 2, *(self.emap.axis(name).size for name in ("load", "entrainment_speed", "temperature"))
+        found = [self.emap.points(name) for name in names]
+        return [(np.full(shape, np.nan) if values is None else values)[:, :, moving] for values in found]
+
     @cached_property
     def _lines(self) -> tuple[_Lines, ...]:
         """Ratios of each contact at the points of the map."""
-        data = self.emap.dataset.transpose("contact", "load", "entrainment_speed", "temperature", ...)
-        data = data.sel(entrainment_speed=data["entrainment_speed"] > 0.0)
-        loads, speeds, kelvins = (
-            data[name].values.astype(np.float64) for name in ("load", "entrainment_speed", "temperature")
-        )
+        loads, speeds, kelvins = (self.emap.axis(name) for name in ("load", "entrainment_speed", "temperature"))
+        speeds = speeds[speeds > 0.0]
+        both = self._moving((*_VARIABLES, _PEAK_ERROR))
         lines = []
-        for side, name in enumerate(SIDES):
-            of_side = data.sel(contact=name)
-            columns = [of_side[variable].values for variable in _VARIABLES]
-            stated = _PEAK_ERROR in of_side
-            columns.append(of_side[_PEAK_ERROR].values if stated else np.full_like(columns[0], np.nan))
-            values = np.stack(columns, axis=-1)
+        for side in range(len(SIDES)):
+            values = np.stack([variable[side] for variable in both], axis=-1)
             for j, speed in enumerate(speeds):
                 for k, kelvin in enumerate(kelvins):
                     plain = self._formula.state(side, loads, float(speed), float(kelvin))

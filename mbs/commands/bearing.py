@@ -327,7 +327,7 @@ def _law_words(law: str, emap: EHDMap | None, oil: Lubricant) -> str:
     if law == "map" and emap is not None and emap.from_table:
         return f"film table, {oil.title}{structure_words(emap)}"
     if law == "map" and emap is not None:
-        return f"map of {oil.title}, solver {emap.dataset.attrs.get('solver', '')}{structure_words(emap)}"
+        return f"map of {oil.title}, solver {emap.solver}{structure_words(emap)}"
     words = f"film formula moes, {oil.title} (its damping is far too low for loaded contacts)"
     return words if law == "formula" else dry_words(law)
 

@@ -124,7 +124,7 @@ class MapSet:
         temperature : float
             Temperature of the raceways [K].
         """
-        ends = [emap.dataset["temperature"].values[[0, -1]] for emap in self.maps]
+        ends = [emap.axis("temperature")[[0, -1]] for emap in self.maps]
         return all(low <= temperature <= high for low, high in ends)
 
     def each(self, change: Callable[[EHDMap], EHDMap]) -> MapSet:
@@ -156,8 +156,7 @@ class MapSet:
 
 def _label(emap: EHDMap) -> str:
     """By which solver a map was made, in two words."""
-    attributes = emap.dataset.attrs
-    return "film table" if emap.from_table else _LABELS.get(str(attributes.get("solver", "")), "map")
+    return "film table" if emap.from_table else _LABELS.get(emap.solver, "map")
 
 
 def map_sets(maps: Sequence[tuple[str, EHDMap]], bearings: Sequence[BearingSpec] | None) -> list[tuple[str, MapSet]]:
@@ -299,8 +298,7 @@ def _made_for(emap: EHDMap) -> str:
 
 def _made_by(emap: EHDMap) -> str:
     """Way in which a map was made."""
-    attributes = emap.dataset.attrs
-    films = "films from the film table" if emap.from_table else f"solver {attributes.get('solver', '')}"
+    films = "films from the film table" if emap.from_table else f"solver {emap.solver}"
     return films + structure_words(emap)
 
 

@@ -397,6 +397,7 @@ def test_import_is_light(statement: str) -> None:
 
 BEARING = "mbs bearing NU308 --law hertz --load '5 kN' --speed '1500 rpm'"
 STATICS = "mbs statics nu308_rigid --law hertz"
+FILMS_OF_TABLE = "from ehdmaps.jobs.make import assemble, table_law"
 
 SOLVING = ("ehdmaps.ehl", "ehdmaps.openfoam", "ehdmaps.table")
 LATER = ("matplotlib", "xarray", "pandas", "netCDF4", "scipy.interpolate", "scipy.optimize", "scipy.sparse")
@@ -407,6 +408,7 @@ BUDGETS = (
     ("from mbs.bearings import bearing_force", 50, (*SOLVING, *LATER, *MACHINES, "ehdmaps.jobs", "ehdmaps.maps.law")),
     (BEARING, 85, (*SOLVING, *LATER, *MACHINES, "ehdmaps.jobs", "ehdmaps.maps.law", "ehdmaps.maps.emap")),
     (STATICS, 120, (*SOLVING, *LATER, *MACHINES, "ehdmaps.jobs.job", "ehdmaps.maps.law", "ehdmaps.maps.emap")),
+    (FILMS_OF_TABLE, 110, (SOLVING[1], "matplotlib", "xarray", "pandas", "mbs")),
     ("import ehdmaps; ehdmaps.open_map(MAP).law('inner')", 95, (*SOLVING[:2], "matplotlib", "ehdmaps.jobs", "mbs")),
 )
 """What a question loads of our own modules at most, and what it does not need."""

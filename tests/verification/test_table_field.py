@@ -182,11 +182,12 @@ def test_memory_layers_and_rolling_forces_of_the_table_are_those_of_solved_lines
 
 
 def test_lines_of_the_table_reach_down_to_rigid_films() -> None:
-    group = table_lines(CONTACTS, OIL, *RANGES)
-    assert set(np.unique(group["status"].values)) <= {0, 1, schema.NOT_NEEDED}
-    assert group["zeta"].values[0] <= RIGID
-    known = np.isfinite(group["film_compliance_real"].values).all(axis=-1)
-    np.testing.assert_array_equal(known, group["status"].values != schema.NOT_NEEDED)
+    lines, reference = table_lines(CONTACTS, OIL, *RANGES)
+    assert reference.radius == CONTACTS[0].radius
+    assert set(np.unique(lines["status"])) <= {0, 1, schema.NOT_NEEDED}
+    assert lines["zeta"][0] <= RIGID
+    known = np.isfinite(lines["film_compliance_real"]).all(axis=-1)
+    np.testing.assert_array_equal(known, lines["status"] != schema.NOT_NEEDED)
 
 
 def test_films_that_no_newtonian_oil_has_are_told() -> None:

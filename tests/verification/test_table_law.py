@@ -14,12 +14,15 @@ import ehdmaps
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.make.report import films_lines
-from ehdmaps.jobs.make.table_law import law
+from ehdmaps.jobs.make.table_law import law, table_map
 from ehdmaps.jobs.solvers import build
-from ehdmaps.maps.emap import open_map
+from ehdmaps.maps import schema
+from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.solids import STEEL
+from ehdmaps.physics.surface import SMOOTH, Surface
 from mbs import assemble, read_scene, statics
 from mbs.cli import main
 from tests.cases.jobs import FINE
@@ -55,6 +58,28 @@ def test_a_kind_that_there_is_not_is_refused() -> None:
         narrow_law(kind="series")
     with pytest.raises(InputError, match="kind: got 'line'; allowed: series, inner, outer"):
         ehdmaps.law(ehdmaps.BearingGeometry.named("NU308"), OIL, "line")
+
+
+@pytest.mark.slow
+def test_a_map_in_memory_is_its_dataset() -> None:
+    """Laws of a map in memory do without its dataset; all that they take is in it, to the last bit."""
+    given = {"supply": OilSupply(5e-6), "surface": Surface(2e-7)}
+    emap = table_map(ehdmaps.BearingGeometry.named("NU308"), OIL, (2e3, 4e5), (0.5, 3.0), (320.0, 345.0), **given)
+    whole = EHDMap(emap.dataset)
+    for name in ("contacts", "lubricant", "bearing", "supply", "surface", "solver", "from_table", "known_between"):
+        assert getattr(emap, name) == getattr(whole, name), name
+    for name in schema.DIMS[1:]:
+        np.testing.assert_array_equal(emap.axis(name), whole.axis(name))
+    held = [entry.name for entry in schema.table() if not entry.axis and entry.name in whole.dataset]
+    assert {"stiffness", "central_film", "rolling_force", "max_pressure_error"} <= set(held)
+    for name in held:
+        np.testing.assert_array_equal(emap.points(name), whole.points(name), name)
+    assert emap.points("film_temperature") is None is whole.points("film_temperature")
+    one, other = (each.law("inner", supply=FLOODED, surface=SMOOTH) for each in (emap, whole))
+    for part, same in zip(one.plain_table.own, other.plain_table.own, strict=True):
+        np.testing.assert_array_equal(part, same)
+    bounds = [each.at(1.0, 330.0).bounds(np.array([1e4])) for each in (one, other)]
+    assert bounds[0] == bounds[1]
 
 
 @pytest.mark.slow

@@ -18,7 +18,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from textwrap import shorten
 
-from ehdmaps.jobs.make.law_check import COMPLIANCE_BARS, DAMPING_BARS
+from ehdmaps.jobs.make.sampling import COMPLIANCE_BARS, DAMPING_BARS
 from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.lubricant import Lubricant

@@ -5,17 +5,13 @@ from __future__ import annotations
 import platform
 from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
-import xarray as xr
 
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.jobs.job import Job
-from ehdmaps.jobs.make.correction import Correction, Films, Place
-from ehdmaps.jobs.make.correction_design import places_of
-from ehdmaps.jobs.make.store import Arrays
 from ehdmaps.jobs.make.tasks import ERRORS_OF_SOME, FOUND_BY_SOME, LineTask, solver_version, with_later_fields
 from ehdmaps.maps import schema
 from ehdmaps.maps.records import MODEL_ERRORS, contacts_json, derived, record_json
@@ -24,6 +20,12 @@ from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.solution import ContactSolver, Status
 from ehdmaps.provenance import code_hash
 from ehdmaps.version import version
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from ehdmaps.jobs.make.correction import Correction
+    from ehdmaps.jobs.make.store import Arrays
 
 
 def isolated_holes(usable: BoolArray) -> tuple[BoolArray, BoolArray]:
@@ -127,12 +129,7 @@ def assemble(job: Job, solver: ContactSolver, films: Mapping[str, npt.NDArray[An
     xarray.Dataset
         The map as the schema wants it, with provenance; isolated holes filled if the job says so.
     """
-    films = only_usable(films)
-    holes_filled = np.zeros(job.shape, dtype=bool)
-    if job.fill == "neighbours":
-        films, holes_filled = _fill(job, films)
-    values = with_structure(films, job.contacts, np.array(job.loads)[:, None, None])
-    values["filled"] = holes_filled.astype(np.int8)
+    values = assembled(job, films)
     coordinates = {
         "contact": [contact.name for contact in job.contacts],
         "load": job.loads,
@@ -140,6 +137,16 @@ def assemble(job: Job, solver: ContactSolver, films: Mapping[str, npt.NDArray[An
         "temperature": job.temperatures,
     }
     return schema.dataset(coordinates, values, _attributes(job, solver))
+
+
+def assembled(job: Job, films: Mapping[str, npt.NDArray[Any]]) -> dict[str, npt.NDArray[Any]]:
+    """Variables of a map by name, without the dataset; arguments as of `assemble`."""
+    films = only_usable(films)
+    holes_filled = np.zeros(job.shape, dtype=bool)
+    if job.fill == "neighbours":
+        films, holes_filled = _fill(job, films)
+    values = with_structure(films, job.contacts, np.array(job.loads)[:, None, None])
+    return values | {"filled": holes_filled.astype(np.int8)}
 
 
 def with_correction(dataset: xr.Dataset, job: Job, correction: Correction, corrector: ContactSolver) -> xr.Dataset:
@@ -156,6 +163,9 @@ def with_correction(dataset: xr.Dataset, job: Job, correction: Correction, corre
     corrector : ContactSolver
         The dearer solver.
     """
+    from ehdmaps.jobs.make.correction import Films, Place
+    from ehdmaps.jobs.make.correction_design import places_of
+
     shape = job.shape
     errors = np.zeros((len(MODEL_ERRORS), *shape))
     loads = np.array(job.loads)

@@ -248,6 +248,20 @@ def generate_in_memory(
     return Generated(dataset, group, result)
 
 
+def read_in_memory(job: Job, solver: TableSolver) -> xr.Dataset:
+    """Make the dataset of a map without a check of its laws, that the film table serves, see `unserved`.
+
+    Parameters
+    ----------
+    job : Job
+        What to make.
+    solver : TableSolver
+        What gives its films.
+    """
+    planned = _Plan(job, solver, None, (), None, None, from_table=True)
+    return _finished(planned, SweepResult(), job.name)[0]
+
+
 def read_map(job: Job, output: Path, attributes: Mapping[str, str | int]) -> xr.Dataset | None:
     """Make a map whose films are all read from the film table, in this process; None where that does not serve it.
 

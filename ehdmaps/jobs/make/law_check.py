@@ -14,7 +14,7 @@ import xarray as xr
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, MapError
 from ehdmaps.jobs.job import Job
-from ehdmaps.jobs.make.sampling import draw_apart, draw_beyond, drawable
+from ehdmaps.jobs.make.sampling import COMPLIANCE_BARS, DAMPING_BARS, draw_apart, draw_beyond, drawable
 from ehdmaps.jobs.make.store import Arrays
 from ehdmaps.jobs.make.tasks import LineTask
 from ehdmaps.maps.backbone import BackboneField
@@ -30,9 +30,6 @@ from ehdmaps.physics.oil_supply import FLOODED
 from ehdmaps.physics.solution import ContactSolution, ContactSolver, FilmSolution, Status, contact_solution
 from ehdmaps.physics.surface import SMOOTH
 from ehdmaps.table.solver import TableSolver
-
-COMPLIANCE_BARS, DAMPING_BARS = (0.01, 1e-4), (0.05, 1e-3)
-"""An error is within its bar where it is below a share of the film compliance or of 1/k; of c or of k b/u."""
 
 READ_COMPLIANCE_BARS = (0.01, 1e-3)
 """The bar of film compliance for laws whose films are read from the film table: a thousandth of a stiffness. Whoever

@@ -1,4 +1,4 @@
-"""Random operating points of a job: over its axes, and inside the damping valley."""
+"""Random operating points of a job, over its axes and inside the damping valley, and how wrong films may be there."""
 
 from __future__ import annotations
 
@@ -11,6 +11,9 @@ from ehdmaps.jobs.job import Job
 from ehdmaps.maps.rough_layer import TEMPERATURE_REACH, WHOLE_TO
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.moes import moes_groups, valley_load_number
+
+COMPLIANCE_BARS, DAMPING_BARS = (0.01, 1e-4), (0.05, 1e-3)
+"""An error is within its bar where it is below a share of the film compliance or of 1/k; of c or of k b/u."""
 
 VALLEY_WIDTH = (-0.6, 0.8)
 """Range of ln(M/M_valley) from which points inside the valley are drawn."""

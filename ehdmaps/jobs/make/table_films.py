@@ -12,8 +12,7 @@ import numpy.typing as npt
 from ehdmaps.arrays import BoolArray
 from ehdmaps.errors import MapError
 from ehdmaps.jobs.job import Job
-from ehdmaps.jobs.make.law_check import COMPLIANCE_BARS, DAMPING_BARS
-from ehdmaps.jobs.make.sampling import SamplePoint, draw_apart, drawable
+from ehdmaps.jobs.make.sampling import COMPLIANCE_BARS, DAMPING_BARS, SamplePoint, draw_apart, drawable
 from ehdmaps.maps.film_field import looked_at
 from ehdmaps.maps.table_field import TableField
 from ehdmaps.physics.hertz import half_width

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, MapError
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.job import Job
-from ehdmaps.jobs.make.generate import generate_in_memory
-from ehdmaps.jobs.make.table_films import unserved
+from ehdmaps.jobs.make.table_films import table_films, unserved
 from ehdmaps.jobs.make.tasks import of_groups
 from ehdmaps.jobs.solvers import TABLE
 from ehdmaps.maps.emap import EHDMap
@@ -21,14 +23,17 @@ from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.catalogue import designated
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.oil_supply import OilSupply
+from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.point.ball_catalogue import ball_estimate, plain_ball_designation
 from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.physics.solution import ContactSolver
-from ehdmaps.physics.surface import Surface
+from ehdmaps.physics.surface import SMOOTH, Surface
+from ehdmaps.table.solver import TableSolver
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from ehdmaps.table.points.law import PointLaw
 
 LOADS, SPEEDS, TEMPERATURES = (100.0, 1e6), (0.05, 10.0), (293.15, 393.15)
@@ -36,6 +41,51 @@ LOADS, SPEEDS, TEMPERATURES = (100.0, 1e6), (0.05, 10.0), (293.15, 393.15)
 
 _POINTS = (25, 12, 6)
 """Loads, speeds and temperatures of a map in memory: for its error estimates, as laws read the film table."""
+
+
+class ReadMap(EHDMap):
+    """A map in memory whose films the table has: its laws do without a dataset, which is made when it is asked for.
+
+    Parameters
+    ----------
+    job : Job
+        Job of the map, which the film table serves, see `ehdmaps.jobs.make.table_films.unserved`.
+    solver : TableSolver
+        What gives its films.
+    """
+
+    from_table = True
+
+    def __init__(self, job: Job, solver: TableSolver) -> None:
+        self._job, self._read = job, solver
+        self.backbone = None
+        self.contacts, self.lubricant, self.bearing = job.contacts, job.lubricant, job.bearing
+        self.supply, self.surface = job.supply or FLOODED, job.surface or SMOOTH
+        self.solver = solver.name
+
+    @cached_property
+    def dataset(self) -> xr.Dataset:
+        """All that the map holds."""
+        from ehdmaps.jobs.make.generate import read_in_memory
+
+        return EHDMap(read_in_memory(self._job, self._read)).dataset
+
+    def axis(self, name: str) -> FloatArray:
+        """Values of an axis; see `EHDMap.axis`."""
+        job = self._job
+        axes = {"load": job.loads, "entrainment_speed": job.entrainment_speeds, "temperature": job.temperatures}
+        return np.array(axes[name], dtype=np.float64)
+
+    def points(self, name: str) -> FloatArray | None:
+        """A variable at all points; see `EHDMap.points`."""
+        return self._values.get(name)
+
+    @cached_property
+    def _values(self) -> dict[str, npt.NDArray[Any]]:
+        """Variables by name."""
+        from ehdmaps.jobs.make.assemble import assembled
+
+        return assembled(self._job, table_films(self._job, self._read.thickest_film))
 
 
 def table_map(
@@ -91,7 +141,12 @@ def table_map(
         structural_law=structural_law,
     )
     # laws let films fade where they are too thick for the points of a map
-    made = generate_in_memory(job, workers=1, solver=of_groups(solver or solvers.of_map(job)))
+    chosen = of_groups(solver or solvers.of_map(job))
+    if isinstance(chosen, TableSolver) and not unserved(job, chosen):
+        return ReadMap(job, chosen)
+    from ehdmaps.jobs.make.generate import generate_in_memory  # with all that solves and writes a map
+
+    made = generate_in_memory(job, workers=1, solver=chosen)
     return EHDMap(made.dataset, made.backbone)
 
 
@@ -119,6 +174,8 @@ def job_map(job: Job, source: str) -> EHDMap:
     why = unserved(job, solver)
     if why:
         raise MapError(f"{source}: its films have to be solved ({why}); give the map that `ehdmaps generate` makes")
+    from ehdmaps.jobs.make.generate import generate_in_memory
+
     made = generate_in_memory(replace(job, law_check=0), 1, solver=solver)
     return EHDMap(made.dataset, made.backbone)
 

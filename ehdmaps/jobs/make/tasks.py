@@ -9,15 +9,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
-import xarray as xr
 
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.jobs.job import Job
-from ehdmaps.jobs.make.store import Arrays
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone import ERROR, FILMS, IMAGINARY, REAL
 from ehdmaps.maps.backbone_plan import BackbonePlan, Steps, plan_backbone, plan_own_lines
@@ -30,6 +28,11 @@ from ehdmaps.physics.solids import Material
 from ehdmaps.physics.solution import ContactSolver, FilmSolution, FilmSpectrum, Status, no_spectrum
 from ehdmaps.provenance import PACKAGES, code_hash
 from ehdmaps.table.solver import TableSolver
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from ehdmaps.jobs.make.store import Arrays
 
 LONGEST_LINE = 32
 """Loads of one task, which is lost as a whole when its process is killed: well under a second."""
