@@ -6,6 +6,10 @@ import json
 from html.parser import HTMLParser
 from typing import Any
 
+import pytest
+
+from ehdmaps.errors import AnalysisError
+
 VOID = frozenset({"meta", "br", "hr"})
 LOADED_BY = frozenset({"src", "srcset", "action", "data", "background", "poster", "ping"})
 
@@ -65,3 +69,12 @@ class Report(HTMLParser):
         for _, attributes in self.elements:
             for one in (attributes.get("aria-labelledby") or "").split():
                 assert one in names
+
+
+def without_budget(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Have reports of scenes without an error budget, which needs a law for each of its lines, some 20 s in all."""
+
+    def refused(*_: object) -> None:
+        raise AnalysisError("left out")
+
+    monkeypatch.setattr("mbs.report.examination.error_budget", refused)

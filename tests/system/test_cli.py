@@ -427,7 +427,8 @@ def test_solve_lists_every_problem(capsys, arguments, messages):
 
 @pytest.mark.slow
 def test_tradeoff_prints_its_tables_and_writes_its_files(here, capsys):
-    Path("mine.toml").write_text(TEXT.replace('"formula"', '"reynolds"\ndensity = 3.0'))  # which takes less time
+    text = TEXT.replace('"formula"', '"reynolds"\ndensity = 3.0')  # which takes less time
+    Path("mine.toml").write_text(text.replace("NU308", "NJ 2207 ECP").replace("FVA3", "ISO VG 150, VI 140"))
     arguments = ["tradeoff", "mine.toml", "--points", "2", "--seed", "4", "--openfoam", "0"]
     status, out, err = run(capsys, *arguments, "--all", "-o", "t.nc", "--plot", "t.png")
     assert status == 0

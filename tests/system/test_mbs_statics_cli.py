@@ -14,6 +14,7 @@ from mbs import Bearing
 from mbs.scene.reader import read_scene
 from tests.cases.commands import check_units, run
 from tests.cases.jobs import WIDE
+from tests.cases.reports import without_budget
 
 STRAIGHT = ('profile = "iso"', 'profile = "straight"')
 FREE_RING = ('freedoms = ["y", "z"]\nposition = ["-70 mm"', 'freedoms = ["x", "y", "z"]\nposition = ["-70 mm"')
@@ -86,6 +87,7 @@ def test_stiffness_damping_and_responses_have_the_units_of_engineers(here, capsy
     if command == "report":
         page = (here / "page.html").read_text(encoding="utf-8")
         told = re.sub(r"<details>.*?</details>|<[^>]*>", " ", page, flags=re.DOTALL)
+        assert "Error budget" in told and not re.search(r"\b(nan|inf|None)\b", told)
     expected = {
         "lsa": ("um/N", "m/s2/N"),
         "sweep": ("N/um", "N s/mm", "um/N", "c = 0.1 N s/mm"),
@@ -103,7 +105,8 @@ def test_stiffness_damping_and_responses_have_the_units_of_engineers(here, capsy
 
 @pytest.mark.slow
 @pytest.mark.parametrize("command", ["statics", "modes", "lsa", "sweep", "variants", "report"])
-def test_heads_say_whether_weight_is_in_the_equilibrium(here, capsys, command):
+def test_heads_say_whether_weight_is_in_the_equilibrium(here, capsys, monkeypatch, command):
+    without_budget(monkeypatch)
     short = (
         ("points = 2000", "points = 3"),
         ('duration = "0.2 s"', 'duration = "0.05 s"'),

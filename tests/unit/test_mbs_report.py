@@ -17,7 +17,7 @@ from mbs.output.files import write_dataset
 from mbs.report.bearings import roller_drawing
 from mbs.report.campbell import Lines, campbell, read_result, saved_campbell
 from mbs.scene.reader import read_scene
-from tests.cases.reports import Report
+from tests.cases.reports import Report, without_budget
 
 HOSTILE = "<script>alert(1)</script><img src=x onerror=alert(2)>"
 SPEEDS = np.linspace(50.0, 350.0, 7)
@@ -116,7 +116,8 @@ def test_other_files_are_no_results(tmp_path):
             read_result(str(tmp_path / name))
 
 
-def test_a_scene_with_dry_contacts(here, capsys):
+def test_a_scene_with_dry_contacts(here, capsys, monkeypatch):
+    without_budget(monkeypatch)
     dry = ("--law", "hertz")
     text = read_scene("nu308_rigid").text
     title = re.search(r'^title = "(.*)"$', text, re.MULTILINE)

@@ -12,6 +12,7 @@ from ehdmaps.errors import InputError
 from mbs import assemble, cli, modes, parse_scene, read_scene, statics
 from mbs.scene.shafts.new import new_shaft
 from mbs.scene.shafts.rows import csv_rows, csv_sections
+from tests.cases.reports import without_budget
 
 IRON = 'youngs_modulus = "190 GPa", poisson_ratio = 0.28, density = "7200 kg/m^3"'
 HEAD = """
@@ -386,6 +387,7 @@ def test_a_check_tells_what_will_be_solved(tmp_path, capsys):
 @pytest.mark.slow
 def test_every_analysis_runs_on_a_new_scene_as_it_is(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
+    without_budget(monkeypatch)
     assert cli.main(["new", "shaft"]) == 0
     commands = ("check", "run", "critical", "report", "plan", "hammer -o hits.uff", "modal-fit hits.uff")
     for command in commands:

@@ -15,6 +15,7 @@ from ehdmaps.physics.catalogue import estimate
 from mbs import cli
 from tests.cases.jobs import map_job
 from tests.cases.pictures import cut_off, drawn, on_each_other, titles
+from tests.cases.reports import without_budget
 
 LABEL = "Bearing of the maker in the north, batch of the year 2019, C3"[:LONGEST_LABEL]
 OIL = "Gear oil of the store room, mineral, grade ISO VG 46, batch 12"[:LONGEST_LABEL]
@@ -102,6 +103,7 @@ def test_of_a_map(folder, monkeypatch, capsys):
 @pytest.mark.slow
 def test_headings_of_reports_are_short_and_say_once_what_is_estimated(folder, monkeypatch, capsys):
     monkeypatch.chdir(folder)
+    without_budget(monkeypatch)
     assert jobs_cli.main(["report", "NU2210.nc", "-o", "map.html"]) == 0
     assert cli.main(["report", "machine.toml", *MAPS, "-o", "machine.html"]) in (0, 1)
     for name, count in (("map.html", 1), ("machine.html", None)):
