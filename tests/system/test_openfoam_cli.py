@@ -24,14 +24,14 @@ from tests.cases.interruptible import start
 from tests.cases.jobs import map_job, spaced
 
 JOB = (
-    map_job(spaced("2 N/mm", "200 N/mm", 3), '["1 m/s"]', '["40 degC"]', solver="openfoam")
+    map_job(spaced("2 N/mm", "200 N/mm", 2), '["1 m/s"]', '["40 degC"]', solver="openfoam")
     + """columns = 40
 rows = 4
 start = "hertz"
 fill = "none"
 """
 )
-POINTS = 6
+POINTS = 4
 
 
 @pytest.fixture
@@ -142,7 +142,7 @@ def test_failed_points_are_summed_up_and_tried_again_by_the_next_run(folder, don
     openfoam_fake.set_mode(build_of(folder), "fatal")
     failed = done("generate", "job.toml", "--workers", "1", status=1)
     assert counts(failed.stdout) == (0, POINTS, POINTS)
-    assert "6 x coarse grid: ehlFoam ended with status 1; last lines of the log: viscosity is negative" in failed.stdout
+    assert "4 x coarse grid: ehlFoam ended with status 1; last lines of the log: viscosity is negative" in failed.stdout
     openfoam_fake.set_mode(build_of(folder), "stagnated")
     stagnated = done("generate", "job.toml", "--workers", "1", status=1)
     assert counts(stagnated.stdout) == (0, POINTS, POINTS)
@@ -188,7 +188,7 @@ def test_the_end_of_a_job_is_the_end_of_its_solvers(folder, done, end, workers):
 
 def test_a_hanging_solver_is_stopped_after_its_time(folder, done):
     openfoam_fake.set_mode(build_of(folder), "hang")
-    (folder / "job.toml").write_text(JOB.replace("points = 3", "points = 2") + "timeout = 1\n")
+    (folder / "job.toml").write_text(JOB + "timeout = 1\n")
     result = done("generate", "job.toml", "--workers", "1", status=1)
     assert "4 x coarse grid: ehlFoam did not end within" in result.stdout
     assert not any(alive(pid) for pid, *_ in openfoam_fake.starts(build_of(folder)))
