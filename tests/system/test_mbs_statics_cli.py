@@ -65,7 +65,10 @@ def test_the_loads_of_all_loaded_rollers_are_listed(here, capsys):
     assert found[:, 0] @ np.sin(angles) == pytest.approx(100.0, rel=1e-3)
 
 
-@pytest.mark.parametrize("command", ["statics", "lsa", "sweep", "report", "bearing", "solve", "spectrum"])
+@pytest.mark.parametrize(
+    "command",
+    ["statics", "lsa", "sweep", pytest.param("report", marks=pytest.mark.slow), "bearing", "solve", "spectrum"],
+)
 def test_stiffness_damping_and_responses_have_the_units_of_engineers(here, capsys, command):
     """One unit for each quantity: none of newtons a metre, which files have."""
     path = scene(here, ("points = 2000", "points = 3"), ("slices = 41", "slices = 5"))
