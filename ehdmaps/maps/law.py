@@ -388,6 +388,18 @@ class ContactLaw:
         """
         return self._films.locked_factors(entrainment_speed, temperature)
 
+    def make_locked_factors(self, entrainment_speeds: FloatArray, temperature: float) -> None:
+        """Make `locked_factors` of many speeds at once, which costs a sixth of one after the other.
+
+        Parameters
+        ----------
+        entrainment_speeds : array (n,)
+            u [m/s], of either sign.
+        temperature : float
+            T [K].
+        """
+        self._films.make_locked_factors(entrainment_speeds, temperature)
+
     def film_response(self, loads: npt.ArrayLike, entrainment_speed: float, temperature: float) -> FilmResponse | None:
         """Part of the complex stiffness that the law with memory leaves out, see `ehdmaps.maps.kernels.film_response`.
 

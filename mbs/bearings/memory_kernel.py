@@ -16,6 +16,7 @@ the speed are mixed as often as slices read them, see `Course.kept`.
 
 from __future__ import annotations
 
+import contextlib
 import math
 from typing import NamedTuple
 
@@ -184,15 +185,28 @@ class MemoryTables:
         film : int
             Index of this law there.
         """
-        return self._window.prepare(speeds, nodes, weights, lambda slot, speed, _: self._made(slot, speed, films, film))
+
+        def make(slot: int, speed: float, _: bool) -> Made:
+            return self._made(slot, speed, films, film)
+
+        return self._window.prepare(speeds, nodes, weights, make, self._ahead)
+
+    def _ahead(self, speeds: FloatArray) -> None:
+        """Have what costs most made for many speeds [rad/s] at once."""
+        with contextlib.suppress(EhdmapsError):  # the step that asks for it will be told why
+            at = np.array([self._entrainment(speed) for speed in speeds.tolist()])
+            self._law.make_locked_factors(at, self._temperature)
+
+    def _entrainment(self, speed: float) -> float:
+        """Entrainment speed of a node [m/s]: the one at the lowest speed has its whole film, whatever the rounding."""
+        lowest, u = self._law.plain_table.lowest_speed, abs(self._rate * speed)
+        return lowest if abs(u - lowest) < _ROUND_OFF * lowest else u
 
     def _made(self, slot: int, speed: float, films: MemoryFilms, film: int) -> Made:
         """Make the table of a speed."""
         before = dict(self._law.outside_counts)
         try:
-            # the node at the lowest speed has its whole film, whatever the rounding
-            lowest, u = self._law.plain_table.lowest_speed, abs(self._rate * speed)
-            at = self._law.at(lowest if abs(u - lowest) < _ROUND_OFF * lowest else u, self._temperature)
+            at = self._law.at(self._entrainment(speed), self._temperature)
             table = at.memory.table
         except EhdmapsError:
             return Made(sound=False)  # the step that asks for it will be told why

@@ -54,6 +54,10 @@ Maker = Callable[[int, float, bool], Made]
 """Makes the table of a slot for a speed [rad/s], which is a node or the only speed of the run so far."""
 
 
+AHEAD = 64
+"""Nodes for which what costs most is made at once: those of a run's next steps."""
+
+
 class SpeedWindow:
     """The slots of the tables of one law.
 
@@ -74,6 +78,7 @@ class SpeedWindow:
         self._held: list[tuple[bool, float] | None] = [None] * slots
         self._sound, self._outside = np.zeros(slots, dtype=np.bool_), np.zeros(slots, dtype=np.bool_)
         self._kinds = np.zeros(slots, dtype=np.int64)
+        self._foreseen = range(0)
 
     def places(self, speeds: FloatArray) -> tuple[IntArray, FloatArray]:
         """Nodes below speeds [rad/s], and parts of the way to the next nodes; both zero for one speed alone."""
@@ -91,7 +96,12 @@ class SpeedWindow:
         return self._lowest * (math.exp(place) if node > 0 else max(1.0 + place, 0.0))
 
     def prepare(
-        self, speeds: FloatArray, nodes: IntArray, weights: FloatArray, make: Maker
+        self,
+        speeds: FloatArray,
+        nodes: IntArray,
+        weights: FloatArray,
+        make: Maker,
+        ahead: Callable[[FloatArray], None] | None = None,
     ) -> tuple[IntArray, BoolArray, IntArray]:
         """Have the tables made for the first of some speeds, as many as are held at once.
 
@@ -103,6 +113,8 @@ class SpeedWindow:
             Nodes and weights from `places`.
         make : callable
             Makes the table of a slot.
+        ahead : callable, optional
+            Told the speeds (n,) of the tables before these are made one by one [rad/s]: of some to come, too.
 
         Returns
         -------
@@ -120,7 +132,15 @@ class SpeedWindow:
             return np.zeros_like(nodes), np.repeat(sound, nodes.size), np.repeat(outside, nodes.size).astype(np.int64)
         low, high = np.minimum.accumulate(nodes), np.maximum.accumulate(nodes)
         count = int(np.searchsorted(high - low, self._slots - 2, side="right"))
-        for node in range(int(low[count - 1]), int(high[count - 1]) + 2):
+        to_come = range(int(low[count - 1]), int(high[count - 1]) + 2)
+        missing = [node for node in to_come if self._held[node % self._slots] != (False, float(node))]
+        if ahead is not None and not all(node in self._foreseen for node in missing):
+            rises = nodes[count - 1] >= nodes[0]
+            first, last = missing[0], missing[-1]
+            first, last = (first, max(last, first + AHEAD)) if rises else (min(first, last - AHEAD), last)
+            self._foreseen = range(first, last + 1)
+            ahead(np.array([self.speed_of(node) for node in self._foreseen]))
+        for node in missing:
             self._hold(node % self._slots, (False, float(node)), self.speed_of(node), make)
         slots, following = nodes[:count] % self._slots, (nodes[:count] + 1) % self._slots
         alike = self._kinds[slots] == self._kinds[following]

@@ -37,6 +37,9 @@ HALVINGS = 10
 CHUNK = 2000
 """Steps between two looks at the caller."""
 
+SHORTEST = 20
+"""Steps that are made at once at least: films over the speed are made for them together."""
+
 MARKS = 100
 """Marks of a run at most; the first one is its start."""
 
@@ -394,7 +397,8 @@ def _drive(
     apart = end // MARKS
     # The same with marks and without: to look at the error of the step must not change the run.
     if shaft is None:
-        chunk = min(CHUNK, max(apart // sample, 1) * settings.steps_per_sample)
+        each = settings.steps_per_sample
+        chunk = min(CHUNK, max(apart // sample, math.ceil(SHORTEST / each)) * each)
     else:
         chunk = max(round(FOLLOWED / settings.step), FEWEST)
     level = steps = halved = samples = 0
