@@ -25,6 +25,7 @@ from ehdmaps.maps.kernels.memory_table import advanced, equilibrium_at, step_of
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.physics.closed_form import FormulaSolver
 from ehdmaps.physics.hertz import natural_time
+from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.solution import FilmSpectrum
 from tests.cases.laws import CONTACTS, NU308, OIL, SMALL_FIELD, ValleyField
 
@@ -154,6 +155,21 @@ def test_the_law_locks_as_the_map_says(emap, kind):
             solids += contact.structural_compliance(p)
         # The doubt and the cells of the table: found 2e-4.
         assert 1.0 - 1.0 / (stiff * solids) == pytest.approx(taken / solids, rel=5e-3)
+
+
+@pytest.mark.parametrize("supply", [FLOODED, OilSupply(2e-6)])
+def test_factors_of_many_speeds_are_those_of_each(emap, supply):
+    """Also beyond the ends of the map and backwards; splines of several lines side by side round alike, to 1e-12."""
+    speeds = np.array([0.1, 0.8, -0.93, 1.1, 1.6, 7.0])
+    many, one = (EHDMap(emap.dataset, emap.backbone).law("series", supply=supply) for _ in range(2))
+    many.make_locked_factors(speeds, 313.15)
+    made = dict(many._films._locked)
+    assert len(made) == 4  # both ends, and between
+    for u in speeds.tolist():
+        found, expected = many.locked_factors(u, 313.15), one.locked_factors(u, 313.15)
+        assert found[:2] == expected[:2]
+        np.testing.assert_allclose(found.values, expected.values, rtol=1e-12)
+    assert many._films._locked == made  # nothing is made again
 
 
 def test_slow_films_look_at_no_response(emap):
