@@ -20,6 +20,7 @@ from mbs.planning.auto import MOST_TOLERANCE, Automatic, AutoSettings, MadeMap, 
 from mbs.planning.ranges import MARGIN
 from mbs.planning.verdicts import TOLERANCE, Verdict, up_to
 from mbs.scene.choices import CHOICES, OPTIONS, Subject, named_law
+from mbs.scene.map_set import TABLE_LAW
 from mbs.scene.reader import read_scene
 from mbs.scene.scene import Scene
 
@@ -29,10 +30,10 @@ R = TypeVar("R")
 _CONTRARY = ("map", "structural_law")
 """Options that stand for a map that is there."""
 
-_STATED = ("film memory", "oil supply")
+_STATED = ("films", "film memory", "oil supply")
 """Physics of films that a command has, or has as the scene states it, unless `--auto` finds that it does not matter."""
 
-_OF_FILMS = tuple(choice for choice in OPTIONS if choice.concerned == "films")
+_OF_FILMS = tuple(choice for choice in OPTIONS if choice.concerned in ("films", "relaxing"))
 """Choices that a law without films does not take."""
 
 
@@ -183,7 +184,7 @@ def _with(arguments: argparse.Namespace, subject: Subject) -> argparse.Namespace
 def _lines(found: Automatic[Any]) -> list[str]:
     """Lines on what was made, what is on, and what is not met."""
     maps = found.subject.law.maps
-    read = maps is not None and any(emap.from_table for emap in maps.maps)
+    read = found.subject.law.name == TABLE_LAW if maps is None else any(emap.from_table for emap in maps.maps)
     lines = [*(["auto: films from the film table"] if read else []), *map(_map_line, found.made)]
     lines += [f"{'warning: ' if verdict.warns else ''}auto: {verdict.line}" for verdict in found.verdicts]
     lines.append(_without(found))

@@ -21,7 +21,9 @@ from mbs.output.model_text import heading
 from mbs.planning import ranges
 from mbs.planning.plan import PlanResult, PlanSettings, plan
 from mbs.planning.ranges import Needed
+from mbs.scene.assembly import assemble
 from mbs.scene.fields import MICROMETRE
+from mbs.scene.map_set import TABLE_LAW
 from mbs.scene.scene import Scene
 
 _NOTHING = ("nothing written; -o JOB.toml writes the job",)
@@ -44,13 +46,16 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     slowest, fastest = found.speeds
     lines = [
         *heading(found.model),
-        f"  turns at {RPM.text(slowest)} to {RPM.text(fastest)}; loads of slices at rest, "
+        f"  turns at {RPM.text(slowest)} to {RPM.text(fastest)}; loads of contacts at rest, "
         f"dry, over {ranges.ANGLES} cage angles of a pitch, times {settings.margin:g} for what moves",
         *_turning(found),
     ]
     planned = _plan(found, arguments)
     for entry in planned:
         lines += _described(entry)
+    lines += _others(found, settings)
+    if not planned:
+        return "\n".join([*lines, "nothing to write: there is no map to make"]), 0
     written = [entry.path for entry in planned if entry.path is not None]
     for entry in planned:
         if entry.path is not None:
@@ -75,6 +80,11 @@ def _read(arguments: argparse.Namespace) -> tuple[Scene, PlanSettings]:
     margin = _margin(arguments.margin, problems)
     scene, clearance = read_dry(arguments, problems)
     settings = PlanSettings(clearance, margin)
+    if arguments.output is not None and scene is not None and not scene.bearings and (scene.balls or scene.tapered):
+        problems.append(
+            f"-o: got {arguments.output!r:.60} for bearings whose films are read from the film table: there is no map "
+            "to make, and no job; leave -o out"
+        )
     problems += scene_output_problems(arguments.scene, scene.files if scene else (), arguments.output, kind=SEALED)
     if problems or scene is None:
         raise InputError(tuple(dict.fromkeys(problems)))
@@ -141,6 +151,33 @@ def _described(planned: _Planned) -> list[str]:
         f"  points             {points}, {points - job.points} of them for the contact laws",
         f"  time               {estimated_time(job, solvers.of_map(job), points).words}",
     ]
+
+
+def _others(found: PlanResult, settings: PlanSettings) -> list[str]:
+    """Lines on bearings of which no map is made: what they see, and what the film table has there."""
+    if not found.seen:
+        return []
+    from mbs.planning.seen import held_films  # not for maps alone
+
+    model = assemble(found.scene, TABLE_LAW, clearance=settings.clearance)
+    lines = []
+    for entry in found.seen:
+        body, kind = ("ball", "points") if entry.of_points else ("slice", "lines")
+        held = held_films(entry, model, found.speeds)
+        table = "none" if math.isnan(held.loads[0]) else _span(held.loads, entry.display)
+        lines += [
+            f"{entry.geometry.title}: {', '.join(entry.bearings)}",
+            f"  largest load of a {body} at rest {entry.display.text(entry.static_load)}",
+            f"  {'':18s} {'seen':28s} in the film table of {kind}, which answers: no map",
+            f"  {'load':18s} {_span(entry.load, entry.display):28s} {table}",
+            f"  {'entrainment speed':18s} {_span(entry.entrainment_speed, SPEED):28s} {held.missing or 'held'}",
+            f"  {'temperature':18s} {TEMPERATURE.text(entry.temperature)}",
+        ]
+        if held.missing:
+            lines.append("  films              --law table is refused there; dry contacts: --law 'hertz:1.25e-5 s'")
+        elif held.lacks(entry):
+            lines.append("  films              go on straight in logarithms above these loads, and runs count it")
+    return lines
 
 
 def _span(values: Sequence[float], display: Display) -> str:

@@ -205,12 +205,18 @@ def run_part(subject: Subject, ramp: Ramp, part: RampPart) -> PartRun:
         speeds = found.speeds[seen][order]
         levels.append(found.sum_level[seen][order])
     late = record.time >= part.begin - part.start
-    places = {entry.element.name: index for index, entry in enumerate(model.system.elements)}
-    names = tuple(entry.name for entry in model.on_rings)
-    across = [record.forces[places[name]][late][:, 1:3] for name in names]
+    across = [record.forces[place][late][:, 1:3] for place in model.ring_places]
     forces = [float(np.sqrt(np.sum(np.var(force, axis=0)))) for force in across]
-    outside = sum(record.outside.values())
-    return PartRun(speeds, np.array(levels), np.array(forces), names, record.steps, outside, seconds)
+    outside, names = sum(record.outside.values()), tuple(entry.name for entry in model.on_rings)
+    return PartRun(
+        speeds,
+        np.array(levels),
+        np.array(forces),
+        names,
+        record.steps,
+        outside,
+        seconds,
+    )
 
 
 def _coarsest(course: RunUp, highest: float) -> float:

@@ -4,8 +4,10 @@
 question   speeds that an analysis visits, of all that a scene states
 ranges     operating points of a scene and the loads and speeds seen there
 plan       which ranges a scene needs of a contact map, and the jobs that cover them
+seen       the same of balls, tapered and ribbed rollers, of which no map is made
 criteria   by how much a physics changes a contact, in closed form
 verdicts   which physics of the films a scene requires
+of_table   which films balls, tapered and ribbed rollers need, and what is not known of points
 machine    what the scene file switches, and how much the other choice would change
 left_out   what commands without `--auto` say of heat
 kept_maps  maps that were made before

@@ -13,10 +13,10 @@ from __future__ import annotations
 import dataclasses
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Generic, TypeVar
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 from ehdmaps.errors import InputError, MapError
 from ehdmaps.jobs.job import Job
@@ -27,7 +27,7 @@ from ehdmaps.jobs.make.law_check import REFUSED, unmet
 from ehdmaps.jobs.make.sweep import Progress, SweepResult
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.outputs import MAP, Output, check_outputs
-from ehdmaps.physics.heat import PHYSICS
+from ehdmaps.physics.heat import ISOTHERMAL, PHYSICS
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.rheology import SHEARS
 from mbs.model.relaxation import Films
@@ -47,11 +47,15 @@ from mbs.planning.verdicts import (
     surface_in_force,
     visited,
 )
-from mbs.scene.assembly import Model
-from mbs.scene.choices import LawChoice, Subject
+from mbs.scene.assembly import Model, assemble
+from mbs.scene.choices import LawChoice, Subject, named_law
 from mbs.scene.contact_laws import law_label
-from mbs.scene.map_set import MapSet, table_maps
+from mbs.scene.map_set import TABLE_LAW, MapSet, table_maps
 from mbs.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from mbs.planning.ranges import Needed
+    from mbs.planning.seen import Seen
 
 R = TypeVar("R")
 
@@ -249,26 +253,30 @@ def settled(
     warm = settings.shear is None and settings.physics is None and any(entry.thermal for entry in scene.bearings)
     found = plan(_of_one_temperature(looked_at) if warm else looked_at, PlanSettings(settings.clearance))
     found = dataclasses.replace(found, scene=looked_at)
+    if not found.needed:
+        _check_without_map(scene, settings)
     supplies = _supplies(scene, settings.supply)
     required = _verdicts(scene, found, settings, supplies, highest)
-    pairs = tuple(pair.of_table(settings) for pair in required.of_maps) if warm else required.of_maps
+    pairs = tuple(pair.of_table(settings, _WARM) for pair in required.of_maps) if warm else required.of_maps
     films, pairs = _films(looked_at, found, pairs, settings, progress)
-    summed = [left_out_verdict((*required.of_laws, pair.heat, pair.shear, *required.of_machine)) for pair in pairs]
-    maps = MapSet(
-        [
-            (one.emap if isinstance(one, MadeMap) else one).with_left_out(*errors)
-            for one, (_, errors) in zip(films, summed, strict=True)
-        ]
-    )
-    subject = _subject(scene, maps, required.of_laws, supplies, settings)
+    summed = [left_out_verdict(required.of(pair)) for pair in pairs]
+    maps = [
+        (one.emap if isinstance(one, MadeMap) else one).with_left_out(*errors)
+        for one, (_, errors) in zip(films, summed, strict=True)
+    ]
+    subject = _subject(scene, MapSet(maps) if maps else None, required, supplies, settings)
     verdicts = dataclasses.replace(required, of_maps=pairs).all
     if highest > 0.0:  # an equilibrium has no bands
-        verdicts = (*verdicts, _worst([verdict for verdict, _ in summed]))
+        summed += [left_out_verdict(required.of(pair), in_bands=False) for pair in required.of_seen if pair.judged]
+        verdicts = (*verdicts, *([_worst([verdict for verdict, _ in summed])] if summed else []))
     try:
         result = analyse(subject)
     except MapError as error:
         raise MapError("\n".join([str(error), *_remedies(verdicts)])) from error
     return Automatic(result, subject, tuple(one for one in films if isinstance(one, MadeMap)), verdicts)
+
+
+_WARM = "rings have temperatures of their own, and a map that is made has a single one"
 
 
 def map_name(scene: str, job: Job) -> str:
@@ -301,14 +309,19 @@ class _OfMap:
     shear: Verdict
 
     @property
+    def judged(self) -> bool:
+        """Tell whether it is known what is left out: of points it is not."""
+        return not math.isnan(self.shear.size)
+
+    @property
     def solver(self) -> dict[str, Entry]:
         """Keys of [solver] of the map; none where the film table serves."""
         return {**self.heat.solver, **self.shear.solver}
 
-    def of_table(self, asked: AutoSettings) -> _OfMap:
-        """The same without all that only a map has, for rings of temperatures of their own."""
-        less = self.without(asked, "rings have temperatures of their own, and a map that is made has a single one")
-        return self if less is None else less.of_table(asked)
+    def of_table(self, asked: AutoSettings, reason: str) -> _OfMap:
+        """The same without all that only a map has, for a reason."""
+        less = self.without(asked, reason)
+        return self if less is None else less.of_table(asked, reason)
 
     def without(self, asked: AutoSettings, reason: str) -> _OfMap | None:
         """The same without what was chosen last, for a reason; None where all that is left was asked for."""
@@ -321,17 +334,29 @@ class _OfMap:
 
 @dataclass(frozen=True)
 class _Found:
-    """All verdicts: on what the laws of a map can have, on what a map of each type has, on the machine."""
+    """All verdicts: on what laws can have, on what a map of each type has, and films without a map; on the machine."""
 
+    of_films: tuple[Verdict, ...]
     of_laws: tuple[Verdict, ...]
     of_maps: tuple[_OfMap, ...]
+    of_seen: tuple[_OfMap, ...]
     of_machine: tuple[Verdict, ...]
+
+    @property
+    def dry(self) -> bool:
+        """Tell whether contacts have no films."""
+        return any(not verdict.on for verdict in self.of_films)
 
     @property
     def all(self) -> tuple[Verdict, ...]:
         """In the order in which they are told."""
-        heats, shears = (pair.heat for pair in self.of_maps), (pair.shear for pair in self.of_maps)
-        return (*self.of_laws, *heats, *shears, *self.of_machine)
+        pairs = (*self.of_maps, *self.of_seen)
+        heats, shears = (pair.heat for pair in pairs), (pair.shear for pair in pairs)
+        return (*self.of_films, *self.of_laws, *heats, *shears, *self.of_machine)
+
+    def of(self, pair: _OfMap) -> tuple[Verdict, ...]:
+        """Those on the films of one type of bearing."""
+        return (*self.of_films, *self.of_laws, pair.heat, pair.shear, *self.of_machine)
 
 
 def _films(
@@ -395,39 +420,75 @@ def _of_one_temperature(scene: Scene) -> Scene:
     return scene.with_bearings(dataclasses.replace(entry, thermal=None) for entry in scene.bearings)
 
 
-def _supplies(scene: Scene, asked: OilSupply | None) -> tuple[OilSupply, ...]:
-    """The oil supply of each bearing."""
-    return tuple(asked or entry.supply or scene.supply or FLOODED for entry in scene.bearings)
+def _check_without_map(scene: Scene, settings: AutoSettings) -> None:
+    """Refuse physics that only a map has, for bearings of which none is made."""
+    given = (("--physics", settings.physics, ISOTHERMAL), ("--shear", settings.shear, "newtonian"))
+    problems = [
+        f"{option}: got {value} for bearings whose films are read from the film table, which is {plain}; leave it out"
+        for option, value, plain in given
+        if value not in (None, plain)
+    ]
+    if problems:
+        raise InputError([f"{scene.name}: {problem}" for problem in problems])
+
+
+def _supplies(scene: Scene, asked: OilSupply | None) -> dict[str, OilSupply]:
+    """The oil supply of each bearing by its name."""
+    usual = asked or scene.supply or FLOODED
+    found = {entry.name: asked or entry.supply or usual for entry in scene.bearings}
+    return found | {entry.name: usual for entry in scene.balls} | {entry.name: usual for entry in scene.tapered}
 
 
 def _verdicts(
-    scene: Scene, found: PlanResult, settings: AutoSettings, supplies: tuple[OilSupply, ...], highest: float
+    scene: Scene, found: PlanResult, settings: AutoSettings, supplies: Mapping[str, OilSupply], highest: float
 ) -> _Found:
     """Find the physics required: memory, supply and roughness, each where it matters most; heat and shear by type."""
     assert scene.lubricant is not None  # the plan saw to it
-    without = _without_memory(scene)
-    memory, supply, rough, heat, shear = (list[Verdict]() for _ in range(5))
-    ranges = [visited(entry, scene.lubricant, settings.tolerance) for entry in found.needed]
-    for entry, there in zip(found.needed, ranges, strict=True):
-        theirs = tuple(
-            given for spec, given in zip(scene.bearings, supplies, strict=True) if spec.name in entry.bearings
-        )
-        verdicts = (
-            memory_verdict(there, highest, settings.films, without),
-            supply_verdict(there, theirs, settings.supply is not None),
-            roughness_verdict(there, scene.surface),
-            heat_verdict(there, settings.physics),
-            shear_verdict(there, settings.shear),
-        )
-        for group, verdict in zip((memory, supply, rough, heat, shear), verdicts, strict=True):
-            named = f"{entry.geometry.name}: {verdict.words}" if len(found.needed) > 1 else verdict.words
-            group.append(dataclasses.replace(verdict, words=named))
-    machine = machine_verdicts(found, ranges, highest, all(supply.flooded for supply in supplies))
-    return _Found(
-        (_worst(memory), _worst(supply), _worst(rough, least=True)),
-        tuple(_OfMap(*pair) for pair in zip(heat, shear, strict=True)),
-        machine,
-    )
+    without, tolerance = _without_memory(scene), settings.tolerance
+    entries: tuple[Needed | Seen, ...] = (*found.needed, *found.seen)
+    ranges = [visited(entry, scene.lubricant, tolerance) for entry in entries]
+    films: tuple[Verdict, ...] = ()
+    if not found.needed:
+        from mbs.planning.of_table import film_verdict
+
+        model = assemble(found.scene, TABLE_LAW, clearance=settings.clearance, films="slow", supply=settings.supply)
+        films = (film_verdict(found, model, tolerance, highest, settings.films),)
+    groups: list[list[Verdict]] = []
+    for entry, there in zip(entries, ranges, strict=True):
+        theirs = tuple(supplies[name] for name in entry.bearings)
+        if there.of_lines:
+            own: tuple[Verdict, ...] = (
+                memory_verdict(there, highest, settings.films, without),
+                supply_verdict(there, theirs, settings.supply is not None),
+                roughness_verdict(there, scene.surface),
+                heat_verdict(there, settings.physics),
+                shear_verdict(there, settings.shear),
+            )
+        elif there.points:
+            from mbs.planning.of_table import point_verdicts
+
+            own = point_verdicts(there, highest, settings.films, scene.surface, theirs[0])
+        else:
+            continue
+        alone = len(entries) == 1
+        groups.append([v if alone else dataclasses.replace(v, words=f"{entry.geometry.name}: {v.words}") for v in own])
+    flooded = all(supply.flooded for supply in supplies.values())
+    machine = machine_verdicts(found, ranges, highest, flooded)
+    laws = tuple(_worst([own[index] for own in groups], least=index == _LAMBDA) for index in range(3)) if groups else ()
+    pairs = [_OfMap(*own[3:]) for own in groups]
+    count = len(found.needed)
+    seen = tuple(pair.of_table(AutoSettings(), _NO_MAP) for pair in pairs[count:])
+    if films and not films[0].on:
+        laws = tuple(dataclasses.replace(one, on=False, warns=False, size=math.nan, words=_DRY) for one in laws)
+    return _Found(films, laws, tuple(pairs[:count]), seen, machine)
+
+
+_DRY = "as contacts are dry"
+
+_LAMBDA = 2
+"""Place of the roughness, whose least size counts, among the verdicts."""
+
+_NO_MAP = "these films are read from the film table, which has none"
 
 
 def _without_memory(scene: Scene) -> str:
@@ -455,20 +516,19 @@ def _worst(verdicts: list[Verdict], least: bool = False) -> Verdict:
 
 
 def _subject(
-    scene: Scene,
-    maps: MapSet,
-    verdicts: tuple[Verdict, ...],
-    supplies: tuple[OilSupply, ...],
-    settings: AutoSettings,
+    scene: Scene, maps: MapSet | None, required: _Found, supplies: Mapping[str, OilSupply], settings: AutoSettings
 ) -> Subject:
     """Scene and law with what is switched on."""
-    memory, supply, rough = verdicts
+    if required.dry:
+        return Subject(scene, named_law("hertz", scene), settings.clearance)
+    memory, supply, rough = required.of_laws
     surface = surface_in_force(scene.surface, rough)
+    name = TABLE_LAW if maps is None else "map"
     law = LawChoice(
-        law_label("map", maps),
-        "map",
+        law_label(name, maps),
+        name,
         maps,
         "memory" if memory.on else "slow",
-        settings.supply or in_force(supplies, supply),
+        settings.supply or in_force(tuple(supplies.values()), supply),
     )
     return Subject(dataclasses.replace(scene, surface=surface), law, settings.clearance)

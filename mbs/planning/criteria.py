@@ -21,10 +21,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
-from ehdmaps.arrays import FloatArray
+from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.maps.rough_layer import RoughLayer, SmoothContact, sharing_effect
 from ehdmaps.physics.contact import LineContact
@@ -89,6 +90,22 @@ class ClosedContact:
         """c [N s/m2]."""
         return np.asarray(self.loss * self.stiffness**2)
 
+    def with_memory(self, omega: float) -> ComplexArray:
+        """Dynamic stiffness k + i omega c/(1 + i omega theta) at an angular frequency [N/m2].
+
+        The relaxation time is theta = c/(k_s - k) with the stiffness k_s of the solids, as of
+        `ehdmaps.maps.kernels.memory_table`.
+
+        Parameters
+        ----------
+        omega : float
+            Angular frequency [rad/s].
+        """
+        k, c = self.stiffness, self.damping
+        with np.errstate(divide="ignore"):
+            theta = np.minimum(c * self.solids / (self.film_compliance * k), _LONGEST * self.time)
+        return np.asarray(k + 1j * omega * c / (1.0 + 1j * omega * theta))
+
 
 def closed_contact(
     contact: LineContact, lubricant: Lubricant, load: FloatArray, speed: float, temperature: float
@@ -127,26 +144,56 @@ def closed_contact(
     return ClosedContact(contact, load, speed, temperature, film, smallest, solids, gives, gives * time + edge, time)
 
 
-def memory_effect(state: ClosedContact, frequency: float) -> FloatArray:
+class Remembering(Protocol):
+    """Contacts over their loads: what films of slow motion are, and what they are with their memory."""
+
+    @property
+    def stiffness(self) -> FloatArray:
+        """k of slow motion."""
+        ...
+
+    @property
+    def damping(self) -> FloatArray:
+        """c of slow motion."""
+        ...
+
+    def with_memory(self, omega: float) -> ComplexArray:
+        """Dynamic stiffness with the memory of the film, at an angular frequency [rad/s]."""
+        ...
+
+
+def memory_effect(state: Remembering, frequency: float) -> FloatArray:
     """Relative distance of the dynamic stiffness of slow motion from that with memory, |dZ/Z|.
 
     Parameters
     ----------
-    state : ClosedContact
+    state : ClosedContact or PointContact
         The contact.
     frequency : float
         Highest frequency that is looked at [Hz].
-
-    Notes
-    -----
-    The relaxation time is theta = c/(k_s - k) with the stiffness k_s of the solids, as of
-    `ehdmaps.maps.kernels.memory_table`.
     """
-    omega, k, c = 2.0 * math.pi * frequency, state.stiffness, state.damping
-    with np.errstate(divide="ignore"):
-        theta = np.minimum(c * state.solids / (state.film_compliance * k), _LONGEST * state.time)
-    followed = k + 1j * omega * c / (1.0 + 1j * omega * theta)
-    return np.asarray(np.abs(k + 1j * omega * c - followed) / np.abs(followed))
+    slow, followed = _both(state, frequency)
+    return np.asarray(np.abs(slow - followed) / np.abs(followed))
+
+
+def memory_change(state: Remembering, frequency: float) -> FloatArray:
+    """Change of k or of c by the memory of a film, the larger of the two, as a part of that with memory.
+
+    Where omega c is small beside k, damping may change much and `memory_effect` be small.
+
+    Parameters
+    ----------
+    state, frequency
+        Same as for `memory_effect`.
+    """
+    slow, followed = _both(state, frequency)
+    return np.fmax(np.abs(slow.real / followed.real - 1.0), np.abs(slow.imag / followed.imag - 1.0))
+
+
+def _both(state: Remembering, frequency: float) -> tuple[ComplexArray, ComplexArray]:
+    """Dynamic stiffness of slow motion, and with memory."""
+    omega = 2.0 * math.pi * frequency
+    return np.asarray(state.stiffness + 1j * omega * state.damping), state.with_memory(omega)
 
 
 def supply_effect(state: ClosedContact, layer: float) -> FloatArray:
@@ -202,11 +249,19 @@ def heat_effect(state: ClosedContact, lubricant: Lubricant) -> FloatArray:
     loading = thermal_loading(viscosity_slope(lubricant, state.temperature), state.speed, conductivity)
     modulus = state.contact.reduced_modulus
     pressures = np.asarray(max_pressure(state.load, state.contact.radius, modulus))
-    return np.array([1.0 - _heated(pressure, modulus, loading) ** 2 for pressure in pressures.ravel().tolist()])
+    return np.array([1.0 - film_factor(pressure, modulus, loading) ** 2 for pressure in pressures.ravel().tolist()])
 
 
-def _heated(pressure: float, modulus: float, loading: float) -> float:
-    """Factor of the film; 0 beyond the range of the formula."""
+def film_factor(pressure: float, modulus: float, loading: float) -> float:
+    """Factor of a film by heating of its inlet; 0 beyond the range of the formula.
+
+    Parameters
+    ----------
+    pressure, modulus : float
+        Hertz pressure and E' [Pa].
+    loading : float
+        Thermal loading, see `ehdmaps.physics.heat.inlet_shear_heating_factor`.
+    """
     try:
         return inlet_shear_heating_factor(pressure, modulus, loading)
     except InputError:

@@ -19,6 +19,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import with_law
+from ehdmaps.physics.rollers.ribbed_geometry import RibbedGeometry
 from ehdmaps.units import RPM
 from mbs.analyses.operating import held
 from mbs.bearings.bearing import MOST_COUPLED
@@ -33,7 +34,8 @@ from mbs.planning.verdicts import SHARES, Range, Verdict, beside, percent, up_to
 from mbs.scene.assembly import Model, assemble
 from mbs.scene.fields import HERTZ, MICROMETRE
 from mbs.scene.map_set import TABLE_LAW
-from mbs.scene.specs import BearingSpec, FlexibleSpec
+from mbs.scene.scene import Scene
+from mbs.scene.specs import BallSpec, FlexibleSpec, TaperedSpec
 
 WARMER = 10.0
 """Difference of the temperatures of the rings whose effect is told [K]."""
@@ -56,7 +58,7 @@ _SOFT = 1e-9
 _UPRIGHT = 1e-9
 """Tilt that is left by round-off [rad]."""
 
-_Changed = Callable[[BearingSpec], BearingSpec]
+_Changed = Callable[[Scene], Scene]
 
 
 def machine_verdicts(
@@ -69,21 +71,23 @@ def machine_verdicts(
     found : PlanResult
         The scene as the analysis visits it, with dry contacts. One with [runup] is analysed in time.
     ranges : sequence of Range
-        Contacts of each geometry of `found.needed`, in its order.
+        Contacts of each geometry of `found.needed`, then of `found.seen`, in their order.
     frequency : float
         Highest frequency that is looked at [Hz]; 0 for an equilibrium.
     flooded : bool
         Whether no oil supply is stated.
     """
-    tolerance = ranges[0].tolerance
+    tolerance, mapped = ranges[0].tolerance, ranges[: len(found.needed)]
+    lines = [there for there in ranges if there.of_lines]
     rest = _AtRest(found.filled)
     verdicts = [
-        centrifugal_verdict(found, tolerance),
-        *([rollers_verdict(found, ranges, frequency)] if frequency > 0.0 else []),
-        slices_verdict(found, rest, tolerance),
-        coupling_verdict(found, rest, tolerance),
+        *([centrifugal_verdict(found, tolerance)] if mapped else []),
+        *([inertia_verdict(found, tolerance)] if found.seen else []),
+        *([rollers_verdict(found, mapped, frequency)] if mapped and frequency > 0.0 else []),
+        *([slices_verdict(found, rest, tolerance)] if lines else []),
+        *([coupling_verdict(found, rest, tolerance)] if mapped else []),
         rings_verdict(found, rest, tolerance),
-        structure_verdict(ranges),
+        *([structure_verdict(lines)] if lines else []),
         housing_verdict(rest, tolerance),
         *([mesh_verdict(rest, tolerance)] if found.scene.gears and found.scene.run_up is not None else []),
     ]
@@ -107,8 +111,7 @@ class _AtRest:
     @staticmethod
     def _along(model: Model, balance: Equilibrium) -> FloatArray:
         """Stiffness of each bearing along its load [N/m]."""
-        bearings = len(model.bearings)
-        return _along_loads(balance.forces[:bearings], balance.element_stiffness[:bearings])
+        return np.asarray(stiffness_and_damping(model, balance)[0])
 
     def change(self, changed: _Changed) -> float:
         """Largest change of the stiffness of a bearing along its load, as a part; NaN where there is no equilibrium.
@@ -116,25 +119,51 @@ class _AtRest:
         Parameters
         ----------
         changed : callable
-            Gives another bearing for each of the scene.
+            Gives another scene, with other bearings.
         """
-        scene = self.model.scene
         try:
-            other = assemble(scene.with_bearings(map(changed, scene.bearings)), "hertz")
+            other = assemble(changed(self.model.scene), "hertz")
             stiffness = self._along(other, equilibrium(other.system, other.operation, self.balance.displacement))
         except (AnalysisError, InputError):
             return math.nan
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return float(np.nanmax(np.abs(stiffness / self._stiffness - 1.0), initial=0.0))
+        return largest_change(stiffness, self._stiffness)
+
+
+def largest_change(new: FloatArray, old: FloatArray) -> float:
+    """Largest change of some values, as a part of the old ones; 0 of those that are none.
+
+    Parameters
+    ----------
+    new, old : array (n,)
+        Values of one kind; NaN of what has none.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return float(np.nanmax(np.abs(new / old - 1.0), initial=0.0))
+
+
+def stiffness_and_damping(model: Model, balance: Equilibrium) -> FloatArray:
+    """Stiffness [N/m] and damping [N s/m] of each bearing along its load, (2, bearings); NaN without a load.
+
+    Parameters
+    ----------
+    model : Model
+        Scene with its law.
+    balance : Equilibrium
+        Equilibrium of the model.
+    """
+    places = model.ring_places
+    parts = (balance.element_stiffness, balance.element_damping)
+    forces = [balance.forces[place] for place in places]
+    return np.array([_along_loads(forces, [part[place] for place in places]) for part in parts])
 
 
 def _along_loads(forces: Sequence[FloatArray], matrices: Sequence[FloatArray]) -> FloatArray:
     """Stiffness or damping of each bearing along its load; NaN without one."""
     found = []
     for force, matrix in zip(forces, matrices, strict=True):
-        size = float(np.linalg.norm(force[1:3]))
-        along = force[1:3] / size if size > 0.0 else np.full(2, math.nan)
-        found.append(float(along @ matrix[1:3, 1:3] @ along))
+        size = float(np.linalg.norm(force[:3]))
+        along = force[:3] / size if size > 0.0 else np.full(3, math.nan)
+        found.append(float(along @ matrix[:3, :3] @ along))
     return np.array(found)
 
 
@@ -151,9 +180,7 @@ def centrifugal_verdict(found: PlanResult, tolerance: float) -> Verdict:
     fastest = found.speeds[1]
     try:
         with_it, without = (_moving(found, centrifugal) for centrifugal in (True, False))
-        with np.errstate(divide="ignore", invalid="ignore"):
-            parts = np.nanmax(np.abs(with_it / without - 1.0), axis=1, initial=0.0)
-        stiffness, damping = (float(part) for part in parts)
+        stiffness, damping = map(largest_change, with_it, without)
     except (AnalysisError, InputError):
         stiffness = damping = math.nan
     size = max(stiffness, damping)
@@ -173,9 +200,34 @@ def _moving(found: PlanResult, centrifugal: bool) -> FloatArray:
     loaded = (dataclasses.replace(entry, centrifugal=centrifugal, slices_coupled=False) for entry in scene.bearings)
     model = held(assemble(scene.with_bearings(loaded), TABLE_LAW))
     balance = equilibrium(model.system, Operation(found.speeds[1], 0.0))
-    bearings = len(model.bearings)
-    parts = (balance.element_stiffness[:bearings], balance.element_damping[:bearings])
-    return np.array([_along_loads(balance.forces[:bearings], part) for part in parts])
+    return stiffness_and_damping(model, balance)[:, : len(model.bearings)]
+
+
+def inertia_verdict(found: PlanResult, tolerance: float) -> Verdict:
+    """Judge masses of balls and of tapered or ribbed rollers: by dry equilibria with them and without.
+
+    Parameters
+    ----------
+    found, tolerance
+        Same as for `centrifugal_verdict`.
+    """
+    from mbs.planning.seen import weightless
+
+    operation = Operation(found.speeds[1], 0.0)
+    try:
+        model = found.filled
+        light = dataclasses.replace(model, system=weightless(model.system))
+        with_it, without = (
+            stiffness_and_damping(one, equilibrium(one.system, operation))[0, len(model.bearings) :]
+            for one in (model, light)
+        )
+        size = largest_change(without, with_it)
+    except (AnalysisError, InputError):
+        size = math.nan
+    words = (
+        f"balls, tapered and ribbed rollers always have it; without, k of a bearing changes by {_told(size, tolerance)}"
+    )
+    return Verdict("centrifugal load and gyroscopic moment", True, size, f"{words} at {RPM.text(operation.speed)}")
 
 
 def rollers_verdict(found: PlanResult, ranges: Sequence[Range], frequency: float) -> Verdict:
@@ -227,19 +279,32 @@ def slices_verdict(found: PlanResult, rest: _AtRest, tolerance: float) -> Verdic
     tolerance : float
         Accepted change, as a part.
     """
-    single = rest.change(lambda entry: dataclasses.replace(entry, slices=1, slices_coupled=False))
-    finer = rest.change(lambda entry: dataclasses.replace(entry, slices=2 * entry.slices, slices_coupled=False))
+    scene = found.scene
+    counts = [entry.slices for entry in scene.bearings] + [entry.slices for entry in scene.tapered]
+    fewest = 1 if scene.bearings else 2
+    coarse = rest.change(lambda entry: _sliced(entry, lambda slices: fewest))
+    finer = rest.change(lambda entry: _sliced(entry, lambda slices: 2 * slices))
+    places = rest.model.ring_places
     tilts = [
-        float(np.hypot(*(connected.transform @ rest.balance.displacement)[4:6]))
-        for connected in rest.model.system.elements[: len(rest.model.bearings)]
+        float(np.hypot(*(rest.model.system.elements[place].transform @ rest.balance.displacement)[4:6]))
+        for place in places
     ]
-    numbers = "/".join(map(str, dict.fromkeys(entry.slices for entry in found.scene.bearings)))
+    numbers = "/".join(map(str, dict.fromkeys(counts)))
     tilt = f"tilt by up to {1e6 * max(tilts):.3g} urad" if max(tilts) > _UPRIGHT else "do not tilt"
+    few = "a single one changes" if fewest == 1 else "two change"
     words = (
-        f"{numbers} a roller, whose rings {tilt} at rest; a single one changes k of a bearing by "
-        f"{_told(single, tolerance)}, twice as many by {_told(finer, tolerance)}; slices in [[bearings]]"
+        f"{numbers} a roller, whose rings {tilt} at rest; {few} k of a bearing by "
+        f"{_told(coarse, tolerance)}, twice as many by {_told(finer, tolerance)}; slices in [[bearings]]"
     )
-    return Verdict("slices", any(entry.slices > 1 for entry in found.scene.bearings), single, words)
+    return Verdict("slices", max(counts) > 1, coarse, words)
+
+
+def _sliced(scene: Scene, change: Callable[[int], int]) -> Scene:
+    """The scene with other numbers of slices, none coupled."""
+    bearings = [dataclasses.replace(one, slices=change(one.slices), slices_coupled=False) for one in scene.bearings]
+    return scene.with_bearings(bearings).with_tapered(
+        lambda entry: dataclasses.replace(entry, slices=max(change(entry.slices), 2))
+    )
 
 
 def coupling_verdict(found: PlanResult, rest: _AtRest, tolerance: float) -> Verdict:
@@ -251,8 +316,9 @@ def coupling_verdict(found: PlanResult, rest: _AtRest, tolerance: float) -> Verd
         Same as for `slices_verdict`.
     """
     size = rest.change(
-        lambda entry: dataclasses.replace(
-            entry, slices=min(entry.slices, MOST_COUPLED), slices_coupled=not entry.slices_coupled
+        lambda scene: scene.with_bearings(
+            dataclasses.replace(entry, slices=min(entry.slices, MOST_COUPLED), slices_coupled=not entry.slices_coupled)
+            for entry in scene.bearings
         )
     )
     return _stated(
@@ -276,16 +342,21 @@ def rings_verdict(found: PlanResult, rest: _AtRest, tolerance: float) -> Verdict
     -----
     Rollers have the mean of both rings, so that the clearance falls by alpha dT times the pitch diameter.
     """
-    size = rest.change(lambda entry: _narrower(entry, STEEL_EXPANSION * WARMER * entry.geometry.pitch_diameter))
-    taken = max(STEEL_EXPANSION * WARMER * entry.geometry.pitch_diameter for entry in found.scene.bearings)
-    return _stated(
-        "ring temperatures and fits",
-        [entry.changes_in_operation for entry in found.scene.bearings],
-        size,
-        f"an inner ring {WARMER:g} K warmer takes {MICROMETRE.text(taken, 2)} of the clearance, which changes "
-        f"k of a bearing by {_told(size, tolerance)}",
-        "thermal and mounting in [[bearings]]",
+    warm = STEEL_EXPANSION * WARMER
+    size = rest.change(lambda scene: _narrower(scene, lambda diameter: warm * diameter))
+    scene = found.scene
+    pitches = [entry.geometry.pitch_diameter for entry in scene.bearings]
+    pitches += [entry.geometry.pitch_diameter for entry in scene.balls]
+    pitches += [entry.geometry.pitch_diameter for entry in scene.tapered]
+    words = (
+        f"an inner ring {WARMER:g} K warmer takes {MICROMETRE.text(warm * max(pitches), 2)} of the clearance, which "
+        f"changes k of a bearing by {_told(size, tolerance)}"
     )
+    name = "ring temperatures and fits"
+    if scene.bearings:
+        has = [entry.changes_in_operation for entry in scene.bearings]
+        return _stated(name, has, size, words, "thermal and mounting in [[bearings]]")
+    return Verdict(name, False, size, f"{words}; clearance and offset are those in operation")
 
 
 def structure_verdict(ranges: Sequence[Range]) -> Verdict:
@@ -312,7 +383,9 @@ def structure_verdict(ranges: Sequence[Range]) -> Verdict:
     words = ", ".join(f"by {up_to(max(pair))} with {law}" for law, pair in sizes.items())
     told = f"iso16281; k or c of a contact changes {words} ({beside(size, ranges[0].tolerance)})"
     counted = f"bands count {_STATED_LAW} alone, as half_space is too stiff for rings"
-    words = f"{told}; {counted}; --structural-law beside --map has another"
+    words = f"{told}; {counted}"
+    if all(there.has_map for there in ranges):
+        words += "; --structural-law beside --map has another"
     return Verdict("structural law", None, size, words, errors=sizes[_STATED_LAW])
 
 
@@ -379,7 +452,7 @@ def undecided(rest: _AtRest, flooded: bool) -> Verdict:
     flooded : bool
         Whether no oil supply is stated.
     """
-    size = rest.change(lambda entry: _narrower(entry, NARROWER))
+    size = rest.change(lambda scene: _narrower(scene, lambda diameter: NARROWER))
     change = "has no equilibrium" if math.isnan(size) else f"changes k of a bearing by {up_to(size)}"
     layer = "none is stated, all contacts are flooded" if flooded else "as stated"
     words = f"clearance (as stated; {MICROMETRE.text(NARROWER)} less {change}) and oil layer ({layer}): measure them"
@@ -396,10 +469,31 @@ def _changes(plain: ClosedContact, other: ClosedContact) -> tuple[float, float]:
     return stiffness, damping
 
 
-def _narrower(entry: BearingSpec, by: float) -> BearingSpec:
-    """The bearing with a smaller clearance."""
-    clearance = entry.geometry.diametral_clearance - by
-    return dataclasses.replace(entry, geometry=dataclasses.replace(entry.geometry, diametral_clearance=clearance))
+def _narrower(scene: Scene, by: Callable[[float], float]) -> Scene:
+    """The scene with smaller clearances, by pitch diameters; where bearings stand one way, with more offset."""
+
+    def of_balls(entry: BallSpec) -> BallSpec:
+        geometry, less = entry.geometry, by(entry.geometry.pitch_diameter)
+        if geometry.contact_angle != 0.0:
+            offset = entry.axial_offset + math.copysign(less, geometry.contact_angle)
+            return dataclasses.replace(entry, axial_offset=offset)
+        return dataclasses.replace(entry, geometry=dataclasses.replace(geometry, clearance=geometry.clearance - less))
+
+    def of_rollers(entry: TaperedSpec) -> TaperedSpec:
+        geometry, less = entry.geometry, by(entry.geometry.pitch_diameter)
+        if not isinstance(geometry, RibbedGeometry):
+            offset = entry.axial_offset + math.copysign(less, geometry.contact_angle)
+            return dataclasses.replace(entry, axial_offset=offset)
+        clearance = geometry.diametral_clearance - less
+        return dataclasses.replace(entry, geometry=dataclasses.replace(geometry, diametral_clearance=clearance))
+
+    bearings = []
+    for entry in scene.bearings:
+        clearance = entry.geometry.diametral_clearance - by(entry.geometry.pitch_diameter)
+        bearings.append(
+            dataclasses.replace(entry, geometry=dataclasses.replace(entry.geometry, diametral_clearance=clearance))
+        )
+    return scene.with_bearings(bearings).with_balls(of_balls).with_tapered(of_rollers)
 
 
 def _told(size: float, tolerance: float) -> str:

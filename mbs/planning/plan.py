@@ -7,6 +7,7 @@ import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.job import Job, check_oil
@@ -20,6 +21,9 @@ from mbs.planning import ranges
 from mbs.planning.ranges import Needed
 from mbs.scene.assembly import Model, assemble
 from mbs.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from mbs.planning.seen import Seen
 
 LOADS_PER_DECADE, SPEEDS_PER_DECADE = 6, 5
 """As close as in the shipped jobs; contact laws choose lines of their own besides."""
@@ -136,7 +140,9 @@ class PlanResult:
     speeds : (float, float)
         Lowest and highest speed of the system [rad/s].
     needed : tuple of Needed
-        Ranges by geometry.
+        Ranges of a map by geometry; none without cylindrical roller bearings.
+    seen : tuple of Seen
+        Ranges of the other bearings by geometry, of balls, tapered or ribbed rollers.
     filled : Model
         The model with clearances that the films have taken up at the highest speed.
     """
@@ -145,6 +151,7 @@ class PlanResult:
     model: Model
     speeds: tuple[float, float]
     needed: tuple[Needed, ...]
+    seen: tuple[Seen, ...]
     filled: Model
 
     def job(self, index: int, name: str = "plan", solver: Mapping[str, Entry] | None = None) -> Job:
@@ -226,17 +233,7 @@ def _dry_model(scene: Scene, settings: PlanSettings) -> Model:
         model = assemble(_dry_scene(scene), "hertz", clearance=settings.clearance)
     except InputError as error:
         problems += error.problems
-    if scene.balls and not scene.bearings:
-        problems.append(
-            "got ball bearings alone, and maps are of line contacts: there is no map to plan or to choose; allowed: "
-            "analyses without --auto, with --law table, which reads their films from the film table of points"
-        )
-    elif scene.tapered and not scene.bearings:
-        problems.append(
-            "got tapered or ribbed rollers alone, whose films are read from the film table: there is no map to plan or "
-            "to choose; allowed: analyses without --auto"
-        )
-    elif not scene.bearings:
+    if not (scene.bearings or scene.balls or scene.tapered):
         problems.append("got no bearing; allowed: at least one [[bearings]], which is what a map is for")
     if warm := [entry.name for entry in scene.bearings if entry.thermal is not None]:
         problems.append(
@@ -274,7 +271,7 @@ def _planned(scene: Scene, model: Model, settings: PlanSettings) -> PlanResult:
     steady = (scene.speed, *(scene.sweep.speeds.tolist() if scene.sweep else ()))
     speeds = ranges.speed_range(steady, scene.run_up.speed.course.values if scene.run_up else ())
     fastest = [entry.rates[1] * speeds[1] for entry in model.bearings]
-    if max(fastest) > SPEED_AXIS.high:
+    if max(fastest, default=0.0) > SPEED_AXIS.high:
         raise InputError(
             f"{scene.name}: its highest speed {RPM.text(speeds[1])} is an entrainment speed of "
             f"{SPEED.text(max(fastest))}; allowed: up to {SPEED.text(SPEED_AXIS.high)}, the limit of a map; check units"
@@ -282,23 +279,30 @@ def _planned(scene: Scene, model: Model, settings: PlanSettings) -> PlanResult:
     mounted = held(model)
     # Loads that turn would thin the films, whose room is largest where the rotor has no unbalance. An unloaded bearing
     # has films, too: those of a light load.
-    at_rest = ranges.largest_loads(mounted.system, mounted.bearings, speeds[1], turning=False)
+    at_rest = ranges.largest_loads(mounted.system, mounted.on_rings, speeds[1], turning=False)
     turns = bool(mounted.system.turning)
-    dry = ranges.largest_loads(mounted.system, mounted.bearings, speeds[1]) if turns else at_rest
+    dry = ranges.largest_loads(mounted.system, mounted.on_rings, speeds[1]) if turns else at_rest
+    mapped = len(model.bearings)
     rooms = tuple(
         ranges.film_room(entry.bearing.geometry, oil, max(load, ranges.LIGHT), speed, scene.temperature)
         if speed > 0.0
         else 0.0
-        for entry, load, speed in zip(model.bearings, at_rest, fastest, strict=True)
+        for entry, load, speed in zip(model.bearings, at_rest[:mapped], fastest, strict=True)
     )
-    filled = held(assemble(_dry_scene(model.scene, rooms), "hertz"))
-    preloaded = ranges.largest_loads(filled.system, filled.bearings, speeds[1])
+    filled = held(assemble(_dry_scene(model.scene, rooms), "hertz")) if mapped else mounted
+    preloaded = ranges.largest_loads(filled.system, filled.on_rings, speeds[1]) if mapped else dry
     centrifugal = [
         entry.bearing.centrifugal_load(entry.inner_spin, entry.outer_spin) * speeds[1] ** 2
         if given.centrifugal
         else 0.0
         for entry, given in zip(model.bearings, scene.bearings, strict=True)
     ]
-    static = [max(pair) + more for *pair, more in zip(dry, preloaded, centrifugal, strict=True)]
-    needed = ranges.needed_ranges(model.bearings, static, rooms, speeds, settings.margin)
-    return PlanResult(scene, model, speeds, needed, filled)
+    static = [max(pair) for pair in zip(dry, preloaded, strict=True)]
+    loads = [load + more for load, more in zip(static, centrifugal, strict=False)]
+    needed = ranges.needed_ranges(model.bearings, loads, rooms, speeds, settings.margin)
+    seen: tuple[Seen, ...] = ()
+    if len(static) > mapped:
+        from mbs.planning.seen import seen_ranges  # with the films of points
+
+        seen = seen_ranges(model.on_rings, static, speeds, scene.temperature, settings.margin)
+    return PlanResult(scene, model, speeds, needed, seen, filled)

@@ -17,6 +17,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.films import moes_central
@@ -24,10 +25,13 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import film_from_moes, moes_groups
 from ehdmaps.physics.solids import STEEL
 from mbs.bearings.bearing_element import BearingElement
+from mbs.linearised.averaged import pitch
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import Constant, Course, Harmonic, LoadProfile
 from mbs.model.system import System
+from mbs.planning.criteria import ClosedContact, closed_contact
+from mbs.scene.assembly import AnyBearing
 
 ANGLES = 12
 """Angles within one pitch of the rollers."""
@@ -83,6 +87,21 @@ class Needed:
     static_load: float
     film_room: float
 
+    def states(self, lubricant: Lubricant, load: FloatArray, speed: float) -> tuple[ClosedContact, ...]:
+        """The inner and the outer contact in closed form.
+
+        Parameters
+        ----------
+        lubricant : Lubricant
+            The oil.
+        load : array (n,)
+            Loads per unit length [N/m], > 0.
+        speed : float
+            Entrainment speed [m/s], > 0.
+        """
+        contacts = self.geometry.contacts(STEEL, "iso16281")
+        return tuple(closed_contact(contact, lubricant, load, speed, self.temperature) for contact in contacts)
+
 
 def same_contacts(geometry: BearingGeometry) -> tuple[float, float, float, float]:
     """Dimensions on which the contacts of a bearing depend: raceways and rollers [m], rounded to a nanometre.
@@ -135,9 +154,9 @@ def speed_range(steady: Iterable[float], ramp: Sequence[float] = ()) -> tuple[fl
 
 
 def largest_loads(
-    system: System, bearings: Sequence[BearingElement], speed: float, turning: bool = True
+    system: System, bearings: Sequence[AnyBearing], speed: float, turning: bool = True
 ) -> tuple[float, ...]:
-    """Largest load per unit length of a slice of each bearing at rest [N/m].
+    """Largest load of a contact of each bearing at rest: of a slice [N/m], or of a ball [N].
 
     Parameters
     ----------
@@ -164,11 +183,7 @@ def largest_loads(
     w^2 of an unbalance: what the bearings of a stiff rotor carry. Well below the first critical speed a rotor bends
     little, and this holds; from half of it on the rotor adds more than a third, and near it any multiple.
     """
-    pitches = [
-        2.0 * math.pi / bearing.bearing.geometry.rollers / abs(bearing.rates[0])
-        for bearing in bearings
-        if bearing.rates[0] != 0.0
-    ]
+    pitches = [angle for bearing in bearings if (angle := pitch(bearing)) > 0.0]
     places = [(entry, system.relative(entry.inner, entry.outer)) for entry in bearings]
     largest = np.zeros(len(places))
     profiles = [profile for _, profile in system.varying_loads]
@@ -178,7 +193,7 @@ def largest_loads(
         for part in range(ANGLES if pitches else 1):
             operation = Operation(speed, max(pitches, default=0.0) * part / ANGLES, time)
             start = equilibrium(turned, operation, start).displacement
-            loads = [entry.rollers(place @ start, operation).load_per_length.max() for entry, place in places]
+            loads = [entry.largest_load(place @ start, operation) for entry, place in places]
             largest = np.maximum(largest, loads)
     return tuple(largest.tolist())
 
@@ -263,12 +278,8 @@ def needed_ranges(
         names = tuple(bearings[index].name for index in members)
         load = max(static_loads[index] for index in members)
         rates = [bearings[index].rates[1] for index in members if bearings[index].rates[1] > 0.0]
-        if load <= 0.0 or not rates:
-            lacking = "carry no load" if rates else "do not roll"
-            raise AnalysisError(
-                f"plan: the rollers of {', '.join(names)} {lacking} in any equilibrium of the scene, so that no range "
-                "can be told; give the scene loads, spins, or a smaller clearance"
-            )
+        if problem := idle_problem(names, load, rates):
+            raise AnalysisError(problem)
         highest = margin * load
         found.append(
             Needed(
@@ -282,6 +293,26 @@ def needed_ranges(
             )
         )
     return tuple(found)
+
+
+def idle_problem(names: Sequence[str], load: float, rates: Sequence[float]) -> str:
+    """Say why no range can be told of bearings; empty where one can.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Their names.
+    load : float
+        Their largest load at rest.
+    rates : sequence of float
+        Entrainment speeds of those that roll, by the speed of the system [m].
+    """
+    if load > 0.0 and rates:
+        return ""
+    return (
+        f"plan: the rollers of {', '.join(names)} {'carry no load' if rates else 'do not roll'} in any equilibrium of "
+        "the scene, so that no range can be told; give the scene loads, spins, or a smaller clearance"
+    )
 
 
 def outward(low: float, high: float) -> tuple[float, float]:

@@ -13,13 +13,16 @@ that of idle rollers, whose films are the thick ones.
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import SolverError
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.job_text import Entry
 from ehdmaps.jobs.make.law_check import SMALL_DAMPING
@@ -29,7 +32,6 @@ from ehdmaps.physics.heat import INLET_HEAT, ISOTHERMAL, inlet_heat
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, THICKEST, THINNEST, OilSupply
-from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.solution import ContactSolution, ContactSolver, contact_solution
 from ehdmaps.physics.surface import FINEST, SMOOTH, Surface
 from ehdmaps.units import SPEED
@@ -37,15 +39,18 @@ from mbs.model.relaxation import Films
 from mbs.planning.criteria import (
     TOUCHING,
     ClosedContact,
-    closed_contact,
     film_over_roughness,
     heat_effect,
+    memory_change,
     memory_effect,
     roughness_effect,
     supply_effect,
 )
 from mbs.planning.ranges import Needed
 from mbs.scene.fields import HERTZ, MICROMETRE
+
+if TYPE_CHECKING:
+    from mbs.planning.seen import PointContact, Seen
 
 
 def shear_effect(state: ClosedContact, lubricant: Lubricant, loads: FloatArray) -> tuple[float, float]:
@@ -200,12 +205,23 @@ class Range:
         The oil.
     tolerance : float
         Change of a stiffness or damping that is still accepted, as a part of it.
+    points : tuple of PointContact
+        The same of points; then there are no lines.
+    has_map : bool
+        Whether maps are made of such contacts.
     """
 
     states: tuple[ClosedContact, ...]
     highest: float
     lubricant: Lubricant
     tolerance: float
+    points: tuple[PointContact, ...] = ()
+    has_map: bool = True
+
+    @property
+    def of_lines(self) -> bool:
+        """Tell whether its contacts are lines."""
+        return bool(self.states)
 
     @property
     def slowest_and_fastest(self) -> tuple[ClosedContact, ...]:
@@ -213,7 +229,7 @@ class Range:
         speeds = [state.speed for state in self.states]
         return tuple(state for state in self.states if state.speed in (min(speeds), max(speeds)))
 
-    def carrying(self, values: Callable[[ClosedContact], FloatArray]) -> tuple[float, ClosedContact]:
+    def carrying(self, values: Callable[[Any], FloatArray]) -> tuple[float, ClosedContact | PointContact]:
         """The largest of some values at the loads of rollers that carry the bearing, and where it is.
 
         Parameters
@@ -222,17 +238,18 @@ class Range:
             Gives a value for each load of a contact.
         """
         low = SHARES[0] * self.highest * (1.0 - 1e-9)
-        worst = [(float(np.max(values(state)[state.load >= low])), state) for state in self.states]
+        every: tuple[ClosedContact | PointContact, ...] = (*self.states, *self.points)
+        worst = [(float(np.max(values(state)[state.load >= low])), state) for state in every]
         return max(worst, key=lambda entry: entry[0])
 
 
-def visited(needed: Needed, lubricant: Lubricant, tolerance: float) -> Range:
+def visited(needed: Needed | Seen, lubricant: Lubricant, tolerance: float) -> Range:
     """The range of the bearings of one geometry.
 
     Parameters
     ----------
-    needed : Needed
-        What they need of a map.
+    needed : Needed or Seen
+        What they need of a map, or see without one. Speeds at which the film table has no points are left out.
     lubricant : Lubricant
         The oil.
     tolerance : float
@@ -242,13 +259,14 @@ def visited(needed: Needed, lubricant: Lubricant, tolerance: float) -> Range:
     carried = np.geomspace(SHARES[0] * highest, SHARES[1] * highest, _LOADS)
     idle = np.geomspace(min(needed.load[0], carried[0]), carried[0], _LOADS)
     loads = np.union1d(idle[:-1], carried)
-    speeds = np.unique(np.geomspace(*needed.entrainment_speed, _SPEEDS))
-    states = tuple(
-        closed_contact(contact, lubricant, loads, speed, needed.temperature)
-        for contact in needed.geometry.contacts(STEEL, "iso16281")
-        for speed in speeds.tolist()
-    )
-    return Range(states, highest, lubricant, tolerance)
+    pairs = []
+    for speed in np.unique(np.geomspace(*needed.entrainment_speed, _SPEEDS)).tolist():
+        with contextlib.suppress(SolverError):
+            pairs.append(needed.states(lubricant, loads, speed))
+    states = [state for side in zip(*pairs, strict=True) for state in side]
+    lines = tuple(state for state in states if isinstance(state, ClosedContact))
+    points = tuple(state for state in states if not isinstance(state, ClosedContact))
+    return Range(lines, highest, lubricant, tolerance, points, isinstance(needed, Needed))
 
 
 def memory_verdict(found: Range, frequency: float, asked: Films | None, without: str = "") -> Verdict:
@@ -268,9 +286,10 @@ def memory_verdict(found: Range, frequency: float, asked: Films | None, without:
     name = "film memory"
     if frequency == 0.0:
         return Verdict(name, False, math.nan, "as an equilibrium has no frequency")
-    size, state = found.carrying(lambda entry: memory_effect(entry, frequency))
+    effect, of = (memory_effect, "k + i omega c") if found.has_map else (memory_change, "k or c")
+    size, state = found.carrying(lambda entry: effect(entry, frequency))
     words = (
-        f"films of slow motion would be wrong by {up_to(size)} in k + i omega c of a contact at "
+        f"films of slow motion would be wrong by {up_to(size)} in {of} of a contact at "
         f"{HERTZ.text(frequency)} and {SPEED.text(state.speed)}"
     )
     if asked is not None:
@@ -371,7 +390,7 @@ def heat_verdict(found: Range, asked: str | None = None) -> Verdict:
         return Verdict(name, on, size, f"{_ASKED}, {asked}; {words}", {"physics": asked} if on else {}, errors)
     if size <= found.tolerance:
         return Verdict(name, False, size, words, errors=errors)
-    refused = _no_rule(found)
+    refused = _no_rule(found) if found.has_map else ""
     if not refused:
         return Verdict(name, True, size, f"{words}; the map has it by its rule", {"physics": INLET_HEAT}, errors)
     words = f"{words}; its rule does not hold here ({refused}); --physics thermal has it"
@@ -462,20 +481,22 @@ MOST_STATED = 0.9
 """Most that an error of k or c is stated as, as a part: laws that are wrong on purpose keep a stiffness."""
 
 
-def left_out_verdict(verdicts: Sequence[Verdict]) -> tuple[Verdict, tuple[float, float]]:
+def left_out_verdict(verdicts: Sequence[Verdict], in_bands: bool = True) -> tuple[Verdict, tuple[float, float]]:
     """Sum up what is left out or not decided, and what errors of k and c a law is to state for it.
 
     Parameters
     ----------
     verdicts : sequence of Verdict
         Those on the films of one type of bearing.
+    in_bands : bool
+        Whether bands have them: those of bearings with maps do.
     """
     stiffness, damping = (math.fsum(parts) for parts in zip(*(verdict.missing for verdict in verdicts), strict=True))
     stated = min(stiffness, MOST_STATED), min(damping, MOST_STATED)
     capped = f", at most {percent(MOST_STATED)} each" if (stiffness, damping) != stated else ""
     words = (
-        f"{percent(stated[0])} of k and {percent(stated[1])} of c of a contact, by the sizes above{capped}; the bands "
-        "(+-) have them"
+        f"{percent(stated[0])} of k and {percent(stated[1])} of c of a contact, by the sizes above{capped}; "
+        f"{'the bands (+-) have them' if in_bands else 'no band has them'}"
     )
     return Verdict("left out of the films", None, max(stiffness, damping), words), stated
 

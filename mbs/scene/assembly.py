@@ -171,6 +171,12 @@ class Model:
         found = [entry.element for entry in self.system.elements if entry.element.name in others]
         return (*self.bearings, *cast("list[AnyBearing]", found))
 
+    @property
+    def ring_places(self) -> tuple[int, ...]:
+        """Place of each of `on_rings` among the elements of the system, by its name."""
+        places = {entry.element.name: index for index, entry in enumerate(self.system.elements)}
+        return tuple(places[entry.name] for entry in self.on_rings)
+
     def largest_loads(self, displacement: FloatArray, operation: Operation) -> FloatArray:
         """Load of the most loaded contact of each of `on_rings`, see `OnRings.largest_load`.
 

@@ -238,8 +238,7 @@ def test_report_has_the_balls(capsys, tmp_path):
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (("plan",), "there is no map to plan or to choose; allowed: analyses without --auto, with --law table"),
-        (("statics", "--auto"), "there is no map to plan or to choose"),
+        (("statics", "--auto", "--physics", "thermal"), "read from the film table, which is isothermal; leave it out"),
         (("modes", "--law", "hertz", "--films", "memory"), "without a law that has films; allowed: with --map, --law"),
         (("statics", "--supply", "5 um"), "with ball bearings alone; allowed: none of it: their films are of one oil"),
     ],

@@ -1,0 +1,312 @@
+"""Bearings whose films no map has, of balls, tapered or ribbed rollers: what they see, what the film table has there.
+
+Their films are those of the film table of points, or of lines at the middle of a roller. They are asked the questions
+of bearings with maps: loads, speeds and temperature (`mbs.planning.ranges`), and what each physics would change.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections import OrderedDict
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ehdmaps.arrays import ComplexArray, FloatArray
+from ehdmaps.errors import AnalysisError
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.point.ball_geometry import BallGeometry
+from ehdmaps.physics.point.ellipse import Ellipse
+from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
+from ehdmaps.physics.solids import STEEL
+from ehdmaps.units import LOAD, RPM, SPEED, Display
+from mbs.bearings.balls.ball_bearing import BallForce
+from mbs.bearings.balls.ball_element import MachineBalls
+from mbs.bearings.balls.films import ContactFilms, ball_films
+from mbs.bearings.bearing_element import BearingElement
+from mbs.bearings.tapered.line_film import cylinder_of
+from mbs.bearings.tapered.tapered_element import TaperedElement
+from mbs.model.elements import Element
+from mbs.model.system import System
+from mbs.planning.criteria import ClosedContact, closed_contact
+from mbs.planning.ranges import LIGHT, LIGHTEST, idle_problem, same_contacts
+from mbs.scene.assembly import AnyBearing, Model
+from mbs.scene.fields import FORCE
+
+
+@dataclass(frozen=True, eq=False)
+class PointContact:
+    """A contact of a ball with its film of the film table, over its loads; arrays of the shape of `load`.
+
+    Attributes
+    ----------
+    contact : Ellipse
+        The dry contact.
+    load : array
+        Load [N], > 0.
+    speed, temperature : float
+        u [m/s], > 0, and T [K].
+    films : ContactFilms
+        What the table has at this speed.
+    """
+
+    contact: Ellipse
+    load: FloatArray
+    speed: float
+    temperature: float
+    films: ContactFilms
+
+    @property
+    def stiffness(self) -> FloatArray:
+        """k of slow motion [N/m]: the film gives way by -dh/dF beside the solids."""
+        dry = 1.0 / np.asarray(self.contact.stiffness(self.load))
+        return np.asarray(1.0 / (dry - self.films.read(self.load)[1][0] / self.load))
+
+    @property
+    def damping(self) -> FloatArray:
+        """c of slow motion [N s/m]."""
+        return np.asarray(self.films.read(self.load)[0][3])
+
+    @property
+    def minimum_film(self) -> FloatArray:
+        """Smallest film [m]."""
+        return np.asarray(self.films.read(self.load)[0][2])
+
+    def with_memory(self, omega: float) -> ComplexArray:
+        """Dynamic stiffness at an angular frequency [N/m], by `mbs.bearings.balls.response`.
+
+        Parameters
+        ----------
+        omega : float
+            Angular frequency [rad/s].
+        """
+        assert self.films.response is not None  # films that were read
+        springs, s = self.films.response.springs(self.load), 1j * omega
+        followed = np.sum(springs.shares / (1.0 + s * springs.times), axis=1)
+        return np.asarray(self.stiffness + s * self.damping * followed)
+
+
+@dataclass(frozen=True)
+class Seen:
+    """Operating ranges of the bearings of one geometry, of which no map is made.
+
+    Attributes
+    ----------
+    geometry : BallGeometry or TaperedGeometry
+        One of theirs.
+    bearings : tuple of str
+        Their names.
+    load : (float, float)
+        Lowest and highest load of a ball [N], or of a slice of a roller [N/m].
+    entrainment_speed : (float, float)
+        Lowest and highest [m/s].
+    temperature : float
+        Temperature of the raceways [K].
+    static_load : float
+        Largest load at rest, in the unit of `load`.
+    """
+
+    geometry: BallGeometry | TaperedGeometry
+    bearings: tuple[str, ...]
+    load: tuple[float, float]
+    entrainment_speed: tuple[float, float]
+    temperature: float
+    static_load: float
+
+    @property
+    def display(self) -> Display:
+        """Unit in which its loads are told."""
+        return FORCE if isinstance(self.geometry, BallGeometry) else LOAD
+
+    @property
+    def of_points(self) -> bool:
+        """Tell whether its contacts are points, else lines."""
+        return isinstance(self.geometry, BallGeometry)
+
+    def states(
+        self, lubricant: Lubricant, load: FloatArray, speed: float
+    ) -> tuple[ClosedContact, ...] | tuple[PointContact, ...]:
+        """The inner and the outer contact: lines in closed form, points by the film table.
+
+        Parameters
+        ----------
+        lubricant : Lubricant
+            The oil.
+        load : array (n,)
+            Loads in the unit of `load`, > 0.
+        speed : float
+            Entrainment speed [m/s], > 0.
+
+        Raises
+        ------
+        SolverError
+            Where the film table of points has no films at that speed.
+        """
+        if isinstance(self.geometry, BallGeometry):
+            contacts = self.geometry.contacts(STEEL)
+            films = ball_films(self.geometry, lubricant, speed, self.temperature, solves=False).sides
+            return tuple(
+                PointContact(contact, load, speed, self.temperature, side)
+                for contact, side in zip(contacts, films, strict=True)
+            )
+        lines = cylinder_of(self.geometry).contacts(STEEL, "iso16281")
+        return tuple(closed_contact(contact, lubricant, load, speed, self.temperature) for contact in lines)
+
+
+def seen_ranges(
+    bearings: Sequence[AnyBearing],
+    static_loads: Sequence[float],
+    speeds: tuple[float, float],
+    temperature: float,
+    margin: float,
+) -> tuple[Seen, ...]:
+    """Ranges of each geometry of which no map is made, in the order of the bearings.
+
+    Parameters
+    ----------
+    bearings : sequence of AnyBearing
+        All bearings of the system; those with maps are left out.
+    static_loads : sequence of float
+        Largest load of each, from `mbs.planning.ranges.largest_loads`.
+    speeds : (float, float)
+        Lowest and highest speed of the system [rad/s].
+    temperature : float
+        Temperature of the raceways [K].
+    margin : float
+        Highest load over the static one.
+
+    Raises
+    ------
+    AnalysisError
+        If all bearings of a geometry are unloaded or stand still.
+    """
+    groups: dict[object, list[tuple[AnyBearing, float]]] = {}
+    for bearing, load in zip(bearings, static_loads, strict=True):
+        if not isinstance(bearing, BearingElement):
+            groups.setdefault(_contacts(bearing.force.geometry), []).append((bearing, load))
+    found = []
+    for members in groups.values():
+        names = tuple(bearing.name for bearing, _ in members)
+        highest = max(load for _, load in members)
+        rates = [bearing.entrainment_rate for bearing, _ in members if bearing.entrainment_rate > 0.0]
+        if problem := idle_problem(names, highest, rates):
+            raise AnalysisError(problem)
+        geometry = members[0][0].force.geometry  # type: ignore[union-attr]
+        lowest = LIGHTEST * margin * highest
+        found.append(
+            Seen(
+                geometry=geometry,
+                bearings=names,
+                load=(lowest if isinstance(geometry, BallGeometry) else min(lowest, LIGHT), margin * highest),
+                entrainment_speed=(min(rates) * speeds[0], max(rates) * speeds[1]),
+                temperature=temperature,
+                static_load=highest,
+            )
+        )
+    return tuple(found)
+
+
+def _contacts(geometry: BallGeometry | TaperedGeometry) -> object:
+    """Key of the contacts of a bearing, whatever its clearance, and which way it stands."""
+    if isinstance(geometry, BallGeometry):
+        return dataclasses.replace(geometry, clearance=0.0, contact_angle=abs(geometry.contact_angle))
+    return same_contacts(cylinder_of(geometry)), geometry.name
+
+
+_SPEEDS = 5
+
+
+@dataclass(frozen=True)
+class Held:
+    """Part of the film table that the bearings of one geometry see.
+
+    Attributes
+    ----------
+    loads : (float, float)
+        Loads that it has at all speeds that have films, in the unit of `Seen.load`; NaN where it has none.
+    missing : str
+        Speed at which it has no films, and why; empty where it has them at all speeds.
+    """
+
+    loads: tuple[float, float]
+    missing: str
+
+    def lacks(self, seen: Seen) -> bool:
+        """Tell whether loads at rest lie beyond it."""
+        return not seen.static_load <= self.loads[1]
+
+
+def held_films(seen: Seen, model: Model, speeds: tuple[float, float]) -> Held:
+    """Loads that the film table has over the speeds of a scene.
+
+    Parameters
+    ----------
+    seen : Seen
+        The bearings.
+    model : Model
+        The scene with films of the table.
+    speeds : (float, float)
+        Lowest and highest speed of the system [rad/s].
+    """
+    element = next(entry for entry in unmapped(model) if entry.name == seen.bearings[0])
+    length = 1.0 if isinstance(seen.geometry, BallGeometry) else seen.geometry.roller_length
+    low, high, missing = 0.0, math.inf, ""
+    for speed in np.unique(np.geomspace(*speeds, _SPEEDS)).tolist():
+        try:
+            first, last = element.law_at(speed).loads
+        except AnalysisError as error:
+            rate = SPEED.text(element.entrainment_rate * speed)
+            missing = missing or f"none at {RPM.text(speed)}, {rate}: {_reason(str(error))}"
+        else:
+            low, high = max(low, first / length), min(high, last / length)
+    return Held((low, high) if math.isfinite(high) else (math.nan, math.nan), missing)
+
+
+def _reason(text: str) -> str:
+    """The reason in a message of `law_at`, without its remedy."""
+    whole = text.partition("of the system (")[2].rpartition("); ")[0] or text
+    head, _, rest = whole.partition("; at least")
+    first = rest.partition("(")[2].partition("; ")[0].rstrip(")")
+    return f"{head} ({first})" if first else head
+
+
+def unmapped(model: Model) -> tuple[MachineBalls | TaperedElement, ...]:
+    """Bearings of a model of which no map is made, in the order of `Model.on_rings`.
+
+    Parameters
+    ----------
+    model : Model
+        Scene with its law.
+    """
+    return tuple(entry for entry in model.on_rings if not isinstance(entry, BearingElement))
+
+
+def weightless(system: System) -> System:
+    """The system with balls, tapered and ribbed rollers that have no mass.
+
+    Parameters
+    ----------
+    system : System
+        System with bearings.
+    """
+    return system.with_elements([_weightless(connected.element) for connected in system.elements])
+
+
+_LEAST_DENSITY = 1e-3
+"""Of a body without mass, over its own: what is left of the effect is as small."""
+
+
+def _weightless(element: Element) -> Element:
+    """The element with rolling bodies of little mass, which balances them where nothing touches; others as they are."""
+    if not isinstance(element, (MachineBalls, TaperedElement)):
+        return element
+    material = element.force.material
+    light = dataclasses.replace(material, density=_LEAST_DENSITY * material.density)
+    if isinstance(element, MachineBalls):
+        balls = BallForce(element.force.geometry, element.force.law, light)
+        return dataclasses.replace(element, force=balls, _made=OrderedDict())
+    rollers = element.force.with_films(element.force.films)
+    rollers.material = light
+    return dataclasses.replace(element, force=rollers)
