@@ -103,6 +103,7 @@ def test_foreign_text_is_shown_and_not_executed(page, tmp_path):
     assert any("Content Security Policy" in entry["entry"]["text"] for entry in page.named("Log.entryAdded"))
 
 
+@pytest.mark.slow
 def test_a_scene_is_legible_on_a_screen_and_on_paper(page, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     speeds = ("--speed", "1000 rpm", "2000 rpm", "3")

@@ -78,11 +78,26 @@ def functions(node: ast.AST, where: str, name: str = "") -> Iterator[Documented]
             yield Documented(f"{where}:{child.lineno}", name + child.name, arguments, named_in(text), text)
 
 
-PUBLIC = [
-    function
-    for path in FILES
-    for function in functions(ast.parse(path.read_text(encoding="utf-8")), path.relative_to(ROOT).as_posix())
-]
+class Text(NamedTuple):
+    """A docstring: line and name of what it stands in; a module has no name."""
+
+    line: int
+    name: str
+    text: str
+
+
+def texts(tree: ast.Module) -> list[Text]:
+    """All docstrings of a file."""
+    kinds = ast.FunctionDef | ast.ClassDef | ast.Module
+    held = [node for node in ast.walk(tree) if isinstance(node, kinds)]
+    return [Text(getattr(node, "lineno", 1), getattr(node, "name", ""), ast.get_docstring(node) or "") for node in held]
+
+
+TREES = ((path, ast.parse(path.read_text(encoding="utf-8"))) for path in FILES)
+LOOKED_AT = [(path, list(functions(tree, path.relative_to(ROOT).as_posix())), texts(tree)) for path, tree in TREES]
+"""Public functions and docstrings of each file, of one look."""
+
+PUBLIC = [function for _, found, _ in LOOKED_AT for function in found]
 
 
 def test_documented_parameters_are_those_of_the_signature_in_its_order():
@@ -113,25 +128,21 @@ def described(text: str) -> Iterator[tuple[str, str]]:
             yield name, " ".join(words.split())
 
 
-def nameless(path: Path) -> list[str]:
+def nameless(path: Path, held: list[Text]) -> list[str]:
     """Descriptions of a file that have no noun, each with where it stands."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    found = []
-    for node in ast.walk(tree):
-        if isinstance(node, ast.FunctionDef | ast.ClassDef):
-            entries = described(ast.get_docstring(node) or "")
-            found += [
-                f"{path.relative_to(ROOT).as_posix()}:{node.lineno} {node.name}: {name}: {words}"
-                for name, words in entries
-                if NO_NOUN.match(words)
-            ]
-    return found
+    return [
+        f"{path.relative_to(ROOT).as_posix()}:{one.line} {one.name}: {name}: {words}"
+        for one in held
+        if one.name
+        for name, words in described(one.text)
+        if NO_NOUN.match(words)
+    ]
 
 
 def test_descriptions_have_a_noun():
     found: dict[str, list[str]] = {}
-    for path in FILES:
-        found.setdefault("/".join(path.relative_to(ROOT).parts[:2]), []).extend(nameless(path))
+    for path, _, held in LOOKED_AT:
+        found.setdefault("/".join(path.relative_to(ROOT).parts[:2]), []).extend(nameless(path, held))
     wrong = [line for package, lines in found.items() if len(lines) > STILL.get(package, 0) for line in lines]
     assert not wrong, "a description needs a noun ('Load of the roller', not 'Of the roller'):\n" + "\n".join(wrong)
 
@@ -142,11 +153,10 @@ QUESTION = re.compile(r"(?:What|Whether|How|Where|Which|Why|When|Of)\b")
 def test_docstrings_begin_with_a_noun_or_a_verb():
     """'Share of the load', 'Tell whether it touches': not 'What it carries', 'Whether it touches'."""
     wrong = [
-        f"{path.relative_to(ROOT).as_posix()}: {words.splitlines()[0]}"
-        for path in FILES
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
-        if isinstance(node, ast.FunctionDef | ast.ClassDef | ast.Module)
-        if QUESTION.match(words := ast.get_docstring(node) or "")
+        f"{path.relative_to(ROOT).as_posix()}: {one.text.splitlines()[0]}"
+        for path, _, held in LOOKED_AT
+        for one in held
+        if QUESTION.match(one.text)
     ]
     assert wrong == []
     assert QUESTION.match("Whether it is") and not QUESTION.match("Whetstone") and not QUESTION.match("Tell whether")

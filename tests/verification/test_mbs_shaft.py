@@ -654,6 +654,7 @@ def test_a_long_sharp_cone_has_the_frequency_that_kirchhoff_found():
 PINNED = tuple(f"{end}.{freedom}" for end in ("left", "right") for freedom in ("y", "z"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("speed", [200.0, 3000.0])
 def test_a_cone_is_the_limit_of_many_short_cylinders(speed):
     disc = Disc(0.3, Inertia(1.0, 1e-3, 6e-4))

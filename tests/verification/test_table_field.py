@@ -159,6 +159,7 @@ def test_a_map_in_memory_is_read_and_one_that_is_to_be_solved_is_its_points() ->
     assert EHDMap(solved).backbone is None
 
 
+@pytest.mark.slow
 def test_memory_layers_and_rolling_forces_of_the_table_are_those_of_solved_lines() -> None:
     """Rolling force, mass flow and layers within 1 %: lines read and lines solved. Factors of locked films are fits, no
     closer than the stated errors of the responses ask: within 12 %."""

@@ -109,6 +109,7 @@ def test_gradient_that_a_yielding_column_is_asked_for(slide: float) -> None:
         assert columns.mobility[0, 0] * gradient == pytest.approx(asked, rel=1e-4)
 
 
+@pytest.mark.slow
 def test_yielding_film() -> None:
     """An oil that yields in a hot film: heat thins it as it does a Newtonian one, and friction stays below the bound.
 
