@@ -93,6 +93,11 @@ def fade_of(model: Model) -> Fade | None:
             continue
         lowest = law.speed_range[0]
         found.append(Fade(lowest / bearing.rates[1], lowest, source_of(model)))
+    for ball in model.balls:
+        lowest = getattr(ball.films, "slowest", 0.0)
+        rate = ball.force.geometry.entrainment_speed(ball.inner_spin, ball.outer_spin)
+        if rate > 0.0 and lowest > 0.0:
+            found.append(Fade(lowest / rate, lowest, "the film table of points"))
     return max(found, key=lambda fade: fade.speed, default=None)
 
 

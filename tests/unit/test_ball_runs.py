@@ -8,11 +8,13 @@ import math
 import numpy as np
 import pytest
 
+from ehdmaps.compiled import in_python
 from ehdmaps.errors import AnalysisError
 from mbs import assemble, parse_scene, read_scene, statics
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.ball_block import FELT, BallBlock, balls_accept, balls_answer
 from mbs.bearings.balls.ball_element import BallStates
+from mbs.bearings.balls.normal_law import contact
 from mbs.model.blocks import FOUND, Answers, Member, Moment
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
@@ -136,6 +138,35 @@ def test_run_up_with_films_stays_compiled():
     names = [entry.element.name for entry in machine.system.elements]
     axial = done.forces[names.index("drive")][:, 0]
     assert np.all((axial > -320.0) & (axial < -250.0))
+
+
+def test_films_fade_below_the_slowest_of_their_table():
+    """Without a step there (part - 1 is below 1e-17), to dry contacts without damping at rest (part is 1e-8)."""
+    bearing = drive("table").balls[0]
+    rate = bearing.force.geometry.entrainment_speed(bearing.inner_spin, bearing.outer_spin)
+    slowest = bearing.films.slowest / rate
+    below, at, still = (bearing.law_at(slowest * part) for part in (1.0 - 1e-6, 1.0, 1e-3))
+    for approach in (-0.1e-6, 0.5e-6, 4e-6):
+        one, other = (in_python(contact)(law.inner, approach) for law in (below, at))
+        assert one == pytest.approx(other, rel=1e-9, abs=1e-9)
+    load, stiffness, damping = in_python(contact)(still.inner, 4e-6)
+    dry = in_python(contact)(bearing.law_at(0.0).inner, 4e-6)
+    assert (load, stiffness) == pytest.approx(dry[:2], rel=1e-6) and 0.0 < damping < 1e-4
+
+
+@pytest.mark.slow
+def test_runs_pass_through_rest():
+    """In Python films are those of each step: between nodes in compiled code they are within 1e-4 of the load."""
+    machine = drive("table")
+    rest = equilibrium(machine.system, Operation(20.0 * RPM))
+    speed, settings = SpeedProfile.ramp(20.0 * RPM, -20.0 * RPM, 2e-3), Settings(step=5e-5, sample=1e-4)
+    ours, theirs = (
+        run(machine.system, speed, 2e-3, settings, displacement=rest.displacement, options=Options(compiled=compiled))
+        for compiled in (True, False)
+    )
+    assert ours.compiled > 0.8 * ours.steps
+    for one, other in zip(ours.forces, theirs.forces, strict=True):
+        np.testing.assert_allclose(one, other, atol=1e-4 * np.abs(other).max())
 
 
 ONE = """

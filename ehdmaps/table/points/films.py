@@ -7,6 +7,7 @@ density goes after Dowson and Higginson. Stiffness is that of the dry contact an
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -325,6 +326,26 @@ class PointTable:
         L = state.pressure_viscosity.pressure_viscosity * modulus * number**0.25
         M = point_load_number(self.nodes.axes.zeta, np.asarray(L), np.asarray(ellipse.ellipticity))
         return np.asarray(M * modulus * radius**2 * number**0.75)
+
+    def slowest(self, ellipse: Ellipse, lubricant: Lubricant, temperature: float) -> float:
+        """Lowest entrainment speed that has films [m/s], at the smallest L of the nodes.
+
+        Parameters
+        ----------
+        ellipse : Ellipse
+            The contact.
+        lubricant : Lubricant
+            The oil.
+        temperature : float
+            T [K].
+        """
+        state = lubricant.at(temperature)
+        modulus, radius = ellipse.reduced_modulus, ellipse.rolling_radius
+        per_speed = state.pressure_viscosity.pressure_viscosity * modulus
+        if not per_speed > 0.0:
+            return math.inf
+        number = (math.exp(float(self.nodes.axes.size[0])) / per_speed) ** 4
+        return number * modulus * radius / (2.0 * state.viscosity)
 
 
 def _within(x: FloatArray, nodes: FloatArray) -> BoolArray:

@@ -149,6 +149,47 @@ class BallFilms:
             f"film, {damping:.1%} of the damping"
         )
 
+    def faded(self, geometry: BallGeometry, part: float, material: Material = STEEL) -> BallLaw:
+        """Law of films of which a part is there, in film offset and damping.
+
+        Parameters
+        ----------
+        geometry : BallGeometry
+            The bearing.
+        part : float
+            The part, above 0 up to 1.
+        material : Material
+            Material of balls and rings.
+        """
+        low, high = self.law.loads
+        laws = []
+        for contact, side in zip(geometry.contacts(material), self.sides, strict=True):
+
+            def curve(load: FloatArray, side: ContactFilms = side) -> tuple[FloatArray, FloatArray, FloatArray]:
+                offset, slope, damping = side.curve(load)
+                return part * offset, part * slope, part * damping
+
+            laws.append(film_normal_law(contact, curve, (low, _BEYOND * high)))
+        return dataclasses.replace(self.law, inner=laws[0], outer=laws[1])
+
+
+def slowest_films(geometry: BallGeometry, oil: Lubricant, temperature: float, material: Material = STEEL) -> float:
+    """Lowest entrainment speed at which the film table of points has films of both contacts [m/s].
+
+    Parameters
+    ----------
+    geometry : BallGeometry
+        The bearing.
+    oil : Lubricant
+        The oil.
+    temperature : float
+        Temperature of the raceways [K].
+    material : Material
+        Material of balls and rings.
+    """
+    table = shipped_point_table()
+    return max(table.slowest(contact, oil, temperature) for contact in geometry.contacts(material)) * (1.0 + 1e-9)
+
 
 def ball_films(
     geometry: BallGeometry,

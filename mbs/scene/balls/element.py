@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from ehdmaps.compiled import in_python
 from ehdmaps.errors import InputError
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.ball_geometry import BallGeometry
@@ -15,6 +17,7 @@ from mbs.model.relaxation import FILM_WORDS
 from mbs.scene.specs import BallSpec
 
 if TYPE_CHECKING:
+    from mbs.bearings.balls.films import BallFilms
     from mbs.bearings.balls.laws import BallLaw
     from mbs.scene.contact_laws import ContactLaws
     from mbs.scene.surroundings import Built, Surroundings
@@ -148,10 +151,36 @@ class _TableFilms:
     def __call__(self, inner_speed: float, outer_speed: float) -> BallLaw:
         return _film_law(self, self.geometry.entrainment_speed(inner_speed, outer_speed))
 
+    @property
+    def slowest(self) -> float:
+        """Entrainment speed below which films fade to the dry contacts [m/s]."""
+        from mbs.bearings.balls.films import slowest_films
+
+        return slowest_films(self.geometry, self.oil, self.temperature)
+
 
 @functools.lru_cache(maxsize=512)  # a run over a decade of speed has 120 laws, and comes back to them
 def _film_law(films: _TableFilms, u: float) -> BallLaw:
     """The law at an entrainment speed [m/s]; alike bearings read it once."""
     from mbs.bearings.balls.films import ball_films
 
-    return ball_films(films.geometry, films.oil, u, films.temperature, solves=False).law
+    slowest, read = _slowest(films)
+    if u >= slowest:
+        return ball_films(films.geometry, films.oil, u, films.temperature, solves=False).law
+    from ehdmaps.maps.kernels.kernel import film_part
+
+    return read().faded(films.geometry, in_python(film_part)(u, slowest))
+
+
+@functools.lru_cache(maxsize=16)
+def _slowest(films: _TableFilms) -> tuple[float, Callable[[], BallFilms]]:
+    """The lowest speed with films [m/s], and a function that reads these once."""
+    from mbs.bearings.balls.films import ball_films
+
+    slowest = films.slowest
+
+    @functools.cache
+    def read() -> BallFilms:
+        return ball_films(films.geometry, films.oil, slowest, films.temperature, solves=False)
+
+    return slowest, read
