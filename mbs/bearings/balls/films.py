@@ -20,6 +20,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline, PPoly
 
 from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.compiled import in_python
 from ehdmaps.errors import SolverError
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.ball_geometry import BallGeometry
@@ -149,18 +150,21 @@ class BallFilms:
             f"film, {damping:.1%} of the damping"
         )
 
-    def faded(self, geometry: BallGeometry, part: float, material: Material = STEEL) -> BallLaw:
-        """Law of films of which a part is there, in film offset and damping.
+    def faded(self, geometry: BallGeometry, speed: float, material: Material = STEEL) -> BallLaw:
+        """Law at a lower speed of films that fade to the dry contacts at rest, film offset and damping alike.
 
         Parameters
         ----------
         geometry : BallGeometry
             The bearing.
-        part : float
-            The part, above 0 up to 1.
+        speed : float
+            The speed by that of these films, above 0 up to 1.
         material : Material
             Material of balls and rings.
         """
+        from ehdmaps.maps.kernels.kernel import film_part  # as those of maps fade
+
+        part = max(float(in_python(film_part)(speed, 1.0)), 1e-30)
         low, high = self.law.loads
         laws = []
         for contact, side in zip(geometry.contacts(material), self.sides, strict=True):

@@ -8,7 +8,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ehdmaps.compiled import in_python
 from ehdmaps.errors import InputError
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.ball_geometry import BallGeometry
@@ -167,9 +166,7 @@ def _film_law(films: _TableFilms, u: float) -> BallLaw:
     slowest, read = _slowest(films)
     if u >= slowest:
         return ball_films(films.geometry, films.oil, u, films.temperature, solves=False).law
-    from ehdmaps.maps.kernels.kernel import film_part
-
-    return read().faded(films.geometry, in_python(film_part)(u, slowest))
+    return read().faded(films.geometry, u / slowest)
 
 
 @functools.lru_cache(maxsize=16)
