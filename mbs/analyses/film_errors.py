@@ -12,13 +12,14 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.units import RPM
 from mbs.analyses.operating import operating
 from mbs.bearings.bearing_element import RingElement, ring_following
-from mbs.linearised.validity import FilmError, LoadedContacts
+from mbs.linearised.validity import ContactsInBalance, FilmError, LoadedContacts
 from mbs.model.elements import Element, Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.model.relaxation import FILM_WORDS, NOTABLE, Films, Relaxation
 from mbs.scene.assembly import Model
 
 if TYPE_CHECKING:
+    from mbs.bearings.balls.ball_element import MachineBalls
     from mbs.bearings.tapered.tapered_element import TaperedElement
 
 
@@ -62,7 +63,52 @@ def film_errors(
             assert isinstance(element, TaperedElement)
             error = line_error(element, ports, operation, films or ("slow" if in_time else element.memory))
             found += [] if error is None else [error]
+    if model.scene.balls:
+        from mbs.bearings.balls.ball_element import MachineBalls
+
+        for index in system.select(MachineBalls):
+            connected = system.elements[index]
+            element, ports = connected.element, connected.transform @ displacement
+            assert isinstance(element, MachineBalls)
+            error = ball_error(element, ports, operation, films or element.memory)
+            found += [] if error is None else [error]
     return found
+
+
+def ball_error(element: MachineBalls, ports: FloatArray, operation: Operation, films: Films) -> FilmError | None:
+    """Estimated error of the films of balls along their load; None without films, and without a load.
+
+    Parameters
+    ----------
+    element : MachineBalls
+        The bearing.
+    ports : array, shape (6,)
+        Displacement of its inner ring against the outer one at the equilibrium.
+    operation : Operation
+        Speed and angle.
+    films : {"slow", "memory"}
+        Films whose error is estimated: by what their springs and dampers leave out of the film table.
+    """
+    if element.films is None:
+        return None
+    forces = element.evaluate(ports, np.zeros(6), operation)
+    load = float(np.linalg.norm(forces.force[:3]))
+    condensed = element.law_errors(ports, operation)
+    if load == 0.0:
+        return None
+    motion = np.array([*(forces.force[:3] / load), 0.0, 0.0, 0.0])
+    relaxation = element.film_relaxation(ports, operation)
+    return FilmError(
+        bearing=element.name,
+        films=films,
+        at_rest=condensed is None,
+        stiffness=float(motion @ forces.stiffness @ motion),
+        damping=float(motion @ forces.damping @ motion),
+        springs=(relaxation.rows @ motion) ** 2,
+        times=relaxation.times,
+        natural=np.zeros(0),
+        contacts=() if condensed is None else (ContactsInBalance(condensed, motion),),
+    )
 
 
 def line_error(element: TaperedElement, ports: FloatArray, operation: Operation, films: Films) -> FilmError | None:

@@ -487,7 +487,9 @@ def error_words(system: System, film_share: float = 0.0) -> str:
     stated = "; ".join(sorted(words))
     if film_share == 0.0:
         return f"{stated}; how films relax is not in it"
-    films = f"what one relaxation time of a slice leaves out ({100.0 * film_share:.2g} % of the median band)"
+    in_slices = all(isinstance(element, RingElement) for element in bearings)
+    memory = "one relaxation time of a slice leaves" if in_slices else "springs and dampers of films with memory leave"
+    films = f"what {memory} out ({100.0 * film_share:.2g} % of the median band)"
     return f"{films}, then {stated}" if film_share > 0.5 else f"{stated}; then {films}"
 
 

@@ -76,7 +76,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
 
         lines += gear_lines(model, balance)
     lines += flooded_note(max((loss.torque for loss in found.losses), default=math.nan), model.supplies.values())
-    lines += _slow(model, balance) if model.supplies or model.scene.tapered else []
+    lines += _slow(model, balance) if model.supplies or model.scene.tapered or model.balls else []
     lines += fade_lines(model, np.array([model.scene.speed]))
     outside = outside_at(model, balance)
     lines += [f"warning: {line}" for line in (*found.overloads, *found.free)] + outside

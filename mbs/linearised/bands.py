@@ -296,7 +296,7 @@ class LawBands:
 
         s = np.asarray(1j * places, dtype=np.complex128)
         by_balance = [
-            (one.weights, self._by_directions(one, s, logs, motion[:, at], back[:, :, at]))
+            (one.weights, _through(self._by_directions(one, s), s, logs, motion[:, at], back[:, :, at]))
             for one, at in ((one, places_of[one.element]) for one in self._condensed)
         ]
         for index, change in enumerate(self.changes):
@@ -305,19 +305,23 @@ class LawBands:
             band += np.abs((np.sum(moved, axis=0) * unit).real)
         by_films = np.zeros_like(band)
         if self.films is not None:
-            parts, doubts = zip(*(group.left_out(s) for group in self.films.groups), strict=True)
-            by_films += np.abs((np.sum(moved_by(list(enumerate(parts))), axis=0) * unit).real)
-            by_films += np.sum(np.abs(moved_by(list(enumerate(doubts)))), axis=0)
+            of_slices = [group.left_out(s) for group in self.films.groups]
+            missing = moved_by([(index, part) for index, (part, _) in enumerate(of_slices)])
+            wrong = moved_by([(index, doubt.astype(np.complex128)) for index, (_, doubt) in enumerate(of_slices)])
+            for bearing in self.films.in_balance:
+                at, active = places_of[bearing.element], self._active[bearing.element]
+                every = np.eye(6, dtype=np.complex128)[None]
+                both = np.stack(bearing.left_out(s, every, every), axis=1)[:, :, active][..., active]
+                own, possible = _through(both, s, logs, motion[:, at], back[:, :, at])
+                missing, wrong = [*missing, own], [*wrong, possible]
+            by_films += np.abs((np.sum(missing, axis=0) * unit).real)
+            by_films += np.sum(np.abs(wrong), axis=0)
         return band + by_films, by_films
 
-    def _by_directions(
-        self, one: CondensedBearing, s: ComplexArray, logs: FloatArray, motion: ComplexArray, back: ComplexArray
-    ) -> ComplexArray:
-        """Change of the responses by each direction of a bearing, of which places s (k,) are looked at."""
+    def _by_directions(self, one: CondensedBearing, s: ComplexArray) -> ComplexArray:
+        """Derivatives of Z at places s (k,) by the directions of a bearing, by the ports that it feels (k, 9, p, p)."""
         active = self._active[one.element]
-        at_places = np.moveaxis(one.condensed.changes(s)[:, :, active][..., active], 0, 1)
-        at_all = CubicSpline(np.log(s.imag), at_places)(logs) if s.size > 1 else at_places
-        return np.asarray(np.moveaxis(-back[:, None] @ at_all @ motion[:, None], 1, 0), dtype=np.complex128)
+        return np.moveaxis(one.condensed.changes(s)[:, :, active][..., active], 0, 1)
 
     def of_bearings(self) -> FloatArray:
         """Bands of k [N/m] and c [N s/m] of each bearing along its force, either way, shape (2, bearings).
@@ -422,7 +426,18 @@ def law_bands(balance: Equilibrium) -> LawBands | None:
         given = np.asarray(np.linalg.solve(stiffness, force))
         add(_moved_slices(slices, slopes, given, {}), given, index, "film")
     bearings = tuple(CondensedBearing(index, one, np.array(weights[index])) for index, one in in_balance.items())
-    return LawBands(tuple(changes), film_part(balance), balance, tuple(slices), bearings)
+    return LawBands(tuple(changes), film_part(balance, in_balance), balance, tuple(slices), bearings)
+
+
+def _through(
+    at_places: ComplexArray, s: ComplexArray, logs: FloatArray, motion: ComplexArray, back: ComplexArray
+) -> ComplexArray:
+    """Changes of responses by changes of Z (k, q, p, p) at places s (k,), at the logarithms of all frequencies.
+
+    Shape (q, frequencies, sensors, inputs); by motions of the ports, and by what sensors see of loads there.
+    """
+    at_all = CubicSpline(np.log(s.imag), at_places)(logs) if s.size > 1 else at_places
+    return np.asarray(np.moveaxis(-back[:, None] @ at_all @ motion[:, None], 1, 0), dtype=np.complex128)
 
 
 def _sizes(changes: ComplexArray, eigenvalues: ComplexArray) -> FloatArray:

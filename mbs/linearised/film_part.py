@@ -7,13 +7,16 @@ leaves out of the dynamic stiffness, dZ, moves an eigenvalue by
 
 as the errors of a map do in `mbs.linearised.bands`. Here the signs are known, so that the parts of all slices and
 bearings add up as they are. How wrong dZ may be as it is read is known by its size alone; it counts as having one phase
-along the loads of a bearing. A law that holds no response of its films has that size for all of dZ.
+along the loads of a bearing. A law that holds no response of its films has that size for all of dZ. Balls and tapered
+rollers in balance have the dZ of `mbs.model.condensed`.
 """
 
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -21,7 +24,8 @@ import numpy as np
 from ehdmaps.arrays import BoolArray, ComplexArray, FloatArray
 from ehdmaps.maps.kernels.film_response import law_stiffness
 from mbs.bearings.bearing_element import RingElement
-from mbs.linearised.validity import memory_error
+from mbs.linearised.validity import films_in_balance, memory_error
+from mbs.model.condensed import Condensed
 from mbs.model.equilibrium import Equilibrium
 
 if TYPE_CHECKING:
@@ -89,22 +93,55 @@ class FilmSlices:
 
 
 @dataclass(frozen=True, eq=False)
+class FilmsInBalance:
+    """Films with memory of a bearing whose rolling elements are in balance.
+
+    Attributes
+    ----------
+    element : int
+        Which element of the system it is.
+    condensed : Condensed
+        The bearing.
+    transform : array, shape (6, n)
+        Displacement of its inner ring by the coordinates of the system.
+    """
+
+    element: int
+    condensed: Condensed
+    transform: FloatArray
+
+    def left_out(self, s: ComplexArray, left: ComplexArray, right: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+        """Part of left' Z(s) right that its films leave out, and its possible error, shape (k, a, b) each.
+
+        Parameters
+        ----------
+        s, left, right
+            The same as of `mbs.model.condensed.Condensed.changes_along`.
+        """
+        return films_in_balance(self.condensed, s, left, right)
+
+
+@dataclass(frozen=True, eq=False)
 class FilmPart:
     """Part that the films of all bearings leave out at an equilibrium.
 
     Attributes
     ----------
     groups : tuple of FilmSlices
-        Groups of all bearings, in the order of the elements.
+        Groups of all bearings in slices, in the order of the elements.
+    in_balance : tuple of FilmsInBalance
+        Other bearings, likewise.
     """
 
     groups: tuple[FilmSlices, ...]
     _mass: FloatArray
+    in_balance: tuple[FilmsInBalance, ...] = ()
 
     @property
     def known(self) -> bool:
         """Tell whether all laws hold a response of their films, so that signs are known."""
-        return all(group.response is not None for group in self.groups)
+        in_slices = all(group.response is not None for group in self.groups)
+        return in_slices and all(one.condensed.left_out is not None for one in self.in_balance)
 
     def eigenvalue_changes(
         self, eigenvalues: ComplexArray, right: ComplexArray, left: ComplexArray
@@ -129,16 +166,23 @@ class FilmPart:
             by_element[group.element] += np.sum(possible * weights, axis=1)
         for sums in by_element.values():
             doubt[swings] += np.abs(sums)
+        for one in self.in_balance:
+            ends = ((one.transform @ vectors).T[:, :, None] for vectors in (turned, moved))
+            missing, wrong = one.left_out(s, *ends)
+            change[swings] -= missing[:, 0, 0]
+            doubt[swings] += np.abs(wrong[:, 0, 0])
         return change, doubt
 
 
-def film_part(balance: Equilibrium) -> FilmPart | None:
+def film_part(balance: Equilibrium, in_balance: Mapping[int, Condensed] = MappingProxyType({})) -> FilmPart | None:
     """Part that films with memory leave out; None where no films have a memory.
 
     Parameters
     ----------
     balance : Equilibrium
         Equilibrium at which the system is linearised.
+    in_balance : mapping of int to Condensed
+        Bearings whose rolling elements are in balance, by their elements.
     """
     system, found = balance.system, []
     for index in system.select(RingElement):
@@ -153,7 +197,12 @@ def film_part(balance: Equilibrium) -> FilmPart | None:
             _, stiffness, damping, times = loaded.state()
             rows, natural = group.rows @ connected.transform, loaded.natural_times()
             found.append(FilmSlices(index, rows, on, stiffness, damping, times, natural, loaded.film_response()))
-    return FilmPart(tuple(found), system.mass) if found else None
+    others = tuple(
+        FilmsInBalance(index, one, system.elements[index].transform)
+        for index, one in in_balance.items()
+        if one.relaxes and np.any(one.contacts.times)
+    )
+    return FilmPart(tuple(found), system.mass, others) if found or others else None
 
 
 def film_law_part(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,6 +14,7 @@ import numpy as np
 from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.maps.kernels.film_response import FilmResponse, by_powers
 from mbs.linearised.dynamic import element_dynamic_stiffness
+from mbs.model.condensed import Condensed
 from mbs.model.elements import Input, OnRings
 from mbs.model.equilibrium import Equilibrium
 from mbs.model.relaxation import NOTABLE, Films
@@ -68,6 +70,49 @@ class LoadedContacts(NamedTuple):
         return np.sum(own * self.response.correction(s), axis=1), np.sum(np.abs(own) * self.response.doubt(s), axis=1)
 
 
+class ContactsInBalance(NamedTuple):
+    """Contacts of rolling elements in balance, as they are felt along the load of their bearing.
+
+    Attributes
+    ----------
+    condensed : Condensed
+        The bearing; films with memory.
+    motion : array, shape (6,)
+        Motion of its inner ring along the load.
+    """
+
+    condensed: Condensed
+    motion: FloatArray
+
+    def left_out(self, s: ComplexArray) -> tuple[ComplexArray, FloatArray]:
+        """Part that films with memory leave out at frequencies s (k,) [1/s], and its possible error [N/m]; (k,)."""
+        along = self.motion.astype(np.complex128)[None, :, None]
+        missing, possible = films_in_balance(dataclasses.replace(self.condensed, relaxes=True), s, along, along)
+        return missing[:, 0, 0], np.abs(possible[:, 0, 0])
+
+
+def films_in_balance(
+    condensed: Condensed, s: ComplexArray, left: ComplexArray, right: ComplexArray
+) -> tuple[ComplexArray, ComplexArray]:
+    """Part of left' Z(s) right that films with memory leave out, and its possible error, shape (k, a, b) each.
+
+    Parameters
+    ----------
+    condensed : Condensed
+        A bearing whose rolling elements are in balance.
+    s, left, right
+        The same as of `mbs.model.condensed.Condensed.changes_along`.
+    """
+    if condensed.left_out is not None:
+        part, doubt = condensed.left_out(s)
+    else:
+        assert condensed.natural is not None
+        doubt = memory_error(np.multiply.outer(np.abs(s), condensed.natural))
+        part = np.zeros(doubt.shape, dtype=np.complex128)
+    missing, possible = condensed.parts_along(s, left, right, (part, doubt.astype(np.complex128)))
+    return missing, possible
+
+
 @dataclass(frozen=True, eq=False)
 class FilmError:
     """Possible error of the films that an analysis has against true ones: along the load of a bearing, over frequency.
@@ -92,8 +137,8 @@ class FilmError:
         Stiffness [N/m] and relaxation time [s] of each slice, as of `mbs.model.relaxation`.
     natural : array, shape (r,)
         Natural time of each slice [s].
-    contacts : tuple of LoadedContacts
-        The loaded slices; none of a law whose map holds no response.
+    contacts : tuple of LoadedContacts or ContactsInBalance
+        The loaded slices, or balls; none of a law whose map holds no response.
     """
 
     bearing: str
@@ -104,7 +149,7 @@ class FilmError:
     springs: FloatArray
     times: FloatArray
     natural: FloatArray
-    contacts: tuple[LoadedContacts, ...] = ()
+    contacts: tuple[LoadedContacts | ContactsInBalance, ...] = ()
 
     def error(self, frequencies: FloatArray) -> FloatArray:
         """Estimated |dZ/Z| at frequencies (k,) [Hz]; 0 at rest."""
@@ -120,6 +165,11 @@ class FilmError:
         place = 1j * np.multiply.outer(omega, self.times)
         more = -(place**2 / (1.0 + place)) @ self.springs
         return np.asarray(np.abs(more) / np.abs(self.stiffness + 1j * omega * self.damping + more), dtype=np.float64)
+
+    @property
+    def held_by(self) -> str:
+        """Name of what holds the response of its films, for people."""
+        return "film table" if any(isinstance(one, ContactsInBalance) for one in self.contacts) else "map"
 
     def _by_response(self, omega: FloatArray) -> FloatArray:
         """The error at angular frequencies (k,) [rad/s], by what the map holds."""

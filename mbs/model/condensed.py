@@ -15,6 +15,7 @@ exactly to first order. D follows the pose of the inner ring, so that a bearing 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -72,6 +73,11 @@ class Condensed:
         Derivatives of the force on the inner ring by the same directions [N], [N m].
     relaxes : bool
         Whether z(s) holds at any frequency, or stiffness and damping of slow motion do.
+    natural : array (Z, J) or None
+        Natural times of the contacts [s], 0 of dry ones; None where `left_out` says more.
+    left_out : callable or None
+        Part of z(s) that films with memory miss at frequencies s (k,) [1/s], and its possible error, as parts of z,
+        (k, Z, J) each; None where it is not known.
     """
 
     contacts: Contacts
@@ -79,6 +85,8 @@ class Condensed:
     pose: FloatArray
     forces: FloatArray
     relaxes: bool
+    natural: FloatArray | None = None
+    left_out: Callable[[ComplexArray], tuple[ComplexArray, FloatArray]] | None = None
 
     @cached_property
     def stiffness(self) -> FloatArray:
@@ -156,6 +164,24 @@ class Condensed:
             ends = np.swapaxes(before, -1, -2)[:, :, None] @ moved @ after[:, :, None]
             found[:, turns] += ends.sum(axis=1)
         return np.ascontiguousarray(np.swapaxes(found, 0, 1))
+
+    def parts_along(
+        self, s: ComplexArray, left: ComplexArray, right: ComplexArray, parts: tuple[ComplexArray, ...]
+    ) -> tuple[ComplexArray, ...]:
+        """Changes of left' Z(s) right by parts of the z(s) of all contacts, to first order, shape (k, a, b) each.
+
+        Parameters
+        ----------
+        s, left, right
+            The same as of `changes_along`.
+        parts : tuple of array, shape (k, Z, J)
+            Changes of z over z.
+        """
+        before, after, z = self._ends(s, left, right)
+        products = (self.contacts.feel @ before)[..., :, None] * (self.contacts.feel @ after)[..., None, :]
+        flat = products.reshape(s.size, z.shape[1] * z.shape[2], -1)
+        shape = (s.size, *products.shape[-2:])
+        return tuple(((z * part).reshape(s.size, 1, -1) @ flat).reshape(shape) for part in parts)
 
     @property
     def _whole(self) -> tuple[ComplexArray, ComplexArray]:

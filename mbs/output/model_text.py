@@ -145,12 +145,14 @@ def film_law_line(model: Model, known: bool) -> list[str]:
     known : bool
         Whether it is listed beside each mode.
     """
-    if not model.scene.speed or not model.supplies:
+    if not model.scene.speed or not (model.supplies or known):
         return []
     if known:
+        memory = "springs and dampers of films leave" if model.balls else "one relaxation time of a slice leaves"
+        holds = "map or film table hold" if model.balls else "map holds"
         return [
-            "  film law: what one relaxation time of a slice leaves out of the response of the film solver, which the "
-            "map holds: true less printed, to first order; its size is in the bands"
+            f"  film law: what {memory} out of the response of the film solver, which the {holds}: true less printed, "
+            "to first order; its size is in the bands"
         ]
     if model.memory == "slow":
         return ["  film law: not known; films of slow motion leave out how films relax (--films memory has it)"]
@@ -213,7 +215,7 @@ def _film_line(entry: FilmError, frequency: float, words: str) -> str:
     line = (
         f"{entry.bearing}: {FILM_WORDS[entry.films]}; estimated error of the dynamic stiffness along the load at "
         f"{frequency:.5g} Hz{words}: {100.0 * error:.2g} %"
-        + (", by the response that the map holds" if entry.contacts else "")
+        + (f", by the response that the {entry.held_by} holds" if entry.contacts else "")
     )
     if error <= NOTABLE:
         return line

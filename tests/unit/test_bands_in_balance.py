@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections import OrderedDict
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,17 +15,27 @@ from ehdmaps.maps.law import LawAtPoint
 from ehdmaps.maps.law_errors import LawBounds, LawChange
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.point.ball_catalogue import ball_estimate
+from ehdmaps.table.points.response import read_response
 from mbs import assemble, parse_scene
 from mbs.analyses.campbell import law_changes, with_changed_laws
+from mbs.analyses.film_errors import film_errors
 from mbs.analyses.modes import modes
 from mbs.bearings.balls.ball_bearing import BallForce
+from mbs.bearings.balls.films import ball_films
 from mbs.bearings.balls.response import ContactResponse
 from mbs.bearings.bearing_element import NO_MAP
 from mbs.bearings.tapered.line_film import LOADS, line_films
 from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.linearised.bands import KINDS, law_bands
-from mbs.linearised.dynamic import newton
-from mbs.linearised.linear import frequency_response, responses, seen_of_loads
+from mbs.linearised.dynamic import dynamic_slope, dynamic_stiffness, newton
+from mbs.linearised.linear import (
+    frequency_response,
+    input_matrix,
+    responses,
+    seen_of_loads,
+    sensor_matrix,
+)
 from mbs.linearised.modes import state_modes, undamped_modes
 from mbs.linearised.sweep import along_load
 from mbs.model.condensed import DIRECTIONS
@@ -133,9 +144,9 @@ class Base:
         self.laws = law_bands(self.balance)
         states = state_modes(self.balance, undamped_modes(self.balance))
         n, kept = self.model.system.size, np.flatnonzero(states.oscillates)
-        self.shapes, left = states.right[:n, kept], states.left[kept, n : 2 * n]
+        self.shapes, self.left = states.right[:n, kept], states.left[kept, n : 2 * n]
         self.values = self.eigenvalues(self.balance, states.eigenvalues[kept])
-        self.found = self.laws.eigenvalue_changes(self.values, self.shapes, left)
+        self.found = self.laws.eigenvalue_changes(self.values, self.shapes, self.left)
         where = self.scene.inputs, self.scene.sensors
         self.direct = frequency_response(self.balance, *where, FREQUENCIES)
         self.back = seen_of_loads(self.balance, states, self.scene.sensors, FREQUENCIES, self.laws.ports)
@@ -250,3 +261,115 @@ def test_rings_in_their_clearance_hardly_have_bands():
     condensed = element.law_errors(np.zeros(6), Operation(model.scene.speed))
     assert np.all(np.isfinite(condensed.changes(np.array([1j, 1e4j]))))
     assert np.all(np.isfinite(condensed.forces))
+
+
+def test_springs_of_balls_leave_out_what_the_table_holds_besides():
+    """Beside the table's own reader; straight between 8 frequencies an octave: a quarter of 7e-4 of Z, that of 4."""
+    geometry = ball_estimate("6208")
+    response = ball_films(geometry, Lubricant.named("FVA3"), 4.0, 333.15, solves=False).inner.response
+    node = response.loads.size // 2
+    films, load = response.films, response.loads[node : node + 1]
+    one = {name: getattr(films, name)[[node]] for name in ("stiffness", "damping", "frequencies")}
+    one |= {name: getattr(films, f"{name}")[[node]] for name in ("response_stiffness", "response_damping")}
+    errors = {name: part[[node]] for name, part in films.errors.items()}
+    frequencies = np.array([0.1, 0.5, 0.9, 1.7, 3.1, 6.0, 7.9]) * 2.0 * films.frequencies[node, 0]
+    table = read_response(SimpleNamespace(**one, errors=errors), frequencies)
+    s = 2j * np.pi * frequencies
+    springs = response.springs(load)
+    own = one["stiffness"] + one["damping"] * (s[:, None] / (1.0 + s[:, None] * springs.times)) @ springs.shares[0]
+    held = table.stiffness + s * table.damping
+    part, doubt = response.left_out(load, s)
+    np.testing.assert_allclose(own * (1.0 + part[:, 0]), held, rtol=2e-4)
+    # the table's errors of k and c of slow motion are in bands already: less than what the reader states, never below 0
+    stated = np.hypot(table.stiffness_error * table.stiffness, table.damping_error * held.imag) / np.abs(held)
+    assert np.all(doubt[:, 0] >= 0.0) and np.all(doubt[:, 0] < stated)
+    # slow motion is exact, and beyond the table part and doubt together grow with the frequency
+    far = [sum(np.abs(side[0, 0]) for side in response.left_out(load, way * s[-1:])) for way in (10.0, 20.0)]
+    np.testing.assert_allclose(far[1], 2.0 * far[0], rtol=1e-12)
+    assert abs(response.left_out(load, 1e-6 * s)[0][0, 0]) < 1e-12
+
+
+@pytest.mark.parametrize("films", ["memory", "slow"])
+def test_estimated_errors_of_films_of_balls(films):
+    """Along the load beside Z of contacts that have a thousandth of the part, and springs that are all or none."""
+    scene = parse_scene(SCENE + PAIR, "rotor", "rotor.toml")
+    model, operation = assemble(scene, "table", films=films), Operation(scene.speed)
+    balance = equilibrium(model.system, operation)
+    entry, _ = film_errors(model, balance.displacement, operation)
+    frequencies = np.array([500.0, 4000.0])
+    s = 2j * np.pi * frequencies
+    connected = model.system.elements[model.system.select(OnRings)[0]]
+    ports = connected.transform @ balance.displacement
+    condensed = connected.element.law_errors(ports, operation)
+    force = balance.forces[model.system.select(OnRings)[0]]
+    along = np.r_[force[:3] / np.linalg.norm(force[:3]), 0.0, 0.0, 0.0]
+
+    def stiffness(factors, at):
+        whole = dataclasses.replace(condensed, relaxes=True, contacts=condensed.contacts._replace(stiffness=factors))
+        before, after, z = whole._ends(at, *whole._whole)
+        before, after = before @ along, after @ along
+        felt = [whole.contacts.feel @ side[..., None] for side in (before, after)]
+        by_contacts = (z * felt[0][..., 0] * felt[1][..., 0]).sum(axis=(1, 2))
+        return by_contacts + np.einsum("kzm,zmn,kzn->k", before, whole.contacts.turning, after)
+
+    part, doubt = condensed.left_out(s)
+    k = condensed.contacts.stiffness
+    z = condensed._ends(s, *condensed._whole)[2]
+    for i, at in enumerate(s):
+        step = 1e-3
+        own, changed, wrong = (
+            stiffness(k + step * change, s[i : i + 1])[0]
+            for change in (0.0 * k, z[i] * part[i], np.abs(z[i]) * doubt[i])
+        )
+        missing, possible = (changed - own) / step, abs(wrong - own) / step
+        relaxed = connected.element.film_relaxation(ports, operation).more(s[i : i + 1])[0]
+        besides = along @ relaxed @ along if films == "slow" else 0.0
+        expected = (abs(missing + besides) + possible) / abs(own + missing)
+        # first order in a part of up to 3 % by a thousandth, and traction that is symmetric in the springs
+        assert entry.error(frequencies)[i] == pytest.approx(expected, rel=2e-3), at
+    assert entry.error(np.array([1e-3]))[0] < 1e-6
+
+
+def test_what_films_leave_out_moves_modes_and_responses():
+    """The parts of both bearings by null vectors of Z, and by Z with a thousandth of them more."""
+    base = Base(PAIR, "memory")
+    balance, laws, step = base.balance, base.laws, 1e-3
+    bearings = tuple(
+        dataclasses.replace(one, condensed=dataclasses.replace(one.condensed, left_out=Without(one.condensed.left_out)))
+        for one in laws.films.in_balance
+    )
+    films = dataclasses.replace(laws.films, in_balance=bearings)
+
+    def missing(s):
+        every = np.eye(6, dtype=np.complex128)[None]
+        return sum(one.transform.T @ one.left_out(s, every, every)[0] @ one.transform for one in bearings)
+
+    found, doubt = films.eigenvalue_changes(base.values, base.shapes, base.left)
+    assert not np.any(doubt) and np.any(laws.films.eigenvalue_changes(base.values, base.shapes, base.left)[1])
+    for value, change in zip(base.values, found, strict=True):
+        s = np.array([value])
+        left, _, right = np.linalg.svd(dynamic_stiffness(balance, s)[0])
+        left, right = left[:, -1].conj(), right[-1].conj()
+        slope = left @ dynamic_slope(balance, s)[0] @ right
+        assert change == pytest.approx(-(left @ missing(s)[0] @ right) / slope, rel=1e-4)  # eigenvectors of few states
+    s = 2j * np.pi * FREQUENCIES
+    sizes = []
+    for part in (step, -step):
+        whole = dynamic_stiffness(balance, s) + part * missing(s)
+        motion = np.linalg.solve(whole, input_matrix(balance, base.scene.inputs)[None].astype(np.complex128))
+        sizes.append(np.abs(s[:, None, None] ** 2 * (sensor_matrix(balance, base.scene.sensors) @ motion)))
+    only = dataclasses.replace(laws, films=films)
+    by_films = only.of_responses(FREQUENCIES, base.motion, base.back, base.direct)[1]
+    # splines between 12 places a decade: the part has kinks where it is read straight
+    np.testing.assert_allclose(by_films, np.abs(sizes[0] - sizes[1]) / (2.0 * step), atol=1e-2 * by_films.max())
+
+
+class Without:
+    """What films leave out, without its possible error."""
+
+    def __init__(self, left_out):
+        self.left_out = left_out
+
+    def __call__(self, s):
+        part, doubt = self.left_out(s)
+        return part, np.zeros_like(doubt)

@@ -176,8 +176,18 @@ class MachineBalls(BallElement):
 
     def relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
         """Relaxation of the films of both contacts of all balls, where they relax, see `Element.relaxation`."""
-        if not self.relaxes:
-            return None
+        return self.film_relaxation(displacement, operation) if self.relaxes else None
+
+    def film_relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation:
+        """Relaxation that its films have with memory; dry balls have springs without stiffness.
+
+        Parameters
+        ----------
+        displacement : array (6,)
+            Displacement of the inner ring against the outer one.
+        operation : Operation
+            Speed and angle.
+        """
         from mbs.bearings.balls.relaxing import ball_relaxation
 
         at = self.settled(displacement, operation)

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ehdmaps.arrays import FloatArray
+from ehdmaps.arrays import ComplexArray, FloatArray
 from mbs.bearings.balls.ball_bearing import BallForce, BallLoads
 from mbs.bearings.balls.ball_speed import rolling
 from mbs.bearings.balls.contact_slopes import contact_slopes, contacts_at
@@ -140,7 +140,12 @@ def ball_errors(
     on_ring = np.zeros((len(DIRECTIONS), 6))
     whole = forces[:_CAGE] + np.multiply.outer(follows, forces[_CAGE])
     on_ring[:6], on_ring[8] = whole[:6], whole[6]
-    return Condensed(contacts, slopes, pose, on_ring, relaxes)
+
+    def left_out(s: ComplexArray) -> tuple[ComplexArray, FloatArray]:
+        sides = [one.left_out(loads[:, i], s) for i, one in enumerate(law.responses)]
+        return np.stack([part for part, _ in sides], axis=2), np.stack([doubt for _, doubt in sides], axis=2)
+
+    return Condensed(contacts, slopes, pose, on_ring, relaxes, left_out=left_out)
 
 
 def _both(sides: list[FloatArray]) -> tuple[FloatArray, FloatArray, FloatArray]:

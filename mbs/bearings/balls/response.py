@@ -18,6 +18,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 from ehdmaps.arrays import BoolArray, ComplexArray, FloatArray
 from ehdmaps.table.points.films import PointFilms
@@ -25,6 +26,10 @@ from ehdmaps.table.points.films import PointFilms
 TIMES = np.array([0.01, 0.16, 1.0])
 """The times theta_r of all contacts in that of the natural frequency 1. Of all threes on a grid of five in a decade
 none is much better for 95 of 100 loaded contacts; others are worse for those that hardly carry."""
+
+
+_FINE = np.geomspace(0.0625, 8.0, 57)
+"""Natural frequencies at which it is worked out what springs and dampers leave out."""
 
 
 class Springs(NamedTuple):
@@ -96,6 +101,73 @@ class ContactResponse:
         size = np.abs(self._held)
         stiffness = films.errors["response_stiffness"] * films.response_stiffness
         return np.asarray((np.hypot(stiffness, films.errors["response_damping"] * self._held.imag) / size).max(axis=1))
+
+    def left_out(self, load: FloatArray, s: ComplexArray) -> tuple[ComplexArray, FloatArray]:
+        """Part of Z that springs and dampers leave out of the table's, and its possible error, as parts of Z.
+
+        k and c of the table are cubics over ln(1 + Omega^2), as in `ehdmaps.table.points.response`. The possible error
+        is what the table states of Z beyond its errors of k and c of slow motion, and what a cubic without the nearest
+        frequency says otherwise. Above the last frequency the part is held, and the error grows so that both together
+        are in proportion to Omega: an assumption.
+
+        Parameters
+        ----------
+        load : array (n,)
+            Loads, > 0 [N]; beyond the ends those of the ends.
+        s : array (k,)
+            Complex frequencies [1/s]; parts are those of their size on the imaginary axis.
+
+        Returns
+        -------
+        array, array
+            Shape (k, n) each.
+        """
+        loads, asked = np.log(self.loads), np.log(load)
+        part, doubt = (
+            np.stack([np.interp(asked, loads, column) for column in given.T], axis=1) for given in self._left_out
+        )
+        unit = np.exp(np.interp(asked, loads, np.log(self._unit)))
+        place = np.multiply.outer(np.abs(s), unit)
+        along = np.log(np.clip(place, _FINE[0], _FINE[-1]) / _FINE[0]) / np.log(_FINE[1] / _FINE[0])
+        cell = np.minimum(along.astype(np.int64), _FINE.size - 2)
+        weight, column = np.minimum(along - cell, 1.0), np.arange(load.size)
+        missing, possible = (
+            (1.0 - weight) * one[column, cell] + weight * one[column, cell + 1] for one in (part, doubt)
+        )
+        below, beyond = np.minimum(place / _FINE[0], 1.0) ** 2, np.maximum(place / _FINE[-1], 1.0)
+        error = below * possible.real * beyond + np.abs(missing) * (beyond - 1.0)
+        return np.asarray(below * missing), np.asarray(error)
+
+    @cached_property
+    def _left_out(self) -> tuple[ComplexArray, FloatArray]:
+        """What `left_out` says at the loads and at the natural frequencies of `_FINE`, (n, f) each."""
+        films, errors = self.films, self.films.errors
+        held = np.r_[0.0, 2.0 * np.pi * films.frequencies[0] * self._unit[0]]
+        nodes, places = np.log1p(held**2), np.log1p(_FINE**2)
+        nearest = np.clip(np.argmin(np.abs(nodes[:, None] - places), axis=0), 1, nodes.size - 2)
+        omega = _FINE / self._unit[:, None]
+        read, wrong, slow = [], [], []
+        for name in ("stiffness", "damping"):
+            at_rest, moving = getattr(films, name), getattr(films, f"response_{name}")
+            values = np.column_stack([at_rest, moving])
+            stated = np.abs(values) * np.column_stack([errors[name], errors[f"response_{name}"]])
+            found = CubicSpline(nodes, values, axis=1)(places)
+            otherwise = found.copy()
+            for node in range(1, nodes.size - 1):
+                rest, on = np.delete(np.arange(nodes.size), node), nearest == node
+                otherwise[:, on] = CubicSpline(nodes[rest], values[:, rest], axis=1)(places[on])
+            at_node = np.isclose(places[:, None], nodes).any(axis=1)
+            apart = np.where(at_node, 0.0, np.abs(found - otherwise))
+            read.append(found)
+            wrong.append(np.array([np.interp(places, nodes, row) for row in stated]) + apart)
+            slow.append(stated[:, :1])
+        table = read[0] + 1j * omega * read[1]
+        place = (1j * _FINE)[:, None]
+        own = films.stiffness[:, None] + (films.damping / self._unit)[:, None] * (
+            self._shares @ (place / (1.0 + place * TIMES)).T
+        )
+        doubt = np.hypot(wrong[0], omega * wrong[1]) - np.hypot(slow[0], omega * slow[1])
+        return np.asarray(table / own - 1.0), np.asarray(np.maximum(doubt, 0.0) / np.abs(table))
 
     @property
     def _unit(self) -> FloatArray:

@@ -11,7 +11,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from mbs.bearings.balls.contact_slopes import STEP, contact_slopes, contacts_at
-from mbs.bearings.roller_contacts import relaxation_times
+from mbs.bearings.roller_contacts import natural_times, relaxation_times
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
 from mbs.bearings.tapered.tapered_kernel import FIRST_RIB
 from mbs.bearings.tapered.tapered_relaxing import SOFT, by_pose
@@ -41,7 +41,9 @@ def roller_errors(force: TaperedForce, cage_angle: float, *, relaxes: bool) -> C
     ribs, pose = shape.ribs, by_pose(force, cage_angle)[on]
     lines = 2 * slices
     feel = np.zeros((count, lines + ribs.levers.size, 6))
-    k, c, times, k_rise, c_rise, times_rise, by_stiffness, by_damping, thicker = np.zeros((9, *feel.shape[:2]))
+    k, c, times, natural, k_rise, c_rise, times_rise, by_stiffness, by_damping, thicker = np.zeros(
+        (10, *feel.shape[:2])
+    )
     for side, (normal, moved, law, point) in enumerate(
         ((shape.cone, ring - place, films.inner, films.points[0]), (shape.cup, place, films.outer, films.points[1]))
     ):
@@ -61,6 +63,7 @@ def roller_errors(force: TaperedForce, cage_angle: float, *, relaxes: bool) -> C
             times[:, at] = relaxation_times(point, approach)
             ahead, behind = (relaxation_times(point, approach + step) for step in (STEP, -STEP))
             times_rise[:, at] = (ahead - behind) / (2.0 * STEP)
+            natural[:, at] = natural_times(point, approach)
         by_stiffness[:, at], by_damping[:, at], thicker[:, at] = (
             part.reshape(approach.shape) for part in (bounds.stiffness, bounds.damping, bounds.film_offset)
         )
@@ -82,7 +85,7 @@ def roller_errors(force: TaperedForce, cage_angle: float, *, relaxes: bool) -> C
     slopes.stiffness[6], slopes.damping[7] = by_stiffness * k, by_damping * c
     slopes.times[6, ..., 0] = np.where(c > 0.0, times**2 * slopes.stiffness[6] / np.where(c > 0.0, c, 1.0), 0.0)
     slopes.times[7, ..., 0] = by_damping * times
-    return Condensed(contacts, slopes, pose, forces, relaxes)
+    return Condensed(contacts, slopes, pose, forces, relaxes, natural)
 
 
 def _in_balance(contacts: Contacts, pose: FloatArray, thicker: FloatArray) -> tuple[FloatArray, FloatArray]:
