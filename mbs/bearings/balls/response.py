@@ -140,7 +140,7 @@ class ContactResponse:
 
     @cached_property
     def _left_out(self) -> tuple[ComplexArray, FloatArray]:
-        """What `left_out` says at the loads and at the natural frequencies of `_FINE`, (n, f) each."""
+        """Parts and possible errors of `left_out` at the loads, at the natural frequencies of `_FINE`, (n, f) each."""
         films, errors = self.films, self.films.errors
         held = np.r_[0.0, 2.0 * np.pi * films.frequencies[0] * self._unit[0]]
         nodes, places = np.log1p(held**2), np.log1p(_FINE**2)
