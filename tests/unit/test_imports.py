@@ -426,7 +426,7 @@ BUDGETS = (
     ("from mbs.bearings import bearing_force", 50, (*SOLVING, *LATER, *MACHINES, "ehdmaps.jobs", "ehdmaps.maps.law")),
     (BEARING, 85, (*SOLVING, *LATER, *MACHINES, "ehdmaps.jobs", "ehdmaps.maps.law", "ehdmaps.maps.emap")),
     (STATICS, 120, (*SOLVING, *LATER, *MACHINES, "ehdmaps.jobs.job", "ehdmaps.maps.law", "ehdmaps.maps.emap")),
-    (FILMS_OF_TABLE, 115, (SOLVING[1], *LATER, "mbs")),
+    (FILMS_OF_TABLE, 115, (SOLVING[1], *(name for name in LATER if name != "netCDF4"), "mbs")),
     ("import ehdmaps; ehdmaps.open_map(MAP).law('inner')", 95, (*SOLVING[:2], "matplotlib", "ehdmaps.jobs", "mbs")),
 )
 """What a question loads of our own modules at most, and what it does not need."""
