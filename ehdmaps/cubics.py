@@ -40,7 +40,7 @@ class Pieces:
         Parameters
         ----------
         at : array
-            Places.
+            Places that are read, of any shape.
         order : int
             Order of the derivative.
         """
