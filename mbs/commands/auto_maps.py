@@ -17,6 +17,7 @@ from ehdmaps.program import tell
 from ehdmaps.units import LOAD, SPEED, TEMPERATURE
 from mbs.commands.common import Done, Looked
 from mbs.planning.auto import MOST_TOLERANCE, Automatic, AutoSettings, MadeMap, settled
+from mbs.planning.plan import no_lubricant
 from mbs.planning.ranges import MARGIN
 from mbs.planning.verdicts import TOLERANCE, Verdict, up_to
 from mbs.scene.choices import CHOICES, OPTIONS, Subject, named_law
@@ -126,7 +127,7 @@ def _asked(
     try:
         scene = _with_surface(read_scene(arguments.scene), arguments)
         if scene.lubricant is None:
-            problems.append(f"{scene.name}: got no [lubricant], which a map is made for; add the table to the scene")
+            problems.append(f"{scene.name}: {no_lubricant(scene)}; add the table to the scene")
         else:
             looked = looks_at(ask(_stand_in(arguments, scene)))
     except InputError as error:

@@ -84,10 +84,21 @@ def _job_text(scene: Scene, needed: Needed, solver: Mapping[str, Entry] | None) 
     return "\n".join(lines)
 
 
+def no_lubricant(scene: Scene) -> str:
+    """Say that there is no oil, and what it would be for.
+
+    Parameters
+    ----------
+    scene : Scene
+        Scene without one.
+    """
+    return f"got no [lubricant], which {'a map is made for' if scene.bearings else 'films need'}"
+
+
 def _lubricant(scene: Scene) -> Lubricant:
     """The oil of a scene."""
     if scene.lubricant is None:
-        raise InputError(f"{scene.name}: got no [lubricant], which a map is made for; add the table to the scene")
+        raise InputError(f"{scene.name}: {no_lubricant(scene)}; add the table to the scene")
     return scene.lubricant
 
 
@@ -241,9 +252,7 @@ def _dry_model(scene: Scene, settings: PlanSettings) -> Model:
             "out of a copy of the scene, or take a map over many temperatures, such as that of the shipped job nu308"
         )
     if scene.lubricant is None:
-        problems.append(
-            'got no [lubricant], which a map is made for; add the table to the scene, such as name = "FVA3"'
-        )
+        problems.append(f'{no_lubricant(scene)}; add the table to the scene, such as name = "FVA3"')
     named = [problem if problem.startswith("--") else f"{scene.name}: {problem}" for problem in problems]
     if named or model is None:
         raise InputError(tuple(dict.fromkeys(named)))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import math
 
 import numpy as np
 import pytest
@@ -11,16 +10,21 @@ import pytest
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import OilSupply
-from mbs import assemble, read_scene
+from ehdmaps.physics.solids import STEEL
+from mbs import assemble, parse_scene, read_scene
 from mbs.bearings.balls.normal_law import contact, load_approach
+from mbs.bearings.tapered.line_film import cylinder_of
 from mbs.budget.linear_look import LinearReference, linear_look
+from mbs.model.equilibrium import equilibrium
 from mbs.planning.auto import AutoSettings, settled
-from mbs.planning.criteria import memory_change
+from mbs.planning.criteria import closed_contact, memory_change
 from mbs.planning.of_table import change_of_matrix
 from mbs.planning.plan import plan
 from mbs.planning.question import at_one_speed
+from mbs.planning.verdicts import heat_verdict, visited
 from mbs.scene.choices import Subject, named_law
 from tests.cases import commands
+from tests.unit.test_tapered_scenes import O_PAIR, WEIGHT, text
 
 
 @pytest.fixture(scope="module")
@@ -123,4 +127,33 @@ def test_plan_tells_what_is_seen_and_writes_no_job(capsys, tmp_path):
     assert f"{element.entrainment_rate * fastest:.4g} m/s" in out
     status, _, err = commands.run(capsys, "plan", "electric_drive", "-o", str(tmp_path / "job.toml"))
     assert status == 2 and "there is no map to make" in " ".join(err.split())
-    assert math.isfinite(fastest) and not list(tmp_path.iterdir())
+    assert not list(tmp_path.iterdir())
+
+
+def test_rollers_are_planned_and_balls_beside_them_told():
+    given = read_scene("nu2210_shaft")
+    head, _, right = given.text.rpartition("geometry = { estimate")
+    mixed = head + 'bearing = "6210"\n\n[[inputs' + right.partition("[[inputs")[2]
+    found = plan(at_one_speed(parse_scene(mixed, "mixed", "mixed.toml")))
+    (rollers,), (balls,) = found.needed, found.seen
+    assert (rollers.bearings, balls.bearings) == (("left",), ("right",))
+    balance = equilibrium(found.model.system, found.model.operation)
+    radial = np.linalg.norm(balance.forces[found.model.ring_places[1]][1:3])
+    # Stribeck's factor without clearance, 4.37; unbalance, and the angle at which a ball is just below the load, add
+    assert 4.2 < balls.static_load * balls.geometry.balls / radial < 5.0
+    assert [job.bearing.name for job in found.jobs()] == ["NU2210"]
+
+
+def test_lines_of_tapered_rollers_have_heat_and_shear_left_out_of_the_table():
+    scene = dataclasses.replace(
+        parse_scene(text(**O_PAIR, more=WEIGHT), "rotor", "rotor.toml"), lubricant=Lubricant.named("FVA3")
+    )
+    (seen,) = plan(scene).seen
+    there = visited(seen, scene.lubricant, 1e-6)
+    assert there.of_lines and not there.has_map and seen.display.unit == "N/mm"
+    # the same closed contacts as of a cylindrical roller bearing with these lines
+    line = cylinder_of(seen.geometry).contacts(STEEL, "iso16281")[0]
+    same = closed_contact(line, scene.lubricant, there.states[0].load, there.states[0].speed, seen.temperature)
+    np.testing.assert_array_equal(there.states[0].stiffness, same.stiffness)
+    heat = heat_verdict(there)
+    assert heat.on and heat.solver  # of_table leaves it out, as no map has it
