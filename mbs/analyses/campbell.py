@@ -543,7 +543,7 @@ def _reach(entry: LawRun) -> Reach:
 
     speeds = entry.spectra[0].campbell.speeds
     at = np.linspace(float(speeds.min()), float(speeds.max()), MODE_SPEEDS)
-    return Reach(at, notable_from(entry.case.model, at, in_time=True), float(speeds[fading(entry)].max(initial=0.0)))
+    return Reach(at, notable_from(entry.case.model, at), float(speeds[fading(entry)].max(initial=0.0)))
 
 
 def fading(entry: LawRun) -> BoolArray:

@@ -28,8 +28,6 @@ def film_errors(
     displacement: FloatArray,
     operation: Operation,
     films: Films | None = None,
-    *,
-    in_time: bool = False,
 ) -> list[FilmError]:
     """Estimated errors of the films of all bearings; empty for laws without films, and without a load.
 
@@ -43,8 +41,6 @@ def film_errors(
         Speed and angle of the system.
     films : {"slow", "memory"}, optional
         Films whose error is estimated; those of the model if left out.
-    in_time : bool
-        Whether these are the films of runs in time, where those of tapered rollers are slow.
     """
     found = []
     system = model.system
@@ -61,7 +57,7 @@ def film_errors(
             connected = system.elements[index]
             element, ports = connected.element, connected.transform @ displacement
             assert isinstance(element, TaperedElement)
-            error = line_error(element, ports, operation, films or ("slow" if in_time else element.memory))
+            error = line_error(element, ports, operation, films or element.memory)
             found += [] if error is None else [error]
     if model.scene.balls:
         from mbs.bearings.balls.ball_element import MachineBalls
@@ -213,9 +209,7 @@ def _contacts(
     return tuple(found)
 
 
-def notable_from(
-    model: Model, speeds: FloatArray, displacements: FloatArray | None = None, *, in_time: bool = False
-) -> FloatArray:
+def notable_from(model: Model, speeds: FloatArray, displacements: FloatArray | None = None) -> FloatArray:
     """Frequency [Hz] from which on the films of one of the bearings are more than 5 % wrong, shape (speeds,).
 
     Parameters
@@ -226,8 +220,6 @@ def notable_from(
         [rad/s].
     displacements : array, shape (speeds, n), optional
         Displacements at the equilibria; they are found if left out.
-    in_time : bool
-        See `film_errors`.
 
     Returns
     -------
@@ -238,7 +230,7 @@ def notable_from(
     for index, speed in enumerate(speeds.tolist()):
         there, operation = operating(model, speed), Operation(speed)
         place = equilibrium(there.system, operation).displacement if displacements is None else displacements[index]
-        errors = film_errors(there, place, operation, in_time=in_time)
+        errors = film_errors(there, place, operation)
         if not errors:
             break
         found[index] = min(entry.frequency for entry in errors)
@@ -251,16 +243,13 @@ def film_course(model: Model, speeds: Iterable[float]) -> list[str]:
     for speed in speeds:
         if speed == 0.0:
             continue
-        (frequency,) = notable_from(model, np.array([speed]), in_time=True)
+        (frequency,) = notable_from(model, np.array([speed]))
         if not np.isnan(frequency):
             words = f"{frequency:.4g} Hz" if np.isfinite(frequency) else "1 MHz and more"
             shown.append(f"{words} at {RPM.text(abs(speed))}")
     if not shown:
         return []
-    kinds: list[Films] = [model.memory] if model.scene.bearings or model.scene.balls else []
-    kinds += ["slow"] if model.scene.tapered else []
-    words = " and ".join(FILM_WORDS[kind] for kind in dict.fromkeys(kinds))
     return [
-        f"{words}: dynamic stiffness along the load with an estimated error of up to {100.0 * NOTABLE:g} % up to "
-        f"{', '.join(shown)}"
+        f"{FILM_WORDS[model.memory]}: dynamic stiffness along the load with an estimated error of up to "
+        f"{100.0 * NOTABLE:g} % up to {', '.join(shown)}"
     ]

@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from mbs.bearings.balls.ball_block import FELT, BallBlock, balls_accept, balls_answer
+from mbs.bearings.balls.answers import FELT
+from mbs.bearings.balls.ball_block import BallBlock, balls_accept, balls_answer
 from mbs.model.blocks import FOUND, Answers, Member, Moment
 from mbs.model.elements import Operation
 

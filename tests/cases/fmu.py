@@ -67,3 +67,20 @@ class Unit:
         """Derivatives by a variable."""
         references = [self.references[name] for name in unknowns]
         return np.array(model.getDirectionalDerivative(references, [self.references[known]], [1.0]))
+
+
+FIVE = ("force.x", "force.y", "force.z", "moment.y", "moment.z")
+POSE = [f"pose.{name}" for name in ("x", "y", "z", "theta_y", "theta_z")]
+
+
+def stepped(unit: Unit, path: FloatArray, speed: float, step: float) -> FloatArray:
+    """Forces (n, 5) of a bearing of balls or tapered rollers along a path (n, 5) of even steps, from films at rest in
+    its first place."""
+    model = unit.stepped([*POSE, "speed.inner"], [*path[0], speed])
+    forces = [unit.get(model, FIVE)]
+    for n, place in enumerate(path[1:]):
+        unit.put(model, POSE, list(place))
+        model.doStep(n * step, step)
+        forces.append(unit.get(model, FIVE))
+    model.freeInstance()
+    return np.array(forces)

@@ -26,12 +26,10 @@ from mbs.commands.one_bearing.ball_files import BallExport, write_export
 from mbs.model.elements import Operation
 from mbs.output.ball_table import BallDescription
 from tests.cases.ball_runs import driven
-from tests.cases.fmu import Unit
+from tests.cases.fmu import FIVE, POSE, Unit, stepped
 from tests.unit.test_ball_relaxing import by_hand
 
 SPEED, WARM, STEP = 3000.0 * math.pi / 30.0, 333.15, 5e-6
-FORCES = ("force.x", "force.y", "force.z", "moment.y", "moment.z")
-POSE = ["pose.x", "pose.y", "pose.z", "pose.theta_y", "pose.theta_z"]
 FELT = [0, 1, 2, 4, 5]
 PLACE = np.array([95e-6, -3e-6, 1e-6, 0.0, 2e-5, -4e-5])
 
@@ -62,18 +60,6 @@ def unpacked(units, tmp_path_factory):
     return {fmi: Unit(units[fmi], tmp_path_factory.mktemp(f"unit{fmi}")) for fmi in units}
 
 
-def stepped(unit, path, step=STEP):
-    """Forces (n, 5) along a path (n, 6) of even steps, from films at rest in its first place."""
-    model = unit.stepped([*POSE, "speed.inner"], [*path[0][FELT], SPEED])
-    forces = [unit.get(model, FORCES)]
-    for n, place in enumerate(path[1:]):
-        unit.put(model, POSE, list(place[FELT]))
-        model.doStep(n * step, step)
-        forces.append(unit.get(model, FORCES))
-    model.freeInstance()
-    return np.array(forces)
-
-
 @pytest.mark.parametrize("fmi", ["2", "3"])
 def test_unit_in_time_is_the_element(units, unpacked, element, fmi):
     """Up to 60 um within 0.2 ms, so that balls lift off: both end in the balance of the balls to 1e-9, and the last
@@ -82,7 +68,7 @@ def test_unit_in_time_is_the_element(units, unpacked, element, fmi):
     turn = np.linspace(0.0, 4.0 * math.pi, 81)
     path = PLACE + np.outer(np.sin(turn), [-60e-6, 20e-6, 10e-6, 0.0, 1e-4, -5e-5])
     wanted, least = driven(element, SPEED, path, STEP)
-    found = stepped(unpacked[fmi], path)
+    found = stepped(unpacked[fmi], path[:, FELT], SPEED, STEP)
     assert least < 1e-3 * np.abs(wanted).max()
     slow = np.array([element.evaluate(place, np.zeros(6), Operation(SPEED)).force[FELT] for place in path[::8]])
     largest = np.abs(wanted).max(axis=0)
@@ -97,7 +83,7 @@ def test_small_oscillations_are_those_of_linear_analyses(unpacked, element):
     path = np.tile(PLACE, (turn.size, 1))
     path[:, 1] += size * np.sin(turn)
     last = slice(-2 * count, None)
-    forces = stepped(unpacked["2"], path)
+    forces = stepped(unpacked["2"], path[:, FELT], SPEED, STEP)
     found = -1j * (forces[last] * np.exp(-1j * turn[last])[:, None]).sum(axis=0) / (count * size)
     operation, s = Operation(SPEED), 2j * math.pi * hertz
     rest = element.evaluate(PLACE, np.zeros(6), operation)
@@ -111,13 +97,13 @@ def test_closed_paths_take_energy_and_long_steps_are_many(unpacked):
     turn = 2.0 * math.pi / 100 * np.arange(201)
     path = PLACE + np.outer(np.sin(turn), [-40e-6, 0.0, 0.0, 0.0, 0.0, 0.0])
     path[:, 1] += 5e-6 * np.cos(2.0 * turn)
-    forces = stepped(unpacked["2"], path)
+    forces = stepped(unpacked["2"], path[:, FELT], SPEED, STEP)
     work = -0.5 * (forces[101:] + forces[100:-1]) * np.diff(path[100:, FELT], axis=0)
     assert work.sum() > 1e-3 * np.abs(work).sum()
     coarse = path[::4]
     fine = np.array([np.interp(np.arange(201) / 4.0, np.arange(51), column) for column in coarse.T]).T
-    long = stepped(unpacked["2"], coarse, 4.0 * STEP)
-    np.testing.assert_allclose(long[1:], stepped(unpacked["2"], fine)[4::4], rtol=1e-7, atol=1e-6)
+    long = stepped(unpacked["2"], coarse[:, FELT], SPEED, 4.0 * STEP)
+    np.testing.assert_allclose(long[1:], stepped(unpacked["2"], fine[:, FELT], SPEED, STEP)[4::4], rtol=1e-7, atol=1e-6)
 
 
 def test_states_are_kept_and_rest_is_that_of_the_export(units, unpacked):
@@ -131,7 +117,7 @@ def test_states_are_kept_and_rest_is_that_of_the_export(units, unpacked):
     for _ in range(2):
         unit.put(model, POSE, list(PLACE[FELT] + np.array([2e-6, 0.0, 0.0, 0.0, 0.0])))
         model.doStep(0.0, STEP)
-        seen.append(unit.get(model, FORCES))
+        seen.append(unit.get(model, FIVE))
         model.setFMUState(kept)
     model.freeFMUState(kept)
     np.testing.assert_array_equal(*seen)

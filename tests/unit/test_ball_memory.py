@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from mbs import assemble, read_scene
-from mbs.bearings.balls.ball_block import FELT
+from mbs.bearings.balls.answers import FELT
 from mbs.bearings.balls.normal_law import contact
 from mbs.model.elements import Operation
 from tests.cases.ball_runs import driven

@@ -11,8 +11,9 @@ import pytest
 from ehdmaps.compiled import in_python
 from ehdmaps.errors import AnalysisError
 from mbs import assemble, parse_scene, read_scene, statics
+from mbs.bearings.balls.answers import FELT
 from mbs.bearings.balls.ball_bearing import BallForce
-from mbs.bearings.balls.ball_block import FELT, BallBlock, balls_accept, balls_answer
+from mbs.bearings.balls.ball_block import BallBlock, balls_accept, balls_answer
 from mbs.bearings.balls.ball_element import BallStates
 from mbs.bearings.balls.normal_law import contact
 from mbs.model.blocks import FOUND, Answers, Member, Moment

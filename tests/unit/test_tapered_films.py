@@ -17,6 +17,7 @@ from ehdmaps.physics.rollers.ribbed_geometry import ribbed_estimate
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from mbs import assemble, parse_scene
 from mbs.analyses.film_errors import film_course, film_error, film_errors, line_error, notable_from
+from mbs.bearings.balls.answers import FELT
 from mbs.bearings.balls.normal_law import contact
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement
@@ -24,7 +25,7 @@ from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.roller_contacts import RollerContacts, relaxation_times
 from mbs.bearings.tapered.line_film import LOADS, LineFilms, line_films
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
-from mbs.bearings.tapered.tapered_block import FELT, TaperedBlock, tapered_answer
+from mbs.bearings.tapered.tapered_block import TaperedBlock, tapered_answer
 from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.bearings.tapered.tapered_relaxing import line_relaxation
 from mbs.linearised.linear import frequency_response, state_space
@@ -129,7 +130,7 @@ def test_films_stiffen_a_pair_that_displacement_preloads(law):
     at_dry, at_wet = (equilibrium(one.system, one.operation) for one in (dry, wet))
     assert 1.1 * abs(at_dry.forces[0][0]) < abs(at_wet.forces[0][0]) < 3.0 * abs(at_dry.forces[0][0])
     assert modes(at_wet).damping_ratio.min() > 1e-5
-    assert "films with memory in linear analyses, slow in time, ribs dry" in wet.law
+    assert wet.law.count("films with memory, ribs dry") == 1
     assert "FVA3, flooded, smooth surfaces" in wet.law
     element = wet.system.elements[0].element
     assert element.powers(None, *[np.zeros(6)] * 3, wet.operation) is None
@@ -229,10 +230,11 @@ def test_films_of_slow_motion_say_from_where_they_are_wrong(emap, films):
     theirs = dataclasses.replace(film_error(theirs, POSE, at, "memory", False), contacts=())
     np.testing.assert_allclose(kept, theirs.error(frequencies), rtol=0.1)
     assert film_errors(machine, balance.displacement, machine.operation)[0].films == "memory"
-    # runs in time have slow films
     (line,) = film_course(machine, (500.0,))
+    (at_memory,) = notable_from(machine, np.array([500.0]))
     (at_slow,) = notable_from(scene(films="slow"), np.array([500.0]))
-    assert line.startswith("slow films: ") and f" {at_slow:.4g} Hz at " in line
+    assert line.startswith("films with memory: ") and f" {at_memory:.4g} Hz at " in line
+    assert at_slow < at_memory
 
 
 def by_hand(force, cage_angle, s):

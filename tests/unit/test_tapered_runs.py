@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from ehdmaps.physics.rollers.tapered_catalogue import mirrored
+from mbs.bearings.balls.answers import FELT
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
-from mbs.bearings.tapered.tapered_block import FELT, TaperedBlock, tapered_accept, tapered_answer, tapered_powers
+from mbs.bearings.tapered.tapered_block import TaperedBlock, tapered_accept, tapered_answer, tapered_powers
 from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.model.blocks import FOUND, IN_PYTHON, Answers, Member, Moment
 from mbs.model.elements import Operation

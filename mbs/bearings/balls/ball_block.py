@@ -17,6 +17,7 @@ import numpy as np
 
 from ehdmaps.arrays import BoolArray, FloatArray, IntArray
 from ehdmaps.compiled import njit
+from mbs.bearings.balls.answers import LawBlock, answer_port, felt_rows, read_pose
 from mbs.bearings.balls.ball_bearing import NEGLIGIBLE
 from mbs.bearings.balls.ball_element import BallStates, MachineBalls
 from mbs.bearings.balls.ball_kernel import (
@@ -29,15 +30,12 @@ from mbs.bearings.balls.ball_kernel import (
     write_angles,
 )
 from mbs.bearings.balls.ball_memory import SPRINGS, FilmsOfBalls, go_on, hold
-from mbs.bearings.balls.ball_speed import ball_loads, dry_energy, mean_angles, rolling, speed_work, turned_by
+from mbs.bearings.balls.ball_speed import ball_loads, dry_energy, mean_angles, rolling, speed_work
 from mbs.bearings.balls.film_tables import FilmLaws, FilmTables, blend, film_tables, law_of
 from mbs.bearings.balls.laws import NODES
 from mbs.bearings.balls.normal_law import HELD, NormalLaw, contact, load_approach
-from mbs.bearings.speed_tables import Course, CourseOfFilms, FilmBlock, Prepared, course_of, shared
+from mbs.bearings.speed_tables import Course, course_of
 from mbs.model.blocks import FOUND, IN_PYTHON, NO_SOLUTION, Answers, Kind, Member, Moment
-
-FELT = np.array([0, 1, 2, 4, 5])
-"""Displacements of its port that a ball bearing feels."""
 
 _REST_STEPS = 20
 
@@ -200,11 +198,10 @@ def rest_approach(law: NormalLaw, load: float, start: float) -> float:
 @njit(error_model="numpy", _nrt=False, forceinline=True)
 def _on_ring(balls: Balls, b: int, moment: Moment, motion: FloatArray, answers: Answers) -> int:
     """Write the answer of a bearing; status as of `ball_force`."""
-    i, z, film, x, y = balls.firsts[b], balls.counts[b], balls.films_of[b], motion[0], motion[1]
+    i, z, film = balls.firsts[b], balls.counts[b], balls.films_of[b]
     pose, numbers, force = balls.rooms[0], balls.rooms[1], balls.rooms[2]
     stiffness, damping = balls.matrices[0], balls.matrices[1]
-    pose[0], pose[1], pose[2], pose[3] = x[i] + balls.offsets[b], x[i + 1], x[i + 2], 0.0
-    pose[4], pose[5] = x[i + 3], x[i + 4]
+    read_pose(i, balls.offsets[b], motion, pose)
     s = balls.shapes[b]
     if s[0] * (s[0] + pose[0]) < 0.0:  # an angular contact bearing beyond its middle, where it has no raceway
         return TOO_FAR
@@ -233,19 +230,7 @@ def _on_ring(balls: Balls, b: int, moment: Moment, motion: FloatArray, answers: 
     if found < 0:
         centres[:] = math.nan
         return found
-    dissipated = 0.0
-    for p in range(FELT.size):
-        row = FELT[p]
-        total = force[row]
-        for q in range(FELT.size):
-            column = FELT[q]
-            slowed = damping[row, column] * y[i + q]
-            total -= slowed
-            dissipated += y[i + p] * slowed
-            answers.slopes[i + p, i + q] = moment.by_q * stiffness[row, column] + moment.by_v * damping[row, column]
-        answers.force[i + p] = total
-    balls.powers[b, 0] = dissipated
-    balls.powers[b, 1] = turned_by(pose, force) * balls.turns[b] * moment.speed
+    answer_port(i, balls.turns[b], moment, motion, pose, force, balls.matrices, answers, balls.powers[b])
     return found
 
 
@@ -319,7 +304,7 @@ def balls_powers(balls: Balls, moment: Moment, motion: FloatArray, answers: Answ
         out[balls.places[b], 0], out[balls.places[b], 1] = balls.powers[b, 0], balls.powers[b, 1] + balls.works[b]
 
 
-class BallBlock(FilmBlock[Balls]):
+class BallBlock(LawBlock[Balls]):
     """The ball bearings of a run; see `mbs.model.blocks.StatefulBlock`.
 
     Parameters
@@ -330,21 +315,7 @@ class BallBlock(FilmBlock[Balls]):
 
     def __init__(self, members: Sequence[Member]) -> None:
         elements: list[MachineBalls] = [member.element for member in members]
-        films_of, firsts = shared(one.film_key for one in elements)
-        self._laws = [FilmLaws(elements[first], NODES) for first in firsts]
-        arrays = _gather(members, films_of, self._laws)
-        films = arrays.films
-
-        def make(film: int, speeds: FloatArray, nodes: IntArray, weights: FloatArray) -> Prepared:
-            return self._laws[film].prepare(films, film, speeds, nodes, weights)
-
-        super().__init__(CourseOfFilms([one.places for one in self._laws], make), arrays)
-
-    def begin(self, speeds: FloatArray) -> None:
-        """Find the places of the speeds [rad/s] on the tables, and the grids of these."""
-        for one in self._laws:
-            one.begin(speeds)
-        super().begin(speeds)
+        super().__init__(elements, NODES, lambda films_of, laws: _gather(members, films_of, laws))
 
     def states(self) -> Sequence[BallStates]:
         """States of each bearing after the last step."""
@@ -390,7 +361,7 @@ def _gather(members: Sequence[Member], films_of: list[int], laws: Sequence[FilmL
     """Arrays of some bearings."""
     elements: list[MachineBalls] = [member.element for member in members]
     count, most = len(elements), max((one.force.geometry.balls for one in elements), default=0)
-    films = film_tables(laws, NODES, any(one.relaxes for one in elements))
+    films = film_tables(laws, NODES, SPRINGS + 1 if any(one.relaxes for one in elements) else 0)
     cos, sin = np.zeros((2, count, most))
     for b, one in enumerate(elements):
         cos[b, : one.force.geometry.balls], sin[b, : one.force.geometry.balls] = one.force.directions
@@ -431,15 +402,10 @@ def _gather(members: Sequence[Member], films_of: list[int], laws: Sequence[FilmL
     )
 
 
-def _feels(element: MachineBalls) -> FloatArray:
-    """Rows of what a bearing feels of its port."""
-    return np.asarray(np.eye(6)[FELT])
-
-
 BALLS = Kind(
     arrays=Balls,
     answer=balls_answer,
-    feels=_feels,
+    feels=felt_rows,
     gather=BallBlock,
     accept=balls_accept,
     powers=balls_powers,

@@ -7,17 +7,12 @@ K_r = c_r/theta_r each, whose forces f_r are its states:
     load = p + f where f >= 0,        load = f + sqrt(f^2 + p^2) where films are pulled.
 
 So a load is never a tension, and rises with the approach. Small oscillations see k and c over frequency as linear
-analyses have them. Over a step of h in which the approach goes evenly the solution is exact,
-
-    f_r <- exp(-a) f_r + K_r phi (approach - approach before),        a = h/theta_r, phi = (1 - exp(-a))/a,
-
-with K_r and theta_r of the beginning of the step: p gets a constant force and a spring, no more. Between two steps
-K_r follows the load: where it falls f_r falls in proportion, where it rises f_r stays. Both take energy away.
+analyses have them. Over a step in which the approach goes evenly the solution is exact, see
+`mbs.bearings.balls.spring_damper`: p gets a constant force and a spring, no more.
 """
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,12 +22,11 @@ from ehdmaps.compiled import in_python, njit
 from ehdmaps.copies import put
 from mbs.bearings.balls.laws import BallLaw
 from mbs.bearings.balls.normal_law import HELD, contact
-from mbs.bearings.balls.response import TIMES, ContactResponse
+from mbs.bearings.balls.response import SHORTER
+from mbs.bearings.balls.spring_damper import gone_on, over_step
 
-SPRINGS = TIMES.size
+SPRINGS = len(SHORTER)
 """Springs of a contact."""
-
-_TIMES = tuple(float(time / TIMES[-1]) for time in TIMES)
 
 
 @njit(error_model="numpy", _nrt=False, forceinline=True)
@@ -52,17 +46,13 @@ def hold(
     forces : array (SPRINGS,)
         f_r at its beginning [N].
     passed : array (SPRINGS, 2)
-        exp(-a) and K_r phi [N/m]; written.
+        Part of f_r that is left, and its spring of the end of the step [N/m]; written.
     held : array (3,)
         Force [N] at the approach held[2] [m], and spring held[1] [N/m] of the end of the step; written.
     """
     held[0], held[1], held[2] = 0.0, 0.0, approach
     for r in range(SPRINGS):
-        passed[r, 0], passed[r, 1] = 1.0 if springs[r] > 0.0 else 0.0, springs[r]
-        if springs[r] > 0.0 and step > 0.0:
-            a = step / (springs[SPRINGS] * _TIMES[r])
-            gone = -math.expm1(-a)
-            passed[r, 0], passed[r, 1] = 1.0 - gone, springs[r] * gone / a
+        passed[r, 0], passed[r, 1] = over_step(step, springs[r], springs[SPRINGS] * SHORTER[r])
         held[0] += passed[r, 0] * forces[r]
         held[1] += passed[r, 1]
 
@@ -83,24 +73,8 @@ def go_on(moved: float, springs: FloatArray, after: FloatArray, passed: FloatArr
         f_r [N]; written.
     """
     for r in range(SPRINGS):
-        forces[r] = passed[r, 0] * forces[r] + passed[r, 1] * moved
-        if after[r] < springs[r]:
-            forces[r] *= after[r] / springs[r]
+        forces[r] = gone_on(forces[r], passed[r, 0], passed[r, 1] * moved, springs[r], after[r])
     put(after, springs)
-
-
-def springs_at(response: ContactResponse, load: FloatArray, damping: FloatArray) -> FloatArray:
-    """Springs and longest times of a contact, shape (n, SPRINGS + 1), see `hold`.
-
-    Parameters
-    ----------
-    response : ContactResponse
-        Response over frequency.
-    load, damping : array (n,)
-        Load [N] and damping [N s/m] at rest.
-    """
-    found = response.springs(np.maximum(load, 1e-300))
-    return np.column_stack([found.shares * damping[:, None] / found.times, found.times[:, -1]])
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,5 +145,5 @@ def _springs(law: BallLaw, approaches: FloatArray) -> FloatArray:
     found[..., -1] = 1.0
     for side, (one, response) in enumerate(zip((law.inner, law.outer), law.responses, strict=False)):
         values = np.array([in_python(contact)(one, approach) for approach in approaches[:, side].tolist()])
-        found[:, side] = springs_at(response, values[:, 0], values[:, 2])
+        found[:, side] = response.in_time(values[:, 0], values[:, 2])
     return found

@@ -15,9 +15,7 @@ import numpy as np
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.compiled import njit
 from ehdmaps.errors import EhdmapsError
-from mbs.bearings.balls.ball_memory import SPRINGS, springs_at
 from mbs.bearings.balls.normal_law import NormalLaw, contact
-from mbs.bearings.balls.response import ContactResponse
 from mbs.bearings.speed_tables import Made, Prepared, SpeedWindow
 
 STEP = 0.04
@@ -49,8 +47,8 @@ class FilmTables(NamedTuple):
         The laws in use.
     in_use : array (films, 2)
         Node and weight of those.
-    springs : array (films, slots, 2, rows, SPRINGS + 1)
-        Springs of films with memory at the rows of the tables, see `mbs.bearings.balls.ball_memory`; else no rows.
+    springs : array (films, slots, 2, rows, columns)
+        Springs of films with memory at the rows of the tables, and their time; without memory no columns.
     """
 
     tables: FloatArray
@@ -80,9 +78,18 @@ class PairLaw(Protocol):
     def loads(self) -> tuple[float, float]:
         """Lowest and highest load for which both were made [N]."""
 
-    @property
-    def responses(self) -> tuple[ContactResponse, ...]:
-        """Films of both contacts over frequency; none where they are not known."""
+    def springs_on(self, side: int, law: NormalLaw, table: FloatArray) -> FloatArray:
+        """Springs of films with memory at the rows of a table, and their time, (rows, columns).
+
+        Parameters
+        ----------
+        side : int
+            0 the inner contact.
+        law : NormalLaw
+            Law of the table.
+        table : array (rows, 4)
+            The table.
+        """
 
     @property
     def dry(self) -> bool:
@@ -99,6 +106,10 @@ class WithFilms(Protocol):
     @property
     def relaxes(self) -> bool:
         """Sign of films with memory."""
+
+    @property
+    def film_key(self) -> tuple[object, ...]:
+        """Key that bearings with the same law at all speeds have in common."""
 
     def law_at(self, speed: float) -> PairLaw:
         """Law at a speed of the system [rad/s]."""
@@ -258,8 +269,8 @@ class FilmLaws:
             else:
                 return Made(sound=False)
             if self._element.relaxes and not law.dry:
-                load, c = one.coefficient * np.exp(1.5 * table[:, 0]), np.exp(table[:, 2])
-                films.springs[film, slot, side] = springs_at(law.responses[side], load, c)
+                grid = one if alone else self._grids[side]
+                films.springs[film, slot, side] = law.springs_on(side, grid, table)
         return Made(sound=True, kind=int(law.dry))
 
 
@@ -275,7 +286,7 @@ def _over(slow: NormalLaw, fast: NormalLaw, rows: int) -> NormalLaw:
     return fast._replace(centre=centre, scale=scale, first=first, step=(last - first) / (rows - 1))
 
 
-def film_tables(laws: Sequence[FilmLaws], rows: int, relaxes: bool) -> FilmTables:
+def film_tables(laws: Sequence[FilmLaws], rows: int, columns: int) -> FilmTables:
     """Room for the laws of some films.
 
     Parameters
@@ -284,8 +295,8 @@ def film_tables(laws: Sequence[FilmLaws], rows: int, relaxes: bool) -> FilmTable
         The films.
     rows : int
         Rows of the tables, where any of them varies.
-    relaxes : bool
-        Whether any of them has a memory.
+    columns : int
+        Springs of a contact and their time; 0 where none of them has a memory.
     """
     count = len(laws)
     rows, slots = (rows, SLOTS) if any(one.varies for one in laws) else (0, 1)
@@ -299,5 +310,5 @@ def film_tables(laws: Sequence[FilmLaws], rows: int, relaxes: bool) -> FilmTable
         highest=np.zeros(count),
         length=np.zeros(count, dtype=np.int64),
         in_use=np.full((count, 2), -1.0),
-        springs=np.zeros((count, slots, 2, rows if relaxes else 0, SPRINGS + 1)),
+        springs=np.zeros((count, slots, 2, rows, columns)),
     )

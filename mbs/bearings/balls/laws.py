@@ -19,11 +19,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, SolverError
 from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.physics.point.ellipse import Ellipse
 from ehdmaps.physics.solids import STEEL, Material
-from mbs.bearings.balls.normal_law import NormalLaw, empty_table
+from mbs.bearings.balls.normal_law import NormalLaw, empty_table, on_rows
 
 if TYPE_CHECKING:
     from mbs.bearings.balls.response import ContactResponse
@@ -57,6 +57,28 @@ class BallLaw:
     def dry(self) -> bool:
         """True where neither contact has a film."""
         return self.inner.table.size == 0 and self.outer.table.size == 0
+
+    def springs_on(self, side: int, law: NormalLaw, table: FloatArray) -> FloatArray:
+        """Springs of films with memory at the rows of a table, see `ContactResponse.in_time`.
+
+        Parameters
+        ----------
+        side : int
+            0 the inner contact.
+        law : NormalLaw
+            Law of the table.
+        table : array (rows, 4)
+            The table.
+
+        Raises
+        ------
+        SolverError
+            If films over frequency are not known.
+        """
+        if not self.responses:
+            raise SolverError("films of balls with memory: some have no response over frequency; take --law table")
+        _, load, damping = on_rows(law, table)
+        return self.responses[side].in_time(load, damping)
 
 
 def dry_law(

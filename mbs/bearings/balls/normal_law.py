@@ -76,6 +76,24 @@ def _asinh(x: float) -> tuple[float, float]:
 
 
 @njit(error_model="numpy", _nrt=False, forceinline=True)
+def with_held(load: float, stiffness: float, held: float, spring: float) -> tuple[float, float]:
+    """Load [N] and stiffness [N/m] of a film with memory at the end of a step; never a tension.
+
+    Parameters
+    ----------
+    load, stiffness : float
+        Load > 0 [N] and stiffness [N/m] at rest.
+    held, spring : float
+        Force beside it [N], and its spring [N/m].
+    """
+    if held >= 0.0:
+        return load + held, stiffness + spring
+    size = math.sqrt(held * held + load * load)
+    total = load * load / (size - held)
+    return total, (spring * total + stiffness * load) / size
+
+
+@njit(error_model="numpy", _nrt=False, forceinline=True)
 def carried(law: NormalLaw, approach: float) -> tuple[float, float, float]:
     """Load [N] and stiffness [N/m] at rest, or at the end of a step with memory; place on the table, 0 without one.
 
@@ -109,12 +127,8 @@ def carried(law: NormalLaw, approach: float) -> tuple[float, float, float]:
     k = 1.5 * load * slope / (law.scale * law.step * root)
     if law.spring <= 0.0:
         return load, k, place
-    more = law.held + law.spring * (approach - law.at)
-    if more >= 0.0:
-        return load + more, k + law.spring, place
-    size = math.sqrt(more * more + load * load)
-    total = load * load / (size - more)
-    return total, (law.spring * total + k * load) / size, place
+    total, k = with_held(load, k, law.held + law.spring * (approach - law.at), law.spring)
+    return total, k, place
 
 
 @njit(error_model="numpy", _nrt=False, forceinline=True)
@@ -183,6 +197,20 @@ def load_approach(law: NormalLaw, load: float) -> float:
         if high - low <= 1e-15 * law.scale:
             break
     return 0.5 * (low + high)
+
+
+def on_rows(law: NormalLaw, table: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Approach [m], load [N] and damping [N s/m] at rest at the rows of a table, (rows,) each.
+
+    Parameters
+    ----------
+    law : NormalLaw
+        Law with the grid of the table.
+    table : array (rows, 4)
+        The table.
+    """
+    approach = law.centre + law.scale * np.sinh(law.first + law.step * np.arange(table.shape[0]))
+    return approach, law.coefficient * np.exp(1.5 * table[:, 0]), np.exp(table[:, 2])
 
 
 def empty_table() -> FloatArray:

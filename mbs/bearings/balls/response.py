@@ -27,6 +27,9 @@ TIMES = np.array([0.01, 0.16, 1.0])
 """The times theta_r of all contacts in that of the natural frequency 1. Of all threes on a grid of five in a decade
 none is much better for 95 of 100 loaded contacts; others are worse for those that hardly carry."""
 
+SHORTER = tuple(float(time / TIMES[-1]) for time in TIMES)
+"""The same over the longest one."""
+
 
 _FINE = np.geomspace(0.0625, 8.0, 57)
 """Natural frequencies at which it is worked out what springs and dampers leave out."""
@@ -87,6 +90,17 @@ class ContactResponse:
         stated = (films.errors["stiffness"], films.errors["damping"], films.errors["film_offset"] * films.film_offset)
         stiffness, damping, film = (np.interp(asked, places, part) for part in stated)
         return stiffness, damping, film
+
+    def in_time(self, load: FloatArray, damping: FloatArray) -> FloatArray:
+        """Springs K_r [N/m] and the longest of their times [s] at loads, shape (n, r + 1).
+
+        Parameters
+        ----------
+        load, damping : array (n,)
+            Load [N] and damping of slow motion [N s/m].
+        """
+        found = self.springs(np.maximum(load, 1e-300))
+        return np.column_stack([found.shares * damping[:, None] / found.times, found.times[:, -1]])
 
     @cached_property
     def misfit(self) -> FloatArray:

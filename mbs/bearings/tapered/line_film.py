@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,11 +18,10 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
-from mbs.bearings.balls.normal_law import NormalLaw, empty_table
+from mbs.bearings.balls.normal_law import NormalLaw, empty_table, on_rows
 
 if TYPE_CHECKING:
     from ehdmaps.maps.law import ContactLaw, LawAtPoint
-    from mbs.bearings.balls.response import ContactResponse
 
 NODES, KNEE = 1200, 0.3e-6
 """Nodes, and the width about approach zero in which they lie dense: films begin to carry there [m]."""
@@ -56,10 +56,37 @@ class LineFilms:
         """True where neither line has a film."""
         return self.inner.table.size == 0 and self.outer.table.size == 0
 
-    @property
-    def responses(self) -> tuple[ContactResponse, ...]:
-        """None: in time films have the stiffness and damping of slow motion."""
-        return ()
+    @cached_property
+    def springs(self) -> tuple[FloatArray, FloatArray]:
+        """K and theta of films with memory at the rows of both tables, (rows, 2) each, see `springs_on`."""
+        inner, outer = (
+            self.springs_on(side, law, law.table) if law.table.size else np.zeros((0, 2))
+            for side, law in enumerate((self.inner, self.outer))
+        )
+        return inner, outer
+
+    def springs_on(self, side: int, law: NormalLaw, table: FloatArray) -> FloatArray:
+        """K [N/m] and theta [s] of a spring in series with the damper of slow motion at the rows of a table, (rows, 2).
+
+        Parameters
+        ----------
+        side : int
+            0 the inner contact.
+        law : NormalLaw
+            Law of the table.
+        table : array (rows, 4)
+            The table.
+        """
+        from mbs.bearings.roller_contacts import relaxation_times  # with the kernels of films with memory
+
+        approach, _, damping = on_rows(law, table)
+        times = relaxation_times(self.points[side], approach)
+        relaxes = times > 0.0
+        if not np.any(relaxes):
+            return np.column_stack([times, np.ones_like(times)])
+        # between rows with theta and without, K goes to zero, not theta
+        whole = np.interp(np.arange(times.size), np.flatnonzero(relaxes), times[relaxes])
+        return np.column_stack([np.where(relaxes, damping / whole, 0.0), whole])
 
 
 _DRY = NormalLaw(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, empty_table())

@@ -57,6 +57,10 @@ FARTHEST = 0.1
 """Largest accepted displacement over the roller's diameter: bodies are linear."""
 
 
+_NONE = np.zeros((1, 2, 3, 0))
+"""Memory of films without one."""
+
+
 @dataclass(frozen=True, eq=False)
 class TaperedLoads:
     """State of all rollers at one pose.
@@ -103,6 +107,11 @@ class TaperedForce:
         Material of rollers and rings; its density gives them mass.
     compiled : bool
         Whether the compiled kernel is called, or the same in Python.
+
+    Attributes
+    ----------
+    held : array (Z, 2, MEMORY, n) or None
+        What slices of films with memory hold over a step, see `mbs.bearings.tapered.tapered_memory`.
 
     Raises
     ------
@@ -177,7 +186,7 @@ class TaperedForce:
         # each raceway takes half of the total approach at the same load
         single = 2.0 ** (10.0 / 9.0) * roller_coefficient(length, material)
         self.films = films
-        self.laws = RollerLaws(single, single, self.damping, self.damping_time, films.outer, films.inner)
+        self.laws = RollerLaws(single, single, self.damping, self.damping_time, films.outer, films.inner, False)
         self.angles, self._way = places, way
         self._kernel = tapered_force if compiled else in_python(tapered_force)
         self._begin()
@@ -187,7 +196,8 @@ class TaperedForce:
         self._places = np.full((self.geometry.rollers, 3), np.nan)
         self._rollers = np.zeros((self.geometry.rollers, COLUMNS))
         self._out = np.zeros(6), np.zeros((6, 6)), np.zeros((6, 6))
-        self._work = roller_work(len(self.ribs))
+        self._work = roller_work(len(self.ribs), self.positions.size)
+        self.held: FloatArray | None = None
 
     def with_films(self, films: LineFilms) -> TaperedForce:
         """The same bearing with other films.
@@ -328,8 +338,9 @@ class TaperedForce:
         place = _six(pose, "pose")
         centrifugal, moment = self.speed_loads(inner_speed, outer_speed, cage_speed)
         loads = np.array([0.0, centrifugal, moment])
-        arguments: tuple[Any, ...] = (loads, self.shape, self.laws, *self._out, self._places, self._rollers, self._work)
-        found = self._kernel(place, float(cage_angle), *arguments)
+        laws, memory = (self.laws, _NONE) if self.held is None else (self.laws._replace(relaxes=True), self.held)
+        written: tuple[Any, ...] = (*self._out, self._places, self._rollers, self._work)
+        found = self._kernel(place, float(cage_angle), loads, self.shape, laws, memory, *written)
         if found < 0:
             self._places[:] = np.nan
             self._refuse(found, place, cage_angle)

@@ -13,9 +13,9 @@ import numpy as np
 
 from ehdmaps.arrays import BoolArray, FloatArray, IntArray
 from ehdmaps.compiled import njit
-from mbs.bearings.balls.ball_speed import turned_by
+from mbs.bearings.balls.answers import LawBlock, answer_port, felt_rows, read_pose
 from mbs.bearings.balls.film_tables import FilmLaws, FilmTables, blend, film_tables, law_of
-from mbs.bearings.speed_tables import Course, CourseOfFilms, FilmBlock, Prepared, course_of, shared
+from mbs.bearings.speed_tables import Course, course_of
 from mbs.bearings.tapered.line_film import NODES
 from mbs.bearings.tapered.tapered_bearing import FASTEST, TaperedForce
 from mbs.bearings.tapered.tapered_element import TaperedElement
@@ -32,10 +32,15 @@ from mbs.bearings.tapered.tapered_kernel import (
     roller_work,
     tapered_force,
 )
+from mbs.bearings.tapered.tapered_memory import (
+    MEMORY,
+    FilmsOfRollers,
+    LineSprings,
+    go_on_rollers,
+    hold_rollers,
+    no_memory,
+)
 from mbs.model.blocks import FOUND, IN_PYTHON, NO_SOLUTION, Answers, Kind, Member, Moment
-
-FELT = np.array([0, 1, 2, 4, 5])
-"""Displacements of its port that a tapered roller bearing feels."""
 
 
 class Tapered(NamedTuple):
@@ -72,6 +77,12 @@ class Tapered(NamedTuple):
         What `place_work` keeps of the last step, its time [s], and its work by that time [W].
     work : RollerWork
         Work space.
+    relaxes : array (bearings,), of bool
+        Whether films have a memory.
+    memory : array (bearings, Z, 2, MEMORY, slices)
+        Memory of the slices of cone and cup, see `mbs.bearings.tapered.tapered_memory`; no slices without.
+    clock : array (2,)
+        Times at the end of the last step that was made, and of the step for which slices hold [s].
     rooms, matrices : array (3, 6), (2, 6, 6)
         Room for a bearing's pose, loads and force, and for its stiffness and damping.
     films : FilmTables
@@ -107,34 +118,56 @@ class Tapered(NamedTuple):
     times: FloatArray
     works: FloatArray
     work: RollerWork
+    relaxes: BoolArray
+    memory: FloatArray
+    clock: FloatArray
     rooms: FloatArray
     matrices: FloatArray
     films: FilmTables
     course: Course
 
 
-@njit(error_model="numpy", _nrt=False)
-def _on_ring(tapered: Tapered, b: int, moment: Moment, motion: FloatArray, answers: Answers) -> int:
-    """Write the answer of a bearing; status as of `tapered_force`."""
-    i, z, n, x, y = tapered.firsts[b], tapered.counts[b], tapered.slices[b], motion[0], motion[1]
-    pose, loads, force = tapered.rooms[0], tapered.rooms[1], tapered.rooms[2]
-    stiffness, damping = tapered.matrices[0], tapered.matrices[1]
-    pose[0], pose[1], pose[2], pose[3] = x[i] + tapered.offsets[b], x[i + 1], x[i + 2], 0.0
-    pose[4], pose[5] = x[i + 3], x[i + 4]
-    if not abs(moment.speed) <= tapered.fastest[b]:
-        return TOO_FAR
-    s, c = tapered.shapes[b], tapered.laws[b]
+@njit(error_model="numpy", _nrt=False, forceinline=True)
+def _shape_of(tapered: Tapered, b: int) -> TaperedShape:
+    """Lengths of a bearing."""
+    s, z, n = tapered.shapes[b], tapered.counts[b], tapered.slices[b]
     m, numbers = tapered.rib_counts[b], tapered.rib_numbers[b]
     ribs = Ribs(
         tapered.rib_normals[b, :m], numbers[0, :m], numbers[1, :m], numbers[2, :m], tapered.rib_outer[b, :m]
     )  # fmt: skip
-    shape = TaperedShape(
+    return TaperedShape(
         s[0], (s[1], s[2]), (s[3], s[4]), ribs, tapered.levers[b, :n], tapered.profiles[b, :n],
         tapered.cos[b, :z], tapered.sin[b, :z], s[5], s[6],
     )  # fmt: skip
-    film = tapered.films_of[b]
+
+
+@njit(error_model="numpy", _nrt=False, forceinline=True)
+def _laws_of(tapered: Tapered, b: int) -> RollerLaws:
+    """Laws of a bearing at the speed of the step."""
+    c, film = tapered.laws[b], tapered.films_of[b]
     cone, cup = law_of(tapered.films, film, 0), law_of(tapered.films, film, 1)
-    laws = RollerLaws(c[0], c[1], c[2], c[3], cup, cone)
+    return RollerLaws(c[0], c[1], c[2], c[3], cup, cone, tapered.relaxes[b])
+
+
+@njit(error_model="numpy", _nrt=False, forceinline=True)
+def _springs_of(films: FilmTables, film: int) -> LineSprings:
+    """Springs of films with memory at the speed of the step."""
+    node, weight = int(films.in_use[film, 0]), films.in_use[film, 1]
+    other = (node + 1) % films.numbers.shape[1] if weight > 0.0 else node
+    slow, fast = films.springs[film, node], films.springs[film, other]
+    return LineSprings(slow[0], fast[0], slow[1], fast[1], weight)
+
+
+@njit(error_model="numpy", _nrt=False)
+def _on_ring(tapered: Tapered, b: int, moment: Moment, motion: FloatArray, answers: Answers) -> int:
+    """Write the answer of a bearing; status as of `tapered_force`."""
+    i, z = tapered.firsts[b], tapered.counts[b]
+    pose, loads, force = tapered.rooms[0], tapered.rooms[1], tapered.rooms[2]
+    stiffness, damping = tapered.matrices[0], tapered.matrices[1]
+    read_pose(i, tapered.offsets[b], motion, pose)
+    if not abs(moment.speed) <= tapered.fastest[b]:
+        return TOO_FAR
+    shape, laws = _shape_of(tapered, b), _laws_of(tapered, b)
     square = moment.speed * moment.speed
     loads[0], loads[1], loads[2] = 0.0, tapered.loads[b, 0] * square, tapered.loads[b, 1] * square
     angle = tapered.starts[b] + tapered.turns[b] * moment.angle
@@ -142,7 +175,7 @@ def _on_ring(tapered: Tapered, b: int, moment: Moment, motion: FloatArray, answe
     found = NO_BALANCE
     for _ in range(2):
         found = tapered_force(
-            pose, angle, loads, shape, laws, force, stiffness, damping, starting, rows, tapered.work
+            pose, angle, loads, shape, laws, tapered.memory[b], force, stiffness, damping, starting, rows, tapered.work
         )  # fmt: skip
         if found != NO_BALANCE:
             break
@@ -150,19 +183,7 @@ def _on_ring(tapered: Tapered, b: int, moment: Moment, motion: FloatArray, answe
     if found < 0:
         starting[:] = math.nan
         return found
-    dissipated = 0.0
-    for p in range(FELT.size):
-        row = FELT[p]
-        total = force[row]
-        for q in range(FELT.size):
-            column = FELT[q]
-            slowed = damping[row, column] * y[i + q]
-            total -= slowed
-            dissipated += y[i + p] * slowed
-            answers.slopes[i + p, i + q] = moment.by_q * stiffness[row, column] + moment.by_v * damping[row, column]
-        answers.force[i + p] = total
-    tapered.powers[b, 0] = dissipated
-    tapered.powers[b, 1] = turned_by(pose, force) * tapered.turns[b] * moment.speed
+    answer_port(i, tapered.turns[b], moment, motion, pose, force, tapered.matrices, answers, tapered.powers[b])
     return found
 
 
@@ -184,6 +205,11 @@ def tapered_answer(tapered: Tapered, moment: Moment, motion: FloatArray, answers
     course, films = tapered.course, tapered.films
     for film in range(films.highest.size):
         blend(films, film, course.nodes[moment.step, film], course.weights[moment.step, film])
+    if tapered.clock[1] != moment.time:
+        tapered.clock[1] = moment.time
+        for b in range(tapered.firsts.size):
+            if tapered.relaxes[b]:
+                hold_rollers(moment.time - tapered.clock[0], tapered.counts[b], tapered.memory[b])
     for b in range(tapered.firsts.size):
         found = _on_ring(tapered, b, moment, motion, answers)
         if found < 0:
@@ -198,7 +224,7 @@ def tapered_answer(tapered: Tapered, moment: Moment, motion: FloatArray, answers
 
 @njit(error_model="numpy", _nrt=False)
 def tapered_accept(tapered: Tapered, moment: Moment) -> None:
-    """Take note of a step that was made: places of the rollers for the work of their loads.
+    """Take note of a step that was made: places of the rollers for the work of their loads, films with memory.
 
     Parameters
     ----------
@@ -211,6 +237,10 @@ def tapered_accept(tapered: Tapered, moment: Moment) -> None:
         loads = tapered.loads[b, 0] * square, tapered.loads[b, 1] * square
         work = place_work(tapered.rows[b, :z], loads, tapered.last[b, :z])
         tapered.times[b], tapered.works[b] = moment.time, work / h if h > 0.0 else 0.0
+        if tapered.relaxes[b]:
+            springs = _springs_of(tapered.films, tapered.films_of[b])
+            go_on_rollers(tapered.rows[b], _shape_of(tapered, b), _laws_of(tapered, b), springs, tapered.memory[b])
+    tapered.clock[0], tapered.clock[1] = moment.time, math.nan
 
 
 @njit(error_model="numpy", _nrt=False)
@@ -229,7 +259,7 @@ def tapered_powers(tapered: Tapered, moment: Moment, motion: FloatArray, answers
         out[place, 0], out[place, 1] = tapered.powers[b, 0], tapered.powers[b, 1] + tapered.works[b]
 
 
-class TaperedBlock(FilmBlock[Tapered]):
+class TaperedBlock(LawBlock[Tapered]):
     """The tapered roller bearings of a run; see `mbs.model.blocks.StatefulBlock`.
 
     Parameters
@@ -240,21 +270,7 @@ class TaperedBlock(FilmBlock[Tapered]):
 
     def __init__(self, members: Sequence[Member]) -> None:
         self._elements: list[TaperedElement] = [member.element for member in members]
-        films_of, firsts = shared(one.film_key for one in self._elements)
-        self._laws = [FilmLaws(self._elements[first], NODES) for first in firsts]
-        arrays = _gather(members, films_of, self._laws)
-        films = arrays.films
-
-        def make(film: int, speeds: FloatArray, nodes: IntArray, weights: FloatArray) -> Prepared:
-            return self._laws[film].prepare(films, film, speeds, nodes, weights)
-
-        super().__init__(CourseOfFilms([one.places for one in self._laws], make), arrays)
-
-    def begin(self, speeds: FloatArray) -> None:
-        """Find the places of the speeds [rad/s] on the tables, and the grids of these."""
-        for one in self._laws:
-            one.begin(speeds)
-        super().begin(speeds)
+        super().__init__(self._elements, NODES, lambda films_of, laws: _gather(members, films_of, laws))
 
     def states(self) -> Sequence[TaperedStates]:
         """States of each bearing after the last step."""
@@ -266,6 +282,7 @@ class TaperedBlock(FilmBlock[Tapered]):
                 dissipated=float(arrays.powers[b, 0]),
                 driven=float(arrays.powers[b, 1] + arrays.works[b]),
                 stored=dry_energy(one.force.laws, one.force.shape, arrays.rows[b, : arrays.counts[b]]),
+                films=FilmsOfRollers(self._memory(b).copy()) if arrays.relaxes[b] else None,
             )
             for b, one in enumerate(self._elements)
         ]
@@ -281,6 +298,15 @@ class TaperedBlock(FilmBlock[Tapered]):
         for b, one in enumerate(states):
             self._arrays.times[b] = one.time
             self._arrays.last[b, : one.last.shape[0]] = one.last
+            self._arrays.clock[:] = one.time, math.nan
+            if self._arrays.relaxes[b]:
+                memory = self._memory(b)
+                memory[:] = one.films.memory if one.films else no_memory(memory.shape[0], memory.shape[-1])
+
+    def _memory(self, b: int) -> FloatArray:
+        """Memory of the slices of a bearing."""
+        arrays = self._arrays
+        return arrays.memory[b, : arrays.counts[b], ..., : arrays.slices[b]]
 
 
 def _gather(members: Sequence[Member], films_of: list[int], laws: Sequence[FilmLaws]) -> Tapered:
@@ -295,6 +321,7 @@ def _gather(members: Sequence[Member], films_of: list[int], laws: Sequence[FilmL
     for b, force in enumerate(forces):
         levers[b, : slices[b]], profiles[b, : slices[b]] = force.shape.levers, force.shape.profile
         cos[b, : counts[b]], sin[b, : counts[b]] = force.shape.cos, force.shape.sin
+    relaxes = np.array([one.relaxes for one in elements], dtype=np.bool_)
     spins = [(one.inner_spin, one.outer_spin, one.cage_turn) for one in elements]
     shapes = [(s.pitch_radius, *s.cup, *s.cone, s.most_travel, s.most_tilt) for s in (force.shape for force in forces)]
     normals, numbers = np.zeros((count, MOST_RIBS, 2)), np.zeros((count, 3, MOST_RIBS))
@@ -333,23 +360,21 @@ def _gather(members: Sequence[Member], films_of: list[int], laws: Sequence[FilmL
         last=np.zeros((count, most, 4)),
         times=np.zeros(count),
         works=np.zeros(count),
-        work=roller_work(MOST_RIBS),
+        work=roller_work(MOST_RIBS, longest),
+        relaxes=relaxes,
+        memory=np.zeros((count, most, 2, MEMORY, longest if relaxes.any() else 0)),
+        clock=np.array([0.0, math.nan]),
         rooms=np.zeros((3, 6)),
         matrices=np.zeros((2, 6, 6)),
-        films=film_tables(laws, NODES, relaxes=False),
+        films=film_tables(laws, NODES, 2 if relaxes.any() else 0),
         course=course_of(0, len(laws)),
     )
-
-
-def _feels(element: TaperedElement) -> FloatArray:
-    """Rows of what a bearing feels of its port."""
-    return np.asarray(np.eye(6)[FELT])
 
 
 TAPERED = Kind(
     arrays=Tapered,
     answer=tapered_answer,
-    feels=_feels,
+    feels=felt_rows,
     gather=TaperedBlock,
     accept=tapered_accept,
     powers=tapered_powers,

@@ -1,6 +1,7 @@
 """A bearing of tapered rollers, or of rollers between ribs, in a machine: quasi-static, with the films of its speed.
 
-Films may have a memory in linear analyses; in time they have the stiffness and damping of slow motion.
+Films have the stiffness and damping of slow motion, or a memory: of small oscillations about rest see
+`mbs.bearings.tapered.tapered_relaxing`, in time `mbs.bearings.tapered.tapered_memory`.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from mbs.bearings.balls.ball_speed import turned_by
 from mbs.bearings.tapered.line_film import DRY_LINES, LineFilms
 from mbs.bearings.tapered.tapered_bearing import TaperedForce, TaperedLoads
 from mbs.bearings.tapered.tapered_energy import TaperedStates, dry_energy, place_work
+from mbs.bearings.tapered.tapered_memory import FilmsOfRollers
 from mbs.model.condensed import Condensed
 from mbs.model.elements import Excitation, Forces, OnRings, Operation, Port, Powers
 from mbs.model.relaxation import Films, Relaxation
@@ -54,7 +56,7 @@ class TaperedElement(OnRings):
         Law of both lines at two speeds of the rings [rad/s]; None for dry lines. Bearings whose `films` are equal share
         them.
     memory : {"slow", "memory"}
-        Whether films of linear analyses have stiffness and damping of slow motion, or relax.
+        Whether films have stiffness and damping of slow motion, or relax; "memory" in time, too.
     """
 
     locating: ClassVar[bool] = True
@@ -74,7 +76,7 @@ class TaperedElement(OnRings):
     def film_key(self) -> tuple[object, ...]:
         """Key that bearings with the same law at all speeds have in common."""
         law = (None,) if self.films is None else (self.films,)
-        return (*law, self.inner_spin, self.outer_spin)
+        return (*law, self.inner_spin, self.outer_spin, self.relaxes)
 
     @property
     def varies(self) -> bool:
@@ -83,8 +85,8 @@ class TaperedElement(OnRings):
 
     @property
     def relaxes(self) -> bool:
-        """False: in time films are those of slow motion."""
-        return False
+        """Tell whether its films have a memory."""
+        return self.memory == "memory" and self.films is not None
 
     def law_at(self, speed: float) -> LineFilms:
         """The law of both lines at a speed of the system [rad/s]; dry where nothing rolls.
@@ -117,7 +119,7 @@ class TaperedElement(OnRings):
 
     def relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
         """Relaxation of the films of both lines of all rollers, where they relax, see `Element.relaxation`."""
-        if self.memory != "memory" or self.films is None:
+        if not self.relaxes:
             return None
         return self.film_relaxation(displacement, operation)
 
@@ -131,7 +133,7 @@ class TaperedElement(OnRings):
         operation : Operation
             Speed and angle.
         """
-        from mbs.bearings.tapered.tapered_relaxing import line_relaxation  # with the kernels of films with memory
+        from mbs.bearings.tapered.tapered_relaxing import line_relaxation  # with kernels that runs do not need
 
         return line_relaxation(*self._at(displacement, operation))
 
@@ -228,6 +230,9 @@ class TaperedElement(OnRings):
         AnalysisError
             Where the rings have come apart.
         """
+        films, force = None if states is None else states.films, self.force_at(operation)
+        step = 0.0 if states is None else operation.time - states.time
+        force.held = None if films is None else films.held(step)
         try:
             answer = self.evaluate(displacement, velocity, operation)
         except InputError as error:
@@ -235,8 +240,11 @@ class TaperedElement(OnRings):
                 f"bearing {self.name!r}: its rings are apart at {operation.time:.6g} s ({error}): preload is lost; "
                 "take more preload, or smaller loads"
             ) from error
-        rollers = self.force_at(operation).last_rollers
-        step = 0.0 if states is None else operation.time - states.time
+        finally:
+            force.held = None
+        rollers = force.last_rollers
+        if self.relaxes:
+            films = FilmsOfRollers.at_rest(force) if films is None else films.after(step, force)
         last = np.zeros((rollers.shape[0], 4)) if states is None else states.last.copy()
         conditions = self.conditions(operation)
         loads = self.force.speed_loads(conditions["inner_speed"], conditions["outer_speed"])
@@ -249,6 +257,7 @@ class TaperedElement(OnRings):
             dissipated=float(velocity @ slowed),
             driven=turning + (work / step if step > 0.0 else 0.0),
             stored=dry_energy(self.force.laws, self.force.shape, rollers),
+            films=films,
         )
 
     def powers(

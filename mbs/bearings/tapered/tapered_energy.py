@@ -10,13 +10,16 @@ the ring and of the turning cage, the second one that of speed.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.compiled import njit
 from mbs.bearings.tapered.tapered_kernel import FIRST_RIB, RollerLaws, TaperedShape
+
+if TYPE_CHECKING:
+    from mbs.bearings.tapered.tapered_memory import FilmsOfRollers
 
 
 class TaperedStates(NamedTuple):
@@ -32,6 +35,8 @@ class TaperedStates(NamedTuple):
         Power that contacts take, and that cage and speed bring in over the step [W].
     stored : float
         Energy of its dry contacts [J].
+    films : FilmsOfRollers or None
+        Films with memory; None where none are known.
     """
 
     time: float
@@ -39,6 +44,7 @@ class TaperedStates(NamedTuple):
     dissipated: float
     driven: float
     stored: float
+    films: FilmsOfRollers | None = None
 
 
 @njit(error_model="numpy", _nrt=False)

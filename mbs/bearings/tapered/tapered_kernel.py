@@ -31,9 +31,17 @@ import numpy as np
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.compiled import njit
 from ehdmaps.copies import put
-from ehdmaps.maps.kernels.lines import FAST
-from mbs.bearings.balls.normal_law import NormalLaw, contact
-from mbs.bearings.slices import power
+from mbs.bearings.balls.normal_law import NormalLaw
+from mbs.bearings.tapered.line_kernel import (
+    AT,
+    PULL,
+    SPRING,
+    dry_line,
+    film_dampers,
+    film_line,
+    held_dampers,
+    held_line,
+)
 
 NOT_FINITE, TOO_FAR, NO_BALANCE = -1, -2, -3
 """What `tapered_force` finds instead of an answer."""
@@ -50,9 +58,6 @@ _NOTHING = 1e-10
 
 _NEAR = 0.1
 """Part of the forces on a roller that may be left at a place from which Newton's method begins at once."""
-
-_NO_APPROACH = 1e-290
-"""Approach in the place of none [m], whose power is a number."""
 
 _SOFT = 1e-13
 """Stiffness, over that of a contact, that holds rollers which nothing holds."""
@@ -124,6 +129,8 @@ class RollerLaws(NamedTuple):
         Damping over stiffness of each contact [s].
     cup_film, cone_film : NormalLaw
         Tables of a whole roller with films; without a table for dry lines.
+    relaxes : bool
+        Whether films have a memory over a step, see `mbs.bearings.tapered.tapered_memory`.
     """
 
     cup: float
@@ -132,73 +139,39 @@ class RollerLaws(NamedTuple):
     damping_time: float
     cup_film: NormalLaw
     cone_film: NormalLaw
+    relaxes: bool
 
 
-@njit(error_model="numpy", fastmath=FAST, _nrt=False)
-def _dry_line(
-    law: tuple[float, float, float],
+@njit(error_model="numpy", _nrt=False)
+def _film_line(
+    film: NormalLaw,
+    relaxes: bool,
+    held: FloatArray,
     approach: float,
     turn: float,
     levers: FloatArray,
     profile: FloatArray,
+    places: FloatArray,
     sums: FloatArray,
 ) -> None:
-    """Sums of a dry line, see `_line`, by C, damping and its time of a slice; without branches, slices side by side."""
-    each, damper, time = law
-    q = qb = k = kb = kbb = n = nb = nbb = 0.0
-    for i in range(levers.size):
-        lever = levers[i]
-        g = approach + turn * lever - profile[i]
-        on = 1.0 if g > 0.0 else 0.0
-        root = on * each * power(g if g > _NO_APPROACH else _NO_APPROACH, 1.0 / 9.0)
-        q += root * g
-        qb += root * g * lever
-        k += root
-        kb += root * lever
-        kbb += root * lever * lever
-        n += on
-        nb += on * lever
-        nbb += on * lever * lever
-    by_root = 10.0 / 9.0
-    sums[0], sums[1] = q, qb
-    sums[2], sums[3], sums[4] = by_root * k, by_root * kb, by_root * kbb
-    sums[5] = damper * n + time * sums[2]
-    sums[6] = damper * nb + time * sums[3]
-    sums[7] = damper * nbb + time * sums[4]
+    """Sums of a line with a film at an approach and a rotation, but for damping."""
+    count = levers.size
+    if relaxes:
+        pull, spring, at = held[PULL, :count], held[SPRING, :count], held[AT, :count]
+        held_line(film, pull, spring, at, approach, turn, levers, profile, places[:count], sums)
+    else:
+        film_line(film, approach, turn, levers, profile, places[:count], sums)
 
 
 @njit(error_model="numpy", _nrt=False)
-def _line(
-    coefficient: float,
-    film: NormalLaw,
-    normal: tuple[float, float],
-    x: float,
-    r: float,
-    turn: float,
-    shape: TaperedShape,
-    laws: RollerLaws,
-    sums: FloatArray,
+def _film_dampers(
+    film: NormalLaw, relaxes: bool, held: FloatArray, levers: FloatArray, places: FloatArray, sums: FloatArray
 ) -> None:
-    """Sums of a line at a relative displacement: Q, Q b; k, k b, k b b; the same of c; into `sums` (8,)."""
-    count = shape.levers.size
-    approach = normal[0] * x + normal[1] * r
-    if film.table.shape[0] == 0:
-        law = (coefficient / count, laws.damping / count, laws.damping_time)
-        _dry_line(law, approach, turn, shape.levers, shape.profile, sums)
-        return
-    sums[:] = 0.0
-    for i in range(count):
-        lever = shape.levers[i]
-        q, k, c = contact(film, approach + turn * lever - shape.profile[i])
-        q, k, c = q / count, k / count, c / count
-        sums[0] += q
-        sums[1] += q * lever
-        sums[2] += k
-        sums[3] += k * lever
-        sums[4] += k * lever * lever
-        sums[5] += c
-        sums[6] += c * lever
-        sums[7] += c * lever * lever
+    """Damping of a line with a film where `_film_line` was asked last."""
+    if relaxes:
+        held_dampers(film, held[SPRING, : levers.size], places[: levers.size], levers, sums)
+    else:
+        film_dampers(film, places[: levers.size], levers, sums)
 
 
 @njit(error_model="numpy", _nrt=False)
@@ -239,7 +212,9 @@ class RollerWork(NamedTuple):
     Attributes
     ----------
     cup, cone : array (8,)
-        Sums of the lines, see `_line`.
+        Sums of the lines, of the lines, see `mbs.bearings.tapered.line_kernel`.
+    places : array (2, n)
+        Places of the slices of cone and cup on the tables of films.
     ribs : array (m, 8)
         The same of the ribs.
     inner, whole, damped_inner, damped_outer : array (3, 3)
@@ -254,6 +229,7 @@ class RollerWork(NamedTuple):
 
     cup: FloatArray
     cone: FloatArray
+    places: FloatArray
     ribs: FloatArray
     inner: FloatArray
     whole: FloatArray
@@ -266,17 +242,18 @@ class RollerWork(NamedTuple):
     plane: FloatArray
 
 
-def roller_work(ribs: int) -> RollerWork:
-    """Work space for one bearing, by the number of its ribs.
+def roller_work(ribs: int, slices: int) -> RollerWork:
+    """Work space for one bearing.
 
     Parameters
     ----------
-    ribs : int
-        Ribs of a roller.
+    ribs, slices : int
+        Ribs and slices of a roller.
     """
     return RollerWork(
         cup=np.zeros(8),
         cone=np.zeros(8),
+        places=np.zeros((2, slices)),
         ribs=np.zeros((ribs, 8)),
         inner=np.zeros((3, 3)),
         whole=np.zeros((3, 3)),
@@ -297,12 +274,19 @@ def _state(
     loads: FloatArray,
     shape: TaperedShape,
     laws: RollerLaws,
+    held: FloatArray,
     w: RollerWork,
 ) -> float:
     """Contacts at a place of the roller; the force that is left in `w.rest`, and the sum of the sizes of its parts."""
-    _line(laws.cup, laws.cup_film, shape.cup, v[0], v[1], v[2], shape, laws, w.cup)
     x, r, turn = d[0] - v[0], d[1] - v[1], d[2] - v[2]
-    _line(laws.cone, laws.cone_film, shape.cone, x, r, turn, shape, laws, w.cone)
+    cup, cone = shape.cup[0] * v[0] + shape.cup[1] * v[1], shape.cone[0] * x + shape.cone[1] * r
+    levers, profile, part = shape.levers, shape.profile, 1.0 / shape.levers.size
+    if laws.cup_film.table.shape[0] == 0:
+        dry_line((part * laws.cup, part * laws.damping, laws.damping_time), cup, v[2], levers, profile, w.cup)
+        dry_line((part * laws.cone, part * laws.damping, laws.damping_time), cone, turn, levers, profile, w.cone)
+    else:
+        _film_line(laws.cup_film, laws.relaxes, held[1], cup, v[2], levers, profile, w.places[1], w.cup)
+        _film_line(laws.cone_film, laws.relaxes, held[0], cone, turn, levers, profile, w.places[0], w.cone)
     for i in range(2):
         w.rest[i] = loads[i] + w.cone[0] * shape.cone[i] - w.cup[0] * shape.cup[i]
     w.rest[2] = loads[2] + w.cone[1] - w.cup[1]
@@ -340,6 +324,7 @@ def place_roller(
     loads: FloatArray,
     shape: TaperedShape,
     laws: RollerLaws,
+    held: FloatArray,
     place: FloatArray,
     w: RollerWork,
     out: FloatArray,
@@ -354,6 +339,8 @@ def place_roller(
         Loads F on the roller: axial, radial [N], moment [N m].
     shape, laws : TaperedShape, RollerLaws
         Lengths, and laws of the contacts.
+    held : array (2, MEMORY, n)
+        What the slices of cone and cup hold over a step, with films that have a memory.
     place : array (3,)
         V at the beginning, and then where it is; NaN for a start from nothing.
     w : RollerWork
@@ -373,17 +360,17 @@ def place_roller(
             place[i] += out[FIRST_SHARE + 3 * i + k] * (d[k] - out[12 + k])
     size, error = 0.0, math.inf
     if abs(place[0]) + abs(place[1]) + abs(place[2]) < math.inf:
-        size = _state(d, place, loads, shape, laws, w)
+        size = _state(d, place, loads, shape, laws, held, w)
         error = _left(w, length) / (size + _NOTHING)
     if not error < _NEAR:
         for i in range(3):
             # every contact shares the approach in halves: rings that press have rollers that are pressed
             w.trial[i] = 0.5 * d[i]
-        size = _state(d, w.trial, loads, shape, laws, w)
+        size = _state(d, w.trial, loads, shape, laws, held, w)
         if _left(w, length) / (size + _NOTHING) < error:
             put(w.trial, place)
         else:
-            size = _state(d, place, loads, shape, laws, w)
+            size = _state(d, place, loads, shape, laws, held, w)
     found = False
     for _ in range(_STEPS):
         left = _left(w, length)
@@ -402,7 +389,7 @@ def place_roller(
         for _ in range(_CUTS):
             for i in range(3):
                 w.trial[i] = place[i] + part * w.step[i]
-            size = _state(d, w.trial, loads, shape, laws, w)
+            size = _state(d, w.trial, loads, shape, laws, held, w)
             here = w.rest[0] * w.step[0] + w.rest[1] * w.step[1] + w.rest[2] * w.step[2]
             if here >= -0.5 * slope or abs(here) <= _BALANCE * size * reach:
                 break
@@ -410,7 +397,11 @@ def place_roller(
         if part * reach <= 1e-16 * most:
             break
         put(w.trial, place)
+    if laws.cup_film.table.shape[0] > 0:
+        _film_dampers(laws.cup_film, laws.relaxes, held[1], shape.levers, w.places[1], w.cup)
+        _film_dampers(laws.cone_film, laws.relaxes, held[0], shape.levers, w.places[0], w.cone)
     _matrices(shape, w)
+    _dampers(shape, w)
     _answer(shape, soft, length, w)
     out[0] = w.cone[0] * shape.cone[0]
     out[1] = w.cone[0] * shape.cone[1]
@@ -438,25 +429,32 @@ def place_roller(
 
 @njit(error_model="numpy", _nrt=False)
 def _matrices(shape: TaperedShape, w: RollerWork) -> None:
-    """A, M = A + B, and the dampers' sums, from the sums of the contacts."""
+    """A and M = A + B from the sums of the contacts."""
     w.inner[:] = 0.0
-    w.whole[:] = 0.0
-    w.damped_inner[:] = 0.0
-    w.damped_outer[:] = 0.0
     _add(shape.cone, w.cone, 2, w.inner)
-    _add(shape.cone, w.cone, 5, w.damped_inner)
-    _add(shape.cup, w.cup, 5, w.damped_outer)
-    _add(shape.cone, w.cone, 2, w.whole)
-    _add(shape.cup, w.cup, 2, w.whole)
     ribs = shape.ribs
     for m in range(ribs.levers.size):
-        normal, sums = (ribs.normals[m, 0], ribs.normals[m, 1]), w.ribs[m]
-        _add(normal, sums, 2, w.whole)
-        if ribs.outer[m]:
-            _add(normal, sums, 5, w.damped_outer)
-        else:
-            _add(normal, sums, 2, w.inner)
-            _add(normal, sums, 5, w.damped_inner)
+        if not ribs.outer[m] and w.ribs[m, 0] > 0.0:
+            _add((ribs.normals[m, 0], ribs.normals[m, 1]), w.ribs[m], 2, w.inner)
+    for i in range(3):
+        put(w.inner[i], w.whole[i])
+    _add(shape.cup, w.cup, 2, w.whole)
+    for m in range(ribs.levers.size):
+        if ribs.outer[m] and w.ribs[m, 0] > 0.0:
+            _add((ribs.normals[m, 0], ribs.normals[m, 1]), w.ribs[m], 2, w.whole)
+
+
+@njit(error_model="numpy", _nrt=False)
+def _dampers(shape: TaperedShape, w: RollerWork) -> None:
+    """A_c and B_c from the sums of the contacts."""
+    w.damped_inner[:] = 0.0
+    w.damped_outer[:] = 0.0
+    _add(shape.cone, w.cone, 5, w.damped_inner)
+    _add(shape.cup, w.cup, 5, w.damped_outer)
+    ribs = shape.ribs
+    for m in range(ribs.levers.size):
+        damped = w.damped_outer if ribs.outer[m] else w.damped_inner
+        _add((ribs.normals[m, 0], ribs.normals[m, 1]), w.ribs[m], 5, damped)
 
 
 @njit(error_model="numpy", _nrt=False)
@@ -478,19 +476,20 @@ def _answer(shape: TaperedShape, soft: float, length: float, w: RollerWork) -> N
         for i in range(3):
             w.share[i, j] = w.step[i]
     # A - A M^-1 A = S' B without the difference of nearly equal numbers, B = M - A
-    for i in range(3):
-        for j in range(3):
-            stiffness = 0.0
-            damping = 0.0
+    s = w.share
+    for j in range(3):
+        for m in range(3):
+            inner = outer = 0.0
+            for n in range(3):
+                inner += w.damped_inner[m, n] * ((1.0 if n == j else 0.0) - s[n, j])
+                outer += w.damped_outer[m, n] * s[n, j]
+            w.rest[m], w.step[m] = inner, outer
+        for i in range(3):
+            stiffness = damping = 0.0
             for m in range(3):
-                stiffness += w.share[m, i] * (w.whole[m, j] - w.inner[m, j])
-                for n in range(3):
-                    here = (1.0 if m == i else 0.0) - w.share[m, i]
-                    there = (1.0 if n == j else 0.0) - w.share[n, j]
-                    damping += here * w.damped_inner[m, n] * there
-                    damping += w.share[m, i] * w.damped_outer[m, n] * w.share[n, j]
-            w.plane[0, i, j] = stiffness
-            w.plane[1, i, j] = damping
+                stiffness += s[m, i] * (w.whole[m, j] - w.inner[m, j])
+                damping += ((1.0 if m == i else 0.0) - s[m, i]) * w.rest[m] + s[m, i] * w.step[m]
+            w.plane[0, i, j], w.plane[1, i, j] = stiffness, damping
 
 
 @njit(error_model="numpy", _nrt=False)
@@ -527,6 +526,7 @@ def tapered_force(
     loads: FloatArray,
     shape: TaperedShape,
     laws: RollerLaws,
+    memory: FloatArray,
     force: FloatArray,
     stiffness: FloatArray,
     damping: FloatArray,
@@ -546,6 +546,8 @@ def tapered_force(
         Loads on each roller: axial, radial [N], moment [N m].
     shape, laws : TaperedShape, RollerLaws
         Lengths, and laws of the contacts.
+    memory : array (Z, 2, MEMORY, n)
+        Memory of the slices of cone and cup, with films that have one, see `mbs.bearings.tapered.tapered_memory`.
     force, stiffness, damping : array (6,), (6, 6), (6, 6)
         Written: force [N], [N m], and -df/dpose, -df/dvelocity.
     places : array (Z, 3)
@@ -578,7 +580,7 @@ def tapered_force(
         turn = pose[5] * c - pose[4] * s
         d = (pose[0] - radius * turn, pose[1] * c + pose[2] * s, turn)
         out = rollers[j]
-        if not place_roller(d, loads, shape, laws, places[j], w, out):
+        if not place_roller(d, loads, shape, laws, memory[j if laws.relaxes else 0], places[j], w, out):
             return NO_BALANCE
         if out[3] + out[5] <= 0.0:
             continue

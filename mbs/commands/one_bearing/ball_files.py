@@ -131,11 +131,12 @@ def _oscillating(given: BallExport) -> Oscillating:
 
 def _speed_laws(given: BallExport) -> tuple[SpeedLaws, str]:
     """Laws over the speeds of the points, and what they are in words."""
+    from mbs.bearings.balls.response import SHORTER
     from mbs.exports.balls.speed_laws import dry_speed_laws, film_speed_laws
 
     ends = turning_speeds(given.force.geometry, given.points, given.outer_speed)
     if given.films is None or ends is None:
         law = given.force.law
         return dry_speed_laws(law.inner, law.outer), DRY
-    laws = film_speed_laws(given.films, *ends, memory=given.memory)
+    laws = film_speed_laws(given.films, *ends, shorter=SHORTER if given.memory else ())
     return laws, film_words(laws, given.films)

@@ -48,7 +48,18 @@ def is_export(path: str | None) -> bool:
     path : str or None
         Path of -o.
     """
-    return is_linear(path) or ending_of(path) in (SOURCE, UNIT)
+    return is_linear(path) or is_source(path)
+
+
+def is_source(path: str | None) -> bool:
+    """Test whether a result is a bearing in C, or a unit of it.
+
+    Parameters
+    ----------
+    path : str or None
+        Path of -o.
+    """
+    return ending_of(path) in (SOURCE, UNIT)
 
 
 def bearing_outputs(path: str | None) -> tuple[Output, ...]:

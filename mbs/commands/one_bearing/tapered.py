@@ -19,7 +19,7 @@ from ehdmaps.units import RPM, TEMPERATURE
 from mbs.bearings.tapered.line_film import LineFilms
 from mbs.bearings.tapered.tapered_bearing import MOST_SLICES, SLICES, TaperedForce
 from mbs.bearings.tapered.tapered_point import TaperedPoint, tapered_point
-from mbs.commands.one_bearing.bearing_files import bearing_outputs, is_export
+from mbs.commands.one_bearing.bearing_files import bearing_outputs, is_export, is_source
 from mbs.commands.one_bearing.linear_files import count_problems
 from mbs.commands.one_bearing.shared import (
     CELSIUS_40,
@@ -51,7 +51,7 @@ from mbs.scene.contact_laws import Damper
 from mbs.scene.fields import FORCE, MICROMETRE
 from mbs.scene.map_set import TABLE_LAW
 
-_TAKEN = ("law", "temperature", "roughness")
+_TAKEN = ("law", "temperature", "roughness", "films")
 """Choices that all of them take; those without a contact angle have a clearance too."""
 
 
@@ -65,6 +65,8 @@ class TaperedRequest:
         Geometry and laws.
     films : bool
         Whether films act in the balance.
+    memory : bool
+        Whether the films of a file for another program have a memory.
     oil : Lubricant
         Oil of the films.
     loads : tuple of float
@@ -83,6 +85,7 @@ class TaperedRequest:
 
     force: TaperedForce
     films: bool
+    memory: bool
     oil: Lubricant
     loads: tuple[float, ...]
     axial: float
@@ -126,6 +129,10 @@ def read_tapered(arguments: argparse.Namespace) -> TaperedRequest:
         problems.append(f"--load, --speed: got {len(loads) * len(speeds)} points; allowed: at most {MOST_POINTS}")
     way = read_direction(arguments.direction, problems)
     films = chosen.get("law") == TABLE_LAW
+    if "films" in chosen and not (films and is_source(arguments.output)):
+        problems.append(
+            f"--films: got {chosen['films']!r} for a {kind}; allowed: with --law {TABLE_LAW} and -o NAME.c, NAME.fmu"
+        )
     damper = Damper() if films else read_damper(chosen.get("law"), kind, f", {TABLE_LAW}", problems)
     profile = arguments.profile
     if isinstance(geometry, RibbedGeometry):
@@ -154,6 +161,7 @@ def read_tapered(arguments: argparse.Namespace) -> TaperedRequest:
     ]
     return TaperedRequest(
         films=films,
+        memory=chosen.get("films") == "memory",
         force=TaperedForce(geometry, damper.constant, damper.time, profile=profile, slices=slices),
         oil=oil,
         loads=loads,
@@ -191,7 +199,8 @@ def _written(path: str, request: TaperedRequest, points: list[list[TaperedPoint]
     if is_export(path):
         films = _films(request) if request.films else None
         return write_export(
-            path, TaperedExport(request.force, request.description, points[0], request.outer_speed, films)
+            path,
+            TaperedExport(request.force, request.description, points[0], request.outer_speed, films, request.memory),
         )
     dataset = tapered_dataset(request.description, points)
     if Path(path).suffix.lower() == ".csv":

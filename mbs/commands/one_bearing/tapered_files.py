@@ -37,6 +37,8 @@ class TaperedExport:
         Speed of the outer ring [rad/s].
     films : callable or None
         Law with the films of an entrainment speed [m/s]; None where the law is dry.
+    memory : bool
+        Whether films have a memory.
     """
 
     force: TaperedForce
@@ -44,6 +46,7 @@ class TaperedExport:
     points: Sequence[TaperedPoint]
     outer_speed: float
     films: Callable[[float], LineFilms] | None
+    memory: bool = False
 
 
 def write_export(path: str, given: TaperedExport) -> str:
@@ -70,7 +73,7 @@ def write_export(path: str, given: TaperedExport) -> str:
     if given.films is None or ends is None:
         laws = line_speed_laws(given.force)
     else:
-        laws = line_speed_laws(given.force, given.films, ends)
+        laws = line_speed_laws(given.force, given.films, ends, memory=given.memory)
         words = film_words(laws, given.films, of_largest=True)
     header = bearing_header(heading, given.description.temperature, given.description.law, words)
     if ending_of(path) == SOURCE:

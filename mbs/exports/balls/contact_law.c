@@ -124,18 +124,18 @@ static void side_at(ehd_contact *side, const double (*table)[EHD_ROWS][4], const
 
 #if EHD_MEMORY
 /* Springs of the films at each node: shares of the damping straight between two speeds, and the longest time as all else. */
-static void springs_of(ehd_contact *side, const double (*table)[EHD_ROWS][4], double x, int first, int count,
-                       const double weight[NEIGHBOURS]) {
+static void springs_of(ehd_contact *side, const double (*table)[EHD_ROWS][EHD_SPRINGS + 1], double x, int first,
+                       int count, const double weight[NEIGHBOURS]) {
     const int low = x < EHD_SPEEDS - 1 ? (int)x : EHD_SPEEDS - 1, high = low + 1 < EHD_SPEEDS ? low + 1 : low;
     for (int row = 0; row < EHD_ROWS; row++) {
         double time = 0.0;
-        for (int i = 0; i < count; i++) time += weight[i] * table[first + i][row][3];
+        for (int i = 0; i < count; i++) time += weight[i] * table[first + i][row][EHD_SPRINGS];
         time = exp(time);
-        for (int r = 0; r < 3; r++) {
+        for (int r = 0; r < EHD_SPRINGS; r++) {
             const double share = table[low][row][r] + (x - low) * (table[high][row][r] - table[low][row][r]);
             side->springs[row][r] = share * exp(side->table[row][2]) / (TIMES[r] * time);
         }
-        side->springs[row][3] = time;
+        side->springs[row][EHD_SPRINGS] = time;
     }
 }
 #endif

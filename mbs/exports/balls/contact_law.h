@@ -24,7 +24,7 @@ enum {
 typedef struct ehd_contact {
     double coefficient, damping, damping_time, centre, scale, first, step;
     double table[EHD_ROWS + 1][4];
-    double springs[EHD_MEMORY ? EHD_ROWS : 1][4]; /* of films with memory, by node: see ball_films */
+    double springs[EHD_MEMORY ? EHD_ROWS : 1][EHD_SPRINGS + 1]; /* of films with memory, by node; their longest time */
 } ehd_contact;
 
 /* The laws of both contacts at one entrainment speed; made by ehd_prepare. All zero before the first call. */

@@ -13,7 +13,6 @@ from ehdmaps.exports.c.text import comment, define, number, renamed, template
 from ehdmaps.outputs import Kind, has_mark, write_text
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.normal_law import NormalLaw
-from mbs.bearings.balls.response import TIMES
 from mbs.exports.balls.speed_laws import SpeedLaws
 
 SOURCE = Kind("a bearing in C made by ehdmaps", (".c",), has_mark)
@@ -22,8 +21,6 @@ HEADER = Kind("the header of a bearing in C made by ehdmaps", (".h",), has_mark)
 _BODIES = ("ball_balance", "ball_bearing")
 _FILMS, _LAW = "ball_films", "contact_law"
 _INCLUDES = ("float.h", "math.h", "stddef.h", "string.h")
-SHORTER = tuple(float(time / TIMES[-1]) for time in TIMES)
-"""Times of the springs of a film over the longest one."""
 
 _WORDS = re.compile(r"[^a-z0-9_]+")
 
@@ -209,6 +206,7 @@ def public_law(laws: SpeedLaws) -> str:
             define("EHD_LOWEST_SPEED", float(slow), "the first of them [m/s]"),
             define("EHD_HIGHEST_SPEED", float(fast), "the last of them [m/s]"),
             define("EHD_MEMORY", int(laws.memory), "1: films have a memory, see ehd_films"),
+            define("EHD_SPRINGS", len(laws.shorter), "springs of a contact with memory"),
             define("EHD_ROWS", int(laws.tables.shape[2]), "nodes of approaches of a film; 0 for dry contacts"),
         )
     )
@@ -244,10 +242,9 @@ def private_law(laws: SpeedLaws) -> str:
             + define("SPEEDS_PER_LOG", laws.per_log, "speeds in a unit of ln u")
         )
         if laws.memory:
-            times = ", ".join(map(number, SHORTER))
-            parts.append(
-                f"/* Of the springs of a film, over the longest. */\nstatic const double TIMES[3] = {{{times}}};\n"
-            )
+            times = ", ".join(map(number, laws.shorter))
+            words = "/* Of the springs of a film, over the longest. */"
+            parts.append(f"{words}\nstatic const double TIMES[EHD_SPRINGS] = {{{times}}};\n")
         for side, name in enumerate(("INNER", "OUTER")):
             places, tables = laws.places[:, side], laws.tables[:, side]
             parts += [
@@ -262,7 +259,7 @@ def private_law(laws: SpeedLaws) -> str:
             if laws.memory:
                 parts.append(
                     f"/* By speed and node: parts of the damping that the springs have, ln of the longest time. */\n"
-                    f"static const double {name}_SPRINGS[EHD_SPEEDS][EHD_ROWS][4] = {{\n"
+                    f"static const double {name}_SPRINGS[EHD_SPEEDS][EHD_ROWS][EHD_SPRINGS + 1] = {{\n"
                     + "".join(_table(table) for table in laws.springs[:, side])
                     + "};\n"
                 )

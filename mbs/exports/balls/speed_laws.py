@@ -17,8 +17,6 @@ from functools import cached_property
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import SolverError
-from mbs.bearings.balls.ball_memory import SPRINGS
 from mbs.bearings.balls.film_tables import PairLaw, on_grid
 from mbs.bearings.balls.laws import NODES, BallLaw
 from mbs.bearings.balls.normal_law import NormalLaw, contact, load_approach
@@ -53,9 +51,10 @@ class SpeedLaws:
         Their centres and scales [m].
     highest : float
         Load up to which all of them were made [N].
-    springs : array (n, 2, nodes, 4), or none (0, 2, 0, 4)
-        Springs of films with memory: the part of the damping that each has, and ln of the longest of their times [s],
-        see `mbs.bearings.balls.response`.
+    shorter : tuple of float
+        Times of the springs of a film with memory over the longest one; none without memory.
+    springs : array (n, 2, nodes, springs + 1)
+        Springs of films with memory: the part of the damping that each has, and ln of the longest of their times [s].
     """
 
     inner: NormalLaw
@@ -64,12 +63,13 @@ class SpeedLaws:
     tables: FloatArray
     places: FloatArray
     highest: float
-    springs: FloatArray = field(default_factory=lambda: np.zeros((0, 2, 0, SPRINGS + 1)))
+    shorter: tuple[float, ...] = ()
+    springs: FloatArray = field(default_factory=lambda: np.zeros((0, 2, 0, 0)))
 
     @property
     def memory(self) -> bool:
         """True where films have a memory."""
-        return self.springs.size > 0
+        return bool(self.shorter)
 
     @property
     def dry(self) -> bool:
@@ -119,7 +119,7 @@ def film_speed_laws(
     slowest: float,
     fastest: float,
     *,
-    memory: bool = False,
+    shorter: tuple[float, ...] = (),
     dry: Callable[[float], float] | None = None,
     step: float = STEP,
 ) -> SpeedLaws:
@@ -131,8 +131,8 @@ def film_speed_laws(
         Law with the films of an entrainment speed [m/s].
     slowest, fastest : float
         Entrainment speeds [m/s], > 0. Where they are alike the law is that of the speed, on its own nodes.
-    memory : bool
-        Whether films have a memory.
+    shorter : tuple of float
+        Times of the springs of films with memory over the longest one, such as `mbs.bearings.balls.response.SHORTER`.
     dry : callable, optional
         Approach [m] of a dry contact by its load [N]; that of balls if left out.
     step : float
@@ -151,19 +151,18 @@ def film_speed_laws(
     outer, outer_tables, outer_places = _side([law.outer for law in laws], lowest, highest, dry)
     tables = np.stack((inner_tables, outer_tables), axis=1)
     made = SpeedLaws(inner, outer, speeds, tables, np.stack((inner_places, outer_places), axis=1), highest)
-    return dataclasses.replace(made, springs=_springs(laws, made)) if memory else made
+    return dataclasses.replace(made, shorter=shorter, springs=_springs(laws, made, shorter)) if shorter else made
 
 
-def _springs(laws: Sequence[PairLaw], made: SpeedLaws) -> FloatArray:
+def _springs(laws: Sequence[PairLaw], made: SpeedLaws, shorter: tuple[float, ...]) -> FloatArray:
     """Springs of films with memory at all speeds and nodes."""
-    if not all(law.responses for law in laws):
-        raise SolverError("films of balls with memory: some have no response over frequency; take --law table")
-    found = np.zeros((*made.tables.shape[:3], SPRINGS + 1))
+    found = np.zeros((*made.tables.shape[:3], len(shorter) + 1))
     for n, law in enumerate(laws):
-        for side, (one, response) in enumerate(zip((made.inner, made.outer), law.responses, strict=True)):
-            load = one.coefficient * np.exp(1.5 * made.tables[n, side, :, 0])
-            springs = response.springs(np.maximum(load, 1e-300))
-            found[n, side] = np.column_stack([springs.shares, np.log(springs.times[:, -1])])
+        for side, one in enumerate((made.inner, made.outer)):
+            (centre, scale), table = made.places[n, side].tolist(), made.tables[n, side]
+            *springs, time = law.springs_on(side, one._replace(centre=centre, scale=scale), table).T
+            parts = [k * part * time / np.exp(table[:, 2]) for k, part in zip(springs, shorter, strict=True)]
+            found[n, side] = np.column_stack([*parts, np.log(time)])
     return found
 
 

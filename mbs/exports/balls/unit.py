@@ -45,12 +45,17 @@ MOTION = (
 SLOW = "Each ball is in balance at once and films follow at once: there are no states."
 """What units without memory say."""
 
-MEMORY = (
-    "Each ball is in balance at once. Films need time to follow: each contact has three springs in series with "
-    "dampers, which begin at rest; Co-Simulation alone has them. The inputs that are set before a step are those of "
+MEMORY_STEPS = (
+    "Co-Simulation alone has them. The inputs that are set before a step are those of "
     "its end: the ring moves there from the inputs of the last step (of the initialization at first), along a cubic by "
     "the velocities, or straight where they are not given, and the unit takes steps of up to 5 us of its own. The "
     "derivatives by the pose are those of films that have no time to give way, those by the velocity are zero."
+)
+"""How units with memory make steps."""
+
+MEMORY = (
+    "Each ball is in balance at once. Films need time to follow: each contact has three springs in series with "
+    f"dampers, which begin at rest; {MEMORY_STEPS}"
 )
 """What units with memory say."""
 

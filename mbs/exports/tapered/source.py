@@ -20,10 +20,17 @@ STEP = 0.1
 """Largest distance of two speeds in ln u: half that of balls, as damping of lines bends sharply over the load."""
 
 _BODIES = ("tapered_balance.c", "tapered_bearing.c")
+_FILMS = "tapered_films"
+_SHORTER = (1.0,)
+"""Times of the springs of a film over the longest one: there is one."""
 
 
 def line_speed_laws(
-    force: TaperedForce, films: Callable[[float], PairLaw] | None = None, speeds: tuple[float, float] = (0.0, 0.0)
+    force: TaperedForce,
+    films: Callable[[float], PairLaw] | None = None,
+    speeds: tuple[float, float] = (0.0, 0.0),
+    *,
+    memory: bool = False,
 ) -> SpeedLaws:
     """Laws of both lines over the speed.
 
@@ -35,6 +42,8 @@ def line_speed_laws(
         Law with the films of an entrainment speed [m/s]; dry lines if left out.
     speeds : (float, float)
         Lowest and highest of these speeds [m/s], > 0.
+    memory : bool
+        Whether films have a memory.
 
     Raises
     ------
@@ -43,7 +52,10 @@ def line_speed_laws(
     """
     laws = force.laws
     if films is not None:
-        return film_speed_laws(films, *speeds, dry=lambda load: float((load / laws.cone) ** 0.9), step=STEP)
+        shorter = _SHORTER if memory else ()
+        return film_speed_laws(
+            films, *speeds, shorter=shorter, dry=lambda load: float((load / laws.cone) ** 0.9), step=STEP
+        )
     inner, outer = (
         NormalLaw(c, laws.damping, laws.damping_time, 0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, empty_table())
         for c in (laws.cone, laws.cup)
@@ -103,8 +115,15 @@ def source_texts(
             f"export of a {geometry.kind}: got one that carries along -x; allowed: along +x; the source mirrors it"
         )
     numbers = _public_numbers(force, laws), _private_numbers(force, laws)
-    declared, *bodies = (template("mbs.exports.tapered", name) for name in ("tapered_bearing.h", *_BODIES))
-    return joined(header, numbers, (declared,), bodies, prefix, include)
+    memory = [_FILMS] if laws.memory else []
+    headers, bodies = (
+        [template("mbs.exports.tapered", name) for name in names]
+        for names in (
+            ("tapered_bearing.h", *(f"{name}.h" for name in memory)),
+            (*_BODIES, *(f"{name}.c" for name in memory)),
+        )
+    )
+    return joined(header, numbers, headers, bodies, prefix, include)
 
 
 def exported_play(force: TaperedForce) -> float:

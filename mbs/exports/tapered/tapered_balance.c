@@ -24,10 +24,12 @@ typedef struct sums {
     double q, qb, k[3], c[3];
 } sums;
 
-/* What acts on a roller: D, and F [N], [N m]; play of both raceways beside the profile [m]; laws. */
+/* What acts on a roller: D, and F [N], [N m]; play of both raceways beside the profile [m]; laws; what the films of the
+ * slices of cone and cup hold over a step, or null. */
 typedef struct given {
     double d[3], loads[3], play;
     const ehd_law *law;
+    const double (*held)[EHD_SLICES][3];
 } given;
 
 /* Contacts at a place of the roller, and what is left of the forces on it; the sum of their sizes [N]. */
@@ -36,7 +38,7 @@ typedef struct state {
     sums cup, cone, rib[EHD_RIBS + 1];
 } state;
 
-static sums line_of(const ehd_contact *law, double approach, double turn) {
+static sums line_of(const ehd_contact *law, const double (*held)[3], double approach, double turn) {
     sums of = {0.0, 0.0, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
     for (int i = 0; i < EHD_SLICES; i++) {
         const double b = LEVER[i], g = approach + turn * b - PROFILE[i];
@@ -48,7 +50,7 @@ static sums line_of(const ehd_contact *law, double approach, double turn) {
             k *= 10.0 / 9.0;
             c = law->damping / EHD_SLICES + law->damping_time * k;
         } else {
-            const contact_state found = contact_of(law, g, NULL);
+            const contact_state found = contact_of(law, g, held ? held[i] : NULL);
             q = found.load / EHD_SLICES;
             k = found.stiffness / EHD_SLICES;
             c = found.damping / EHD_SLICES;
@@ -69,8 +71,8 @@ static state state_at(const given *of, const double v[3]) {
     state s;
     const double x = of->d[0] - v[0], r = of->d[1] - v[1], turn = of->d[2] - v[2];
     memcpy(s.place, v, sizeof s.place);
-    s.cup = line_of(&of->law->outer, CUP[0] * v[0] + CUP[1] * v[1] - of->play, v[2]);
-    s.cone = line_of(&of->law->inner, CONE[0] * x + CONE[1] * r - of->play, turn);
+    s.cup = line_of(&of->law->outer, of->held ? of->held[1] : NULL, CUP[0] * v[0] + CUP[1] * v[1] - of->play, v[2]);
+    s.cone = line_of(&of->law->inner, of->held ? of->held[0] : NULL, CONE[0] * x + CONE[1] * r - of->play, turn);
     for (int i = 0; i < 2; i++) s.rest[i] = of->loads[i] + s.cone.q * CONE[i] - s.cup.q * CUP[i];
     s.rest[2] = of->loads[2] + s.cone.qb - s.cup.qb;
     s.size = s.cup.q + s.cone.q + fabs(of->loads[0]) + fabs(of->loads[1]) + fabs(of->loads[2]) / ARM;
@@ -170,6 +172,7 @@ static void answer(const given *of, const state *s, ehd_roller *roller) {
     double inner[3][3], outer[3][3], whole[3][3], stiff[3][3], damp[3][3], keep[3][3];
     memset(roller, 0, sizeof *roller);
     roller->made = 1;
+    roller->play = of->play;
     memcpy(roller->place, s->place, sizeof roller->place);
     memcpy(roller->ring, of->d, sizeof roller->ring);
     roller->force[0] = s->cone.q * CONE[0];

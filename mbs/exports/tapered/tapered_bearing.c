@@ -28,22 +28,24 @@ static void add_matrix(double sum[6][6], double m[3][3], double way[6][3]) {
     }
 }
 
-int ehd_bearing_call(const ehd_bearing *bearing, ehd_law *law, ehd_rollers *rollers, const double pose[6],
-                     const double velocity[6], double cage_angle, double inner_speed, double outer_speed,
-                     ehd_bearing_force *result) {
+/* The force by a law that is prepared; held: what the films of the slices of cone and cup of each roller hold over a
+ * step, or null. */
+static int bearing_at(const ehd_bearing *bearing, const ehd_law *law, ehd_rollers *rollers, const double pose[6],
+                      const double velocity[6], double cage_angle, double inner_speed, double outer_speed,
+                      const double (*held)[2][EHD_SLICES][3], ehd_bearing_force *result) {
     if (!result) return EHD_BAD_ARGUMENT;
-    if (!bearing || !law || !rollers || !pose || !(fabs(inner_speed) <= FASTEST) || !(fabs(outer_speed) <= FASTEST))
+    if (!bearing || !law || !law->made || !rollers || !pose || !(fabs(inner_speed) <= FASTEST) ||
+        !(fabs(outer_speed) <= FASTEST))
         return no_force(result, EHD_BAD_ARGUMENT);
     if (!is_finite(cage_angle) || !finite_motion(pose, velocity)) return no_force(result, EHD_NOT_FINITE);
     const double x = pose[0] + bearing->offset, way = bearing->mirrored ? -1.0 : 1.0;
     if (!(fabs(x) <= MOST_TRAVEL && fabs(pose[1]) <= MOST_TRAVEL && fabs(pose[2]) <= MOST_TRAVEL &&
           fabs(pose[4]) <= MOST_TILT && fabs(pose[5]) <= MOST_TILT))
         return no_force(result, EHD_TOO_FAR);
-    ehd_prepare(law, EHD_ENTRAINMENT * (inner_speed - outer_speed));
     const double cage = ehd_cage(inner_speed, outer_speed);
     const double spin = ROLLER_SPEED * (inner_speed - outer_speed) + cage * AXIS[0];
     const double turn_c = cos(cage_angle), turn_s = sin(cage_angle);
-    given of = {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, bearing->play, law};
+    given of = {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, bearing->play, law, NULL};
     of.loads[1] = CENTRIFUGAL * cage * cage;
     of.loads[2] = cage * AXIS[1] * (INERTIA[0] * spin - INERTIA[1] * cage * AXIS[0]);
     double largest = 0.0;
@@ -58,6 +60,7 @@ int ehd_bearing_call(const ehd_bearing *bearing, ehd_law *law, ehd_rollers *roll
         of.d[2] = way * (pose[5] * c - pose[4] * s);
         of.d[0] = way * x - 0.5 * EHD_PITCH_DIAMETER * of.d[2];
         of.d[1] = pose[1] * c + pose[2] * s;
+        if (held) of.held = held[j];
         int found = place_roller(&of, roller);
         if (!found) { /* once more, from nothing */
             memset(roller, 0, sizeof *roller);
@@ -77,4 +80,14 @@ int ehd_bearing_call(const ehd_bearing *bearing, ehd_law *law, ehd_rollers *roll
         for (int k = 0; k < 6; k++) result->force[i] -= result->damping[i][k] * velocity[k];
     result->cage_speed = cage;
     return law->status | (largest > law->highest ? EHD_ABOVE_LOAD : EHD_OK);
+}
+
+int ehd_bearing_call(const ehd_bearing *bearing, ehd_law *law, ehd_rollers *rollers, const double pose[6],
+                     const double velocity[6], double cage_angle, double inner_speed, double outer_speed,
+                     ehd_bearing_force *result) {
+    if (!result) return EHD_BAD_ARGUMENT;
+    if (!law || !(fabs(inner_speed) <= FASTEST) || !(fabs(outer_speed) <= FASTEST))
+        return no_force(result, EHD_BAD_ARGUMENT);
+    ehd_prepare(law, EHD_ENTRAINMENT * (inner_speed - outer_speed));
+    return bearing_at(bearing, law, rollers, pose, velocity, cage_angle, inner_speed, outer_speed, NULL, result);
 }

@@ -33,6 +33,7 @@ typedef struct ehd_bearing {
 /* A roller in balance. Of a mirrored bearing all is that of the bearing in its mirror, x and turns the other way. */
 typedef struct ehd_roller {
     int made;                              /* whether the next call starts here */
+    double play;                           /* of each raceway, of the bearing [m] */
     double place[3], ring[3];              /* of roller and ring in its plane: axial, radial [m], turn [rad] */
     double share[3][3];                    /* derivative of the one by the other */
     double force[3];                       /* on the roller, of the inner ring: axial, radial [N], moment [N m] */

@@ -10,7 +10,7 @@ from ehdmaps.exports.fmu.variables import Variable
 from ehdmaps.physics.rollers.ribbed_geometry import RibbedGeometry
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
 from mbs.exports.balls.speed_laws import SpeedLaws
-from mbs.exports.balls.unit import BALL_VARIABLES, write_bearing_unit
+from mbs.exports.balls.unit import BALL_VARIABLES, MEMORY_STEPS, write_bearing_unit
 from mbs.exports.tapered.source import exported_play, source_texts
 
 _OFFSET = Variable(
@@ -30,9 +30,16 @@ MOTION = (
     "are -K, by the velocity -C, at speeds that are held; those by the others are quotients of differences.",
     "The rollers stand where the spins bring them, with a cage in pure rolling; the first one stands on the y axis at "
     "spins of zero. Each is in balance at once between raceways and ribs, with its centrifugal load and gyroscopic "
-    "moment, and films follow at once: there are no states.",
+    "moment.",
 )
 """Axes, signs and what is left out, for people."""
+
+SLOW = "Films follow at once: there are no states."
+"""What units without memory say."""
+
+_KEEPS = (
+    "Films need time to follow: each slice of both raceways has a spring in series with a damper, which begin at rest"
+)
 
 
 def variables_of(force: TaperedForce) -> tuple[Variable, ...]:
@@ -77,4 +84,7 @@ def write_tapered_unit(
     begin = {**start, "clearance": exported_play(force)} if ribbed else start
     title = f"{'Cylindrical' if ribbed else 'Tapered'} roller bearing {force.geometry.title}"
     texts = source_texts(force, laws, header)
-    return write_bearing_unit(path, title, texts, variables_of(force), begin, MOTION, header)
+    sentences = (*MOTION, f"{_KEEPS}; {MEMORY_STEPS}" if laws.memory else SLOW)
+    return write_bearing_unit(
+        path, title, texts, variables_of(force), begin, sentences, header, exchanges=not laws.memory
+    )

@@ -74,16 +74,11 @@ def tapered_law_words(laws: ContactLaws) -> str:
         source = "film formula moes" if films.law == "formula" else "films from the film table"
         return (
             f"{kinds} with {source} at radius and speed of the middle of rollers, {films.oil.title}, "
-            f"{films.supply.label}, {surface_label(films.surface)}, {_memory_words(laws)}, ribs dry"
+            f"{films.supply.label}, {surface_label(films.surface)}, {FILM_WORDS[laws.memory]}, ribs dry"
         )
     damper = hertz_damper(laws.chosen)
     words = f", {damper.words} of each contact" if damper is not None and damper.words else ""
     return f"{kinds} dry Hertz{words}"
-
-
-def _memory_words(laws: ContactLaws) -> str:
-    """Kind of their films, for people."""
-    return FILM_WORDS[laws.memory] + (" in linear analyses, slow in time" if laws.memory == "memory" else "")
 
 
 def _kind(spec: TaperedSpec) -> str:
