@@ -135,7 +135,7 @@ def runs() -> None:
     print(f"a step, us; what a bearing adds to the {1e6 * bare:.1f} us of the rotor between springs")
     for name, lines in (("6208", BALLS), ("NU208", ROLLERS), ("32208", TAPERED)):
         for law, films in (("hertz:1.25e-5 s", None), ("table", "slow"), ("table", "memory")):
-            if films == "memory" and name != "6208":
+            if films == "memory" and name == "NU208":
                 continue
             cost = run_cost(BEARING.replace("{bearing}", lines), law, films)
             print(f"  {name:6s} {films or law:16s} {1e6 * cost:7.1f} {0.5e6 * (cost - bare):7.1f}")

@@ -7,6 +7,9 @@
 `ball_element`         a bearing in a machine: films of its speed, the cage that its balls ask for
 `ball_speed`           speed of the cage by contact angles, loads of the balls by that, their work
 `ball_block`           ball bearings in compiled runs
+`ball_memory`          films with memory in time
+`spring_damper`        a spring in series with a damper over a step
+`answers`              what bearings of five freedoms share in compiled runs
 `film_tables`          laws over the speed for compiled runs
 `films`                films of both contacts at one speed, solved at some loads, and the law that they make
 `ball_point`           an operating point: equilibrium, speed of the cage, pressures, films

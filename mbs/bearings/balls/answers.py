@@ -41,7 +41,7 @@ def read_pose(first: int, offset: float, motion: FloatArray, pose: FloatArray) -
     motion : array (2, m)
         Displacements and their rates, among what all elements feel.
     pose : array (6,)
-        Pose; written.
+        Pose of the ring, which is written.
     """
     for p in range(FELT.size):
         pose[FELT[p]] = motion[0, first + p]

@@ -46,7 +46,7 @@ def dry_line(
     levers, profile : array (n,)
         Levers of the slices, and depths of the profile [m].
     sums : array (8,)
-        Sums; written.
+        Sums of the line, which are written.
     """
     each, damper, time = law
     q = qb = k = kb = kbb = n = nb = nbb = 0.0
@@ -144,7 +144,7 @@ def film_line(
     places : array (n,)
         Places on the table; written.
     sums : array (8,)
-        Sums; written.
+        Sums of the line, which are written.
     """
     find_places(law, approach, turn, levers, profile, places)
     q = qb = k = kb = kbb = 0.0
