@@ -25,6 +25,7 @@ from tests.cases.tapered_runs import driven
 SPEED, WARM, STEP = 3000.0 * math.pi / 30.0, 333.15, 5e-6
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "fmi"), [("32208", "2"), ("NUP210", "3")])
 def test_unit_in_time_is_the_element(tmp_path, name, fmi):
     """Up to 60 um within 0.2 ms, so that rollers lift off: both end in the balance of the rollers to 1e-9, and read the
