@@ -31,7 +31,7 @@ def point(law, clearance, speed, temperature):
 
 
 @pytest.mark.parametrize("law", ["hertz", "map"])
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=12, deadline=None)
 @given(
     clearance=clearances,
     speed=speeds,
