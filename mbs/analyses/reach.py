@@ -93,11 +93,10 @@ def fade_of(model: Model) -> Fade | None:
             continue
         lowest = law.speed_range[0]
         found.append(Fade(lowest / bearing.rates[1], lowest, source_of(model)))
-    for ball in model.balls:
-        lowest = getattr(ball.films, "slowest", 0.0)
-        rate = ball.force.geometry.entrainment_speed(ball.inner_spin, ball.outer_spin)
-        if rate > 0.0 and lowest > 0.0:
-            found.append(Fade(lowest / rate, lowest, "the film table of points"))
+    for other in model.on_rings[len(model.bearings) :]:
+        films, rate = getattr(other, "films", None), other.entrainment_rate
+        if films is not None and rate > 0.0 and films.slowest > 0.0:
+            found.append(Fade(films.slowest / rate, films.slowest, films.source))
     return max(found, key=lambda fade: fade.speed, default=None)
 
 

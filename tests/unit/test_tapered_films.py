@@ -17,6 +17,7 @@ from ehdmaps.physics.rollers.ribbed_geometry import ribbed_estimate
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from mbs import assemble, parse_scene
 from mbs.analyses.film_errors import film_course, film_error, film_errors, line_error, notable_from
+from mbs.analyses.reach import fade_lines, fade_of
 from mbs.bearings.balls.answers import FELT
 from mbs.bearings.balls.normal_law import contact
 from mbs.bearings.bearing import Bearing
@@ -350,3 +351,13 @@ def test_modes_and_states_of_a_pair_have_the_memory_of_all_slices():
     direct, unit = frequency_response(balance, push, seen, frequencies), np.eye(space.A.shape[0])
     states = [space.C @ np.linalg.solve(2j * math.pi * f * unit - space.A, space.B) + space.D for f in frequencies]
     assert np.all(np.abs(np.array(states) - direct) <= 1e-7 * np.abs(direct).max(axis=0))
+
+
+def test_it_is_said_below_which_speed_films_fade():
+    """The lowest speed of the law, by the speed of the bearing: by definition."""
+    model = scene()
+    fade, bearing = fade_of(model), model.on_rings[0]
+    assert fade.source == "the film table"
+    assert fade.entrainment_speed == bearing.law_at(10.0).points[0].law.speed_range[0]
+    (line,) = fade_lines(model, np.array([0.5 * fade.speed]))
+    assert "below the film table" in line and not fade_lines(model, np.array([1.1 * fade.speed]))

@@ -31,6 +31,9 @@ LOADS = (1e2, 2e6)
 
 _FAR = 1e-3
 
+_TRIED, _ZOOMS = 65, 10
+"""Places among which the ends of a table are looked for at once, and how often, until they are apart by round-off."""
+
 
 @dataclass(frozen=True, eq=False)
 class LineFilms:
@@ -167,15 +170,13 @@ def line_film(law: ContactLaw, length: float, entrainment_speed: float, temperat
     """
     point = law.at(entrainment_speed, temperature)
 
-    def load(delta: float) -> float:
-        return float(point.evaluate(np.array([delta]), np.zeros(1))[0][0])
-
     ends = []
     for target in LOADS:
         low, high = -_FAR, _FAR
-        for _ in range(80):
-            middle = 0.5 * (low + high)
-            low, high = (middle, high) if load(middle) < target else (low, middle)
+        for _ in range(_ZOOMS):
+            tried = np.linspace(low, high, _TRIED)
+            above = int(np.searchsorted(point.evaluate(tried, np.zeros(_TRIED))[0], target))
+            low, high = float(tried[max(above - 1, 0)]), float(tried[min(above, _TRIED - 1)])
         ends.append(0.5 * (low + high))
     if not -0.9 * _FAR < ends[0] < ends[1] < 0.9 * _FAR:
         raise InputError(f"line film: got no approach with {LOADS[0]:g} to {LOADS[1]:g} N/m; allowed: a law that has")

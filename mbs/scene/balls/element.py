@@ -150,6 +150,8 @@ class _TableFilms:
     def __call__(self, inner_speed: float, outer_speed: float) -> BallLaw:
         return _film_law(self, self.geometry.entrainment_speed(inner_speed, outer_speed))
 
+    source = "the film table of points"
+
     @property
     def slowest(self) -> float:
         """Entrainment speed below which films fade to the dry contacts [m/s]."""

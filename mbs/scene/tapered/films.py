@@ -71,6 +71,16 @@ class FilmsOfLines:
         return _films_at(cylinder_of(self.geometry), self.films, u)
 
     @property
+    def source(self) -> str:
+        """Name what films are read from, for people."""
+        return "the film table" if self.films.law == "table" else "the table of the film formula"
+
+    @property
+    def slowest(self) -> float:
+        """Entrainment speed below which films fade to dry lines [m/s]."""
+        return _laws(cylinder_of(self.geometry), self.films)[0].speed_range[0]
+
+    @property
     def error_words(self) -> str:
         """Name the errors that its laws state, for people; empty for laws that state none."""
         errors = _laws(cylinder_of(self.geometry), self.films)[0].errors
