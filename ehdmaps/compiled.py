@@ -101,7 +101,9 @@ def njit(function: Callable[..., Any] | None = None, /, *, cache: bool = True, *
     kept = dispatcher._cache
     if not Path(kept.cache_path).is_relative_to(folder):  # it can no longer be written, and numba chose another one
         return numba.njit(**options)(function)
-    kept.load_overload = functools.partial(_load, functools.partial(_read, kept), kept.flush)
+    known = all(hasattr(kept, name) for name in ("_guard_against_spurious_io_errors", "_load_overload"))
+    read = functools.partial(_read, kept) if known else kept.load_overload
+    kept.load_overload = functools.partial(_load, read, kept.flush)
     kept.save_overload = functools.partial(_save, kept.save_overload, folder)
     return dispatcher
 
@@ -124,7 +126,8 @@ def _load(load: Callable[..., Any], flush: Callable[[], None], *arguments: Any) 
 def _read(kept: Any, signature: Any, context: Any) -> Any:
     """Read kept code as `load_overload` of numba does, but for what it prepares for compiling: a fifth of a second.
 
-    Whatever compiles later prepares that itself. Kept code needs numba's counts of references alone.
+    Whatever compiles later prepares that itself. Kept code needs numba's counts of references alone. A numba that reads
+    in another way than those of today does it by its own `load_overload`.
     """
     _runtime.rtsys.initialize(context)
     with kept._guard_against_spurious_io_errors():

@@ -24,9 +24,9 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
+from scipy.interpolate import CubicSpline, PchipInterpolator, PPoly
 
 from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
-from ehdmaps.cubics import Pieces, cubic_spline, monotone_cubic
 from ehdmaps.errors import MapError
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone_plan import NEIGHBOURS, VALLEY, Axis
@@ -68,14 +68,14 @@ class OffsetLine:
 
     Attributes
     ----------
-    steep, integral : Pieces
+    steep, integral : CubicSpline, PPoly
         Slope over zeta and its integral; of several lines with values (n, lines).
     bend : ndarray, shape (5,) or (5, lines)
         What is added, see `bent`.
     """
 
-    steep: Pieces
-    integral: Pieces
+    steep: CubicSpline
+    integral: PPoly
     bend: FloatArray
 
     @classmethod
@@ -91,12 +91,12 @@ class OffsetLine:
         """
         heavy = zeta > HEAVY
         if np.any(heavy):
-            by_values = cubic_spline(zeta, value)(zeta, 1)
+            by_values = CubicSpline(zeta, value)(zeta, 1)
             slope = np.where(heavy.reshape(-1, *(1,) * (slope.ndim - 1)), by_values, slope)
-        steep = cubic_spline(zeta, slope)
+        steep = CubicSpline(zeta, slope)
         integral = steep.antiderivative()
         bend, *_ = np.linalg.lstsq(np.column_stack(_bends(zeta, 0)), value - integral(zeta), rcond=None)
-        return cls(steep, integral, np.asarray(bend, dtype=np.float64))
+        return cls(steep, integral, bend)
 
     def bent(self, zeta: FloatArray, order: int) -> FloatArray:
         """Term added to the integral or its derivatives of an order at places (n,), of several lines (n, lines)."""
@@ -238,7 +238,7 @@ class BackboneField:
         loads = np.exp(z) * valley / unit
         share = b * speed * loads / (h * half_width(loads, self._reference.radius, self._reference.reduced_modulus))
         film = OffsetLine.through(z, np.log(h / scale), -s * loads / h)
-        damping = cubic_spline(z, np.arcsinh(share / LOSS_SCALE))
+        damping = CubicSpline(z, np.arcsinh(share / LOSS_SCALE))
         places = self._first + LATTICE_STEP * np.arange(self._nodes)
         inside = np.clip(places, z[0], z[-1])
         beyond = places - inside
@@ -378,7 +378,9 @@ class BackboneField:
         found = []
         for zeta, values in lines:
             inside = np.clip(places, zeta[0], zeta[-1])
-            found.append(monotone_cubic(zeta, values)(inside) if zeta.size > 1 else values[np.zeros(inside.size, int)])
+            found.append(
+                PchipInterpolator(zeta, values)(inside) if zeta.size > 1 else values[np.zeros(inside.size, int)]
+            )
         return np.array(found)
 
     @cached_property

@@ -21,9 +21,9 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 
 from ehdmaps.arrays import ComplexArray, FloatArray, IndexArray
-from ehdmaps.cubics import Pieces, hermite_cubic, monotone_cubic
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone import BackboneField
 from ehdmaps.maps.film_field import FilmField, lifted_loss, same_load
@@ -186,14 +186,14 @@ class GridField:
         for j, k in np.ndindex(*numbers.shape):
             line = log_load[:, j, k]
             inside = np.clip(nodes, line[0], line[-1])
-            pieces: Sequence[Pieces]
+            pieces: Sequence[CubicHermiteSpline | PchipInterpolator]
             if line.size > 1:
                 pieces = (
-                    hermite_cubic(line, log_film[:, j, k], film_slope[:, j, k]),
-                    monotone_cubic(line, log_loss[:, j, k]),
+                    CubicHermiteSpline(line, log_film[:, j, k], film_slope[:, j, k]),
+                    PchipInterpolator(line, log_loss[:, j, k]),
                 )
                 for row, piece in enumerate(pieces):
-                    slope = piece(inside, 1)
+                    slope = piece(inside, nu=1)
                     tables[2 * row, :, j, k] = piece(inside) + (nodes - inside) * slope
                     tables[2 * row + 1, :, j, k] = slope
             ends[:, j, k] = np.searchsorted(nodes, line[0]), np.searchsorted(nodes, line[-1], side="right") - 1

@@ -28,9 +28,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
+from scipy.interpolate import CubicSpline, PPoly
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.cubics import Pieces, cubic_spline
 from ehdmaps.maps.backbone import FEWEST_NODES, LATTICE_STEP, lagrange
 from ehdmaps.maps.film_field import RIGID, FilmField, known_from, load_at
 from ehdmaps.maps.grid_field import lines_by_contact
@@ -68,13 +68,13 @@ class FlowFilm:
 
     Attributes
     ----------
-    line : Pieces
+    line : CubicSpline
         ln of it over ln(w/w1)/ln(w2/w1), 0 to 1, values (n_u, n_T).
     first, reach : array (n_u, n_T)
         ln(w1) of the first load [N/m], and ln(w2/w1) to the highest one of the map.
     """
 
-    line: Pieces
+    line: CubicSpline
     first: FloatArray
     reach: FloatArray
 
@@ -90,7 +90,7 @@ class FlowFilm:
         held = np.minimum(places, 1.0)
         logs, slopes = np.empty((2, *held.shape))
         for place in np.ndindex(held.shape[1:]):
-            line = Pieces(self.line.c[:, :, *place], self.line.x)
+            line = PPoly(self.line.c[:, :, *place], self.line.x)
             logs[:, *place], slopes[:, *place] = line(held[:, *place]), line(held[:, *place], 1)
         return logs + slopes * (places - held), slopes / self.reach
 
@@ -226,7 +226,7 @@ class RollingFilm:
             known = self._logarithms(line, loads, speed, kelvin, float(loads[0]))[1]
             logs[:, j, k] = known + math.log(line.radius * math.sqrt(number))
         logs += np.log(growth)
-        return FlowFilm(cubic_spline(places, logs), np.log(first), reach)
+        return FlowFilm(CubicSpline(places, logs), np.log(first), reach)
 
     def _from_edge(
         self,
@@ -382,7 +382,7 @@ def _backbone_reader(group: Mapping[Any, Any], reference: LineContact, lubricant
                 solved = np.isfinite(line) & (line > 0.0)
                 if np.count_nonzero(solved) < FEWEST_NODES:
                     return None
-                spline = cubic_spline(zeta[solved], np.log(line[solved] / units[i]))
+                spline = CubicSpline(zeta[solved], np.log(line[solved] / units[i]))
                 inside = np.clip(places, zeta[solved][0], zeta[solved][-1])
                 slope = spline(inside, 1)
                 values = spline(inside) + slope * (places - inside)

@@ -46,11 +46,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-import scipy  # its special functions at first use: laws of smooth surfaces need none
+from scipy.interpolate import CubicSpline
+from scipy.special import erfcx, gamma, ndtr, pbdv
 
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.compiled import njit
-from ehdmaps.cubics import cubic_spline
 from ehdmaps.maps.contact_curve import FilmSamples, dry_slope
 from ehdmaps.maps.schema import DIMS
 from ehdmaps.physics.contact import LineContact
@@ -84,8 +84,8 @@ def asperity_integral(order: float, distance: npt.ArrayLike) -> FloatArray:
     '0.6166'
     """
     x = np.asarray(distance, dtype=np.float64)
-    values, _ = scipy.special.pbdv(-order - 1.0, x)
-    return np.asarray(scipy.special.gamma(order + 1.0) / math.sqrt(2.0 * math.pi) * np.exp(-0.25 * x * x) * values)
+    values, _ = pbdv(-order - 1.0, x)
+    return np.asarray(gamma(order + 1.0) / math.sqrt(2.0 * math.pi) * np.exp(-0.25 * x * x) * values)
 
 
 def asperity_pressure(
@@ -139,8 +139,8 @@ def mean_gap(distance: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
     x = np.asarray(distance, dtype=np.float64)
     height = np.exp(-0.5 * x * x) / math.sqrt(2.0 * math.pi)
     # phi(x) + x Phi(x) would cancel below zero
-    deep = height * (1.0 + x * math.sqrt(0.5 * math.pi) * scipy.special.erfcx(-np.minimum(x, 0.0) / math.sqrt(2.0)))
-    return np.asarray(np.where(x < 0.0, deep, height + x * scipy.special.ndtr(x))), np.asarray(scipy.special.ndtr(x))
+    deep = height * (1.0 + x * math.sqrt(0.5 * math.pi) * erfcx(-np.minimum(x, 0.0) / math.sqrt(2.0)))
+    return np.asarray(np.where(x < 0.0, deep, height + x * ndtr(x))), np.asarray(ndtr(x))
 
 
 OIL_EXPONENT, FULL_FROM = 0.12, 3.0
@@ -204,7 +204,7 @@ def asperities_of(surface: Surface, reduced_modulus: float) -> Asperities:
     gap, _ = mean_gap(x)
     logs = np.log(pressure)
     even = np.arange(logs[0], logs[-1], _STEP)
-    distance = cubic_spline(logs, x)(even)
+    distance = CubicSpline(logs, x)(even)
     at_even, by_distance = asperity_pressure(surface, distance, reduced_modulus)
     # one Newton step takes the distance to the pressure itself
     distance -= (np.log(at_even) - even) * at_even / by_distance

@@ -15,9 +15,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+from scipy.interpolate import CubicSpline, PPoly
 
 from ehdmaps.arrays import BoolArray, ComplexArray, FloatArray, IndexArray
-from ehdmaps.cubics import Pieces, cubic_spline
 from ehdmaps.errors import MapError
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone import ERROR, IMAGINARY, LOSS_SCALE, REAL, BackboneField, OffsetLine
@@ -64,7 +64,7 @@ class _Lines(NamedTuple):
     """Lines of one contact, a column each: ln of the film offset over its unit, and the damping, over zeta."""
 
     film: OffsetLine
-    damping: Pieces
+    damping: CubicSpline
     ends: Range
     groups: _Groups
 
@@ -209,7 +209,7 @@ class TableField:
             self._refuse(read, i, float(needed[i]), speeds[at[1]], temperatures[at[2]])
         _go_on(axis, held)
         film_line = OffsetLine.through(axis, held[0], held[1])
-        return _Lines(film_line, cubic_spline(axis, held[2]), (float(axis[0]), float(axis[-1])), groups)
+        return _Lines(film_line, CubicSpline(axis, held[2]), (float(axis[0]), float(axis[-1])), groups)
 
     def _read(
         self,
@@ -346,12 +346,12 @@ def _go_on(axis: FloatArray, values: FloatArray) -> None:
         values[2] = np.where(outside, values[2, end, lines] + rate * away, values[2])
 
 
-def columns(lines: Pieces, x: FloatArray) -> tuple[FloatArray, FloatArray]:
+def columns(lines: PPoly, x: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Values and derivatives of lines, each at places of its own.
 
     Parameters
     ----------
-    lines : Pieces
+    lines : PPoly
         Polynomials with coefficients (k, n, lines).
     x : ndarray, shape (m, lines)
         Places within the breakpoints.

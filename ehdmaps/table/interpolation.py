@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy.interpolate import BSpline
 
 from ehdmaps.arrays import FloatArray, IndexArray
 from ehdmaps.compiled import njit
@@ -136,7 +137,7 @@ def coefficients(axes: Axes, values: FloatArray) -> FloatArray:
     n, m, k, p, fields = values.shape
     # matrices from values at nodes to the coefficients of their splines
     first, second = (
-        np.linalg.inv(spline_matrix(nodes, knots))
+        np.linalg.inv(BSpline.design_matrix(nodes, knots, DEGREE).toarray())
         for nodes, knots in zip((axes.zeta, axes.size), axes.knots, strict=True)
     )
     along = (first @ values.reshape(n, -1)).reshape(n, m, k * p * fields)
@@ -277,20 +278,6 @@ def spline_weights(knots: FloatArray, x: FloatArray) -> tuple[IndexArray, FloatA
         slope[r] = slope[r] - share
         slope[r + 1] = slope[r + 1] + share
     return cell - DEGREE, np.stack(basis, axis=-1), np.stack(slope, axis=-1)
-
-
-def spline_matrix(nodes: FloatArray, knots: FloatArray) -> FloatArray:
-    """Matrix that takes the coefficients of a spline to its values at the nodes, shape (nodes, nodes).
-
-    Parameters
-    ----------
-    nodes, knots : ndarray
-        Places at which it is known, and those of `knots_of`.
-    """
-    first, weights, _ = spline_weights(knots, nodes)
-    matrix = np.zeros((nodes.size, nodes.size))
-    matrix[np.arange(nodes.size)[:, None], first[:, None] + np.arange(DEGREE + 1)] = weights
-    return matrix
 
 
 def lagrange_weights(nodes: FloatArray, x: FloatArray) -> FloatArray:

@@ -34,9 +34,9 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
-from ehdmaps.cubics import cubic_spline
 from mbs.bearings.bearing_element import RingElement, ring_following
 from mbs.bearings.roller_contacts import ContactGroup
 from mbs.linearised.film_part import FilmPart, film_part
@@ -290,7 +290,7 @@ class LawBands:
             moved = []
             for element, matrix in by_element.items():
                 at, size = places_of[element], self._active[element].size
-                at_all = cubic_spline(np.log(places), matrix)(logs) if places.size > 1 else matrix
+                at_all = CubicSpline(np.log(places), matrix)(logs) if places.size > 1 else matrix
                 moved.append(-back[:, :, at] @ at_all.reshape(-1, size, size) @ motion[:, at])
             return moved
 
@@ -436,7 +436,7 @@ def _through(
 
     Shape (q, frequencies, sensors, inputs); by motions of the ports, and by what sensors see of loads there.
     """
-    at_all = cubic_spline(np.log(s.imag), at_places)(logs) if s.size > 1 else at_places
+    at_all = CubicSpline(np.log(s.imag), at_places)(logs) if s.size > 1 else at_places
     return np.asarray(np.moveaxis(-back[:, None] @ at_all @ motion[:, None], 1, 0), dtype=np.complex128)
 
 

@@ -22,7 +22,6 @@ ROOT = Path(__file__).parents[2]
 ALLOWED = {
     "ehdmaps.arrays": set(),
     "ehdmaps.copies": {"ehdmaps.arrays", "ehdmaps.compiled"},
-    "ehdmaps.cubics": {"ehdmaps.arrays"},
     "ehdmaps.errors": set(),
     "ehdmaps.extras": {"ehdmaps.errors"},
     "ehdmaps.units": {"ehdmaps.errors"},
@@ -59,7 +58,6 @@ ALLOWED = {
     },
     "ehdmaps.maps": {
         "ehdmaps.arrays",
-        "ehdmaps.cubics",
         "ehdmaps.compiled",
         "ehdmaps.errors",
         "ehdmaps.inputs",
@@ -68,14 +66,7 @@ ALLOWED = {
         "ehdmaps.physics",
         "ehdmaps.table",
     },
-    "ehdmaps.table": {
-        "ehdmaps.arrays",
-        "ehdmaps.compiled",
-        "ehdmaps.cubics",
-        "ehdmaps.errors",
-        "ehdmaps.outputs",
-        "ehdmaps.physics",
-    },
+    "ehdmaps.table": {"ehdmaps.arrays", "ehdmaps.compiled", "ehdmaps.errors", "ehdmaps.outputs", "ehdmaps.physics"},
     "ehdmaps.openfoam": {
         "ehdmaps.arrays",
         "ehdmaps.errors",
@@ -137,7 +128,6 @@ ALLOWED = {
     "mbs": {
         "ehdmaps.exports",
         "ehdmaps.arrays",
-        "ehdmaps.cubics",
         "ehdmaps.compiled",
         "ehdmaps.provenance",
         "ehdmaps.interrupts",
@@ -426,7 +416,7 @@ BUDGETS = (
     ("from mbs.bearings import bearing_force", 50, (*SOLVING, *LATER, *MACHINES, "ehdmaps.jobs", "ehdmaps.maps.law")),
     (BEARING, 85, (*SOLVING, *LATER, *MACHINES, "ehdmaps.jobs", "ehdmaps.maps.law", "ehdmaps.maps.emap")),
     (STATICS, 120, (*SOLVING, *LATER, *MACHINES, "ehdmaps.jobs.job", "ehdmaps.maps.law", "ehdmaps.maps.emap")),
-    (FILMS_OF_TABLE, 115, (SOLVING[1], *(name for name in LATER if name != "netCDF4"), "mbs")),
+    (FILMS_OF_TABLE, 115, (SOLVING[1], "matplotlib", "xarray", "pandas", "mbs")),
     ("import ehdmaps; ehdmaps.open_map(MAP).law('inner')", 95, (*SOLVING[:2], "matplotlib", "ehdmaps.jobs", "mbs")),
 )
 """What a question loads of our own modules at most, and what it does not need."""

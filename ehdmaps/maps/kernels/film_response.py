@@ -21,9 +21,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
-from ehdmaps.cubics import cubic_spline
 
 _PLACES = np.array([0.1, 0.3, 0.7, 1.4, 2.8, 5.6, 10.0, 14.0, 30.0])
 _DOUBT = np.array([1e-4, 4e-4, 4e-4, 6e-4, 1.8e-3, 9.1e-3, 3.0e-2, 3.1e-2, 7.2e-2])
@@ -97,7 +97,7 @@ class FilmsOfContact:
         turned = self.differences.T * np.exp(1j * np.multiply.outer(self.frequencies, ratio))
         values = np.concatenate([np.zeros((1, ratio.size)), turned])
         flat = np.zeros_like(values[0])
-        return np.asarray(cubic_spline(self._knots, values, ((1, flat), (2, flat))).c)
+        return np.asarray(CubicSpline(self._knots, values, bc_type=((1, flat), (2, flat))).c)
 
     def _difference(self, s: ComplexArray) -> ComplexArray:
         """r at frequencies s (m,), shape (m, n)."""

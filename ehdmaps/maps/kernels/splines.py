@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from scipy.interpolate import make_interp_spline
 from scipy.linalg.lapack import dgtsv
 
 from ehdmaps.arrays import FloatArray, IntArray
@@ -68,8 +69,6 @@ def spline_weights(nodes: FloatArray, wanted: FloatArray) -> FloatArray:
     """
     if nodes.size == 1:
         return np.ones((wanted.size, 1))
-    from scipy.interpolate import make_interp_spline  # a third of a second, which maps without lines of a law need
-
     spline = make_interp_spline(nodes, np.eye(nodes.size), k=min(3, nodes.size - 1))
     inside = np.clip(wanted, nodes[0], nodes[-1])
     weights: FloatArray = spline(inside) + (wanted - inside)[:, None] * spline(inside, nu=1)

@@ -17,9 +17,9 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from scipy.interpolate import CubicSpline
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.cubics import cubic_spline
 from ehdmaps.errors import InputError, MapError, OutsideMapError
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.ball_geometry import BallGeometry
@@ -58,7 +58,7 @@ class PointLawAt:
     def __post_init__(self) -> None:
         places = np.log(self.loads)
         curves = [
-            cubic_spline(places, np.log(np.column_stack([film.film_offset, film.loss_compliance])))
+            CubicSpline(places, np.log(np.column_stack([film.film_offset, film.loss_compliance])), axis=0)
             for film in self.films
         ]
         object.__setattr__(self, "_curves", curves)

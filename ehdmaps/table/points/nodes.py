@@ -14,10 +14,11 @@ from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
+from scipy.interpolate import BSpline
 
 from ehdmaps.arrays import BoolArray, ByteArray, FloatArray, IndexArray
 from ehdmaps.table.fields import NATURAL_FREQUENCIES, Field
-from ehdmaps.table.interpolation import DEGREE, cell_of, lagrange_weights, spline_matrix, spline_weights
+from ehdmaps.table.interpolation import DEGREE, cell_of, lagrange_weights, spline_weights
 from ehdmaps.table.nodes import CODES, decoded
 from ehdmaps.table.points.coordinates import PointAxes
 
@@ -207,7 +208,7 @@ class PointNodes:
         """Coefficients of the splines of some fields, (n_zeta, n_size, n_shape, oils, fields)."""
         found = self.values[..., part].astype(float)
         for axis, (nodes, knots) in enumerate(zip(self.axes.all[:3], self.axes.knots, strict=True)):
-            matrix = np.linalg.inv(spline_matrix(nodes, knots))
+            matrix = np.linalg.inv(BSpline.design_matrix(nodes, knots, DEGREE).toarray())
             found = np.moveaxis(np.tensordot(matrix, found, (1, axis)), 0, axis)
         *along, alphas, bends, fields = found.shape
         return np.ascontiguousarray(found.reshape(*along, alphas * bends, fields))

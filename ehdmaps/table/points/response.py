@@ -10,9 +10,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.cubics import cubic_spline
 from ehdmaps.table.points.films import PointFilms
 
 _AT = 1e-9
@@ -58,7 +58,7 @@ def read_response(films: PointFilms, frequencies: FloatArray) -> ReadResponse:
         slow, fast = getattr(films, name).item(), getattr(films, f"response_{name}").ravel()
         values = np.r_[slow, fast]
         stated = np.r_[films.errors[name].item() * abs(slow), films.errors[f"response_{name}"].ravel() * np.abs(fast)]
-        read = cubic_spline(places, values)(wanted)
+        read = CubicSpline(places, values)(wanted)
         left = np.array([_without(places, values, x, y) for x, y in zip(wanted, read, strict=True)])
         above = np.clip(np.searchsorted(places, wanted), 1, places.size - 1)
         wrong = np.maximum(stated[above - 1], stated[above]) + left
@@ -75,4 +75,4 @@ def _without(places: FloatArray, values: FloatArray, wanted: float, read: float)
         return 0.0
     inner = min(max(nearest, 1), places.size - 2)
     rest = np.delete(np.arange(places.size), inner)
-    return abs(float(cubic_spline(places[rest], values[rest])(wanted)) - read)
+    return abs(float(CubicSpline(places[rest], values[rest])(wanted)) - read)

@@ -17,10 +17,10 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+from scipy.interpolate import CubicSpline, PPoly
 
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.compiled import in_python
-from ehdmaps.cubics import Pieces, cubic_spline
 from ehdmaps.errors import SolverError
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.ball_geometry import BallGeometry
@@ -88,9 +88,9 @@ class ContactFilms:
         return values.T, (values * slopes).T
 
     @cached_property
-    def _splines(self) -> tuple[Pieces, Pieces]:
+    def _splines(self) -> tuple[PPoly, PPoly]:
         """Logarithms of the values over that of the load, and their slopes."""
-        spline = cubic_spline(np.log(self.loads), np.log(self.values))
+        spline = CubicSpline(np.log(self.loads), np.log(self.values), axis=0)
         return spline, spline.derivative()
 
     def largest_errors(self, load: FloatArray) -> FloatArray:

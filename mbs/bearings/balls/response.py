@@ -18,9 +18,9 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 from ehdmaps.arrays import BoolArray, ComplexArray, FloatArray
-from ehdmaps.cubics import cubic_spline
 from ehdmaps.table.points.films import PointFilms
 
 TIMES = np.array([0.01, 0.16, 1.0])
@@ -165,11 +165,11 @@ class ContactResponse:
             at_rest, moving = getattr(films, name), getattr(films, f"response_{name}")
             values = np.column_stack([at_rest, moving])
             stated = np.abs(values) * np.column_stack([errors[name], errors[f"response_{name}"]])
-            found = cubic_spline(nodes, values.T)(places).T
+            found = CubicSpline(nodes, values, axis=1)(places)
             otherwise = found.copy()
             for node in range(1, nodes.size - 1):
                 rest, on = np.delete(np.arange(nodes.size), node), nearest == node
-                otherwise[:, on] = cubic_spline(nodes[rest], values[:, rest].T)(places[on]).T
+                otherwise[:, on] = CubicSpline(nodes[rest], values[:, rest], axis=1)(places[on])
             at_node = np.isclose(places[:, None], nodes).any(axis=1)
             apart = np.where(at_node, 0.0, np.abs(found - otherwise))
             read.append(found)
