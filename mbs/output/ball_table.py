@@ -12,7 +12,7 @@ import numpy as np
 from ehdmaps.units import DAMPER, FILM, PRESSURE, RPM, SPRING, TEMPERATURE
 from mbs.bearings.balls.ball_element import MachineBalls
 from mbs.bearings.balls.ball_point import SIDES, STATIC_LIMIT, BallPoint
-from mbs.output.bearing_table import regime, shown, smallest, warning_lines, write_csv
+from mbs.output.bearing_table import OPEN, regime, shown, smallest, warning_lines, write_csv
 from mbs.output.files import described
 from mbs.scene.fields import DEGREE, FORCE, MICROMETRE
 
@@ -370,7 +370,7 @@ def ball_lines(model: Model, balance: Equilibrium) -> list[str]:
             f"inner, {PRESSURE.text(pressures[1])} outer",
             "  K " + "; C ".join(parts),
         ]
-        if not np.any(loads[0] > 0.0):
+        if not np.any(loads[0] > OPEN):
             lines.append(
                 f"warning: {element.name}: no ball carries load: nothing holds the shaft there, preload is lost"
             )

@@ -32,6 +32,9 @@ if TYPE_CHECKING:
     from mbs.bearings.tapered.tapered_point import TaperedPoint
 
 
+OPEN = 1e-6
+"""Largest load of a contact up to which a bearing carries none [N]: films never quite let go."""
+
 WIDE_RANGE = 20.0
 """A range of loads whose end is further above its beginning is spaced, and drawn, in the logarithm."""
 

@@ -12,9 +12,10 @@ import numpy as np
 from ehdmaps.physics.rollers.ribbed_geometry import RibbedGeometry
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from ehdmaps.units import DAMPER, FILM, PRESSURE, RPM, SPRING, TEMPERATURE
+from mbs.bearings.balls.ball_bearing import LOADED
 from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.bearings.tapered.tapered_point import RIB_FRICTION, SIDES, TaperedPoint
-from mbs.output.bearing_table import regime, shown, smallest, warning_lines, write_csv
+from mbs.output.bearing_table import OPEN, regime, shown, smallest, warning_lines, write_csv
 from mbs.output.files import described
 from mbs.scene.fields import DEGREE, FORCE, MICROMETRE
 
@@ -368,11 +369,11 @@ def tapered_lines(model: Model, balance: Equilibrium) -> list[str]:
         )
         lines += [
             f"{element.name}: {force[0]:.5g} N along x, {math.hypot(force[1], force[2]):.5g} N across it on the inner "
-            f"ring; {np.count_nonzero(cone > 0.0)} of {cone.size} rollers loaded, {cone.min():.4g} to "
+            f"ring; {np.count_nonzero(cone > LOADED * cone.max())} of {cone.size} rollers loaded, up to "
             f"{cone.max():.5g} N at the inner raceway, rib up to {rollers.load[2].max():.4g} N",
             "  K " + "; C ".join(parts),
         ]
-        if not np.any(cone > 0.0):
+        if not np.any(cone > OPEN):
             lines.append(
                 f"warning: {element.name}: no roller carries load: nothing holds the shaft there, preload is lost"
             )
