@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,7 +13,7 @@ from ehdmaps.units import RPM
 from mbs.analyses.operating import operating
 from mbs.bearings.bearing_element import RingElement, ring_following
 from mbs.linearised.validity import ContactsInBalance, FilmError, LoadedContacts
-from mbs.model.elements import Element, Operation
+from mbs.model.elements import Element, Forces, Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.model.relaxation import FILM_WORDS, NOTABLE, Films, Relaxation
 from mbs.scene.assembly import Model
@@ -88,23 +88,13 @@ def ball_error(element: MachineBalls, ports: FloatArray, operation: Operation, f
     if element.films is None:
         return None
     forces = element.evaluate(ports, np.zeros(6), operation)
-    load = float(np.linalg.norm(forces.force[:3]))
-    condensed = element.law_errors(ports, operation)
-    if load == 0.0:
+    motion = _along_load(forces)
+    if motion is None:
         return None
-    motion = np.array([*(forces.force[:3] / load), 0.0, 0.0, 0.0])
-    relaxation = element.film_relaxation(ports, operation)
-    return FilmError(
-        bearing=element.name,
-        films=films,
-        at_rest=condensed is None,
-        stiffness=float(motion @ forces.stiffness @ motion),
-        damping=float(motion @ forces.damping @ motion),
-        springs=(relaxation.rows @ motion) ** 2,
-        times=relaxation.times,
-        natural=np.zeros(0),
-        contacts=() if condensed is None else (ContactsInBalance(condensed, motion),),
-    )
+    condensed = element.law_errors(ports, operation)
+    contacts = () if condensed is None else (ContactsInBalance(condensed, motion),)
+    along = element.name, films, forces, motion
+    return _error(along, condensed is None, element.film_relaxation(ports, operation), np.zeros(0), contacts)
 
 
 def line_error(element: TaperedElement, ports: FloatArray, operation: Operation, films: Films) -> FilmError | None:
@@ -124,23 +114,41 @@ def line_error(element: TaperedElement, ports: FloatArray, operation: Operation,
     if element.films is None:
         return None
     forces = element.evaluate(ports, np.zeros(6), operation)
-    load = float(np.linalg.norm(forces.force[:3]))
-    if load == 0.0:
+    motion = _along_load(forces)
+    if motion is None:
         return None
-    motion = np.array([*(forces.force[:3] / load), 0.0, 0.0, 0.0])
     slices = element.film_slices(ports, operation)
     relaxation, natural = slices or (element.film_relaxation(ports, operation), np.zeros(0))
     if films == "slow":
         relaxation = element.film_relaxation(ports, operation)
+    return _error((element.name, films, forces, motion), slices is None, relaxation, natural)
+
+
+def _along_load(forces: Forces) -> FloatArray | None:
+    """Unit motion of the inner ring along its load, shape (6,); None without a load."""
+    load = float(np.linalg.norm(forces.force[:3]))
+    return np.array([*(forces.force[:3] / load), 0.0, 0.0, 0.0]) if load > 0.0 else None
+
+
+def _error(
+    along: tuple[str, Films, Forces, FloatArray],
+    at_rest: bool,
+    relaxation: Relaxation,
+    natural: FloatArray,
+    contacts: Sequence[LoadedContacts | ContactsInBalance] = (),
+) -> FilmError:
+    """Error of a bearing by its name, its films, its forces, and a motion of its ports."""
+    name, films, forces, motion = along
     return FilmError(
-        bearing=element.name,
+        bearing=name,
         films=films,
-        at_rest=slices is None,
+        at_rest=at_rest,
         stiffness=float(motion @ forces.stiffness @ motion),
         damping=float(motion @ forces.damping @ motion),
         springs=(relaxation.rows @ motion) ** 2,
         times=relaxation.times,
         natural=natural,
+        contacts=tuple(contacts),
     )
 
 
@@ -172,18 +180,9 @@ def film_error(
         return None
     along = np.array([0.0, *(forces.force[1:3] / load), 0.0, 0.0, 0.0])
     motion = ring_following(forces.stiffness) @ along
-    stiffness, damping = (float(motion @ matrix @ motion) for matrix in (forces.stiffness, forces.damping))
-    return FilmError(
-        bearing=element.name,
-        films=films,
-        at_rest=at_rest,
-        stiffness=stiffness,
-        damping=damping,
-        springs=(relaxation.rows @ motion) ** 2,
-        times=relaxation.times,
-        natural=element.natural_times(ports, operation),
-        contacts=_contacts(element, ports, operation, relaxation, motion),
-    )
+    contacts = _contacts(element, ports, operation, relaxation, motion)
+    natural = element.natural_times(ports, operation)
+    return _error((element.name, films, forces, motion), at_rest, relaxation, natural, contacts)
 
 
 def _contacts(
