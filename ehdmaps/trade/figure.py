@@ -62,12 +62,14 @@ def budget_panel(panel: Axes, trade: Trade, bars: Sequence[Bar]) -> None:
     left, right = budget_axis(trade, bars)
     for mark in budget_marks(trade, bars):
         y = mark.row + (mark.place - 0.5 * (len(trade.shown) - 1)) * wide
-        panel.barh(y, mark.high - max(mark.low, left), wide * 0.85, left=max(mark.low, left), color=COLOURS[mark.place])
+        low, colour = max(mark.low, left), COLOURS[mark.place]
+        # with an edge, as the bar of one point has no width
+        panel.barh(y, mark.high - low, wide * 0.85, left=low, color=colour, edgecolor=colour, lw=1.0)
         panel.annotate(
             number(mark.high), (mark.high, y), xytext=(2, 0), textcoords="offset points", fontsize=6.5, va="center"
         )
         if mark.low < left:
-            panel.plot(left, y, "<", color=COLOURS[mark.place], ms=5, clip_on=False)
+            panel.plot(left, y, "<", color=colour, ms=5, clip_on=False)
     handles: list[Patch | Line2D] = [
         Patch(color=COLOURS[place], label=f"{name} [{UNITS[units[name]]}]") for place, name in enumerate(trade.shown)
     ]
