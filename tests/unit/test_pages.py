@@ -23,7 +23,6 @@ from tests.benchmarks.page_block import (
 from tests.benchmarks.page_recipes import RECIPES, TIMES, compared, printed, rewritten
 from tests.benchmarks.pages import PAGES, PROGRAMS, ROOT, whole_outputs
 from tests.benchmarks.printed_tables import Output, sweep_cases
-from tests.manual.words import pages, parts, sentences, words
 
 ALL = [block for page in PAGES for block in blocks(page, (ROOT / page).read_text(encoding="utf-8"))]
 SWEEP = """Gearbox: law map of NU308
@@ -212,18 +211,6 @@ def test_links_lead_to_files_and_headings(page):
         assert not heading or linked.suffix != ".md" or heading in anchors(linked), target
 
 
-def test_pages_stay_short():
-    """What is asked of them: README has 120 lines at most, all pages that are written by hand have 30 000 words."""
+def test_the_readme_stays_short():
+    """README has 120 lines at most."""
     assert len((ROOT / "README.md").read_text(encoding="utf-8").splitlines()) <= 120
-    texts = [text for page in pages() for text in parts(page.read_text(encoding="utf-8"))]
-    assert 10_000 < len(words(" ".join(texts))) <= 30_000
-
-
-def test_words_and_sentences_are_counted():
-    page = (
-        "# Title\n<!-- figures a -->\n1 2\n<!-- end of figures -->\nOne [two](a.md) - three. Four.\n```sh\nmbs a\n```\n"
-    )
-    prose, code = parts(page)
-    assert words(prose) == ["Title", "One", "[two]", "three.", "Four."]
-    assert words(code) == ["mbs", "a"]
-    assert list(sentences(prose)) == ["One [two](a.md) - three.", "Four."]
