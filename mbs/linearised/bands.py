@@ -186,6 +186,8 @@ class LawBands:
             own = [next((part for part in change if part.group == g), None) for change in self.changes]
             there = [index for index, part in enumerate(own) if part is not None]
             parts = [part for part in own if part is not None]
+            if not parts:
+                continue
             shifts[there] -= np.array([part.stiffness for part in parts]) @ product
             shifts[there] -= np.array([part.damping for part in parts]) @ by_damping
             shifts[there] += np.array([part.times for part in parts]) @ by_times
@@ -216,9 +218,10 @@ class LawBands:
         shapes : array, shape (n, n)
             Columns phi with phi' M phi = 1.
         """
+        nothing = np.zeros_like(frequency)
         energy = np.array(
             [
-                sum((part.stiffness @ (self._groups[part.group].rows @ shapes) ** 2 for part in change), np.zeros(1))
+                sum((part.stiffness @ (self._groups[part.group].rows @ shapes) ** 2 for part in change), nothing)
                 for change in self.changes
             ]
         )

@@ -157,14 +157,15 @@ class Base:
         return np.array(found)
 
     def told(self, system):
-        """Eigenvalues, sizes of responses, k and c along the loads of a system solved again."""
+        """Eigenvalues, sizes of responses, k and c along the loads, undamped frequencies of a system solved again."""
         balance = equilibrium(system, self.operation, self.balance.displacement, tolerance=1e-13)
         answer = frequency_response(balance, self.scene.inputs, self.scene.sensors, FREQUENCIES)
-        return self.eigenvalues(balance, self.values), np.abs(answer), along_load(balance)[1:]
+        undamped = undamped_modes(balance).frequency
+        return self.eigenvalues(balance, self.values), np.abs(answer), along_load(balance)[1:], undamped
 
     def check(self, change, one, other, step):
         """Central differences of two systems beside the derivatives by a change."""
-        eigenvalues, sizes, sides = (
+        eigenvalues, sizes, sides, undamped = (
             (a - b) / (2.0 * step) for a, b in zip(self.told(one), self.told(other), strict=True)
         )
         found, only = self.found[change], self.laws.only(change)
@@ -174,6 +175,13 @@ class Base:
         own = only.of_bearings()
         known = np.isfinite(own)
         np.testing.assert_allclose(np.abs(sides)[known], own[known], atol=2e-4 * own[known].max())
+        at_rest = undamped_modes(self.balance)
+        found = only.of_undamped(at_rest.frequency, at_rest.shapes)
+        np.testing.assert_allclose(
+            np.abs(undamped), found, atol=2e-4 * found.max() + 1e-12 * at_rest.frequency.max() / step
+        )
+        assert np.isfinite(self.laws.of_undamped(at_rest.frequency, at_rest.shapes)).all()
+        assert np.isfinite(only.eigenvalue_changes(self.values, self.shapes, self.left)).all()
 
     def check_bearing(self, name):
         """Damping and films of a bearing in balance."""
