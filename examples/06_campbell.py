@@ -22,7 +22,7 @@ RPM = math.pi / 30
 course = RunUp(SpeedProfile.ramp(500 * RPM, 2000 * RPM, 0.6), 0.6, Settings(step=25e-6, sample=25e-6))
 scene = dataclasses.replace(read_scene("nu308_rigid"), run_up=course)
 settings = CampbellSettings(sensor="approach", highest=1500.0)
-found = campbell(assemble(scene, clearance=20e-6), settings).dataset.isel(law=0)
+found = campbell(assemble(scene, "hertz", clearance=20e-6), settings).dataset.isel(law=0)
 
 geometry = scene.bearings[0].geometry
 passing = geometry.rollers * (1.0 - geometry.gamma) / 2.0

@@ -17,7 +17,7 @@ from mbs import HammerSettings, assemble, hammer, read_scene
 from mbs.modal.estimation import estimate
 from mbs.modal.fit import identify
 
-test = hammer(assemble(read_scene("n1014_testrig")), HammerSettings(highest=3000.0, duration=1.3, seed=1))
+test = hammer(assemble(read_scene("n1014_testrig"), "hertz"), HammerSettings(highest=3000.0, duration=1.3, seed=1))
 responses = estimate(test.hits).responses
 found = identify(responses, band=(1000.0, 1800.0))
 

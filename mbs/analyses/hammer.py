@@ -154,7 +154,7 @@ def hammer(model: Model, settings: HammerSettings | None = None, progress: Progr
     Examples
     --------
     >>> from mbs import HammerSettings, assemble, hammer, read_scene
-    >>> model = assemble(read_scene("nu308_rigid"))
+    >>> model = assemble(read_scene("nu308_rigid"), "hertz")
     >>> found = hammer(model, HammerSettings(hits=2, duration=0.05))
     >>> len(found.hits), found.test.samples
     (1, 1280)

@@ -117,7 +117,7 @@ def runup(
     --------
     >>> import dataclasses
     >>> from mbs import assemble, read_scene, runup
-    >>> model = assemble(read_scene("nu308_rigid"))
+    >>> model = assemble(read_scene("nu308_rigid"), "hertz")
     >>> short = dataclasses.replace(model.scene.run_up, duration=1e-3)
     >>> runup(model, short).dataset.sizes["time"]
     11

@@ -30,7 +30,6 @@ from mbs.scene.choices import (
     opened_maps,
 )
 from mbs.scene.contact_laws import table_path
-from mbs.scene.map_set import TABLE_LAW
 from mbs.scene.reader import read_scene
 from mbs.scene.scene import Scene
 from mbs.settings import SweepRange
@@ -236,9 +235,8 @@ def _laws(
         laws += opened_maps(paths, scene, problems)
     if laws or names or paths:
         return laws
-    with_films = scene.lubricant is not None and (scene.bearings or scene.balls or scene.tapered)
     try:
-        return [named_law(TABLE_LAW if with_films else "hertz", scene)]
+        return [named_law(None, scene)]
     except InputError as error:
         problems += error.problems
         return []

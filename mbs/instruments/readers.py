@@ -73,7 +73,7 @@ def _scenes() -> Reader:
     texts = [(resources.files("mbs") / "systems" / f"{name}.toml").read_bytes() for name in _SCENES]
 
     def read(folder: Path) -> str:
-        model = assemble(read_scene(str(folder / "scene.toml")))
+        model = assemble(read_scene(str(folder / "scene.toml")), "hertz")
         matrices = model.system.mass, model.system.stiffness
         return "" if all(np.all(np.isfinite(matrix)) for matrix in matrices) else "a system that is not finite"
 

@@ -244,7 +244,7 @@ def _dry_model(scene: Scene, settings: PlanSettings) -> Model:
         model = assemble(_dry_scene(scene), "hertz", clearance=settings.clearance)
     except InputError as error:
         problems += error.problems
-    if not (scene.bearings or scene.balls or scene.tapered):
+    if not scene.has_bearings:
         problems.append("got no bearing; allowed: at least one [[bearings]], which is what a map is for")
     if warm := [entry.name for entry in scene.bearings if entry.thermal is not None]:
         problems.append(

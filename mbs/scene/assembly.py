@@ -25,9 +25,9 @@ from mbs.model.system import Places, System
 from mbs.model.turning import TurningLoad
 from mbs.scene import kinds
 from mbs.scene.bodies import build_bodies
-from mbs.scene.contact_laws import NO_LAW, ContactLaws, choose_law, supply_words, surface_label
+from mbs.scene.contact_laws import NO_LAW, ContactLaws, dry_reason, law_in_force, supply_words, surface_label
 from mbs.scene.kinds import ElementKind
-from mbs.scene.map_set import TABLE_LAW, MapSet, table_maps
+from mbs.scene.map_set import MapSet
 from mbs.scene.oils import oil_warnings
 from mbs.scene.scene import Scene
 from mbs.scene.surroundings import Built, Surroundings
@@ -214,8 +214,8 @@ def assemble(
     scene : Scene
         Bodies, springs, loads, machine elements.
     law : str, optional
-        hertz, formula, constant:NAME, table (films of the scene's oil from the film table, no file is needed) or map;
-        map by default where there is one, else hertz.
+        hertz, formula, constant:NAME, table (films of the scene's oil from the film table, no file is needed) or map.
+        By default as of all commands: map where there is one, else table, and hertz of a scene without oil.
     emap : EHDMap, str or Path, or several of these in a list, or MapSet, optional
         Map of the law `map`, or the path of its file; of a scene with several types of bearing one map for each.
     clearance : float, optional
@@ -251,15 +251,13 @@ def assemble(
     >>> from mbs import assemble, read_scene
     >>> model = assemble(read_scene("nu308_rigid"), clearance=20e-6)
     >>> model.label, model.system.size
-    ('dry Hertz', 8)
+    ('film table', 8)
     """
-    maps = _opened(emap)
-    if law == TABLE_LAW and maps is None and (scene.bearings or not (scene.balls or scene.tapered)):
-        law, maps = "map", table_maps(scene)
+    chosen, maps = law_in_force(law, _opened(emap), scene)
     problems: list[str] = []
     if clearance is not None:
         scene = _with_clearance(scene, clearance, problems)
-    laws = ContactLaws(choose_law(law, maps), scene, maps, films, supply)
+    laws = ContactLaws(chosen, scene, maps, films, supply)
     wrong_law = laws.problems()
     problems = [*wrong_law, *problems]
     try:
@@ -293,6 +291,8 @@ def assemble(
         from mbs.scene.tapered.element import tapered_law_words
 
         words.append(tapered_law_words(laws))
+    if law is None and chosen == "hertz":
+        words += filter(None, [dry_reason(scene)])
     return Model(
         scene=scene,
         system=system,
@@ -303,7 +303,7 @@ def assemble(
             entry.name: laws.films(entry.bearing, laws.supply(spec))
             for entry, spec in zip(bearings, scene.bearings, strict=True)
         },
-        label=laws.label if bearings or scene.balls or scene.tapered else NO_LAW,
+        label=laws.label if scene.has_bearings else NO_LAW,
         balls=tuple(cast("MachineBalls", part.element) for part in built[""] if part.element.name in of_balls),
         memory=laws.memory,
         supplies=laws.supplies,

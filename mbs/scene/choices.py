@@ -278,13 +278,13 @@ def _law_text(name: str) -> str:
     return law_label(name)
 
 
-def named_law(name: str, scene: Scene) -> LawChoice:
+def named_law(name: str | None, scene: Scene) -> LawChoice:
     """A law by its name; that of the film table brings its maps.
 
     Parameters
     ----------
-    name : str
-        hertz, formula, table and so on, see `mbs.scene.contact_laws`.
+    name : str or None
+        hertz, formula, table and so on, see `mbs.scene.contact_laws`; None for the default of the scene.
     scene : Scene
         Scene with its bearings and its oil.
 
@@ -293,12 +293,13 @@ def named_law(name: str, scene: Scene) -> LawChoice:
     InputError
         If the film table does not serve the scene. What else is wrong about a law is said by `assemble`.
     """
-    from mbs.scene.contact_laws import law_label
-    from mbs.scene.map_set import table_maps
+    from mbs.scene.contact_laws import law_in_force, law_label
 
-    if name != TABLE_LAW or ((scene.balls or scene.tapered) and not scene.bearings):
-        return LawChoice(law_label(name), name)
-    return map_law(table_maps(scene))
+    law, maps = law_in_force(name, None, scene)
+    if maps is not None:
+        return map_law(maps)
+    # a law that is dry by default has no name, so that its models tell why
+    return LawChoice(law_label(law), None if name is None and law == "hertz" else law)
 
 
 def map_law(maps: MapSet, words: str = "") -> LawChoice:
@@ -671,7 +672,7 @@ def _with_label(subject: Subject) -> Subject:
     """A subject whose law is not called dry where the scene has no roller bearing; several laws keep their names."""
     from mbs.scene.contact_laws import NO_LAW
 
-    if subject.scene.bearings or subject.scene.balls or subject.scene.tapered or subject.law.has_films:
+    if subject.scene.has_bearings or subject.law.has_films:
         return subject
     return dataclasses.replace(subject, law=dataclasses.replace(subject.law, label=NO_LAW))
 
@@ -701,8 +702,8 @@ def _each(one: Combination, choice: SceneChoice, several: Sequence[Any], problem
 
 def _with_stated_supply(subject: Subject) -> Subject:
     """A subject whose law is called by the oil supply that scene or map state."""
-    from mbs.scene.contact_laws import ContactLaws, choose_law
+    from mbs.scene.contact_laws import ContactLaws, law_in_force
 
     law = subject.law
-    words = ContactLaws(choose_law(law.name, law.maps), subject.scene, law.maps).supply_label
+    words = ContactLaws(law_in_force(law.name, law.maps, subject.scene)[0], subject.scene, law.maps).supply_label
     return dataclasses.replace(subject, law=dataclasses.replace(law, label=law.label + words)) if words else subject

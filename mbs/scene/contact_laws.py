@@ -27,7 +27,7 @@ from mbs.bearings.bearing_force import NO_COUPLED_MEMORY
 from mbs.bearings.films import DryContacts, FilmSource, FormulaFilms, MapFilms
 from mbs.bearings.laws import DryLaw, Law, TableLaw, curve_problems
 from mbs.model.relaxation import DEFAULT_FILMS, FILM_WORDS, Films
-from mbs.scene.map_set import TABLE_LAW, speeds_of_laws
+from mbs.scene.map_set import TABLE_LAW, speeds_of_laws, table_maps
 
 if TYPE_CHECKING:
     from ehdmaps.maps.emap import EHDMap
@@ -131,9 +131,43 @@ NO_LAW = "no contact law"
 _LABELS = {"hertz": "dry Hertz", "formula": "film formula", TABLE_LAW: "film table"}
 
 
-def choose_law(name: str | None, maps: MapSet | None) -> str:
-    """The law that is meant: by default the map where there is one, else Hertz."""
-    return name if name is not None else ("map" if maps is not None else "hertz")
+def law_in_force(name: str | None, maps: MapSet | None, scene: Scene) -> tuple[str, MapSet | None]:
+    """The law that is meant, and its maps: all commands and `mbs.assemble` ask here.
+
+    Parameters
+    ----------
+    name : str or None
+        The law as it was asked for. None for the default: the maps where there are some, else films of the film
+        table, and dry contacts of a scene without oil, see `dry_reason`.
+    maps : MapSet or None
+        The maps that were given.
+    scene : Scene
+        Bearings and oil.
+
+    Raises
+    ------
+    InputError
+        If the film table does not serve the scene.
+    """
+    if name is None:
+        has_films = scene.lubricant is not None and scene.has_bearings
+        name = "map" if maps is not None else TABLE_LAW if has_films else "hertz"
+    if name == TABLE_LAW and maps is None and (scene.bearings or not scene.has_bearings):
+        return "map", table_maps(scene)
+    return name, maps
+
+
+def dry_reason(scene: Scene) -> str:
+    """Reason why the bearings of a scene are dry by default, for people; empty where they are not.
+
+    Parameters
+    ----------
+    scene : Scene
+        Bearings and oil.
+    """
+    if scene.lubricant is not None or not scene.has_bearings:
+        return ""
+    return "dry, and so without damping, as the scene has no [lubricant]"
 
 
 def law_label(law: str, maps: MapSet | None = None) -> str:

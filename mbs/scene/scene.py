@@ -161,6 +161,11 @@ class Scene:
         return tuple(entry for entry in self.elements if isinstance(entry, TaperedSpec))
 
     @property
+    def has_bearings(self) -> bool:
+        """Tell whether it has a bearing of any kind."""
+        return bool(self.bearings or self.balls or self.tapered)
+
+    @property
     def gears(self) -> tuple[GearPair, ...]:
         """The gear pairs among the machine elements."""
         return tuple(entry for entry in self.elements if isinstance(entry, GearPair))

@@ -40,7 +40,7 @@ def numbers(out, label):
 
 
 def test_one_point(capsys, here) -> None:
-    status, out, err = run(capsys, *LOADED)
+    status, out, err = run(capsys, *LOADED, "--law", "hertz")
     assert (status, err) == (0, "")
     geometry = ball_estimate("6208")
     force = BallForce(geometry, dry_law(geometry))
@@ -87,7 +87,10 @@ def test_table_over_load_and_speed(capsys, here) -> None:
 
 def test_films_follow_the_speed(capsys, here) -> None:
     """h_min goes with U^0.68 at one load: 2^0.68 = 1.602."""
-    films = [numbers(run(capsys, *LOADED[:-1], speed)[1], "smallest film")[0] for speed in ("400 rpm", "800 rpm")]
+    films = [
+        numbers(run(capsys, *LOADED[:-1], speed, "--law", "hertz")[1], "smallest film")[0]
+        for speed in ("400 rpm", "800 rpm")
+    ]
     assert films[1] / films[0] == pytest.approx(2.0**0.68, rel=1e-3)
 
 
@@ -98,7 +101,7 @@ def test_laws_with_films_are_read(capsys, here, law) -> None:
     status, out, err = run(capsys, *command, "--speed", "3000 rpm", "--law", law)
     assert status == 0 and "read from the film table" in out
     assert "3000 rpm: films read from the table at" in err and "solved" not in err
-    dry = run(capsys, *command, "--speed", "3000 rpm")[1]
+    dry = run(capsys, *command, "--speed", "3000 rpm", "--law", "hertz")[1]
     angles = [numbers(page, "mean contact angle")[0] for page in (out, dry)]
     assert 0.5 < angles[1] - angles[0] < 2.0
     assert min(numbers(out, "damping")) > 0.0 == max(numbers(dry, "damping"))
@@ -106,6 +109,49 @@ def test_laws_with_films_are_read(capsys, here, law) -> None:
     assert "stated error" not in dry
     still = run(capsys, *command, "--speed", "0 rpm", "--law", law)[1]
     assert max(numbers(still, "damping")) == 0.0
+
+
+def test_films_are_the_default(capsys, here) -> None:
+    """Without --law the films are those of the table, at the oil that was typed."""
+    oils = ("FVA3", "ISO VG 10")
+    by_default, asked = (
+        [run(capsys, *LOADED, "--oil", oil, *law)[1] for oil in oils] for law in ((), ("--law", "table"))
+    )
+    assert by_default == asked
+    assert numbers(by_default[0], "damping") > numbers(by_default[1], "damping") > [0.0, 0.0, 0.0]
+
+
+def test_speeds_without_films_are_dry_and_say_why(capsys, here) -> None:
+    """By default a speed beyond the table is dry, with a reason; below the table films fade to dry contacts."""
+    ask = ("6208", "--load", "1 kN", "--temperature", "20 degC", "--oil", "ISO VG 68")
+    status, out, _ = run(capsys, *ask, "--speed", "30 rpm", "--speed", "30000 rpm", "-o", "out.nc")
+    assert status == 1
+    assert (
+        "warning: 3e+04 rpm: dry and without damping, as the film table has no films there (films of the inner" in out
+    )
+    with xr.open_dataset("out.nc") as data:
+        damping, words = data["damping_along"].values[0], data["outside"].values[0].tolist()
+    assert damping[0] > 0.0 == damping[1] and words[0] == "" and "no films there" in words[1]
+    status, _, err = run(capsys, *ask, "--speed", "30000 rpm", "--law", "table")
+    assert status == 1 and "rpm: film table has no films there (films of the inner contact" in err
+    # a lowest speed of the table of 19.6 rpm
+    fading = ("6208", "--load", "1 kN", "--oil", "ISO VG 10", "--speed", "0 rpm", "2 rpm", "3", "-o", "slow.nc")
+    status, out, _ = run(capsys, *fading)
+    assert status == 0 and "note: 2 rpm: films fade, as the film table of points begins at 0.0" in out
+    with xr.open_dataset("slow.nc") as data:
+        still, slow, faster = data["stiffness_along"].values[0]
+    assert abs(slow - still) < abs(faster - still) < 0.01 * still
+
+
+@pytest.mark.parametrize(
+    "bearing",
+    [("6208", "--axial", "0.5 kN"), ("32208", "--axial", "1 kN"), ("NUP210", "--axial", "0.5 kN"), ("NU308",)],
+)
+def test_smooth_surfaces_have_the_assumed_roughness_in_lambda(capsys, here, bearing) -> None:
+    ask = (*bearing, "--load", "2 kN", "--speed", "1000 rpm")
+    status, smooth, _ = run(capsys, *ask, "--roughness", "smooth")
+    assert status == 0 and "combined rms roughness 0.3 um (for Lambda only)" in smooth
+    assert smooth == run(capsys, *ask)[1]
 
 
 def test_outer_ring_turns(capsys, here) -> None:
@@ -208,6 +254,6 @@ def test_a_bearing_for_ross_has_the_matrices_of_the_result(capsys, here) -> None
 def test_the_largest_speed_in_rpm_is_allowed(capsys, here) -> None:
     """1e5 rpm is larger than its own limit by the rounding of the unit."""
     ask = ("7208B", "--load", "1 kN", "--axial", "2 kN", "--speed")
-    status, out, _ = run(capsys, *ask, "100000 rpm")
+    status, out, _ = run(capsys, *ask, "100000 rpm", "--law", "hertz")
     assert status == 0 and "balls run on the outer raceway alone" in out
     assert run(capsys, *ask, "100001 rpm")[0] == 2

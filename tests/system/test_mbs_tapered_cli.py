@@ -37,7 +37,7 @@ def run(capsys, *arguments):
 
 
 def test_one_point(capsys, here) -> None:
-    status, out, err = run(capsys, *LOADED)
+    status, out, err = run(capsys, *LOADED, "--law", "hertz")
     assert (status, err) == (0, "")
     point = tapered_point(FORCE, (2000.0, 5000.0, 0.0), 3000.0 * RPM, oil=Lubricant.named("FVA3"))
     line = next(line for line in out.splitlines() if line.startswith("  stiffness"))
@@ -46,6 +46,25 @@ def test_one_point(capsys, here) -> None:
     for words in ("inner geometry estimated", "assumed: temperature 40 degC", "slides with 1.37 m/s", "L10r"):
         assert words in out
     assert f"{point.loaded} of 17 rollers carry more than 1 %" in out
+
+
+@pytest.mark.parametrize("bearing", [("32208", "--axial", "2 kN"), ("NUP210", "--axial", "1 kN")])
+def test_films_are_the_default_and_feel_oil_and_roughness(capsys, here, bearing) -> None:
+    """Thinner oil damps less; rough surfaces carry a part of the load that the film has without them."""
+    ask = (*bearing, "--load", "5 kN", "--speed", "3000 rpm")
+    pages = {
+        words: run(capsys, *ask, *words)[1]
+        for words in ((), ("--law", "table"), ("--oil", "ISO VG 10"), ("--roughness", "0.5 um"))
+    }
+
+    def along(words, label):
+        line = next(line for line in pages[words].splitlines() if line.startswith(f"  {label} "))
+        return float(line[42:].split()[0])
+
+    assert pages[()] == pages["--law", "table"]
+    assert along((), "damping") > along(("--oil", "ISO VG 10"), "damping") > 0.0
+    assert along(("--roughness", "0.5 um"), "damping") < along((), "damping")
+    assert "roughness 0.5 um" in pages["--roughness", "0.5 um"]
 
 
 def test_tables_hold_the_balance(capsys, here) -> None:

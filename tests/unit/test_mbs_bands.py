@@ -231,7 +231,7 @@ def test_laws_of_samples_are_wrong_by_the_bounds(models):
 
 
 def test_runs_of_bands_are_limited():
-    model = assemble(read_scene("nu308_rigid"))
+    model = assemble(read_scene("nu308_rigid"), "hertz")
     with pytest.raises(InputError, match=r"bands: got 9 runs; allowed: 0 to 8"):
         campbell(model, bands=9)
 

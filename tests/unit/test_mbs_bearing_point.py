@@ -160,7 +160,7 @@ def test_loads_that_are_none_are_refused(load):
 
 
 def test_the_point_is_that_of_a_scene():
-    model = assemble(read_scene("nu308_rigid"))
+    model = assemble(read_scene("nu308_rigid"), "hertz")
     balance = equilibrium(model.system, model.operation)
     motion = model.system.relative(model.bearings[0].inner, model.bearings[0].outer) @ balance.displacement
     force = balance.forces[0][1:3]

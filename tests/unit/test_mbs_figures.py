@@ -43,7 +43,7 @@ LOWEST = 0.3
 
 @pytest.fixture(scope="module")
 def dry():
-    return assemble(read_scene("nu308_rigid"))
+    return assemble(read_scene("nu308_rigid"), "hertz")
 
 
 @pytest.fixture(scope="module")
@@ -480,7 +480,7 @@ def test_a_mode_that_comes_back_has_its_number_again():
 
 
 def test_a_sweep_draws_the_responses_of_all_cases():
-    model = assemble(read_scene("nu308_rigid"))
+    model = assemble(read_scene("nu308_rigid"), "hertz")
     ports, frequencies = (model.scene.inputs, model.scene.sensors), np.array([100.0, 1000.0, 2000.0])
     entry = sweep(model.system, np.array([100.0, 200.0]), 0.0, *ports, frequencies)
     labels = [f"case {number}" for number in range(10)]

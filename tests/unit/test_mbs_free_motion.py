@@ -72,12 +72,12 @@ def test_a_large_load_along_it_is_no_equilibrium():
 
 @pytest.mark.parametrize("name", shipped_systems())
 def test_shipped_systems_are_held(name):
-    model = assemble(read_scene(name))
+    model = assemble(read_scene(name), "hertz")
     assert lines(model.system) == []
 
 
 def test_unloaded_rollers_are_counted():
-    model = assemble(read_scene("n1014_rigid"), clearance=20e-6)
+    model = assemble(read_scene("n1014_rigid"), "hertz", clearance=20e-6)
     balance = equilibrium(model.system, model.operation)
     bearing = model.bearings[0]
     motion = model.system.relative(bearing.inner, bearing.outer) @ balance.displacement

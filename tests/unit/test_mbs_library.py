@@ -45,6 +45,7 @@ from mbs import (
 )
 from mbs.linearised.linear import peak_places
 from mbs.modal.uff import read_uff
+from mbs.model.elements import OnRings
 from tests.cases.jobs import map_job
 
 JOB = map_job(
@@ -71,7 +72,7 @@ def path(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def model(path):
-    return assemble(read_scene(str(path)))
+    return assemble(read_scene(str(path)), "hertz")
 
 
 @pytest.fixture
@@ -142,6 +143,59 @@ def test_analyses_load_no_command_and_neither_they_nor_commands_load_figures():
     assert not [name for name in ("mbs.commands", "mbs.cli", "matplotlib") if f"'{name}'" in library]
     # half a second each, in every process: loaded where something is drawn or filtered; reports always draw
     assert not [name for name in ("matplotlib", "scipy.signal") if f"'{name}'" in commands]
+
+
+OIL = '[lubricant]\nname = "ISO VG 32"\n'
+ROTOR = """
+[[bodies]]
+name = "{bearing}"
+freedoms = ["x", "y", "z"]
+spin = 1
+mass = "20 kg"
+polar_inertia = "0.05 kg m^2"
+transverse_inertia = "0.2 kg m^2"
+[[bearings]]
+name = "of {bearing}"
+bearing = "{bearing}"
+inner = "{bearing}"
+outer = "ground"
+[[loads]]
+name = "on {bearing}"
+on = "{bearing}"
+force = ["1500 N", "-2000 N", "0 N"]
+"""
+OPERATION = 'schema = 1\n[operation]\nspeed = "3000 rpm"\ntemperature = "60 degC"\n'
+ROTORS = "".join(ROTOR.format(bearing=name) for name in ("32208", "NUP210", "6208"))
+
+
+class TestDefaultLaw:
+    """Without a law commands and `assemble` take the films of the table for every kind of bearing."""
+
+    @pytest.mark.parametrize("scene", ["nu308_rigid", "electric_drive", "two_stage", OPERATION + OIL + ROTORS])
+    def test_library_and_command_agree(self, tmp_path, capsys, scene):
+        if "\n" in scene:
+            (tmp_path / "own.toml").write_text(scene)
+            scene = str(tmp_path / "own.toml")
+        model = assemble(read_scene(scene))
+        for command, analysis in (("statics", statics), ("modes", modes)):
+            assert cli.main([command, scene, "-o", str(tmp_path / f"{command}.nc")]) == 0
+            page = capsys.readouterr().out
+            found = analysis(assemble(model.scene)).dataset
+            assert "films from the film table" in page and model.law in page
+            with xr.open_dataset(tmp_path / f"{command}.nc") as data:
+                del data.attrs[MADE_AS]
+                xr.testing.assert_identical(found, data.load())
+        for connected, damping in zip(model.system.elements, analysis(model).balance.element_damping, strict=True):
+            assert not isinstance(connected.element, OnRings) or damping[1, 1] > 0.0
+
+    @pytest.mark.parametrize("rotors", [ROTORS, ROTOR.format(bearing="6208")])
+    def test_a_scene_without_oil_is_dry_and_says_so(self, tmp_path, capsys, rotors):
+        (tmp_path / "own.toml").write_text(OPERATION + rotors)
+        words = "dry, and so without damping, as the scene has no [lubricant]"
+        model = assemble(read_scene(str(tmp_path / "own.toml")))
+        assert words in model.law and words not in assemble(model.scene, "hertz").law
+        assert cli.main(["statics", str(tmp_path / "own.toml")]) == 0
+        assert words in capsys.readouterr().out
 
 
 class TestAsTheCommand:
@@ -256,7 +310,7 @@ def test_a_map_may_be_a_path(model, tmp_path):
 
 
 def test_models_of_one_law_need_labels(model):
-    other = assemble(model.scene, clearance=20e-6)
+    other = assemble(model.scene, "hertz", clearance=20e-6)
     with pytest.raises(InputError, match=r"models: got 2 with the labels dry Hertz, dry Hertz; allowed: .* a Case"):
         sweep([model, other])
     with pytest.raises(InputError, match=r"models: got 0 with the labels none; allowed: at least one"):
@@ -323,13 +377,13 @@ def test_a_scene_needs_no_file():
     scene = parse_scene(read_scene("nu308_rigid").text, "mine", "mine.toml")
     assert scene.name == "mine"
     # Both bearings carry half of the load.
-    forces = statics(assemble(scene)).dataset["bearing_force"].sum("bearing").values
+    forces = statics(assemble(scene, "hertz")).dataset["bearing_force"].sum("bearing").values
     loads = sum(load.force[:3] for load in scene.loads)
     np.testing.assert_allclose(forces[1:], -loads[1:], rtol=1e-8)  # the equilibrium is found to 1e-10
 
 
 def test_responses_over_a_pitch_are_those_at_each_cage_angle():
-    model = assemble(read_scene("nu308_rigid"))
+    model = assemble(read_scene("nu308_rigid"), "hertz")
     frequencies, turned = (300.0, 900.0), model.operation
     found = lsa(model, LsaSettings(frequencies, turned, cage_angles=2))
     half = np.pi / next(bearing.excitation.order for bearing in model.bearings if bearing.excitation)

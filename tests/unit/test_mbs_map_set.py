@@ -116,7 +116,7 @@ def test_oils_that_contradict_each_other_are_told_and_those_of_the_maps_count(sm
     agreed = assemble(scene(), emap=[first, second])
     assert agreed.warnings == [] and "warnings" not in law_attributes(agreed)
     assert set(agreed.oils.values()) == {Lubricant.named("FVA3")}
-    assert assemble(scene()).oils == {}  # dry
+    assert assemble(scene(), "hertz").oils == {}  # dry
     heavy = heavier(second, "VG 150")
     model = assemble(scene(), emap=[first, heavy])
     assert model.oils == {"bearing_left": first.lubricant, "bearing_right": heavy.lubricant}

@@ -53,7 +53,7 @@ def straight():
 
 
 def loads_of(given):
-    model = assemble(given)
+    model = assemble(given, "hertz")
     return largest_loads(model.system, model.bearings, given.speed)
 
 
@@ -104,7 +104,7 @@ def test_largest_load_of_a_bearing_is_the_textbook_one():
 
 def test_largest_load_is_over_a_pitch_and_not_at_the_first_angle():
     still = straight()
-    model = assemble(still)
+    model = assemble(still, "hertz")
     balance_free = still.with_bearings(dataclasses.replace(entry, start_angle=0.3) for entry in still.bearings)
     # 12 angles over a pitch lie 2.5 deg apart: next to a peak that is 1e-3 of the load at most
     assert loads_of(balance_free) == pytest.approx(loads_of(still), rel=2e-3)
@@ -137,11 +137,11 @@ def test_films_in_the_clearance_are_in_the_plan(clearance):
     # The plan takes the films of Moes' formula out of the clearance of dry bearings; here they act in the law.
     given = read_scene("nu308_rigid")
     highest = 2000.0 * RPM
-    dry = assemble(given, clearance=clearance)
+    dry = assemble(given, "hertz", clearance=clearance)
     loads = largest_loads(dry.system, dry.bearings, highest)
     geometry = given.bearings[0].geometry
     room = film_room(geometry, given.lubricant, max(loads), geometry.entrainment_speed(highest), given.temperature)
-    planned = assemble(given, clearance=clearance - room)
+    planned = assemble(given, "hertz", clearance=clearance - room)
     lubricated = assemble(given, "formula", clearance=clearance)
     found = max(max(largest_loads(lubricated.system, lubricated.bearings, part * highest)) for part in (0.05, 1.0))
     reached = max(*loads, *largest_loads(planned.system, planned.bearings, highest))
@@ -153,7 +153,7 @@ def test_films_in_the_clearance_are_in_the_plan(clearance):
 
 
 def test_ranges_follow_from_loads_speeds_and_margin():
-    model = assemble(read_scene("nu308_rigid"))
+    model = assemble(read_scene("nu308_rigid"), "hertz")
     (needed,) = needed_ranges(model.bearings, (3e4, 2e4), (1e-6, 2e-6), (10.0, 100.0), margin=2.0)
     assert needed.bearings == ("bearing_left", "bearing_right")
     assert needed.load == (LIGHTEST * 6e4, 6e4)
@@ -180,7 +180,7 @@ def test_bearings_share_a_map_where_their_contacts_are_alike():
     keys = [[same_contacts(entry.geometry) for entry in given.bearings] for given in (alike, other)]
     assert keys[0][0] == keys[0][1]
     assert keys[1][0] != keys[1][1]
-    model = assemble(other)
+    model = assemble(other, "hertz")
     first, second = needed_ranges(model.bearings, (1e4, 2e4), (0.0, 0.0), (10.0, 100.0))
     assert (first.bearings, second.bearings) == (("bearing_left",), ("bearing_right",))
     assert (first.load[1], second.load[1]) == (3e4, 6e4)
@@ -188,7 +188,7 @@ def test_bearings_share_a_map_where_their_contacts_are_alike():
 
 def test_job_reads_back_and_covers_what_is_needed():
     given = dataclasses.replace(scene((NAMED, BY_HAND % "16 mm")), name='a\n[bearing]\nname = "N1014"')
-    model = assemble(given)
+    model = assemble(given, "hertz")
     for needed in needed_ranges(model.bearings, (12345.6, 23456.7), (0.0, 0.0), (10.3, 103.7)):
         job = planned_job(given, needed)
         assert same_contacts(job.bearing) == same_contacts(needed.geometry)
@@ -205,7 +205,7 @@ def test_a_job_keeps_an_estimated_bearing_and_its_label():
     sizes = '{ bore = "40 mm", outside_diameter = "90 mm", width = "23 mm" }'
     geometry = f'{{ estimate = {sizes}, basic_static_rating = "78 kN", label = "A \\"1\\"" }}'
     given = scene((NAMED, geometry))
-    bearings = assemble(given).bearings
+    bearings = assemble(given, "hertz").bearings
     needed = next(
         entry for entry in needed_ranges(bearings, (1e4, 2e4), (0.0, 0.0), (10.0, 100.0)) if entry.geometry.estimated
     )
@@ -328,7 +328,7 @@ def test_an_unbalance_is_planned_for_with_its_force_on_a_stiff_rotor():
     moment = 50.0 * math.sqrt(2.0) / speed**2
     unbalance = f'\n[[unbalances]]\nname = "u"\non = "shaft:left"\nmoment = "{moment!r} kg m"\nangle = "45 deg"\n'
     load = '\n[[loads]]\nname = "more"\non = "shaft:left"\nforce = ["0 N", "50 N", "50 N"]\n'
-    turning, standing = (assemble(parse_scene(TEXT + words, "own", "own")) for words in (unbalance, load))
+    turning, standing = (assemble(parse_scene(TEXT + words, "own", "own"), "hertz") for words in (unbalance, load))
     found = largest_loads(turning.system, turning.bearings, speed)
     # 1e-7: the equilibria begin elsewhere; the first of the angles is that of the load.
     assert max(found) == pytest.approx(max(largest_loads(standing.system, standing.bearings, speed)), rel=1e-7)

@@ -262,7 +262,7 @@ def test_places_and_laws_that_do_not_exist_are_said_together():
             assemble(parse_scene(SCENE, "test", "test.toml"), law)
     felt = SCENE.replace("slices = 21", "slices = 21\ncentrifugal = true")
     with pytest.raises(InputError, match="centrifugal = true in main; allowed: the laws map and formula"):
-        assemble(parse_scene(felt, "test", "test.toml"))
+        assemble(parse_scene(felt, "test", "test.toml"), "hertz")
 
 
 def test_dry_contacts_with_a_damper():
@@ -324,7 +324,7 @@ class TestSceneInPython:
         assert found.bodies == wanted.bodies
         assert found.elements == wanted.elements
         assert (found.title, found.text, found.files) == ("own", "", ())
-        first, second = (assemble(scene, clearance=-2e-6).system for scene in (found, wanted))
+        first, second = (assemble(scene, "hertz", clearance=-2e-6).system for scene in (found, wanted))
         assert first.coordinates == second.coordinates
         for name in ("mass", "stiffness", "gyroscopic", "steady_loads"):
             assert np.array_equal(getattr(first, name), getattr(second, name))
@@ -362,7 +362,7 @@ class TestSceneInPython:
         body = rigid_body("mass", [Inertia(2.0, 0.01, 0.01)], ["y"])
         assert build_bodies([body]) == (body,)
         spring = Spring("spring", "mass", "ground", np.diag([0.0, 8.0, 0, 0, 0, 0]))
-        model = assemble(own_scene(bodies=[body], springs=[spring], loads=(), elements=()))
+        model = assemble(own_scene(bodies=[body], springs=[spring], loads=(), elements=()), "hertz")
         assert model.system.stiffness == np.array([[8.0]])
 
     def test_specs_say_what_is_wrong_with_them(self):
@@ -441,7 +441,7 @@ def test_everything_about_places_is_said_at_once():
     more = '[[bearings]]\nname = "one"\ninner = "ring"\nouter = "ring:left"\ngeometry = { name = "NU308" }\n[laws.soft]'
     scene = parse_scene(text.replace("[laws.soft]", more), "test", "test.toml")
     with pytest.raises(InputError) as caught:
-        assemble(scene)
+        assemble(scene, "hertz")
     found = "\n".join(caught.value.problems)
     for words in (
         "element 'main': shaft:end and ring are 1 mm apart",
@@ -535,7 +535,7 @@ class TestKinds:
     def test_one_row_brings_an_element_from_the_file_into_the_system(self, with_couplings):
         scene = parse_scene(COUPLED, "coupled", "coupled.toml")
         assert scene.elements == (Coupling("coupling", "a", "b", 100.0),)
-        model = assemble(scene)
+        model = assemble(scene, "hertz")
         (connected,) = model.system.elements
         assert connected.element.name == "coupling"
         turn = connected.transform @ np.array([0.01, 0.0])
@@ -546,7 +546,7 @@ class TestKinds:
     def test_its_problems_come_with_the_others(self, with_couplings):
         text = COUPLED.replace('against = "b"', 'against = "c"').replace("100 N m/rad", "0 N m/rad")
         with pytest.raises(InputError) as caught:
-            assemble(parse_scene(text, "coupled", "coupled.toml"))
+            assemble(parse_scene(text, "coupled", "coupled.toml"), "hertz")
         assert caught.value.problems == (
             "coupling 'coupling': got the body 'c'; allowed: a, b, ground",
             "coupling 'coupling': got no stiffness; allowed: some",
@@ -556,7 +556,7 @@ class TestKinds:
         with pytest.raises(InputError, match=r"couplings: unknown key"):
             parse_scene(COUPLED, "coupled", "coupled.toml")
         with pytest.raises(InputError, match=r"got 'c' of class Coupling; allowed: BearingSpec, GearPair"):
-            assemble(own_scene(elements=[Coupling("c", "shaft", "ground", 1.0)]))
+            assemble(own_scene(elements=[Coupling("c", "shaft", "ground", 1.0)]), "hertz")
 
     def test_rows_are_told_by_their_keys_and_classes(self):
         assert [kind.key for kind in KINDS] == ["bearings", "gears", "", "", ""]

@@ -36,7 +36,7 @@ def test_the_line_of_a_reduced_shaft_is_that_of_the_whole_one():
 
 
 def test_turning_about_x_moves_a_mark():
-    model = assemble(read_scene("gearbox"))
+    model = assemble(read_scene("gearbox"), "hertz")
     bones = skeleton(model.system)
     assert {AXIS, MARK, JOINT} == set(bones.kinds)  # the housing is drawn by its surface
     shape = np.zeros(model.system.size, dtype=complex)

@@ -18,7 +18,7 @@ from mbs.scene.changes import with_slices
 @pytest.fixture(scope="module")
 def gearbox():
     """The gearbox of two stages at rest with dry contacts."""
-    return statics(assemble(with_slices(read_scene("two_stage"), 5)))
+    return statics(assemble(with_slices(read_scene("two_stage"), 5), "hertz"))
 
 
 def test_two_stages_hand_the_torque_on_and_the_thrusts_on_the_middle_shaft_oppose(gearbox):
@@ -73,7 +73,7 @@ def test_the_shaft_says_that_its_bearings_are_estimated_and_stands_by_the_lever_
     geometry = scene.bearings[0].geometry
     assert static_rating(geometry) == pytest.approx(88e3, rel=1e-9)
     assert (geometry.rollers, round(1e3 * geometry.roller_diameter, 6)) == (16, 11.0)
-    found = statics(assemble(scene))
+    found = statics(assemble(scene, "hertz"))
     assert "  NU2210 (left, right): inner geometry estimated from catalogue dimensions" in "\n".join(
         heading(found.model)
     )

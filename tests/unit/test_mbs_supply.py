@@ -101,7 +101,7 @@ def test_a_supply_is_said_with_the_law(emaps):
     ):
         laws = ContactLaws("map", given, MapSet([plain]), asked_supply=asked)
         assert (laws.words, laws.label) == (law, label)
-    dry = assemble(scene('lubrication = "grease"'))
+    dry = assemble(scene('lubrication = "grease"'), "hertz")
     assert (dry.law, dry.label, dry.supplies) == ("dry Hertz, ISO 16281", "dry Hertz", {})
     assert supply_words({}) == "" and "oil_supply" not in law_attributes(dry)
 

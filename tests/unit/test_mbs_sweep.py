@@ -385,7 +385,7 @@ def two_sweeps():
     scene = read_scene("nu308_rigid")
     frequencies = np.geomspace(10.0, 1e4, 20)
     speeds = np.array([500.0, 1000.0]) * RPM
-    dry = sweep(assemble(scene).system, speeds, 0.0, scene.inputs, scene.sensors, frequencies)
+    dry = sweep(assemble(scene, "hertz").system, speeds, 0.0, scene.inputs, scene.sensors, frequencies)
     strong = dataclasses.replace(scene, laws={"strong": (2e7, 1e5)})
     wet = sweep(assemble(strong, "constant:strong").system, speeds, 0.0, scene.inputs, scene.sensors, frequencies)
     return [dry, wet]

@@ -34,8 +34,8 @@ class TestLinearLook:
     def test_a_stiffer_spring(self):
         soft = parse_scene(SWINGING + LINEAR, "soft", "soft.toml")
         stiff = parse_scene((SWINGING + LINEAR).replace("5e7 N/m", "6e7 N/m"), "stiff", "stiff.toml")
-        reference = LinearReference.of(linear_look(assemble(soft)), 5000.0)
-        same, found = (reference.beside(linear_look(assemble(one))) for one in (soft, stiff))
+        reference = LinearReference.of(linear_look(assemble(soft, "hertz")), 5000.0)
+        same, found = (reference.beside(linear_look(assemble(one, "hertz"))) for one in (soft, stiff))
         assert np.all(same.frequency == 0.0)
         assert np.all(same.height == 0.0)
         # sqrt(k/m) and d/(2 sqrt(k m)): round-off of an eigenproblem. The mode along z is not concerned.
@@ -46,7 +46,7 @@ class TestLinearLook:
 
     def test_a_mode_that_is_not_there_is_lost(self):
         gearbox = read_scene("gearbox")
-        whole, less = (linear_look(assemble(one)) for one in (gearbox, changes.with_cutoff(gearbox, 5000.0)))
+        whole, less = (linear_look(assemble(one, "hertz")) for one in (gearbox, changes.with_cutoff(gearbox, 5000.0)))
         found = LinearReference.of(whole, 8000.0).beside(less)
         assert 0 < np.isnan(found.frequency).sum() < found.frequency.size
         # Modes far below both cut-offs: the discarded ones are quasi-static there.

@@ -239,5 +239,5 @@ def test_a_scene_has_the_torque_of_its_bearings_at_rest_and_over_speed(reynolds_
 
 
 def test_a_scene_without_a_map_has_none():
-    found = sweep(assemble(read_scene("nu308_rigid")), SweepSettings(SweepRange(50.0, 100.0, 2))).dataset
+    found = sweep(assemble(read_scene("nu308_rigid"), "hertz"), SweepSettings(SweepRange(50.0, 100.0, 2))).dataset
     assert np.all(np.isnan(found["rolling_torque"].values)) and found["rolling_torque"].attrs["units"] == "N m"

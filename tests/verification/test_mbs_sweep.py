@@ -272,26 +272,26 @@ class TestDryHertz:
         found = []
         for factor in (1.0, 1.5, 2.0):
             loads = tuple(dataclasses.replace(load, force=factor * load.force) for load in scene.loads)
-            result = sweep(assemble(dataclasses.replace(scene, loads=loads)).system, np.array([500.0]) * RPM)
+            result = sweep(assemble(dataclasses.replace(scene, loads=loads), "hertz").system, np.array([500.0]) * RPM)
             found.append(result.undamped.frequency[0, -1])
             np.testing.assert_allclose(result.bearings.load, factor * 141.42136, rtol=1e-7)
         assert found[0] < found[1] < found[2]
 
     def test_stiffness_along_the_load(self):
         """1.747e8 N/m to its digits: 41 slices, a roller at 0 degrees, load at 45 degrees."""
-        result = sweep(assemble(read_scene("nu308_rigid")).system, np.array([500.0]) * RPM)
+        result = sweep(assemble(read_scene("nu308_rigid"), "hertz").system, np.array([500.0]) * RPM)
         np.testing.assert_allclose(result.bearings.stiffness, 1.747e8, rtol=5e-4)
         assert result.bearings.names == ("bearing_left", "bearing_right")
 
     def test_mean_over_a_pitch_is_the_mean_over_start_angles(self):
         scene = read_scene("nu308_rigid")
-        mean = sweep(assemble(scene).system, np.array([500.0]) * RPM, cage_angles=4).bearings
+        mean = sweep(assemble(scene, "hertz").system, np.array([500.0]) * RPM, cage_angles=4).bearings
         one_by_one = []
         for part in range(4):
             bearings = tuple(
                 dataclasses.replace(entry, start_angle=2.0 * math.pi / 12.0 * part / 4.0) for entry in scene.bearings
             )
-            turned = assemble(scene.with_bearings(bearings)).system
+            turned = assemble(scene.with_bearings(bearings), "hertz").system
             one_by_one.append(sweep(turned, np.array([500.0]) * RPM).bearings.stiffness)
         np.testing.assert_allclose(mean.stiffness, np.mean(one_by_one, axis=0), rtol=1e-7)
         spread = 0.5 * np.ptp(one_by_one, axis=0) / np.mean(one_by_one, axis=0)

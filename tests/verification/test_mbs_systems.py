@@ -93,13 +93,13 @@ def model(film_models):
 
 class TestNU308:
     def test_equilibrium_is_the_preload(self):
-        balance = equilibrium(assemble(NU308).system, Operation(500 * RPM))
+        balance = equilibrium(assemble(NU308, "hertz").system, Operation(500 * RPM))
         for forces in balance.forces:
             # the springs of the rings carry nothing, and Newton leaves 1e-10
             np.testing.assert_allclose(forces[1:3], -100.0, rtol=1e-8)
 
     def test_place_and_stiffness_agree_with_the_independent_sum(self):
-        balance = equilibrium(assemble(NU308).system, Operation())
+        balance = equilibrium(assemble(NU308, "hertz").system, Operation())
         iso = IsoBearing(12, 14e-3, 15e-3, 41)
         motion = balance.system.relative("shaft:left", "ring_left") @ balance.displacement
         assert iso.radial_force(float(np.hypot(motion[1], motion[2])), math.pi / 4.0) == pytest.approx(
@@ -117,7 +117,7 @@ class TestNU308:
                 dataclasses.replace(entry, force=np.array([0.0, load, load, 0.0, 0.0, 0.0])) for entry in NU308.loads
             )
             scene = with_slices(dataclasses.replace(NU308, loads=loads), 401)
-            K = equilibrium(assemble(scene).system, Operation()).element_stiffness[0]
+            K = equilibrium(assemble(scene, "hertz").system, Operation()).element_stiffness[0]
             found.append(RADIAL @ K @ RADIAL)
         # 16.0 % and 28.8 % with very many slices; the slices of 401 leave some tenths of a per cent
         assert found[1] / found[0] - 1.0 == pytest.approx(0.16, abs=0.006)
@@ -125,7 +125,7 @@ class TestNU308:
 
     def test_shaft_mode(self):
         """4771 Hz was found by the thesis for a shaft whose mass it does not print: 5 %."""
-        found = modes(equilibrium(assemble(NU308).system, Operation(500 * RPM)))
+        found = modes(equilibrium(assemble(NU308, "hertz").system, Operation(500 * RPM)))
         shaft = np.argmin(np.abs(found.frequency - 4771.0))
         assert found.frequency[shaft] == pytest.approx(4771.0, rel=0.05)
         translation = self._mode_along(RADIAL, found)
@@ -136,14 +136,14 @@ class TestNU308:
     @staticmethod
     def _mode_along(direction, found):
         """The mode in which shaft and rings move against each other along a direction."""
-        system = assemble(NU308).system
+        system = assemble(NU308, "hertz").system
         ends = [system.relative(f"shaft:{side}", f"ring_{side}") for side in ("left", "right")]
         together = sum(direction @ end @ found.shapes for end in ends)
         return int(np.argmax(np.abs(together) / np.linalg.norm(found.shapes, axis=0)))
 
     def test_frequencies_agree_with_the_independent_sum(self):
         """200 slices in both; what is left is the error of the stiffness there."""
-        model = assemble(with_slices(NU308, 200))
+        model = assemble(with_slices(NU308, 200), "hertz")
         balance = equilibrium(model.system, Operation())
         iso = IsoBearing(12, 14e-3, 15e-3, 200)
         pose = (model.system.relative("shaft:left", "ring_left") @ balance.displacement)[[1, 2, 4, 5]]
@@ -196,7 +196,7 @@ class TestNU308:
             loads=tuple(dataclasses.replace(entry, force=rotation @ entry.force) for entry in NU308.loads),
         ).with_bearings(dataclasses.replace(entry, start_angle=turn) for entry in NU308.bearings)
         first, second = (
-            equilibrium(assemble(scene, clearance=10e-6).system, Operation()) for scene in (straight, turned)
+            equilibrium(assemble(scene, "hertz", clearance=10e-6).system, Operation()) for scene in (straight, turned)
         )
         at_left = [
             balance.system.relative("shaft:left", "ring_left") @ balance.displacement for balance in (first, second)
@@ -221,7 +221,7 @@ class TestNU308:
 
     def test_forces_and_moments_balance(self):
         """What the springs to the ground take is what is not inside the system: nothing, for preloads between rings."""
-        model = assemble(NU308, clearance=20e-6)
+        model = assemble(NU308, "hertz", clearance=20e-6)
         balance = equilibrium(model.system, Operation())
         # Rigid translations y and z, and tilts of the whole machine about its middle.
         rows = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
@@ -303,7 +303,7 @@ class TestEnergy:
 
     def test_undamped_run_keeps_its_energy(self):
         """1e5 steps of 0.1 us, spectral radius 1: 1e-6 of the peak kinetic energy, with the energy of the ISO sum."""
-        model = assemble(NU308)
+        model = assemble(NU308, "hertz")
         balance = equilibrium(model.system, Operation())
         start = balance.displacement.copy()
         start[:2] += 5e-8
@@ -498,5 +498,5 @@ class TestN1014:
 
     def test_undamped_heights_are_those_of_no_damping(self):
         """Hertz in place of the dry constant: no damping at all."""
-        found = modes(equilibrium(assemble(self.SCENE).system, Operation(self.SCENE.speed)))
+        found = modes(equilibrium(assemble(self.SCENE, "hertz").system, Operation(self.SCENE.speed)))
         assert np.abs(found.damping_ratio[found.frequency > 1.0]).max() < 1e-9

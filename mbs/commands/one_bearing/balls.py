@@ -7,23 +7,23 @@ import dataclasses
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import AnalysisError, InputError, SolverError
 from ehdmaps.outputs import output_problems
 from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.program import tell
-from ehdmaps.units import RPM, TEMPERATURE
+from ehdmaps.units import RPM, SPEED, TEMPERATURE
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.ball_point import BallPoint, ball_point
 from mbs.bearings.balls.laws import BallLaw, dry_law
 from mbs.commands.one_bearing.ball_files import BallExport, has_memory, write_export
 from mbs.commands.one_bearing.bearing_files import bearing_outputs, is_export
 from mbs.commands.one_bearing.linear_files import count_problems
-from mbs.commands.one_bearing.shared import CELSIUS_40, ROUGHNESS, read_damper, read_oil, refuse_others
+from mbs.commands.one_bearing.shared import CELSIUS_40, read_damper, read_oil, read_surface, refuse_others
 from mbs.commands.one_bearing.values import (
     LOADS,
     MOST_POINTS,
@@ -36,13 +36,14 @@ from mbs.commands.one_bearing.values import (
 from mbs.output.ball_table import BallDescription, ball_dataset, ball_text, write_ball_csv
 from mbs.output.files import write_dataset
 from mbs.scene.contact_laws import Damper
-from mbs.scene.fields import FORCE, MICROMETRE
+from mbs.scene.fields import FORCE
+from mbs.scene.map_set import TABLE_LAW
 
 if TYPE_CHECKING:
     from mbs.bearings.balls.films import BallFilms
 
-FILMS, TABLE = "films", "table"
-"""Laws of contacts with films at each speed: read from the table of points, and solved where it has none; or read."""
+FILMS = "films"
+"""Law of contacts with films that are read from the table of points, and solved where it has none; `table` reads."""
 
 _TAKEN = ("law", "clearance", "temperature", "roughness", "films")
 """Choices that ball bearings take."""
@@ -57,7 +58,9 @@ class BallRequest:
     force : BallForce
         Geometry with its clearance, and its dry law.
     films : str
-        `FILMS`, `TABLE`, or empty where the law is dry.
+        `FILMS`, `table`, or empty where the law is dry.
+    by_default : bool
+        Whether films are those of the default: speeds without any are dry then, and say why.
     oil : Lubricant
         Oil of the films.
     loads : tuple of float
@@ -78,6 +81,7 @@ class BallRequest:
 
     force: BallForce
     films: str
+    by_default: bool
     oil: Lubricant
     loads: tuple[float, ...]
     axial: float
@@ -109,15 +113,15 @@ def read_balls(arguments: argparse.Namespace) -> BallRequest:
     if len(loads) * len(speeds) > MOST_POINTS:
         problems.append(f"--load, --speed: got {len(loads) * len(speeds)} points; allowed: at most {MOST_POINTS}")
     way = read_direction(arguments.direction, problems)
-    law = chosen.get("law")
-    films = law if law in (FILMS, TABLE) else ""
-    more = f", {FILMS}, {TABLE}; maps are of line contacts"
+    law = chosen.get("law", TABLE_LAW)
+    films = law if law in (FILMS, TABLE_LAW) else ""
+    more = f", {FILMS}, {TABLE_LAW}; maps are of line contacts"
     if "films" in chosen and not (films and has_memory(arguments.output)):
         problems.append(
-            f"--films: got {chosen['films']!r} for a ball bearing; allowed: with --law {TABLE} and -o NAME.c, "
+            f"--films: got {chosen['films']!r} for a ball bearing; allowed: with --law {TABLE_LAW} and -o NAME.c, "
             "NAME.fmu, NAME.toml"
         )
-    damper = Damper() if films else read_damper(chosen.get("law"), "ball bearing", more, problems)
+    damper = Damper() if films else read_damper(law, "ball bearing", more, problems)
     temperature = float(chosen.get("temperature", CELSIUS_40))
     oil = read_oil(arguments.oil, temperature, problems)
     clearance = chosen.get("clearance")
@@ -131,22 +135,19 @@ def read_balls(arguments: argparse.Namespace) -> BallRequest:
     problems += count_problems(arguments.output, len(loads), len(speeds), of_one_load=one_load)
     if problems or geometry is None or damper is None or oil is None:
         raise InputError(tuple(dict.fromkeys(problems)))
-    roughness = chosen["roughness"].roughness if "roughness" in chosen else ROUGHNESS
+    _, roughness, for_lambda = read_surface(chosen)
     assumed = [
         *([f"temperature {TEMPERATURE.text(CELSIUS_40)}"] if "temperature" not in chosen else []),
-        *(
-            [f"combined rms roughness {MICROMETRE.text(ROUGHNESS)} (for Lambda only)"]
-            if "roughness" not in chosen
-            else []
-        ),
+        *for_lambda,
         *(["no clearance"] if clearance is None else []),
         *([f"oil {DEFAULT_OIL}"] if arguments.oil is None else []),
     ]
     dry = dry_law(geometry, STEEL, damper.constant, damper.time)
-    source = {FILMS: "read from the film table, or solved", TABLE: "read from the film table"}
+    source = {FILMS: "read from the film table, or solved", TABLE_LAW: "read from the film table"}
     return BallRequest(
         force=BallForce(geometry, dry),
         films=films,
+        by_default="law" not in chosen,
         oil=oil,
         loads=loads,
         axial=axial,
@@ -182,7 +183,10 @@ def run_balls(arguments: argparse.Namespace) -> tuple[str, int]:
 def _written(path: str, request: BallRequest, points: list[list[BallPoint]]) -> str:
     """Write the file of -o, and return what was written in words."""
     if is_export(path):
-        return write_export(path, _exported(request, points[0]))
+        try:
+            return write_export(path, _exported(request, points[0]))
+        except SolverError as error:
+            raise AnalysisError(f"-o {path}: {error}") from error
     dataset = ball_dataset(request.description, points)
     if Path(path).suffix.lower() == ".csv":
         write_ball_csv(dataset, path)
@@ -193,23 +197,23 @@ def _written(path: str, request: BallRequest, points: list[list[BallPoint]]) -> 
 
 def ball_points(request: BallRequest) -> list[list[BallPoint]]:
     """Points at every load and every speed."""
-    forces = [_at_speed(request, speed) for speed in request.speeds]
-    return [
-        [
-            ball_point(
-                force,
-                (request.axial, load * request.way[0], load * request.way[1]),
-                speed,
-                request.outer_speed,
-                tilts=request.description.tilts,
-                oil=request.oil,
-                temperature=request.description.temperature,
-                films=films,
-            )
-            for speed, (force, films) in zip(request.speeds, forces, strict=True)
-        ]
-        for load in request.loads
-    ]
+    rows = [[_at_load(request, load, speed, at) for load in request.loads] for speed, at in _at_speeds(request)]
+    return [list(row) for row in zip(*rows, strict=True)]
+
+
+def _at_load(request: BallRequest, load: float, speed: float, at: _AtSpeed) -> BallPoint:
+    """The point at a load and a speed."""
+    point = ball_point(
+        at.force,
+        (request.axial, load * request.way[0], load * request.way[1]),
+        speed,
+        request.outer_speed,
+        tilts=request.description.tilts,
+        oil=request.oil,
+        temperature=request.description.temperature,
+        films=at.films,
+    )
+    return dataclasses.replace(point, problems=(*point.problems, *at.problems), notes=(*point.notes, *at.notes))
 
 
 def _exported(request: BallRequest, points: list[BallPoint]) -> BallExport:
@@ -222,15 +226,50 @@ def _exported(request: BallRequest, points: list[BallPoint]) -> BallExport:
     return BallExport(request.force, request.description, points, request.outer_speed, made, request.memory)
 
 
-def _at_speed(request: BallRequest, speed: float) -> tuple[BallForce, BallFilms | None]:
-    """The force at a speed of the inner ring, and its films; dry where nothing rolls, or none are asked for."""
+class _AtSpeed(NamedTuple):
+    """The force at a speed, its films where it has those of a table or of the solver, and what is to be said of it."""
+
+    force: BallForce
+    films: BallFilms | None = None
+    problems: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+
+
+def _at_speeds(request: BallRequest) -> list[tuple[float, _AtSpeed]]:
+    """Speeds of the inner ring, each with its force."""
+    return [(speed, _at_speed(request, speed)) for speed in request.speeds]
+
+
+_BY_FORMULA = "; thickness of films by the formula of Hamrock and Dowson"
+
+
+def _at_speed(request: BallRequest, speed: float) -> _AtSpeed:
+    """The force at a speed of the inner ring; dry where nothing rolls, or none are asked for."""
     geometry = request.force.geometry
     u = geometry.entrainment_speed(speed, request.outer_speed)
     if not request.films or u == 0.0:
-        return request.force, None
-    films = _films(request, u)
+        return _AtSpeed(request.force)
+    if request.films == TABLE_LAW and u < (slowest := _slowest(request)):
+        law = _films(request, slowest).faded(geometry, u / slowest)
+        words = f"{RPM.text(speed)}: films fade, as the film table of points begins at {SPEED.text(slowest)}"
+        return _AtSpeed(BallForce(geometry, law), notes=(words + _BY_FORMULA,))
+    try:
+        films = _films(request, u)
+    except SolverError as error:
+        words = f"film table has no films there ({error}); --law {FILMS} solves them"
+        if not request.by_default:
+            raise AnalysisError(f"{RPM.text(speed)}: {words}, and contacts of --law hertz have none") from error
+        words = f"{RPM.text(speed)}: dry and without damping, as the {words}{_BY_FORMULA}"
+        return _AtSpeed(request.force, problems=(words,))
     tell(f"{RPM.text(speed)}: films {films.words}")
-    return BallForce(geometry, films.law), films
+    return _AtSpeed(BallForce(geometry, films.law), films)
+
+
+def _slowest(request: BallRequest) -> float:
+    """Entrainment speed at which the film table of points begins [m/s]."""
+    from mbs.bearings.balls.films import slowest_films  # with the table of point contacts
+
+    return slowest_films(request.force.geometry, request.oil, request.description.temperature)
 
 
 def _films(request: BallRequest, entrainment_speed: float) -> BallFilms:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
-from ehdmaps.physics.surface import CrownedProfile, TabulatedProfile
+from ehdmaps.physics.surface import SMOOTH, CrownedProfile, Surface, TabulatedProfile
 from mbs.scene.contact_laws import HERTZ_FORMS, Damper, hertz_damper
+from mbs.scene.fields import MICROMETRE
 
 CELSIUS_40, ROUGHNESS = 313.15, 0.3e-6
 """Assumed where nothing is given: the temperature of the raceways [K], the combined rms roughness [m]."""
@@ -53,12 +55,12 @@ def refuse_others(
         problems.append(f"{', '.join(given)}: not for {kind}s; allowed: {allowed} and -o; leave it out")
 
 
-def read_damper(law: str | None, kind: str, more: str, problems: list[str]) -> Damper | None:
+def read_damper(law: str, kind: str, more: str, problems: list[str]) -> Damper | None:
     """Damper of the law hertz; None where a problem was noted.
 
     Parameters
     ----------
-    law : str or None
+    law : str
         Law as it was typed.
     kind, more : str
         Kind of the bearing, and what else is allowed, in words.
@@ -66,13 +68,27 @@ def read_damper(law: str | None, kind: str, more: str, problems: list[str]) -> D
         What is wrong; added to.
     """
     try:
-        damper = Damper() if law is None else hertz_damper(law)
+        damper = hertz_damper(law)
     except InputError as error:
         problems += error.problems
         return None
     if damper is None:
         problems.append(f"--law: got {law!r:.60} for a {kind}; allowed: hertz, {HERTZ_FORMS}{more}")
     return damper
+
+
+def read_surface(chosen: Mapping[str, Any]) -> tuple[Surface, float, list[str]]:
+    """Surfaces as they were chosen, the roughness of Lambda [m], and a line where that is only assumed.
+
+    Parameters
+    ----------
+    chosen : mapping of str to object
+        Choices by their names.
+    """
+    surface: Surface = chosen.get("roughness", SMOOTH)
+    if surface.smooth:
+        return SMOOTH, ROUGHNESS, [f"combined rms roughness {MICROMETRE.text(ROUGHNESS)} (for Lambda only)"]
+    return surface, surface.roughness, []
 
 
 def read_profile_text(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -15,6 +16,7 @@ from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
 from ehdmaps.physics.rollers.ribbed_geometry import RibbedGeometry, ribbed_estimate, ribbed_way
 from ehdmaps.physics.rollers.tapered_catalogue import tapered_estimate
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
+from ehdmaps.physics.surface import Surface
 from ehdmaps.units import RPM, TEMPERATURE
 from mbs.bearings.tapered.line_film import LineFilms
 from mbs.bearings.tapered.tapered_bearing import MOST_SLICES, SLICES, TaperedForce
@@ -23,10 +25,10 @@ from mbs.commands.one_bearing.bearing_files import bearing_outputs, is_export, i
 from mbs.commands.one_bearing.linear_files import count_problems
 from mbs.commands.one_bearing.shared import (
     CELSIUS_40,
-    ROUGHNESS,
     read_damper,
     read_oil,
     read_profile_text,
+    read_surface,
     refuse_others,
 )
 from mbs.commands.one_bearing.tapered_files import TaperedExport, write_export
@@ -48,7 +50,7 @@ from mbs.commands.one_bearing.values import (
 )
 from mbs.output.files import write_dataset
 from mbs.scene.contact_laws import Damper
-from mbs.scene.fields import FORCE, MICROMETRE
+from mbs.scene.fields import FORCE
 from mbs.scene.map_set import TABLE_LAW
 
 _TAKEN = ("law", "temperature", "roughness", "films")
@@ -65,10 +67,14 @@ class TaperedRequest:
         Geometry and laws.
     films : bool
         Whether films act in the balance.
+    by_default : bool
+        Whether films are those of the default: speeds without any are dry then, and say why.
     memory : bool
         Whether the films of a file for another program have a memory.
     oil : Lubricant
         Oil of the films.
+    surface : Surface
+        Surfaces of the lines with films; smooth where a roughness is only assumed.
     loads : tuple of float
         Sizes of the radial load on the inner ring [N].
     axial : float
@@ -85,8 +91,10 @@ class TaperedRequest:
 
     force: TaperedForce
     films: bool
+    by_default: bool
     memory: bool
     oil: Lubricant
+    surface: Surface
     loads: tuple[float, ...]
     axial: float
     way: tuple[float, float]
@@ -128,12 +136,13 @@ def read_tapered(arguments: argparse.Namespace) -> TaperedRequest:
     if len(loads) * len(speeds) > MOST_POINTS:
         problems.append(f"--load, --speed: got {len(loads) * len(speeds)} points; allowed: at most {MOST_POINTS}")
     way = read_direction(arguments.direction, problems)
-    films = chosen.get("law") == TABLE_LAW
+    law = chosen.get("law", TABLE_LAW)
+    films = law == TABLE_LAW
     if "films" in chosen and not (films and is_source(arguments.output)):
         problems.append(
             f"--films: got {chosen['films']!r} for a {kind}; allowed: with --law {TABLE_LAW} and -o NAME.c, NAME.fmu"
         )
-    damper = Damper() if films else read_damper(chosen.get("law"), kind, f", {TABLE_LAW}", problems)
+    damper = Damper() if films else read_damper(law, kind, f", {TABLE_LAW}", problems)
     profile = arguments.profile
     if isinstance(geometry, RibbedGeometry):
         profile = read_profile_text(profile, designated(arguments.bearing), problems)
@@ -147,30 +156,28 @@ def read_tapered(arguments: argparse.Namespace) -> TaperedRequest:
     problems += count_problems(arguments.output, len(loads), len(speeds), of_one_load=one_load)
     if problems or geometry is None or damper is None or oil is None or slices is None:
         raise InputError(tuple(dict.fromkeys(problems)))
-    roughness = chosen["roughness"].roughness if "roughness" in chosen else ROUGHNESS
+    surface, roughness, for_lambda = read_surface(chosen)
     assumed = [
         *([f"temperature {TEMPERATURE.text(CELSIUS_40)}"] if "temperature" not in chosen else []),
-        *(
-            [f"combined rms roughness {MICROMETRE.text(ROUGHNESS)} (for Lambda only)"]
-            if "roughness" not in chosen
-            else []
-        ),
+        *for_lambda,
         *([f"oil {DEFAULT_OIL}"] if arguments.oil is None else []),
         *(["no axial clearance"] if ribbed else []),
         *(["no clearance"] if ribbed and "clearance" not in chosen else []),
     ]
     return TaperedRequest(
         films=films,
+        by_default="law" not in chosen,
         memory=chosen.get("films") == "memory",
         force=TaperedForce(geometry, damper.constant, damper.time, profile=profile, slices=slices),
         oil=oil,
+        surface=surface,
         loads=loads,
         axial=axial,
         way=way,
         speeds=speeds,
         outer_speed=outer,
         description=TaperedDescription(
-            law="film table at radius and speed of the middle, rib dry"
+            law="film table at radius and speed of the middle, rib dry" + (f", {surface.label}" * (not surface.smooth))
             if films
             else "dry, ISO/TS 16281, rib Hertz" + (f", {damper.words} of each contact" if damper.words else ""),
             films=f"films by the formulas of Moes and Dowson-Higginson, {oil.title}"
@@ -214,29 +221,44 @@ def tapered_points(request: TaperedRequest) -> list[list[TaperedPoint]]:
     """Points at every load and every speed."""
     forces = _forces(request)
     return [
-        [
-            tapered_point(
-                force,
-                (request.axial, load * request.way[0], load * request.way[1]),
-                speed,
-                request.outer_speed,
-                tilts=request.description.tilts,
-                oil=request.oil,
-                temperature=request.description.temperature,
-            )
-            for speed, force in zip(request.speeds, forces, strict=True)
-        ]
+        [_at_load(request, load, speed, *at) for speed, at in zip(request.speeds, forces, strict=True)]
         for load in request.loads
     ]
 
 
-def _forces(request: TaperedRequest) -> list[TaperedForce]:
-    """The force at each speed of the inner ring, with the films of the speed; dry where nothing rolls."""
+def _at_load(
+    request: TaperedRequest, load: float, speed: float, force: TaperedForce, lacks: tuple[str, ...]
+) -> TaperedPoint:
+    """The point at a load and a speed, with why films are lacking."""
+    point = tapered_point(
+        force,
+        (request.axial, load * request.way[0], load * request.way[1]),
+        speed,
+        request.outer_speed,
+        tilts=request.description.tilts,
+        oil=request.oil,
+        temperature=request.description.temperature,
+    )
+    return dataclasses.replace(point, problems=(*point.problems, *lacks))
+
+
+def _forces(request: TaperedRequest) -> list[tuple[TaperedForce, tuple[str, ...]]]:
+    """The force at each speed of the inner ring, and why it has no films; none where nothing rolls."""
     films = _films(request) if request.films else None
     if films is None:
-        return [request.force] * len(request.speeds)
-    speeds = [request.force.geometry.entrainment_speed(speed, request.outer_speed) for speed in request.speeds]
-    return [request.force.with_films(films(u)) for u in speeds]
+        return [(request.force, ())] * len(request.speeds)
+    found: list[tuple[TaperedForce, tuple[str, ...]]] = []
+    for speed in request.speeds:
+        try:
+            at_speed = films(request.force.geometry.entrainment_speed(speed, request.outer_speed))
+        except InputError as error:
+            if not request.by_default:
+                raise
+            words = f"{RPM.text(speed)}: dry and without damping, as the film table has no films there ({error})"
+            found.append((request.force, (words,)))
+        else:
+            found.append((request.force.with_films(at_speed), ()))
+    return found
 
 
 def _films(request: TaperedRequest) -> Callable[[float], LineFilms] | None:
@@ -247,7 +269,8 @@ def _films(request: TaperedRequest) -> Callable[[float], LineFilms] | None:
         return None
     from mbs.scene.tapered.films import FilmsOfLines, OilOfLines
 
-    films = FilmsOfLines(geometry, OilOfLines("table", request.oil, request.description.temperature, fastest))
+    temperature = request.description.temperature
+    films = FilmsOfLines(geometry, OilOfLines("table", request.oil, temperature, fastest, surface=request.surface))
     return lambda u: films(u / geometry.entrainment_speed(1.0), 0.0)
 
 
