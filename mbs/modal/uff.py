@@ -87,6 +87,10 @@ LARGEST = 2**29
 """Bytes of a file that is still read."""
 
 _SHOWN_PROBLEMS = 20
+
+_A_LINE = {(2, True): 6, (4, True): 4, (5, True): 3, (6, True): 2, (2, False): 3, (4, False): 2, (5, False): 2}
+"""Values on a full line of a text by their type (single, double, complex single, complex double) and whether their
+abscissa is even: a program may fill up the last line, with less than one of these."""
 _WINDOW = re.compile(re.escape(WINDOW).replace(r"\{\}", r"([0-9.e+-]{1,24})"))
 
 _Place = tuple[str, int, int]
@@ -230,13 +234,23 @@ def _factors(sets: Iterable[Dataset], problems: list[str], notes: list[str]) -> 
     return factors
 
 
+def _cut_to_count(entry: Dataset) -> None:
+    """Leave out what fills the last line of a text behind the values that the header announces."""
+    count, size = int(entry.get("num_pts", 0)), np.size(entry.get("data", ()))
+    form, even = int(entry.get("ord_data_type", 0)), int(entry.get("abscissa_spacing", 0)) == 1
+    if not entry.get("binary") and 0 < count < size < count + _A_LINE.get((form, even), 0):
+        entry["data"], entry["x"] = np.asarray(entry["data"])[:count], np.asarray(entry["x"])[:count]
+
+
 def _sound(entry: Dataset, number: int, problems: list[str]) -> bool:
     """Tell whether a function has the values that its header announces; else note what is wrong."""
+    _cut_to_count(entry)
     values, axis = np.asarray(entry.get("data", ())), np.asarray(entry.get("x", ()))
     where = f"function {number}"
     count = int(entry.get("num_pts", 0))
     if values.ndim != 1 or values.size != count or axis.shape != values.shape:
-        problems.append(f"{where}: got {values.size} values and not {count}, as its header says; the file is cut off")
+        cause = "the file is cut off" if values.size < count else "the header or the values are of another record"
+        problems.append(f"{where}: got {values.size} values and not {count}, as its header says; {cause}")
     elif not 2 <= count <= LONGEST:
         problems.append(f"{where}: got {count} values; allowed: 2 to {LONGEST}")
     elif not (np.all(np.isfinite(values)) and np.all(np.isfinite(axis))):

@@ -27,6 +27,7 @@ from mbs.modal.records import Channel
 from mbs.modal.residues import assurance
 from mbs.modal.stabilisation import Criteria, stabilise
 from mbs.modal.uff import LARGEST, Measurement, read_uff, write_uff
+from mbs.timedata.uff_file import read_time_uff
 from tests.cases.modal import POLES, REFERENCE, SENSORS, STEP, hits, measured
 
 
@@ -404,6 +405,53 @@ def test_hits_are_counted_by_their_order_where_the_file_does_not(tmp_path):
         text = text.replace(f"    1         0{hit:5d}         0", "    1         0    0         0")
     path.write_text(text)
     np.testing.assert_allclose(read_uff(path).hits[0].force[:, 0], hits(3).force[:, 0], rtol=1e-10)
+
+
+WIDTHS = {
+    # real single and double, complex single and double; width of an abscissa and of a value, pairs or values a line
+    (2, True): (0, 13, 6), (4, True): (0, 20, 4), (5, True): (0, 13, 3), (6, True): (0, 20, 2),
+    (2, False): (13, 13, 3), (4, False): (13, 20, 2), (5, False): (13, 13, 2),
+}  # fmt: skip
+
+
+def block(form, even, function, kind, axis, values, fill):
+    """Text of a dataset 58, as the format is published; its last line filled up with zeros, or not."""
+    across, width, a_line = WIDTHS[form, even]
+    lost = -len(axis) % a_line if fill else 0
+    rows = zip([*axis, *[0.0] * lost], [*values, *[0.0] * lost], strict=True)
+    parts = [
+        (f"{x:13.5E}" if across else "")
+        + "".join(f"{part:{width}.{width - 8}E}" for part in ((v.real, v.imag) if form > 4 else (v.real,)))
+        for x, v in rows
+    ]
+    lines = ["".join(parts[k : k + a_line]) for k in range(0, len(parts), a_line)]
+    place = f"{'NONE':10s}{1:10d}{3:4d}"
+    head = ["    -1", "    58", *["NONE"] * 5, f"{function:5d}{0:10d}{1:5d}{0:10d} {place} {place}"]
+    head.append(f"{form:10d}{len(axis):10d}{even:10d}{axis[0]:13.5E}{axis[1] - axis[0]:13.5E}{0:13.5E}")
+    head += [f"{t:10d}{0:5d}{0:5d}{0:5d} {'NONE':20s} {'NONE':20s}" for t in (17, kind, 13 * (function == 4), 0)]
+    return "\n".join([*head, *lines, "    -1", ""])
+
+
+@pytest.mark.parametrize(("form", "even"), WIDTHS)
+def test_a_last_line_that_is_filled_up_is_cut_off(tmp_path, form, even):
+    axis = 0.5 * np.arange(31.0)
+    values = np.sin(axis + 1.0) + (1j * np.cos(axis) if form > 4 else 0.0)
+    for fill in (False, True):
+        path = tmp_path / f"{fill}.uff"
+        if form > 4:
+            path.write_text(block(form, even, 4, 12, axis, values, fill))
+            found, there = read_uff(path).responses.response[0], read_uff(path).responses.frequency
+        else:
+            path.write_text("".join(block(form, even, 1, kind, axis, values, fill) for kind in (13, 12)))
+            found, there = read_uff(path).hits[0].response[0, 0], read_time_uff(path).records[0].time
+            np.testing.assert_array_equal(read_time_uff(path).records[0].values[:, 1], found)
+        np.testing.assert_allclose(found, values, atol=5e-6)  # six digits of single precision
+        np.testing.assert_allclose(there, axis, atol=1e-9)
+    # A whole line more is no filling.
+    text = path.read_text().replace(f"{31:10d}{int(even):10d}", f"{31 - WIDTHS[form, even][2]:10d}{int(even):10d}")
+    path.write_text(text)
+    with pytest.raises(InputError, match="of another record"):
+        read_uff(path)
 
 
 def hostile(folder):
