@@ -12,7 +12,8 @@ import numpy as np
 from scipy import io, linalg, sparse, spatial
 
 from ehdmaps.outputs import write_figure
-from mbs.flexible.matrix_files import NodePositions, assemble_model, read_matrix_market
+from mbs.flexible.finite_elements import NodePositions
+from mbs.flexible.matrix_files import assemble_model, read_matrix_market
 from mbs.flexible.reduction import Interface, nodes_in_plane, reduce
 
 FOLDER, SPACING = Path(sys.argv[1] if len(sys.argv) > 1 else "."), 0.02

@@ -13,8 +13,8 @@ from ehdmaps.physics.solids import Material
 from ehdmaps.solids.calculix import run_deck
 from examples.housings.deck import deck
 from examples.housings.mesh import Mesh
-from mbs.flexible.finite_elements import FiniteElementModel
-from mbs.flexible.matrix_files import NodePositions, read_calculix
+from mbs.flexible.finite_elements import FiniteElementModel, NodePositions
+from mbs.flexible.matrix_files import read_calculix
 
 PURPOSE = "making a housing"
 """What needs CalculiX, for messages."""

@@ -16,6 +16,7 @@ from mbs.flexible.carry_out import read_model, reduce_model
 from mbs.flexible.finite_elements import Extent, extent
 from mbs.flexible.reduced_body import ReducedBody
 from mbs.flexible.reduced_file import REDUCED, write_reduced
+from mbs.flexible.rigid_motion import Strained, strained
 from mbs.scene.fields import HERTZ
 from mbs.scene.flexible import read_body_file
 
@@ -39,12 +40,14 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     found = extent(model)
     reduced = reduce_model(plan, model, {"command": f"mbs reduce {source.name} -o {target.name}", **_versions()})
     seconds = time.perf_counter() - began
-    warnings = [f"warning: {source}: {words}" for words in found.warnings(plan.units)]
+    as_one = strained(model)
+    sentences = (*found.warnings(plan.units), *as_one.warnings())
+    warnings = [f"warning: {source}: {words}" for words in sentences]
     write_reduced(target, reduced)
-    return "\n".join([*_lines(reduced, found, source, seconds), *warnings, f"{target}: written"]), 0
+    return "\n".join([*_lines(reduced, found, as_one, source, seconds), *warnings, f"{target}: written"]), 0
 
 
-def _lines(reduced: ReducedBody, found: Extent, source: Path, seconds: float) -> list[str]:
+def _lines(reduced: ReducedBody, found: Extent, as_one: Strained, source: Path, seconds: float) -> list[str]:
     """Lines on what was found."""
     squares = np.diag(reduced.stiffness)
     kept = [np.sqrt(squares[k]) / (2.0 * np.pi) for k, unit in enumerate(reduced.units) if unit == "1"]
@@ -53,6 +56,7 @@ def _lines(reduced: ReducedBody, found: Extent, source: Path, seconds: float) ->
         f"{source}: {reduced.attributes['finite_element_freedoms']} degrees of freedom to {reduced.size}: {count} of "
         f"interfaces, {len(kept)} modes up to {reduced.attributes['cutoff']}; {seconds:.3g} s",
         f"{found.mass:.6g} kg without what fixed nodes have of it",
+        f"{as_one.held.size} of {as_one.count} nodes are next to what is held",
         "",
         f"{'place':<20}{'x, mm':>12}{'y, mm':>12}{'z, mm':>12}",
     ]

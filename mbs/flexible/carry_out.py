@@ -23,15 +23,14 @@ from ehdmaps.provenance import code_hash
 from ehdmaps.units import LENGTH
 from mbs.flexible.finite_elements import FiniteElementModel, extent
 from mbs.flexible.matrix_files import (
-    DECKS,
     assemble_model,
     check_deck,
     read_abaqus_matrix,
     read_calculix,
     read_matrix_market,
-    read_mesh_nodes,
     without_fixed,
 )
+from mbs.flexible.mesh_files import DECKS, read_mesh_nodes
 from mbs.flexible.nastran_files import read_nastran
 from mbs.flexible.number_table import LONGEST_FILE
 from mbs.flexible.plan import CylinderSurface, NodeList, PlannedInterface, ReductionPlan

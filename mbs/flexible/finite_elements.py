@@ -15,6 +15,7 @@ Nodes that are fixed are not in the matrices: their share of the mass, and of th
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 from scipy import sparse
@@ -89,8 +90,14 @@ class FiniteElementModel:
         if not problems:
             massless = np.flatnonzero(self.mass.diagonal() <= 0.0)
             unstrained = np.flatnonzero(self.stiffness.diagonal() <= 0.0)
-            problems += self._list("stiffness", unstrained, "no stiffness; allowed: some for each; leave it out")
-            problems += self._list("mass", massless, "no mass or a negative one; allowed: a mass for each; condense it")
+            problems += self._list(
+                "stiffness", unstrained, f"no stiffness; allowed: some for each; {self._cause(unstrained, 'stiffness')}"
+            )
+            problems += self._list(
+                "mass",
+                massless,
+                f"no mass or a negative one; allowed: a mass for each; {self._cause(massless, 'mass')}",
+            )
         if problems:
             raise InputError(problems)
         object.__setattr__(self, "_place", {int(number): k for k, number in enumerate(self.numbers)})
@@ -162,6 +169,23 @@ class FiniteElementModel:
             )
         return problems
 
+    def _cause(self, rows: IntArray, name: str) -> str:
+        """Cause of degrees of freedom without stiffness or mass, and what to do."""
+        turns = bool(np.any(self.directions[rows] > 2))
+        if name == "mass":
+            return (
+                "rotations of shells, beams and lumped masses have none where their mass is lumped: let the program "
+                "write consistent masses (Nastran: PARAM,COUPMASS,1), or condense these rotations"
+                if turns
+                else "condense it"
+            )
+        return (
+            "shells have none about their normal, nodes of solids none at all, whatever lumped mass turns with them: "
+            "give some (Nastran: PARAM,K6ROT,100.), or leave the rotation out"
+            if turns
+            else "a lumped mass is joined to nothing: tie it to the body, or leave it out"
+        )
+
     def _list(self, name: str, rows: IntArray, problem: str) -> list[str]:
         """A problem of some degrees of freedom; empty for none."""
         if rows.size == 0:
@@ -169,6 +193,13 @@ class FiniteElementModel:
         shown = ", ".join(f"node {self.nodes[k]} direction {self.directions[k]}" for k in rows[:5])
         more = f" and {rows.size - 5} more" if rows.size > 5 else ""
         return [f"finite-element body, {name}: {shown}{more}: {problem}"]
+
+
+class NodePositions(NamedTuple):
+    """Nodes with known positions: numbers (P,), positions (P, 3) in the units of the file."""
+
+    numbers: IntArray
+    positions: FloatArray
 
 
 def named(nodes: IntArray) -> str:

@@ -1,14 +1,7 @@
-"""Bodies as other programs write them: Matrix Market, Abaqus, CalculiX, tables of numbers, and places of the nodes.
-
-Stiffness and mass as other programs write them: tables of numbers, Matrix Market, Abaqus matrix output.
+"""Stiffness and mass as other programs write them: tables of numbers, Matrix Market, Abaqus and CalculiX output.
 
 All readers give a sparse matrix and labels (node, direction) of its rows. A symmetric matrix may be given as one half
 or as a whole; which one it is, the entries say: each pair once, or each twice.
-
-Where the nodes of a mesh are, by their numbers.
-
-Abaqus and CalculiX decks are read here, because node numbers matter and need not be consecutive; all other formats by
-meshio, where node k is the k-th point of the file.
 
 Matrices that CalculiX writes for `*FREQUENCY, SOLVER=MATRIXSTORAGE`.
 
@@ -17,33 +10,25 @@ job.dof             lines "node.direction", one for each row
 
 Degrees of freedom that are fixed (*BOUNDARY), and those that follow others (*EQUATION, *TIE), are not in the matrices:
 CalculiX has worked the others' share into the rows that are. So a node that is missing may be fixed or may follow, and
-can be no interface. The rotations of a *RIGID BODY appear as displacements of an auxiliary node, and *TRANSFORM turns
-the directions of a node: decks with these are refused.
+can be no interface. The rotations of a *RIGID BODY appear as displacements of an auxiliary node: decks with it are
+refused.
 """
 
 from __future__ import annotations
 
-import math
 import re
-import subprocess
-import sys
-import tempfile
-import textwrap
-from collections.abc import Sequence
-from io import BytesIO
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 from scipy import io, sparse
 
-from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.arrays import IntArray
 from ehdmaps.errors import InputError
-from ehdmaps.extras import needs
-from ehdmaps.units import short
-from mbs.flexible.finite_elements import MOST_FREEDOMS, FiniteElementModel
+from mbs.flexible.finite_elements import MOST_FREEDOMS, FiniteElementModel, NodePositions, named
 from mbs.flexible.number_table import NumberTable, check_file, check_last_line, read_numbers
 from mbs.flexible.plan import UNIT_SYSTEMS
+from mbs.flexible.rigid_motion import check_rigid_motion
 
 _BLOCK = 2**20
 """Bytes of a file that are looked at in one piece."""
@@ -68,13 +53,6 @@ class Labelled(NamedTuple):
     directions: IntArray
 
 
-class NodePositions(NamedTuple):
-    """Nodes with known positions: numbers (P,), positions (P, 3) in the units of the file."""
-
-    numbers: IntArray
-    positions: FloatArray
-
-
 def assemble_model(stiffness: Labelled, mass: Labelled, nodes: NodePositions, units: str = "SI") -> FiniteElementModel:
     """Put what files hold into one model in SI.
 
@@ -90,7 +68,7 @@ def assemble_model(stiffness: Labelled, mass: Labelled, nodes: NodePositions, un
     Raises
     ------
     InputError
-        If the matrices do not have the same degrees of freedom, or do not make a model.
+        If the matrices do not have the same degrees of freedom, do not make a model, or do not fit the nodes.
     """
     if units not in UNIT_SYSTEMS:
         raise InputError(f"units: got {units!r:.40}; allowed: {', '.join(UNIT_SYSTEMS)}")
@@ -114,7 +92,7 @@ def assemble_model(stiffness: Labelled, mass: Labelled, nodes: NodePositions, un
         with np.errstate(over="ignore"):  # the model refuses what is infinite
             scaled = matrix.data * factors[step[matrix.row] + step[matrix.col]]
         matrices.append(sparse.csc_array((scaled, (matrix.row, matrix.col)), shape=matrix.shape))
-    return FiniteElementModel(
+    model = FiniteElementModel(
         stiffness=matrices[0],
         mass=matrices[1],
         nodes=stiffness.nodes[orders[0]],
@@ -122,6 +100,8 @@ def assemble_model(stiffness: Labelled, mass: Labelled, nodes: NodePositions, un
         numbers=nodes.numbers,
         positions=nodes.positions * length,
     )
+    check_rigid_motion(model)
+    return model
 
 
 def read_matrix_market(path: Path, dofs: Path) -> Labelled:
@@ -321,182 +301,7 @@ def _check_plain(path: Path) -> None:
                 )
 
 
-DECKS = (".inp",)
-
-_SEVERAL = (".xdmf", ".xmf", ".xml", ".node", ".ele")
-"""Formats of meshio that open further files, whatever those are."""
-
-_PACKED = (".gz",)
-
-SHORTEST_READ, BYTES_PER_SECOND = 20.0, 1e6
-"""Seconds that meshio has, and what it reads in one more; it takes half a second to start, and 10 MB a second."""
-
-_NO_PACKAGE = 3
-"""Exit status of the process that reads, where meshio or a package that it needs is not installed."""
-
-# meshio prints what went wrong, and leaves the program.
-_AROUND = """
-import os, sys
-output = os.fdopen(os.dup(1), "wb")
-os.dup2(2, 1)
-try:
-{}
-except ImportError as error:
-    sys.stderr.write(str(error))
-    sys.exit({})
-except (Exception, SystemExit) as error:
-    sys.stderr.write(f" {{error}}")
-"""
-
-_READ = """
-import meshio, numpy
-numpy.save(output, numpy.asarray(meshio.read(sys.argv[1]).points, dtype=float))
-"""
-
-
-def read_mesh_nodes(path: Path) -> NodePositions:
-    """Read the positions of the nodes, in the units of the file.
-
-    Parameters
-    ----------
-    path : Path
-        .inp: all *NODE blocks; anything else that meshio reads: .msh, .vtk, .vtu, .bdf ...
-
-    Raises
-    ------
-    InputError
-        With the file, and the line of a deck.
-    """
-    check_file(path)
-    if path.suffix.lower() in (*_SEVERAL, *_PACKED):
-        raise InputError(
-            f"{path}: got the ending {path.suffix!r}, of a mesh in several files or a packed one; allowed: a mesh in "
-            "one file, such as .inp, .msh, .vtk, .vtu, .bdf; convert it"
-        )
-    return _deck_nodes(path) if path.suffix.lower() in DECKS else _meshio_nodes(path)
-
-
-def _deck_nodes(path: Path) -> NodePositions:
-    """Nodes of a deck."""
-    places: dict[int, tuple[float, float, float]] = {}
-    inside = False
-    with path.open(encoding="utf-8", errors="replace") as file:
-        for number, line in enumerate(file, start=1):
-            text = line.strip()
-            if not text or text.startswith("**"):
-                continue
-            if text.startswith("*"):
-                keyword = text[1:].partition(",")[0].strip().upper()
-                if keyword == "INCLUDE":
-                    raise InputError(f"{path}, line {number}: got {short(text)}; allowed: a deck with its nodes in it")
-                inside = keyword == "NODE"
-                if inside and "SYSTEM" in text.upper().replace("SYSTEM=R", ""):
-                    raise InputError(f"{path}, line {number}: got {short(text)}; allowed: rectangular coordinates")
-                continue
-            if inside:
-                if not line.endswith("\n"):
-                    raise InputError(
-                        f"{path}, line {number}: got {short(text)}, which has no end; allowed: a deck that is whole; "
-                        "the file was cut off, or add a line break where it was not"
-                    )
-                node, position = _node(path, number, text)
-                places[node] = position
-    if not places:
-        raise InputError(f"{path}: has no *NODE block; allowed: the deck that has the nodes of the mesh")
-    return NodePositions(np.array(list(places), dtype=np.int64), np.array(list(places.values()), dtype=np.float64))
-
-
-def _node(path: Path, number: int, text: str) -> tuple[int, tuple[float, float, float]]:
-    """One line of a *NODE block."""
-    parts = [part.strip() for part in text.rstrip(",").split(",")]
-    try:
-        node = int(parts[0])
-        values = [float(part) if part else 0.0 for part in parts[1:4]]
-    except ValueError:
-        node, values = 0, []
-    # A coordinate that is left out is zero.
-    if not (1 <= node <= 10**12 and 1 <= len(values) <= 3 and all(math.isfinite(value) for value in values)):
-        raise InputError(f"{path}, line {number}: got {short(text)}; allowed: a node from 1, and x, y, z")
-    x, y, z = [*values, 0.0, 0.0][:3]
-    return node, (x, y, z)
-
-
-def _meshio_nodes(path: Path) -> NodePositions:
-    """Points of a mesh that meshio reads."""
-    points = _meshio_points(path)
-    if points.ndim != 2 or points.shape[0] == 0 or points.shape[1] not in (2, 3) or not np.all(np.isfinite(points)):
-        raise InputError(
-            f"{path}: got points of shape {points.shape}; allowed: finite positions in two or three dimensions"
-        )
-    flat = np.zeros((points.shape[0], 3 - points.shape[1]))
-    return NodePositions(np.arange(1, points.shape[0] + 1), np.hstack([points, flat]))
-
-
-def _meshio_points(path: Path) -> FloatArray:
-    """Points that meshio finds; some of its readers never end where a file was cut off."""
-    content, words = run_apart(_READ, [str(path.absolute())], path.stat().st_size, "flexible", "meshio", str(path))
-    try:
-        return np.asarray(np.load(BytesIO(content), allow_pickle=False), dtype=np.float64)
-    except (OSError, ValueError, EOFError) as error:
-        raise InputError(
-            f"{path}: cannot be read as a mesh ({words:.120}); allowed: a format that meshio reads; was it cut off?"
-        ) from error
-
-
-def run_apart(
-    code: str, arguments: Sequence[str], length: int, extra: str, package: str, where: str
-) -> tuple[bytes, str]:
-    """Read files with another package in a process of its own.
-
-    Parameters
-    ----------
-    code : str
-        Python that imports the package, and writes what it finds in sys.argv[1:] to the binary file `output`.
-    arguments : sequence of str
-        Content of sys.argv[1:].
-    length : int
-        Bytes of the files; the time that it may take grows with them.
-    extra, package : str
-        Names of the extra and of the package, for `ehdmaps.extras.needs`.
-    where : str
-        Begin of a message on a missing package.
-
-    Returns
-    -------
-    content : bytes
-        Content of `output`.
-    words : str
-        Complaints of the package.
-
-    Raises
-    ------
-    DependencyError
-        If the package cannot be loaded.
-    """
-    seconds = SHORTEST_READ + length / BYTES_PER_SECOND
-    script = _AROUND.format(textwrap.indent(code.strip(), "    "), _NO_PACKAGE)
-    with tempfile.TemporaryFile() as output:
-        try:
-            process = subprocess.run(
-                # -P: nothing is imported from the folder in which we are.
-                [sys.executable, "-P", "-c", script, *arguments],
-                stdin=subprocess.DEVNULL,
-                stdout=output,
-                stderr=subprocess.PIPE,
-                timeout=seconds,
-                check=False,
-            )
-            words = " ".join(process.stderr.decode("utf-8", "replace").split())
-            if process.returncode == _NO_PACKAGE:
-                with needs(extra, package, f"{where}: reading this format"):
-                    raise ImportError(f"{words:.120}")
-        except subprocess.TimeoutExpired:
-            words = f"it did not end within {seconds:.3g} s"
-        output.seek(0)
-        return output.read(), words
-
-
-_REFUSED = ("RIGIDBODY", "TRANSFORM", "MPC", "DISTRIBUTINGCOUPLING", "KINEMATIC", "DISTRIBUTING", "COUPLING")
+_REFUSED = ("RIGIDBODY", "MPC", "DISTRIBUTINGCOUPLING", "KINEMATIC", "DISTRIBUTING", "COUPLING")
 _ROW = re.compile(r"([0-9]{1,20})\.([0-9]{1,20})")
 
 
@@ -520,6 +325,12 @@ def read_calculix(
         With file and line.
     """
     labels = read_dofs(dofs)
+    strange = np.setdiff1d(labels[0], nodes.numbers)
+    if strange.size:
+        raise InputError(
+            f"{dofs}: got {named(strange)}, which the mesh has not; allowed: solid elements, each node in the mesh; "
+            "CalculiX makes solids with nodes of its own of shells, beams and plane elements"
+        )
     return assemble_model(read_triplets(stiffness, *labels), read_triplets(mass, *labels), nodes, units)
 
 

@@ -4,12 +4,14 @@ KAAX, MAAX      names of EXTSEOUT(DMIGPCH) for stiffness and mass of a reduced p
 GRID            nodes, in any rectangular, cylindrical or spherical system; displacements along the basic system
 SPOINT          generalised coordinates of a part with modes; they have component 0
 
-pyNastran runs in a process of its own: a file that leads it astray ends there.
+pyNastran runs in a process of its own: a file that leads it astray ends there. It passes over values of rows that are
+longer than it expects, so what it finds is counted against the file.
 """
 
 from __future__ import annotations
 
 import io
+from collections import Counter
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -20,8 +22,10 @@ from scipy import sparse
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import InputError
 from ehdmaps.units import short
-from mbs.flexible.finite_elements import ASYMMETRY, MOST_FREEDOMS, FiniteElementModel, named
-from mbs.flexible.matrix_files import Labelled, NodePositions, assemble_model, run_apart
+from mbs.flexible.apart import run_apart
+from mbs.flexible.bulk_data import entries
+from mbs.flexible.finite_elements import ASYMMETRY, MOST_FREEDOMS, FiniteElementModel, NodePositions, named
+from mbs.flexible.matrix_files import Labelled, assemble_model
 from mbs.flexible.number_table import check_file, check_last_line
 
 _SYMMETRIC, _SQUARE = 6, 1
@@ -32,6 +36,7 @@ _MODAL = 3
 
 # What pip installs with pyNastran 1.4 is a numpy below 2; of what newer ones lack it needs in1d alone.
 _READ = """
+import io
 import numpy
 if not hasattr(numpy, "in1d"):
     numpy.in1d = numpy.isin
@@ -43,10 +48,12 @@ models = {}
 def model_of(path):
     if path not in models:
         with open(path, encoding="latin-1") as file:
-            punch = not any(line.lstrip().upper().startswith("BEGIN") for line in file)
+            lines = file.readlines()
+        # The library wants all sections or the last one alone: that is all that is read here.
+        begin = next((k + 1 for k, line in enumerate(lines) if line.lstrip().upper().startswith("BEGIN")), 0)
         model = models[path] = BDF(debug=None)
         model.cards_to_read = set(CARDS)
-        model.read_bdf(path, validate=False, xref=False, punch=punch, read_includes=False, encoding="latin-1")
+        model.read_bdf(io.StringIO("".join(lines[begin:])), validate=False, xref=False, punch=True, read_includes=False)
     return models[path]
 model = model_of(mesh)
 grids = sorted(model.nodes)
@@ -91,7 +98,6 @@ def read_nastran(
     for path in dict.fromkeys((stiffness, mass, mesh)):
         check_file(path)
         check_last_line(path)
-        _check_whole(path)
     parts = _entries(mesh, (stiffness, names[0]), (mass, names[1]))
     nodes = _nodes(mesh, parts)
     k, m = (
@@ -101,28 +107,75 @@ def read_nastran(
     return assemble_model(k, m, nodes, units)
 
 
-def _check_whole(path: Path) -> None:
-    """Refuse bulk data that goes on in another file."""
-    with path.open(encoding="latin-1") as file:
-        for number, line in enumerate(file, start=1):
-            if line.lstrip()[:7].upper() == "INCLUDE":
-                raise InputError(f"{path}, line {number}: got {short(line.strip())}; allowed: bulk data in one file")
+def read_grids(mesh: Path) -> NodePositions:
+    """Read the GRIDs of bulk data, in the units of the file.
+
+    Parameters
+    ----------
+    mesh : Path
+        Bulk data with GRIDs in any system.
+
+    Raises
+    ------
+    InputError
+        With file and entry; DependencyError without pyNastran.
+    """
+    check_file(mesh)
+    check_last_line(mesh)
+    return _nodes(mesh, _entries(mesh))
+
+
+def grid_numbers(mesh: Path) -> IntArray:
+    """Numbers of all GRIDs in the order of the file; InputError if one is none."""
+    numbers = []
+    for entry in entries(mesh, ("GRID",)):
+        if not entry.fields[0].isdecimal():
+            raise InputError(
+                f"{mesh}, line {entry.line}: got a GRID of number {short(entry.fields[0])}; allowed: a whole number"
+            )
+        numbers.append(int(entry.fields[0]))
+    return np.array(numbers, dtype=np.int64)
+
+
+def _dmig_counts(path: Path) -> Counter[str]:
+    """Number of values of each DMIG of a file."""
+    counts: Counter[str] = Counter()
+    for entry in entries(path, ("DMIG",)):
+        if entry.fields[1] != "0":  # else it is the head of the matrix
+            counts[entry.fields[0].upper()] += sum(bool(value) for value in entry.fields[6::4])
+    return counts
 
 
 def _entries(mesh: Path, *matrices: tuple[Path, str]) -> Mapping[str, Any]:
-    """Nodes and entries that pyNastran finds in the files."""
-    given = [str(mesh.absolute()), *(text for path, name in matrices for text in (str(path.absolute()), name))]
+    """Nodes and values that pyNastran finds in the files, as many as stand there."""
     paths = dict.fromkeys([mesh, *(path for path, _ in matrices)])
+    grids = grid_numbers(mesh)
+    counts = {path: _dmig_counts(path) for path, _ in matrices}
+    given = [str(mesh.absolute()), *(text for path, name in matrices for text in (str(path.absolute()), name))]
     shown = ", ".join(str(path) for path in paths)
     content, words = run_apart(_READ, given, sum(path.stat().st_size for path in paths), "nastran", "pyNastran", shown)
     try:
-        with np.load(io.BytesIO(content), allow_pickle=False) as parts:
-            return dict(parts)
+        with np.load(io.BytesIO(content), allow_pickle=False) as archive:
+            parts = dict(archive)
     except (OSError, ValueError, EOFError) as error:
         raise InputError(
             f"{shown}: cannot be read as bulk data ({words:.200}); allowed: GRID and DMIG entries that pyNastran "
             "reads; was it cut off?"
         ) from error
+    lost = np.setxor1d(grids, parts["numbers"])
+    problems = (
+        [f"{mesh}: pyNastran does not find GRID {named(lost)}; allowed: entries that it reads"] if lost.size else []
+    )
+    for which, (path, name) in zip("km", matrices, strict=False):
+        there, found = counts[path][name.upper()], np.size(parts.get(f"{which}_values", ()))
+        if there != found:
+            problems.append(
+                f"{path}, DMIG {name}: pyNastran finds {found} values where the file has {there}; allowed: rows of a "
+                "head and lines that go on, such as Nastran writes them"
+            )
+    if problems:
+        raise InputError(problems)
+    return parts
 
 
 def _nodes(mesh: Path, parts: Mapping[str, Any]) -> NodePositions:

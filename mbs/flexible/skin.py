@@ -6,10 +6,8 @@ the corners are taken. Faces of shells that lie on solids are left out: a mesh p
 
 from __future__ import annotations
 
-import subprocess
-import sys
-import tempfile
 from collections.abc import Mapping
+from io import BytesIO
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +15,9 @@ import numpy as np
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import InputError
 from ehdmaps.inputs import check_input
+from mbs.flexible.apart import run_apart
 from mbs.flexible.finite_elements import FiniteElementModel
+from mbs.flexible.mesh_files import point_numbers
 from mbs.flexible.number_table import LONGEST_FILE
 from mbs.model.body import Skin
 
@@ -40,17 +40,14 @@ _SOLID_TYPES = {4: "tetra", 5: "pyramid", 6: "wedge", 8: "hexahedron", 10: "tetr
 _SHELL_TYPES = {3: "triangle", 4: "quad", 6: "triangle", 8: "quad"}
 """Kind of an element by its number of nodes."""
 
-_SECONDS, _BYTES_PER_SECOND = 20.0, 1e6
-
 _READ = f"""
-import os, sys
-output = os.fdopen(os.dup(1), "wb")
-os.dup2(2, 1)
 import meshio, numpy
 mesh = meshio.read(sys.argv[1])
+found = dict(count=len(mesh.points))
 for kind, corners in {list(_CORNERS.items())!r}:
     blocks = [b.data[:, :corners] for b in mesh.cells if b.type.rstrip("0123456789") == kind]
-    numpy.save(output, numpy.concatenate([numpy.zeros((0, corners), dtype=int), *blocks]) + 1)
+    found[kind] = numpy.concatenate([numpy.zeros((0, corners), dtype=int), *blocks])
+numpy.savez(output, **found)
 """
 
 
@@ -97,7 +94,7 @@ def read_skin(path: Path) -> IntArray:
     Parameters
     ----------
     path : Path
-        A deck (.inp), or another mesh that meshio reads, whose node k is the k-th point.
+        A deck (.inp), or another mesh of which `mbs.flexible.mesh_files` knows the numbers of the nodes.
 
     Raises
     ------
@@ -153,19 +150,14 @@ def _numbers(path: Path, number: int, text: str) -> list[int]:
 
 
 def _of_meshio(path: Path) -> dict[str, IntArray]:
-    """Corners of the elements that meshio finds, in a process of its own, as for the nodes; none where it fails."""
-    with tempfile.TemporaryFile() as output:
-        try:
-            subprocess.run(
-                [sys.executable, "-P", "-c", _READ, str(path.absolute())],
-                stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.DEVNULL,
-                timeout=_SECONDS + path.stat().st_size / _BYTES_PER_SECOND, check=True,
-            )  # fmt: skip
-            output.seek(0)
-            return {kind: np.asarray(np.load(output, allow_pickle=False), dtype=np.int64) for kind in _CORNERS}
-        except (subprocess.SubprocessError, OSError, ValueError, EOFError):
-            # The nodes were read from it: what lacks are pictures, no result.
-            return {}
+    """Corners of the elements that meshio finds; none where it fails: what lacks are pictures."""
+    try:
+        content, _ = run_apart(_READ, [str(path.absolute())], path.stat().st_size, "flexible", "meshio", str(path))
+        with np.load(BytesIO(content), allow_pickle=False) as found:
+            numbers = point_numbers(path, int(found["count"]))
+            return {kind: numbers[found[kind]] for kind in _CORNERS}
+    except (InputError, OSError, ValueError, EOFError, KeyError, IndexError):
+        return {}
 
 
 def skin_of(model: FiniteElementModel, triangles: IntArray, motion: FloatArray) -> Skin | None:

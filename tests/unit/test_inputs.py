@@ -20,8 +20,8 @@ from mbs.flexible.matrix_files import (
     read_dof_table,
     read_dofs,
     read_matrix_market,
-    read_mesh_nodes,
 )
+from mbs.flexible.mesh_files import read_mesh_nodes
 from mbs.flexible.reduced_file import read_reduced
 from mbs.modal.uff import read_uff
 from mbs.scene.flexible import read_body_file

@@ -39,7 +39,25 @@ class TestModel:
                 {"stiffness": sparse.csc_array(np.diag([1.0, 1, 1, 1, 1, 0]))},
                 "stiffness: node 2 direction 2: no stiffness",
             ),
-            ({"mass": sparse.csc_array(np.diag([1.0, 1, 1, 1, 1, 0]))}, "mass: node 2 direction 2: no mass"),
+            (
+                {"mass": sparse.csc_array(np.diag([1.0, 1, 1, 1, 1, 0]))},
+                "mass: node 2 direction 2: no mass.*condense it",
+            ),
+            (
+                {"stiffness": sparse.csc_array(np.diag([1.0, 1, 1, 0, 0, 0]))},
+                "node 2 direction 2: no stiffness; .* a lumped mass is joined to nothing",
+            ),
+            (
+                {"mass": sparse.csc_array(np.diag([1.0, 1, 1, 1, 0, 0])), "directions": np.array([0, 1, 2, 0, 4, 5])},
+                "node 2 direction 4, node 2 direction 5: no mass.* rotations of shells, beams and lumped masses",
+            ),
+            (
+                {
+                    "stiffness": sparse.csc_array(np.diag([1.0, 1, 1, 1, 1, 0])),
+                    "directions": np.array([0, 1, 2, 0, 1, 5]),
+                },
+                "node 2 direction 5: no stiffness; .* shells have none about their normal",
+            ),
         ],
     )
     def test_slips(self, changes, message):

@@ -8,9 +8,10 @@ import pytest
 from scipy import sparse
 
 from ehdmaps.errors import DependencyError, InputError
+from mbs.flexible.apart import run_apart
+from mbs.flexible.finite_elements import NodePositions
 from mbs.flexible.matrix_files import (
     Labelled,
-    NodePositions,
     assemble_model,
     check_deck,
     read_abaqus_matrix,
@@ -18,10 +19,10 @@ from mbs.flexible.matrix_files import (
     read_dof_table,
     read_dofs,
     read_matrix_market,
-    read_mesh_nodes,
     read_triplets,
     without_fixed,
 )
+from mbs.flexible.mesh_files import read_mesh_nodes
 from tests.cases.flexible import written
 
 ROUND_OFF = 1e-12
@@ -59,6 +60,15 @@ class TestReaders:
         path.write_text("1 1 2.0\n1 2 -1.0\n2 1 -1.0\n2 2 2.0\n")
         found = read_triplets(path, np.array([1, 1]), np.array([0, 1]))
         assert found.matrix.toarray().tolist() == [[2.0, -1.0], [-1.0, 2.0]]
+
+    def test_shells_of_calculix(self, files):
+        """CalculiX makes solids of them, whose nodes the deck does not have."""
+        folder, _ = files
+        (folder / "b.dof").write_text((folder / "b.dof").read_text().replace("120.", "125."))
+        with pytest.raises(
+            InputError, match=r"b.dof: got node 125, which the mesh has not; .* shells, beams and plane"
+        ):
+            read_calculix(folder / "b.sti", folder / "b.mas", folder / "b.dof", read_mesh_nodes(folder / "m.inp"))
 
     def test_fixed_degrees_of_freedom_of_abaqus_are_left_out(self):
         labels = np.array([1, 1, 2]), np.array([0, 1, 0])
@@ -191,7 +201,7 @@ class TestReaders:
 
     def test_decks_that_are_refused(self, tmp_path):
         path = tmp_path / "a.inp"
-        path.write_text("*NODE\n1,0,0,0\n*RIGID BODY, NSET=END, REF NODE=1\n*Transform, NSET=A\n**RIGID BODY\n")
+        path.write_text("*NODE\n1,0,0,0\n*RIGID BODY, NSET=END, REF NODE=1\n*Mpc\n**RIGID BODY\n")
         with pytest.raises(InputError) as caught:
             check_deck(path)
         assert len(caught.value.problems) == 2
@@ -222,18 +232,18 @@ class TestReaders:
         found = read_mesh_nodes(path)
         assert found.numbers.tolist() == [1, 2, 3, 4]
         assert found.positions == pytest.approx(points)
-        for name in ("b.vtk", "b.xyz0"):
-            (tmp_path / name).write_text("nonsense")
-            with pytest.raises(InputError, match="cannot be read as a mesh"):
-                read_mesh_nodes(tmp_path / name)
+        (tmp_path / "b.vtk").write_text("nonsense")
+        with pytest.raises(InputError, match="cannot be read as a mesh"):
+            read_mesh_nodes(tmp_path / "b.vtk")
         meshio.write(path, meshio.Mesh(np.full((2, 3), np.nan), [("line", np.array([[0, 1]]))]))
-        with pytest.raises(InputError, match=r"got points of shape \(2, 3\); allowed: finite positions"):
+        with pytest.raises(InputError, match=r"got positions that are no finite numbers; allowed: finite ones"):
             read_mesh_nodes(path)
-        # A reader of meshio that waits for an end that was cut off.
-        monkeypatch.setattr("mbs.flexible.matrix_files.SHORTEST_READ", 2.0)
-        (tmp_path / "a.mdpa").write_text("Begin Nodes\n 1 0.0 0.0 0.0\n")
-        with pytest.raises(InputError, match=r"cannot be read as a mesh \(it did not end within 2 s\)"):
-            read_mesh_nodes(tmp_path / "a.mdpa")
+
+    @pytest.mark.slow
+    def test_a_reader_that_never_ends(self, monkeypatch):
+        monkeypatch.setattr("mbs.flexible.apart.SHORTEST_READ", 1.0)
+        content, words = run_apart("import time; time.sleep(60)", [], 0, "flexible", "meshio", "a.vtk")
+        assert (content, words) == (b"", "it did not end within 1 s")
 
     def test_without_meshio(self, tmp_path, monkeypatch):
         (tmp_path / "meshio.py").write_text("raise ImportError('none here')")
@@ -252,7 +262,7 @@ class TestFilesOfAnotherKind:
         path = tmp_path / f"m{end}"
         path.write_text("1\n")
         with pytest.raises(
-            InputError, match=r"of a mesh in several files or a packed one; allowed: a mesh in one file"
+            InputError, match=r"of a mesh whose numbers of nodes are not read; allowed: a mesh in one file"
         ):
             read_mesh_nodes(path)
 

@@ -27,8 +27,8 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.solution import Status
 from mbs import parse_scene
-from mbs.flexible.finite_elements import FiniteElementModel
-from mbs.flexible.matrix_files import NodePositions, assemble_model, read_dofs, read_matrix_market
+from mbs.flexible.finite_elements import FiniteElementModel, NodePositions
+from mbs.flexible.matrix_files import assemble_model, read_dofs, read_matrix_market
 from mbs.flexible.reduced_body import ReducedBody
 from mbs.flexible.reduced_file import read_reduced
 from tests.cases.flexible import spring

@@ -24,7 +24,8 @@ from ehdmaps.solids.mesh_plane import load_gmsh
 from examples.housings import __main__ as command_line
 from examples.housings import command, geometry, make, solve
 from examples.housings.designs import HOUSINGS, PedestalShape
-from mbs.flexible.matrix_files import NodePositions, read_calculix
+from mbs.flexible.finite_elements import NodePositions
+from mbs.flexible.matrix_files import read_calculix
 from mbs.flexible.reduced_file import read_reduced
 from mbs.flexible.shaft import flexible_shaft
 from mbs.flexible.shaft_parts import Section

@@ -12,7 +12,8 @@ from scipy.sparse.linalg import spsolve
 from ehdmaps.errors import AnalysisError
 from mbs.flexible import held_body
 from mbs.flexible.finite_elements import FiniteElementModel, extent
-from mbs.flexible.matrix_files import read_calculix, read_mesh_nodes
+from mbs.flexible.matrix_files import read_calculix
+from mbs.flexible.mesh_files import read_mesh_nodes
 from mbs.flexible.reduced_body import to_body
 from mbs.flexible.reduction import Interface, nodes_in_plane, nodes_on_cylinder, reduce, spider
 from tests.cases.calculix import needed_calculix
