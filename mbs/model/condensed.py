@@ -90,7 +90,7 @@ class Condensed:
 
     @cached_property
     def stiffness(self) -> FloatArray:
-        """K of slow motion at held speeds of cage and rings, shape (6, 6)."""
+        """K of slow motion at held speeds of the rings, shape (6, 6)."""
         (left,), (right,) = self._ends(np.zeros(1, dtype=np.complex128), *self._whole)[:2]
         return np.asarray(np.einsum("zma,zmn,znb->ab", left, self._at_rest, right).real)
 

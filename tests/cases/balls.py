@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from typing import NamedTuple
 
 import numpy as np
 from scipy import optimize
@@ -42,29 +43,74 @@ def rest(geometry, load, speed=0.0, free=FREE, law=None, arm=None, outer_speed=0
     return pose, found, element.balls(pose, Operation(speed))
 
 
-def in_space(geometry, pose, inner_speed=0.0, outer_speed=0.0, start=None, damping_time=0.0):
-    """Force on the inner ring (6,) by vectors in space: each ball in a cage that turns, its spin from the raceways.
+def in_space(geometry, pose, inner_speed=0.0, outer_speed=0.0):
+    """Force on the inner ring (6,) by vectors in space; see `balls_in_space`."""
+    return balls_in_space(geometry, pose, inner_speed, outer_speed)[0]
 
-    Unknowns: the two coordinates of each ball. Traction at the outer raceway is what gives the ball the change of its
-    spin that the turning cage asks for. Nothing of the product but geometry, Hertz coefficients and cage speed.
+
+def cross(a, b):
+    """Vector product; numpy's own takes ten times as long."""
+    return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+
+
+def rolls(spot, touches, speeds):
+    """Speed of a ball around x, its spin in space (3,), and what velocities are left, by velocities alone.
+
+    The middle of the ball is at `spot`, the middles of the contacts stand at `touches` from there, inner and outer.
+    Outer race control: the surfaces do not slip at either, along the ring or across it, and do not drill at the outer
+    one. Five equations for four unknowns, which they fulfil.
     """
-    coefficient = [contact.coefficient for contact in geometry.contacts(STEEL)]
+    axis, rows, right = np.array([1.0, 0.0, 0.0]), [], []
+    around = cross(axis, spot) / np.linalg.norm(spot)
+    for touch, speed in zip(touches, speeds, strict=True):
+        for along in (around, cross(touch, around) / np.linalg.norm(touch)):
+            rows.append([along @ cross(axis, spot), *cross(touch, along)])
+            right.append(speed * along @ cross(axis, spot + touch))
+    normal = touches[1] / np.linalg.norm(touches[1])
+    rows.append([0.0, *normal])
+    right.append(speeds[1] * axis @ normal)
+    size = np.array([np.linalg.norm(spot), *3 * [np.linalg.norm(touches[0])]])
+    matrix, right = np.array(rows) / size, np.array(right)
+    found = np.linalg.lstsq(matrix, right, rcond=None)[0]
+    return found[0] / size[0], found[1:] / size[1:], np.max(np.abs(matrix @ found - right))
+
+
+class InSpace(NamedTuple):
+    """A ball in balance: velocity that is left, speed around the axis, spin in space, angles, loads, traction, F_c."""
+
+    left: float
+    speed: float
+    spin: np.ndarray
+    angles: tuple[float, float]
+    loads: tuple[float, float]
+    traction: float
+    centrifugal: float
+
+
+def balls_in_space(geometry, pose, inner_speed=0.0, outer_speed=0.0, material=STEEL, only=None):
+    """Force on the inner ring (6,) and its balls, by vectors in space: Jones' and Harris' balance.
+
+    Unknowns: the two coordinates of each ball. Its speed around the axis and its spin come from the velocities of the
+    surfaces. Traction at the outer raceway is what gives the ball the change of its spin that its way around the axis
+    asks for. Nothing of the product but geometry and Hertz coefficients. `only` is the number of balls that count.
+    """
+    coefficient = [contact.coefficient for contact in geometry.contacts(material)]
     diameter, pitch = geometry.ball_diameter, geometry.pitch_diameter
-    mass = STEEL.density * math.pi / 6.0 * diameter**3
-    cage = np.array([geometry.cage_speed(inner_speed, outer_speed), 0.0, 0.0])
+    mass = material.density * math.pi / 6.0 * diameter**3
+    found_balls = []
     ring_axis = np.array([1.0, 0.0, 0.0])
     tilt = np.array([0.0, pose[4], pose[5]])
     force, moment = np.zeros(3), np.zeros(3)
     apart = geometry.groove_distance * math.sin(geometry.contact_angle)
     arm = geometry.inner_groove_radius
-    for j in range(geometry.balls):
+    for j in range(geometry.balls if only is None else only):
         angle = 2.0 * math.pi * j / geometry.balls
         out = np.array([0.0, math.cos(angle), math.sin(angle)])
         outer_centre = (arm - geometry.radial_distance) * out
         lever = arm * out
-        inner_centre = lever + np.array([apart, 0.0, 0.0]) + pose[:3] + np.cross(tilt, lever)
+        inner_centre = lever + np.array([apart, 0.0, 0.0]) + pose[:3] + cross(tilt, lever)
         # what leads along the ring does not move grooves of revolution
-        across = np.cross(ring_axis, out)
+        across = cross(ring_axis, out)
         inner_centre = inner_centre - across * (across @ inner_centre)
 
         def parts(place, out=out, outer_centre=outer_centre, inner_centre=inner_centre):
@@ -79,25 +125,24 @@ def in_space(geometry, pose, inner_speed=0.0, outer_speed=0.0, start=None, dampi
                 depth = distance - (conformity - 0.5) * diameter
                 pulls.append((factor * max(depth, 0.0) ** 1.5, way / distance, side))
             (qi, ei, _), (qo, eo, _) = pulls
-            touch = -eo * 0.5 * diameter  # from the ball's centre to the outer raceway
-            # spin against the cage: no slip along the ring, no drilling at the outer raceway
-            relative = np.array([outer_speed, 0.0, 0.0]) - cage
-            around = np.cross(ring_axis, out)
-            radius = 0.5 * pitch + touch @ out
-            slip = relative[0] * radius
-            matrix = np.array([np.cross(touch, around) * -1.0, eo, around])
-            # (spin x touch).around = slip;  spin.eo = relative.eo;  no spin along the ring
-            matrix[0] = np.cross(touch, around)
-            spin = np.linalg.solve(matrix, np.array([slip, relative @ eo, 0.0]))
-            change = np.cross(cage, 0.1 * mass * diameter**2 * (spin + cage))
+            around = cross(ring_axis, out)
+            # from the ball's centre to the raceways
+            touches = -0.5 * diameter * ei, -0.5 * diameter * eo
+            speed, spin, left = rolls(0.5 * pitch * out, touches, (inner_speed, outer_speed))
+            change = cross(speed * ring_axis, 0.1 * mass * diameter**2 * spin)
+            touch = touches[1]
             # traction lies in the plane, across the normal; its moment about the ball's centre is the change
-            direction = np.cross(around, eo)
-            traction = direction * (change @ around) / (np.cross(touch, direction) @ around)
-            centrifugal = 0.5 * mass * pitch * cage[0] ** 2 * out
-            return qi * ei + qo * eo + traction + centrifugal, qi * ei
+            direction = cross(around, eo)
+            traction = direction * (change @ around) / (cross(touch, direction) @ around)
+            centrifugal = 0.5 * mass * pitch * speed**2 * out
+            angles = (math.atan2(ei @ ring_axis, ei @ out), math.atan2(-eo @ ring_axis, -eo @ out))
+            ball = InSpace(
+                left, speed, spin, angles, (qi, qo), float(np.linalg.norm(traction)), float(centrifugal @ out)
+            )
+            return qi * ei + qo * eo + traction + centrifugal, qi * ei, ball
 
         def unbalanced(place, parts=parts, out=out):
-            total, _ = parts(place)
+            total = parts(place)[0]
             return [total @ ring_axis, total @ out]
 
         way = inner_centre - outer_centre
@@ -110,7 +155,11 @@ def in_space(geometry, pose, inner_speed=0.0, outer_speed=0.0, start=None, dampi
             size = float(np.linalg.norm(unbalanced(found.x)))
             if best is None or size < best[0]:
                 best = size, found.x
-        _, pull = parts(best[1])
+            if size < 1e-9:
+                break
+        _, pull, ball = parts(best[1])
+        assert ball.left <= 1e-12 * max(abs(inner_speed), abs(outer_speed)) * pitch
+        found_balls.append(ball)
         force -= pull
-        moment -= np.cross(lever, pull)
-    return np.array([*force, 0.0, moment[1], moment[2]])
+        moment -= cross(lever, pull)
+    return np.array([*force, 0.0, moment[1], moment[2]]), found_balls

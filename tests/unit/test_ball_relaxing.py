@@ -21,25 +21,34 @@ from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.scene.assembly import assemble
 from mbs.scene.reader import read_scene
-from tests.cases.balls import FREE
+from tests.cases.balls import FREE, rolls
 
 OIL, KELVIN = Lubricant.named("FVA3"), 333.15
 FREQUENCIES = np.array([1e-3, 30.0, 1e3, 5e3, 2e4])
 
 
 def bearing(name, rpm, pose, turns=True):
-    """Force, K and C (6, 6), balls, numbers of the kernel, and what relaxes, with the films of a speed."""
+    """Force, K and C (6, 6), balls, speed, and what relaxes, with the films of a speed."""
     geometry, speed = ball_estimate(name), rpm * math.pi / 30.0
     films = ball_films(geometry, OIL, geometry.entrainment_speed(speed, 0.0), KELVIN, solves=False)
     force, conditions = BallForce(geometry, films.law), {"inner_speed": speed if turns else 0.0}
     _, K, C = force(pose, **conditions)
-    numbers, _ = force.kernel_arguments(**conditions)
     balls, rows = force.balls(pose, **conditions), force.last_balls
-    relaxation = ball_relaxation(films.law, force.shape, rows, numbers[2], balls.angle)
-    return force, K, C, balls, numbers, relaxation
+    relaxation = ball_relaxation(films.law, force.shape, rows, force.drive_at(**conditions), balls.angle)
+    return force, K, C, balls, conditions["inner_speed"], relaxation
 
 
-def by_hand(force, balls, traction, s):
+def speed_forces(force, ai, ao, speed):
+    """Centrifugal load and traction of a ball (2,), by the velocities of its surfaces in space."""
+    geometry, mass = force.geometry, force.geometry.ball_mass(force.material)
+    half, spot = 0.5 * geometry.ball_diameter, np.array([0.0, 0.5 * geometry.pitch_diameter, 0.0])
+    touches = [-half * np.array([math.sin(ai), math.cos(ai), 0.0]), half * np.array([math.sin(ao), math.cos(ao), 0.0])]
+    around, spin, _ = rolls(spot, touches, (speed, 0.0))
+    traction = 0.4 * mass * half * around * spin[1]
+    return np.array([-traction * math.cos(ao), mass * spot[1] * around**2 + traction * math.sin(ao)])
+
+
+def by_hand(force, balls, speed, s):
     """Z(s) (6, 6) of all balls at one frequency: complex stiffness of both contacts, the ball's place eliminated."""
     rows, shape, law, found = force.last_balls, force.shape, force.law, np.zeros((6, 6), dtype=np.complex128)
     springs = [response.springs(rows[:, 10 + side]) for side, response in enumerate(law.responses)]
@@ -51,9 +60,18 @@ def by_hand(force, balls, traction, s):
             z = k + np.sum(s * c * springs[side].shares[j] / (1.0 + s * springs[side].times[j]))
             turns = row[10 + side] / (arm + row[14 + side])
             parts.append((z - turns) * np.outer(e, e) + turns * np.eye(2))
-        x, r = e
-        turned = traction / (arm + row[15]) * np.outer([r * r - x * x, -2.0 * x * r], [r, -x])
-        own = parts[0] - parts[0] @ np.linalg.solve(sum(parts) + turned, parts[0])
+        step, (ai, ao) = 1e-5, row[12:14]
+        by_angle = [
+            (speed_forces(force, ai + a, ao + o, speed) - speed_forces(force, ai - a, ao - o, speed)) / (2.0 * step)
+            for a, o in ((step, 0.0), (0.0, step))
+        ]
+        inner, outer = (
+            np.outer(by, [math.cos(angle), -math.sin(angle)]) / (arm + approach)
+            for by, angle, arm, approach in zip(
+                by_angle, (ai, ao), (shape.inner_arm, shape.outer_arm), row[14:16], strict=True
+            )
+        )
+        own = parts[0] - parts[0] @ np.linalg.solve(sum(parts) + inner - outer, parts[0] + inner)
         lever = shape.arm
         seen = np.array(
             [
@@ -70,24 +88,27 @@ def by_hand(force, balls, traction, s):
     [("6208", 3000, [20e-6, 10e-6, 0, 0, 0, 1e-4]), ("7208B", 15000, [5e-6, 2e-6, 0, 0, 0, 0])],
 )
 def test_springs_are_the_balls_in_balance_and_take_up_energy(name, rpm, pose):
-    """At 15000 rpm the traction that turns the balls is up to a tenth of their loads; its unsymmetric part moves Z by
-    less than 1e-4."""
-    force, K, C, balls, numbers, relaxation = bearing(name, rpm, pose)
+    """At 15000 rpm the traction that turns the balls is up to a tenth of their loads; the unsymmetric part of what
+    speed does is not relaxed: that is less than 1e-3 of Z across its diagonal, and gives less than 1e-3 of what dampers
+    take."""
+    force, K, C, balls, speed, relaxation = bearing(name, rpm, pose)
     s = 2j * np.pi * FREQUENCIES
     Z = K + s[:, None, None] * C + relaxation.more(s)
     for one, at in zip(Z, s, strict=True):
-        hand = by_hand(force, balls, numbers[2], at)
+        hand = by_hand(force, balls, speed, at)
         size = np.sqrt(np.abs(np.diag(hand)))[FREE]
         scale = np.outer(size, size)
-        np.testing.assert_allclose((one - hand)[np.ix_(FREE, FREE)] / scale, 0.0, atol=1e-4)
+        error = (one - hand)[np.ix_(FREE, FREE)] / scale
+        np.testing.assert_allclose(0.5 * (error + error.T), 0.0, atol=1e-4)
+        np.testing.assert_allclose(error, 0.0, atol=1e-3 if rpm > 1e4 else 1e-4)
         lost = ((one - one.conj().T) / 2j).real[np.ix_(FREE, FREE)] / scale
-        assert np.linalg.eigvalsh(lost).min() > 0.0
+        assert np.linalg.eigvalsh(lost).min() > (-1e-3 * np.linalg.eigvalsh(lost).max() if rpm > 1e4 else 0.0)
     # slow motion is exact: the difference is of second order
     slow = 2.0 * np.pi * FREQUENCIES[0]
     assert np.abs(relaxation.more(s[:1])[0]).max() < slow**2 * relaxation.times.max() * np.abs(C).max()
     # films of slow motion would have much more damping at 20 kHz
     assert Z[4, 1, 1].imag < 0.7 * (s[4] * C[1, 1]).imag
-    assert numbers[2] < 0.1 * balls.load[1].max()
+    assert np.abs(balls.traction).max() < 0.1 * balls.load[1].max()
 
 
 def test_balls_in_line_are_two_contacts_in_series():

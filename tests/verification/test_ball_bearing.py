@@ -109,7 +109,7 @@ def test_balance_of_a_ball_under_axial_load_by_hand() -> None:
     speed = 1e4 * RPM
     _, _, balls = rest(ANGULAR, 17800.0 * np.eye(6)[0], speed)
     force = BallForce(ANGULAR, dry_law(ANGULAR))
-    centrifugal, factor = force.speed_loads(speed, 0.0)
+    centrifugal, factor = force.speed_loads(speed, 0.0, balls.cage_speed)
     (qi, qo), (ai, ao) = balls.load[:, 0], balls.contact_angle[:, 0]
     traction = 2.0 * factor * math.sin(ao) / ANGULAR.ball_diameter
     assert 16.0 * qi * math.sin(ai) == pytest.approx(17800.0, rel=1e-9)

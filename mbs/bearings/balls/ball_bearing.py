@@ -5,9 +5,11 @@ x, y, z, and the tilts theta_y = -n_z, theta_z = n_y of the inner ring's axis n;
 both grooves where their nominal contact angle puts them: deep groove bearings stand in their middle, so that clearance
 lets them go either way; angular contact bearings just touch, without clearance.
 
-Quasi-static: each ball is in balance at the speeds that hold, and has no inertia against small motions beside that.
-Speeds, and with them centrifugal load and gyroscopic moment, are held in the derivatives. The outer raceway's traction
-holds the whole gyroscopic moment (outer raceway control). The potential of dry contacts takes the arm of the inner
+Quasi-static: each ball is in balance at the speeds of the rings, and has no inertia against small motions beside that.
+It rolls at both raceways and does not drill at the outer one, whose traction holds the whole gyroscopic moment (outer
+race control), so that its speed around the axis follows its contact angles, see `mbs.bearings.balls.ball_speed`; in the
+derivatives it follows, too, and speeds of the rings are held. That is slow motion. `cage_speed` holds all balls at one
+speed: motion that is too fast for them to follow. The potential of dry contacts takes the arm of the inner
 groove's centre for both displacement and moment; ISO/TS 16281 takes d_m/2 for moments, which is 1 % less.
 
 References
@@ -41,7 +43,7 @@ from mbs.bearings.balls.ball_kernel import (
     ball_force,
     write_angles,
 )
-from mbs.bearings.balls.ball_speed import ball_loads, rolling
+from mbs.bearings.balls.ball_speed import Drive, ball_loads, mean_speed
 from mbs.bearings.balls.laws import BallLaw
 from mbs.bearings.balls.normal_law import load_approach, nothing_held
 from mbs.model.elements import Excitation, Forces, OnRings, Operation, Port
@@ -74,12 +76,23 @@ class BallLoads:
         Contact angles of both [rad].
     approach : array (2, Z)
         Approaches of both [m]; below zero a gap, or a film.
+    speed : array (Z,)
+        Speeds around the axis [rad/s].
+    centrifugal, traction : array (Z,)
+        Centrifugal loads, and tractions at the outer raceway that hold the gyroscopic moment, with the sign of the
+        contact angle [N].
+    cage_speed : float
+        Speed of the cage: the mean of the balls' speeds by their inner loads [rad/s].
     """
 
     angle: FloatArray
     load: FloatArray
     contact_angle: FloatArray
     approach: FloatArray
+    speed: FloatArray
+    centrifugal: FloatArray
+    traction: FloatArray
+    cage_speed: float
 
     @property
     def loaded(self) -> int:
@@ -110,8 +123,8 @@ class BallForce:
     ----------
     shape : BallShape
         Lengths for compiled code.
-    masses : array (4,)
-        What `mbs.bearings.balls.ball_speed.ball_loads` takes.
+    drive : Drive
+        Masses and sizes of the balls for `mbs.bearings.balls.ball_speed`, at rest.
     directions : (array (Z,), array (Z,))
         Directions of the balls in the cage, y and z.
     held : array (Z, 2, HELD), or none (0, 2, HELD)
@@ -138,7 +151,7 @@ class BallForce:
             most_tilt=distance / geometry.inner_groove_radius,
         )
         mass, diameter, pitch = geometry.ball_mass(material), geometry.ball_diameter, geometry.pitch_diameter
-        self.masses = np.array([0.5 * mass * pitch, 0.1 * mass * diameter * pitch, diameter, diameter / pitch])
+        self.drive = Drive(0.0, 0.0, math.nan, diameter / pitch, 0.5 * mass * pitch, 0.2 * mass * pitch)
         self._places = 2.0 * math.pi * np.arange(geometry.balls) / geometry.balls
         self.directions = np.cos(self._places), np.sin(self._places)
         self._kernel = ball_force if compiled else in_python(ball_force)
@@ -151,14 +164,14 @@ class BallForce:
     def speed_loads(
         self, inner_speed: float, outer_speed: float, cage_speed: float | None = None
     ) -> tuple[float, float]:
-        """Centrifugal load of a ball [N], and factor of its gyroscopic moment [N m], see `ball_loads`.
+        """Centrifugal load of a ball [N], and factor G of its gyroscopic moment G sin(alpha_o) [N m].
 
         Parameters
         ----------
         inner_speed, outer_speed : float
             Speeds of the rings [rad/s].
         cage_speed : float, optional
-            Speed of the cage [rad/s]; that of pure rolling at the nominal contact angle if left out.
+            Speed of the ball around the axis [rad/s]; that of the nominal contact angle if left out.
 
         Raises
         ------
@@ -174,8 +187,9 @@ class BallForce:
         cage = geometry.cage_speed(inner_speed, outer_speed) if cage_speed is None else cage_speed
         if not abs(cage) <= FASTEST:
             raise InputError(f"ball bearing, cage_speed: got {cage!r} rad/s; allowed: at most {FASTEST:g} rad/s")
-        found: tuple[float, float] = ball_loads(self.masses, cage, outer_speed)
-        return found
+        drive = self.drive_at(inner_speed=inner_speed, outer_speed=outer_speed)
+        centrifugal, traction, _, _ = ball_loads(drive, float(cage))
+        return float(centrifugal), 0.5 * float(traction) * geometry.ball_diameter
 
     def __call__(
         self,
@@ -199,7 +213,7 @@ class BallForce:
         inner_speed, outer_speed : float
             Speeds of the rings [rad/s].
         cage_speed : float, optional
-            Speed of the cage [rad/s]; that of pure rolling at the nominal contact angle if left out.
+            Speed of a cage that holds all balls [rad/s]; each ball has its own, by its contact angles, if left out.
 
         Returns
         -------
@@ -244,12 +258,33 @@ class BallForce:
         self._evaluated(pose, cage_angle, inner_speed, outer_speed, cage_speed)
         angle = np.angle(np.exp(1j * (self._places + cage_angle)))
         rows = self._balls.T.copy()
-        return BallLoads(angle, rows[10:12], rows[12:14], rows[14:16])
+        idle = self.geometry.cage_speed(inner_speed, outer_speed) if cage_speed is None else cage_speed
+        traction = rows[24] * rows[18]
+        cage = float(mean_speed(self._balls, float(idle)))
+        return BallLoads(angle, rows[10:12], rows[12:14], rows[14:16], rows[22], rows[23], traction, cage)
 
     @property
     def last_balls(self) -> FloatArray:
         """Rows that `place_ball` wrote of each ball at the last call, shape (Z, COLUMNS)."""
         return self._balls
+
+    def drive_at(
+        self,
+        *,
+        inner_speed: float = 0.0,
+        outer_speed: float = 0.0,
+        cage_speed: float | None = None,
+        cage_angle: float = 0.0,
+    ) -> Drive:
+        """Speeds that turn the balls, with their masses.
+
+        Parameters
+        ----------
+        inner_speed, outer_speed, cage_speed, cage_angle : float
+            Speeds [rad/s] and angle of the cage, which changes nothing; see `BallForce.__call__`.
+        """
+        cage = math.nan if cage_speed is None else float(cage_speed)
+        return self.drive._replace(inner=float(inner_speed), outer=float(outer_speed), cage=cage)
 
     def kernel_arguments(
         self,
@@ -266,13 +301,13 @@ class BallForce:
         cage_angle, inner_speed, outer_speed, cage_speed : float
             Angle of the cage [rad] and speeds [rad/s], see `BallForce.__call__`.
         """
-        centrifugal, moment = self.speed_loads(inner_speed, outer_speed, cage_speed)
+        centrifugal, _ = self.speed_loads(inner_speed, outer_speed, cage_speed)
         if self._rest[0] != centrifugal:
             self._rest = centrifugal, load_approach(self.law.outer, centrifugal) if centrifugal > 0.0 else 0.0
+        drive = self.drive_at(inner_speed=inner_speed, outer_speed=outer_speed, cage_speed=cage_speed)
         if self.law.dry and self._rest[1] < NEGLIGIBLE:
-            centrifugal = moment = 0.0
-        traction = 2.0 * moment / self.geometry.ball_diameter
-        numbers = np.array([cage_angle, centrifugal, traction, self._rest[1]], dtype=np.float64)
+            drive = self.drive
+        numbers = np.array([cage_angle, self._rest[1], *drive], dtype=np.float64)
         laws = self.law.inner, self.law.outer
         return numbers, (*self.directions, self.shape, *laws, *self._out, self._centres, self._balls, self.held)
 
@@ -309,22 +344,6 @@ class BallForce:
         raise AnalysisError(f"ball bearing {self.geometry.name}: no balance of a ball was found at {pose.tolist()}")
 
 
-def rolling_cage(force: BallForce, balls: BallLoads, inner_speed: float, outer_speed: float) -> float:
-    """Speed of the cage by pure rolling at the mean contact angles of both sides [rad/s].
-
-    Parameters
-    ----------
-    force : BallForce
-        The bearing.
-    balls : BallLoads
-        Loads and contact angles.
-    inner_speed, outer_speed : float
-        Speeds of the rings [rad/s].
-    """
-    angles = balls.mean_angle(0), balls.mean_angle(1)
-    return float(rolling(force.masses[3], angles, inner_speed, outer_speed))
-
-
 def _six(values: npt.ArrayLike, name: str) -> FloatArray:
     """Six numbers."""
     try:
@@ -350,8 +369,6 @@ class BallElement(OnRings):
         The force.
     inner_spin, outer_spin : float
         Speeds of the rings as multiples of the system's.
-    cage_spin : float or None
-        That of the cage; None for pure rolling at the nominal contact angle.
     start_angle : float
         Angle of the first ball from y at the beginning [rad].
     """
@@ -363,7 +380,6 @@ class BallElement(OnRings):
     force: BallForce
     inner_spin: float = 1.0
     outer_spin: float = 0.0
-    cage_spin: float | None = None
     start_angle: float = 0.0
 
     @property
@@ -379,9 +395,8 @@ class BallElement(OnRings):
 
     @cached_property
     def cage_turn(self) -> float:
-        """Speed of the cage as a multiple of the system's."""
-        rolling = self.force.geometry.cage_speed(self.inner_spin, self.outer_spin)
-        return rolling if self.cage_spin is None else self.cage_spin
+        """Speed of the cage as a multiple of the system's, by the nominal contact angle."""
+        return self.force.geometry.cage_speed(self.inner_spin, self.outer_spin)
 
     def conditions(self, operation: Operation) -> dict[str, float]:
         """Angle of the cage and speeds, by the names that the force takes."""
@@ -389,7 +404,6 @@ class BallElement(OnRings):
             "cage_angle": self.start_angle + self.cage_turn * operation.angle,
             "inner_speed": self.inner_spin * operation.speed,
             "outer_speed": self.outer_spin * operation.speed,
-            "cage_speed": self.cage_turn * operation.speed,
         }
 
     def balls(self, displacement: FloatArray, operation: Operation) -> BallLoads:

@@ -1,7 +1,6 @@
-"""Ball bearings in compiled runs: the kernel of a bearing alone, with the speed of the cage that its balls ask for.
+"""Ball bearings in compiled runs: the kernel of a bearing alone.
 
-The cage follows a step later: its speed, by which balls have their centrifugal load and gyroscopic moment, is that of
-pure rolling at the contact angles of the step before. Films change with the speed: their laws are made at nodes that
+Films change with the speed: their laws are made at nodes that
 lie evenly in its logarithm, on one grid of approaches, and blended straight between two nodes, see
 `mbs.bearings.balls.film_tables`.
 """
@@ -23,14 +22,14 @@ from mbs.bearings.balls.ball_element import BallStates, MachineBalls
 from mbs.bearings.balls.ball_kernel import (
     COLUMNS,
     NO_BALANCE,
+    NUMBERS,
     START,
     TOO_FAR,
     BallShape,
     ball_force,
-    write_angles,
 )
 from mbs.bearings.balls.ball_memory import SPRINGS, FilmsOfBalls, go_on, hold
-from mbs.bearings.balls.ball_speed import ball_loads, dry_energy, mean_angles, rolling, speed_work
+from mbs.bearings.balls.ball_speed import Drive, ball_loads, dry_energy, speed_work
 from mbs.bearings.balls.film_tables import FilmLaws, FilmTables, blend, film_tables, law_of
 from mbs.bearings.balls.laws import NODES
 from mbs.bearings.balls.normal_law import HELD, NormalLaw, contact, load_approach
@@ -51,22 +50,18 @@ class Balls(NamedTuple):
         Angle of the first ball [rad], cage angle by that of the system, axial offset [m].
     spins : array (bearings, 2)
         Speeds of the rings by that of the system.
-    given : array (bearings,), of bool
-        Whether the speed of the cage is given.
     shapes : array (bearings, 7)
         `BallShape` in its order.
-    masses : array (bearings, 4)
-        What `ball_loads` takes.
+    drives : array (bearings, 6)
+        `Drive` in its order, at rest.
     cos, sin : array (bearings, Z)
         Directions of the balls in the cage.
     centres, rows : array (bearings, Z, START), (bearings, Z, COLUMNS)
         Starts of the balls, and what `place_ball` writes of each, at the last answer.
-    cages : array (bearings,)
-        Speed of the cage by that of the system, of the step before.
     rests : array (bearings,)
         Approach at the outer raceway under the centrifugal load alone [m].
-    loads, powers : array (bearings, 2)
-        F_c and 2 G/Dw of the last answer [N]; what it dissipates, and what the turning cage brings in [W].
+    powers : array (bearings, 2)
+        What it dissipates, and what the turning cage brings in [W].
     last, times, works : array (bearings, Z, 4), (bearings,), (bearings,)
         What `speed_work` keeps of the last step, its time [s], and its work by that time [W].
     relaxes : array (bearings,), of bool
@@ -77,7 +72,7 @@ class Balls(NamedTuple):
         Their states after the last step that was made.
     clock : array (2,)
         Times at the end of that step, and of the step for which they hold [s].
-    rooms, matrices : array (3, 6), (2, 6, 6)
+    rooms, matrices : array (3, NUMBERS), (2, 6, 6)
         Room for a bearing's pose, numbers and force, and for its stiffness and damping.
     films : FilmTables
         Laws of the contacts.
@@ -93,16 +88,13 @@ class Balls(NamedTuple):
     turns: FloatArray
     offsets: FloatArray
     spins: FloatArray
-    given: BoolArray
     shapes: FloatArray
-    masses: FloatArray
+    drives: FloatArray
     cos: FloatArray
     sin: FloatArray
     centres: FloatArray
     rows: FloatArray
-    cages: FloatArray
     rests: FloatArray
-    loads: FloatArray
     powers: FloatArray
     last: FloatArray
     times: FloatArray
@@ -199,7 +191,7 @@ def rest_approach(law: NormalLaw, load: float, start: float) -> float:
 def _on_ring(balls: Balls, b: int, moment: Moment, motion: FloatArray, answers: Answers) -> int:
     """Write the answer of a bearing; status as of `ball_force`."""
     i, z, film = balls.firsts[b], balls.counts[b], balls.films_of[b]
-    pose, numbers, force = balls.rooms[0], balls.rooms[1], balls.rooms[2]
+    pose, numbers, force = balls.rooms[0, :6], balls.rooms[1], balls.rooms[2, :6]
     stiffness, damping = balls.matrices[0], balls.matrices[1]
     read_pose(i, balls.offsets[b], motion, pose)
     s = balls.shapes[b]
@@ -207,15 +199,16 @@ def _on_ring(balls: Balls, b: int, moment: Moment, motion: FloatArray, answers: 
         return TOO_FAR
     shape = BallShape(s[0], s[1], s[2], s[3], s[4], s[5], s[6])
     inner, outer = law_of(balls.films, film, 0), law_of(balls.films, film, 1)
-    cage, ring = balls.cages[b] * moment.speed, balls.spins[b, 1] * moment.speed
-    centrifugal, factor = ball_loads(balls.masses[b], cage, ring)
-    rest = rest_approach(outer, centrifugal, balls.rests[b])
+    at_rest = balls.drives[b]
+    speeds = balls.spins[b, 0] * moment.speed, balls.spins[b, 1] * moment.speed
+    drive = Drive(speeds[0], speeds[1], at_rest[2], at_rest[3], at_rest[4], at_rest[5])
+    rest = rest_approach(outer, ball_loads(drive, balls.turns[b] * moment.speed)[0], balls.rests[b])
     balls.rests[b] = rest
-    if inner.table.shape[0] == 0 and rest < NEGLIGIBLE:
-        centrifugal = factor = 0.0
-    balls.loads[b, 0], balls.loads[b, 1] = centrifugal, 2.0 * factor / balls.masses[b, 2]
-    numbers[0] = balls.starts[b] + balls.turns[b] * moment.angle
-    numbers[1], numbers[2], numbers[3] = balls.loads[b, 0], balls.loads[b, 1], rest
+    moves = 0.0 if inner.table.shape[0] == 0 and rest < NEGLIGIBLE else 1.0
+    numbers[0], numbers[1] = balls.starts[b] + balls.turns[b] * moment.angle, rest
+    numbers[2], numbers[3] = moves * speeds[0], moves * speeds[1]
+    for n in range(2, at_rest.size):
+        numbers[2 + n] = at_rest[n]
     centres, rows = balls.centres[b, :z], balls.rows[b, :z]
     held = balls.held[b, : z if balls.relaxes[b] else 0]
     found = NO_BALANCE
@@ -269,19 +262,13 @@ def balls_answer(balls: Balls, moment: Moment, motion: FloatArray, answers: Answ
 
 @njit(error_model="numpy", _nrt=False)
 def balls_accept(balls: Balls, moment: Moment) -> None:
-    """Take note of a step that was made: the cage's speed that its contact angles ask for, and films with memory.
+    """Take note of a step that was made: films with memory.
 
     Parameters
     ----------
     balls, moment
         The same as of `balls_answer`, of which this was the last one.
     """
-    for b in range(balls.firsts.size):
-        if not balls.given[b]:
-            rows = balls.rows[b, : balls.counts[b]]
-            write_angles(rows)
-            angles = mean_angles(rows)
-            balls.cages[b] = rolling(balls.masses[b, 3], angles, balls.spins[b, 0], balls.spins[b, 1])
     _go_on_all(balls)
     balls.clock[0], balls.clock[1] = moment.time, math.nan
 
@@ -299,7 +286,7 @@ def balls_powers(balls: Balls, moment: Moment, motion: FloatArray, answers: Answ
     """
     for b in range(balls.firsts.size):
         z, h = balls.counts[b], moment.time - balls.times[b]
-        work = speed_work(balls.rows[b, :z], balls.loads[b], balls.shapes[b, 4], balls.last[b, :z])
+        work = speed_work(balls.rows[b, :z], balls.shapes[b, 4], balls.last[b, :z])
         balls.times[b], balls.works[b] = moment.time, work / h if h > 0.0 else 0.0
         out[balls.places[b], 0], out[balls.places[b], 1] = balls.powers[b, 0], balls.powers[b, 1] + balls.works[b]
 
@@ -322,7 +309,6 @@ class BallBlock(LawBlock[Balls]):
         arrays = self._arrays
         return [
             BallStates(
-                cage=float(arrays.cages[b]),
                 time=float(arrays.times[b]),
                 last=arrays.last[b, :z].copy(),
                 dissipated=float(arrays.powers[b, 0]),
@@ -342,7 +328,7 @@ class BallBlock(LawBlock[Balls]):
             States of each bearing.
         """
         for b, one in enumerate(states):
-            self._arrays.cages[b], self._arrays.times[b] = one.cage, one.time
+            self._arrays.times[b] = one.time
             self._arrays.last[b, : one.last.shape[0]] = one.last
             self._arrays.clock[:] = one.time, math.nan
             places = self._places(b)
@@ -374,16 +360,13 @@ def _gather(members: Sequence[Member], films_of: list[int], laws: Sequence[FilmL
         turns=np.array([one.cage_turn for one in elements], dtype=np.float64),
         offsets=np.array([one.axial_offset for one in elements], dtype=np.float64),
         spins=np.array([(one.inner_spin, one.outer_spin) for one in elements], dtype=np.float64).reshape(count, 2),
-        given=np.array([one.cage_spin is not None for one in elements], dtype=np.bool_),
         shapes=np.array([one.force.shape for one in elements], dtype=np.float64).reshape(count, 7),
-        masses=np.array([one.force.masses for one in elements], dtype=np.float64).reshape(count, 4),
+        drives=np.array([one.force.drive for one in elements], dtype=np.float64).reshape(count, 6),
         cos=cos,
         sin=sin,
         centres=np.full((count, most, START), np.nan),
         rows=np.zeros((count, most, COLUMNS)),
-        cages=np.array([one.cage_turn for one in elements], dtype=np.float64),
         rests=np.zeros(count),
-        loads=np.zeros((count, 2)),
         powers=np.zeros((count, 2)),
         last=np.zeros((count, most, 4)),
         times=np.zeros(count),
@@ -395,7 +378,7 @@ def _gather(members: Sequence[Member], films_of: list[int], laws: Sequence[FilmL
         springs=np.zeros((count, most, 2, SPRINGS + 1)),
         approaches=np.zeros((count, most, 2)),
         clock=np.array([0.0, math.nan]),
-        rooms=np.zeros((3, 6)),
+        rooms=np.zeros((3, NUMBERS)),
         matrices=np.zeros((2, 6, 6)),
         films=films,
         course=course_of(0, len(laws)),

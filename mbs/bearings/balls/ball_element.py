@@ -1,9 +1,9 @@
-"""A ball bearing in a machine: quasi-static at the speed that the system has, with the cage that its balls ask for.
+"""A ball bearing in a machine: quasi-static at the speed that the system has, with the speeds that its balls ask for.
 
-The cage's angle goes evenly, by pure rolling at the nominal contact angle. Its speed, by which the balls have their
-centrifugal load and gyroscopic moment, is that of pure rolling at the mean contact angles of the pose; in time the cage
-follows a step later. Films have the stiffness and damping of slow motion, or a memory: of small oscillations about rest
-see `mbs.bearings.balls.relaxing`, in time `mbs.bearings.balls.ball_memory`.
+The cage's angle goes evenly, by pure rolling at the nominal contact angle. The speeds by which balls have their
+centrifugal load and gyroscopic moment are those of their own contact angles. Films have the stiffness and damping of
+slow motion, or a memory: of small oscillations about rest see `mbs.bearings.balls.relaxing`, in time
+`mbs.bearings.balls.ball_memory`.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, SolverError
 from ehdmaps.units import RPM
-from mbs.bearings.balls.ball_bearing import BallElement, BallForce, BallLoads, rolling_cage
+from mbs.bearings.balls.ball_bearing import BallElement, BallForce, BallLoads
 from mbs.bearings.balls.ball_memory import FilmsOfBalls
 from mbs.bearings.balls.ball_speed import dry_energy, speed_work, turned_by
 from mbs.bearings.balls.laws import BallLaw
@@ -28,16 +28,12 @@ from mbs.model.condensed import Condensed
 from mbs.model.elements import Forces, Operation, Powers
 from mbs.model.relaxation import Films, Relaxation
 
-CAGE_ERROR = 1e-8
-"""Change of the speed of the cage, over the faster ring's, at which it is found."""
-
-MOST_TURNS = 40
 MOST_SPEEDS = 64
 """Speeds whose films are kept."""
 
 
 class Settled(NamedTuple):
-    """A bearing at a pose, with its cage.
+    """A bearing at a pose.
 
     Attributes
     ----------
@@ -62,8 +58,6 @@ class BallStates(NamedTuple):
 
     Attributes
     ----------
-    cage : float
-        Speed of the cage by that of the system, which the contact angles ask for.
     time : float
         End of the step [s].
     last : array, shape (Z, 4)
@@ -76,7 +70,6 @@ class BallStates(NamedTuple):
         Films with memory; None where none are known.
     """
 
-    cage: float
     time: float
     last: FloatArray
     dissipated: float
@@ -152,27 +145,11 @@ class MachineBalls(BallElement):
         return self._made[speed]
 
     def settled(self, displacement: FloatArray, operation: Operation) -> Settled:
-        """Find the speed of the cage at a displacement (6,) of the inner ring against the outer one.
-
-        Raises
-        ------
-        AnalysisError
-            Where no steady speed of the cage is found.
-        """
+        """The bearing at a displacement (6,) of the inner ring against the outer one."""
         force, pose = self.force_at(operation), displacement.copy()
         pose[0] += self.axial_offset
         conditions = self.conditions(operation)
-        inner, outer = conditions["inner_speed"], conditions["outer_speed"]
-        for _ in range(MOST_TURNS):
-            balls = force.balls(pose, **conditions)
-            before = conditions["cage_speed"]
-            if self.cage_spin is not None:
-                return Settled(force, pose, conditions, balls)
-            cage = rolling_cage(force, balls, inner, outer)
-            if abs(cage - before) <= CAGE_ERROR * max(abs(inner), abs(outer)):
-                return Settled(force, pose, conditions, balls)
-            conditions = {**conditions, "cage_speed": cage}
-        raise AnalysisError(f"bearing {self.name!r}: no steady speed of the cage was found in {MOST_TURNS} turns")
+        return Settled(force, pose, conditions, force.balls(pose, **conditions))
 
     def relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
         """Relaxation of the films of both contacts of all balls, where they relax, see `Element.relaxation`."""
@@ -191,9 +168,9 @@ class MachineBalls(BallElement):
         from mbs.bearings.balls.relaxing import ball_relaxation
 
         at = self.settled(displacement, operation)
-        numbers, _ = at.force.kernel_arguments(**at.conditions)
-        law = at.force.law
-        return ball_relaxation(law, at.force.shape, at.force.last_balls, float(numbers[2]), at.balls.angle)
+        return ball_relaxation(
+            at.force.law, at.force.shape, at.force.last_balls, at.force.drive_at(**at.conditions), at.balls.angle
+        )
 
     @property
     def error_words(self) -> str:
@@ -206,8 +183,8 @@ class MachineBalls(BallElement):
             return None
         from mbs.bearings.balls.ball_errors import ball_errors
 
-        at, follows = self.settled(displacement, operation), self.cage_spin is None
-        return ball_errors(at.force, at.balls, at.conditions, relaxes=self.relaxes, cage_follows=follows)
+        at = self.settled(displacement, operation)
+        return ball_errors(at.force, at.balls, at.conditions, relaxes=self.relaxes)
 
     def balls(self, displacement: FloatArray, operation: Operation) -> BallLoads:
         """See `BallElement.balls`."""
@@ -225,12 +202,12 @@ class MachineBalls(BallElement):
     def advance(
         self, states: Any, displacement: FloatArray, velocity: FloatArray, operation: Operation
     ) -> tuple[Forces, Any]:
-        """The same at the end of a step in time, with the cage of the step before, see `Element.advance`.
+        """The same at the end of a step in time, see `Element.advance`.
 
         Parameters
         ----------
         states : BallStates or None
-            States after the last step; None for the steady speed of the cage.
+            States after the last step; None at the beginning.
         displacement, velocity, operation
             What `Element.advance` takes.
 
@@ -240,13 +217,8 @@ class MachineBalls(BallElement):
             Where the rings have come apart.
         """
         self._check_apart(displacement, operation)
-        if states is None:
-            at = self.settled(displacement, operation)
-            force, pose, conditions = at.force, at.pose, at.conditions
-        else:
-            force, pose = self.force_at(operation), displacement.copy()
-            pose[0] += self.axial_offset
-            conditions = {**self.conditions(operation), "cage_speed": states.cage * operation.speed}
+        force, pose, conditions = self.force_at(operation), displacement.copy(), self.conditions(operation)
+        pose[0] += self.axial_offset
         films, step = None if states is None else states.films, 0.0 if states is None else operation.time - states.time
         if films is not None:
             force.held = films.held(step)
@@ -255,17 +227,14 @@ class MachineBalls(BallElement):
             answer = self._answer(force, pose, velocity, conditions, balls)
         finally:
             force.held = nothing_held()
-        numbers, _ = force.kernel_arguments(**conditions)
         last, rows = np.zeros((balls.angle.size, 4)) if states is None else states.last.copy(), force.last_balls
-        work = speed_work(rows, numbers[1:3], force.shape.outer_arm, last)
+        work = speed_work(rows, force.shape.outer_arm, last)
         if self.relaxes:
             at_end = balls.approach.T
             films = FilmsOfBalls.at_rest(force.law, at_end) if films is None else films.after(step, force.law, at_end)
         slowed = answer.damping @ velocity
         turning = turned_by(pose, answer.force + slowed) * self.cage_turn * operation.speed
-        cage = self.cage_spin
         return answer, BallStates(
-            cage=rolling_cage(force, balls, self.inner_spin, self.outer_spin) if cage is None else cage,
             time=operation.time,
             last=last,
             dissipated=float(velocity @ slowed),

@@ -1,8 +1,8 @@
 """A ball bearing in balance with the errors that the film table states: what they, and its pose, change.
 
 The films of both contacts of each ball may have another stiffness or damping at their load, or be thicker, by what the
-table states. At a held pose a thicker film moves the ball, its loads and its contact angles, and with these the cage,
-whose speed sets the centrifugal load and the gyroscopic moment: all of it follows, to first order. Springs and dampers
+table states. At a held pose a thicker film moves the ball, its loads and its contact angles, and with these the speed
+of the ball, its centrifugal load and gyroscopic moment: all of it follows, to first order. Springs and dampers
 of films with memory keep their times and their parts of c.
 """
 
@@ -14,7 +14,7 @@ import numpy as np
 
 from ehdmaps.arrays import ComplexArray, FloatArray
 from mbs.bearings.balls.ball_bearing import BallForce, BallLoads
-from mbs.bearings.balls.ball_speed import rolling
+from mbs.bearings.balls.ball_speed import Drive, speed_slopes
 from mbs.bearings.balls.contact_slopes import contact_slopes, contacts_at
 from mbs.model.condensed import DIRECTIONS, Condensed, Contacts, none_moved
 
@@ -27,20 +27,17 @@ _PART = 1e-5
 _LEAST = 1e-9
 """Load of the inner contact, over the highest, below which a ball is left out."""
 
-_FILM, _CAGE = 6, 7
+_FILM = 6
 
 
 class _Places(NamedTuple):
-    """Vectors from groove centres to contacts (..., Z, 2, 2), loads (..., Z, 2), 2 G/Dw (...): derivatives likewise."""
+    """Vectors from groove centres to contacts (..., Z, 2, 2), loads (..., Z, 2): derivatives likewise."""
 
     arms: FloatArray
     loads: FloatArray
-    traction: FloatArray
 
 
-def ball_errors(
-    force: BallForce, balls: BallLoads, conditions: dict[str, Any], *, relaxes: bool, cage_follows: bool
-) -> Condensed | None:
+def ball_errors(force: BallForce, balls: BallLoads, conditions: dict[str, Any], *, relaxes: bool) -> Condensed | None:
     """Condense the balls of a bearing; None without stated errors, or without a load.
 
     Parameters
@@ -53,19 +50,17 @@ def ball_errors(
         Angle of the cage and speeds at that call.
     relaxes : bool
         Whether films have a memory.
-    cage_follows : bool
-        Whether the speed of the cage is that of pure rolling at the mean contact angles.
     """
     law, shape, rows = force.law, force.shape, force.last_balls
     on = rows[:, 10] > _LEAST * rows[:, 10].max()
     if not law.responses or not np.any(on):
         return None
     rows = rows[on]
-    numbers, _ = force.kernel_arguments(**conditions)
+    drive = force.drive_at(**conditions)
     approach, loads = rows[:, 14:16], rows[:, 10:12]
     along = rows[:, 16:20].reshape(-1, 2, 2)
     arms = (np.array([shape.inner_arm, shape.outer_arm]) + approach)[..., None] * along
-    at = _Places(arms, loads, np.array(numbers[2]))
+    at = _Places(arms, loads)
     sides = (law.inner, law.outer)
     _, k, c = _both([contacts_at(one, approach[:, i]) for i, one in enumerate(sides)])
     _, k_rise, c_rise = _both([contact_slopes(one, approach[:, i]) for i, one in enumerate(sides)])
@@ -79,14 +74,14 @@ def ball_errors(
         / (2.0 * _PART * loads)[..., None]
         for name in ("shares", "times")
     ]
-    feel, turning = _geometry(at)
+    feel, turning = _geometry(at, drive)
     contacts = Contacts(feel, turning, k, c, shares, times)
     pose = _by_pose(shape.arm, balls.angle[on])
     bounds = [one.bounds(loads[:, i]) for i, one in enumerate(law.responses)]
     stiffness_bound, damping_bound, films = (np.stack([one[i] for one in bounds], axis=1) for i in range(3))
 
-    # six directions of the pose, thicker films, a faster cage: places and loads follow
-    directions = 8
+    # six directions of the pose, thicker films: places and loads follow
+    directions = _FILM + 1
     own = np.swapaxes(feel, 1, 2) @ (k[..., None] * feel) + turning
     ring = np.zeros((directions, on.sum(), 2))
     ring[:6] = np.moveaxis(pose, 2, 0)
@@ -94,26 +89,12 @@ def ball_errors(
     thicker[_FILM] = films
     pushed = -(own[:, 2:, :2] @ ring[..., None])[..., 0]
     pushed -= (np.swapaxes(feel[:, :, 2:], 1, 2) @ (k * thicker)[..., None])[..., 0]
-    spin, fixed = conditions["cage_speed"], {key: conditions[key] for key in ("inner_speed", "outer_speed")}
-    step = _PART * max(abs(spin), 1e-3)
-    ahead, behind = (np.array(force.speed_loads(**fixed, cage_speed=spin + sign * step)) for sign in (1.0, -1.0))
-    faster = (ahead - behind) / (2.0 * step)
-    traction = np.zeros(directions)
-    traction[_CAGE] = 2.0 * faster[1] / force.geometry.ball_diameter
-    ox, radial = along[:, 1].T
-    pushed[_CAGE] += np.stack([-traction[_CAGE] * ox * radial, faster[0] + traction[_CAGE] * ox * ox], axis=-1)
     moved = np.linalg.solve(own[:, 2:, 2:], pushed[..., None])[..., 0]
     vectors = np.stack([ring - moved, moved], axis=2)
     closer = np.sum(along * vectors, axis=-1) + thicker
     heavier = k * closer
-    by = _Places(vectors, heavier, traction)
-    step_feel, step_turning = _geometry(
-        _Places(
-            arms + 1j * _SMALL * by.arms,
-            loads + 1j * _SMALL * by.loads,
-            at.traction + 1j * _SMALL * by.traction,
-        )
-    )
+    by = _Places(vectors, heavier)
+    step_feel, step_turning = _geometry(_Places(arms + 1j * _SMALL * by.arms, loads + 1j * _SMALL * by.loads), drive)
     found = Contacts(
         step_feel.imag / _SMALL,
         step_turning.imag / _SMALL,
@@ -126,20 +107,12 @@ def ball_errors(
     turned = (vectors - along * np.sum(along * vectors, axis=-1)[..., None]) / lengths[..., None]
     on_ball = heavier[:, :, 0, None] * along[:, 0] + loads[:, 0, None] * turned[:, :, 0]
     forces = -np.einsum("zmi,qzm->qi", pose, on_ball)
-    if cage_follows:
-        angles = along[..., 1] * turned[..., 0] - along[..., 0] * turned[..., 1]
-        asked = _cage(force, balls, on, angles, heavier, fixed)
-        follows = asked[:_CAGE] / (1.0 - asked[_CAGE])
-    else:
-        follows = np.zeros(_CAGE)
-    total = [part[:_CAGE] + np.multiply.outer(follows, part[_CAGE]) for part in found]
     slopes = none_moved(contacts, len(DIRECTIONS))
-    for part, value in zip(slopes, total, strict=True):
+    for part, value in zip(slopes, found, strict=True):
         part[:6], part[8] = value[:6], value[6]
     slopes.stiffness[6], slopes.damping[7] = stiffness_bound * k, damping_bound * c
     on_ring = np.zeros((len(DIRECTIONS), 6))
-    whole = forces[:_CAGE] + np.multiply.outer(follows, forces[_CAGE])
-    on_ring[:6], on_ring[8] = whole[:6], whole[6]
+    on_ring[:6], on_ring[8] = forces[:6], forces[6]
 
     def left_out(s: ComplexArray) -> tuple[ComplexArray, FloatArray]:
         sides = [one.left_out(loads[:, i], s) for i, one in enumerate(law.responses)]
@@ -163,7 +136,7 @@ def _by_pose(arm: float, angle: FloatArray) -> FloatArray:
     return found
 
 
-def _geometry(at: _Places) -> tuple[Any, Any]:
+def _geometry(at: _Places, drive: Drive) -> tuple[Any, Any]:
     """Vectors h of contacts, (..., Z, 2, 4), and stiffness by which loads turn, (..., Z, 4, 4); of complex ones, too.
 
     The inner contact stands on D - V, the outer one on V.
@@ -176,33 +149,8 @@ def _geometry(at: _Places) -> tuple[Any, Any]:
     )
     across = np.eye(2) - along[..., :, None] * along[..., None, :]
     turns = (at.loads / length)[..., None, None] * across
-    x, r = outer[..., 0], outer[..., 1]
-    held = at.traction[..., None] / length[..., 1]
-    turned = held[..., None, None] * np.stack([r * r - x * x, -2.0 * x * r], axis=-1)[..., :, None]
-    turned = turned * np.stack([r, -x], axis=-1)[..., None, :]
+    by_d, by_v = speed_slopes(along, length, drive)
     first, second = turns[..., 0, :, :], turns[..., 1, :, :]
-    top, bottom = np.concatenate([first, -first], axis=-1), np.concatenate([-first, first + second + turned], axis=-1)
+    top = np.concatenate([first, -first], axis=-1)
+    bottom = np.concatenate([-first - by_d, first + second - by_v], axis=-1)
     return feel, np.concatenate([top, bottom], axis=-2)
-
-
-def _cage(
-    force: BallForce,
-    balls: BallLoads,
-    on: Any,
-    turned: FloatArray,
-    heavier: FloatArray,
-    speeds: dict[str, float],
-) -> FloatArray:
-    """Speed of the cage that the balls ask for, by angles (q, Z, 2) and loads that change [rad/s]."""
-    inner, outer = speeds["inner_speed"], speeds["outer_speed"]
-    means = [balls.mean_angle(side) for side in (0, 1)]
-    found = np.zeros(turned.shape[0])
-    for side in (0, 1):
-        load, angle = balls.load[side], balls.contact_angle[side]
-        change = turned[..., side] @ load[on] + heavier[..., side] @ (angle[on] - means[side])
-        shifted = [
-            rolling(force.masses[3], (means[0] + step * (side == 0), means[1] + step * (side == 1)), inner, outer)
-            for step in (_PART, -_PART)
-        ]
-        found += (shifted[0] - shifted[1]) / (2.0 * _PART) * change / load.sum()
-    return found

@@ -4,16 +4,17 @@ All of a ball happens in the plane of the axis and the ball. There the centre of
 centre of the inner groove, v that of the ball, each (axial, radial). With e_o = v/|v|, e_i = (d - v)/|d - v|, the arms
 l = (f - 1/2) Dw and the approaches |v| - l_o, |d - v| - l_i, the ball is in balance where
 
-    Q_i e_i - Q_o e_o + F_c (0, 1) + 2 (M/Dw) (-cos a_o, sin a_o) = 0,       a_o the angle of e_o,
+    Q_i e_i - Q_o e_o + P = 0,    P = F_c (0, 1) + t sin(a_o) (-cos a_o, sin a_o),    a_o the angle of e_o,
 
-with the centrifugal load F_c and the gyroscopic moment M = G sin a_o that the outer raceway's traction holds. The force
-on the inner ring is -Q_i e_i. With K_i, K_o the stiffness of the contacts (their rotation included), T the derivative
-of the traction, M = K_i + K_o - T, S = M^-1 K_i and S' = K_i M^-1, slow motion has
+with the centrifugal load F_c and the traction t sin(a_o) at the outer raceway that holds the gyroscopic moment. Both
+come from the ball's own speed around the axis, which its contact angles give it, see `mbs.bearings.balls.ball_speed`:
+P = P(d, v). The force on the inner ring is -Q_i e_i. With K_i, K_o the stiffness of the contacts (their rotation
+included), L = K_i + dP/dd, M = K_i + K_o - dP/dv, S = M^-1 L and S' = K_i M^-1, slow motion has
 
-    stiffness  K_i - K_i M^-1 K_i,        damping  C_i - C_i S - S' C_i + S' (C_i + C_o) S,
+    stiffness  K_i - K_i S = S' (M - L),        damping  C_i - C_i S - S' C_i + S' (C_i + C_o) S,
 
 exact for a ball without mass of its own against its balance: M comes from the balance as it is solved, by Newton's
-method. Without gyroscopic moment the balance is the minimum of a convex potential.
+method. Without speed the balance is the minimum of a convex potential.
 
 A ball begins where it was, moved by S as the groove's centre has moved since.
 """
@@ -25,13 +26,17 @@ from typing import NamedTuple
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.compiled import njit
+from mbs.bearings.balls.ball_speed import Drive, ball_loads, orbit
 from mbs.bearings.balls.normal_law import NormalLaw, carried, holding, slowed
 
-COLUMNS = 22
+COLUMNS = 25
 """Numbers that are kept of a ball, see `place_ball`."""
 
 START = 8
 """Numbers by which a ball begins, see `place_ball`."""
+
+NUMBERS = 8
+"""Numbers of a bearing at a time, see `ball_force`."""
 
 NOT_FINITE, TOO_FAR, NO_BALANCE = -1, -2, -3
 """What `ball_force` finds instead of an answer."""
@@ -76,8 +81,7 @@ class BallShape(NamedTuple):
 @njit(error_model="numpy", _nrt=False, forceinline=True)
 def place_ball(
     d: tuple[float, float],
-    centrifugal: float,
-    traction: float,
+    drive: Drive,
     rest: float,
     shape: BallShape,
     inner: NormalLaw,
@@ -91,8 +95,8 @@ def place_ball(
     ----------
     d : (float, float)
         Centre of the inner groove against the outer one, axial and radial [m].
-    centrifugal, traction : float
-        F_c, and 2 G/Dw [N].
+    drive : Drive
+        Speeds and masses.
     rest : float
         Approach at the outer raceway of a ball that bears its centrifugal load alone [m].
     shape, inner, outer : BallShape, NormalLaw, NormalLaw
@@ -102,12 +106,13 @@ def place_ball(
     out : array (COLUMNS,)
         Written: force on the inner ring without its sign (2), stiffness (4), damping (4) of the pair, loads Q_i and
         Q_o [N]; room for the contact angles, see `write_angles`; approaches [m], directions e_i (2) and
-        e_o (2), places of the contacts on their tables.
+        e_o (2), places of the contacts on their tables; speed around the axis [rad/s], F_c and t [N].
     """
     length = math.sqrt(d[0] * d[0] + d[1] * d[1])
     overlap = length - shape.inner_arm - shape.outer_arm
     dry = inner.table.shape[0] == 0 and outer.table.shape[0] == 0
-    if dry and centrifugal <= 0.0 and overlap <= 0.0:
+    still = drive.inner == 0.0 and drive.outer == 0.0 and not abs(drive.cage) > 0.0
+    if dry and still and overlap <= 0.0:
         one = 1.0 / length
         reach = shape.outer_arm + 0.5 * overlap
         _keep(reach * d[0] * one, reach * d[1] * one, d, centre)
@@ -117,21 +122,21 @@ def place_ball(
         out[16] = out[18] = d[0] * one
         out[17] = out[19] = d[1] * one
         return True
-    if dry and centrifugal <= 0.0:  # two dry contacts in line share the overlap
+    if dry and still:  # two dry contacts in line share the overlap
         reach = (shape.outer_arm + _share(inner, outer) * overlap) / length
         _keep(reach * d[0], reach * d[1], d, centre)
-        _answer(_state(centre[0], centre[1], d, 0.0, 0.0, shape, inner, outer), shape, inner, outer, centre, out)
+        _answer(_state(centre[0], centre[1], d, drive, shape, inner, outer), shape, inner, outer, centre, out)
         return True
     mx, mr = d[0] - centre[2], d[1] - centre[3]
     x, r = centre[0] + centre[4] * mx + centre[5] * mr, centre[1] + centre[6] * mx + centre[7] * mr
     found = False
     if x * x + r * r > 0.0:
-        state = _state(x, r, d, centrifugal, traction, shape, inner, outer)
+        state = _state(x, r, d, drive, shape, inner, outer)
         # a ball between both raceways, without load, would not know where to go
         if state.qo > 0.0 and state.fx * state.fx + state.fr * state.fr < (_NEAR * state.size) ** 2:
-            x, r, state, found = _newton(x, r, state, NEWTON_STEPS, d, centrifugal, traction, shape, inner, outer)
+            x, r, state, found = _newton(x, r, state, NEWTON_STEPS, d, drive, shape, inner, outer)
     if not found:
-        x, r, state, found = _anew(centre, d, centrifugal, traction, rest, shape, inner, outer)
+        x, r, state, found = _anew(centre, d, drive, rest, shape, inner, outer)
     _keep(x, r, d, centre)
     _answer(state, shape, inner, outer, centre, out)
     return found
@@ -155,8 +160,7 @@ def _share(inner: NormalLaw, outer: NormalLaw) -> float:
 def _anew(
     centre: FloatArray,
     d: tuple[float, float],
-    centrifugal: float,
-    traction: float,
+    drive: Drive,
     rest: float,
     shape: BallShape,
     inner: NormalLaw,
@@ -169,7 +173,7 @@ def _anew(
     length = math.sqrt(d[0] * d[0] + d[1] * d[1])
     overlap = length - shape.inner_arm - shape.outer_arm
     best, x, r = math.inf, 0.0, shape.outer_arm + rest
-    state = _state(x, r, d, centrifugal, traction, shape, inner, outer)
+    state = _state(x, r, d, drive, shape, inner, outer)
     for start in range(4):
         if start == 0:
             px, pr = centre[0], centre[1]
@@ -180,7 +184,7 @@ def _anew(
             px, pr = 0.0, shape.outer_arm + rest
         if not px * px + pr * pr > 0.0:
             continue
-        here = _state(px, pr, d, centrifugal, traction, shape, inner, outer)
+        here = _state(px, pr, d, drive, shape, inner, outer)
         if not here.qo > 0.0:
             continue
         error = math.sqrt(here.fx * here.fx + here.fr * here.fr) / here.size
@@ -189,11 +193,11 @@ def _anew(
             best, x, r, state = error, px, pr, here
         if best < _NEAR and start == 0:
             break
-    x, r, state, found = _newton(x, r, state, NEWTON_STEPS, d, centrifugal, traction, shape, inner, outer)
+    x, r, state, found = _newton(x, r, state, NEWTON_STEPS, d, drive, shape, inner, outer)
     if not found:
-        x, r = _searched(d, centrifugal, traction, shape, inner, outer)
-        state = _state(x, r, d, centrifugal, traction, shape, inner, outer)
-        x, r, state, found = _newton(x, r, state, LAST_STEPS, d, centrifugal, traction, shape, inner, outer)
+        x, r = _searched(d, drive, shape, inner, outer)
+        state = _state(x, r, d, drive, shape, inner, outer)
+        x, r, state, found = _newton(x, r, state, LAST_STEPS, d, drive, shape, inner, outer)
     return x, r, state, found
 
 
@@ -204,8 +208,7 @@ def _newton(
     state: BallState,
     steps: int,
     d: tuple[float, float],
-    centrifugal: float,
-    traction: float,
+    drive: Drive,
     shape: BallShape,
     inner: NormalLaw,
     outer: NormalLaw,
@@ -242,7 +245,7 @@ def _newton(
                 cos, sin = math.cos(angle), math.sin(angle)
             far = 1.0 + part * along
             nx, nr = far * (x * cos + r * sin), far * (r * cos - x * sin)
-            ahead = _state(nx, nr, d, centrifugal, traction, shape, inner, outer)
+            ahead = _state(nx, nr, d, drive, shape, inner, outer)
             if math.sqrt(ahead.fx * ahead.fx + ahead.fr * ahead.fr) < (1.0 - 1e-4 * part) * norm:
                 moved = True
                 break
@@ -257,8 +260,7 @@ def _newton(
 @njit(error_model="numpy", _nrt=False)
 def _searched(
     d: tuple[float, float],
-    centrifugal: float,
-    traction: float,
+    drive: Drive,
     shape: BallShape,
     inner: NormalLaw,
     outer: NormalLaw,
@@ -269,12 +271,12 @@ def _searched(
     """
     low, high = 0.0, math.atan2(d[0], d[1])
     sign = 1.0 if high >= 0.0 else -1.0
-    reach = _reach(low, shape.outer_arm, d, centrifugal, traction, shape, inner, outer)
-    at_low = sign * _across(low, reach, d, centrifugal, traction, shape, inner, outer)
+    reach = _reach(low, shape.outer_arm, d, drive, shape, inner, outer)
+    at_low = sign * _across(low, reach, d, drive, shape, inner, outer)
     if at_low <= 0.0:
         return 0.0, reach
-    reach = _reach(high, reach, d, centrifugal, traction, shape, inner, outer)
-    at_high = sign * _across(high, reach, d, centrifugal, traction, shape, inner, outer)
+    reach = _reach(high, reach, d, drive, shape, inner, outer)
+    at_high = sign * _across(high, reach, d, drive, shape, inner, outer)
     if at_high >= 0.0:
         return reach * math.sin(high), reach * math.cos(high)
     angle, first = high, min(at_low, -at_high)
@@ -282,8 +284,8 @@ def _searched(
         # regula falsi (Illinois), and halves in between
         share = at_low / (at_low - at_high) if step % 4 else 0.5
         angle = low + share * (high - low)
-        reach = _reach(angle, reach, d, centrifugal, traction, shape, inner, outer)
-        here = sign * _across(angle, reach, d, centrifugal, traction, shape, inner, outer)
+        reach = _reach(angle, reach, d, drive, shape, inner, outer)
+        here = sign * _across(angle, reach, d, drive, shape, inner, outer)
         if here > 0.0:
             low, at_low, at_high = angle, here, 0.5 * at_high
         else:
@@ -298,15 +300,14 @@ def _across(
     angle: float,
     reach: float,
     d: tuple[float, float],
-    centrifugal: float,
-    traction: float,
+    drive: Drive,
     shape: BallShape,
     inner: NormalLaw,
     outer: NormalLaw,
 ) -> float:
     """Force on a ball across e_o, towards larger angles [N]."""
     cos, sin = math.cos(angle), math.sin(angle)
-    state = _state(reach * sin, reach * cos, d, centrifugal, traction, shape, inner, outer)
+    state = _state(reach * sin, reach * cos, d, drive, shape, inner, outer)
     return state.fx * cos - state.fr * sin
 
 
@@ -315,8 +316,7 @@ def _reach(
     angle: float,
     guess: float,
     d: tuple[float, float],
-    centrifugal: float,
-    traction: float,
+    drive: Drive,
     shape: BallShape,
     inner: NormalLaw,
     outer: NormalLaw,
@@ -327,7 +327,7 @@ def _reach(
     low, high = 0.0, math.inf
     place = guess
     for _ in range(100):
-        state = _state(place * sin, place * cos, d, centrifugal, traction, shape, inner, outer)
+        state = _state(place * sin, place * cos, d, drive, shape, inner, outer)
         force = state.fx * sin + state.fr * cos
         if force > 0.0:
             low = place
@@ -362,6 +362,10 @@ class BallState(NamedTuple):
         Directions e_i and e_o.
     inner_distance, reach : float
         Distances of the ball's centre from both groove centres [m].
+    speed, centrifugal, traction : float
+        Speed around the axis [rad/s], F_c and t [N].
+    px, pr, dx, dr : float
+        Derivative of P by the speed [N s], and that of the speed by d [rad/(s m)].
     """
 
     fx: float
@@ -383,6 +387,13 @@ class BallState(NamedTuple):
     orr: float
     inner_distance: float
     reach: float
+    speed: float
+    centrifugal: float
+    traction: float
+    px: float
+    pr: float
+    dx: float
+    dr: float
 
 
 @njit(error_model="numpy", _nrt=False, forceinline=True)
@@ -390,8 +401,7 @@ def _state(
     x: float,
     r: float,
     d: tuple[float, float],
-    centrifugal: float,
-    traction: float,
+    drive: Drive,
     shape: BallShape,
     inner: NormalLaw,
     outer: NormalLaw,
@@ -405,6 +415,12 @@ def _state(
     one_o, one_i = 1.0 / reach, 1.0 / distance
     ox, orr, ix, ir = x * one_o, r * one_o, ix * one_i, ir * one_i
     to, ti = qo * one_o, qi * one_i
+    speed, by_i, by_o = orbit(drive, ix, ir, ox, orr)
+    centrifugal, traction, by_load, by_traction = ball_loads(drive, speed)
+    px, pr = -by_traction * ox * orr, by_load + by_traction * ox * ox
+    # a_i and a_o follow d and v by (cos, -sin) over the distance
+    dx, dr = by_i * ir * one_i, -by_i * ix * one_i
+    vx, vr = by_o * orr * one_o - dx, -by_o * ox * one_o - dr
     # the traction turns with the angle a_o, whose derivative by the place is (cos, -sin)/reach
     turn_x, turn_r = traction * (orr * orr - ox * ox) * one_o, -2.0 * traction * ox * orr * one_o
     mixed = (ko - to) * ox * orr + (ki - ti) * ix * ir
@@ -412,10 +428,10 @@ def _state(
         qi * ix - qo * ox - traction * ox * orr,
         qi * ir - qo * orr + centrifugal + traction * ox * ox,
         qi + qo + centrifugal,
-        (ko - to) * ox * ox + to + (ki - ti) * ix * ix + ti + turn_x * orr,
-        mixed - turn_x * ox,
-        mixed + turn_r * orr,
-        (ko - to) * orr * orr + to + (ki - ti) * ir * ir + ti - turn_r * ox,
+        (ko - to) * ox * ox + to + (ki - ti) * ix * ix + ti + turn_x * orr - px * vx,
+        mixed - turn_x * ox - px * vr,
+        mixed + turn_r * orr - pr * vx,
+        (ko - to) * orr * orr + to + (ki - ti) * ir * ir + ti - turn_r * ox - pr * vr,
         qi,
         qo,
         ki,
@@ -428,6 +444,13 @@ def _state(
         orr,
         distance,
         reach,
+        speed,
+        centrifugal,
+        traction,
+        px,
+        pr,
+        dx,
+        dr,
     )
 
 
@@ -442,11 +465,18 @@ def _answer(
     k00, k01, k11 = (ki - ti) * ix * ix + ti, (ki - ti) * ix * ir, (ki - ti) * ir * ir + ti
     m00, m01, m10, m11 = state.m00, state.m01, state.m10, state.m11
     determinant = m00 * m11 - m01 * m10
+    l00, l01, l10, l11 = (
+        k00 + state.px * state.dx,
+        k01 + state.px * state.dr,
+        k01 + state.pr * state.dx,
+        k11 + state.pr * state.dr,
+    )
     out[0], out[1] = qi * ix, qi * ir
     out[10], out[11] = qi, state.qo
     out[12] = out[13] = 0.0
     out[14], out[15] = state.inner_distance - shape.inner_arm, state.reach - shape.outer_arm
     out[16], out[17], out[18], out[19], out[20], out[21] = ix, ir, ox, orr, state.at_i, state.at_o
+    out[22], out[23], out[24] = state.speed, state.centrifugal, state.traction
     if qi <= 0.0 or determinant == 0.0:
         for i in range(2, 10):
             out[i] = 0.0
@@ -454,9 +484,9 @@ def _answer(
     ci, co = slowed(inner, ki, state.at_i), slowed(outer, state.ko, state.at_o)
     one = 1.0 / determinant
     n00, n01, n10, n11 = m11 * one, -m01 * one, -m10 * one, m00 * one
-    # S = M^-1 K_i and S' = K_i M^-1
-    s00, s01 = n00 * k00 + n01 * k01, n00 * k01 + n01 * k11
-    s10, s11 = n10 * k00 + n11 * k01, n10 * k01 + n11 * k11
+    # S = M^-1 L and S' = K_i M^-1
+    s00, s01 = n00 * l00 + n01 * l10, n00 * l01 + n01 * l11
+    s10, s11 = n10 * l00 + n11 * l10, n10 * l01 + n11 * l11
     centre[4], centre[5], centre[6], centre[7] = s00, s01, s10, s11
     p00, p01 = k00 * n00 + k01 * n10, k00 * n01 + k01 * n11
     p10, p11 = k01 * n00 + k11 * n10, k01 * n01 + k11 * n11
@@ -465,8 +495,8 @@ def _answer(
     centre[1] += n10 * state.fx + n11 * state.fr
     out[0] -= p00 * state.fx + p01 * state.fr
     out[1] -= p10 * state.fx + p11 * state.fr
-    # K_i (1 - S), without the difference of nearly equal numbers: S' (M - K_i)
-    b00, b01, b10, b11 = m00 - k00, m01 - k01, m10 - k01, m11 - k11
+    # K_i (1 - S), without the difference of nearly equal numbers: S' (M - L)
+    b00, b01, b10, b11 = m00 - l00, m01 - l01, m10 - l10, m11 - l11
     out[2], out[3] = p00 * b00 + p01 * b10, p00 * b01 + p01 * b11
     out[4], out[5] = p10 * b00 + p11 * b10, p10 * b01 + p11 * b11
     # dampers act along the contacts: their rates are u.(1 - S) and w.S, and their forces come back by S'
@@ -500,8 +530,8 @@ def ball_force(
     ----------
     pose : array (6,)
         Pose of the inner ring in O [m], [rad].
-    numbers : array (4,)
-        Angle of the cage [rad], F_c [N], 2 G/Dw [N], and the approach at the outer raceway under F_c alone [m].
+    numbers : array (NUMBERS,)
+        Angle of the cage [rad], the approach at the outer raceway under F_c alone [m], and `Drive` in its order.
     cos, sin : array (Z,)
         Directions of the balls in the cage, y and z.
     shape, inner, outer : BallShape, NormalLaw, NormalLaw
@@ -518,8 +548,9 @@ def ball_force(
     total = 0.0
     for value in pose:
         total += abs(value)
-    if not total + abs(numbers[0]) + abs(numbers[1]) + abs(numbers[2]) < math.inf:
+    if not total + abs(numbers[0]) + abs(numbers[2]) + abs(numbers[3]) < math.inf:
         return NOT_FINITE
+    drive = Drive(numbers[2], numbers[3], numbers[4], numbers[5], numbers[6], numbers[7])
     far, tilt = shape.most_travel, shape.most_tilt
     if not (abs(pose[0]) <= far and abs(pose[1]) <= far and abs(pose[2]) <= far):
         return TOO_FAR
@@ -539,7 +570,7 @@ def ball_force(
         out, own_i, own_o = balls[j], inner, outer
         if held.shape[0] > 0:
             own_i, own_o = holding(inner, held, j, 0), holding(outer, held, j, 1)
-        if not place_ball(d, numbers[1], numbers[2], numbers[3], shape, own_i, own_o, centres[j], out):
+        if not place_ball(d, drive, numbers[1], shape, own_i, own_o, centres[j], out):
             return NO_BALANCE
         if out[10] <= 0.0:
             continue

@@ -1,9 +1,8 @@
 """One ball bearing at an operating point: where its inner ring comes to rest, and what its balls feel there.
 
-The outer ring is held in its place, the inner one moves along x, y and z, and tilts if it may. The cage turns as pure
-rolling at the mean contact angles of the loaded balls asks for; its speed is found with the equilibrium. Pressures are
-those of dry Hertz. Films are those that were solved, where the law has them. Else they are those of the formula of
-Hamrock and Dowson at the load of each contact; they tell how thick the film is and move nothing.
+The outer ring is held in its place, the inner one moves along x, y and z, and tilts if it may. Pressures are those of
+dry Hertz. Films are those that were solved, where the law has them. Else they are those of the formula of Hamrock and
+Dowson at the load and entrainment speed of each contact; they tell how thick the film is and move nothing.
 """
 
 from __future__ import annotations
@@ -20,7 +19,8 @@ from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.film_formulas import hamrock_dowson_central, hamrock_dowson_minimum
 from ehdmaps.units import PRESSURE
-from mbs.bearings.balls.ball_bearing import BallElement, BallForce, BallLoads, rolling_cage
+from mbs.bearings.balls.ball_bearing import BallElement, BallForce, BallLoads
+from mbs.bearings.balls.ball_motion import Motion, ball_motion
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import Load, Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
@@ -35,8 +35,6 @@ STATIC_LIMIT = 4.2e9
 SIDES = ("inner", "outer")
 
 _RING = "inner ring"
-_CAGE_ERROR = 1e-8
-_MOST_TURNS = 40
 _SLIP = 0.05
 """Traction over load that a film is trusted to hold a ball by against its gyroscopic moment."""
 
@@ -51,23 +49,21 @@ class BallPoint:
         Geometry and laws.
     load : array (3,)
         Load on the inner ring, x, y and z [N].
-    inner_speed, outer_speed, cage_speed : float
+    inner_speed, outer_speed : float
         [rad/s].
-    entrainment_speed : float
-        Mean of the two surface speeds of a contact, against the cage, at the mean contact angles [m/s].
+    motion : Motion
+        Entrainment, slip and spin of the contacts.
     pose : array (6,)
         Pose of the inner ring in the outer one.
     stiffness, damping : array (6, 6)
         -d force/d pose and -d force/d velocity.
     balls : BallLoads
-        Loads, contact angles, approaches.
+        Loads, contact angles, approaches, speeds.
     pressure, central_film, minimum_film : array (2, Z)
         Hertz pressure [Pa] and films [m] of the inner and outer contacts; NaN for films of contacts without load.
     film_errors : array (2, 4)
         Largest stated errors of film offset, central and smallest film, and damping, of the inner and outer contacts
         that carry more than 1 % of the highest load; NaN where films come from formulas, or there are none.
-    centrifugal_load : float
-        Centrifugal load of a ball [N].
     problems, notes : tuple of str
         Why the laws do not hold at the point; what else is to be known.
     """
@@ -76,8 +72,7 @@ class BallPoint:
     load: FloatArray
     inner_speed: float
     outer_speed: float
-    cage_speed: float
-    entrainment_speed: float
+    motion: Motion
     pose: FloatArray
     stiffness: FloatArray
     damping: FloatArray
@@ -86,9 +81,23 @@ class BallPoint:
     central_film: FloatArray
     minimum_film: FloatArray
     film_errors: FloatArray
-    centrifugal_load: float
     problems: tuple[str, ...]
     notes: tuple[str, ...]
+
+    @property
+    def cage_speed(self) -> float:
+        """Mean speed of the balls by their loads [rad/s]."""
+        return self.balls.cage_speed
+
+    @property
+    def entrainment_speed(self) -> float:
+        """Mean of the entrainment speeds of both raceways, by the loads of their balls [m/s]."""
+        return float(self.motion.mean(self.balls).mean())
+
+    @property
+    def centrifugal_load(self) -> float:
+        """Largest centrifugal load of a ball [N]."""
+        return float(self.balls.centrifugal.max())
 
     @property
     def size(self) -> float:
@@ -167,22 +176,14 @@ def ball_point(
     free = ["x", "y", "z", "theta_y", "theta_z"] if tilts else ["x", "y", "z"]
     ring = rigid_body(_RING, [Inertia(1.0, 1.0, 1.0)], free)
     loads = [Load("load", _RING, np.array([*given, 0.0, 0.0, 0.0]))]
-    geometry = force.geometry
-    cage = geometry.cage_speed(inner_speed, outer_speed)
-    start, pose = None, np.zeros(6)
-    for _ in range(_MOST_TURNS):
-        element = _Held("bearing", _RING, "ground", force, inner_speed, outer_speed, cage)
-        balance = _balance(System([ring], loads=loads, elements=[element]), start, given, force)
-        pose[[0, 1, 2, 4, 5][: len(free)]] = start = balance.displacement
-        balls = element.balls(pose, Operation())
-        before, cage = cage, rolling_cage(force, balls, inner_speed, outer_speed)
-        if abs(cage - before) <= _CAGE_ERROR * max(abs(inner_speed), abs(outer_speed)):
-            break
-    else:
-        raise AnalysisError(f"no steady speed of the cage of {geometry.name} was found in {_MOST_TURNS} turns")
-    contacts = geometry.contacts(force.material)
+    pose = np.zeros(6)
+    element = _Held("bearing", _RING, "ground", force, inner_speed, outer_speed)
+    balance = _balance(System([ring], loads=loads, elements=[element]), given, force)
+    pose[[0, 1, 2, 4, 5][: len(free)]] = balance.displacement
+    balls = element.balls(pose, Operation())
+    contacts = force.geometry.contacts(force.material)
     pressure = np.array([contact.max_pressure(balls.load[side]) for side, contact in enumerate(contacts)])
-    u = _entrainment(force, balls, inner_speed, outer_speed)
+    motion = ball_motion(force, balls, inner_speed, outer_speed)
     central, minimum = np.full((2, *pressure.shape), np.nan)
     film_errors = np.full((2, 4), np.nan)
     if films is not None:
@@ -191,26 +192,26 @@ def ball_point(
             (_, central[side, carries], minimum[side, carries], _), _ = solved.read(balls.load[side][carries])
             heavy = balls.load[side] > 0.01 * balls.load[side].max()
             film_errors[side] = solved.largest_errors(balls.load[side][heavy])
-    elif oil is not None and u > 0.0:
+    elif oil is not None and inner_speed != outer_speed:
         state = oil.at(temperature)
         for side, contact in enumerate(contacts):
             carries = balls.load[side] > 0.0
             numbers = (
-                state.viscosity * u / (contact.reduced_modulus * contact.rolling_radius),
+                state.viscosity
+                * motion.entrainment[side][carries]
+                / (contact.reduced_modulus * contact.rolling_radius),
                 balls.load[side][carries] / (contact.reduced_modulus * contact.rolling_radius**2),
                 state.pressure_viscosity.pressure_viscosity * contact.reduced_modulus,
                 contact.ellipticity,
             )
             central[side, carries] = contact.rolling_radius * hamrock_dowson_central(*numbers)
             minimum[side, carries] = contact.rolling_radius * hamrock_dowson_minimum(*numbers)
-    centrifugal, factor = force.speed_loads(inner_speed, outer_speed, before)
     return BallPoint(
         force=force,
         load=given,
         inner_speed=inner_speed,
         outer_speed=outer_speed,
-        cage_speed=before,
-        entrainment_speed=u,
+        motion=motion,
         pose=pose,
         stiffness=balance.element_stiffness[0],
         damping=balance.element_damping[0],
@@ -219,15 +220,14 @@ def ball_point(
         central_film=central,
         minimum_film=minimum,
         film_errors=film_errors,
-        centrifugal_load=centrifugal,
         problems=tuple(filter(None, [_overload(pressure), _shoulder(force, balls)])),
         notes=tuple(
             filter(
                 None,
                 [
                     _slack(force, balls),
-                    _sliding(force, balls, factor),
-                    _lost(balls, centrifugal),
+                    _sliding(balls),
+                    _lost(balls),
                     _beyond(force, balls),
                 ],
             )
@@ -248,26 +248,25 @@ def ball_dynamic_stiffness(point: BallPoint, omega: FloatArray) -> ComplexArray:
     from mbs.bearings.balls.relaxing import ball_relaxation
 
     force, s = point.force, np.asarray(1j * omega, dtype=np.complex128)
-    speeds = {"inner_speed": point.inner_speed, "outer_speed": point.outer_speed, "cage_speed": point.cage_speed}
+    speeds = {"inner_speed": point.inner_speed, "outer_speed": point.outer_speed}
     balls = force.balls(point.pose, **speeds)
-    numbers, _ = force.kernel_arguments(**speeds)
-    relaxation = ball_relaxation(force.law, force.shape, force.last_balls, float(numbers[2]), balls.angle)
+    relaxation = ball_relaxation(force.law, force.shape, force.last_balls, force.drive_at(**speeds), balls.angle)
     return np.asarray(point.stiffness + s[:, None, None] * point.damping + relaxation.more(s))
 
 
 @dataclass(frozen=True, eq=False)
 class _Held(BallElement):
-    """A bearing whose rings and cage turn at speeds of their own [rad/s], whatever the system does."""
+    """A bearing whose rings turn at speeds of their own [rad/s], whatever the system does."""
 
     def conditions(self, operation: Operation) -> dict[str, float]:
         """Speeds as they are."""
-        return {"inner_speed": self.inner_spin, "outer_speed": self.outer_spin, "cage_speed": self.cage_spin or 0.0}
+        return {"inner_speed": self.inner_spin, "outer_speed": self.outer_spin}
 
 
-def _balance(system: System, start: FloatArray | None, load: FloatArray, force: BallForce) -> Equilibrium:
+def _balance(system: System, load: FloatArray, force: BallForce) -> Equilibrium:
     """The equilibrium, or what to do where there is none."""
     try:
-        return equilibrium(system, Operation(), start)
+        return equilibrium(system, Operation())
     except AnalysisError as error:
         geometry = force.geometry
         words = f"no equilibrium of {geometry.name} under {load[0]:.4g} N axial, {math.hypot(*load[1:]):.4g} N radial"
@@ -278,15 +277,6 @@ def _balance(system: System, start: FloatArray | None, load: FloatArray, force: 
                 "the tangent of its contact angle"
             )
         raise AnalysisError(f"{words}: {error.__cause__ or error}") from error
-
-
-def _entrainment(force: BallForce, balls: BallLoads, inner_speed: float, outer_speed: float) -> float:
-    """Speed of both surfaces against the cage at the mean contact angles [m/s]."""
-    geometry = force.geometry
-    ratio = geometry.ball_diameter / geometry.pitch_diameter
-    inner = 1.0 - ratio * math.cos(balls.mean_angle(0))
-    outer = 1.0 + ratio * math.cos(balls.mean_angle(1))
-    return 0.5 * geometry.pitch_diameter * abs(inner_speed - outer_speed) * inner * outer / (inner + outer)
 
 
 def _overload(pressure: FloatArray) -> str:
@@ -324,9 +314,9 @@ def _slack(force: BallForce, balls: BallLoads) -> str:
     )
 
 
-def _sliding(force: BallForce, balls: BallLoads, factor: float) -> str:
+def _sliding(balls: BallLoads) -> str:
     """A sentence where the gyroscopic moment asks for more traction than a film is trusted to have."""
-    traction = 2.0 * abs(factor) * np.abs(np.sin(balls.contact_angle[1])) / force.geometry.ball_diameter
+    traction = np.abs(balls.traction)
     with np.errstate(divide="ignore", invalid="ignore"):
         share = float(np.nanmax(np.where(balls.load[1] > 0.0, traction / balls.load[1], 0.0)))
     if share <= _SLIP:
@@ -350,9 +340,9 @@ def _beyond(force: BallForce, balls: BallLoads) -> str:
     )
 
 
-def _lost(balls: BallLoads, centrifugal: float) -> str:
+def _lost(balls: BallLoads) -> str:
     """A sentence where centrifugal load lifts balls off the inner raceway; empty otherwise."""
     count = int(np.count_nonzero((balls.load[0] <= 0.0) & (balls.load[1] > 0.0)))
-    if not count or centrifugal < 1e-2 * float(balls.load.max()):
+    if not count or float(balls.centrifugal.max()) < 1e-2 * float(balls.load.max()):
         return ""
     return f"{count} of {balls.angle.size} balls run on the outer raceway alone, by their centrifugal load"

@@ -8,8 +8,9 @@ that the xi feel where the ball is in balance, small motions of d see
     Z(s) = K + s C - s^2 Xi' D (A + s D)^-1 D Xi.
 
 The eigenvalues of D^-1 A are one over the times of some springs in series with dampers, which is what
-`mbs.model.relaxation` takes; K and C are those of the bearing, exactly. Traction that holds gyroscopic moments makes M
-unsymmetrical: here by its symmetric part, which changes nothing at low frequency.
+`mbs.model.relaxation` takes; K and C are those of the bearing, exactly. Speed, by centrifugal load and traction, makes
+M unsymmetrical: here A comes from its symmetric part, and Xi is the mean of what goes in and what comes back, which
+changes nothing at low frequency.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.compiled import in_python
 from mbs.bearings.balls.ball_kernel import BallShape
+from mbs.bearings.balls.ball_speed import Drive, speed_slopes
 from mbs.bearings.balls.laws import BallLaw
 from mbs.bearings.balls.normal_law import contact
 from mbs.bearings.balls.response import TIMES
@@ -28,9 +30,7 @@ _LEAST = 1e-9
 """Part of the damping of a bearing below which dampers stay without springs."""
 
 
-def ball_relaxation(
-    law: BallLaw, shape: BallShape, balls: FloatArray, traction: float, angles: FloatArray
-) -> Relaxation:
+def ball_relaxation(law: BallLaw, shape: BallShape, balls: FloatArray, drive: Drive, angles: FloatArray) -> Relaxation:
     """Relaxation of a bearing in the pose (6,) of its inner ring.
 
     There are as many springs at any speed and pose; some have no stiffness.
@@ -43,8 +43,8 @@ def ball_relaxation(
         Lengths of the bearing.
     balls : array (Z, COLUMNS)
         What `place_ball` writes of each ball.
-    traction : float
-        2 G/Dw [N].
+    drive : Drive
+        Speeds and masses.
     angles : array (Z,)
         Angles of the balls from y towards z [rad].
     """
@@ -54,7 +54,7 @@ def ball_relaxation(
         springs = [response.springs(balls[loaded, 10 + side]) for side, response in enumerate(law.responses)]
         for i, j in enumerate(loaded.tolist()):
             dampers = [(one.shares[i], one.times[i]) for one in springs]
-            _of_ball(law, shape, balls[j], traction, dampers, rows[j], times[j])
+            _of_ball(law, shape, balls[j], drive, dampers, rows[j], times[j])
     axial, radial = rows[..., 0], rows[..., 1]
     c, s, arm = np.cos(angles)[:, None], np.sin(angles)[:, None], shape.arm * axial
     moved = np.stack([axial, radial * c, radial * s, np.zeros_like(arm), arm * s, -arm * c], axis=-1)
@@ -67,7 +67,7 @@ def _of_ball(
     law: BallLaw,
     shape: BallShape,
     ball: FloatArray,
-    traction: float,
+    drive: Drive,
     dampers: list[tuple[FloatArray, FloatArray]],
     rows: FloatArray,
     times: FloatArray,
@@ -84,12 +84,13 @@ def _of_ball(
         values.append(dampers[side][0] * c)
         # the inner contact feels d - v, the outer one v
         felt.append(np.tile(e if side else -e, (TIMES.size, 1)))
-    x, r = directions[1]
-    turned = traction / lengths[1] * np.outer([r * r - x * x, -2.0 * x * r], [r, -x])
-    balance = at_rest[0] + at_rest[1] + 0.5 * (turned + turned.T)
+    by_d, by_v = speed_slopes(np.array(directions), np.array(lengths), drive)
+    whole = at_rest[0] + at_rest[1] - by_v
+    balance = 0.5 * (whole + whole.T)
     along, damping, theta = np.concatenate(felt), np.concatenate(values), np.concatenate([one for _, one in dampers])
     # places of the dampers' ends at rest, by d: approaches of the contacts
-    ends = along @ np.linalg.solve(balance, at_rest[0])
+    into, back = np.linalg.solve(whole, at_rest[0] + by_d), np.linalg.solve(whole.T, at_rest[0])
+    ends = along @ (0.5 * (into + back))
     ends[: TIMES.size] += directions[0]
     on = np.flatnonzero(damping > 0.0)
     on = on[np.argsort(-theta[on], kind="stable")]

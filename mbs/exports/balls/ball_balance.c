@@ -5,7 +5,11 @@
  * centre of the inner groove, v that of the ball, each (axial, radial). With e_o = v/|v|, e_i = (d - v)/|d - v| the ball
  * is in balance where
  *
- *     Q_i e_i - Q_o e_o + F_c (0, 1) + T(a_o) = 0,    T = traction sin(a_o) (-cos a_o, sin a_o),    a_o the angle of e_o.
+ *     Q_i e_i - Q_o e_o + P = 0,    P = F_c (0, 1) + t sin(a_o) (-cos a_o, sin a_o),    a_o the angle of e_o.
+ *
+ * F_c is its centrifugal load, t sin(a_o) the traction at the outer raceway that holds its gyroscopic moment: both by its
+ * speed around the axis, at which it rolls at both raceways and does not drill at the outer one (outer race control). With
+ * g = Dw/d_m and c = cos(a_i - a_o) that is w_c = (w_i (1 - g cos a_i) + w_o (c + g cos a_i))/(1 + c).
  * ------------------------------------------------------------------------------------------------------------------ */
 
 #define NEWTON_STEPS 12 /* until the angle is searched */
@@ -42,19 +46,48 @@ static double approach_of(const ehd_contact *law, double load, double start) {
 #endif
 }
 
-/* What acts on a ball beside its contacts [N], where a ball with its centrifugal load alone is in its approach [m], and
- * the place of the inner groove's centre [m]. */
+/* Speeds of the rings [rad/s], and that of a cage that holds the balls, or null; where a ball with its centrifugal load
+ * alone is in its approach [m], and the place of the inner groove's centre [m]. */
 typedef struct given {
-    double d[2], centrifugal, traction, rest;
+    double d[2], inner_speed, outer_speed, rest;
+    const double *cage;
     const ehd_contact *inner, *outer;
     const double *held_inner, *held_outer; /* see contact_of */
 } given;
 
 /* Forces on a ball at a place, and what they come from: what is left of them, and the sum of their sizes [N]; minus the
- * derivative by the place [N/m]; loads, stiffness, damping; directions e_i and e_o; distances from both centres [m]. */
+ * derivative by the place [N/m]; loads, stiffness, damping; directions e_i and e_o; distances from both centres [m]; speed
+ * around the axis [rad/s], derivative of P by it [N s], and its own one by d [rad/(s m)]. */
 typedef struct state {
     double x, r, fx, fr, size, m00, m01, m10, m11, qi, qo, ki, ci, co, ix, ir, ox, orr, inner_distance, reach;
+    double speed, px, pr, dx, dr;
 } state;
+
+/* Speed of a ball around the axis by its contact angles, and its derivatives by both. */
+static double orbit(const given *of, double ix, double ir, double ox, double orr, double by_angle[2]) {
+    const double ratio = EHD_BALL_DIAMETER / EHD_PITCH_DIAMETER, slow = of->outer_speed - of->inner_speed;
+    double c = ix * ox + ir * orr, s = ix * orr - ir * ox;
+    by_angle[0] = by_angle[1] = 0.0;
+    if (of->cage) return *of->cage;
+    if (!(c > 0.0)) c = s = 0.0; /* no inner raceway is there that could drive it */
+    const double speed = of->inner_speed + slow * (c + ratio * ir) / (1.0 + c);
+    by_angle[1] = s * (of->outer_speed - speed) / (1.0 + c);
+    by_angle[0] = -by_angle[1] - slow * ratio * ix / (1.0 + c);
+    return speed;
+}
+
+/* Centrifugal load F_c and t of a ball [N] by its speed, and their derivatives by it. Traction of rings that turn against
+ * each other would drive an idle ball out of its groove: t >= -F_c/2. */
+static void speed_loads(const given *of, double speed, double load[2], double by_speed[2]) {
+    load[0] = CENTRIFUGAL * speed * speed;
+    load[1] = GYROSCOPIC * speed * (speed - of->outer_speed);
+    by_speed[0] = 2.0 * CENTRIFUGAL * speed;
+    by_speed[1] = GYROSCOPIC * (2.0 * speed - of->outer_speed);
+    if (load[1] < -0.5 * load[0]) {
+        load[1] = -0.5 * load[0];
+        by_speed[1] = -0.5 * by_speed[0];
+    }
+}
 
 static state state_at(const given *of, double x, double r) {
     state s;
@@ -65,7 +98,17 @@ static state state_at(const given *of, double x, double r) {
     const double qo = outer.load, ko = outer.stiffness, qi = inner.load, ki = inner.stiffness;
     const double one_o = 1.0 / reach, one_i = 1.0 / distance;
     const double ox = x * one_o, orr = r * one_o, ix = dx * one_i, ir = dr * one_i;
-    const double to = qo * one_o, ti = qi * one_i, traction = of->traction, centrifugal = of->centrifugal;
+    const double to = qo * one_o, ti = qi * one_i;
+    double by_angle[2], load[2], by_speed[2];
+    s.speed = orbit(of, ix, ir, ox, orr, by_angle);
+    speed_loads(of, s.speed, load, by_speed);
+    const double centrifugal = load[0], traction = load[1];
+    s.px = -by_speed[1] * ox * orr;
+    s.pr = by_speed[0] + by_speed[1] * ox * ox;
+    /* a_i and a_o follow d and v by (cos, -sin) over the distance */
+    s.dx = by_angle[0] * ir * one_i;
+    s.dr = -by_angle[0] * ix * one_i;
+    const double vx = by_angle[1] * orr * one_o - s.dx, vr = -by_angle[1] * ox * one_o - s.dr;
     /* the traction turns with the angle a_o, whose derivative by the place is (cos, -sin)/reach */
     const double turn_x = traction * (orr * orr - ox * ox) * one_o, turn_r = -2.0 * traction * ox * orr * one_o;
     const double mixed = (ko - to) * ox * orr + (ki - ti) * ix * ir;
@@ -74,10 +117,10 @@ static state state_at(const given *of, double x, double r) {
     s.fx = qi * ix - qo * ox - traction * ox * orr;
     s.fr = qi * ir - qo * orr + centrifugal + traction * ox * ox;
     s.size = qi + qo + centrifugal;
-    s.m00 = (ko - to) * ox * ox + to + (ki - ti) * ix * ix + ti + turn_x * orr;
-    s.m01 = mixed - turn_x * ox;
-    s.m10 = mixed + turn_r * orr;
-    s.m11 = (ko - to) * orr * orr + to + (ki - ti) * ir * ir + ti - turn_r * ox;
+    s.m00 = (ko - to) * ox * ox + to + (ki - ti) * ix * ix + ti + turn_x * orr - s.px * vx;
+    s.m01 = mixed - turn_x * ox - s.px * vr;
+    s.m10 = mixed + turn_r * orr - s.pr * vx;
+    s.m11 = (ko - to) * orr * orr + to + (ki - ti) * ir * ir + ti - turn_r * ox - s.pr * vr;
     s.qi = qi;
     s.qo = qo;
     s.ki = ki;
@@ -188,12 +231,15 @@ static state searched(const given *of) {
     return state_at(of, reach * sin(angle), reach * cos(angle));
 }
 
-/* Force, stiffness and damping of a ball in balance. Slow motion has the stiffness K_i - K_i M^-1 K_i and, with
- * S = M^-1 K_i and S' = K_i M^-1, the damping C_i - C_i S - S' C_i + S' (C_i + C_o) S. */
+/* Force, stiffness and damping of a ball in balance. With L = K_i + dP/dd, S = M^-1 L and S' = K_i M^-1 slow motion has
+ * the stiffness K_i - K_i S and the damping C_i - C_i S - S' C_i + S' (C_i + C_o) S. */
 static void answer(const state *s, ehd_ball *ball) {
     const double ix = s->ix, ir = s->ir, ox = s->ox, orr = s->orr, ti = s->qi / s->inner_distance;
     const double k00 = (s->ki - ti) * ix * ix + ti, k01 = (s->ki - ti) * ix * ir, k11 = (s->ki - ti) * ir * ir + ti;
+    const double l00 = k00 + s->px * s->dx, l01 = k01 + s->px * s->dr;
+    const double l10 = k01 + s->pr * s->dx, l11 = k11 + s->pr * s->dr;
     const double determinant = s->m00 * s->m11 - s->m01 * s->m10;
+    ball->speed = s->speed;
     ball->centre[0] = s->x;
     ball->centre[1] = s->r;
     ball->force[0] = s->qi * ix;
@@ -207,12 +253,12 @@ static void answer(const state *s, ehd_ball *ball) {
     if (s->qi <= 0.0 || determinant == 0.0) return;
     const double one = 1.0 / determinant;
     const double n00 = s->m11 * one, n01 = -s->m01 * one, n10 = -s->m10 * one, n11 = s->m00 * one;
-    const double s00 = n00 * k00 + n01 * k01, s01 = n00 * k01 + n01 * k11;
-    const double s10 = n10 * k00 + n11 * k01, s11 = n10 * k01 + n11 * k11;
+    const double s00 = n00 * l00 + n01 * l10, s01 = n00 * l01 + n01 * l11;
+    const double s10 = n10 * l00 + n11 * l10, s11 = n10 * l01 + n11 * l11;
     const double p00 = k00 * n00 + k01 * n10, p01 = k00 * n01 + k01 * n11;
     const double p10 = k01 * n00 + k11 * n10, p11 = k01 * n01 + k11 * n11;
-    /* K_i (1 - S), without the difference of nearly equal numbers: S' (M - K_i) */
-    const double b00 = s->m00 - k00, b01 = s->m01 - k01, b10 = s->m10 - k01, b11 = s->m11 - k11;
+    /* K_i (1 - S), without the difference of nearly equal numbers: S' (M - L) */
+    const double b00 = s->m00 - l00, b01 = s->m01 - l01, b10 = s->m10 - l10, b11 = s->m11 - l11;
     ball->stiffness[0] = p00 * b00 + p01 * b10;
     ball->stiffness[1] = p00 * b01 + p01 * b11;
     ball->stiffness[2] = p10 * b00 + p11 * b10;
@@ -234,8 +280,9 @@ static int place_ball(const given *of, ehd_ball *ball) {
     const double overlap = length - INNER_ARM - OUTER_ARM, px = ball->centre[0], pr = ball->centre[1];
     const double soft_outer = pow(of->outer->coefficient, -2.0 / 3.0);
     const double share = soft_outer / (soft_outer + pow(of->inner->coefficient, -2.0 / 3.0));
+    const int still = of->inner_speed == 0.0 && of->outer_speed == 0.0 && !(of->cage && *of->cage != 0.0);
     memset(ball, 0, sizeof *ball);
-    if (DRY && of->centrifugal <= 0.0 && overlap <= 0.0) {
+    if (DRY && still && overlap <= 0.0) {
         const double reach = OUTER_ARM + 0.5 * overlap;
         ball->centre[0] = reach * of->d[0] / length;
         ball->centre[1] = reach * of->d[1] / length;
@@ -243,7 +290,7 @@ static int place_ball(const given *of, ehd_ball *ball) {
         ball->inner_approach = ball->outer_approach = 0.5 * overlap;
         return 1;
     }
-    if (DRY && of->centrifugal <= 0.0) { /* two dry contacts in line share the overlap */
+    if (DRY && still) { /* two dry contacts in line share the overlap */
         const double part = (OUTER_ARM + share * overlap) / length;
         const state s = state_at(of, part * of->d[0], part * of->d[1]);
         answer(&s, ball);

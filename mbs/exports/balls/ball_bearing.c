@@ -3,8 +3,6 @@
  * ------------------------------------------------------------------------------------------------------------------ */
 
 #define NEGLIGIBLE 1e-11   /* approach of a dry contact under a centrifugal load that is left out [m] */
-#define CAGE_ERROR 1e-8    /* of the speed of the cage, over the faster ring's */
-#define MOST_TURNS 40      /* until it is found */
 
 size_t ehd_bearing_size(void) { return sizeof(ehd_bearing); }
 
@@ -28,27 +26,6 @@ int ehd_bearing_make(ehd_bearing *bearing, double clearance, int mirrored) {
     return EHD_OK;
 }
 
-/* Mean contact angles of both sides, by the loads of the balls; zero without load. */
-static void mean_angles(const ehd_balls *balls, double angle[2]) {
-    double load_i = 0.0, load_o = 0.0, angle_i = 0.0, angle_o = 0.0;
-    for (int j = 0; j < EHD_BALLS; j++) {
-        const ehd_ball *ball = &balls->ball[j];
-        load_i += ball->inner_load;
-        load_o += ball->outer_load;
-        angle_i += ball->inner_load * ball->inner_angle;
-        angle_o += ball->outer_load * ball->outer_angle;
-    }
-    angle[0] = load_i > 0.0 ? angle_i / load_i : 0.0;
-    angle[1] = load_o > 0.0 ? angle_o / load_o : 0.0;
-}
-
-/* Speed of the cage of pure rolling at the mean contact angles of both sides. */
-static double rolling(const double angle[2], double inner, double outer) {
-    const double ratio = EHD_BALL_DIAMETER / EHD_PITCH_DIAMETER;
-    const double at_inner = 1.0 - ratio * cos(angle[0]), at_outer = 1.0 + ratio * cos(angle[1]);
-    return (inner * at_inner + outer * at_outer) / (at_inner + at_outer);
-}
-
 /* What is wrong about a pose, a velocity, which may be a null pointer, and an angle of the cage. */
 static int problem_of(const ehd_bearing *bearing, const double *pose, const double *velocity, double cage_angle) {
     int near = 1;
@@ -67,26 +44,26 @@ static void add_matrix(double sum[6][6], const double m[4], const double way[6][
                          way[i][1] * (m[2] * way[k][0] + m[3] * way[k][1]);
 }
 
-/* ehd_bearing_at; held: what the films of the inner and the outer contact of each ball hold over a step, or null. */
+/* The force at speeds of the rings; cage: speed of a cage that holds the balls, or null; held: what the films of the inner
+ * and the outer contact of each ball hold over a step, or null. */
 static int bearing_at(const ehd_bearing *bearing, const ehd_law *law, ehd_balls *balls, const double pose[6],
-                      const double velocity[6], double cage_angle, double cage_speed, double outer_speed,
-                      const double (*held)[2][3], ehd_bearing_force *result) {
+                      const double velocity[6], double cage_angle, double inner_speed, double outer_speed,
+                      const double *cage, const double (*held)[2][3], ehd_bearing_force *result) {
     if (!result) return EHD_BAD_ARGUMENT;
-    if (!bearing || !law || !law->made || !balls || !pose || !(fabs(cage_speed) <= FASTEST) ||
-        !(fabs(outer_speed) <= FASTEST))
+    if (!bearing || !law || !law->made || !balls || !pose || !(fabs(inner_speed) <= FASTEST) ||
+        !(fabs(outer_speed) <= FASTEST) || (cage && !(fabs(*cage) <= FASTEST)))
         return no_force(result, EHD_BAD_ARGUMENT);
     const int problem = problem_of(bearing, pose, velocity, cage_angle);
     if (problem) return no_force(result, problem);
-    given of = {{0.0, 0.0}, 0.0, 0.0, 0.0, &law->inner, &law->outer, NULL, NULL};
-    of.centrifugal = CENTRIFUGAL * cage_speed * cage_speed;
-    /* traction of rings that turn against each other would drive an idle ball out of its groove: G >= -F_c Dw/4 */
-    const double moment = most(GYROSCOPIC * cage_speed * (cage_speed - outer_speed),
-                               -0.25 * EHD_BALL_DIAMETER * of.centrifugal);
-    of.rest = balls->rest = approach_of(&law->outer, of.centrifugal, balls->rest);
-    of.traction = 2.0 * moment / EHD_BALL_DIAMETER;
-    if (DRY && of.rest < NEGLIGIBLE) of.centrifugal = of.traction = 0.0;
+    given of = {{0.0, 0.0}, inner_speed, outer_speed, 0.0, cage, &law->inner, &law->outer, NULL, NULL};
+    const double nominal = cage ? *cage : ehd_cage(inner_speed, outer_speed);
+    of.rest = balls->rest = approach_of(&law->outer, CENTRIFUGAL * nominal * nominal, balls->rest);
+    if (DRY && of.rest < NEGLIGIBLE) {
+        of.inner_speed = of.outer_speed = 0.0;
+        of.cage = NULL;
+    }
     const double turn_c = cos(cage_angle), turn_s = sin(cage_angle);
-    double largest = 0.0;
+    double largest = 0.0, load = 0.0, speed = 0.0;
     memset(result, 0, sizeof *result);
     for (int j = 0; j < EHD_BALLS; j++) {
         ehd_ball *ball = &balls->ball[j];
@@ -111,40 +88,30 @@ static int bearing_at(const ehd_bearing *bearing, const ehd_law *law, ehd_balls 
         }
         largest = most(largest, most(ball->inner_load, ball->outer_load));
         if (ball->inner_load <= 0.0) continue;
+        load += ball->inner_load;
+        speed += ball->inner_load * ball->speed;
         for (int i = 0; i < 6; i++) result->force[i] -= way[i][0] * ball->force[0] + way[i][1] * ball->force[1];
         add_matrix(result->stiffness, ball->stiffness, way);
         add_matrix(result->damping, ball->damping, way);
     }
     for (int i = 0; velocity && i < 6; i++)
         for (int k = 0; k < 6; k++) result->force[i] -= result->damping[i][k] * velocity[k];
-    result->cage_speed = cage_speed;
+    result->cage_speed = load > 0.0 ? speed / load : nominal;
     return law->status | (largest > law->highest ? EHD_ABOVE_LOAD : EHD_OK);
 }
 
 int ehd_bearing_at(const ehd_bearing *bearing, const ehd_law *law, ehd_balls *balls, const double pose[6],
                    const double velocity[6], double cage_angle, double cage_speed, double outer_speed,
                    ehd_bearing_force *result) {
-    return bearing_at(bearing, law, balls, pose, velocity, cage_angle, cage_speed, outer_speed, NULL, result);
+    return bearing_at(bearing, law, balls, pose, velocity, cage_angle, 0.0, outer_speed, &cage_speed, NULL, result);
 }
 
 int ehd_bearing_call(const ehd_bearing *bearing, ehd_law *law, ehd_balls *balls, const double pose[6],
                      const double velocity[6], double cage_angle, double inner_speed, double outer_speed,
                      ehd_bearing_force *result) {
-    const double fastest = most(fabs(inner_speed), fabs(outer_speed));
-    double cage = ehd_cage(inner_speed, outer_speed);
     if (!result) return EHD_BAD_ARGUMENT;
-    if (!law || !balls || !(fabs(inner_speed) <= FASTEST) || !(fabs(outer_speed) <= FASTEST))
+    if (!law || !(fabs(inner_speed) <= FASTEST) || !(fabs(outer_speed) <= FASTEST))
         return no_force(result, EHD_BAD_ARGUMENT);
     ehd_prepare(law, EHD_ENTRAINMENT * (inner_speed - outer_speed));
-    for (int turn = 0; turn < MOST_TURNS; turn++) {
-        const int status =
-            ehd_bearing_at(bearing, law, balls, pose, velocity, cage_angle, cage, outer_speed, result);
-        if (EHD_REFUSES(status)) return status;
-        const double before = cage;
-        double angle[2];
-        mean_angles(balls, angle);
-        cage = rolling(angle, inner_speed, outer_speed);
-        if (fabs(cage - before) <= CAGE_ERROR * fastest) return status;
-    }
-    return no_force(result, EHD_NO_BALANCE);
+    return bearing_at(bearing, law, balls, pose, velocity, cage_angle, inner_speed, outer_speed, NULL, NULL, result);
 }

@@ -7,7 +7,8 @@
  * zero angular contact bearings without clearance just touch.
  *
  * Ball j stands at cage_angle + 2 pi j/EHD_BALLS, from y towards z. Each ball is in balance with both raceways, its
- * centrifugal load and its gyroscopic moment, which traction at the outer raceway holds. Balls have no inertia beside
+ * centrifugal load and its gyroscopic moment, which traction at the outer raceway holds. It goes around at the speed of its
+ * own contact angles, by which it rolls at both raceways and does not drill at the outer one. Balls have no inertia beside
  * that.
  *
  *     static ehd_law law;     // all zero before the first call
@@ -40,6 +41,7 @@ typedef struct ehd_ball {
     double inner_load, outer_load;         /* [N] */
     double inner_angle, outer_angle;       /* contact angles [rad] */
     double inner_approach, outer_approach; /* below zero a gap, or a film [m] */
+    double speed;                          /* around the axis [rad/s] */
 } ehd_ball;
 
 /* The balls of a bearing. All zero before the first call: they start from nothing. Answers hang on where they started
@@ -55,14 +57,15 @@ typedef struct ehd_balls {
  * 1 for an angular contact bearing that stands the other way round, and carries an axial force on the inner ring in -x. */
 int ehd_bearing_make(ehd_bearing *bearing, double clearance, int mirrored);
 
-/* Force, stiffness and damping at speeds of the rings and of the cage [rad/s] and a prepared law. velocity may be a null
- * pointer: at rest. The force is linear in it. */
+/* Force, stiffness and damping at speeds of the outer ring and of a cage that holds all balls [rad/s], and a prepared law:
+ * of motion that is too fast for balls to change their speed. velocity may be a null pointer: at rest. The force is linear
+ * in it. */
 int ehd_bearing_at(const ehd_bearing *bearing, const ehd_law *law, ehd_balls *balls, const double pose[6],
                    const double velocity[6], double cage_angle, double cage_speed, double outer_speed,
                    ehd_bearing_force *result);
 
-/* The same with the law of the speeds of the rings, and with a cage that turns as pure rolling at the mean contact
- * angles asks for, found to 1e-8 of the faster ring's speed. */
+/* The same with the law of the speeds of the rings, and with balls that go around at speeds of their own, which follow the
+ * pose: slow motion. cage_speed of the result is their mean by their loads. */
 int ehd_bearing_call(const ehd_bearing *bearing, ehd_law *law, ehd_balls *balls, const double pose[6],
                      const double velocity[6], double cage_angle, double inner_speed, double outer_speed,
                      ehd_bearing_force *result);

@@ -26,7 +26,6 @@ static double approach_at(const ehd_ball *ball, int side) { return side ? ball->
 
 void ehd_films_begin(const ehd_law *law, const ehd_balls *balls, ehd_films *films) {
     memset(films, 0, sizeof *films);
-    mean_angles(balls, films->angle);
     for (int j = 0; j < EHD_BALLS; j++)
         for (int side = 0; side < 2; side++) {
             films->approach[j][side] = approach_at(&balls->ball[j], side);
@@ -51,8 +50,8 @@ int ehd_films_look(const ehd_bearing *bearing, const ehd_law *law, ehd_balls *ba
                 own[1] += spring[r] * (a > 0.0 ? -expm1(-a) / a : 1.0);
             }
         }
-    return bearing_at(bearing, law, balls, pose, NULL, cage_angle, rolling(films->angle, inner_speed, outer_speed),
-                      outer_speed, (const double (*)[2][3])held, result);
+    return bearing_at(bearing, law, balls, pose, NULL, cage_angle, inner_speed, outer_speed, NULL,
+                      (const double (*)[2][3])held, result);
 }
 
 int ehd_films_step(const ehd_bearing *bearing, const ehd_law *law, ehd_balls *balls, ehd_films *films, double step,
@@ -61,7 +60,6 @@ int ehd_films_step(const ehd_bearing *bearing, const ehd_law *law, ehd_balls *ba
     const int status =
         ehd_films_look(bearing, law, balls, films, step, pose, cage_angle, inner_speed, outer_speed, result);
     if (EHD_REFUSES(status)) return status;
-    mean_angles(balls, films->angle);
     for (int j = 0; j < EHD_BALLS; j++)
         for (int side = 0; side < 2; side++) {
             double *spring = films->spring[j][side], after[4];

@@ -3,7 +3,6 @@ typedef struct ehd_films {
     double force[EHD_BALLS][2][3];  /* of their springs, inner and outer contact [N] */
     double spring[EHD_BALLS][2][4]; /* stiffness [N/m], and the longest of their times [s] */
     double approach[EHD_BALLS][2];  /* at the last step [m] */
-    double angle[2];                /* mean contact angles of both sides there, by which the cage turns [rad] */
 } ehd_films;
 
 /* Films at rest, with the balls of a call of ehd_bearing_call. */

@@ -10,7 +10,7 @@ enum {
     EHD_NOT_FINITE = 8,    /* an argument is NaN or infinite */
     EHD_TOO_FAR = 32,      /* a pose beyond reason, or an angular contact bearing beyond its middle: it has no raceway */
     EHD_BAD_ARGUMENT = 64, /* a null pointer, a clearance or play, or a speed beyond 20 000 rad/s */
-    EHD_NO_BALANCE = 128   /* no balance of a ball or roller, or no steady speed of the cage, was found */
+    EHD_NO_BALANCE = 128   /* no balance of a ball or roller was found */
 };
 
 #define EHD_REFUSED (EHD_NOT_FINITE | EHD_TOO_FAR | EHD_BAD_ARGUMENT | EHD_NO_BALANCE)
@@ -35,8 +35,8 @@ typedef struct ehd_law {
     ehd_contact inner, outer;
 } ehd_law;
 
-/* Force on the inner ring, and its derivatives at speeds that are held: stiffness = -dforce/dpose at rest, damping =
- * -dforce/dvelocity, by rows; and the speed of the cage by which that is [rad/s]. */
+/* Force on the inner ring, and its derivatives at speeds of the rings that are held: stiffness = -dforce/dpose at rest,
+ * damping = -dforce/dvelocity, by rows; and the speed of the cage [rad/s]. */
 typedef struct ehd_bearing_force {
     double force[6], stiffness[6][6], damping[6][6];
     double cage_speed;

@@ -214,13 +214,13 @@ def public_law(laws: SpeedLaws) -> str:
 
 def _private_numbers(force: BallForce, laws: SpeedLaws) -> str:
     """Constants and tables that only the functions read."""
-    geometry, shape, masses = force.geometry, force.shape, force.masses.tolist()
+    geometry, shape, drive = force.geometry, force.shape, force.drive
     parts = [
         define("GROOVE_DISTANCE", geometry.groove_distance, "of the grooves' centres where balls just touch [m]")
         + define("INNER_ARM", shape.inner_arm, "of the inner groove's centre and the centre of a ball that touches [m]")
         + define("OUTER_ARM", shape.outer_arm, "the same of the outer one [m]")
-        + define("CENTRIFUGAL", masses[0], "centrifugal load of a ball over the square of the cage's speed [kg m]")
-        + define("GYROSCOPIC", masses[1], "the same of its gyroscopic moment [kg m2]"),
+        + define("CENTRIFUGAL", drive.centrifugal, "centrifugal load of a ball over the square of its speed [kg m]")
+        + define("GYROSCOPIC", drive.gyroscopic, "the same of the traction of its gyroscopic moment [kg m]"),
         private_law(laws),
     ]
     return "\n".join(parts)

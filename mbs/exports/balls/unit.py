@@ -34,11 +34,11 @@ MOTION = (
     "In the pose zero angular contact bearings without clearance just touch; they carry an axial force on the inner "
     "ring in +x, mirrored ones in -x. Inputs start at rest under the load of the export.",
     "pose, velocity and force are those of the inner ring, right-handed. The derivatives of the outputs by the pose "
-    "are -K, by the velocity -C, at speeds that are held, that of the cage included; those by the others are quotients "
-    "of differences.",
+    "are -K, by the velocity -C, at speeds of the rings that are held; those by the others are quotients of "
+    "differences.",
     "The balls stand where the spins bring them, with a cage in pure rolling at the nominal contact angle; the first "
-    "one stands on the y axis at spins of zero. Their centrifugal load and gyroscopic moment are those of a cage in "
-    "pure rolling at the contact angles of the pose.",
+    "one stands on the y axis at spins of zero. Their centrifugal load and gyroscopic moment are those of balls that "
+    "roll at both raceways, by the contact angles of the pose, and do not drill at the outer one.",
 )
 """Axes, signs and what is left out, for people."""
 

@@ -92,9 +92,8 @@ int component_get(const component *of, unsigned reference, double *value);
 /* Whether a variable has derivatives: outputs. */
 int component_is_unknown(unsigned reference);
 
-/* Derivative of an output by an input. By pose and velocity it is -K and -C, at speeds that are held, that of the cage
- * included; by spins, speeds and play it is a quotient of differences. Films
- * with memory are springs there, without time to give way. Returns a status; the derivative is NaN where
+/* Derivative of an output by an input. By pose and velocity it is -K and -C, at speeds of the rings that are held; by
+ * spins, speeds and play it is a quotient of differences. Films with memory are springs there, without time to give way. Returns a status; the derivative is NaN where
  * that refuses, and zero by variables that have no part in it. */
 int component_derivative(component *of, unsigned unknown, unsigned known, double *derivative);
 

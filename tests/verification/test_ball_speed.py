@@ -1,0 +1,174 @@
+"""Outer race control against velocities in space, and stiffness, angles and cage speed against a balance by them."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+from ehdmaps.compiled import in_python
+from ehdmaps.physics.point.ball_catalogue import ball_estimate
+from ehdmaps.physics.solids import STEEL
+from mbs.bearings.balls.ball_bearing import BallForce
+from mbs.bearings.balls.ball_motion import ball_motion
+from mbs.bearings.balls.ball_point import ball_point
+from mbs.bearings.balls.ball_speed import Drive, ball_loads, orbit
+from mbs.bearings.balls.laws import dry_law
+from tests.cases.balls import balls_in_space, rolls
+
+RPM = math.pi / 30.0
+NITRIDE = dataclasses.replace(STEEL, youngs_modulus=310e9, poisson_ratio=0.26, density=3250.0)
+"""Balls and rings of silicon nitride: the product has one material for both."""
+
+
+def directions(ai, ao):
+    return math.sin(ai), math.cos(ai), math.sin(ao), math.cos(ao)
+
+
+def in_vectors(ratio, ai, ao, inner, outer):
+    """Speed around the axis and spin in space, at a pitch radius of one half."""
+    touches = (
+        -0.5 * ratio * np.array([math.sin(ai), math.cos(ai), 0.0]),
+        0.5 * ratio * np.array([math.sin(ao), math.cos(ao), 0.0]),
+    )
+    speed, spin, left = rolls(np.array([0.0, 0.5, 0.0]), touches, (inner, outer))
+    assert left < 1e-14
+    return speed, spin
+
+
+def test_no_slip_at_both_raceways_and_no_spin_at_the_outer_one() -> None:
+    """Random bearings and angles, either ring turning: round-off. The moment is the change of the ball's spin."""
+    draw = np.random.default_rng(1)
+    for _ in range(300):
+        ratio, (ai, ao), (inner, outer) = (
+            draw.uniform(0.05, 0.3),
+            draw.uniform(-0.2, 1.1, 2),
+            draw.uniform(-1.0, 1.0, 2),
+        )
+        drive = Drive(inner, outer, math.nan, ratio, 1.0, 0.4)
+        speed, spin = in_vectors(ratio, ai, ao, inner, outer)
+        found, by_i, by_o = in_python(orbit)(drive, *directions(ai, ao))
+        assert abs(found - speed) < 1e-12
+        step = 1e-6
+        for slope, way in ((by_i, (1.0, 0.0)), (by_o, (0.0, 1.0))):
+            ahead, behind = (
+                in_vectors(ratio, ai + s * way[0], ao + s * way[1], inner, outer)[0] for s in (step, -step)
+            )
+            assert slope == pytest.approx((ahead - behind) / (2.0 * step), abs=1e-9)
+        # M_g = w_c x J spin, about the direction x times r;  J = m Dw^2/10, the drive's m d_m/2 = 1
+        _, traction, _, _ = in_python(ball_loads)(drive, found)
+        if traction > -0.499 * found**2:  # see ball_loads
+            moment = np.cross([speed, 0.0, 0.0], spin) * 0.1 * 2.0 * ratio**2
+            assert 0.5 * ratio * traction * math.sin(ao) == pytest.approx(moment[2], abs=1e-13)
+
+
+def test_hypotheses_agree_at_equal_angles() -> None:
+    """Outer and inner race control and the bisector: the formula of nominal angles; rings that turn alike: theirs."""
+    for angle in (-0.3, 0.0, 0.7):
+        for inner, outer in ((1.0, 0.0), (0.0, 1.0), (0.7, -0.4)):
+            drive = Drive(inner, outer, math.nan, 0.2, 1.0, 0.4)
+            part = 0.2 * math.cos(angle)
+            nominal = 0.5 * (inner * (1.0 - part) + outer * (1.0 + part))
+            assert in_python(orbit)(drive, *directions(angle, angle))[0] == pytest.approx(nominal, abs=1e-15)
+    for ai, ao in ((0.9, 0.5), (0.2, -0.1)):
+        assert in_python(orbit)(Drive(0.6, 0.6, math.nan, 0.2, 1.0, 0.4), *directions(ai, ao))[0] == 0.6
+
+
+CASES = [
+    # name, radial and axial load, speeds of the rings in rpm; K radial along the load and axial [N/um], speed of the
+    # cage [rpm]: those of the independent balance of `ball_films.md`, NaN where it has none
+    ("6208", 0.0, 2000.0, 30e3, 0.0, 252.6, 60.0, 12280.0),
+    ("7014C", 0.0, 500.0, 10e3, 0.0, 97.4, 26.1, 4462.0),
+    ("7208B", 0.0, 1000.0, 10e3, 0.0, 23.0, 36.8, 4545.0),
+    ("7208B", 1000.0, 3000.0, 15e3, 0.0, 106.5, 135.0, 6695.0),
+]
+
+
+@pytest.mark.parametrize("case", CASES, ids=str)
+def test_stiffness_of_fast_bearings_by_another_program(case) -> None:
+    """A balance by Jones and Harris of another author, with closed formulas, printed with three to four digits."""
+    name, radial, axial, inner, outer, along, across, cage = case
+    geometry = ball_estimate(name)
+    point = ball_point(BallForce(geometry, dry_law(geometry)), (axial, radial, 0.0), inner * RPM, outer * RPM)
+    assert point.stiffness[1, 1] == pytest.approx(1e6 * along, rel=2.5e-3)
+    assert point.stiffness[0, 0] == pytest.approx(1e6 * across, rel=2.5e-3)
+    assert point.cage_speed == pytest.approx(cage * RPM, rel=5e-4)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("name", "material", "axial", "inner", "outer"),
+    [
+        ("6208", STEEL, 2000.0, 30e3, 0.0),
+        ("7014C", STEEL, 500.0, 10e3, 0.0),
+        ("7014C", NITRIDE, 500.0, 16e3, 0.0),
+        ("7208B", STEEL, 1000.0, 10e3, 0.0),
+        ("7208B", STEEL, 1000.0, 0.0, 10e3),
+        ("7208B", STEEL, 1000.0, 8e3, -4e3),
+        ("7208B", NITRIDE, 1000.0, 10e3, 0.0),
+    ],
+    ids=str,
+)
+def test_jones_balance(name, material, axial, inner, outer) -> None:
+    """K along all five freedoms, angles and speed under an axial load against the balance by velocities in space.
+
+    Differences of 20 nm: their second order, and the residual of scipy's root over the step, leave 2e-5 of K.
+    """
+    geometry, speeds = ball_estimate(name), (inner * RPM, outer * RPM)
+    force = BallForce(geometry, dry_law(geometry, material), material)
+    point = ball_point(force, (axial, 0.0, 0.0), *speeds)
+
+    def space(pose, only=None):
+        return balls_in_space(geometry, pose, *speeds, material=material, only=only)
+
+    (ball,) = space(point.pose, 1)[1]
+    np.testing.assert_allclose(point.balls.contact_angle[:, 0], ball.angles, rtol=1e-7)
+    np.testing.assert_allclose(point.balls.load[:, 0], ball.loads, rtol=1e-7)
+    assert point.cage_speed == pytest.approx(ball.speed, rel=1e-9)
+    assert abs(point.balls.traction[0]) == pytest.approx(ball.traction, rel=1e-7)
+    found = np.zeros((6, 3))
+    for column, axis in enumerate((0, 1, 4)):
+        step = np.zeros(6)
+        step[axis] = 2e-8 / (force.shape.arm if axis > 3 else 1.0)
+        found[:, column] = (space(point.pose - step)[0] - space(point.pose + step)[0]) / (2.0 * step[axis])
+    scale = np.array([1.0, 1.0, 1.0, 1.0, force.shape.arm, force.shape.arm])
+    wanted = point.stiffness[:, [0, 1, 4]] / np.outer(scale, scale[[0, 1, 4]])
+    found /= np.outer(scale, scale[[0, 1, 4]])
+    assert np.max(np.abs(found - wanted)) < 2e-5 * np.max(np.abs(wanted))
+
+
+def test_slip_and_spin_are_those_of_the_velocities() -> None:
+    """Balls that roll by their own angles, and balls that a cage holds at another speed: they slip inside."""
+    geometry, speeds = ball_estimate("7208B"), (9e3 * RPM, -1e3 * RPM)
+    force = BallForce(geometry, dry_law(geometry))
+    pose = np.array([25e-6, 6e-6, -3e-6, 0.0, 2e-4, 0.0])
+    half, pitch = 0.5 * geometry.ball_diameter, 0.5 * geometry.pitch_diameter
+    rolling = force.balls(pose, inner_speed=speeds[0], outer_speed=speeds[1])
+    assert np.ptp(rolling.speed) > 0.005 * rolling.cage_speed
+    for balls in (rolling, force.balls(pose, inner_speed=speeds[0], outer_speed=speeds[1], cage_speed=360.0)):
+        motion = ball_motion(force, balls, *speeds)
+        for j in range(geometry.balls):
+            ai, ao = balls.contact_angle[:, j]
+            inner = -half * np.array([math.sin(ai), math.cos(ai), 0.0])
+            outer = half * np.array([math.sin(ao), math.cos(ao), 0.0])
+            spot = np.array([0.0, pitch, 0.0])
+            # the outer raceway and the way around the axis give the spin: no inner one
+            own = balls.speed[j]
+            e = outer / half
+            across = np.cross([0.0, 0.0, 1.0], e)
+            rim = np.cross([speeds[1], 0.0, 0.0], spot + outer) - np.cross([own, 0.0, 0.0], spot)
+            spin = speeds[1] * e[0] * e + (rim[2] / (half * (across[0] * e[1] - across[1] * e[0]))) * across
+            for side, touch in enumerate((inner, outer)):
+                ring = np.cross([speeds[side], 0.0, 0.0], spot + touch)
+                ball = np.cross([own, 0.0, 0.0], spot) + np.cross(spin, touch)
+                normal = touch / half * (1.0 if side else -1.0)
+                turning = (np.array([speeds[side], 0.0, 0.0]) - spin) @ normal
+                assert motion.slip[side, j] == pytest.approx((ring - ball)[2], abs=1e-10)
+                assert motion.spin[side, j] == pytest.approx(turning, abs=1e-8)
+                with_cage = 0.5 * (ring + ball)[2] - np.cross([own, 0.0, 0.0], spot + touch)[2]
+                assert motion.entrainment[side, j] == pytest.approx(abs(with_cage), rel=1e-12)
+        slips = np.abs(motion.slip[0]).max()
+        assert slips < 1e-9 if balls is rolling else slips > 0.1
+        assert np.abs(motion.spin[0]).min() > 100.0
