@@ -166,7 +166,7 @@ def scene(more="", **changes):
 
 
 def test_a_scene_without_keys_is_left_alone():
-    model = assemble(scene())
+    model = assemble(scene(), "hertz")
     assert operating(model, 100.0) is model and held(model) is model
     dataset = statics(model).dataset
     assert float(dataset["inner_raceway_temperature"][0]) == AROUND
@@ -176,7 +176,7 @@ def test_a_scene_without_keys_is_left_alone():
 
 def test_given_temperatures_and_fits_change_clearance_and_law():
     """As the same bearing with this clearance at the mean temperature: the same numbers, bit for bit."""
-    warm = statics(assemble(scene(GIVEN + FIT)))
+    warm = statics(assemble(scene(GIVEN + FIT), "hertz"))
     (state,) = warm.model.states
     expected = 40e-6 - 11.7e-6 * 10.0 * 66e-3 - 12e-6 * 40.0 / 52.0
     assert state.clearance.operating == pytest.approx(expected, rel=1e-12)
@@ -185,14 +185,14 @@ def test_given_temperatures_and_fits_change_clearance_and_law():
     (entry,) = base.bearings
     geometry = dataclasses.replace(entry.geometry, diametral_clearance=state.clearance.operating)
     plain = dataclasses.replace(base.with_bearings([dataclasses.replace(entry, geometry=geometry)]), temperature=338.15)
-    same = statics(assemble(plain)).dataset
+    same = statics(assemble(plain, "hertz")).dataset
     for name in ("displacement", "bearing_stiffness", "hertz_pressure"):
         np.testing.assert_array_equal(warm.dataset[name], same[name])
 
 
 def test_the_balance_of_a_scene_closes():
     """Friction by hand at the temperatures that were found: 1e-9 of it. The two raceways have the same friction."""
-    found = statics(assemble(scene(BALANCE)))
+    found = statics(assemble(scene(BALANCE), "hertz"))
     (state,) = found.model.states
     oil = found.model.scene.lubricant.at(state.film_temperature)
     omega = 1000.0 * math.pi / 30.0
@@ -211,7 +211,7 @@ def test_the_balance_of_a_scene_closes():
 
 def test_every_analysis_has_the_same_bearing():
     """Statics, modes, responses, a hammer and a sweep at its speed; a run keeps that of the operating speed."""
-    model = assemble(scene(BALANCE))
+    model = assemble(scene(BALANCE), "hertz")
     clearance = operating(model, model.scene.speed).states[0].clearance.operating
     assert clearance < 39e-6
     expected = statics(model).balance.displacement
@@ -235,7 +235,7 @@ def test_every_analysis_has_the_same_bearing():
 def test_rollers_as_bodies_and_the_rolling_of_films(reynolds_map):
     """The films of a map are held outside its one temperature: constant heat, whose balance is a division."""
     with pytest.raises(InputError, match="the law 'dry Hertz, ISO 16281' knows no rolling force at 40 degC"):
-        statics(assemble(scene(ADDED)))
+        statics(assemble(scene(ADDED), "hertz"))
     emap = open_map(reynolds_map)
     for rollers in ("", 'rollers = "bodies"\n'):
         found = statics(assemble(scene(ADDED + rollers), emap=emap))
@@ -308,7 +308,7 @@ def test_seats_that_do_not_fit_are_refused_with_the_bearing():
     text = FIT.replace("40 mm", "55 mm") + 'expansion = "12e-6 1/K"\n'
     assert scene(text).bearings[0].mounting.expansion == 12e-6
     with pytest.raises(InputError, match="'left', fit of the inner ring: got a bore of 0 mm and a seat of 55 mm"):
-        assemble(scene(text))
+        assemble(scene(text), "hertz")
 
 
 def test_a_plan_takes_fits_and_refuses_heat():
@@ -328,7 +328,7 @@ def test_comparisons_say_what_is_missing_before_anything_runs():
     with pytest.raises(InputError, match="knows no rolling force"):
         variants(given, laws, [], settings=look)
     with pytest.raises(InputError, match="knows no rolling force"):
-        campbell(assemble(given), look)
+        campbell(assemble(given, "hertz"), look)
 
 
 @pytest.mark.slow

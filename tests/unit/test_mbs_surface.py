@@ -59,7 +59,7 @@ def test_every_result_says_whether_its_films_are_rough(emaps):
     assert ", roughness 0.2 um, " in rough.words and rough.label.endswith(", roughness 0.2 um")
     model = assemble(scene(ROUGH), emap=plain)
     assert law_attributes(model)["surface"] == "roughness 0.2 um"
-    assert "surface" not in law_attributes(assemble(scene(ROUGH)))
+    assert "surface" not in law_attributes(assemble(scene(ROUGH), "hertz"))
 
 
 def test_slips_in_the_table_of_a_scene_are_told():
