@@ -128,6 +128,22 @@ def test_kernel_is_that_of_python(exported, name, mirrored):
     assert partly > 2 or not laws.dry
 
 
+@pytest.mark.parametrize("name", ["32208", "NUP210"])
+def test_slow_rollers_find_their_balance(exported, name):
+    """Idle rollers in a play of 1e4 times what their centrifugal loads press them in: from nothing, and in sequence."""
+    force, _, kernel = exported[name]
+    kernel.make(exported_play(force))
+    rng = np.random.default_rng(3)
+    for speed in (0.01, 0.1, 1.0, 10.0):
+        for pose in rng.normal(size=(40, 6)) * SIZES:
+            for angle in (0.0, 0.1):
+                status, found = kernel.call(pose, np.zeros(6), angle, speed, 0.0)
+                assert status == 0
+                # light loads are left out, 1e-6 N a roller; the rest is that of the balance
+                wanted = force(pose, cage_angle=angle, inner_speed=speed)[0]
+                assert np.max(np.abs(found[0] - wanted) / ARM) <= 1e-9 * np.max(np.abs(wanted) / ARM) + 1e-6
+
+
 @pytest.mark.parametrize("name", ["32208", "30205", "NUP210"])
 def test_stiffness_is_the_derivative_of_the_force(exported, name):
     """Quotients of differences over 4 nm, to their second order; 1e-13 of a force of 10 kN over 4 nm is less."""

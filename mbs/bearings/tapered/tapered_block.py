@@ -23,7 +23,6 @@ from mbs.bearings.tapered.tapered_energy import TaperedStates, dry_energy, place
 from mbs.bearings.tapered.tapered_kernel import (
     COLUMNS,
     MOST_RIBS,
-    NO_BALANCE,
     TOO_FAR,
     Ribs,
     RollerLaws,
@@ -172,14 +171,9 @@ def _on_ring(tapered: Tapered, b: int, moment: Moment, motion: FloatArray, answe
     loads[0], loads[1], loads[2] = 0.0, tapered.loads[b, 0] * square, tapered.loads[b, 1] * square
     angle = tapered.starts[b] + tapered.turns[b] * moment.angle
     starting, rows = tapered.starting[b, :z], tapered.rows[b, :z]
-    found = NO_BALANCE
-    for _ in range(2):
-        found = tapered_force(
-            pose, angle, loads, shape, laws, tapered.memory[b], force, stiffness, damping, starting, rows, tapered.work
-        )  # fmt: skip
-        if found != NO_BALANCE:
-            break
-        starting[:] = math.nan  # once more, from nothing
+    found: int = tapered_force(
+        pose, angle, loads, shape, laws, tapered.memory[b], force, stiffness, damping, starting, rows, tapered.work
+    )
     if found < 0:
         starting[:] = math.nan
         return found

@@ -15,7 +15,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import AnalysisError, EhdmapsError, InputError
+from ehdmaps.errors import AnalysisError, EhdmapsError
 from ehdmaps.units import RPM
 from mbs.bearings.balls.ball_speed import turned_by
 from mbs.bearings.tapered.line_film import DRY_LINES, LineFilms
@@ -230,16 +230,13 @@ class TaperedElement(OnRings):
         AnalysisError
             Where the rings have come apart.
         """
+        shape = self.force.shape
+        self.check_apart(self.pose(displacement), (shape.most_travel, shape.most_tilt), operation.time)
         films, force = None if states is None else states.films, self.force_at(operation)
         step = 0.0 if states is None else operation.time - states.time
         force.held = None if films is None else films.held(step)
         try:
             answer = self.evaluate(displacement, velocity, operation)
-        except InputError as error:
-            raise AnalysisError(
-                f"bearing {self.name!r}: its rings are apart at {operation.time:.6g} s ({error}): preload is lost; "
-                "take more preload, or smaller loads"
-            ) from error
         finally:
             force.held = None
         rollers = force.last_rollers

@@ -59,6 +59,9 @@ _NOTHING = 1e-10
 _NEAR = 0.1
 """Part of the forces on a roller that may be left at a place from which Newton's method begins at once."""
 
+_LIGHT = 1e-6
+"""Load on a roller that is left out of dry contacts [N]: approaches by it would be rounding."""
+
 _SOFT = 1e-13
 """Stiffness, over that of a contact, that holds rollers which nothing holds."""
 
@@ -219,8 +222,8 @@ class RollerWork(NamedTuple):
         The same of the ribs.
     inner, whole, damped_inner, damped_outer : array (3, 3)
         A, M, A_c, B_c.
-    rest, step, trial : array (3,)
-        Force that is left, Newton's step, a place.
+    loads, rest, step, trial : array (3,)
+        F, force that is left, Newton's step, a place.
     share : array (3, 3)
         S = M^-1 A.
     plane : array (2, 3, 3)
@@ -235,6 +238,7 @@ class RollerWork(NamedTuple):
     whole: FloatArray
     damped_inner: FloatArray
     damped_outer: FloatArray
+    loads: FloatArray
     rest: FloatArray
     step: FloatArray
     trial: FloatArray
@@ -259,6 +263,7 @@ def roller_work(ribs: int, slices: int) -> RollerWork:
         whole=np.zeros((3, 3)),
         damped_inner=np.zeros((3, 3)),
         damped_outer=np.zeros((3, 3)),
+        loads=np.zeros(3),
         rest=np.zeros(3),
         step=np.zeros(3),
         trial=np.zeros(3),
@@ -386,14 +391,25 @@ def place_roller(
         most = 1e-5 + abs(d[0]) + abs(d[1]) + abs(d[2]) * length
         part = min(1.0, most / reach)
         slope = w.rest[0] * w.step[0] + w.rest[1] * w.step[1] + w.rest[2] * w.step[2]
+        low, high = 0.0, math.inf
         for _ in range(_CUTS):
             for i in range(3):
                 w.trial[i] = place[i] + part * w.step[i]
             size = _state(d, w.trial, loads, shape, laws, held, w)
             here = w.rest[0] * w.step[0] + w.rest[1] * w.step[1] + w.rest[2] * w.step[2]
-            if here >= -0.5 * slope or abs(here) <= _BALANCE * size * reach:
+            if abs(here) <= _BALANCE * size * reach:
                 break
-            part *= min(max(slope / (slope - here), 0.1), 0.9)
+            if here >= -0.5 * slope and (here <= 0.5 * slope or high == math.inf):
+                break
+            # an idle roller meets its contacts as walls: they are come to from behind, by their stiffness there
+            if here < 0.0:
+                high = part
+                _matrices(shape, w)
+                part += here / _along(w.whole, w.step)
+            else:
+                low = part
+            if not low < part < high:
+                part = 0.5 * (low + high)
         if part * reach <= 1e-16 * most:
             break
         put(w.trial, place)
@@ -425,6 +441,16 @@ def place_roller(
     for i in range(3):
         put(w.share[i], out[FIRST_SHARE + 3 * i : FIRST_SHARE + 3 * i + 3])
     return found
+
+
+@njit(error_model="numpy", _nrt=False)
+def _along(m: FloatArray, step: FloatArray) -> float:
+    """Stiffness along a step, s' M s [J] of a whole one."""
+    total = 0.0
+    for i in range(3):
+        for k in range(3):
+            total += step[i] * m[i, k] * step[k]
+    return total
 
 
 @njit(error_model="numpy", _nrt=False)
@@ -572,6 +598,10 @@ def tapered_force(
     force[:] = 0.0
     stiffness[:] = 0.0
     damping[:] = 0.0
+    size = abs(loads[0]) + abs(loads[1]) + abs(loads[2] / shape.levers[-1])
+    part = 0.0 if size < _LIGHT and laws.cup_film.table.shape[0] == 0 else 1.0
+    for i in range(3):
+        w.loads[i] = part * loads[i]
     turn_c, turn_s = math.cos(cage_angle), math.sin(cage_angle)
     loaded = 0
     radius = shape.pitch_radius
@@ -579,8 +609,13 @@ def tapered_force(
         c, s = turn_c * shape.cos[j] - turn_s * shape.sin[j], turn_s * shape.cos[j] + turn_c * shape.sin[j]
         turn = pose[5] * c - pose[4] * s
         d = (pose[0] - radius * turn, pose[1] * c + pose[2] * s, turn)
-        out = rollers[j]
-        if not place_roller(d, loads, shape, laws, memory[j if laws.relaxes else 0], places[j], w, out):
+        out, found = rollers[j], False
+        for _ in range(2):
+            found = place_roller(d, w.loads, shape, laws, memory[j if laws.relaxes else 0], places[j], w, out)
+            if found:
+                break
+            places[j, :] = math.nan  # once more, from nothing
+        if not found:
             return NO_BALANCE
         if out[3] + out[5] <= 0.0:
             continue

@@ -17,6 +17,7 @@
 #define ROUGH_BALANCE 1e-9
 #define NOTHING 1e-10 /* load below which a contact counts as unloaded [N] */
 #define NEAR 0.1      /* part of the forces that may be left where Newton's method begins at once */
+#define LIGHT 1e-6    /* load on a roller that is left out of dry contacts [N]: approaches by it would be rounding */
 #define SOFT 1e-13    /* stiffness over that of a contact that holds rollers which nothing holds */
 
 /* Sums of a contact: load, load b; stiffness k, k b, k b b; the same of damping. */
@@ -154,13 +155,24 @@ static int newton(const given *of, state *s) {
         const double slope = dot(s->rest, step);
         double part = least(1.0, furthest / reach);
         memcpy(place, s->place, sizeof place);
+        double low = 0.0, high = DBL_MAX;
         for (int cut = 0; cut < CUTS; cut++) {
             double trial[3];
             for (int i = 0; i < 3; i++) trial[i] = place[i] + part * step[i];
             *s = state_at(of, trial);
             const double here = dot(s->rest, step);
-            if (here >= -0.5 * slope || fabs(here) <= BALANCE * s->size * reach) break;
-            part *= least(most(slope / (slope - here), 0.1), 0.9);
+            if (fabs(here) <= BALANCE * s->size * reach) break;
+            if (here >= -0.5 * slope && (here <= 0.5 * slope || high == DBL_MAX)) break;
+            /* an idle roller meets its contacts as walls: they are come to from behind, by their stiffness there */
+            if (here < 0.0) {
+                high = part;
+                matrices(s, 0, inner, outer);
+                whole_of(inner, outer, whole);
+                const double column[3] = {dot(whole[0], step), dot(whole[1], step), dot(whole[2], step)};
+                part += here / dot(step, column);
+            } else
+                low = part;
+            if (!(low < part && part < high)) part = 0.5 * (low + high);
         }
         if (!(part * reach > 1e-16 * furthest)) break;
     }

@@ -48,6 +48,7 @@ static int bearing_at(const ehd_bearing *bearing, const ehd_law *law, ehd_roller
     given of = {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, bearing->play, law, NULL};
     of.loads[1] = CENTRIFUGAL * cage * cage;
     of.loads[2] = cage * AXIS[1] * (INERTIA[0] * spin - INERTIA[1] * cage * AXIS[0]);
+    if (DRY && fabs(of.loads[1]) + fabs(of.loads[2]) / ARM < LIGHT) of.loads[1] = of.loads[2] = 0.0;
     double largest = 0.0;
     memset(result, 0, sizeof *result);
     for (int j = 0; j < EHD_ROLLERS; j++) {
