@@ -310,7 +310,7 @@ def _film(
     loss_error = max(2.0 * error(results.loss_compliance), 2.0 * central_error)
     least_error = error(results.minimum_film) + _between(columns.film)
     peak_error = error(results.max_pressure) + peak_sampling_error(columns.x, columns.pressure[:, 0], cusp=True)
-    thick = too_thick(offset, ellipse.rolling_radius)
+    thick = too_thick(offset, ellipse.rolling_radius) or ellipse.too_wide(offset)
     errors = {"central film": central_error, "film offset": offset_error, "stiffness": compliance_error}
     worst, most = max(errors.items(), key=lambda each: each[1])
     physical = min(central, results.minimum_film[1], compliance) > 0.0

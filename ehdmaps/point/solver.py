@@ -329,7 +329,8 @@ def _in_si(
     worst, error = groups.worst
     half, peak = float(ellipse.semi_axes(load)[0]), float(ellipse.max_pressure(load))
     film, spring = half * half / ellipse.rolling_radius, peak * ellipse.rolling_radius
-    thick = too_thick(found.film_offset * film, ellipse.rolling_radius)
+    offset = found.film_offset * film
+    thick = too_thick(offset, ellipse.rolling_radius) or ellipse.too_wide(offset)
     physical = found.minimum_film > 0.0 and found.compliance > 0.0
     if not physical or error > MOST_ERROR or thick:
         reason = thick or f"not resolved: both grids differ by {100.0 * error:.0f} % in the {worst}"

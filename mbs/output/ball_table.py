@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ehdmaps.units import DAMPER, FILM, PRESSURE, RPM, SPRING, TEMPERATURE
-from mbs.bearings.balls.ball_element import MachineBalls
+from mbs.bearings.balls.ball_element import MachineBalls, Settled
+from mbs.bearings.balls.ball_motion import ball_motion
 from mbs.bearings.balls.ball_point import SIDES, STATIC_LIMIT, BallPoint
 from mbs.output.bearing_table import OPEN, regime, shown, smallest, warning_lines, write_csv
 from mbs.output.files import described
@@ -66,8 +67,9 @@ _ROW = (
     ("tilt_y", "rad", "tilt of the inner ring about y"),
     ("tilt_z", "rad", "tilt of the inner ring about z"),
     ("entrainment_speed", "m/s", "mean of the two surface speeds"),
-    ("cage_speed", "rad/s", "speed of the cage, in pure rolling"),
-    ("centrifugal_load", "N", "centrifugal load of a ball"),
+    ("cage_speed", "rad/s", "speed of the cage, mean of the balls by their loads"),
+    ("centrifugal_load", "N", "largest centrifugal load of a ball"),
+    ("gyroscopic_traction", "1", "largest traction that holds a gyroscopic moment, over the load at the outer raceway"),
     ("highest_ball_load", "N", "load of the most loaded ball on the inner raceway"),
     ("loaded_balls", "1", "balls that carry more than 1 % of the highest load"),
     ("film_parameter", "1", "Lambda, smallest film over the combined rms roughness"),
@@ -83,6 +85,9 @@ _SIDE = (
     ("central_film", "m", "smallest central film"),
     ("minimum_film", "m", "smallest film"),
     ("contact_angle", "rad", "mean contact angle, by the loads"),
+    ("contact_speed", "m/s", "entrainment speed, mean by the loads"),
+    ("slip", "m/s", "largest slip of the ring against a ball in the middle"),
+    ("spin", "rad/s", "largest drilling of the ring against a ball, about the normal"),
     *_ERRORS,
 )
 
@@ -99,6 +104,7 @@ def ball_row(point: BallPoint, roughness: float) -> dict[str, float]:
         point.entrainment_speed,
         point.cage_speed,
         point.centrifugal_load,
+        point.gyroscopic_traction,
         float(point.balls.load[0].max()),
         point.loaded,
         point.smallest_film / roughness,
@@ -113,8 +119,17 @@ def _side_row(point: BallPoint) -> dict[str, tuple[float, float]]:
         "central_film": (smallest(point.central_film[0]), smallest(point.central_film[1])),
         "minimum_film": (smallest(point.minimum_film[0]), smallest(point.minimum_film[1])),
         "contact_angle": (point.balls.mean_angle(0), point.balls.mean_angle(1)),
+        **_motion_row(point),
         **{name: (float(a), float(b)) for (name, _, _), (a, b) in zip(_ERRORS, point.film_errors.T, strict=True)},
     }
+
+
+def _motion_row(point: BallPoint) -> dict[str, tuple[float, float]]:
+    """Entrainment, slip and spin of the loaded contacts, inner and outer."""
+    motion, carries = point.motion, point.balls.load > 0.0
+    speeds = motion.mean(point.balls).tolist()
+    slip, spin = (np.where(carries, np.abs(values), 0.0).max(axis=1).tolist() for values in (motion.slip, motion.spin))
+    return {"contact_speed": (speeds[0], speeds[1]), "slip": (slip[0], slip[1]), "spin": (spin[0], spin[1])}
 
 
 def ball_dataset(description: BallDescription, points: Points) -> xr.Dataset:
@@ -145,6 +160,15 @@ def ball_dataset(description: BallDescription, points: Points) -> xr.Dataset:
     ):
         values = np.array([[getattr(point.balls, array) for point in line] for line in points])
         variables[name] = ((*dims, "contact", "ball"), values, {"units": unit, "long_name": words})
+    for name, unit, words in (
+        ("slip", "m/s", "speed of the ring less that of the ball in the middle of the contact"),
+        ("spin", "rad/s", "drilling of the ring less that of the ball, about the normal"),
+    ):
+        values = np.array([[getattr(point.motion, name) for point in line] for line in points])
+        variables[f"ball_{name}"] = ((*dims, "contact", "ball"), values, {"units": unit, "long_name": words})
+    values = np.array([[point.balls.speed for point in line] for line in points])
+    around = {"units": "rad/s", "long_name": "speed of the ball around the axis of the bearing"}
+    variables["ball_speed"] = ((*dims, "ball"), values, around)
     for name, words, unit in (
         ("stiffness", "stiffness, -d force/d pose", "N/m, N/rad; N m/m, N m/rad"),
         ("damping", "damping, -d force/d velocity", "N s/m, N s/rad; N m s/m, N m s/rad"),
@@ -265,6 +289,9 @@ def _page(point: BallPoint, description: BallDescription) -> list[str]:
         f"  {'':32s} {'':8s} {'inner':>12s} {'outer':>12s} raceway",
         two("Hertz pressure", PRESSURE.unit, "hertz_pressure", 1e-9),
         two("mean contact angle", "deg", "contact_angle", DEGREE.factor),
+        two("entrainment speed", "m/s", "contact_speed", 1.0),
+        two("slip in the middle", "m/s", "slip", 1.0),
+        two("spin of the ring on the ball", "rad/s", "spin", 1.0),
         two("smallest central film", FILM.unit, "central_film", 1e6),
         two("smallest film", FILM.unit, "minimum_film", 1e6),
         *(
@@ -278,7 +305,8 @@ def _page(point: BallPoint, description: BallDescription) -> list[str]:
         ),
         f"  Lambda {row['film_parameter']:.3g} (smallest film over {roughness} of roughness; "
         f"{regime(row['film_parameter'])})",
-        f"  cage {RPM.text(point.cage_speed)}, centrifugal load of a ball {FORCE.text(point.centrifugal_load)}",
+        f"  cage {RPM.text(point.cage_speed)}, centrifugal load of a ball up to {FORCE.text(point.centrifugal_load)}, "
+        f"gyroscopic traction up to {point.gyroscopic_traction:.2g} of the load at the outer raceway",
     ]
 
 
@@ -333,6 +361,19 @@ def _clean(angle: float) -> float:
 _WAYS = ("x", "y", "z")
 
 
+def _moving(at: Settled) -> list[str]:
+    """A line on the speeds of balls that roll; none at rest."""
+    inner, outer = at.conditions["inner_speed"], at.conditions["outer_speed"]
+    if inner == outer:
+        return []
+    motion, carries = ball_motion(at.force, at.balls, inner, outer), at.balls.load > 0.0
+    slip, spin = (np.where(carries, np.abs(values), 0.0).max(axis=1) for values in (motion.slip, motion.spin))
+    return [
+        f"  cage {RPM.text(at.balls.cage_speed)}; slip up to {_clean(slip[0]):.3g} m/s inner, {_clean(slip[1]):.3g} "
+        f"outer; spin up to {_clean(spin[0]):.4g} rad/s inner, {_clean(spin[1]):.4g} outer"
+    ]
+
+
 def ball_lines(model: Model, balance: Equilibrium) -> list[str]:
     """Lines on each ball bearing: its load, contact angles, loads of the balls, stiffness and damping.
 
@@ -368,6 +409,7 @@ def ball_lines(model: Model, balance: Equilibrium) -> list[str]:
             f"  {at.balls.loaded} of {loads.shape[1]} balls loaded, {loads[0].min():.4g} to "
             f"{loads[0].max():.5g} N at the inner raceway; Hertz pressure up to {PRESSURE.value(pressures[0]):.4g} "
             f"inner, {PRESSURE.text(pressures[1])} outer",
+            *_moving(at),
             "  K " + "; C ".join(parts),
         ]
         if not np.any(loads[0] > OPEN):

@@ -18,6 +18,7 @@ from ehdmaps.jobs.make.points import table as maker
 from ehdmaps.jobs.make.points.lines import SolvedPoint
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from ehdmaps.physics.point.ellipse import Ellipse, elliptic_numbers
 from ehdmaps.physics.solids import STEEL as MATERIAL
 from ehdmaps.physics.solution import Status
@@ -247,3 +248,41 @@ def test_a_table_is_made_read_again_and_states_its_errors(tmp_path, monkeypatch)
         stated, hole = nodes.errors(nodes.place(*at[:3], at[3:]))
         assert not hole[0] and np.all(wrong <= stated[0])
         assert wrong[: len(FIELDS)].max() < most
+
+
+def test_no_smallest_film_is_above_the_central_one(table):
+    """Both are cubics between nodes, which cross for up to 5 % of the loads and speeds of a ball."""
+    contact = ball_estimate("7014C").contacts(MATERIAL)[0]
+    heaviest = (4.2e9 / float(contact.max_pressure(1.0))) ** 3
+    loads, speeds = np.geomspace(heaviest / 3000.0, heaviest, 40), np.geomspace(0.02, 20.0, 40)
+    films = table.films(contact, Lubricant.named("ISO VG 32"), loads[:, None], speeds, 353.15)
+    here = films.usable
+    smallest, central = films.minimum_film[here], films.central_film[here]
+    assert np.all(smallest <= central)
+    alike = smallest == central
+    assert np.any(alike)
+    errors = films.errors
+    assert np.all(errors["minimum_film"][here][alike] >= errors["central_film"][here][alike])
+
+
+def test_films_wider_than_a_ball_are_refused():
+    """A ball far from its ring: sqrt(2 Ry h) above 0.6 Dw/2, which is 31 um at the inner ring of a 7208B."""
+    geometry = ball_estimate("7208B")
+    contact = geometry.contacts(MATERIAL)[0]
+    assert contact.widest_film == pytest.approx(31.2e-6, rel=2e-3)
+    speed = geometry.entrainment_speed(20e3 * math.pi / 30.0)
+    oil = Lubricant.named("ISO VG 32")
+    loads = np.array([0.1, 2.0, 2.5, 20.0])
+    films = shipped_point_table().films(contact, oil, loads, speed, 343.15)
+    assert films.usable.tolist() == [False, False, True, True]
+    assert np.all(films.film_offset[2:] < contact.widest_film)
+    assert "wider than 0.6 of the ball's radius" in films.reason[1]
+    # without a body whose radius is known, the paraboloid is all that there is
+    bare = Ellipse(contact.rolling_radius, contact.transverse_radius, contact.reduced_modulus)
+    assert shipped_point_table().films(bare, oil, 2.0, speed, 343.15).film_offset > contact.widest_film
+    assert contact.too_wide(40e-6).startswith(
+        "film of 40 um is wider than 0.6 of the ball's radius, which is so from 31.2 um"
+    )
+    assert not contact.too_wide(30e-6)
+    with pytest.raises(InputError, match=r"ellipse, body_radius: got 0\.0 m"):
+        Ellipse(1e-3, 1e-2, STEEL, 0.0)

@@ -22,6 +22,7 @@ from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.physics.point.ellipse import Ellipse
+from ehdmaps.physics.point.film_formulas import POINT_FILMS
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.solution import Status
 from ehdmaps.physics.spectrum import HIGHEST_FREQUENCY, LOWEST_FREQUENCY, MOST_FREQUENCIES
@@ -271,7 +272,7 @@ def _heading(request: _Request) -> str:
     """Bearing, oil and point in words."""
     by = "" if request.cfd is None else ", OpenFOAM"
     place = f"{FORCE.text(request.load)} a ball, {SPEED.text(request.speed)}, {TEMPERATURE.text(request.temperature)}"
-    return f"{request.bearing.title}, {request.oil.title}{by}: {place}"
+    return f"{request.bearing.title}, {request.oil.title}{by}, {POINT_FILMS}: {place}"
 
 
 def _json(solutions: dict[str, PointSolution]) -> str:
@@ -296,6 +297,7 @@ def _record(name: str, solution: PointSolution) -> dict[str, Any]:
         "steps": solution.steps,
         "solve_seconds": solution.solve_seconds,
         "viscosity_extrapolated": solution.viscosity_extrapolated,
+        "films": POINT_FILMS,
         "status": solution.status.word,
         "reason": solution.reason,
     }

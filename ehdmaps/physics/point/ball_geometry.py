@@ -148,8 +148,8 @@ class BallGeometry:
         modulus = reduced_modulus(material, material if rings is None else rings)
         half = 0.5 * self.ball_diameter
         return (
-            Ellipse(half * (1.0 - self.gamma), _across(half, self.inner_conformity), modulus),
-            Ellipse(half * (1.0 + self.gamma), _across(half, self.outer_conformity), modulus),
+            Ellipse(half * (1.0 - self.gamma), _across(half, self.inner_conformity), modulus, half),
+            Ellipse(half * (1.0 + self.gamma), _across(half, self.outer_conformity), modulus, half),
         )
 
     def ball_mass(self, material: Material) -> float:

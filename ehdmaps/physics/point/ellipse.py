@@ -34,6 +34,10 @@ from ehdmaps.errors import InputError
 ELLIPTICITIES = (1e-3, 1e3)
 """Smallest and largest ellipticity: beyond them the half-space bodies would have to be thousands of widths large."""
 
+WIDEST = 0.6
+"""Half-width sqrt(2 Ry h) of a film, over the radius of the smaller body across, beyond which it is refused: there a
+circle is 11 % further away than its paraboloid."""
+
 _STEPS = 8
 _MOST_NEWTON = 30
 
@@ -163,6 +167,8 @@ class Ellipse:
         Ry, that across it [m], > 0.
     reduced_modulus : float
         E' = 2/((1 - nu1^2)/E1 + (1 - nu2^2)/E2) [Pa], > 0.
+    body_radius : float
+        Radius of the smaller body across, such as of a ball [m], > 0; infinite where it is not known.
 
     Raises
     ------
@@ -181,9 +187,12 @@ class Ellipse:
     rolling_radius: float
     transverse_radius: float
     reduced_modulus: float
+    body_radius: float = math.inf
 
     def __post_init__(self) -> None:
         problems = []
+        if not self.body_radius > 0.0:
+            problems.append(f"ellipse, body_radius: got {self.body_radius!r} m; allowed: > 0")
         for name, unit in (("rolling_radius", "m"), ("transverse_radius", "m"), ("reduced_modulus", "Pa")):
             value = getattr(self, name)
             if not (isinstance(value, int | float) and math.isfinite(value) and value > 0.0):
@@ -196,6 +205,27 @@ class Ellipse:
     def ellipticity(self) -> float:
         """Ratio kappa = b/a of the semi-axes; below 1 where the ellipse is longer along the direction of rolling."""
         return ellipticity(self.rolling_radius / self.transverse_radius)
+
+    @property
+    def widest_film(self) -> float:
+        """Film [m] as wide as the gap is a paraboloid, see `WIDEST`; infinite where bodies have no known radius."""
+        return 0.5 * (WIDEST * self.body_radius) ** 2 / self.transverse_radius
+
+    def too_wide(self, film: float) -> str:
+        """Reason why a film is refused that is wider than the paraboloid holds; empty where it is not.
+
+        Parameters
+        ----------
+        film : float
+            Film offset h [m].
+        """
+        if not film > self.widest_film:
+            return ""
+        return (
+            f"film of {1e6 * film:.3g} um is wider than {WIDEST:g} of the ball's radius, which is so from "
+            f"{1e6 * self.widest_film:.3g} um on: the gap is no paraboloid; take a higher load, a lower speed or a "
+            "thinner oil"
+        )
 
     @cached_property
     def numbers(self) -> EllipticNumbers:

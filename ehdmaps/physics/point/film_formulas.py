@@ -13,11 +13,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from ehdmaps.arrays import Values, as_given
+from ehdmaps.arrays import FloatArray, Values, as_given
+
+POINT_FILMS = "isothermal, flooded"
+"""Assumptions of all films of balls, those of the table and those that are solved, too: printed beside them."""
 
 
 def hamrock_dowson_minimum(
-    speed_number: float, load_number: Values, material_number: float, ellipticity: float
+    speed_number: FloatArray | float, load_number: Values, material_number: float, ellipticity: float
 ) -> Values:
     """Minimum film, h/Rx = 3.63 U^0.68 G^0.49 W^-0.073 (1 - exp(-0.68 k)).
 
@@ -26,7 +29,7 @@ def hamrock_dowson_minimum(
 
     Parameters
     ----------
-    speed_number : float
+    speed_number : float or array
         Speed number U.
     load_number : float or array
         W, > 0.
@@ -43,13 +46,13 @@ def hamrock_dowson_minimum(
 
 
 def hamrock_dowson_central(
-    speed_number: float, load_number: Values, material_number: float, ellipticity: float
+    speed_number: FloatArray | float, load_number: Values, material_number: float, ellipticity: float
 ) -> Values:
     """Central film, h/Rx = 2.69 U^0.67 G^0.53 W^-0.067 (1 - 0.61 exp(-0.73 k)).
 
     Parameters
     ----------
-    speed_number : float
+    speed_number : float or array
         Speed number U.
     load_number : float or array
         W, > 0.

@@ -19,7 +19,7 @@ from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.physics.closed_form import THICK_NOTE, THICKEST_FILM, THIN_FILM_LIMIT
 from ehdmaps.physics.hertz import LARGEST_PRESSURE
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.point.ellipse import Ellipse
+from ehdmaps.physics.point.ellipse import WIDEST, Ellipse
 from ehdmaps.physics.solution import Status
 from ehdmaps.table.coordinates import bend_of
 from ehdmaps.table.fields import NATURAL_FREQUENCIES
@@ -50,11 +50,12 @@ CAUSES = (
     "table of points: below its lowest loads",
     "table of points: a node beside it has no solution; solve this film",
     f"film thicker than {THICKEST_FILM:g} of the radius: neither thin-film theory nor a parabolic gap holds",
+    f"film wider than {WIDEST:g} of the ball's radius: the gap between ball and groove is no paraboloid",
 )
 """Causes of a status in words, by their number; empty for a plain film."""
 
 _NONE, _THICK, _CONTINUED, _DRY, _NO_LOAD, _NO_STATE, _LAW, _ABSURD, _PRESSURE = range(9)
-_KAPPA, _L, _OIL, _HEAVY, _LIGHT, _HOLE, _TOO_THICK = range(9, len(CAUSES))
+_KAPPA, _L, _OIL, _HEAVY, _LIGHT, _HOLE, _TOO_THICK, _TOO_WIDE = range(9, len(CAUSES))
 
 NUMBERS = (
     *("approach", "film_offset", "stiffness", "damping", "film_compliance", "loss_compliance"),
@@ -181,7 +182,8 @@ class PointTable:
         ))  # fmt: skip
         thickness = found["film_offset"] / ellipse.rolling_radius
         tests = (
-            (hole, _HOLE), (thickness > THICKEST_FILM, _TOO_THICK), (thickness > THIN_FILM_LIMIT, _THICK),
+            (hole, _HOLE), (thickness > THICKEST_FILM, _TOO_THICK),
+            (found["film_offset"] > ellipse.widest_film, _TOO_WIDE), (thickness > THIN_FILM_LIMIT, _THICK),
             (continued, _CONTINUED),
         )  # fmt: skip
         cause[good] = np.select([test for test, _ in tests], [code for _, code in tests], _NONE)
@@ -275,6 +277,11 @@ class PointTable:
             wrong[SLOPE] += np.abs(moved_slopes[:, 0] - slopes[:, 0]) * offset / load / compliance
         stiffness, damping = 1.0 / compliance, values[:, 1] * unit.damping
         approach = np.asarray(ellipse.approach(load)) - offset
+        # both films are cubics between nodes: no film is smallest above the central one
+        central, smallest = values[:, 2], values[:, 3]
+        wrong["minimum_film"] = np.where(
+            smallest > central, np.maximum(wrong["minimum_film"], wrong["central_film"]), wrong["minimum_film"]
+        )
         found = {
             "approach": approach,
             "film_offset": offset,
@@ -282,8 +289,8 @@ class PointTable:
             "damping": damping,
             "film_compliance": -slope,
             "loss_compliance": damping / stiffness**2,
-            "central_film": values[:, 2] * unit.film,
-            "minimum_film": values[:, 3] * unit.film,
+            "central_film": central * unit.film,
+            "minimum_film": np.minimum(smallest, central) * unit.film,
             "max_pressure": values[:, 4] * unit.pressure,
         }
         with np.errstate(divide="ignore"):

@@ -99,6 +99,12 @@ class BallLoads:
         """Number of balls that carry more than 1 % of the highest inner load: films that hardly touch carry some."""
         return int(np.count_nonzero(self.load[0] > LOADED * self.load[0].max()))
 
+    @property
+    def gyroscopic_traction(self) -> float:
+        """Largest traction that holds a gyroscopic moment, over the load of its ball at the outer raceway."""
+        loaded = self.load[1] > 0.0
+        return float(np.max(np.abs(self.traction[loaded]) / self.load[1][loaded], initial=0.0))
+
     def mean_angle(self, side: int) -> float:
         """Mean contact angle of a side, 0 the inner one, by the loads of its balls [rad]; zero without load."""
         total = float(np.sum(self.load[side]))

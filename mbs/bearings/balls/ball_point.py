@@ -60,7 +60,8 @@ class BallPoint:
     balls : BallLoads
         Loads, contact angles, approaches, speeds.
     pressure, central_film, minimum_film : array (2, Z)
-        Hertz pressure [Pa] and films [m] of the inner and outer contacts; NaN for films of contacts without load.
+        Hertz pressure [Pa] and films [m] of the inner and outer contacts; NaN for films of contacts without load,
+        and for those wider than the gap is a paraboloid.
     film_errors : array (2, 4)
         Largest stated errors of film offset, central and smallest film, and damping, of the inner and outer contacts
         that carry more than 1 % of the highest load; NaN where films come from formulas, or there are none.
@@ -98,6 +99,11 @@ class BallPoint:
     def centrifugal_load(self) -> float:
         """Largest centrifugal load of a ball [N]."""
         return float(self.balls.centrifugal.max())
+
+    @property
+    def gyroscopic_traction(self) -> float:
+        """Largest traction that holds a gyroscopic moment, over the load of its ball at the outer raceway."""
+        return self.balls.gyroscopic_traction
 
     @property
     def size(self) -> float:
@@ -189,7 +195,9 @@ def ball_point(
     if films is not None:
         for side, solved in enumerate(films.sides):
             carries = balls.load[side] > 0.0
-            (_, central[side, carries], minimum[side, carries], _), _ = solved.read(balls.load[side][carries])
+            (offset, thick, thin, _), _ = solved.read(balls.load[side][carries])
+            held = offset <= contacts[side].widest_film
+            central[side, carries], minimum[side, carries] = np.where(held, (thick, thin), np.nan)
             heavy = balls.load[side] > 0.01 * balls.load[side].max()
             film_errors[side] = solved.largest_errors(balls.load[side][heavy])
     elif oil is not None and inner_speed != outer_speed:
@@ -204,8 +212,12 @@ def ball_point(
                 state.pressure_viscosity.pressure_viscosity * contact.reduced_modulus,
                 contact.ellipticity,
             )
-            central[side, carries] = contact.rolling_radius * hamrock_dowson_central(*numbers)
-            minimum[side, carries] = contact.rolling_radius * hamrock_dowson_minimum(*numbers)
+            thick, thin = (
+                contact.rolling_radius * np.asarray(formula(*numbers))
+                for formula in (hamrock_dowson_central, hamrock_dowson_minimum)
+            )
+            held = thick <= contact.widest_film
+            central[side, carries], minimum[side, carries] = np.where(held, (thick, thin), np.nan)
     return BallPoint(
         force=force,
         load=given,
@@ -316,9 +328,7 @@ def _slack(force: BallForce, balls: BallLoads) -> str:
 
 def _sliding(balls: BallLoads) -> str:
     """A sentence where the gyroscopic moment asks for more traction than a film is trusted to have."""
-    traction = np.abs(balls.traction)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        share = float(np.nanmax(np.where(balls.load[1] > 0.0, traction / balls.load[1], 0.0)))
+    share = balls.gyroscopic_traction
     if share <= _SLIP:
         return ""
     return (

@@ -85,6 +85,7 @@ class ContactFilms:
         inside = np.clip(asked, spline.x[0], spline.x[-1])
         slopes = slope(inside)
         values = np.exp(spline(inside) + slopes * (asked - inside)[:, None])
+        values[:, 2] = np.minimum(values[:, 2], values[:, 1])  # cubics and straight ends may cross
         return values.T, (values * slopes).T
 
     @cached_property

@@ -14,6 +14,7 @@ from ehdmaps.outputs import output_problems
 from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from ehdmaps.physics.point.ball_geometry import BallGeometry
+from ehdmaps.physics.point.film_formulas import POINT_FILMS
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.program import tell
 from ehdmaps.units import RPM, SPEED, TEMPERATURE
@@ -156,10 +157,14 @@ def read_balls(arguments: argparse.Namespace) -> BallRequest:
         outer_speed=outer,
         memory=chosen.get("films") == "memory",
         description=BallDescription(
-            law=f"films of {oil.title}, {source[films]}"
+            law=f"films of {oil.title}, {POINT_FILMS}, {source[films]}"
             if films
             else "dry Hertz" + (f", {damper.words} of each contact" if damper.words else ""),
-            films=("films of the law" if films else f"films by the formula of Hamrock and Dowson, {oil.title}")
+            films=(
+                "films of the law"
+                if films
+                else f"films by the formula of Hamrock and Dowson, {oil.title}, {POINT_FILMS}"
+            )
             + ("" if oil.verified else " (unverified data of the oil)"),
             direction=math.degrees(math.atan2(way[1], way[0])),
             temperature=temperature,

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from ehdmaps.errors import InputError
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.ball_geometry import BallGeometry
+from ehdmaps.physics.point.film_formulas import POINT_FILMS
 from ehdmaps.units import TEMPERATURE
 from mbs.model.relaxation import FILM_WORDS
 from mbs.scene.specs import BallSpec
@@ -92,7 +93,7 @@ def ball_law_words(laws: ContactLaws) -> str:
     from mbs.scene.contact_laws import hertz_damper
 
     if laws.chosen in FILMS:
-        source = f"ball bearings with films from the film table of points, {laws.lubricant.title}, flooded"
+        source = f"ball bearings with films from the film table of points, {laws.lubricant.title}, {POINT_FILMS}"
         return f"{source}, {FILM_WORDS[laws.memory]}"
     damper = hertz_damper(laws.chosen)
     words = f", {damper.words} of each contact" if damper is not None and damper.words else ""
