@@ -419,6 +419,13 @@ def _modal_fit(top: Program) -> None:
         help='time constant of an exponential window, such as "0.2 s", or none; else by the decay of the hits. Of '
         "frequency responses: the window that they have been through",
     )
+    command.add_argument(
+        "--windowed",
+        metavar="TIME",
+        help='exponential window that an analyser has put on the responses: its time constant, such as "50 ms", or '
+        'what it leaves at the end of a record, such as "1 %%"',
+    )
+    command.add_argument("--windowed-force", action="store_true", help="the force of the hits has been through it too")
     command.add_argument("--no-refine", action="store_true", help="poles as the method finds them")
     command.add_argument("-o", "--output", metavar="OUT.nc", help="result as netCDF")
     command.add_argument("--responses", metavar="FRF.uff", help="estimated responses and coherences")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
+import math
 from pathlib import Path
 
 import numpy as np
@@ -26,8 +27,8 @@ TOLERANCE = 0.2
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Estimate the responses where there are hits, fit them, and say what was found."""
-    band, decay = _options(arguments)
-    measured = read_uff(Path(arguments.file))
+    band, decay, windowed = _options(arguments)
+    measured = _declared(read_uff(Path(arguments.file)), windowed, arguments)
     responses, lines = _responses(measured, arguments, decay)
     methods: tuple[Method, ...] = ("rfp", "lscf") if arguments.method == "both" else (arguments.method,)
     fits: list[ModalFit] = []
@@ -56,8 +57,45 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     return "\n".join(lines), 1 if poor else 0
 
 
-def _options(arguments: argparse.Namespace) -> tuple[tuple[float, float] | None, float | None]:
-    """Read band and window, and check the outputs; a decay of None is found from the records."""
+def _declared(measured: Measurement, windowed: float | None, arguments: argparse.Namespace) -> Measurement:
+    """The records with the window that an analyser has put on them: its time constant, or what it leaves, negative."""
+    if windowed is None:
+        return measured
+
+    def decay(duration: float) -> float:
+        return 1.0 / windowed if windowed > 0.0 else -math.log(-windowed) / duration
+
+    hits = tuple(
+        dataclasses.replace(entry, decay=decay(entry.duration), force_decays=arguments.windowed_force)
+        for entry in measured.hits
+    )
+    responses = measured.responses
+    if responses is not None:
+        spacing = float(np.diff(responses.frequency).mean())
+        responses = dataclasses.replace(responses, decay=decay(1.0 / spacing))
+    return dataclasses.replace(measured, hits=hits, responses=responses)
+
+
+def _windowed(text: str) -> float:
+    """A time constant [s], or minus the part that a window leaves at the end of a record."""
+    if text.rstrip().endswith("%"):
+        try:
+            part = float(text.rstrip()[:-1]) / 100.0
+        except ValueError:
+            part = 0.0
+        if not 0.0 < part < 1.0:
+            raise InputError(f"got {text!r:.40}; allowed: above 0 %, below 100 %")
+        return -part
+    constant = quantity(text, "s")
+    if not constant > 0.0:
+        raise InputError(f"got {text!r:.40}; allowed: above 0 s")
+    return constant
+
+
+def _options(
+    arguments: argparse.Namespace,
+) -> tuple[tuple[float, float] | None, float | None, float | None]:
+    """Read band and windows, and check the outputs; a decay of None is found from the records."""
     problems = []
     ends = []
     for text in arguments.band or ():
@@ -81,6 +119,14 @@ def _options(arguments: argparse.Namespace) -> tuple[tuple[float, float] | None,
                 problems.append(f"--window-decay: got {arguments.window_decay!r:.40}; allowed: above 0 s, or none")
         except InputError as error:
             problems.append(f"--window-decay: {error.problems[0]}, or none")
+    windowed: float | None = None
+    if arguments.windowed is not None:
+        try:
+            windowed = _windowed(arguments.windowed)
+        except InputError as error:
+            problems.append(f"--windowed: {error.problems[0]}, or what it leaves at the end, as 1 %")
+    elif arguments.windowed_force:
+        problems.append("--windowed-force: stands without --windowed; allowed: beside it")
     files = (
         ("-o", arguments.output, RESULT),
         ("--plot", arguments.plot, FIGURE),
@@ -89,7 +135,7 @@ def _options(arguments: argparse.Namespace) -> tuple[tuple[float, float] | None,
     problems += output_problems([Output(*file) for file in files], [arguments.file])
     if problems:
         raise InputError(problems)
-    return (ends[0], ends[1]) if ends else None, decay
+    return (ends[0], ends[1]) if ends else None, decay, windowed
 
 
 def _responses(
@@ -99,6 +145,8 @@ def _responses(
     if not measured.hits:
         if measured.responses is None:
             raise InputError(f"{arguments.file}: has coherences only; allowed: frequency responses, or hits")
+        if decay is not None and arguments.windowed is not None:
+            raise InputError("--window-decay, --windowed: got both for frequency responses; allowed: one of them")
         found = measured.responses if decay is None else dataclasses.replace(measured.responses, decay=decay)
         window = f", exponential window of {1.0 / found.decay:.4g} s taken out of the damping" if found.decay else ""
         return found, [f"  frequency responses of the file{window}"]
@@ -113,6 +161,10 @@ def _responses(
         for entry, used in zip(measured.hits, made.used, strict=True)
     ]
     lines += _rejections(made)
+    through = measured.hits[0].decay
+    if through:
+        on = "force and responses" if measured.hits[0].force_decays else "the responses"
+        lines.append(f"  {on} have been through a window of {1.0 / through:.4g} s, taken out of the damping")
     window = (
         f"exponential window of {1.0 / decay:.4g} s on force and response, taken out again{why}" if decay else "none"
     )
@@ -123,8 +175,13 @@ def _responses(
 
 
 def _rejections(made: Estimate) -> list[str]:
-    """Lines on hits that were left out."""
-    return [f"  hit {one.hit} at {one.reference.label} left out: {one.reason}, {one.detail}" for one in made.rejected]
+    """Lines on hits that were left out, and on those that bounced."""
+    left_out = [
+        f"  hit {one.hit} at {one.reference.label} left out: {one.reason}, {one.detail}" for one in made.rejected
+    ]
+    return left_out + [
+        f"  hit {one.hit} at {one.reference.label} bounced: {one.detail}, taken with it" for one in made.bounced
+    ]
 
 
 def _table(fit: ModalFit) -> list[str]:

@@ -7,6 +7,10 @@ three stay a convolution: e y = (e h) * (e f). So if force and response get the 
 is the frequency response at s = j omega + a, without any approximation, and a pole p appears at p - a. The common
 correction zeta - 1/(tau omega) is its first order for light damping.
 
+An analyser may have windowed the responses alone: then the force gets the same window here, and the same holds. Where
+its window begins, before the hit, changes the size of the responses alone. A window that is 1 about the pulse of the
+force and 0 elsewhere, as analysers have it too, changes nothing.
+
 Frequency responses and coherence from averaged hammer hits.
 
 Sums over hits of the spectra X of a response and F of the force: H1 = sum(X F*)/sum(F F*) has no bias from noise on
@@ -85,11 +89,12 @@ def without_window(poles: ComplexArray, decay: float) -> ComplexArray:
 
 
 def force_window(force: FloatArray) -> FloatArray:
-    """Window of 1 around the pulse of a hit and 0 elsewhere, with cosine flanks.
+    """Window of 1 around the pulses of a hit and 0 elsewhere, with cosine flanks.
 
-    A hammer is silent but for its pulse; what the channel shows besides is noise. The window reaches three pulse
+    A hammer is silent but for its pulses; what the channel shows besides is noise. The window reaches three pulse
     widths, at least 16 samples, to either side of where the force exceeds a tenth of its peak: an anti-aliasing filter
-    rings about as long.
+    rings about as long. It has a second pulse too, where the hammer bounced: without it the response would be that of
+    a force that is not there.
 
     Parameters
     ----------
@@ -101,11 +106,53 @@ def force_window(force: FloatArray) -> FloatArray:
     array, shape (samples,)
     """
     first, last = pulse(force)
-    reach = max(3 * (last - first + 1), 16)
-    index = np.arange(force.size)
+    windows = [_around(force.size, first, last, last - first + 1)]
+    windows += [_around(force.size, at, at, last - first + 1) for at, _ in second_pulses(force)]
+    return np.asarray(np.max(windows, axis=0), dtype=np.float64)
+
+
+def _around(samples: int, first: int, last: int, width: int) -> FloatArray:
+    """Window around some samples, for a pulse of a width."""
+    reach = max(3 * width, _MARGIN)
+    index = np.arange(samples)
     beyond = np.maximum(np.maximum(first - index, index - last), 0)
     flank = np.clip((beyond - reach / 2) / (reach / 2), 0.0, 1.0)
     return np.asarray(0.5 * (1.0 + np.cos(np.pi * flank)), dtype=np.float64)
+
+
+def second_pulses(force: FloatArray) -> list[tuple[int, float]]:
+    """Samples of the peaks of further pulses of a hit, and their height over that of the first one.
+
+    Parameters
+    ----------
+    force : array, shape (samples,)
+        [N].
+
+    Returns
+    -------
+    list of (int, float)
+        Pulses above a hundredth that stand out of the noise; none where they are so many that they are no bounces.
+    """
+    first, last = pulse(force)
+    width, peak = last - first + 1, float(np.max(np.abs(force)))
+    reach = max(3 * width, _MARGIN) // 2
+    open_ = np.ones(force.size, dtype=np.bool_)
+    open_[max(first - reach, 0) : last + reach + 1] = False
+    if not open_.any() or peak == 0.0:
+        return []
+    away = np.abs(force - np.median(force[open_]))
+    level = max(_STANDS_OUT * 1.4826 * float(np.median(away[open_])), _SMALLEST_SECOND * peak)
+    found: list[tuple[int, float]] = []
+    while open_.any():
+        seen = np.where(open_, away, 0.0)
+        at = int(np.argmax(seen))
+        if seen[at] <= level:
+            return found
+        found.append((at, float(away[at]) / peak))
+        if len(found) > _MOST_BOUNCES:
+            return []
+        open_[max(at - width - reach, 0) : at + width + reach + 1] = False
+    return found
 
 
 def pulse(force: FloatArray, level: float = 0.1) -> tuple[int, int]:
@@ -151,6 +198,9 @@ Reason = Literal["double hit", "overload", "no hit", "not finite"]
 _MARGIN = 16
 """Samples beside a pulse in which an anti-aliasing filter may ring."""
 
+_STANDS_OUT, _SMALLEST_SECOND, _MOST_BOUNCES = 6.0, 0.01, 4
+"""Pulses besides the first one: over the deviation of the noise, over the first one, and how many."""
+
 _FLAT = 3
 """Equal samples at the top of a record that mean that the channel was overloaded."""
 
@@ -192,7 +242,7 @@ class HitLimits:
 
 @dataclass(frozen=True)
 class Rejected:
-    """A hit that was left out.
+    """A hit that was left out, or is told of.
 
     Attributes
     ----------
@@ -201,7 +251,7 @@ class Rejected:
     reference : Channel
         The place hit.
     reason : {"double hit", "overload", "no hit", "not finite"}
-        Reason for which it was left out.
+        Reason for that.
     detail : str
         What was seen.
     """
@@ -224,11 +274,14 @@ class Estimate:
         Hits that were averaged at each place.
     rejected : tuple of Rejected
         The others.
+    bounced : tuple of Rejected
+        Hits that were averaged though they have a small second pulse, which was taken with the first one.
     """
 
     responses: Responses
     used: tuple[int, ...]
     rejected: tuple[Rejected, ...] = field(default=())
+    bounced: tuple[Rejected, ...] = field(default=())
 
 
 def estimate(
@@ -247,7 +300,7 @@ def estimate(
     estimator : {"h1", "h2"}
         H1 where noise is on the responses, H2 where it is on the force.
     decay : float
-        1/tau of an exponential window on force and response [1/s].
+        1/tau of an exponential window that force and response get [1/s], beside that which they have been through.
     limits : HitLimits, optional
         Which hits are left out.
     windowed_force : bool
@@ -256,7 +309,7 @@ def estimate(
     Raises
     ------
     InputError
-        If records differ in step or length.
+        If records differ in step, length or the window that they have been through.
     AnalysisError
         If no hit of a place is left.
     """
@@ -268,7 +321,11 @@ def estimate(
             f"hits: got records of {shown or 'no place'}; allowed: the same step and length for all places"
         )
     ((step, samples),) = grids
-    responses, coherences, pairs, used, rejected = [], [], [], [], []
+    windows = {entry.decay for entry in records}
+    if len(windows) != 1:
+        shown = ", ".join(f"{1.0 / one:.4g} s" if one else "none" for one in sorted(windows))
+        raise InputError(f"hits: got records that have been through windows of {shown}; allowed: one for all places")
+    responses, coherences, pairs, used, rejected, bounced = [], [], [], [], [], []
     for entry in records:
         bad = _rejected(entry, limits)
         kept = [hit for hit in range(entry.force.shape[0]) if hit + 1 not in {one.hit for one in bad}]
@@ -279,15 +336,28 @@ def estimate(
         if windowed_force:
             force = force * np.stack([force_window(record) for record in force])
         window = exponential_window(samples, step, decay)
-        H, gamma = transfer(force * window, response * window, estimator)
+        same = window if entry.force_decays else window * exponential_window(samples, step, entry.decay)
+        H, gamma = transfer(force * same, response * window, estimator)
         responses.append(H)
         coherences.append(gamma)
         pairs += [(sensor, entry.reference) for sensor in entry.sensors]
         used.append(len(kept))
         rejected += bad
+        bounced += [
+            Rejected(
+                hit + 1,
+                entry.reference,
+                "double hit",
+                f"a second pulse of {100.0 * part:.3g} % of the first one, at {step * at:.4g} s",
+            )
+            for hit in kept
+            for at, part in second_pulses(entry.force[hit])
+        ]
     frequency = np.asarray(np.fft.rfftfreq(samples, step), dtype=np.float64)
-    means = Responses(frequency, np.concatenate(responses), np.concatenate(coherences), tuple(pairs), min(used), decay)
-    return Estimate(means, tuple(used), tuple(rejected))
+    means = Responses(
+        frequency, np.concatenate(responses), np.concatenate(coherences), tuple(pairs), min(used), decay + windows.pop()
+    )
+    return Estimate(means, tuple(used), tuple(rejected), tuple(bounced))
 
 
 def transfer(force: FloatArray, response: FloatArray, estimator: Estimator = "h1") -> tuple[ComplexArray, FloatArray]:

@@ -76,6 +76,10 @@ class Hits:
         The place hit.
     sensors : tuple of Channel
         Sensors, as many as `response` has.
+    decay : float
+        1/tau of an exponential window, from the first sample on, that the responses have been through [1/s].
+    force_decays : bool
+        Whether the force has been through it, too.
 
     Raises
     ------
@@ -88,10 +92,14 @@ class Hits:
     response: FloatArray
     reference: Channel
     sensors: tuple[Channel, ...]
+    decay: float = 0.0
+    force_decays: bool = False
 
     def __post_init__(self) -> None:
         problems = []
         where = f"hits at {self.reference.label}"
+        if not (np.isfinite(self.decay) and self.decay >= 0.0):
+            problems.append(f"{where}, decay: got {self.decay!r} 1/s; allowed: finite and >= 0")
         if not (np.isfinite(self.step) and self.step > 0.0):
             problems.append(f"{where}, step: got {self.step!r} s; allowed: finite and > 0")
         if self.force.ndim != 2 or self.response.ndim != 3:

@@ -4,7 +4,8 @@ Datasets 58 (time records, function type 1; frequency responses, 4; coherences, 
 Values are divided by the factors of dataset 164, by the dimension of what was measured; without it they are taken for
 SI. Labels of axes are not read: values in g stay in g, which changes no frequency and no damping.
 
-The decay of an exponential window that responses have been through stands in ID line 4 of those written here.
+The decay of an exponential window that responses, or records of hits, have been through stands in ID line 4 of those
+written here. Dataset 1858 may say that there was one, but not which.
 
 Hits: a record of the force (data type 13) belongs to the place in its response fields, a record of a response to the
 place in its reference fields, and the version number counts the hits; where it does not, their order in the file
@@ -93,6 +94,9 @@ _A_LINE = {(2, True): 6, (4, True): 4, (5, True): 3, (6, True): 2, (2, False): 3
 abscissa is even: a program may fill up the last line, with less than one of these."""
 _WINDOW = re.compile(re.escape(WINDOW).replace(r"\{\}", r"([0-9.e+-]{1,24})"))
 
+_QUALIFIERS, _EXPONENTIAL = 1858, (4, 6)
+"""Dataset that may tell of a window, and types of exponential ones."""
+
 _Place = tuple[str, int, int]
 
 
@@ -161,6 +165,11 @@ def _functions(path: Path, kinds: Sequence[int]) -> _Functions:
         for number, entry in enumerate(functions, start=1)
         if entry["func_type"] in kinds and _sound(entry, number, problems)
     ]
+    if any(entry.get("window_type") in _EXPONENTIAL for entry in sets) and not any(map(_decay, usable)):
+        notes.append(
+            "dataset 1858: records have been through an exponential window, which adds to the damping: state it "
+            "(--windowed)"
+        )
     others = Counter(entry["func_type"] for entry in functions if entry["func_type"] not in kinds)
     notes += [f"{count} functions of type {kind} are left out" for kind, count in sorted(others.items())]
     if not problems and not usable:
@@ -190,7 +199,7 @@ def _sets(path: Path) -> list[Dataset]:
             warnings.simplefilter("ignore")
             library = pyuff.UFF(str(path))
             kinds = [int(kind) for kind in library.get_set_types()]
-            indices = [index for index, kind in enumerate(kinds) if kind in (58, 151, 164)]
+            indices = [index for index, kind in enumerate(kinds) if kind in (58, 151, 164, _QUALIFIERS)]
             read = [_one(library, index, kinds[index], path) for index in indices]
     except InputError:
         raise
@@ -211,6 +220,8 @@ def _one(file: Any, index: int, kind: int, path: Path) -> Dataset:
     try:
         dataset = file.read_sets(index)
     except Exception as error:  # the library raises nothing more special
+        if kind == _QUALIFIERS:  # nothing that is needed
+            return {}
         raise InputError(
             f"{path}: dataset {index + 1}, of type {kind}, cannot be read ({error}); it is damaged or of another format"
         ) from error
@@ -362,7 +373,11 @@ def _hits_at(
 
     force = values(numbered["the force"], place[2])
     response = np.stack([values(numbered[sensor.label], sensor.direction) for sensor in by_sensor], axis=1)
-    return Hits(float(steps[0]), force, response, reference, tuple(by_sensor))
+    decays = {_decay(entry) for value in by_sensor.values() for entry in value}
+    if len(decays) > 1:
+        raise InputError(f"hits at {reference.label}: got records with different exponential windows; allowed: one")
+    windowed_force = any(_decay(entry) > 0.0 for entry in forces)
+    return Hits(float(steps[0]), force, response, reference, tuple(by_sensor), decays.pop(), windowed_force)
 
 
 def _numbered(records: list[Dataset]) -> dict[int, Dataset]:
@@ -497,6 +512,8 @@ def _hit_sets(hits: Hits) -> list[Dataset]:
         records = [hits.force[hit], *hits.response[hit]]
         for channel, name, record in zip((hits.reference, *hits.sensors), names, records, strict=True):
             entry = _function(TIME, time, record, channel, name, hits.reference, names[0])
+            if hits.decay and (channel is not hits.reference or hits.force_decays):
+                entry["id4"] = WINDOW.format(f"{hits.decay:.12g}")
             entry |= {"ver_num": hit + 1, "id2": f"hit {hit + 1}", "abscissa_spec_data_type": 17}
             sets.append(entry | _units("ordinate", channel))
     return sets

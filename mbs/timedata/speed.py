@@ -22,6 +22,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.units import RPM
 from mbs.timedata.csv_file import read_table
+from mbs.timedata.pulses import FEWEST, counted, rising_flanks
 from mbs.timedata.quantities import SPEED_UNITS
 from mbs.timedata.records import TimeRecord, chosen
 
@@ -34,10 +35,6 @@ _PARTS = 20
 _LEAST_RANGE = 0.5
 """Of the range of a speed that a ramp has to cover."""
 
-_LOW, _HIGH = 0.4, 0.6
-"""Where pulses begin and end, as parts of their height: noise between counts none twice."""
-
-_FEWEST_PULSES = 8
 _FEWEST = 64
 """Samples that a spectrum needs."""
 
@@ -180,30 +177,25 @@ def _by_table(record: TimeRecord, path: Path) -> Turned:
 def _by_tacho(record: TimeRecord, name: str, pulses: float) -> Turned:
     """Speed and angle of the pulses of a tacho, between the first and the last one."""
     channel = chosen(record, name, "--tacho")
+    where = f"{record.label}, tacho {channel.name!r:.60}"
     values = record.column(channel)
-    low, high = float(values.min()), float(values.max())
-    above = _above(values, low + _LOW * (high - low), low + _HIGH * (high - low))
-    rises = np.flatnonzero(~above[:-1] & above[1:])
-    if high <= low or rises.size < _FEWEST_PULSES:
+    flanks = rising_flanks(record.time, values)
+    if flanks.size < FEWEST:
         raise InputError(
-            f"{record.label}, tacho {channel.name!r:.60}: got {rises.size} pulses between {low:.4g} and {high:.4g} "
-            f"{channel.unit}; allowed: at least {_FEWEST_PULSES}; look at the channel and its range"
+            f"{where}: got {flanks.size} pulses between {values.min():.4g} and {values.max():.4g} {channel.unit}; "
+            f"allowed: at least {FEWEST}; look at the channel and its range"
         )
-    middle = low + _HIGH * (high - low)
-    # Where the flank passes the middle, between two samples.
-    step = record.time[1] - record.time[0]
-    slope = values[rises + 1] - values[rises]
-    times = record.time[rises] + step * np.clip((middle - values[rises]) / slope, 0.0, 1.0)
-    gaps = np.diff(times)
-    odd = np.flatnonzero((gaps[1:] > 1.8 * gaps[:-1]) | (gaps[1:] < 0.55 * gaps[:-1]))
-    if odd.size:
-        at = int(odd[0]) + 1
+    try:
+        found = counted(flanks)
+    except InputError as error:
+        raise InputError([f"{where}: {problem}" for problem in error.problems]) from error
+    if found.wheel is not None and found.wheel[0] == pulses:
         raise InputError(
-            f"{record.label}, tacho {channel.name!r:.60}: got {gaps[at - 1]:.4g} s and then {gaps[at]:.4g} s between "
-            f"pulses at {times[at]:.6g} s; allowed: distances that change by less than 80 %; a pulse is missing or "
-            "counted twice there: cut the record"
+            f"{where}: got {pulses:g} pulses a turn of a wheel with {found.wheel[0]} of {found.wheel[1]} teeth; "
+            f"allowed: {found.wheel[1]}, those that are missing counted"
         )
-    turns = PchipInterpolator(times, np.arange(times.size) / pulses)
+    times = found.times
+    turns = PchipInterpolator(times, found.counts / pulses)
     inside = np.flatnonzero((record.time >= times[0]) & (record.time <= times[-1]))
     if inside.size < _FEWEST:
         raise InputError(f"{record.label}, tacho: got {inside.size} samples between its pulses; allowed: {_FEWEST}")
@@ -211,14 +203,8 @@ def _by_tacho(record: TimeRecord, name: str, pulses: float) -> Turned:
     angle = 2.0 * np.pi * np.asarray(turns(part.time))
     speed = 2.0 * np.pi * np.asarray(turns.derivative()(part.time))
     words = f"speed of {times.size} pulses of {channel.name}, {pulses:g} a turn"
-    return Turned(dataclasses.replace(part, speed=speed, angle=angle), (words,))
-
-
-def _above(values: FloatArray, low: float, high: float) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
-    """True where a pulse is on: from where it passes `high` to where it falls below `low`."""
-    state = np.where(values > high, 1, np.where(values < low, 0, -1))
-    known = np.maximum.accumulate(np.where(state >= 0, np.arange(values.size), 0))
-    return np.asarray(state[known] == 1)
+    notes = (words, *(f"tacho {channel.name}: {note}" for note in found.notes))
+    return Turned(dataclasses.replace(part, speed=speed, angle=angle), notes)
 
 
 def _turned(record: TimeRecord, speed: FloatArray) -> TimeRecord:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import multiprocessing
 import os
 from pathlib import Path
@@ -124,6 +125,30 @@ def test_a_wrong_window_is_a_wrong_damping(here, capsys):
     assert status == 0
 
 
+def test_windows_of_an_analyser_are_declared(here, capsys):
+    """By a time constant or by what is left at the end, of hits as of responses."""
+    there = hits(3, noise=1e-4)
+    decay = np.log(100.0) / there.duration
+    window = np.exp(-decay * there.step * np.arange(there.force.shape[1]))
+    write(here / "a.uff", hits=(dataclasses.replace(there, response=there.response * window),))
+    write(here / "b.uff", responses=measured(decay=decay))
+    for name, given, words in (
+        ("a.uff", "1 %", "the responses have been through a window of 0.2171 s, taken out of the damping"),
+        ("a.uff", f"{1.0 / decay:.6g} s", "taken out of the damping"),
+        ("b.uff", "1 %", "exponential window of 0.2171 s taken out of the damping"),
+    ):
+        status, out, err = run(capsys, "modal-fit", name, "--band", "200 Hz", "900 Hz", "--windowed", given)
+        assert status == 0, err
+        assert words in out
+        ratios = [float(line.split()[3]) for line in out.splitlines() if is_mode(line)]
+        np.testing.assert_allclose(ratios, DAMPING, rtol=3e-3)  # noise of 1e-4, aliases
+    bounced = there.force.copy()
+    bounced[1, 900] = 0.05 * bounced[1, 0]
+    write(here / "c.uff", hits=(dataclasses.replace(there, force=bounced),))
+    out = run(capsys, "modal-fit", "c.uff", "--band", "200 Hz", "900 Hz")[1]
+    assert "hit 2 at hammer:1+y bounced: a second pulse of 5 % of the first one, at 0.2197 s, taken with it" in out
+
+
 @pytest.mark.slow
 def test_nonlinear_hits(here, capsys):
     options = ("--nonlinear", "--highest", "3 kHz", "--duration", "10 ms", "--hits", "1", "-o", "a.uff")
@@ -148,6 +173,7 @@ def test_bad_input_lists_every_problem_and_writes_nothing(here, capsys):
     text = read_scene("nu308_rigid").text
     (here / "a.toml").write_text(text[: text.index("[[inputs]]")])
     (here / "b.uff").write_text("nothing")
+    write(here / "c.uff", responses=measured())
     before = sorted(here.iterdir())
     for arguments, words in (
         (("modal-fit", "nowhere.uff"), ("nowhere.uff: cannot be read",)),
@@ -158,6 +184,17 @@ def test_bad_input_lists_every_problem_and_writes_nothing(here, capsys):
         ),
         (("modal-fit", "b.uff", "--band", "5 kHz", "1 kHz"), ("allowed: rising",)),
         (("modal-fit", "b.uff", "--window-decay", "0 s"), ("above 0 s, or none",)),
+        (
+            ("modal-fit", "b.uff", "--windowed", "0 s"),
+            ("--windowed: got '0 s'; allowed: above 0 s, or what it leaves",),
+        ),
+        (("modal-fit", "b.uff", "--windowed", "100 %"), ("--windowed: got '100 %'; allowed: above 0 %, below 100 %",)),
+        (("modal-fit", "b.uff", "--windowed", "x %"), ("--windowed: got 'x %'",)),
+        (("modal-fit", "b.uff", "--windowed-force"), ("--windowed-force: stands without --windowed",)),
+        (
+            ("modal-fit", "c.uff", "--windowed", "1 s", "--window-decay", "1 s"),
+            ("--window-decay, --windowed: got both for frequency responses",),
+        ),
         (("hammer", "a.toml", "-o", "h.uff"), ("[[inputs]] missing", "[[sensors]] missing")),
         (("hammer", "nu308_rigid", "-o", "h.uff", "--hits", "0", "--noise", "7"), ("hits: got 0", "noise: got 7.0")),
         (

@@ -18,17 +18,29 @@ from mbs.modal.estimation import (
     needed_decay,
     pulse,
     relative_deviation,
+    second_pulses,
     transfer,
     without_window,
 )
 from mbs.modal.fit import identify
 from mbs.modal.lscf import lscf_poles, orthogonal_basis, rational_poles, roots
-from mbs.modal.records import Channel
+from mbs.modal.records import Channel, Hits
 from mbs.modal.residues import assurance
 from mbs.modal.stabilisation import Criteria, stabilise
 from mbs.modal.uff import LARGEST, Measurement, read_uff, write_uff
 from mbs.timedata.uff_file import read_time_uff
-from tests.cases.modal import POLES, REFERENCE, SENSORS, STEP, hits, measured
+from tests.cases.modal import (
+    DAMPING,
+    OMEGA,
+    POLES,
+    REFERENCE,
+    SAMPLES,
+    SENSORS,
+    STEP,
+    hits,
+    impulse_responses,
+    measured,
+)
 
 
 def changed(entry, **keywords):
@@ -175,6 +187,71 @@ def test_nothing_measured_gives_zero_and_no_warning():
 def test_relative_deviation_of_no_and_full_coherence():
     assert relative_deviation(np.array([1.0]), 8)[0] == 0.0
     assert np.isfinite(relative_deviation(np.array([0.0]), 8)[0])
+
+
+def struck(seconds=(), noise=0.0, decay=0.0, force_decays=False):
+    """Hits of a soft tip at sample 50, with second pulses (sample, part), and what an analyser's window makes of them.
+
+    The responses are a discrete convolution with the closed impulse responses: their ratio has nothing but these.
+    """
+    random = np.random.default_rng(3)
+    force = np.zeros((3, SAMPLES))
+    for hit, height in enumerate((80.0, 100.0, 120.0)):
+        for at, part in ((50, 1.0), *seconds):
+            force[hit, at : at + 4] += part * height * np.array([0.4, 1.0, 0.8, 0.2])
+    clean = np.stack([[np.convolve(one, h)[:SAMPLES] for h in impulse_responses()] for one in force])
+    window = exponential_window(SAMPLES, STEP, decay)
+    peaks = np.abs(clean).max(axis=2, keepdims=True)
+    response = window * (clean + noise * peaks * random.standard_normal(clean.shape))
+    shown = force * window if force_decays else force
+    shown = shown + noise * 100.0 * random.standard_normal(force.shape)
+    sensors = tuple(Channel(c.name, c.node, c.direction, "displacement") for c in SENSORS)
+    return Hits(STEP, shown, response, REFERENCE, sensors)
+
+
+def damping_of(records, decay=0.0):
+    return identify(estimate([records], decay=decay).responses, band=(200.0, 900.0), order=10, modes=3).damping_ratio
+
+
+@pytest.mark.parametrize("force_decays", [False, True])
+@pytest.mark.parametrize("ours", [0.0, 3.0])
+def test_a_window_of_the_analyser_is_taken_out(force_decays, ours):
+    """With 20 1/s a mode of 310 Hz seems to have more than twice its damping; declared, it has what it has."""
+    decay = 20.0
+    there = struck(decay=decay, force_decays=force_decays)
+    wrong = damping_of(there, ours)
+    np.testing.assert_allclose(wrong, DAMPING + decay / OMEGA, rtol=0.01)  # of second order in the damping
+    declared = changed(there, decay=decay, force_decays=force_decays)
+    # A sampled impulse response has aliases, which are none of a continuous one.
+    np.testing.assert_allclose(damping_of(declared, ours), DAMPING, rtol=1e-3)
+
+
+def test_windows_of_all_places_are_one():
+    with pytest.raises(InputError, match=r"been through windows of none, 0\.05 s; allowed: one for all places"):
+        estimate([struck(), changed(struck(decay=20.0), decay=20.0)])
+    with pytest.raises(InputError, match=r"hits at .*, decay: got -1\.0 1/s; allowed: finite"):
+        changed(struck(), decay=-1.0)
+
+
+def test_a_small_second_hit_is_taken_with_the_first():
+    """A bounce of 9 % bends the damping by percents where the force forgets it."""
+    there = struck([(140, 0.09)], noise=1e-4)
+    found = estimate([there])
+    assert found.used == (3,) and len(found.bounced) == 3
+    assert found.bounced[0].detail.startswith("a second pulse of 8.98 % of the first one, at 0.03")  # with noise
+    np.testing.assert_allclose(damping_of(there), DAMPING, rtol=2e-3)  # noise of 1e-4
+    forgotten = there.force.copy()
+    forgotten[:, 100:] = 0.0
+    bent = damping_of(changed(there, force=forgotten)) / DAMPING - 1.0
+    assert np.max(np.abs(bent)) > 0.01
+    assert estimate([struck(noise=1e-4)]).bounced == ()
+    # As high as a tenth it is left out, as before; noise that is everywhere is no bounce.
+    assert len(estimate([changed(there, force=there.force + 0.0)], limits=HitLimits(double=0.5)).rejected) == 0
+    assert second_pulses(np.random.default_rng(0).standard_normal(500)) == []
+    assert second_pulses(np.zeros(20)) == []
+    silent = np.zeros(400)
+    silent[[0, 200]] = 1.0, 0.05
+    assert second_pulses(silent) == [(200, 0.05)]
 
 
 # rational fractions
@@ -347,6 +424,39 @@ def test_hits_come_back(tmp_path):
         np.testing.assert_allclose(there.response, here.response, rtol=1e-10, atol=1e-16)
         assert [c.quantity for c in there.sensors] == ["displacement", "displacement"]
     assert back.hits[1].reference.name == "a place wi"
+
+
+def test_windows_of_hits_come_back(tmp_path):
+    path = tmp_path / "a.uff"
+    for force_decays in (False, True):
+        write_uff(path, Measurement("", (changed(hits(2), decay=2.5, force_decays=force_decays),)))
+        back = read_uff(path).hits[0]
+        assert (back.decay, back.force_decays) == (2.5, force_decays)
+    text = path.read_text().replace("exponential window, decay 2.5 1/s", "exponential window, decay 3.5 1/s", 2)
+    path.write_text(text)
+    with pytest.raises(InputError, match="got records with different exponential windows"):
+        read_uff(path)
+
+
+QUALIFIERS = """
+record_num octave_format measurement_run weighting_type amplitude_units normalization_method
+abscissa_data_type_qualifier ordinate_numerator_data_type_qualifier ordinate_denominator_data_type_qualifier
+z_axis_data_type_qualifier sampling_type z_rpm_value z_time_value z_order_value num_of_samples user_value_1
+user_value_2 user_value_3 user_value_4 exponential_window_damping_factor
+"""
+"""Fields of a dataset 1858 as pyuff names them."""
+
+
+def test_a_window_that_the_file_tells_of(tmp_path):
+    import pyuff
+
+    path = tmp_path / "a.uff"
+    write_uff(path, Measurement("", (hits(2),)))
+    qualifiers = dict.fromkeys(QUALIFIERS.split(), 0) | {"type": 1858, "window_type": 6}
+    pyuff.UFF(str(path)).write_sets(qualifiers | {"response_direction": "Z+", "reference_direction": "Z+"}, mode="add")
+    assert "dataset 1858: records have been through an exponential window" in read_uff(path).notes[0]
+    path.write_text(path.read_text().replace("  1858", "  1858\nx"))
+    assert read_uff(path).hits[0].decay == 0.0
 
 
 def test_responses_come_back(tmp_path):

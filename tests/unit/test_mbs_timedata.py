@@ -9,11 +9,13 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from ehdmaps.errors import InputError
 from mbs import cli
 from mbs.analyses.recorded import recorded_campbell
 from mbs.output.time_files import ENDINGS, read_time_data, write_time_data
 from mbs.settings import CampbellSettings
 from mbs.spectral.spectra import amplitude_spectrum
+from mbs.timedata.pulses import counted
 from mbs.timedata.records import TimeData
 from mbs.timedata.speed import AS_IT_IS, SpeedSource, with_speed
 from tests.cases.run_up import refused
@@ -128,7 +130,22 @@ class TestSpeed:
         lost = bare.values.copy()
         lost[5000:5060, 2] = 0.1
         gap = dataclasses.replace(bare, values=lost)
-        refused(lambda: with_speed(gap, SpeedSource(tacho="tacho", pulses=8.0)), "a pulse is missing or counted twice")
+        mended = with_speed(gap, SpeedSource(tacho="tacho", pulses=8.0))
+        assert "tacho tacho: 1 pulse missing and counted, at 0.9" in mended.notes[1]
+        np.testing.assert_allclose(mended.record.angle[-1], turned.record.angle[-1], rtol=1e-9)
+        silent = np.where((bare.time > 0.5) & (np.sin(3e3 * bare.time**2) < 0.0), 0.1, pulses)
+        odd = dataclasses.replace(bare, values=np.column_stack([record.values, silent]))
+        refused(lambda: with_speed(odd, SpeedSource(tacho="tacho", pulses=8.0)), "tacho 'tacho': got")
+        wheel = np.where(np.mod(record.angle / (2.0 * np.pi), 1.0) < 0.75, pulses, 0.1)
+        toothed = dataclasses.replace(bare, values=np.column_stack([record.values, wheel]))
+        found = with_speed(toothed, SpeedSource(tacho="tacho", pulses=8.0))
+        assert "a wheel with 6 of 8 teeth; those that are missing are counted" in found.notes[1]
+        np.testing.assert_allclose(found.record.speed, np.interp(found.record.time, record.time, exact_speed(record)),
+                                   rtol=0.03)  # a sample of a pulse  # fmt: skip
+        refused(
+            lambda: with_speed(toothed, SpeedSource(tacho="tacho", pulses=6.0)),
+            "got 6 pulses a turn of a wheel with 6 of 8 teeth; allowed: 8",
+        )
 
     def test_a_table(self, here):
         record = dataclasses.replace(known(), speed=None, angle=None)
@@ -160,6 +177,63 @@ class TestSpeed:
         refused(
             lambda: SpeedSource(channel="a", tacho="b", pulses=0.0), "got channel and tacho", "pulses: got 0.0 a turn"
         )
+
+
+def exact_speed(record):
+    """Speed of `known` [rad/s]."""
+    return (20.0 + 20.0 * record.time) * np.pi
+
+
+def pulse_times(kind, count=150):
+    """Times at which a shaft passes whole pitches: steady, from rest and to rest at even acceleration, swinging."""
+    pitch = np.arange(count) + 0.3
+    if kind == "steady":
+        return 0.01 * pitch
+    if kind == "swinging":
+        time = np.linspace(0.0, 3.0, 300_001)
+        angle = np.cumsum(100.0 + 15.0 * np.sin(2.0 * np.pi * 8.0 * time)) * 1e-5
+        return np.interp(pitch, angle, time)
+    return np.sqrt(pitch * 1e-3) if kind == "from rest" else 1.0 - np.sqrt(pitch[::-1] * 1e-3)
+
+
+class TestPulses:
+    """Whole pitches between the pulses that are kept are those that the shaft has turned."""
+
+    @pytest.mark.parametrize("kind", ["steady", "from rest", "to rest", "swinging"])
+    @pytest.mark.parametrize(
+        ("lost", "more", "words"),
+        [
+            ((), (), ""),
+            ((60,), (), "1 pulse missing and counted"),
+            ((40, 41, 100), (), "2 pulses missing and counted"),
+            ((), (75.3,), "1 pulse too many and left out"),
+            ((), (75.7, 110.5), "2 pulses too many and left out"),
+            ((50,), (90.2,), "1 pulse missing and counted"),
+            (tuple(k for k in range(150) if k % 20 > 17), (), "a wheel with 18 of 20 teeth"),
+            (tuple(range(7, 150, 8)), (), "a wheel with 7 of 8 teeth"),
+        ],
+    )
+    def test_what_a_tacho_does(self, kind, lost, more, words):
+        times = pulse_times(kind)
+        pitch = np.delete(np.arange(150.0), list(lost))
+        seen = np.interp(np.sort([*pitch, *more]), np.arange(150.0), times)
+        found = counted(seen)
+        assert words in "; ".join(found.notes)
+        truly = np.interp(found.times, times, np.arange(150.0))
+        np.testing.assert_allclose(found.counts - found.counts[0], truly - truly[0], atol=1e-9)  # round-off
+        assert found.times.size >= pitch.size - 3
+
+    def test_pulses_that_nobody_can_count(self):
+        random = np.random.default_rng(0)
+        for times, words in (
+            (np.cumsum(random.uniform(0.1, 1.0, 60)), "between pulses at|do not come every|a tenth of"),
+            (
+                np.delete(pulse_times("steady"), random.choice(np.arange(4, 146), 30, replace=False)),
+                "a tenth of|between",
+            ),
+        ):
+            with pytest.raises(InputError, match=words):
+                counted(times)
 
 
 ROWS = "".join(f"{k * 1e-3:.6f},{500 + k},{0.1 * k}\n" for k in range(100))
