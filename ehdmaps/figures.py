@@ -65,6 +65,20 @@ def write_heading(figure: Any, text: str, size: float, weight: str = "normal") -
     figure.suptitle("\n".join(lines), fontsize=size, fontweight=weight, wrap=True)
 
 
+def without_latex(figure: Any) -> None:
+    """Have matplotlib set all texts of a figure, or of a part of it, itself, whatever a matplotlibrc asks for.
+
+    LaTeX need not be there, and takes units and names of files for its commands.
+
+    Parameters
+    ----------
+    figure : matplotlib.artist.Artist
+        The figure, or a part.
+    """
+    for text in figure.findobj(lambda artist: hasattr(artist, "set_usetex")):
+        text.set_usetex(False)
+
+
 def keep_within(figure: Any, text: Any) -> None:
     """Make the letters of a line smaller where it would run out of its figure on the right.
 
@@ -75,6 +89,7 @@ def keep_within(figure: Any, text: Any) -> None:
     text : matplotlib.text.Text
         A line that begins within it.
     """
+    without_latex(text)
     box, end = text.get_window_extent(), (1.0 - _MARGIN) * figure.bbox.width
     if box.x1 > end:
         text.set_fontsize(text.get_fontsize() * (end - box.x0) / box.width)

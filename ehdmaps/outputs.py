@@ -122,6 +122,8 @@ def name_problem(path: Path) -> str:
     """
     if not path.name.isprintable():
         return "whose name is not printable; allowed: a name of printable characters; rename it"
+    if '"' in path.name and path.suffix.lower() == ".c":
+        return f"which is {path.name[:300]}; allowed: no quotation mark, which ends the header's name in C; rename it"
     place = os.path.realpath(path)
     if "\\" in place:
         return (
@@ -257,7 +259,12 @@ def write_figure(figure: Any, path: str | Path, resolution: float) -> None:
     InputError
         If it may not be replaced, or cannot be written.
     """
-    with written_aside(path, FIGURE) as aside:
+    import matplotlib as mpl
+
+    from ehdmaps.figures import without_latex
+
+    with written_aside(path, FIGURE) as aside, mpl.rc_context({"text.usetex": False}):  # of texts that drawing makes
+        without_latex(figure)
         ending = aside.suffix.lower()
         figure.savefig(aside, format=ending[1:], dpi=resolution, metadata={_FIGURE_KEYS[ending]: MARK})
 

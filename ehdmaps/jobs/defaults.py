@@ -13,7 +13,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from ehdmaps.errors import InputError
-from ehdmaps.physics.catalogue import designated, plain_designation
+from ehdmaps.physics.catalogue import designated
+from ehdmaps.physics.designations.reader import ROLLERS, read_designation
 from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
 
 GRID: Mapping[str, Any] = {
@@ -126,11 +127,12 @@ def designated_job(source: str) -> DesignatedJob | None:
     ('NU210_ISO_VG_46', None)
     """
     bearing, comma, oil = source.partition(",")
-    if not plain_designation(bearing) or source in SHIPPED or os.path.exists(source):
+    given = read_designation(bearing)
+    if given is None or given.kind not in ROLLERS or source in SHIPPED or os.path.exists(source):
         return None
-    geometry = designated(bearing)
-    lines = ["schema = 1", "", "[bearing]", f"name = {json.dumps(geometry.name)}"]
-    words = [geometry.name]
+    designated(bearing)
+    lines = ["schema = 1", "", "[bearing]", f"name = {json.dumps(given.text)}"]
+    words = [given.text]
     if comma:
         name = Lubricant.named(oil.strip()).name
         lines += ["", "[lubricant]", f"name = {json.dumps(name)}"]
@@ -176,5 +178,6 @@ def bearing_source(bearing: str | None, oil: str | None, given: object, needed: 
         raise InputError(problems)
     if bearing is None:
         return None
-    name = designated(bearing).name
+    given = read_designation(bearing)
+    name = bearing if given is None else given.text
     return name if oil is None else f"{name}, {oil}"

@@ -14,7 +14,7 @@ from ehdmaps.jobs.table import Table
 from ehdmaps.labels import label_problem
 from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
-from ehdmaps.physics.catalogue import estimate, estimate_from_dimensions, plain_designation
+from ehdmaps.physics.catalogue import designated, estimate, estimate_from_dimensions, plain_designation
 from ehdmaps.physics.contact import OIL_TEMPERATURES, LineContact
 from ehdmaps.physics.lubricant import DENSITY_LAWS, Lubricant
 from ehdmaps.physics.own_oil import CORRELATIONS, Stated, stated_problems
@@ -285,8 +285,8 @@ def _bearing(section: Table) -> BearingGeometry | None:
     if "estimate" in section:
         return _estimate(section, "estimate", label)
     if "name" in section:
-        name = _known_name(section)
-        if name is None:
+        known = _known(section)
+        if known is None:
             return _estimate(section, "name", label)
         clearance = _clearance(section)
         for key in (*_BEARING_LENGTHS, "rollers"):
@@ -294,10 +294,8 @@ def _bearing(section: Table) -> BearingGeometry | None:
                 section.get(key)
                 section.note(key, "stands beside name; allowed: a name, or dimensions without a name; delete one")
         section.close(others=("estimate", *_BEARING_KEYS))
-        named = replace(BEARINGS[name], label=label)
-        if clearance is None:
-            return named
-        return _built(section, lambda: replace(named, diametral_clearance=clearance))
+        named = replace(known, label=label)
+        return named if clearance is None else _built(section, lambda: named.with_clearance(clearance))
     if not any(key in section for key in _BEARING_KEYS):
         section.note(
             "name", f"missing; allowed: a designation such as 'NU206'; or give {', '.join(_BEARING_KEYS)}, or estimate"
@@ -318,11 +316,12 @@ def _bearing(section: Table) -> BearingGeometry | None:
     return _built(section, lambda: BearingGeometry(name, inner, outer, diameter, length, rollers, play, label))
 
 
-def _known_name(section: Table) -> str | None:
+def _known(section: Table) -> BearingGeometry | None:
     """Read the name of a bearing whose inner geometry is known; None for any other."""
     name = section.get("name")
-    plain = plain_designation(name) if isinstance(name, str) else ""
-    return plain if plain in BEARINGS else None
+    if not isinstance(name, str) or plain_designation(name) not in BEARINGS:
+        return None
+    return _built(section, lambda: designated(name), "name") or BEARINGS[plain_designation(name)]
 
 
 def _estimate(section: Table, word: str, label: str | None) -> BearingGeometry | None:
@@ -361,7 +360,7 @@ def _estimate(section: Table, word: str, label: str | None) -> BearingGeometry |
     if made is None or (clearance is None and "diametral_clearance" in section):
         return None
     estimated = replace(made, label=label)
-    return _built(section, lambda: replace(estimated, diametral_clearance=clearance or 0.0))
+    return estimated if clearance is None else _built(section, lambda: estimated.with_clearance(clearance))
 
 
 def _label(section: Table) -> str | None:

@@ -23,6 +23,7 @@ from ehdmaps.netcdf_structure import DAMAGE, structure_problem
 from ehdmaps.physics.approach import STRUCTURAL_LAWS
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.designations.families import words_for_lines
 from ehdmaps.physics.heat import ISOTHERMAL, heat_data
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.units import KELVIN, closest
@@ -75,11 +76,8 @@ def read_job(
         text = (resources.files("ehdmaps.jobs") / "shipped" / f"{source}.toml").read_text(encoding="utf-8")
         return parse_job(text, source, f"{source} (shipped)", solver, to_run, finding_solids)
     path = Path(source)
-    if not os.path.exists(path):
-        from ehdmaps.physics.point.ball_catalogue import ball_words  # for a message only
-
-        if words := ball_words(source):
-            raise InputError(words)
+    if not os.path.exists(path) and (words := words_for_lines(source)):
+        raise InputError(words)
     known = shipped_jobs()
     allowed = (
         f"a job file, a map file, or a shipped job: {', '.join(known)}{closest(source, known)}; or --bearing with a "

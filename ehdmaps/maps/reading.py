@@ -33,6 +33,7 @@ from ehdmaps.maps import schema
 from ehdmaps.maps.records import contacts_of, contradictions
 from ehdmaps.maps.schema import Variable
 from ehdmaps.netcdf_structure import DAMAGE, structure_problem
+from ehdmaps.physics.designations.families import words_for_lines
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -324,10 +325,8 @@ def read_map(path: str | PathLike[str]) -> tuple[xr.Dataset, xr.Dataset | None]:
         with netCDF4.Dataset(name) as file:
             return _read(file, name)
     except DAMAGE as error:
-        from ehdmaps.physics.point.ball_catalogue import ball_words  # for a message only
-
         cause = " ".join(str(error).split()) or type(error).__name__
-        words = ball_words(name)
+        words = words_for_lines(name)
         raise MapError(
             words or f"{name}: cannot be read ({cause:.300}); expected a map file written by `ehdmaps generate`"
         ) from error

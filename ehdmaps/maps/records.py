@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, is_dataclass
 from typing import TYPE_CHECKING, Any
@@ -131,6 +132,9 @@ def contacts_of(dataset: xr.Dataset) -> tuple[LineContact, ...]:
     return contacts
 
 
+_COUNT = re.compile(r"(number of rollers) (?=\d)")
+
+
 def bearing_from_json(text: str) -> BearingGeometry | None:
     """Bearing of a map, from its attribute `geometry`: the fields of a `BearingGeometry`, or null.
 
@@ -141,7 +145,11 @@ def bearing_from_json(text: str) -> BearingGeometry | None:
     """
     try:
         record = read_json(text, "geometry")
-        return None if record is None else BearingGeometry(**record)
+        if record is None:
+            return None
+        if record.get("estimated"):  # older maps say "number of rollers 1"
+            record["estimated"] = _COUNT.sub(r"\1 +-", record["estimated"])
+        return BearingGeometry(**record)
     except _UNREADABLE as error:
         raise _broken("geometry", error) from error
 

@@ -6,6 +6,7 @@ The modules in the order in which data pass through them:
 solids              `Material`, `STEEL`, the reduced modulus E'
 bearing             `BearingGeometry`: reduced radii, entrainment speed, the two contacts of a roller
 surface             profiles of rollers (ISO 16281, arcs, tables), and `Surface`: roughness and its asperities
+designations        kinds of bearings, their classes of radial clearance, and kinds that are not served, by designation
 catalogue           `BearingGeometry` estimated from what a catalogue says
 approach            the structural part of the approach: ISO 16281, Palmgren, half space, shipped finite elements
 contact             `LineContact`, `OperatingPoint`; film and solids together, which cannot pull

@@ -5,11 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
+from typing import Self
 
 from ehdmaps.errors import InputError
 from ehdmaps.labels import label_problem
 from ehdmaps.physics.approach import StructuralLaw, roller_reference_depth, shipped_approaches, shipped_names
 from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.designations.clearance import NORMAL, ClearanceRange, class_range, stated
+from ehdmaps.physics.designations.reader import CYLINDRICAL
 from ehdmaps.physics.solids import Material
 
 
@@ -33,6 +36,9 @@ class BearingGeometry:
         Free text shown instead of the name; no part of what makes bearings equal.
     estimated : str or None
         How its inner geometry was estimated and how well, see `ehdmaps.physics.catalogue`; None where it is known.
+    clearance_range : ClearanceRange or None
+        What the clearance may be by the designation; no part of what makes bearings equal, nor of records. None where
+        it is stated.
 
     Raises
     ------
@@ -55,6 +61,7 @@ class BearingGeometry:
     diametral_clearance: float
     label: str | None = field(default=None, compare=False)
     estimated: str | None = None
+    clearance_range: ClearanceRange | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
         problems = _problems(self)
@@ -84,8 +91,17 @@ class BearingGeometry:
 
     def record(self) -> dict[str, float | str]:
         """Everything that defines the bearing, for provenance; SI units; what is not given is left out."""
-        values = {entry.name: getattr(self, entry.name) for entry in fields(self)}
+        values = {entry.name: getattr(self, entry.name) for entry in fields(self) if entry.name != "clearance_range"}
         return {name: value for name, value in values.items() if value is not None}
+
+    def delivered(self, clearance: ClearanceRange | None) -> Self:
+        """The same bearing with the clearance of its designation, and the range of it."""
+        taken = 0.0 if clearance is None else clearance.clearance
+        return replace(self, diametral_clearance=taken, clearance_range=clearance)
+
+    def with_clearance(self, clearance: float) -> Self:
+        """The same bearing with a clearance that is stated [m]."""
+        return replace(self, diametral_clearance=clearance, clearance_range=stated(self.clearance_range))
 
     @property
     def pitch_diameter(self) -> float:
@@ -285,6 +301,7 @@ BEARINGS: dict[str, BearingGeometry] = {
             roller_length=9e-3,
             rollers=24,
             diametral_clearance=0.0,
+            clearance_range=class_range(CYLINDRICAL, 70e-3, NORMAL, "zero"),
         ),
         BearingGeometry(
             name="NU308",
@@ -294,6 +311,7 @@ BEARINGS: dict[str, BearingGeometry] = {
             roller_length=15e-3,
             rollers=12,
             diametral_clearance=0.0,
+            clearance_range=class_range(CYLINDRICAL, 40e-3, NORMAL, "zero"),
         ),
     )
 }

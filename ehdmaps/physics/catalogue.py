@@ -26,12 +26,10 @@ from typing import NamedTuple
 
 from ehdmaps.errors import InputError, closest, short
 from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
-from ehdmaps.physics.rollers.needle_catalogue import (
-    needle_boundary,
-    needle_designations,
-    needle_estimate,
-    plain_needle_designation,
-)
+from ehdmaps.physics.designations.clearance import NORMAL, ClearanceRange, class_range, delivered
+from ehdmaps.physics.designations.families import words_for_lines
+from ehdmaps.physics.designations.reader import CYLINDRICAL, NEEDLES, ROLLERS, plain_name, read_designation
+from ehdmaps.physics.rollers.needle_catalogue import needle_boundary, needle_designations, needle_estimate
 from ehdmaps.physics.rollers.ratings import RATING
 
 FILLED = 0.8
@@ -43,15 +41,10 @@ INNER_SHARE, OUTER_SHARE = 0.244, 0.219
 LENGTH_SHARE = {"10": 0.42, "2": 0.62, "22": 0.62, "3": 0.63, "23": 0.65}
 """Effective roller length over width: means of what ISO 76 gives for the static ratings of one catalogue."""
 
-ERRORS = "raceways to about 3 %, roller diameter {} %, roller length {} %, number of rollers {}"
+ERRORS = "raceways to about 3 %, roller diameter {} %, roller length {} %, number of rollers +-{}"
 """What an estimate is good for: measured on bearings whose inner geometry is known, and on the table, see the tests."""
 
 _MM = 1e-3
-_DESIGNATION = re.compile(
-    r"(NUP|NU|NJ|N)[ -]*(10|22|23|2|3)[ -]?(\d\d)"
-    r"(?:[ .-]*E[A-Z]{0,3})?(?:[ ./-]*(?:XL|TVP[2-5]?|M1A?|JP[1-3]|C[2-5]|P[56]|CN))*"
-)
-"""Type, dimension series and bore code; then suffixes of the reinforced design, cages, clearance and accuracy."""
 
 _RATINGS = {
     "204": 22e3, "205": 27e3, "206": 36.5e3, "207": 48e3, "208": 53e3, "209": 64e3, "210": 69.5e3, "211": 95e3,
@@ -152,7 +145,7 @@ def estimate(designation: str, basic_static_rating: float | None = None) -> Bear
     Returns
     -------
     BearingGeometry
-        The bearing with `estimated` set; clearance zero.
+        The bearing with `estimated` set; its clearance that of the class in the designation, else zero.
 
     Raises
     ------
@@ -165,14 +158,15 @@ def estimate(designation: str, basic_static_rating: float | None = None) -> Bear
     >>> nu206.rollers, round(1e3 * nu206.roller_diameter, 2), round(1e3 * nu206.roller_length, 2)
     (13, 9.0, 9.39)
     """
-    if plain_needle_designation(designation):
+    if plain_name(designation, NEEDLES):
         return needle_estimate(designation, basic_static_rating)
     entry = _looked_up(designation)
     name = plain_designation(designation)
+    clearance = delivered(designation, entry.bore)
     rating = tabulated_rating(designation) if basic_static_rating is None else basic_static_rating
     # makers' ratings of one bearing differ by up to a fifth, and so do their rollers
     errors = ERRORS.format(12, 20 if basic_static_rating is None else 6, 1)
-    return _geometry(name, entry, rating, errors, "SKF's " if basic_static_rating is None else "")
+    return _geometry(name, entry, rating, errors, clearance, "SKF's " if basic_static_rating is None else "")
 
 
 def designated(designation: str) -> BearingGeometry:
@@ -190,11 +184,17 @@ def designated(designation: str) -> BearingGeometry:
 
     Examples
     --------
-    >>> designated("NU 308 ECP").estimated is None, designated("nu 210").name
-    (True, 'NU210')
+    >>> designated("NU 308 ECP").estimated is None, designated("nu 210 C3").clearance_range.words
+    (True, 'clearance in the middle of C3: 50 to 80 um by ISO 5753-1, before mounting')
     """
-    name = plain_designation(designation)
-    return BEARINGS[name] if name in BEARINGS else estimate(designation)
+    known = BEARINGS.get(plain_designation(designation))
+    return estimate(designation) if known is None else known.delivered(_delivered(designation))
+
+
+def _delivered(designation: str) -> ClearanceRange | None:
+    """Clearance of a cylindrical roller bearing by its designation."""
+    entry = boundary(designation)
+    return None if entry is None else delivered(designation, entry.bore)
 
 
 def plain_designation(designation: str) -> str:
@@ -210,8 +210,7 @@ def plain_designation(designation: str) -> str:
     >>> plain_designation("NU 210-E-TVP2"), plain_designation("6206")
     ('NU210', '')
     """
-    match = _matched(designation)
-    return "".join(match.groups()) if match else plain_needle_designation(designation)
+    return plain_name(designation, ROLLERS)
 
 
 def tabulated_rating(designation: str) -> float | None:
@@ -227,13 +226,8 @@ def tabulated_rating(designation: str) -> float | None:
     >>> tabulated_rating("NJ 210 ECP"), tabulated_rating("NU2210")
     (69500.0, None)
     """
-    match = _matched(designation)
-    return _RATINGS.get(match.group(2) + match.group(3)) if match else None
-
-
-def _matched(designation: str) -> re.Match[str] | None:
-    """Type, dimension series and bore code of a designation."""
-    return _DESIGNATION.fullmatch(designation.strip().upper())
+    found = read_designation(designation)
+    return _RATINGS.get("".join(found.parts[1:])) if found is not None and found.kind == CYLINDRICAL else None
 
 
 def estimate_from_dimensions(
@@ -274,7 +268,8 @@ def estimate_from_dimensions(
     inner, outer = bore + INNER_SHARE * section, outside_diameter - OUTER_SHARE * section
     entry = Catalogue("", bore, outside_diameter, width, inner, outer)
     name = f"bearing {bore / _MM:g} x {outside_diameter / _MM:g} x {width / _MM:g} mm"
-    return _geometry(name, entry, basic_static_rating, ERRORS.format(18, 13, 4))
+    clearance = class_range(CYLINDRICAL, bore, NORMAL, "zero")
+    return _geometry(name, entry, basic_static_rating, ERRORS.format(18, 13, 4), clearance)
 
 
 def stated_errors(geometry: BearingGeometry) -> Errors:
@@ -295,7 +290,9 @@ def stated_errors(geometry: BearingGeometry) -> Errors:
     >>> stated_errors(estimate("NU206", 39e3))
     Errors(raceways=0.03, roller_diameter=0.12, roller_length=0.06, rollers=1)
     """
-    found = re.search(r"(\d+) %, roller diameter (\d+) %, roller length (\d+) %, .* (\d+)$", geometry.estimated or "")
+    found = re.search(
+        r"(\d+) %, roller diameter (\d+) %, roller length (\d+) %, .* \+-(\d+)$", geometry.estimated or ""
+    )
     if found is None:
         raise InputError(f"bearing {geometry.name!r}: states no errors; allowed: a bearing that `estimate` made")
     raceways, diameter, length, number = map(int, found.groups())
@@ -337,11 +334,12 @@ def boundary(designation: str) -> Catalogue | None:
     >>> boundary("N1014").bore
     0.07
     """
-    match = _matched(designation)
-    if match is None:
+    found = read_designation(designation)
+    if found is None or found.kind != CYLINDRICAL:
         needle = needle_boundary(designation)
         return None if needle is None else Catalogue("", *needle, math.nan, math.nan)
-    return _entries().get((match.group(2), match.group(3)))
+    _, series, code = found.parts
+    return _entries().get((series, code))
 
 
 def _entries() -> dict[tuple[str, str], Catalogue]:
@@ -360,9 +358,7 @@ def _looked_up(designation: str) -> Catalogue:
     """The entry of a designation."""
     entry = boundary(designation)
     if entry is None:
-        from ehdmaps.physics.point.ball_catalogue import ball_words  # for a message only
-
-        if words := ball_words(designation):
+        if words := words_for_lines(designation):
             raise InputError(f"bearing designation: {words}")
         near = closest(designation.upper(), (*designations(), *needle_designations()))
         raise InputError(
@@ -375,7 +371,14 @@ def _looked_up(designation: str) -> Catalogue:
     return entry
 
 
-def _geometry(name: str, entry: Catalogue, rating: float | None, errors: str, whose: str = "") -> BearingGeometry:
+def _geometry(
+    name: str,
+    entry: Catalogue,
+    rating: float | None,
+    errors: str,
+    clearance: ClearanceRange | None,
+    whose: str = "",
+) -> BearingGeometry:
     """Rollers between two raceways."""
     diameter = 0.5 * (entry.outer_raceway - entry.inner_raceway)
     pitch = 0.5 * (entry.outer_raceway + entry.inner_raceway)
@@ -394,4 +397,4 @@ def _geometry(name: str, entry: Catalogue, rating: float | None, errors: str, wh
     sentence = f"inner geometry estimated from catalogue dimensions and {basis}: {errors}"
     return BearingGeometry(
         name, entry.inner_raceway, entry.outer_raceway, diameter, length, rollers, 0.0, estimated=sentence
-    )
+    ).delivered(clearance)

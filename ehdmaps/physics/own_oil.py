@@ -446,7 +446,10 @@ _QUADRATICS = (
     (0.83531, 14.6731, -216.246, 0.16841, 11.8493, -96.947),
 )
 
-_TEXT = re.compile(r"(?:ISO)?[ _-]*VG[ _-]*(\d{1,5})(?:[ ,;_-]+VI[ =_-]*(\d{1,4}(?:\.\d{1,3})?))?", re.IGNORECASE)
+_TEXT = re.compile(
+    r"(?:ISO)?[ _-]*VG(?: *|[_-])(\d{1,5})(?:[ ,;_-]+VI(?: *=? *|[_-])(\d{1,4}(?:\.\d{1,3})?))?", re.IGNORECASE
+)
+"""A hyphen joins, as in "ISO-VG-46"; behind a blank it is a sign, and no class is negative."""
 
 
 def viscosity_index(viscosity_40: float, viscosity_100: float) -> float:

@@ -93,21 +93,27 @@ class Bearing:
         _ = self.profile_depths
 
     @classmethod
-    def named(cls, name: str, *, clearance: float = 0.0, profile: Profile = "iso", slices: int = 41) -> Bearing:
-        """One of the bearings of `ehdmaps.physics.bearing.BEARINGS`, of steel.
+    def named(cls, name: str, *, clearance: float | None = None, profile: Profile = "iso", slices: int = 41) -> Bearing:
+        """A cylindrical roller bearing by its designation, of steel; its inner geometry is estimated if not known.
 
         Parameters
         ----------
         name : str
-            Such as "NU308".
-        clearance : float
-            Diametral clearance P_d [m], < 0 for a preloaded bearing.
+            Such as "NU308" or "NU308 C3".
+        clearance : float, optional
+            Diametral clearance P_d [m], < 0 for a preloaded bearing. If left out the middle of the class in the
+            designation; zero without a class.
         profile, slices
             The same as for the class.
         """
-        if isinstance(clearance, bool) or not isinstance(clearance, int | float | np.floating | np.integer):
+        number = isinstance(clearance, int | float | np.floating | np.integer) and not isinstance(clearance, bool)
+        if clearance is not None and not number:
             raise InputError(f"bearing, clearance: got {clearance!r}; allowed: a number of metres")
-        geometry = dataclasses.replace(BearingGeometry.named(name), diametral_clearance=float(clearance))
+        from ehdmaps.physics.catalogue import designated  # with the tables of all catalogues
+
+        geometry = designated(name)
+        if clearance is not None:
+            geometry = geometry.with_clearance(float(clearance))
         return cls(geometry, profile, slices)
 
     def with_slices(self, slices: int) -> Bearing:

@@ -19,6 +19,7 @@ from ehdmaps.outputs import FIGURE, Output, output_problems, write_figure
 from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
 from ehdmaps.physics.catalogue import designated, designations, plain_designation
 from ehdmaps.physics.contact import OIL_TEMPERATURES
+from ehdmaps.physics.designations.families import not_served
 from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.rollers.needle_catalogue import needle_designations
@@ -33,7 +34,7 @@ from mbs.bearings.contact_report import BearingPoint
 from mbs.bearings.films import SIDES, FilmSource, FormulaFilms, MapFilms
 from mbs.bearings.laws import Law
 from mbs.bearings.thermal import BearingState, Mounting, operating_clearance
-from mbs.commands.one_bearing.shared import read_profile_text
+from mbs.commands.one_bearing.shared import assumed_clearance, read_profile_text
 from mbs.commands.one_bearing.values import (
     LOADS,
     MOST_POINTS,
@@ -297,8 +298,8 @@ def _assumed(
         found.append(f"temperature {TEMPERATURE.text(CELSIUS_40)}")
     if surface.smooth:
         found.append(f"combined rms roughness {MICROMETRE.text(ROUGHNESS)} (for Lambda only)")
-    if "clearance" not in chosen and given.geometry.diametral_clearance == 0.0:
-        found.append("no clearance")
+    if given.geometry.clearance_range is not None or given.geometry.diametral_clearance == 0.0:
+        found += assumed_clearance(given.geometry, "clearance" in chosen)
     if arguments.oil is None and given.oil is None and "map" not in chosen:
         found.append(f"oil {DEFAULT_OIL}")
     return tuple(found)
@@ -415,7 +416,7 @@ def _sliced(
     geometry = given.geometry
     if clearance is not None:
         try:
-            geometry = dataclasses.replace(geometry, diametral_clearance=clearance)
+            geometry = geometry.with_clearance(clearance)
         except InputError as error:
             problems += [f"--clearance: {problem}" for problem in error.problems]
     if len(problems) > before:
@@ -511,6 +512,8 @@ FORMULA_LOADS = (100.0, 1e8)
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Compute all points, describe and write them; status 1 where one is outside of what the laws hold for."""
+    if not os.path.isfile(arguments.bearing) and (words := not_served(arguments.bearing)):
+        raise InputError(f"BEARING: {words}")
     if _BALLS.match(arguments.bearing) and not os.path.isfile(arguments.bearing):
         from mbs.commands.one_bearing.balls import run_balls  # with kernels that others do not need
 

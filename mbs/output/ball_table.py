@@ -13,8 +13,9 @@ from ehdmaps.units import DAMPER, FILM, PRESSURE, RPM, SPRING, TEMPERATURE
 from mbs.bearings.balls.ball_element import MachineBalls, Settled
 from mbs.bearings.balls.ball_motion import ball_motion
 from mbs.bearings.balls.ball_point import SIDES, STATIC_LIMIT, BallPoint
-from mbs.output.bearing_table import OPEN, regime, shown, smallest, warning_lines, write_csv
+from mbs.output.bearing_table import OPEN, lambda_line, shown, smallest, warning_lines, write_csv
 from mbs.output.files import described
+from mbs.output.state_text import beside_class
 from mbs.scene.fields import DEGREE, FORCE, MICROMETRE
 
 if TYPE_CHECKING:
@@ -249,7 +250,8 @@ def ball_heading(description: BallDescription, point: BallPoint) -> list[str]:
         f"{geometry.title}: law {description.law}; {description.films}",
         f"  {geometry.balls} balls of {1e3 * geometry.ball_diameter:.4g} mm on {1e3 * geometry.pitch_diameter:.4g} mm, "
         f"grooves {geometry.inner_conformity:.4g} and {geometry.outer_conformity:.4g}, contact angle "
-        f"{DEGREE.value(geometry.contact_angle):.4g} deg, clearance {MICROMETRE.text(geometry.clearance)}",
+        f"{DEGREE.value(geometry.contact_angle):.4g} deg, clearance {MICROMETRE.text(geometry.clearance)}"
+        f"{beside_class(geometry)}",
         f"  {TEMPERATURE.text(description.temperature)}, load at {description.direction:.4g} deg from y (a ball) "
         f"towards z, inner ring {'tilts freely' if description.tilts else 'does not tilt'}",
         f"  assumed: {', '.join(description.assumed) or 'nothing'}",
@@ -303,8 +305,7 @@ def _page(point: BallPoint, description: BallDescription) -> list[str]:
             if np.any(np.isfinite(point.film_errors))
             else []
         ),
-        f"  Lambda {row['film_parameter']:.3g} (smallest film over {roughness} of roughness; "
-        f"{regime(row['film_parameter'])})",
+        lambda_line(row["film_parameter"], roughness),
         f"  cage {RPM.text(point.cage_speed)}, centrifugal load of a ball up to {FORCE.text(point.centrifugal_load)}, "
         f"gyroscopic traction up to {point.gyroscopic_traction:.2g} of the load at the outer raceway",
     ]

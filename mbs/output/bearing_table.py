@@ -21,7 +21,7 @@ from mbs.bearings.contact_report import BearingPoint
 from mbs.bearings.films import SIDES
 from mbs.bearings.thermal import BearingState
 from mbs.output.files import RESULT, described
-from mbs.output.state_text import flooded_note, loss_words, state_words
+from mbs.output.state_text import beside_class, flooded_note, loss_words, state_words
 from mbs.scene.contact_laws import surface_label
 from mbs.scene.fields import FORCE, MICROMETRE
 
@@ -293,7 +293,7 @@ def bearing_text(description: BearingDescription, points: Points, corners: Seque
 def bearing_heading(description: BearingDescription) -> list[str]:
     """Tell what was computed, and what of it was assumed."""
     bearing = description.bearing
-    clearance = f"clearance {MICROMETRE.text(bearing.geometry.diametral_clearance)}"
+    clearance = f"clearance {MICROMETRE.text(bearing.geometry.diametral_clearance)}{beside_class(bearing.geometry)}"
     state = clearance if description.state is None else state_words(description.state)
     slices = f"{bearing.slices} {'coupled ' if bearing.coupled else ''}slices"
     return [
@@ -333,8 +333,7 @@ def _page(point: BearingPoint, description: BearingDescription) -> list[str]:
         ),
         _sides("smallest central film", FILM.unit, 1e6 * contacts.central_film),
         _sides("smallest film", FILM.unit, 1e6 * contacts.minimum_film),
-        f"  Lambda {row['film_parameter']:.3g} (smallest film over {roughness} of roughness; "
-        f"{regime(row['film_parameter'])})" + _share_words(point, description),
+        lambda_line(row["film_parameter"], roughness) + _share_words(point, description),
         f"  {loss_words(point.loss)}",
     ]
 
@@ -368,16 +367,28 @@ _MATRICES = ((SPRING, "stiffness"), (DAMPER, "damping"))
 
 
 def regime(film_parameter: float) -> str:
-    """Lubrication regime by a film parameter Lambda, in usual words.
+    """Lubrication regime by Lambda, in usual words."""
+    return next(words for limit, words in REGIMES if film_parameter < limit or limit == math.inf)
+
+
+def lambda_line(film_parameter: float, roughness: str) -> str:
+    """A line on Lambda and the regime of lubrication.
+
+    Parameters
+    ----------
+    film_parameter : float
+        Parameter Lambda; NaN where no film is known.
+    roughness : str
+        Roughness in words.
 
     Examples
     --------
-    >>> regime(0.5), regime(2.0), regime(5.0)
-    ('boundary: the surfaces touch', 'mixed: asperities touch', 'full film')
+    >>> lambda_line(5.0, "0.3 um"), lambda_line(math.nan, "0.3 um")
+    ('  Lambda 5 (smallest film over 0.3 um of roughness; full film)', '  no film is known, and so no Lambda')
     """
     if math.isnan(film_parameter):
-        return "no film is known"
-    return next(words for limit, words in REGIMES if film_parameter < limit or limit == math.inf)
+        return "  no film is known, and so no Lambda"
+    return f"  Lambda {film_parameter:.3g} (smallest film over {roughness} of roughness; {regime(film_parameter)})"
 
 
 def _sides(label: str, unit: str, values: Iterable[float]) -> str:

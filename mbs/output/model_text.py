@@ -13,7 +13,7 @@ from mbs.bearings.bearing_element import error_words
 from mbs.bearings.thermal import HeatPaths
 from mbs.model.equilibrium import ROLLER
 from mbs.model.relaxation import FILM_WORDS, NOTABLE
-from mbs.output.state_text import state_lines
+from mbs.output.state_text import class_lines, state_lines
 from mbs.scene.assembly import Model
 from mbs.scene.contact_laws import supply_words
 from mbs.scene.fields import MICROMETRE
@@ -98,6 +98,7 @@ def heading(model: Model, speed: float | None = None) -> list[str]:
     return [
         f"{model.scene.title}: law {model.law}",
         f"  {state}{''.join(chosen)}; assumed: {assumed}",
+        *class_lines(model.scene),
         *_estimated(model),
         *(
             f"  the weight of {name} is left out: its finite elements are held themselves, so that it bears on no "

@@ -15,7 +15,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ehdmaps.arrays import FloatArray, IntArray
-from ehdmaps.figures import COLOURS, legend_columns, typeset, write_heading
+from ehdmaps.figures import COLOURS, legend_columns, typeset, without_latex, write_heading
 from ehdmaps.units import MOTIONS, Display
 from mbs.linearised.modes import Modes
 from mbs.linearised.shapes import AXIS, EDGE, JOINT, MARK, Skeleton
@@ -160,6 +160,7 @@ def shapes_figure(model: Model, found: Modes, bones: Skeleton, shown: Sequence[i
     names = legend_columns([str(handle.get_label()) for handle in handles], _LETTERS * columns, 3 * columns)
     foot = max(_FOOT, _LINE * math.ceil(len(handles) / names))
     (heading,) = figure.texts
+    without_latex(heading)
     head = max(_HEAD, heading.get_window_extent().height / figure.dpi + _ABOVE)
     height = _CELL[1] * rows + head + foot
     figure.set_size_inches(width, height)

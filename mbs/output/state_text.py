@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
+from ehdmaps.physics.designations.clearance import clearance_range
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.units import TEMPERATURE
 from mbs.bearings.contact_report import RollingLoss
 from mbs.bearings.thermal import BearingHeat, BearingState
 from mbs.scene.fields import MICROMETRE
+
+if TYPE_CHECKING:
+    from mbs.scene.scene import Scene
 
 FLOODED_NOTE = (
     "note: all contacts are taken as flooded, so that idle rollers drag too; --supply gives them less oil, such as "
@@ -38,6 +43,32 @@ def state_lines(states: Iterable[BearingState]) -> list[str]:
         if state.heat is not None:
             lines.append(f"    {_heat(state.heat)}")
     return lines
+
+
+def beside_class(geometry: object) -> str:
+    """The class of clearance of a designation, in brackets, where a clearance that is stated counts instead.
+
+    Parameters
+    ----------
+    geometry : object
+        Geometry of a bearing.
+    """
+    reach = clearance_range(geometry)
+    return f" ({reach.words})" if reach is not None and reach.taken == "stated" else ""
+
+
+def class_lines(scene: Scene) -> list[str]:
+    """A line for each kind of bearing whose clearance is not stated, or stated beside a class of its designation.
+
+    Parameters
+    ----------
+    scene : Scene
+        Machine, as it was read.
+    """
+    kinds: dict[tuple[str, str], list[str]] = {}
+    for bearing, (name, reach) in scene.clearance_ranges.items():
+        kinds.setdefault((name, reach.words), []).append(bearing)
+    return [f"  {name} ({', '.join(bearings)}): {words}" for (name, words), bearings in kinds.items()]
 
 
 def state_words(state: BearingState) -> str:

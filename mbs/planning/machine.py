@@ -455,9 +455,15 @@ def undecided(rest: _AtRest, flooded: bool) -> Verdict:
     size = rest.change(lambda scene: _narrower(scene, lambda diameter: NARROWER))
     change = "has no equilibrium" if math.isnan(size) else f"changes k of a bearing by {up_to(size)}"
     layer = "none is stated, all contacts are flooded" if flooded else "as stated"
-    words = f"clearance (as stated; {MICROMETRE.text(NARROWER)} less {change}) and oil layer ({layer}): measure them"
+    taken = {reach.taken for _, reach in rest.model.scene.clearance_ranges.values()}
+    kinds = [words for kind, words in _TAKEN.items() if kind in taken] or ["as stated"]
+    clearance = f"clearance ({', '.join(kinds)}; {MICROMETRE.text(NARROWER)} less {change})"
+    words = f"{clearance} and oil layer ({layer}): measure them"
     return Verdict("not decided", None, size, words)
 
+
+_TAKEN = {"zero": "none is an assumption", "middle": "the middle of a class", "stated": "as stated"}
+"""Clearances of bearings by what they have of their class, in words."""
 
 _LOADS = 9
 

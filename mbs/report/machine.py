@@ -23,7 +23,7 @@ from mbs.model.relaxation import NOTABLE
 from mbs.output.bearing_table import regime
 from mbs.output.model_text import clearance_text, temperature_text, weight_text
 from mbs.output.result_text import kinds
-from mbs.output.state_text import flooded_note, state_lines
+from mbs.output.state_text import class_lines, flooded_note, state_lines
 from mbs.report.bearings import loaded
 from mbs.report.examination import Examination
 from mbs.scene.assembly import ring_motions
@@ -114,6 +114,7 @@ def machine(found: Examination) -> Markup:
         ("contact law", model.law),
         ("temperature", typeset(temperature_text(model))),
         ("diametral clearance", typeset(clearance_text(model) or "none")),
+        *(("", typeset(line.strip())) for line in class_lines(scene)),
         ("equilibrium", typeset(weight_text(model))),
         *_oil(found),
         *([("oil supply", typeset(supply_words(model.supplies)))] if model.supplies else []),

@@ -368,14 +368,13 @@ def _with_clearance(scene: Scene, clearance: float, problems: list[str]) -> Scen
     changed = []
     for entry in scene.bearings:
         try:
-            geometry = dataclasses.replace(entry.geometry, diametral_clearance=clearance)
-            changed.append(dataclasses.replace(entry, geometry=geometry))
+            changed.append(dataclasses.replace(entry, geometry=entry.geometry.with_clearance(clearance)))
         except InputError as error:
             problems += [f"--clearance: {problem}" for problem in error.problems]
             changed.append(entry)
     try:
         scene = scene.with_balls(
-            lambda entry: dataclasses.replace(entry, geometry=dataclasses.replace(entry.geometry, clearance=clearance))
+            lambda entry: dataclasses.replace(entry, geometry=entry.geometry.with_clearance(clearance))
         )
     except InputError as error:
         problems += [f"--clearance: {problem}" for problem in error.problems]

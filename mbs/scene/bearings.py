@@ -215,7 +215,8 @@ def _geometry(section: Table) -> BearingGeometry | None:
     problems: list[str] = []
     geometry, _ = read_contacts(Table({"bearing": given}, "geometry", problems), None)
     for problem in problems:
-        section.note(key, problem.removeprefix("[bearing] ").removeprefix("[bearing]: "))
+        plain = problem.removeprefix("[bearing] ").removeprefix("[bearing]: ")
+        section.note(key, plain.removeprefix("name: bearing designation: "))
     return geometry
 
 

@@ -6,6 +6,7 @@ import dataclasses
 import math
 from collections.abc import Callable
 from importlib import resources
+from os import PathLike, fspath
 from pathlib import Path
 
 import numpy as np
@@ -151,12 +152,12 @@ def shipped_systems() -> tuple[str, ...]:
     return tuple(sorted(entry.name.removesuffix(".toml") for entry in folder.iterdir() if entry.name.endswith(".toml")))
 
 
-def read_scene(source: str) -> Scene:
+def read_scene(source: str | PathLike[str]) -> Scene:
     """Read a scene.
 
     Parameters
     ----------
-    source : str
+    source : str or path-like
         Name of a shipped system ("nu308_rigid"), or path of a scene file.
 
     Raises
@@ -164,6 +165,7 @@ def read_scene(source: str) -> Scene:
     InputError
         With every problem found.
     """
+    source = fspath(source)
     if source in shipped_systems():
         with resources.as_file(resources.files("mbs") / "systems") as folder:
             path = folder / f"{source}.toml"

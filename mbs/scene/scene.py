@@ -10,6 +10,7 @@ from pathlib import Path
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics.contact import OIL_TEMPERATURES
+from ehdmaps.physics.designations.clearance import ClearanceRange, clearance_range
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.surface import Surface
@@ -164,6 +165,15 @@ class Scene:
     def has_bearings(self) -> bool:
         """Tell whether it has a bearing of any kind."""
         return bool(self.bearings or self.balls or self.tapered)
+
+    @property
+    def clearance_ranges(self) -> dict[str, tuple[str, ClearanceRange]]:
+        """Ranges of clearances that are not stated, or beside a class: designation and range, by the bearing."""
+        found = {}
+        for entry in (*self.bearings, *self.balls, *self.tapered):
+            if (reach := clearance_range(entry.geometry)) is not None:
+                found[entry.name] = entry.geometry.name, reach
+        return found
 
     @property
     def gears(self) -> tuple[GearPair, ...]:

@@ -138,7 +138,7 @@ def dataset_of(
         "schema_version": schema.SCHEMA_VERSION,
         "contacts": contacts_json(contacts),
         "structural_law": contacts[0].structural_law,
-        "geometry": record_json(bearing),
+        "geometry": record_json(bearing.record() if bearing else None),
         "lubricant": record_json(OIL.record()),
     }
     return schema.dataset(coordinates, values, attributes)

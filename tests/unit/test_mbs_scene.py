@@ -205,7 +205,7 @@ def test_problems_come_all_at_once():
         ('frequency = "50 Hz"\n', "", "stands without frequency"),
         ("factors = [0, 1]", "factors = [0]", "as many finite numbers as there are times"),
         ('times = ["0 s", "1 ms"]', 'times = ["1 ms", "0 s"]', "allowed: finite and rising"),
-        ('name = "NU308"', 'name = "NU3009"', "geometry: name: bearing designation: got 'NU3009'"),
+        ('name = "NU308"', 'name = "NU3009"', "geometry: got 'NU3009'"),
         ("direction = [0, 3, 4]", "direction = [0, 0, 0]", "not all zero"),
         ("direction = [0, 3, 4]", "direction = [0, 3]", "allowed: one of x, y"),
         ('sample = "0.1 ms"', 'sample = "15 us"', "allowed: a whole multiple of the step"),

@@ -120,7 +120,15 @@ def test_the_coulomb_is_explained():
         quantity("40 C", "K")
 
 
-@pytest.mark.parametrize(("text", "unit"), [("500 rpm", "Hz"), ("8 Hz", "rad/s")])
+@pytest.mark.parametrize("turning", ["rpm", "RPM", "1/min", "/min", "min-1", "min^-1", "r/min", "U/min", "rev/min"])
+def test_speeds_are_read_as_catalogues_and_drawings_write_them(turning):
+    assert quantity(f"1500 {turning}", "rad/s") == pytest.approx(50.0 * math.pi, rel=1e-14)  # 15 digits are kept
+    assert quantity("25 Hz", "rad/s") == quantity(f"1500 {turning}", "rad/s")
+    with pytest.raises(InputError, match='such as "500 rpm", "25 Hz"'):
+        quantity("1500 U/s", "rad/s")
+
+
+@pytest.mark.parametrize(("text", "unit"), [("500 rpm", "Hz"), ("8 1/s", "rad/s")])
 def test_cycles_and_angles_are_not_mixed(text, unit):
     with pytest.raises(InputError, match="are not converted into each other"):
         quantity(text, unit)

@@ -113,7 +113,9 @@ class PointsRequest:
     def file_name(self) -> str:
         """Name of the map's file."""
         plain = "".join(letter if letter.isalnum() or letter in "-." else "_" for letter in self.oil.title)
-        return f"{self.bearing.name}_{plain}.nc"
+        reach = self.bearing.clearance_range
+        beside = f"_{reach.name}" if reach is not None and reach.taken == "middle" else ""
+        return f"{self.bearing.name}{beside}_{plain}.nc"
 
 
 def points_map(request: PointsRequest) -> xr.Dataset:

@@ -227,7 +227,8 @@ def _bearing_rows(bearing: BearingGeometry) -> Iterator[tuple[str, str]]:
     yield "raceway diameters", f"{inner} inner, {outer} outer"
     size = f"{LENGTH.text(bearing.roller_diameter, 5)} diameter, {LENGTH.text(bearing.roller_length, 5)} long"
     yield "rollers", f"{bearing.rollers}, {size}"
-    yield "diametral clearance", FILM.text(bearing.diametral_clearance)
+    words = f" ({bearing.clearance_range.words})" if bearing.clearance_range else ""
+    yield "diametral clearance", FILM.text(bearing.diametral_clearance) + words
 
 
 def _oil_lines(oil: Lubricant) -> Iterator[str]:

@@ -60,7 +60,11 @@ THIN: Mapping[str, Any] = {
     NO_CONTINUUM: {"facecolor": "0.8", "edgecolor": "none", "zorder": 0},
 }
 _LOGARITHMIC = ("stiffness", "damping", "central_film", "minimum_film")
-FONT: Any = {"font.size": 7.5, "axes.linewidth": 0.6, "xtick.major.width": 0.6, "ytick.major.width": 0.6}
+FONT: Any = {
+    "font.size": 7.5,
+    **dict.fromkeys(("axes.linewidth", "xtick.major.width", "ytick.major.width"), 0.6),
+    "text.usetex": False,  # the legend is measured as it is made
+}
 
 
 def plot_map(emap: EHDMap, output: Path) -> None:

@@ -23,10 +23,12 @@ catalogue).
 from __future__ import annotations
 
 import math
-import re
 from typing import NamedTuple
 
 from ehdmaps.errors import InputError, closest, short
+from ehdmaps.physics.designations.clearance import delivered
+from ehdmaps.physics.designations.families import not_served
+from ehdmaps.physics.designations.reader import BALLS, plain_name, read_designation
 from ehdmaps.physics.point.ball_geometry import BallGeometry
 
 FILLING_ARC = math.radians(189.0)
@@ -42,7 +44,7 @@ ISO 281 takes at most 0.52 and 0.53, which others use."""
 ANGLES = {"C": 15.0, "AC": 25.0, "B": 40.0}
 """Contact angle by its suffix [deg]."""
 
-ERRORS = "pitch diameter to {} %, ball diameter {} %, groove radii 0.515 to 0.53 of it, number of balls {}"
+ERRORS = "pitch diameter to {} %, ball diameter {} %, groove radii 0.515 to 0.53 of it, number of balls +-{}"
 """What an estimate is good for: measured on bearings whose inner geometry is known, see the tests."""
 
 # f0 of ISO 76 by 100 Dw cos(alpha)/d_m
@@ -52,9 +54,6 @@ _FACTORS = (
     *(9.8, 9.6, 9.4),
 )
 
-_SUFFIXES = r"(?:[ .,/-]*(?:2?RS[HLRJ]?[12]?|2?Z|ZZ|DDU|LLU|LLB|VV|NR?|TN9?|T[VN]?H?P?|M|MA|JEM|C[2-5]|CN|CM|P[456]))*"
-_DEEP = re.compile(r"(6[0234])[ -]?(\d\d)" + _SUFFIXES)
-_ANGULAR = re.compile(r"(7[023])[ -]?(\d\d)[ .-]?(AC|C|B)[ED]?(?:CB|[PMJY])?[PMJY]?" + _SUFFIXES)
 _MM = 1e-3
 
 # bore, outside diameter, width [mm], C0 [N] of 60, its f0, C0 of 70 C
@@ -115,15 +114,15 @@ def ball_estimate(designation: str, basic_static_rating: float | None = None) ->
     ----------
     designation : str
         Deep groove of series 60, 62, 63 (bores of 10 to 100 mm), 64 (20 to 90 mm); angular contact of series 70, 72, 73
-        with the suffix C (15 degrees), AC (25) or B (40), such as "7208B". Blanks and suffixes of seals, cages,
-        clearance and accuracy do not matter.
+        with the suffix C (15 degrees), AC (25) or B (40), such as "7208B". Blanks and suffixes of seals, cages
+        and accuracy do not matter.
     basic_static_rating : float, optional
         C0 [N] of the bearing's own catalogue; else that of the table.
 
     Returns
     -------
     BallGeometry
-        The bearing with `estimated` set; clearance zero.
+        The bearing with `estimated` set; its clearance that of the class in the designation, else zero.
 
     Raises
     ------
@@ -139,6 +138,8 @@ def ball_estimate(designation: str, basic_static_rating: float | None = None) ->
     series, code, suffix = _parts(designation)
     entry = _entry(series, code, suffix)
     if entry is None:
+        if words := not_served(designation):
+            raise InputError(f"bearing designation: {words}")
         raise InputError(
             f"ball bearing designation: got {short(designation)}{closest(designation.upper(), ball_designations())}; "
             "allowed: 60, 62, 63 with bores of 10 to 100 mm, 64 with 20 to 90 mm, such as '6208'; 70, 72, 73 with the "
@@ -170,7 +171,7 @@ def ball_estimate(designation: str, basic_static_rating: float | None = None) ->
     errors = ERRORS.format(2, 8, 2 if suffix else 1)
     return BallGeometry(
         name, diameter, pitch, balls, INNER_CONFORMITY, OUTER_CONFORMITY, angle, 0.0, estimated=basis + errors
-    )
+    ).delivered(delivered(designation, entry.bore))
 
 
 def plain_ball_designation(designation: str) -> str:
@@ -186,30 +187,7 @@ def plain_ball_designation(designation: str) -> str:
     >>> plain_ball_designation("7208 becbp"), plain_ball_designation("NU208")
     ('7208B', '')
     """
-    return "".join(_parts(designation))
-
-
-def ball_words(text: str) -> str:
-    """Words for a ball bearing that was asked for where only line contacts are; empty for other texts.
-
-    Parameters
-    ----------
-    text : str
-        What was typed.
-
-    Examples
-    --------
-    >>> ball_words("NU208"), ball_words("6208-2RS")[:20]
-    ('', '6208 is a ball beari')
-    """
-    name = plain_ball_designation(text)
-    if not name:
-        return ""
-    return (
-        f"{name} is a ball bearing: its contacts are points, and this is for line contacts; take "
-        f"`ehdmaps generate {name}` for a map of points, `ehdmaps solve {name}` for one, "
-        f"`mbs bearing {name} --law films` for the bearing"
-    )
+    return plain_name(designation, BALLS)
 
 
 def ball_boundary(designation: str) -> BallCatalogue | None:
@@ -267,11 +245,11 @@ _COLUMNS = {("70", "C"): 5, ("72", "C"): 5, ("72", "B"): 6, ("73", "B"): 5}
 
 def _parts(designation: str) -> tuple[str, str, str]:
     """Series, bore code and suffix of the contact angle; empty where it is no designation of a ball bearing."""
-    text = designation.strip().upper()
-    deep, angular = _DEEP.fullmatch(text), _ANGULAR.fullmatch(text)
-    if deep is not None:
-        return deep.group(1), deep.group(2), ""
-    return (angular.group(1), angular.group(2), angular.group(3)) if angular is not None else ("", "", "")
+    found = read_designation(designation)
+    if found is None or found.kind not in BALLS:
+        return "", "", ""
+    series, code, *suffix = found.parts
+    return series, code, "".join(suffix)
 
 
 def _code(bore: float) -> str:

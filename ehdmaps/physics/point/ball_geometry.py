@@ -18,10 +18,12 @@ Methods for calculating the modified reference rating life for universally loade
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
+from typing import Self
 
 from ehdmaps.errors import InputError
 from ehdmaps.labels import label_problem
+from ehdmaps.physics.designations.clearance import ClearanceRange, stated
 from ehdmaps.physics.point.ellipse import Ellipse
 from ehdmaps.physics.solids import Material, reduced_modulus
 
@@ -57,6 +59,9 @@ class BallGeometry:
     estimated : str or None
         How its inner geometry was estimated and how well, see `ehdmaps.physics.point.ball_catalogue`; None where it
         is known.
+    clearance_range : ClearanceRange or None
+        What the clearance may be by the designation; no part of what makes bearings equal, nor of records. None where
+        it is stated.
 
     Raises
     ------
@@ -80,6 +85,7 @@ class BallGeometry:
     clearance: float = 0.0
     label: str | None = field(default=None, compare=False)
     estimated: str | None = None
+    clearance_range: ClearanceRange | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
         problems = _problems(self)
@@ -93,8 +99,17 @@ class BallGeometry:
 
     def record(self) -> dict[str, float | str]:
         """Everything that defines the bearing, for provenance; SI units; what is not given is left out."""
-        values = {entry.name: getattr(self, entry.name) for entry in fields(self)}
+        values = {entry.name: getattr(self, entry.name) for entry in fields(self) if entry.name != "clearance_range"}
         return {name: value for name, value in values.items() if value is not None}
+
+    def delivered(self, clearance: ClearanceRange | None) -> Self:
+        """The same bearing with the clearance of its designation, and the range of it."""
+        taken = 0.0 if clearance is None else clearance.clearance
+        return replace(self, clearance=taken, clearance_range=clearance)
+
+    def with_clearance(self, clearance: float) -> Self:
+        """The same bearing with a clearance that is stated [m]."""
+        return replace(self, clearance=clearance, clearance_range=stated(self.clearance_range))
 
     @property
     def gamma(self) -> float:

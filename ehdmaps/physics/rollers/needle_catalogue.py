@@ -22,11 +22,13 @@ Dimensions and ratings: SKF, Rolling bearings (general catalogue, 2018). Raceway
 from __future__ import annotations
 
 import math
-import re
 from typing import NamedTuple
 
 from ehdmaps.errors import InputError, closest, short
 from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.designations.clearance import delivered
+from ehdmaps.physics.designations.families import not_served
+from ehdmaps.physics.designations.reader import NEEDLES, plain_name
 from ehdmaps.physics.rollers.ratings import by_ratings, with_static_rating
 
 FILLED, FULL = 0.75, 0.995
@@ -35,11 +37,9 @@ FILLED, FULL = 0.75, 0.995
 QUALITY = 1.038
 """Factor b_m of ISO 281 in the ratings of needle cages whose needles are known."""
 
-ERRORS = "raceways to about 1 %, roller diameter {} %, roller length 15 %, number of rollers {}"
+ERRORS = "raceways to about 1 %, roller diameter {} %, roller length 15 %, number of rollers +-{}"
 
 _MM = 1e-3
-_CAGE = re.compile(r"K ?(\d+)[X*](\d+)[X*](\d+)(?:[ -]?TN)?")
-_RINGS = re.compile(r"(R?NAV?)[ -]?49[ -]?(\d\d)(?:[ .-]*(?:2?RSR?|XL|TN|C[2-5]|CN))*")
 
 # raceways of shaft and housing, width [mm], C0 [N]
 _CAGES = (
@@ -98,11 +98,7 @@ def plain_needle_designation(designation: str) -> str:
     >>> plain_needle_designation("na 4908-XL"), plain_needle_designation("K 40x48x20")
     ('NA4908', 'K40x48x20')
     """
-    text = designation.strip().upper()
-    cage, rings = _CAGE.fullmatch(text), _RINGS.fullmatch(text)
-    if cage is not None:
-        return "K" + "x".join(cage.groups())
-    return f"{rings.group(1)}49{rings.group(2)}" if rings is not None else ""
+    return plain_name(designation, NEEDLES)
 
 
 def needle_estimate(designation: str, basic_static_rating: float | None = None) -> BearingGeometry:
@@ -129,6 +125,8 @@ def needle_estimate(designation: str, basic_static_rating: float | None = None) 
     name = plain_needle_designation(designation)
     found = _cage(name) or _rings(name)
     if found is None:
+        if words := not_served(designation):
+            raise InputError(f"bearing designation: {words}")
         raise InputError(
             f"needle bearing designation: got {short(designation)}{closest(designation.upper(), needle_designations())}"
             "; allowed: NA, RNA, NAV, RNAV of series 49 with bores of 10 to 100 mm, such as 'NA4908'; cages such as "
@@ -162,7 +160,13 @@ def needle_estimate(designation: str, basic_static_rating: float | None = None) 
         count,
         0.0,
         estimated=f"inner geometry estimated from {basis}: {errors}",
-    )
+    ).delivered(delivered(designation, _bore(name)))
+
+
+def _bore(name: str) -> float | None:
+    """Bore of the inner ring [m]; None where there is none."""
+    boundary = None if name[0] in "KR" else needle_boundary(name)
+    return None if boundary is None else boundary.bore
 
 
 def needle_boundary(designation: str) -> NeedleBoundary | None:

@@ -17,12 +17,13 @@ from __future__ import annotations
 import dataclasses
 import math
 import re
-from dataclasses import dataclass
-from typing import ClassVar
+from dataclasses import dataclass, field
+from typing import ClassVar, Self
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.catalogue import boundary, designated, plain_designation
+from ehdmaps.physics.designations.clearance import ClearanceRange, stated
 from ehdmaps.physics.point.ellipse import Ellipse
 from ehdmaps.physics.rollers.tapered_geometry import Rib, TaperedGeometry
 from ehdmaps.physics.solids import Material, reduced_modulus
@@ -52,6 +53,8 @@ class RibbedGeometry(TaperedGeometry):
         Way of the inner ring between its ends, where both carry [m]; half of it beside the middle for one way too.
     diametral_clearance : float
         Clearance between rollers and raceways [m].
+    clearance_range : ClearanceRange or None
+        What it may be by the designation; no part of what makes bearings equal. None where it is stated.
 
     Raises
     ------
@@ -73,6 +76,7 @@ class RibbedGeometry(TaperedGeometry):
     carries: str = "both"
     axial_clearance: float = 0.0
     diametral_clearance: float = 0.0
+    clearance_range: ClearanceRange | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
         where, problems = f"{self.kind} {self.name!r}", []
@@ -92,6 +96,10 @@ class RibbedGeometry(TaperedGeometry):
             )
         if problems:
             raise InputError(problems)
+
+    def with_clearance(self, clearance: float) -> Self:
+        """The same bearing with a clearance that is stated [m]."""
+        return dataclasses.replace(self, diametral_clearance=clearance, clearance_range=stated(self.clearance_range))
 
     @property
     def ways(self) -> str:
@@ -156,6 +164,7 @@ def with_ribs(bearing: BearingGeometry, carries: str = "both", axial_clearance: 
         carries=carries,
         axial_clearance=axial_clearance,
         diametral_clearance=bearing.diametral_clearance,
+        clearance_range=bearing.clearance_range,
     )
 
 
@@ -176,14 +185,18 @@ def ribbed_way(designation: str) -> str:
     return _TYPES[match.group()] if match else ""
 
 
-def ribbed_estimate(designation: str, diametral_clearance: float = 0.0, axial_clearance: float = 0.0) -> RibbedGeometry:
+def ribbed_estimate(
+    designation: str, diametral_clearance: float | None = None, axial_clearance: float = 0.0
+) -> RibbedGeometry:
     """A bearing NJ or NUP by its designation.
 
     Parameters
     ----------
     designation : str
         What `ehdmaps.physics.catalogue.designated` takes, of type NJ or NUP.
-    diametral_clearance, axial_clearance : float
+    diametral_clearance : float, optional
+        [m]; that of the designation if left out.
+    axial_clearance : float
         [m].
 
     Raises
@@ -199,7 +212,9 @@ def ribbed_estimate(designation: str, diametral_clearance: float = 0.0, axial_cl
     way = ribbed_way(designation)
     if not way:
         raise InputError(f"bearing designation: got {designation!r:.60}; {NO_RIBS}")
-    bearing = dataclasses.replace(designated(designation), diametral_clearance=diametral_clearance)
+    bearing = designated(designation)
+    if diametral_clearance is not None:
+        bearing = bearing.with_clearance(diametral_clearance)
     return with_ribs(bearing, way, axial_clearance)
 
 

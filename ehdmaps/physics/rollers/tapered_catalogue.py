@@ -19,10 +19,12 @@ from __future__ import annotations
 
 import dataclasses
 import math
-import re
 from typing import NamedTuple
 
 from ehdmaps.errors import InputError, closest, short
+from ehdmaps.physics.designations.clearance import delivered
+from ehdmaps.physics.designations.families import not_served
+from ehdmaps.physics.designations.reader import TAPERED, plain_name
 from ehdmaps.physics.rollers.ratings import Rollers, by_ratings, dynamic_rating, static_rating, with_static_rating
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 
@@ -30,14 +32,11 @@ FILLED = 0.9
 """Share of the pitch circle that rollers take: pressed cages of today's designs leave a tenth."""
 
 ERRORS = (
-    "contact angle to 0.5 deg, pitch diameter 3 %, roller diameter 5 %, roller length 8 %, number of rollers 1; "
+    "contact angle to 0.5 deg, pitch diameter 3 %, roller diameter 5 %, roller length 8 %, number of rollers +-1; "
     "end and rib are assumed"
 )
 
 _MM = 1e-3
-_DESIGNATION = re.compile(
-    r"(?:HR ?)?(302|303|313|320|322|323)[ -]?(\d\d)(?:[ -]?X)?(?:[ ./-]*(?:J[2R]?|A|XL|Q|JR|P[56]|DY|CL7[AC]))*"
-)
 
 # bore, outside diameter, widths T, B, C [mm], C and C0 [N], distance a of the pressure centre [mm], e
 _TABLE = {
@@ -151,11 +150,14 @@ def tapered_estimate(designation: str) -> TaperedGeometry:
     """
     entry = tapered_boundary(designation)
     if entry is None:
+        if words := not_served(designation):
+            raise InputError(f"bearing designation: {words}")
         raise InputError(
             f"tapered bearing designation: got {short(designation)}"
             f"{closest(designation.upper(), tapered_designations())}; allowed: 302, 303, 313, 320, 322, 323 with bores "
             "of 15 to 80 mm, as far as NSK makes them, such as '32208'"
         )
+    delivered(designation, entry.bore)  # refuses a class of radial clearance
     angle = math.atan(entry.axial_factor / 1.5)
     pitch = 0.5 * (entry.bore + entry.outside_diameter)
     found = by_ratings(pitch, (entry.dynamic_rating, entry.static_rating), FILLED, angle)
@@ -190,8 +192,7 @@ def plain_tapered_designation(designation: str) -> str:
     >>> plain_tapered_designation("HR 32008 XJ"), plain_tapered_designation("32 208")
     ('32008', '')
     """
-    match = _DESIGNATION.fullmatch(designation.strip().upper())
-    return "".join(match.groups()) if match else ""
+    return plain_name(designation, (TAPERED,))
 
 
 def tapered_boundary(designation: str) -> TaperedCatalogue | None:

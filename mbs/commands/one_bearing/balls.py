@@ -24,7 +24,14 @@ from mbs.bearings.balls.laws import BallLaw, dry_law
 from mbs.commands.one_bearing.ball_files import BallExport, has_memory, write_export
 from mbs.commands.one_bearing.bearing_files import bearing_outputs, is_export
 from mbs.commands.one_bearing.linear_files import count_problems
-from mbs.commands.one_bearing.shared import CELSIUS_40, read_damper, read_oil, read_surface, refuse_others
+from mbs.commands.one_bearing.shared import (
+    CELSIUS_40,
+    assumed_clearance,
+    read_damper,
+    read_oil,
+    read_surface,
+    refuse_others,
+)
 from mbs.commands.one_bearing.values import (
     LOADS,
     MOST_POINTS,
@@ -128,7 +135,7 @@ def read_balls(arguments: argparse.Namespace) -> BallRequest:
     clearance = chosen.get("clearance")
     if geometry is not None and clearance is not None:
         try:
-            geometry = dataclasses.replace(geometry, clearance=float(clearance))
+            geometry = geometry.with_clearance(float(clearance))
         except InputError as error:
             problems += [f"--clearance: {problem}" for problem in error.problems]
     problems += output_problems(bearing_outputs(arguments.output), [])
@@ -140,7 +147,7 @@ def read_balls(arguments: argparse.Namespace) -> BallRequest:
     assumed = [
         *([f"temperature {TEMPERATURE.text(CELSIUS_40)}"] if "temperature" not in chosen else []),
         *for_lambda,
-        *(["no clearance"] if clearance is None else []),
+        *assumed_clearance(geometry, clearance is not None),
         *([f"oil {DEFAULT_OIL}"] if arguments.oil is None else []),
     ]
     dry = dry_law(geometry, STEEL, damper.constant, damper.time)

@@ -4,14 +4,19 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.designations.clearance import clearance_range
 from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
 from ehdmaps.physics.surface import SMOOTH, CrownedProfile, Surface, TabulatedProfile
 from mbs.scene.contact_laws import HERTZ_FORMS, Damper, hertz_damper
 from mbs.scene.fields import MICROMETRE
+
+if TYPE_CHECKING:
+    from ehdmaps.physics.point.ball_geometry import BallGeometry
+    from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 
 CELSIUS_40, ROUGHNESS = 313.15, 0.3e-6
 """Assumed where nothing is given: the temperature of the raceways [K], the combined rms roughness [m]."""
@@ -110,6 +115,20 @@ def read_profile_text(
     from ehdmaps.jobs.profiles import profile_from_text  # with the reader of tables, which names do not need
 
     return profile_from_text(text, geometry, problems)
+
+
+def assumed_clearance(geometry: BearingGeometry | BallGeometry | TaperedGeometry, given: bool) -> list[str]:
+    """The clearance in words, where it is one that nobody stated.
+
+    Parameters
+    ----------
+    geometry : BearingGeometry, BallGeometry or TaperedGeometry
+        The bearing.
+    given : bool
+        Whether the option --clearance was given.
+    """
+    reach = clearance_range(geometry)
+    return [] if given else ["no clearance" if reach is None else reach.words]
 
 
 def read_oil(name: str | None, temperature: float, problems: list[str]) -> Lubricant | None:

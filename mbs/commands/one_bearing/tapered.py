@@ -25,6 +25,7 @@ from mbs.commands.one_bearing.bearing_files import bearing_outputs, is_export, i
 from mbs.commands.one_bearing.linear_files import count_problems
 from mbs.commands.one_bearing.shared import (
     CELSIUS_40,
+    assumed_clearance,
     read_damper,
     read_oil,
     read_profile_text,
@@ -115,7 +116,7 @@ def read_tapered(arguments: argparse.Namespace) -> TaperedRequest:
     chosen = read_choices(arguments, problems)
     ribbed = bool(ribbed_way(arguments.bearing))
     kind = "ribbed roller bearing" if ribbed else "tapered roller bearing"
-    geometry = _geometry(arguments.bearing, float(chosen.get("clearance", 0.0)), problems)
+    geometry = _geometry(arguments.bearing, chosen.get("clearance"), problems)
     taken = (*_TAKEN, "clearance") if ribbed else _TAKEN
     refuse_others(arguments, list(chosen), taken, kind, problems, ("profile", "slices"))
     axial = read_one("--axial", arguments.axial, "N", (-LOADS[1], LOADS[1]), FORCE, 0.0, problems)
@@ -162,7 +163,7 @@ def read_tapered(arguments: argparse.Namespace) -> TaperedRequest:
         *for_lambda,
         *([f"oil {DEFAULT_OIL}"] if arguments.oil is None else []),
         *(["no axial clearance"] if ribbed else []),
-        *(["no clearance"] if ribbed and "clearance" not in chosen else []),
+        *(assumed_clearance(geometry, "clearance" in chosen) if ribbed else []),
     ]
     return TaperedRequest(
         films=films,
@@ -274,7 +275,7 @@ def _films(request: TaperedRequest) -> Callable[[float], LineFilms] | None:
     return lambda u: films(u / geometry.entrainment_speed(1.0), 0.0)
 
 
-def _geometry(source: str, clearance: float, problems: list[str]) -> TaperedGeometry | None:
+def _geometry(source: str, clearance: float | None, problems: list[str]) -> TaperedGeometry | None:
     """The bearing of a designation."""
     try:
         return ribbed_estimate(source, clearance) if ribbed_way(source) else tapered_estimate(source)

@@ -15,8 +15,9 @@ from ehdmaps.units import DAMPER, FILM, PRESSURE, RPM, SPRING, TEMPERATURE
 from mbs.bearings.balls.ball_bearing import LOADED
 from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.bearings.tapered.tapered_point import RIB_FRICTION, SIDES, TaperedPoint
-from mbs.output.bearing_table import OPEN, regime, shown, smallest, warning_lines, write_csv
+from mbs.output.bearing_table import OPEN, lambda_line, shown, smallest, warning_lines, write_csv
 from mbs.output.files import described
+from mbs.output.state_text import beside_class
 from mbs.scene.fields import DEGREE, FORCE, MICROMETRE
 
 if TYPE_CHECKING:
@@ -249,8 +250,8 @@ def _angles(geometry: TaperedGeometry) -> str:
     """Contact angle and cones, or ribs."""
     if isinstance(geometry, RibbedGeometry):
         return (
-            f"clearance {1e6 * geometry.diametral_clearance:.4g} um; ribs carry {geometry.ways}, open by "
-            f"{DEGREE.value(geometry.rib_angle):.3g} deg against spherical ends (assumed)"
+            f"clearance {1e6 * geometry.diametral_clearance:.4g} um{beside_class(geometry)}; ribs carry "
+            f"{geometry.ways}, open by {DEGREE.value(geometry.rib_angle):.3g} deg against spherical ends (assumed)"
         )
     angles = [DEGREE.value(x) for x in (geometry.cup_angle, geometry.half_cone_angle, geometry.cone_angle)]
     return (
@@ -287,8 +288,7 @@ def _page(point: TaperedPoint, description: TaperedDescription) -> list[str]:
         two("Hertz pressure", PRESSURE.unit, "hertz_pressure", 1e-9),
         two("smallest central film", FILM.unit, "central_film", 1e6),
         two("smallest film", FILM.unit, "minimum_film", 1e6),
-        f"  Lambda {row['film_parameter']:.3g} (smallest film over {roughness} of roughness; "
-        f"{regime(row['film_parameter'])})",
+        lambda_line(row["film_parameter"], roughness),
         f"  rib: up to {FORCE.text(row['highest_rib_load'])} and {1e-9 * row['rib_pressure']:.3g} GPa, slides with "
         f"{point.sliding_speed:.3g} m/s, film {shown(1e6 * row['rib_film'], 3)} um (order of magnitude); "
         f"{point.rib_power:.3g} W at a friction of {RIB_FRICTION:g}, assumed",

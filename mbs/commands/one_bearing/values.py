@@ -23,6 +23,9 @@ _ROUND_OFF = 1e-12
 LOADS, SPEEDS = (1e-3, 1e7), (0.0, 1e5 * math.pi / 30.0)
 """Smallest and largest load [N] and speed [rad/s]."""
 
+SLOWEST = 1e-6
+"""Smallest speed that is not zero [rad/s]: a turn in two months. Groups of films are no numbers below."""
+
 
 def read_choices(arguments: argparse.Namespace, problems: list[str]) -> dict[str, Any]:
     """Values that were chosen, once each, by the names of the choices."""
@@ -167,6 +170,9 @@ def _quantity(
             f"{option}: got {short(text)}; allowed: {display.text(limits[0])} to {display.text(limits[1])}; check its "
             "unit"
         )
+        return math.nan
+    if unit == "rad/s" and 0.0 < abs(value) < SLOWEST:
+        problems.append(f"{option}: got {short(text)}; allowed: zero, or from {display.text(SLOWEST)} up")
         return math.nan
     return min(max(value, limits[0]), limits[1])
 

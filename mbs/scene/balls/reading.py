@@ -38,13 +38,14 @@ def read_ball(section: Table, name: str) -> BallSpec | None:
         Name of the bearing.
     """
     inner, outer, geometry, mirrored, angle, offset = read_located(section, name, ball_estimate)
-    clearance = section.quantity("diametral_clearance", "m", -WIDEST, WIDEST, MICROMETRE) or 0.0
+    clearance = section.quantity("diametral_clearance", "m", -WIDEST, WIDEST, MICROMETRE)
     if geometry is not None:
         if mirrored and geometry.contact_angle == 0.0:
             section.note("mirrored", f"got true for {geometry.name}, which is alike both ways; delete it")
         way = -1.0 if mirrored else 1.0
         try:
-            geometry = dataclasses.replace(geometry, clearance=clearance, contact_angle=way * geometry.contact_angle)
+            geometry = dataclasses.replace(geometry, contact_angle=way * geometry.contact_angle)
+            geometry = geometry if clearance is None else geometry.with_clearance(clearance)
         except InputError as error:
             geometry = None
             for problem in error.problems:

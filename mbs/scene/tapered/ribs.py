@@ -109,4 +109,4 @@ def with_clearance(spec: TaperedSpec, clearance: float) -> TaperedSpec:
     """
     if not isinstance(spec.geometry, RibbedGeometry):
         return spec
-    return dataclasses.replace(spec, geometry=dataclasses.replace(spec.geometry, diametral_clearance=clearance))
+    return dataclasses.replace(spec, geometry=spec.geometry.with_clearance(clearance))

@@ -1,0 +1,174 @@
+"""Radial clearance of a bearing as it is delivered: the classes C2 to C5 of ISO 5753-1, by the bore.
+
+A designation with a class has the middle of its range, which is a guess within it. One without a class, and without a
+clearance that is stated, has none here: bearings are delivered with CN then, of which fits and heat take most, or all.
+
+Needle bearings with an inner ring have the classes of cylindrical roller bearings. Without one the shaft makes the
+clearance. That of angular contact and of tapered bearings is set when they are mounted.
+
+References
+----------
+ISO 5753-1, Rolling bearings - Internal clearance - Part 1: Radial internal clearance for radial bearings, cylindrical
+bore: values as printed in makers' tables, which agree (SKF for rollers; SKF, NSK, Fujian Huafeng for balls).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from ehdmaps.errors import InputError, short
+from ehdmaps.physics.designations.reader import ANGULAR, CYLINDRICAL, DEEP_GROOVE, NEEDLE, TAPERED, read_designation
+
+CLASSES = ("C2", "CN", "C3", "C4", "C5")
+NORMAL = "CN"
+"""Class of a bearing whose designation has none."""
+
+# largest bore [mm]; least and largest clearance of C2, CN, C3, C4, C5 [um]
+_BALLS = (
+    (10, 0, 7, 2, 13, 8, 23, 14, 29, 20, 37),
+    (18, 0, 9, 3, 18, 11, 25, 18, 33, 25, 45),
+    (24, 0, 10, 5, 20, 13, 28, 20, 36, 28, 48),
+    (30, 1, 11, 5, 20, 13, 28, 23, 41, 30, 53),
+    (40, 1, 11, 6, 20, 15, 33, 28, 46, 40, 64),
+    (50, 1, 11, 6, 23, 18, 36, 30, 51, 45, 73),
+    (65, 1, 15, 8, 28, 23, 43, 38, 61, 55, 90),
+    (80, 1, 15, 10, 30, 25, 51, 46, 71, 65, 105),
+    (100, 1, 18, 12, 36, 30, 58, 53, 84, 75, 120),
+)
+_ROLLERS = (
+    (24, 0, 25, 20, 45, 35, 60, 50, 75, 65, 90),
+    (30, 0, 25, 20, 45, 35, 60, 50, 75, 70, 95),
+    (40, 5, 30, 25, 50, 45, 70, 60, 85, 80, 105),
+    (50, 5, 35, 30, 60, 50, 80, 70, 100, 95, 125),
+    (65, 10, 40, 40, 70, 60, 90, 80, 110, 110, 140),
+    (80, 10, 45, 40, 75, 65, 100, 90, 125, 130, 165),
+    (100, 15, 50, 50, 85, 75, 110, 105, 140, 155, 190),
+)
+_TABLES = {DEEP_GROOVE: _BALLS, CYLINDRICAL: _ROLLERS, NEEDLE: _ROLLERS}
+_MOUNTED = {
+    ANGULAR: "the play of angular contact bearings is set when they are mounted",
+    TAPERED: "the play of tapered bearings is set when they are mounted",
+}
+_NO_RING = "without an inner ring, shaft and needles make the clearance"
+
+
+class ClearanceRange(NamedTuple):
+    """Radial clearance that a bearing may have as it is delivered, not mounted.
+
+    Attributes
+    ----------
+    name : str
+        Class of ISO 5753-1.
+    least, largest : float
+        Range of the class [m].
+    taken : {"middle", "zero", "stated"}
+        What the bearing has: the middle of the class of its designation; none, where neither a class nor a clearance
+        is stated; or a clearance that is stated beside a class, which counts.
+    """
+
+    name: str
+    least: float
+    largest: float
+    taken: str
+
+    @property
+    def clearance(self) -> float:
+        """Clearance that a bearing has by its designation alone [m]."""
+        # a middle of 24 um is 24e-6, and not one bit beside
+        return float(f"{0.5 * (self.least + self.largest):.9g}") if self.taken == "middle" else 0.0
+
+    @property
+    def words(self) -> str:
+        """Clearance that was taken, and the range beside it."""
+        reach = f"{1e6 * self.least:.4g} to {1e6 * self.largest:.4g} um by ISO 5753-1, before mounting"
+        if self.taken == "middle":
+            return f"clearance in the middle of {self.name}: {reach}"
+        if self.taken == "zero":
+            return f"no clearance, an assumption: {self.name} would be {reach}"
+        return f"clearance as stated: {self.name} of the designation would be {reach}"
+
+
+def class_range(kind: str, bore: float, name: str, taken: str = "middle") -> ClearanceRange | None:
+    """Range of a class of clearance; None for kinds and bores that have no classes.
+
+    Parameters
+    ----------
+    kind : str
+        Kind of the bearing, of `ehdmaps.physics.designations.reader`.
+    bore : float
+        Bore [m].
+    name : str
+        Class, one of `CLASSES`.
+    taken : str
+        What the bearing has of it, see `ClearanceRange`.
+
+    Examples
+    --------
+    >>> class_range(DEEP_GROOVE, 40e-3, "C3").words
+    'clearance in the middle of C3: 15 to 33 um by ISO 5753-1, before mounting'
+    """
+    for largest_bore, *limits in _TABLES.get(kind, ()):
+        if bore <= 1e-3 * largest_bore * (1.0 + 1e-9):
+            place = 2 * CLASSES.index(name)
+            return ClearanceRange(name, limits[place] / 1e6, limits[place + 1] / 1e6, taken)
+    return None
+
+
+def delivered(designation: str, bore: float | None) -> ClearanceRange | None:
+    """Clearance of a bearing by its designation; None for kinds that have no classes.
+
+    Parameters
+    ----------
+    designation : str
+        Designation as it was typed.
+    bore : float or None
+        Bore of the inner ring [m]; None where there is no ring.
+
+    Raises
+    ------
+    InputError
+        For a class where there is none, for several classes, and for those of a maker's own.
+
+    Examples
+    --------
+    >>> round(1e6 * delivered("6208 C3", 40e-3).clearance, 3), delivered("6208", 40e-3).clearance
+    (24.0, 0.0)
+    """
+    found = read_designation(designation)
+    if found is None:
+        return None
+    where, name = f"bearing designation: got {short(designation)}", found.clearance
+    if not name:
+        return None if bore is None else class_range(found.kind, bore, NORMAL, "zero")
+    why = _MOUNTED.get(found.kind, "" if bore is not None else _NO_RING)
+    if why:
+        raise InputError(f"{where}; allowed: no class of radial clearance: {why}; leave {name} out")
+    if name not in CLASSES:
+        raise InputError(
+            f"{where}; allowed: one of the classes {', '.join(CLASSES)} of ISO 5753-1; state the clearance and leave "
+            f"{name} out"
+        )
+    return class_range(found.kind, float(bore or 0.0), name)
+
+
+def clearance_range(geometry: object) -> ClearanceRange | None:
+    """Range of the clearance of a bearing by its designation; None where it is stated, and where there is no class.
+
+    Parameters
+    ----------
+    geometry : object
+        Geometry of a bearing of any kind.
+    """
+    found: ClearanceRange | None = getattr(geometry, "clearance_range", None)
+    return found
+
+
+def stated(beside: ClearanceRange | None) -> ClearanceRange | None:
+    """Range beside a clearance that is stated: words where the designation has a class, else nothing.
+
+    Parameters
+    ----------
+    beside : ClearanceRange or None
+        Clearance by the designation.
+    """
+    return None if beside is None or beside.taken == "zero" else beside._replace(taken="stated")

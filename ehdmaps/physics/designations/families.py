@@ -1,0 +1,103 @@
+"""Kinds of bearings that are known and not served, in words; and balls where lines are asked for."""
+
+from __future__ import annotations
+
+import re
+
+from ehdmaps.physics.designations.reader import BALLS, ROLLERS, TAPERED, plain_name
+
+SERVED = (
+    "deep groove balls 60, 62, 63, 64; angular contact balls 70, 72, 73; cylindrical rollers N, NU, NJ, NUP of 10, 2, "
+    "22, 3, 23; needles K, NA49; tapered rollers 302, 303, 313, 320, 322, 323"
+)
+"""Kinds and series that are served, in words."""
+
+_TAIL = r"(?![0-9])[A-Z0-9 /,.+-]*"
+"""Suffixes of any kind."""
+
+_FAMILIES = tuple(
+    (re.compile(pattern + _TAIL), words)
+    for pattern, words in (
+        (r"(?:213|222|223|230|231|232|233|238|239|240|241|BS2)[ -]?\d\d", "spherical roller bearing"),
+        (r"(?:292|293|294)[ -]?\d\d", "spherical roller thrust bearing"),
+        (r"C[ -]?(?:22|23|30|31|32|39|40|41|49|50|59|60|69)[ -]?\d\d", "toroidal roller bearing"),
+        (r"(?:12|13|22|23|112|113)[ -]?\d\d", "self-aligning ball bearing"),
+        (r"1(?:08|26|27|29|35)", "self-aligning ball bearing"),
+        (r"(?:511|512|513|514|522|523|524|532|533|534)[ -]?\d\d", "thrust ball bearing"),
+        (r"(?:811|812|893|894|874)[ -]?\d\d", "cylindrical roller thrust bearing"),
+        (r"(?:AXK|AXW|AS|LS|AXZ) ?\d{4,}", "needle roller thrust bearing"),
+        (r"(?:2344|2347|7602|7603|BSA|BSB|BSD|ZKLN|ZKLF|BTW|BTM)[ -]?\d*", "angular contact thrust ball bearing"),
+        (r"(?:32|33|52|53|30|38|39)[ -]?\d\d", "double row angular contact ball bearing"),
+        (r"(?:42|43)[ -]?\d\d", "double row deep groove ball bearing"),
+        (r"QJF?[ -]?\d{3,4}", "four-point contact ball bearing"),
+        (r"(?:NNU?|NNTR?)[ -]?\d{4,5}", "double row cylindrical roller bearing"),
+        (r"(?:NNCF?|NNCL|NNF|NCF|NCL|NJG|NJF|SL)[ -]?\d{4,6}", "full complement cylindrical roller bearing"),
+        (r"(?:RNU|RN|NF|NP|NH|NUB|NJP|NUJ|NFP)[ -]?\d{3,4}", "cylindrical roller bearing of another type"),
+        (r"(?:HK|BK|HN|RHNA?)[ -]?\d{4}", "drawn cup needle roller bearing"),
+        (r"(?:NKI[ABS]?|NKS|NKXR?|NK|NXZ?|R?NAO|NAX[IRK]*)[ -]?\d[\dX*/-]*", "needle roller bearing of another type"),
+        (r"R?NA[ -]?(?:48|69)[ -]?\d\d", "needle roller bearing of another series"),
+        (r"(?:329|330|331|332|318|319|307|308|321|324)[ -]?\d\d", "tapered roller bearing of another series"),
+        (r"(?:618|619|617|160|161|622|623|630|638|639)[ -]?\d\d?", "deep groove ball bearing of another series"),
+        (r"(?:67|68|69)[ -]?\d\d", "deep groove ball bearing of another series"),
+        (r"(?:6[0-3]|6[89])\d", "miniature deep groove ball bearing"),
+        (r"(?:HCB|HSS?|XCB|B)?(?:718|719|708|709|7[89])[ -]?\d\d", "angular contact ball bearing of another series"),
+        (r"(?:UCP?|UK|YAR|YET|YEL|SA|SB|ES?)[ -]?2\d\d", "insert ball bearing"),
+        (r"(?:XSU|XU|XR|RB|RA|CRB[CHT]?|RU)[ -]?\d{3,}", "crossed roller bearing"),
+    )
+)  # fmt: skip
+
+
+_ALL = (*BALLS, *ROLLERS, TAPERED)
+_LONGEST = 60
+_FILE = re.compile(r"\.[a-z]{2,}")
+_NO_ANGLE = re.compile(r"7[023] ?\d\d" + _TAIL)
+
+
+def not_served(text: str) -> str:
+    """Words for a designation of a kind that is not served, beginning with "got"; empty for all other texts.
+
+    Parameters
+    ----------
+    text : str
+        What was typed.
+
+    Examples
+    --------
+    >>> not_served("22208 E/C3")[:49], not_served("NU208"), not_served("housing")
+    ("got '22208 E/C3', spherical roller bearing: not yet", '', '')
+    """
+    typed = text.strip()
+    if len(typed) > _LONGEST or _FILE.search(typed.lower()) or plain_name(typed, _ALL):
+        return ""
+    upper = typed.upper()
+    if _NO_ANGLE.fullmatch(upper):
+        name = upper[:5].replace(" ", "")[:4]
+        return (
+            f"got {typed!r}, angular contact ball bearing without its contact angle; allowed: {name}C (15 degrees), "
+            f"{name}AC (25), {name}B (40)"
+        )
+    words = next((words for pattern, words in _FAMILIES if pattern.fullmatch(upper)), "")
+    return f"got {typed!r}, {words}: not yet; served are {SERVED}" if words else ""
+
+
+def words_for_lines(text: str) -> str:
+    """Words for a designation that was given where only line contacts are; empty for all other texts.
+
+    Parameters
+    ----------
+    text : str
+        What was typed.
+
+    Examples
+    --------
+    >>> words_for_lines("NU208"), words_for_lines("6208-2RS")[:20]
+    ('', '6208 is a ball beari')
+    """
+    name = plain_name(text, BALLS)
+    if not name:
+        return not_served(text)
+    return (
+        f"{name} is a ball bearing: its contacts are points, and this is for line contacts; take "
+        f"`ehdmaps generate {name}` for a map of points, `ehdmaps solve {name}` for one, "
+        f"`mbs bearing {name} --law films` for the bearing"
+    )
