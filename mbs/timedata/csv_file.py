@@ -6,15 +6,18 @@
     0,500,0.0132
     1e-05,500.004,0.0127
 
-Lines that begin with # are passed over. Units stand in square or round brackets. Columns are apart by commas,
-semicolons or tabulators; with the last two, numbers may have a decimal comma. Numbers are written with 12 digits.
+Lines that begin with # are passed over. Units stand in square or round brackets. Columns are apart by tabulators, else
+semicolons, else commas; with the first two, numbers may have a decimal comma and names any. Text is in UTF-8, UTF-16 or
+Windows' own letters. Numbers are written with 12 digits.
 """
 
 from __future__ import annotations
 
+import codecs
 import io
 import re
 import warnings
+from collections.abc import Iterable, Iterator
 from itertools import islice
 from pathlib import Path
 
@@ -22,7 +25,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.inputs import check_input
+from ehdmaps.inputs import check_input, first_bytes
 from ehdmaps.outputs import MARK, TABLE, written_aside
 from ehdmaps.units import RPM, short
 from mbs.timedata.quantities import read_unit
@@ -103,8 +106,10 @@ def read_table(path: Path) -> tuple[list[TimeChannel], FloatArray, FloatArray]:
     """
     check_input(path, LONGEST_FILE, f"a table of numbers with names and units ({_EXAMPLE})", "record less in one file")
     head, skipped = _head(path)
-    delimiter = max((";", "\t", ","), key=head.count)
+    delimiter = next((mark for mark in ("\t", ";") if mark in head), ",")
     names = head.split(delimiter)
+    while len(names) > 1 and not names[-1].strip():  # lines that end with a delimiter
+        names.pop()
     if len(names) > MOST_CHANNELS + 2:
         raise InputError(f"{path}: got {len(names)} columns; allowed: up to {MOST_CHANNELS + 2}")
     problems: list[str] = []
@@ -129,10 +134,22 @@ def read_table(path: Path) -> tuple[list[TimeChannel], FloatArray, FloatArray]:
     return channels, np.array(factors), _numbers(path, skipped, delimiter, len(names))
 
 
+def _encoding(path: Path) -> str:
+    """Encoding of a table; of what is no UTF the one of Windows, which units such as m/s² need."""
+    start = first_bytes(path, _LONGEST_LINE, "a table of numbers")
+    if start[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE):
+        return "utf-16"
+    try:
+        codecs.getincrementaldecoder("utf-8")().decode(start)
+    except UnicodeDecodeError:
+        return "cp1252"
+    return "utf-8-sig"
+
+
 def _head(path: Path) -> tuple[str, int]:
     """The line of names, and how many lines the table has up to it."""
     try:
-        with path.open(encoding="utf-8-sig") as file:
+        with path.open(encoding=_encoding(path)) as file:
             for number, line in enumerate(islice(file, 1000), start=1):
                 if len(line) > _LONGEST_LINE:
                     break
@@ -145,13 +162,21 @@ def _head(path: Path) -> tuple[str, int]:
 
 def _numbers(path: Path, skipped: int, delimiter: str, columns: int) -> FloatArray:
     """All rows below the line of names."""
+    marks: set[str] = set()
+
+    def given(lines: Iterable[str]) -> Iterator[str]:
+        """Lines as numpy reads them."""
+        for line in lines:
+            text = line.partition("#")[0]
+            marks.update(mark for mark in ",." if mark in text)
+            yield _plain(text, delimiter, columns)
+
     try:
-        with path.open(encoding="utf-8-sig") as file, warnings.catch_warnings():
+        with path.open(encoding=_encoding(path)) as file, warnings.catch_warnings():
             warnings.simplefilter("error")
-            lines = islice(file, skipped, None)
-            given = (line.replace(",", ".") for line in lines) if delimiter != "," else lines
             # One more than allowed, so that what is too long is known without being read to its end.
-            values = np.loadtxt(given, comments="#", delimiter=delimiter, ndmin=2, max_rows=MOST + 1)
+            rows = given(islice(file, skipped, None))
+            values = np.loadtxt(rows, comments="#", delimiter=delimiter, ndmin=2, max_rows=MOST + 1)
     except (ValueError, Warning, OSError, MemoryError) as error:
         raise _bad_row(path, skipped, delimiter, columns) from error
     if values.shape[0] > MOST:
@@ -160,17 +185,31 @@ def _numbers(path: Path, skipped: int, delimiter: str, columns: int) -> FloatArr
         )
     if values.shape[1] != columns:
         raise _bad_row(path, skipped, delimiter, columns)
+    if delimiter != "," and len(marks) > 1:
+        raise InputError(
+            f"{path}: got numbers with commas and numbers with points; allowed: one of them before the decimals, and "
+            "none between thousands"
+        )
     return np.asarray(values, dtype=np.float64)
+
+
+def _plain(text: str, delimiter: str, columns: int) -> str:
+    """A row with decimal points, and without a delimiter behind its last number."""
+    text = text.replace(",", ".") if delimiter != "," else text
+    ended = text.rstrip(" \r\n")
+    if ended.endswith(delimiter) and ended.count(delimiter) == columns:
+        return ended[: -len(delimiter)]
+    return text
 
 
 def _bad_row(path: Path, skipped: int, delimiter: str, columns: int) -> InputError:
     """Look for the line that is no row of so many numbers."""
-    with path.open(encoding="utf-8-sig", errors="replace") as file:
+    with path.open(encoding=_encoding(path), errors="replace") as file:
         for number, line in enumerate(file, start=1):
             text = line.partition("#")[0].strip()
             if number <= skipped or not text:
                 continue
-            parts = (text.replace(",", ".") if delimiter != "," else text).split(delimiter)
+            parts = _plain(text, delimiter, columns).split(delimiter)
             wrong = len(parts) != columns
             for part in parts:
                 try:

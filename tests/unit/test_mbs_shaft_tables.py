@@ -281,6 +281,13 @@ def test_a_file_that_is_no_table_of_sections_is_refused(content, texts, tmp_path
         new_shaft(tmp_path / "new.toml", path)
 
 
+@pytest.mark.parametrize("mark", [";", "\t"])
+def test_decimal_commas(mark, tmp_path):
+    path = tmp_path / "a.csv"
+    path.write_text(f"length [mm]{mark}diameter [mm]\n18,5{mark}30,25\n")
+    assert csv_rows(path)[0][1] == {"length": "18.5 mm", "diameter": "30.25 mm"}
+
+
 @pytest.mark.parametrize(
     ("rows", "text"),
     [

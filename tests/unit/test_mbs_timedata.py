@@ -236,6 +236,34 @@ class TestPulses:
                 counted(times)
 
 
+class TestTables:
+    """A table as programs of other countries write it gives the same record."""
+
+    @pytest.mark.parametrize(
+        ("head", "mark", "comma", "end", "encoding"),
+        [
+            ("time [s],speed [rpm],S1 [m/s2]", ",", ".", "\n", "utf-8"),
+            ("time [s];speed [1/min];S1 [m/s^2]", ";", ",", "\r\n", "utf-8"),
+            ("time [s]\tspeed [min-1]\tS1 [m/s²]", "\t", ",", "\r\n", "cp1252"),
+            ("time, abs [s]\tspeed, n [RPM]\tS1 [m/s²]", "\t", ",", "\n", "utf-16"),
+            ("time [s]\tn; speed [r/min]\tS1 [m/s²]\t", "\t", ",", "\t\n", "utf-8-sig"),
+            ('"time [s]"\t"speed [U/min]"\t"S1 [m/s2]"', "\t", ".", "\n", "utf-8"),
+        ],
+    )
+    def test_marks_and_letters(self, here, head, mark, comma, end, encoding):
+        rows = [(k * 1e-3, 500.0 + k, 0.125 * k) for k in range(30)]
+        text = "".join(mark.join(f"{value:.6f}".replace(".", comma) for value in row) + end for row in rows)
+        (here / "a.csv").write_bytes((head + end.replace("\t", "") + text).encode(encoding))
+        (record,) = read_time_data(here / "a.csv").records
+        np.testing.assert_allclose(record.time, np.array(rows)[:, 0], atol=1e-12)  # six digits, on even steps
+        np.testing.assert_allclose(record.values, np.array(rows)[:, 1:] * [np.pi / 30.0, 1.0], rtol=1e-15)
+        assert [channel.recorded for channel in record.channels] == ["speed", "acceleration"]
+
+    def test_commas_between_thousands_are_no_decimals(self, here):
+        (here / "a.csv").write_text("time [s]\tspeed [rpm]\n0.001\t1,500\n0.002\t1,501\n")
+        refused(lambda: read_time_data(here / "a.csv"), "got numbers with commas and numbers with points")
+
+
 ROWS = "".join(f"{k * 1e-3:.6f},{500 + k},{0.1 * k}\n" for k in range(100))
 HOSTILE = {
     "empty": ("", "has no line of names"),

@@ -80,7 +80,8 @@ def csv_rows(path: Path) -> list[tuple[str, dict[str, object]]]:
     Parameters
     ----------
     path : Path
-        Text in UTF-8 with commas or semicolons. Empty lines and lines that begin with # are passed over.
+        Text in UTF-8 with commas, semicolons or tabulators; with the last two, numbers may have a decimal comma. Empty
+        lines and lines that begin with # are passed over.
 
     Raises
     ------
@@ -93,7 +94,7 @@ def csv_rows(path: Path) -> list[tuple[str, dict[str, object]]]:
         raise InputError(f"{path}: has no lines; allowed: {_ALLOWED}")
     if len(lines) - 1 > MOST_PARTS:
         raise InputError(f"{path}: got {len(lines) - 1} rows; allowed: 1 to {MOST_PARTS}; take longer sections")
-    comma = ";" if ";" in lines[0][1] else ","
+    comma = next((mark for mark in ("\t", ";") if mark in lines[0][1]), ",")
     try:
         cells = list(csv.reader((line for _, line in lines), delimiter=comma, strict=True))
     except csv.Error as error:
@@ -106,7 +107,8 @@ def csv_rows(path: Path) -> list[tuple[str, dict[str, object]]]:
         where = f"{path}, line {number}"
         if len(row) > len(columns):
             raise InputError(f"{where}: got {len(row)} cells; allowed: up to {len(columns)}, as in the first line")
-        rows.append((where, dict(_values(columns, row))))
+        values = row if comma == "," else [cell.replace(",", ".") for cell in row]
+        rows.append((where, dict(_values(columns, values))))
     return rows
 
 
