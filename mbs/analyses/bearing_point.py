@@ -3,11 +3,17 @@
 The outer ring is held, the inner one moves in the radial plane without tilting and turns at the given speed. Its
 equilibrium is that of `mbs.model.equilibrium`, with the ring as the only body: the potential of the contacts is convex,
 so that it is found from any load and clearance. The rollers' centrifugal load is left out.
+
+Of points at many loads and speeds, of any kind of bearing, one that fails is a hole with its reason, and the others
+stand (`points_over`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import dataclasses
+import math
+from collections.abc import Callable, Iterable, Sequence
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -36,11 +42,103 @@ from mbs.model.elements import Load, Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.model.system import System
 
+if TYPE_CHECKING:
+    from mbs.bearings.balls.ball_point import BallPoint
+    from mbs.bearings.tapered.tapered_point import TaperedPoint
+
 RING = "inner ring"
 """Name of the body that a bearing alone carries."""
 
 _FREE = 1e-9
 """Stiffness across the load over that along it, below which there is none."""
+
+
+P = TypeVar("P", bound="BearingPoint | BallPoint | TaperedPoint")
+
+_KEPT = ("bearing", "force", "angle", "position", "temperature", "outer_speed")
+"""Fields of points that are known without an answer."""
+
+
+def points_over(loads: Sequence[Any], speeds: Sequence[float], solve: Callable[[Any, float], P]) -> list[list[P]]:
+    """Solve a point at every load and every speed.
+
+    Parameters
+    ----------
+    loads, speeds : sequence
+        Loads on the inner ring, as `solve` takes them, and its speeds [rad/s].
+    solve : callable
+        Point at a load and a speed.
+
+    Returns
+    -------
+    list of list
+        The points, by load, then by speed; NaN, with `failed` and the reason in `problems`, where `solve` failed.
+
+    Raises
+    ------
+    InputError, AnalysisError
+        What the first point failed with, where all did.
+    """
+    found: dict[tuple[int, int], P] = {}
+    errors: dict[tuple[int, int], AnalysisError | InputError] = {}
+    for i, load in enumerate(loads):
+        for j, speed in enumerate(speeds):
+            try:
+                found[i, j] = solve(load, speed)
+            except (AnalysisError, InputError) as error:
+                errors[i, j] = error
+    if errors and not found:
+        raise next(iter(errors.values()))
+    for (i, j), reason in errors.items():
+        # any point tells how many rolling bodies there are; loads and speeds are those of the row and the column
+        row = [point for (k, _), point in found.items() if k == i] or list(found.values())
+        found[i, j] = _hole(row[0], loads[i], speeds[j], str(reason))
+    return [[found[i, j] for j in range(len(speeds))] for i in range(len(loads))]
+
+
+def without_holes(path: str, points: list[P]) -> list[P]:
+    """Points for a file that can have no holes.
+
+    Parameters
+    ----------
+    path : str
+        The file, for messages.
+    points : list of points
+        Points over the speed.
+
+    Raises
+    ------
+    AnalysisError
+        If one has no answer.
+    """
+    holes = [point.problems[0] for point in points if point.failed]
+    if holes:
+        raise AnalysisError(
+            f"{path}: not written: {len(holes)} of {len(points)} points have no answer; leave them out: {holes[0]}"
+        )
+    return points
+
+
+def _hole(point: P, load: Any, speed: float, reason: str) -> P:
+    """A point without an answer in the shape of one that has one."""
+    size = np.array(load, dtype=np.float64)
+    given = {"speed": speed} if isinstance(point, BearingPoint) else {"inner_speed": speed}
+    blank: P = _blank(point)
+    return dataclasses.replace(blank, load=size, problems=(reason,), notes=(), failed=True, **given)
+
+
+def _blank(value: Any) -> Any:
+    """The same with NaN in the place of all numbers that hang on an answer."""
+    if isinstance(value, np.ndarray) and value.dtype == np.float64:
+        return np.full_like(value, math.nan)
+    if isinstance(value, float):
+        return math.nan
+    if isinstance(value, tuple) and hasattr(value, "_fields"):
+        return type(value)(*(_blank(each) for each in value))
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        names = [field.name for field in dataclasses.fields(value) if field.init and field.name not in _KEPT]
+        return dataclasses.replace(value, **{name: _blank(getattr(value, name)) for name in names})
+    return value
 
 
 def bearing_points(
@@ -71,17 +169,17 @@ def bearing_points(
     Returns
     -------
     list of list of BearingPoint
-        The points, by load, then by speed.
+        The points, by load, then by speed; NaN with the reason where one of several has no equilibrium.
 
     Raises
     ------
     InputError
         For a load of zero, and for a law that does not belong to the bearing.
     AnalysisError
-        Where no equilibrium is found.
+        Where no equilibrium is found at any of them.
     """
     force = BearingForce(bearing, law)
-    return [[bearing_point(force, films, load, speed, temperature) for speed in speeds] for load in loads]
+    return points_over(list(loads), speeds, lambda load, speed: bearing_point(force, films, load, speed, temperature))
 
 
 def ring_at_rest(element: BearingElement, load: Sequence[float], operation: Operation) -> Equilibrium:

@@ -428,6 +428,8 @@ class BearingPoint:
         Limits of the laws that the point exceeds, in words.
     notes : tuple of str
         What else should be known about it.
+    failed : bool
+        Whether it has no answer: numbers are NaN, and `problems` say why.
     """
 
     bearing: Bearing
@@ -443,6 +445,7 @@ class BearingPoint:
     loss: RollingLoss
     problems: tuple[str, ...]
     notes: tuple[str, ...]
+    failed: bool = False
 
     @property
     def size(self) -> float:
@@ -495,6 +498,8 @@ class BearingPoint:
         surface, lubricant
             Arguments of `film_share`.
         """
+        if self.failed:
+            return math.nan, ""
         if surface.smooth:
             return 1.0, ""
         from ehdmaps.maps.rough_layer import LEAST_SPEED, MeanPlanes, RoughLayer, load_sharing

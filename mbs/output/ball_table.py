@@ -13,7 +13,7 @@ from ehdmaps.units import DAMPER, FILM, PRESSURE, RPM, SPRING, TEMPERATURE
 from mbs.bearings.balls.ball_element import MachineBalls, Settled
 from mbs.bearings.balls.ball_motion import ball_motion
 from mbs.bearings.balls.ball_point import SIDES, STATIC_LIMIT, BallPoint
-from mbs.output.bearing_table import OPEN, lambda_line, shown, smallest, warning_lines, write_csv
+from mbs.output.bearing_table import OPEN, hole_line, lambda_line, shown, smallest, warning_lines, write_csv
 from mbs.output.files import described
 from mbs.output.state_text import beside_class
 from mbs.scene.fields import DEGREE, FORCE, MICROMETRE
@@ -95,6 +95,8 @@ _SIDE = (
 
 def ball_row(point: BallPoint, roughness: float) -> dict[str, float]:
     """Numbers of a point that do not depend on the contact, by name, SI."""
+    if point.failed:
+        return {name: math.nan for name, _, _ in _ROW}
     values = (
         *point.along_across(point.stiffness),
         *point.along_across(point.damping),
@@ -115,6 +117,8 @@ def ball_row(point: BallPoint, roughness: float) -> dict[str, float]:
 
 def _side_row(point: BallPoint) -> dict[str, tuple[float, float]]:
     """Numbers of the inner and the outer contacts, by name, SI."""
+    if point.failed:
+        return {name: (math.nan, math.nan) for name, _, _ in _SIDE}
     return {
         "hertz_pressure": (float(point.pressure[0].max()), float(point.pressure[1].max())),
         "central_film": (smallest(point.central_film[0]), smallest(point.central_film[1])),
@@ -341,6 +345,9 @@ def _table(points: list[BallPoint], description: BallDescription) -> list[str]:
         f"{'loaded':>6s} {'N':>9s} {'deg':>13s} {'GPa':>7s} {'film, um':>9s}",
     ]
     for point in points:
+        if point.failed:
+            lines.append(hole_line(point.size, point.inner_speed))
+            continue
         row = ball_row(point, description.roughness)
         inner, outer = (_clean(DEGREE.value(point.balls.mean_angle(side))) for side in (0, 1))
         lines.append(

@@ -112,6 +112,8 @@ _SIDE = (
 
 def bearing_row(point: BearingPoint, roughness: float) -> dict[str, float]:
     """Numbers of a point that do not depend on the contact, by name, SI."""
+    if point.failed:
+        return {name: math.nan for name, _, _ in _ROW}
     stiffness, damping = point.along_across(point.stiffness), point.along_across(point.damping)
     moved = point.axes @ point.displacement
     values = (
@@ -286,7 +288,7 @@ def bearing_text(description: BearingDescription, points: Points, corners: Seque
         lines += _along(everything[0]) if description.bearing.coupled else []
     else:
         lines += _table(everything, description)
-    torque = max((point.loss.torque for point in everything), default=math.nan)
+    torque = max((point.loss.torque for point in everything if not point.failed), default=math.nan)
     return lines + flooded_note(torque, [description.supply]) + warning_lines(everything)
 
 
@@ -447,6 +449,9 @@ def _table(points: list[BearingPoint], description: BearingDescription) -> list[
         f"{'GPa':>7s} {'film, um':>9s} {'':>7s} {'N mm':>8s}" + (f" {'share':>6s}" if rough else ""),
     ]
     for point in points:
+        if point.failed:
+            lines.append(hole_line(point.size, point.speed))
+            continue
         row = bearing_row(point, description.roughness)
         share = f" {point.film_share(description.surface, description.oil):6.3f}" if rough else ""
         lines.append(
@@ -457,6 +462,11 @@ def _table(points: list[BearingPoint], description: BearingDescription) -> list[
             f"{shown(1e3 * row['rolling_torque'], 4):>8s}{share}{' !' if point.problems else ''}"
         )
     return lines
+
+
+def hole_line(load: float, speed: float) -> str:
+    """Line of a table for a point without an answer, at a load [N] and a speed [rad/s]."""
+    return f"{load:10.5g} {RPM.value(speed):8.5g} {'no answer, see below':>29s} !"
 
 
 def warning_lines(points: Sequence[BearingPoint | BallPoint | TaperedPoint]) -> list[str]:

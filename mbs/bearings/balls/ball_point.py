@@ -67,6 +67,8 @@ class BallPoint:
         that carry more than 1 % of the highest load; NaN where films come from formulas, or there are none.
     problems, notes : tuple of str
         Why the laws do not hold at the point; what else is to be known.
+    failed : bool
+        Whether it has no answer: numbers are NaN, and `problems` say why.
     """
 
     force: BallForce
@@ -84,6 +86,7 @@ class BallPoint:
     film_errors: FloatArray
     problems: tuple[str, ...]
     notes: tuple[str, ...]
+    failed: bool = False
 
     @property
     def cage_speed(self) -> float:

@@ -77,6 +77,8 @@ class TaperedPoint:
         P_ref of ISO/TS 16281 [N], and L10r in millions of turns.
     problems, notes : tuple of str
         Why the laws do not hold at the point; what else is to be known.
+    failed : bool
+        Whether it has no answer: numbers are NaN, and `problems` say why.
     """
 
     force: TaperedForce
@@ -101,6 +103,7 @@ class TaperedPoint:
     life: float
     problems: tuple[str, ...]
     notes: tuple[str, ...]
+    failed: bool = False
 
     @property
     def size(self) -> float:

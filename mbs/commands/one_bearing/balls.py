@@ -6,6 +6,7 @@ import argparse
 import dataclasses
 import math
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -18,6 +19,7 @@ from ehdmaps.physics.point.film_formulas import POINT_FILMS
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.program import tell
 from ehdmaps.units import RPM, SPEED, TEMPERATURE
+from mbs.analyses.bearing_point import points_over, without_holes
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.ball_point import BallPoint, ball_point
 from mbs.bearings.balls.laws import BallLaw, dry_law
@@ -196,7 +198,7 @@ def _written(path: str, request: BallRequest, points: list[list[BallPoint]]) -> 
     """Write the file of -o, and return what was written in words."""
     if is_export(path):
         try:
-            return write_export(path, _exported(request, points[0]))
+            return write_export(path, _exported(request, without_holes(path, points[0])))
         except SolverError as error:
             raise AnalysisError(f"-o {path}: {error}") from error
     dataset = ball_dataset(request.description, points)
@@ -209,15 +211,16 @@ def _written(path: str, request: BallRequest, points: list[list[BallPoint]]) -> 
 
 def ball_points(request: BallRequest) -> list[list[BallPoint]]:
     """Points at every load and every speed."""
-    rows = [[_at_load(request, load, speed, at) for load in request.loads] for speed, at in _at_speeds(request)]
-    return [list(row) for row in zip(*rows, strict=True)]
+    at_speed = cache(lambda speed: _at_speed(request, speed))
+    loads = [(request.axial, load * request.way[0], load * request.way[1]) for load in request.loads]
+    return points_over(loads, request.speeds, lambda load, speed: _at_load(request, load, speed, at_speed(speed)))
 
 
-def _at_load(request: BallRequest, load: float, speed: float, at: _AtSpeed) -> BallPoint:
+def _at_load(request: BallRequest, load: tuple[float, float, float], speed: float, at: _AtSpeed) -> BallPoint:
     """The point at a load and a speed."""
     point = ball_point(
         at.force,
-        (request.axial, load * request.way[0], load * request.way[1]),
+        load,
         speed,
         request.outer_speed,
         tilts=request.description.tilts,
@@ -245,11 +248,6 @@ class _AtSpeed(NamedTuple):
     films: BallFilms | None = None
     problems: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
-
-
-def _at_speeds(request: BallRequest) -> list[tuple[float, _AtSpeed]]:
-    """Speeds of the inner ring, each with its force."""
-    return [(speed, _at_speed(request, speed)) for speed in request.speeds]
 
 
 _BY_FORMULA = "; thickness of films by the formula of Hamrock and Dowson"

@@ -7,6 +7,7 @@ import dataclasses
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 from ehdmaps.errors import InputError
@@ -18,6 +19,7 @@ from ehdmaps.physics.rollers.tapered_catalogue import tapered_estimate
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from ehdmaps.physics.surface import Surface
 from ehdmaps.units import RPM, TEMPERATURE
+from mbs.analyses.bearing_point import points_over, without_holes
 from mbs.bearings.tapered.line_film import LineFilms
 from mbs.bearings.tapered.tapered_bearing import MOST_SLICES, SLICES, TaperedForce
 from mbs.bearings.tapered.tapered_point import TaperedPoint, tapered_point
@@ -205,10 +207,9 @@ def run_tapered(arguments: argparse.Namespace) -> tuple[str, int]:
 def _written(path: str, request: TaperedRequest, points: list[list[TaperedPoint]]) -> str:
     """Write the file of -o, and return what was written in words."""
     if is_export(path):
-        films = _films(request) if request.films else None
+        films, row = _films(request) if request.films else None, without_holes(path, points[0])
         return write_export(
-            path,
-            TaperedExport(request.force, request.description, points[0], request.outer_speed, films, request.memory),
+            path, TaperedExport(request.force, request.description, row, request.outer_speed, films, request.memory)
         )
     dataset = tapered_dataset(request.description, points)
     if Path(path).suffix.lower() == ".csv":
@@ -220,20 +221,22 @@ def _written(path: str, request: TaperedRequest, points: list[list[TaperedPoint]
 
 def tapered_points(request: TaperedRequest) -> list[list[TaperedPoint]]:
     """Points at every load and every speed."""
-    forces = _forces(request)
-    return [
-        [_at_load(request, load, speed, *at) for speed, at in zip(request.speeds, forces, strict=True)]
-        for load in request.loads
-    ]
+    at_speed = cache(_force_at(request))
+    loads = [(request.axial, load * request.way[0], load * request.way[1]) for load in request.loads]
+    return points_over(loads, request.speeds, lambda load, speed: _at_load(request, load, speed, *at_speed(speed)))
 
 
 def _at_load(
-    request: TaperedRequest, load: float, speed: float, force: TaperedForce, lacks: tuple[str, ...]
+    request: TaperedRequest,
+    load: tuple[float, float, float],
+    speed: float,
+    force: TaperedForce,
+    lacks: tuple[str, ...],
 ) -> TaperedPoint:
     """The point at a load and a speed, with why films are lacking."""
     point = tapered_point(
         force,
-        (request.axial, load * request.way[0], load * request.way[1]),
+        load,
         speed,
         request.outer_speed,
         tilts=request.description.tilts,
@@ -243,23 +246,23 @@ def _at_load(
     return dataclasses.replace(point, problems=(*point.problems, *lacks))
 
 
-def _forces(request: TaperedRequest) -> list[tuple[TaperedForce, tuple[str, ...]]]:
-    """The force at each speed of the inner ring, and why it has no films; none where nothing rolls."""
+def _force_at(request: TaperedRequest) -> Callable[[float], tuple[TaperedForce, tuple[str, ...]]]:
+    """The force by the speed of the inner ring, and why it has no films; none where nothing rolls."""
     films = _films(request) if request.films else None
-    if films is None:
-        return [(request.force, ())] * len(request.speeds)
-    found: list[tuple[TaperedForce, tuple[str, ...]]] = []
-    for speed in request.speeds:
+
+    def at(speed: float) -> tuple[TaperedForce, tuple[str, ...]]:
+        if films is None:
+            return request.force, ()
         try:
             at_speed = films(request.force.geometry.entrainment_speed(speed, request.outer_speed))
         except InputError as error:
             if not request.by_default:
                 raise
             words = f"{RPM.text(speed)}: dry and without damping, as the film table has no films there ({error})"
-            found.append((request.force, (words,)))
-        else:
-            found.append((request.force.with_films(at_speed), ()))
-    return found
+            return request.force, (words,)
+        return request.force.with_films(at_speed), ()
+
+    return at
 
 
 def _films(request: TaperedRequest) -> Callable[[float], LineFilms] | None:

@@ -15,7 +15,7 @@ from ehdmaps.units import DAMPER, FILM, PRESSURE, RPM, SPRING, TEMPERATURE
 from mbs.bearings.balls.ball_bearing import LOADED
 from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.bearings.tapered.tapered_point import RIB_FRICTION, SIDES, TaperedPoint
-from mbs.output.bearing_table import OPEN, lambda_line, shown, smallest, warning_lines, write_csv
+from mbs.output.bearing_table import OPEN, hole_line, lambda_line, shown, smallest, warning_lines, write_csv
 from mbs.output.files import described
 from mbs.output.state_text import beside_class
 from mbs.scene.fields import DEGREE, FORCE, MICROMETRE
@@ -92,6 +92,8 @@ _SIDE = (
 
 def tapered_row(point: TaperedPoint, roughness: float) -> dict[str, float]:
     """Numbers of a point that do not depend on the contact, by name, SI."""
+    if point.failed:
+        return {name: math.nan for name, _, _ in _ROW}
     values = (
         *point.along_across(point.stiffness),
         *point.along_across(point.damping),
@@ -118,6 +120,8 @@ def tapered_row(point: TaperedPoint, roughness: float) -> dict[str, float]:
 
 def _side_row(point: TaperedPoint) -> dict[str, tuple[float, float]]:
     """Numbers of the inner and the outer contacts, by name, SI."""
+    if point.failed:
+        return {name: (math.nan, math.nan) for name, _, _ in _SIDE}
     return {
         "hertz_pressure": (float(point.pressure[0].max()), float(point.pressure[1].max())),
         "central_film": (smallest(point.central_film[0]), smallest(point.central_film[1])),
@@ -328,6 +332,9 @@ def _table(points: list[TaperedPoint], description: TaperedDescription) -> list[
         f"{'loaded':>7s} {'N':>9s} {'N':>8s} {'GPa':>7s} {'film, um':>9s} {'':>7s} {'N':>9s}",
     ]
     for point in points:
+        if point.failed:
+            lines.append(hole_line(point.size, point.inner_speed))
+            continue
         row = tapered_row(point, description.roughness)
         lines.append(
             f"{point.size:10.5g} {RPM.value(point.inner_speed):8.5g} {SPRING.value(row['stiffness_along']):9.4g} "
