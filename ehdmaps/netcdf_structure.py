@@ -14,10 +14,39 @@ Specification (CDF-1, 2 and 5).
 from __future__ import annotations
 
 import mmap
+import stat
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 DAMAGE = (OSError, RuntimeError, ValueError, LookupError, AttributeError, TypeError, MemoryError)
 """What netCDF4 raises on damaged files, depending on what its C library stumbles over."""
+
+
+@contextmanager
+def opened(path: str | Path) -> Iterator[Any]:
+    """A netCDF file by its library, once its structure was looked at: the one door to files that others made.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+
+    Raises
+    ------
+    OSError, or another one of `DAMAGE`
+        If it is no regular file, is damaged, or is none of netCDF; callers say what they wanted to read.
+    """
+    from netCDF4 import Dataset
+
+    if not stat.S_ISREG(Path(path).stat().st_mode):
+        raise OSError("no regular file")
+    if damage := structure_problem(path):
+        raise OSError(damage)
+    with Dataset(path) as file:
+        yield file
+
 
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 _HEAP = b"GCOL\x01\x00\x00\x00"

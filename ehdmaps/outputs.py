@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import Any
 
 from ehdmaps.errors import InputError
-from ehdmaps.netcdf_structure import DAMAGE, structure_problem
+from ehdmaps.netcdf_structure import DAMAGE, opened
 
 MARK = "made by ehdmaps"
 """What files of text and figures carry."""
@@ -313,12 +313,8 @@ def has_mark(path: Path) -> bool:
 
 def root_attributes(path: Path) -> dict[str, Any]:
     """Return the global attributes of a netCDF file; none if it is no such file."""
-    import netCDF4
-
     try:
-        if structure_problem(path):
-            return {}
-        with netCDF4.Dataset(path) as file:
+        with opened(path) as file:
             return {name: file.getncattr(name) for name in file.ncattrs()}
     except DAMAGE:
         return {}

@@ -8,14 +8,16 @@ from __future__ import annotations
 import json
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics.catalogue import designated
+from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.designations.reader import ROLLERS, read_designation
 from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
+from ehdmaps.physics.moes import moes_groups
 
 GRID: Mapping[str, Any] = {
     "load": {"from": "0.1 N/mm", "to": "1000 N/mm", "points": 25, "spacing": "log"},
@@ -30,7 +32,7 @@ SOLVER = {"name": "reynolds", "structural_law": "iso16281"}
 _WORDS = {
     "load": "load 0.1 to 1000 N/mm",
     "entrainment_speed": "entrainment speed 0.05 to 10 m/s",
-    "temperature": "temperature 20 to 120 degC, as far as the laws of the oil hold",
+    "temperature": "temperature 20 to 120 degC, as far as the laws of the oil hold and films are known",
 }
 
 
@@ -82,8 +84,13 @@ def complete(values: Mapping[str, Any]) -> Completed:
     return Completed({**values, **added}, tuple(assumed), "temperature" in missing)
 
 
-def served(oil: Lubricant, temperatures: tuple[float, ...]) -> tuple[float, ...]:
-    """Temperatures at which the laws of an oil hold; all of them where they hold nowhere.
+def served(
+    oil: Lubricant, temperatures: tuple[float, ...], contacts: Sequence[LineContact], fastest: float
+) -> tuple[float, ...]:
+    """Temperatures at which the laws of an oil hold, and films are known; all of them where that is nowhere.
+
+    A thick cold oil at a speed that no bearing has there is beyond the film table, and beyond its solver: nobody who
+    leaves the temperatures out has asked for that.
 
     Parameters
     ----------
@@ -91,18 +98,27 @@ def served(oil: Lubricant, temperatures: tuple[float, ...]) -> tuple[float, ...]
         The oil.
     temperatures : tuple of float
         Temperatures [K].
+    contacts : sequence of LineContact
+        Contacts that films are wanted of.
+    fastest : float
+        Highest entrainment speed [m/s].
     """
-    found = tuple(temperature for temperature in temperatures if _holds(oil, temperature))
+    found = tuple(temperature for temperature in temperatures if _holds(oil, temperature, contacts, fastest))
     return found or temperatures
 
 
-def _holds(oil: Lubricant, temperature: float) -> bool:
-    """Tell whether the laws of an oil hold at a temperature."""
+def _holds(oil: Lubricant, temperature: float, contacts: Sequence[LineContact], fastest: float) -> bool:
+    """Tell whether the laws of an oil hold at a temperature, with an oil number L that the film table knows."""
     try:
-        oil.at(temperature)
+        state = oil.at(temperature)
     except InputError:
         return False
-    return True
+    if not contacts or fastest == 0.0:
+        return True
+    from ehdmaps.table.file import film_table  # with all that reads films
+
+    alpha, (R, E) = state.pressure_viscosity.pressure_viscosity, min((c.radius, c.reduced_modulus) for c in contacts)
+    return moes_groups(1.0, fastest, state.viscosity, alpha, R, E)[1] <= film_table(oil).largest_oil_number
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from ehdmaps.jobs.solids import NO_SOLIDS, check_solids, read_solids
 from ehdmaps.jobs.supply import read_supply, read_surface
 from ehdmaps.jobs.table import Table
 from ehdmaps.maps.backbone_plan import STEP_LIMITS, STEPS, Steps
-from ehdmaps.netcdf_structure import DAMAGE, structure_problem
+from ehdmaps.netcdf_structure import DAMAGE, opened
 from ehdmaps.physics.approach import STRUCTURAL_LAWS
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import LineContact
@@ -191,7 +191,7 @@ def _job(
         axes = _grid(grid, len(contacts) or 2, bearing, known=bearing is not None or "bearing" not in top)
         if oil is not None and axes[2] is not None:
             if completed.temperatures:
-                axes[2] = defaults.served(oil, axes[2])
+                axes[2] = defaults.served(oil, axes[2], contacts, max(axes[1] or (0.0,)))
             _check_temperatures(oil, axes[2], grid)
         _check_loads(contacts, axes[0], grid)
     top.close(others=_TABLES)
@@ -351,13 +351,8 @@ def is_map(source: str) -> bool:
 
 def _job_of_map(path: Path) -> tuple[str, str, str | None]:
     """Return the job's text and name, and the solver's name, that a map carries."""
-    import netCDF4
-
     try:
-        damage = structure_problem(path)
-        if damage:
-            raise OSError(damage)
-        with netCDF4.Dataset(path) as file:
+        with opened(path) as file:
             attributes = {name: file.getncattr(name) for name in file.ncattrs()}
     except DAMAGE as error:
         raise InputError(

@@ -33,7 +33,7 @@ from ehdmaps.maps.film_field import (
 from ehdmaps.maps.grid_field import GridField, line_field, lines_by_contact
 from ehdmaps.maps.law import SPEED_REACH, ContactLaw, LawKind, OutsidePolicy
 from ehdmaps.maps.law_errors import LEFT_OUT, LawErrors
-from ehdmaps.maps.reading import check_content, check_tables, content_sha256, read_map, validate
+from ehdmaps.maps.reading import check_content, check_tables, content_sha256, own_points, read_map, validate
 from ehdmaps.maps.records import (
     bearing_from_json,
     check_oil,
@@ -84,7 +84,7 @@ class EHDMap:
     Attributes
     ----------
     backbone : xarray.Dataset or None
-        The refinement lines.
+        The refinement lines; None also where they do not stand for the points, see `own_points`.
 
     Raises
     ------
@@ -94,6 +94,8 @@ class EHDMap:
 
     def __init__(self, dataset: xr.Dataset, backbone: xr.Dataset | None = None, where: str = "map") -> None:
         validate(dataset, where, backbone)
+        if why := own_points(dataset, backbone):
+            dataset, backbone = _with_own_points(dataset, why), None
         self._dataset = completed(dataset, contacts_of(dataset))
         self.backbone = backbone
 
@@ -334,6 +336,15 @@ class EHDMap:
         return schema.FILM_TABLE in self.dataset.attrs
 
     @property
+    def own_points(self) -> str:
+        """Why its points are somebody's own, from which alone its laws are made; empty where they are not.
+
+        That is so where films were changed after the map was made, and where the film table has become another one
+        since: what a law reads is what the file says. What the check of its former laws found is then left out.
+        """
+        return str(self.dataset.attrs.get(schema.OWN_POINTS, ""))
+
+    @property
     def known_between(self) -> bool:
         """True where films between its points are known, from refinement lines or from the film table."""
         return self.backbone is not None or self.from_table
@@ -452,6 +463,19 @@ class EHDMap:
         if not positive.size:
             raise MapError(f"map: has a backbone and no {axis} above zero; generate the map again")
         return float(positive[0]), float(positive[-1])
+
+
+def _with_own_points(dataset: xr.Dataset, why: str) -> xr.Dataset:
+    """A map whose points are its user's own, without what was stated of the laws that it had."""
+    stated = (schema.FILM_TABLE, schema.UNSERVED, schema.CHECKSUM)
+    kept = {
+        name: value
+        for name, value in dataset.attrs.items()
+        if name not in stated and not str(name).startswith(("law_", "tolerance"))
+    }
+    own = dataset.copy()
+    own.attrs = {**kept, schema.OWN_POINTS: why}
+    return own
 
 
 def _known_from(group: xr.Dataset) -> float:

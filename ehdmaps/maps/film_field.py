@@ -41,8 +41,8 @@ def lifted_loss(
         b [m], u [m/s] and 1/k [m2/N].
     """
     floor = LOSS_FLOOR * half_width / speed * compliance
-    lifted: FloatArray = 0.5 * (loss + floor + np.hypot(loss - floor, 2.0 * floor))
-    return lifted
+    lifted = 0.5 * (loss + floor + np.hypot(loss - floor, 2.0 * floor))
+    return np.maximum(lifted, floor)  # of a loss far below zero nothing but round-off is left
 
 
 class FilmField(Protocol):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
@@ -47,6 +47,9 @@ LEAST_LOAD = 1.0
 LOAD_REACH, SPEED_REACH = 100.0, 10.0
 """How far the policy `asymptote` goes, as multiples of the highest load and speed; it holds the edge beyond."""
 
+_SHARES = 1.0, 0.5, 0.25, 0.0
+"""Shares of the reach in speed and temperature that are tried: without films out there the edge is held nearer by."""
+
 
 class ContactLaw:
     """Load per unit length of a contact over approach, rate, entrainment speed and temperature.
@@ -74,7 +77,7 @@ class ContactLaw:
         temperature are held at the edge, with the dry tangent above the highest load. `asymptote`: film offset
         and c go on with their end exponents, in speed at constant Moes number M, up to `LOAD_REACH` times the
         highest load and `SPEED_REACH` times the highest speed, and as `clamp` beyond; films go on over temperature
-        too, see `continued`.
+        too, see `continued`. Where there are no films so far away, speed and temperature are held nearer to the map.
     resolution : Resolution, optional
         Spacing of the nodes of the table.
     rolling : RollingFilm, optional
@@ -142,7 +145,7 @@ class ContactLaw:
         self.rolling = rolling
         self.supply = supply
         self.errors = errors
-        self._plain = self._law_table()
+        self._plain = self._farthest_table()
         self._parts: list[tuple[ApproachTable, ApproachTable]] = []
         self._latest: LawAtPoint | None = None
 
@@ -417,14 +420,25 @@ class ContactLaw:
         """
         return self._films.response(np.asarray(loads, dtype=np.float64), entrainment_speed, temperature)
 
-    def _law_table(self) -> LawTable:
-        """Everything but the single contacts of a series."""
+    def _farthest_table(self) -> LawTable:
+        """Everything but the single contacts of a series, with as much of the reach beyond the map as has films."""
+        shares = _SHARES if self.outside == "asymptote" else _SHARES[:1]
+        for share in shares:
+            self.continued = self.continued and replace(self.continued, share=share)
+            try:
+                return self._law_table(share)
+            except (InputError, MapError) as error:
+                refused = error
+        raise refused
+
+    def _law_table(self, share: float) -> LawTable:
+        """Everything but the single contacts of a series, with a share of the reach beyond the map."""
         highest = self.load_range[1]
         low, high = self.speed_range if self.speed_range[0] > 0.0 else (1.0, 1.0)
         # The policy `error` lets the error of the table pass without a kink.
         held = highest if self.outside == "clamp" else highest * (1.0 + kernel.LOAD_TOLERANCE)
         if self.outside == "asymptote":
-            high = SPEED_REACH * high if high > low else high
+            high = SPEED_REACH**share * high if high > low else high
             most = min(highest_structural_load(contact) for contact in self.contacts)
             held = max(held, min(LOAD_REACH * highest, most))
         rough = not self.surface.smooth

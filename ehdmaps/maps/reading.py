@@ -11,6 +11,10 @@ A checksum of what a map holds tells values that were changed after the map was 
 values of all variables of the table of the map's version, of the grid and of the backbone, and over the attributes that
 laws are made from. Not over the way they are stored: compression, chunks and the form of texts may change. Nor over
 what the clock says: maps that are equal in all physics have one sum.
+
+Laws know more than the points of a map where its films are those of the film table, or where it has refinement lines.
+Who changes the points and deletes the checksum has points of his own, of which neither knows anything: laws then read
+these points. `own_points` tells, see there.
 """
 
 from __future__ import annotations
@@ -18,21 +22,18 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-import stat
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from os import PathLike, fspath
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import netCDF4
 import numpy as np
 import numpy.typing as npt
 
-from ehdmaps.errors import MapError
+from ehdmaps.errors import EhdmapsError, MapError
 from ehdmaps.maps import schema
-from ehdmaps.maps.records import contacts_of, contradictions
+from ehdmaps.maps.records import contacts_of, contradictions, lubricant_from_json, read_json
 from ehdmaps.maps.schema import Variable
-from ehdmaps.netcdf_structure import DAMAGE, structure_problem
+from ehdmaps.netcdf_structure import DAMAGE, opened
 from ehdmaps.physics.designations.families import words_for_lines
 
 if TYPE_CHECKING:
@@ -285,7 +286,7 @@ def check_content(dataset: xr.Dataset, backbone: xr.Dataset | None, where: str) 
         raise MapError(
             f"{where}: was changed since it was made: variables, contacts, geometry, oil, surface, oil supply or group "
             f"{schema.BACKBONE} do not match its attribute {schema.CHECKSUM}; generate it again; or, if the "
-            "change is meant, delete that attribute, and the map counts as yours"
+            "change is meant, delete that attribute, and the map counts as yours: laws then read its points"
         )
 
 
@@ -299,6 +300,80 @@ def _content(found: xr.DataArray, dtype: str) -> bytes:
     if dtype == "str":
         return _header(*(str(text) for text in found.values.ravel()))
     return np.ascontiguousarray(found.values, dtype=np.dtype(found.dtype).newbyteorder("<")).tobytes()
+
+
+_SINGLE = 1e-6
+"""Relative: films of the table that were saved in single precision differ by less from those that are read."""
+
+
+def own_points(dataset: xr.Dataset, backbone: xr.Dataset | None) -> str:
+    """Say why the points of a map are not those that its film table or its lines stand for; empty where they are.
+
+    Points of the film table are read again. Lines have the seal of their points, see `points_seal`; those of a map that
+    was made before there was any are believed, unless its checksum says otherwise.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        A valid map.
+    backbone : xarray.Dataset or None
+        Group of its refinement lines.
+    """
+    if backbone is not None:
+        seal = backbone.attrs.get(schema.SEAL)
+        if seal is None:
+            stated = dataset.attrs.get(schema.CHECKSUM)
+            same = stated is None or stated in (_sum(dataset, backbone, left_out) for left_out in (_TIMES, ()))
+        else:
+            held, sealed = (read_json(text, schema.SEAL) for text in (points_seal(dataset), seal))
+            same = all(held[name] == sealed[name] for name in held if name in sealed)
+        return "" if same else "they are not those that its refinement lines were made for"
+    if schema.FILM_TABLE not in dataset.attrs:
+        return ""
+    wrong = _not_of_table(dataset)
+    return f"{wrong} of {dataset['status'].size} are not those of the film table" if wrong else ""
+
+
+def points_seal(dataset: xr.Dataset) -> str:
+    """Return checksums of what refinement lines stand for, JSON by name: oil, axes and films of the points.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The map.
+    """
+    names = [name for name in (*schema.DIMS[1:], *_READ_BY_LAWS) if name in dataset.variables]
+    contents = {"lubricant": _header(dataset.attrs["lubricant"])}
+    contents |= {name: _content(dataset[name], "float64") for name in names}
+    return json.dumps({name: hashlib.sha256(content).hexdigest() for name, content in contents.items()})
+
+
+_READ_BY_LAWS = ("film_offset", "film_compliance", "loss_compliance", "rolling_force", "mass_flow")
+"""Films of the points of which a law makes something."""
+
+
+def _not_of_table(dataset: xr.Dataset) -> int:
+    """Number of points, filled ones apart, whose films are not what the film table has there."""
+    from ehdmaps.physics.closed_form import THICKEST_FILM  # with the film table, that other maps do not need
+    from ehdmaps.table.file import film_table
+
+    points = dataset.transpose(*schema.DIMS, ...)
+    axes = (points[name].values.astype(np.float64) for name in schema.DIMS[1:])
+    places = np.meshgrid(*axes, indexing="ij")
+    thickest = float(read_json(dataset.attrs["solver_settings"], "solver_settings").get("thickest_film", THICKEST_FILM))
+    lubricant = lubricant_from_json(dataset.attrs["lubricant"])
+    wrong = np.zeros(points["status"].shape, dtype=bool)
+    try:
+        table = film_table(lubricant)
+        for i, contact in enumerate(contacts_of(dataset)):
+            films = table.films(contact, lubricant, *places, thickest_film=thickest)
+            for name in _READ_BY_LAWS:
+                if name in points:
+                    known = np.where(films.usable, getattr(films, name), np.nan)
+                    wrong[i] |= ~np.isclose(points[name].values[i], known, _SINGLE, 0.0, equal_nan=True)
+    except EhdmapsError:  # an oil of which the table knows nothing
+        return wrong.size
+    return int(np.count_nonzero(wrong & ~points["filled"].values.astype(bool)))
 
 
 _OF_THE_FILE = ("_FillValue", "_Encoding", "_Unsigned", "missing_value", "coordinates")
@@ -317,12 +392,7 @@ def read_map(path: str | PathLike[str]) -> tuple[xr.Dataset, xr.Dataset | None]:
     """
     name = fspath(path)
     try:
-        if not stat.S_ISREG(Path(name).stat().st_mode):
-            raise OSError("no regular file")
-        damage = structure_problem(name)
-        if damage:
-            raise OSError(damage)
-        with netCDF4.Dataset(name) as file:
+        with opened(name) as file:
             return _read(file, name)
     except DAMAGE as error:
         cause = " ".join(str(error).split()) or type(error).__name__

@@ -358,6 +358,9 @@ FILM_TABLE = "film_table"
 UNSERVED = "film_table_unserved"
 """Attribute of a map whose films were to be read from the film table, and were solved: why."""
 
+OWN_POINTS = "own_points"
+"""Attribute of a map whose points are its user's own: why neither film table nor refinement lines stand for them."""
+
 CODE = "code_hash"
 """Attribute with the hash of all that the map was computed with, see `ehdmaps.provenance.code_hash`."""
 
@@ -375,10 +378,14 @@ TEXTS = (
     CORRECTION,
     FILM_TABLE,
     UNSERVED,
+    OWN_POINTS,
     CODE,
     CHECKSUM,
 )
 """Attributes that are texts, where a map has them; others than those named here are left alone."""
+
+SEAL = "points_sha256"
+"""Attribute of the backbone: checksum of the points of the map that it was made with, see `ehdmaps.maps.reading`."""
 
 REFERENCE_CONTACT = "reference_contact"
 """Attribute of the backbone, JSON: the contact that it was solved for."""

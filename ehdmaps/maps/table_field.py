@@ -23,6 +23,7 @@ from ehdmaps.maps import schema
 from ehdmaps.maps.backbone import ERROR, IMAGINARY, LOSS_SCALE, REAL, BackboneField, OffsetLine
 from ehdmaps.maps.backbone_plan import STEPS, plan_backbone, zeta_axis
 from ehdmaps.maps.film_field import RIGID, first_loads, lifted_loss
+from ehdmaps.maps.kernels.splines import hermite
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.lubricant import Lubricant
@@ -201,12 +202,12 @@ class TableField:
         held = np.full((3, *wanted.shape), np.nan)
         held[:, wanted] = values
         held = held.reshape(3, axis.size, -1)
-        _keep_longest(held)
         shortest = np.flatnonzero(np.count_nonzero(np.isfinite(held[0]), axis=0) < _FEWEST)
         if shortest.size:
             j, k = np.unravel_index(int(shortest[0]), groups.unit.shape)
             i = int(np.flatnonzero((at[1] == j) & (at[2] == k) & ~read.usable)[0])
             self._refuse(read, i, float(needed[i]), speeds[at[1]], temperatures[at[2]])
+        _bridge(axis, held)
         _go_on(axis, held)
         film_line = OffsetLine.through(axis, held[0], held[1])
         return _Lines(film_line, CubicSpline(axis, held[2]), (float(axis[0]), float(axis[-1])), groups)
@@ -317,13 +318,22 @@ class TableField:
         return by_offset + moved[0], by_slope + moved[0], by_loss + moved[1]
 
 
-def _keep_longest(values: FloatArray) -> None:
-    """Forget what lies beyond a gap in a line, in place: each line keeps its longest stretch; (3, n, lines)."""
-    known = np.isfinite(values[0])
-    for line in np.flatnonzero(np.count_nonzero(np.diff(known.astype(np.int8), axis=0) == 1, axis=0) + known[0] > 1):
-        edges = np.flatnonzero(np.diff(np.concatenate(([0], known[:, line].astype(np.int8), [0]))))
-        first, last = max(edges.reshape(-1, 2).tolist(), key=lambda ends: ends[1] - ends[0])
-        values[:, :first, line] = values[:, last:, line] = np.nan
+def _bridge(axis: FloatArray, values: FloatArray) -> None:
+    """Fill gaps within lines, in place: ln(film offset) by a cubic with the slopes at both ends, the damping straight.
+
+    `values` as of `_go_on`. One film that the table does not vouch for says nothing against those on both sides of it.
+    """
+    known: BoolArray = np.isfinite(values[0])
+    gaps = ~known & np.logical_or.accumulate(known, 0) & np.logical_or.accumulate(known[::-1], 0)[::-1]
+    for line in np.flatnonzero(gaps.any(axis=0)):
+        at, gap = np.flatnonzero(known[:, line]), np.flatnonzero(gaps[:, line])
+        before = np.searchsorted(at, gap) - 1
+        left, right = at[before], at[before + 1]
+        step = axis[right] - axis[left]
+        part = (axis[gap] - axis[left]) / step
+        ends = ((values[0, end, line], values[1, end, line]) for end in (left, right))
+        values[0, gap, line], values[1, gap, line] = hermite(*ends, part, step)
+        values[2, gap, line] = (1.0 - part) * values[2, left, line] + part * values[2, right, line]
 
 
 def _go_on(axis: FloatArray, values: FloatArray) -> None:

@@ -19,12 +19,13 @@ import numpy.typing as npt
 
 from ehdmaps.arrays import ByteArray, FloatArray
 from ehdmaps.errors import MapError
+from ehdmaps.netcdf_structure import DAMAGE, opened
 from ehdmaps.outputs import MADE_AS
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.table.fields import FIELDS
 from ehdmaps.table.films import FilmTable
 from ehdmaps.table.interpolation import Axes
-from ehdmaps.table.nodes import Nodes
+from ehdmaps.table.nodes import Nodes, nodes_problem
 
 SHIPPED = "film_table.nc"
 """Name of the shipped file in this package."""
@@ -118,12 +119,10 @@ def read_tables(path: Path) -> TableFile:
     Raises
     ------
     MapError
-        If it cannot be read, is of another kind or was changed.
+        If it cannot be read, is of another kind, holds no table or was changed.
     """
-    from netCDF4 import Dataset
-
     try:
-        with Dataset(path) as file:
+        with opened(path) as file:
             attributes = {name: str(file.getncattr(name)) for name in file.ncattrs()}
             if (attributes.get(MADE_AS), attributes.get("table_format")) != (KIND, FORMAT):
                 raise MapError(f"{path}: is no film table of this version; make one by `ehdmaps table make`")
@@ -131,8 +130,8 @@ def read_tables(path: Path) -> TableFile:
             for law, group in file.groups.items():
                 parts = {part: _read_nodes(group.groups[part], path) for part in _MEANING}
                 tables[law] = FilmTable(**parts, compressible=law != "incompressible")
-    except (OSError, KeyError, IndexError, AttributeError) as error:
-        raise MapError(f"{path}: cannot be read as a film table ({error}); make it again") from None
+    except DAMAGE as error:
+        raise MapError(f"{path}: cannot be read as a film table ({error!s:.300}); make it again") from None
     table_file = TableFile(tables, attributes)
     if attributes.get(CHECKSUM) != content_sha256(table_file):
         raise MapError(f"{path}: was changed since it was made: its content does not match {CHECKSUM}; make it again")
@@ -146,6 +145,9 @@ def _read_nodes(group: Any, path: Path) -> Nodes:
         raise MapError(f"{path}: holds other fields than this version reads; make it again")
     axes = Axes(*(np.asarray(group[name][:], dtype=float) for name in AXES))
     values, codes = (np.moveaxis(group[name][:], 0, -1) for name in ("values", "error_codes"))
+    along = [getattr(axes, name) for name in AXES]
+    if problem := nodes_problem(along, values, len(FIELDS), codes, len(FIELDS)):
+        raise MapError(f"{path}: holds {problem}; make it again")
     return Nodes(axes, values, codes)
 
 

@@ -5,6 +5,7 @@ The errors are measured ones, a number for each cell between the nodes, see `ehd
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -85,6 +86,34 @@ class Nodes:
         codes = self.codes.reshape(-1, len(FIELDS))[place.cell, first : first + len(fields)]
         beyond = BEYOND_HEAVY * place.above - BEYOND_FLAT * place.flatter - BEYOND_LIGHT * np.expm1(place.below)
         return np.asarray(decoded(codes) + beyond[:, None])
+
+
+def nodes_problem(
+    axes: Sequence[FloatArray], values: npt.NDArray[np.float32], fields: int, codes: ByteArray, errors: int
+) -> str:
+    """Say why numbers of a file make no table; empty where they do.
+
+    Parameters
+    ----------
+    axes : sequence of ndarray
+        Nodes along each coordinate.
+    values : ndarray
+        Should be finite numbers at all nodes, the fields along the last axis.
+    fields, errors : int
+        How many numbers a node has, and how many errors a cell.
+    codes : ndarray
+        Should be bytes in all cells, the errors along the last axis.
+    """
+    for nodes in axes:
+        if nodes.ndim != 1 or nodes.size < 2 or not (np.all(np.isfinite(nodes)) and np.all(np.diff(nodes) > 0.0)):
+            return "an axis that does not rise from number to number"
+    sizes = [nodes.size for nodes in axes]
+    for array, shape in ((values, (*sizes, fields)), (codes, (*(size - 1 for size in sizes), errors))):
+        if array.shape != shape:
+            return f"{' x '.join(map(str, array.shape))} numbers where its axes have {' x '.join(map(str, shape))}"
+    if codes.dtype != np.uint8 or values.dtype.kind != "f":
+        return "numbers of another type"
+    return "" if np.all(np.isfinite(values)) else "values that are no finite numbers"
 
 
 def encoded(errors: FloatArray) -> ByteArray:

@@ -66,7 +66,14 @@ ALLOWED = {
         "ehdmaps.physics",
         "ehdmaps.table",
     },
-    "ehdmaps.table": {"ehdmaps.arrays", "ehdmaps.compiled", "ehdmaps.errors", "ehdmaps.outputs", "ehdmaps.physics"},
+    "ehdmaps.table": {
+        "ehdmaps.arrays",
+        "ehdmaps.compiled",
+        "ehdmaps.errors",
+        "ehdmaps.netcdf_structure",
+        "ehdmaps.outputs",
+        "ehdmaps.physics",
+    },
     "ehdmaps.openfoam": {
         "ehdmaps.arrays",
         "ehdmaps.errors",

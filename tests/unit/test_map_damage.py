@@ -45,14 +45,16 @@ def made(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def old(made):
-    """The same map as schema 1 had it, without a checksum."""
+    """The same map as schema 1 had it, without a checksum and without a seal of its points."""
     path = made.with_name("old.nc")
     now = open_map(made)
     older = now.dataset.drop_vars([entry.name for entry in schema.table() if entry.since > 1], errors="ignore")
     older = older.assign_attrs(schema_version=1)
     del older.attrs[schema.CHECKSUM]
     older.to_netcdf(path)
-    now.backbone.to_netcdf(path, mode="a", group="backbone")
+    group = now.backbone.copy()
+    del group.attrs[schema.SEAL]
+    group.to_netcdf(path, mode="a", group="backbone")
     open_map(path).law("series")
     return path
 

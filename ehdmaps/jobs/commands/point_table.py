@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ehdmaps.outputs import MADE_AS, Output, check_outputs, dataset_kind, written_aside
+from ehdmaps.outputs import MADE_AS, Output, check_outputs, dataset_kind, root_attributes, written_aside
 from ehdmaps.program import tell
 from ehdmaps.table.nodes import decoded
 from ehdmaps.table.points.file import KIND, read_point_table, shipped_point_table, write_point_table
@@ -47,13 +47,7 @@ def is_one(path: Path) -> bool:
     path : Path
         The file.
     """
-    from netCDF4 import Dataset
-
-    try:
-        with Dataset(path) as file:
-            return getattr(file, MADE_AS, "") == KIND
-    except OSError:
-        return False
+    return root_attributes(path).get(MADE_AS) == KIND
 
 
 def shown(path: Path | None = None) -> str:

@@ -29,7 +29,7 @@ from ehdmaps.jobs.make.tasks import LineTask, solver_version
 from ehdmaps.maps import schema
 from ehdmaps.maps.records import record_json
 from ehdmaps.maps.schema import SCHEMA_VERSION
-from ehdmaps.netcdf_structure import DAMAGE
+from ehdmaps.netcdf_structure import DAMAGE, opened
 from ehdmaps.outputs import MAP, Output, name_problem, output_problems, root_attributes
 from ehdmaps.physics.solution import ContactSolver
 from ehdmaps.table.solver import TableSolver
@@ -308,14 +308,12 @@ def _is_due(planned: Planned, batch: Batch, folder: Path, fresh: bool, outcomes:
 
 def _kept(member: Member, output: Path) -> Outcome | None:
     """Outcome to report of a map that is there; None where it cannot be read."""
-    import netCDF4
-
     try:
-        with netCDF4.Dataset(output) as file:
+        with opened(output) as file:
             lines = schema.BACKBONE in file.groups
         with xr.open_dataset(output, engine="netcdf4") as dataset:
             return _outcome(member, output, KEPT, dataset, lines, 0.0)
-    except (*DAMAGE, KeyError):
+    except DAMAGE:
         return None
 
 

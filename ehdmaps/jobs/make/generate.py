@@ -35,7 +35,7 @@ from ehdmaps.jobs.make.tasks import MOST_LINE_POINTS, LineTask, Refinement, back
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone_plan import Axis
 from ehdmaps.maps.emap import EHDMap
-from ehdmaps.maps.reading import content_sha256, validate
+from ehdmaps.maps.reading import content_sha256, points_seal, validate
 from ehdmaps.maps.records import record_from_json
 from ehdmaps.outputs import MAP, written_aside
 from ehdmaps.physics.solution import ContactSolver
@@ -445,7 +445,9 @@ def _finished(planned: _Plan, result: SweepResult, where: str) -> tuple[xr.Datas
     if planned.correction and planned.corrector:
         dataset = with_correction(dataset, planned.job, planned.correction, planned.corrector)
     validate(dataset, where)
-    group = backbone_group(planned.refined, arrays) if planned.refined else None
+    group = None
+    if planned.refined:
+        group = backbone_group(planned.refined, arrays).assign_attrs({schema.SEAL: points_seal(dataset)})
     if planned.check:
         dataset.attrs.update(checked_laws(planned.check, EHDMap(dataset, group), arrays))
     if planned.unserved:

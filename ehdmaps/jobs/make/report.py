@@ -16,7 +16,7 @@ from ehdmaps.errors import MapError
 from ehdmaps.jobs.make.correction import JUDGED
 from ehdmaps.maps import schema
 from ehdmaps.maps.records import MODEL_ERRORS, lubricant_from_json, record_from_json
-from ehdmaps.maps.schema import FILM_TABLE, UNSERVED
+from ehdmaps.maps.schema import FILM_TABLE, OWN_POINTS, UNSERVED
 from ehdmaps.physics.closed_form import BELOW_ROUGHNESS, CONTINUUM, NO_CONTINUUM
 from ehdmaps.physics.solution import Status, tip_words
 from ehdmaps.program import plain
@@ -217,7 +217,9 @@ def fitted_pressure(dataset: xr.Dataset) -> str:
 
 def films_lines(dataset: xr.Dataset) -> Iterator[str]:
     """Say where the films of a map come from; nothing of a map that was to be solved."""
-    if FILM_TABLE in dataset.attrs:
+    if why := dataset.attrs.get(OWN_POINTS):
+        yield f"films: points of your own, {why}; laws read these points, and were not checked"
+    elif FILM_TABLE in dataset.attrs:
         points = dataset["status"].size
         yield f"films: {points} points read from the film table, as the films of the laws are; none solved"
     elif why := dataset.attrs.get(UNSERVED):

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, MapError
 from ehdmaps.jobs import solvers
+from ehdmaps.jobs.defaults import served
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.make.table_films import table_films, unserved
 from ehdmaps.jobs.make.tasks import of_groups
@@ -93,7 +94,7 @@ def table_map(
     lubricant: Lubricant,
     loads: tuple[float, float] = LOADS,
     entrainment_speeds: tuple[float, float] = SPEEDS,
-    temperatures: tuple[float, float] = TEMPERATURES,
+    temperatures: tuple[float, float] | None = None,
     structural_law: StructuralLaw = "iso16281",
     material: Material = STEEL,
     supply: OilSupply | None = None,
@@ -110,8 +111,10 @@ def table_map(
         A bearing, or one contact.
     lubricant : Lubricant
         The oil.
-    loads, entrainment_speeds, temperatures : (float, float)
-        Ranges of the laws [N/m], [m/s] > 0, [K].
+    loads, entrainment_speeds : (float, float)
+        Ranges of the laws [N/m], [m/s] > 0.
+    temperatures : (float, float), optional
+        The same [K]; if left out `TEMPERATURES`, as far as the laws of the oil hold and films are known.
     structural_law : str
         Law of the solids of a bearing's contacts.
     material : Material
@@ -127,6 +130,11 @@ def table_map(
         For ranges that no map could have.
     """
     bearing = of if isinstance(of, BearingGeometry) else None
+    if temperatures is None:
+        contacts = of.contacts(material, structural_law) if isinstance(of, BearingGeometry) else (of,)
+        every = tuple(np.linspace(*TEMPERATURES, _POINTS[2]).tolist())
+        known = served(lubricant, every, contacts, entrainment_speeds[1])
+        temperatures = known[0], known[-1]
     job = Job.build(
         lubricant=lubricant,
         loads=np.geomspace(*loads, _POINTS[0]),
@@ -186,7 +194,7 @@ def law(
     kind: LawKind | None = None,
     loads: tuple[float, float] = LOADS,
     entrainment_speeds: tuple[float, float] = SPEEDS,
-    temperatures: tuple[float, float] = TEMPERATURES,
+    temperatures: tuple[float, float] | None = None,
     outside: OutsidePolicy = "error",
     supply: OilSupply | None = None,
     surface: Surface | None = None,
@@ -208,8 +216,10 @@ def law(
         The oil, or its name or class: "FVA3", "ISO VG 46".
     kind : {"series", "inner", "outer", "line"}, optional
         Contact of a bearing, or a roller between both raceways, which is the default.
-    loads, entrainment_speeds, temperatures : (float, float)
-        Ranges of the law [N/m], [m/s] > 0, [K].
+    loads, entrainment_speeds : (float, float)
+        Ranges of the law [N/m], [m/s] > 0.
+    temperatures : (float, float), optional
+        The same [K]; if left out 20 to 120 degC, as far as the laws of the oil hold and films are known.
     outside, supply, surface
         Arguments of `EHDMap.law`.
     structural_law : str

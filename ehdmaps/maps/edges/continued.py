@@ -28,6 +28,7 @@ import numpy as np
 from ehdmaps.arrays import ComplexArray, FloatArray, IndexArray
 from ehdmaps.errors import EhdmapsError
 from ehdmaps.maps.backbone import LOSS_SCALE
+from ehdmaps.maps.compilation import Resolution
 from ehdmaps.maps.film_field import FilmField, lifted_loss
 from ehdmaps.maps.kernels.tables import COLDEST
 from ehdmaps.maps.law_errors import LawBounds
@@ -61,12 +62,15 @@ class ContinuedField:
         The oil.
     table : TableField or None
         Films of the film table over the same loads; None where it does not know the oil.
+    share : float
+        Share of the reach that a law takes, 0 to 1: of `TEMPERATURE_REACH`, and of the logarithm of that in speed.
     """
 
     origin: FilmField
     line_contacts: tuple[LineContact, ...]
     lubricant: Lubricant
     table: TableField | None
+    share: float = 1.0
 
     @property
     def contacts(self) -> tuple[str, ...]:
@@ -105,11 +109,15 @@ class ContinuedField:
         return self._farthest(cold, -1.0), self._farthest(hot, 1.0)
 
     def _farthest(self, end: float, way: float) -> float:
-        """The farthest temperature beyond an end of the map at which there are films, of those that are tried."""
+        """The farthest temperature beyond an end of the map at which there are films, of those that are tried.
+
+        A law has a node up to a step of its axis beyond its reach: there are films there, too.
+        """
         found = end
-        for step in range(1, _TRIED + 1):
-            T = end + way * TEMPERATURE_REACH * step / _TRIED
-            if T < _COLDEST or not self._knows(T):
+        for step in range(1, _TRIED + 1 if self.share else 1):
+            T = end + way * self.share * TEMPERATURE_REACH * step / _TRIED
+            node = COLDEST + 1.0 / (1.0 / (T - COLDEST) - way * 1e-3 * Resolution().temperature) if T > COLDEST else 0.0
+            if T < _COLDEST or not (self._knows(T) and self._knows(node)):
                 break
             found = T
         return found

@@ -10,8 +10,10 @@ from pathlib import Path
 import numpy as np
 
 from ehdmaps.errors import MapError
+from ehdmaps.netcdf_structure import DAMAGE, opened
 from ehdmaps.outputs import MADE_AS
 from ehdmaps.table.file import CHECKSUM
+from ehdmaps.table.nodes import nodes_problem
 from ehdmaps.table.points.coordinates import PointAxes
 from ehdmaps.table.points.films import PointTable
 from ehdmaps.table.points.nodes import ERRORS, FIELDS, PointNodes
@@ -51,10 +53,8 @@ def read_point_table(path: Path) -> PointTable:
     MapError
         If it cannot be read, is of another kind or was changed.
     """
-    from netCDF4 import Dataset
-
     try:
-        with Dataset(path) as file:
+        with opened(path) as file:
             file.set_auto_mask(False)
             attributes = {name: str(file.getncattr(name)) for name in file.ncattrs()}
             if (attributes.get(MADE_AS), attributes.get("table_format")) != (KIND, FORMAT):
@@ -64,8 +64,11 @@ def read_point_table(path: Path) -> PointTable:
             axes = PointAxes(*(np.asarray(file[name][:], dtype=float) for name in AXES))
             values, codes = (np.moveaxis(file[name][:], 0, -1) for name in ("values", "error_codes"))
             continued = np.asarray(file["continued"][:], dtype=bool)
-    except (OSError, KeyError, IndexError, AttributeError) as error:
-        raise MapError(f"{path}: cannot be read as a {KIND} ({error}); make it again") from None
+    except DAMAGE as error:
+        raise MapError(f"{path}: cannot be read as a {KIND} ({error!s:.300}); make it again") from None
+    problem = nodes_problem(axes.all, values, len(FIELDS), codes, len(ERRORS))
+    if problem or continued.shape != codes.shape[:-1]:
+        raise MapError(f"{path}: holds {problem or 'marks of other cells'}; make it again")
     table = PointTable(PointNodes(axes, values, codes, continued), attributes)
     if attributes.get(CHECKSUM) != content_sha256(table):
         raise MapError(f"{path}: was changed since it was made: its content does not match {CHECKSUM}; make it again")
