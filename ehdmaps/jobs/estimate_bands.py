@@ -19,7 +19,6 @@ from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.catalogue import stated_errors
 from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.own_oil import CORRELATIONS
 from ehdmaps.physics.solution import ContactSolver, contact_solution
 from ehdmaps.units import LOAD, SPEED, TEMPERATURE
 
@@ -78,7 +77,7 @@ def geometry_band(job: Job, point: OperatingPoint, solver: ContactSolver) -> Ban
 
 
 def pressure_viscosity_band(job: Job, point: OperatingPoint, solver: ContactSolver) -> Band | None:
-    """Band of a pressure-viscosity by a correlation, to its error; None where it is stated.
+    """Band of a pressure-viscosity by a correlation, to its error there; None where it is stated.
 
     Parameters
     ----------
@@ -89,10 +88,9 @@ def pressure_viscosity_band(job: Job, point: OperatingPoint, solver: ContactSolv
     solver : ContactSolver
         What gives the films.
     """
-    bearing, correlation = job.bearing, job.lubricant.correlation
-    if bearing is None or correlation is None:
+    bearing, error = job.bearing, job.lubricant.coefficient_error(point.temperature)
+    if bearing is None or error == 0.0:
         return None
-    error = CORRELATIONS[correlation].rms
 
     def changed(sign: float) -> Answer:
         oil = _of_temperature(job.lubricant, point.temperature, 1.0 + sign * error)

@@ -272,7 +272,10 @@ def _lubricant(oil: Lubricant) -> Iterator[tuple[str, Entry]]:
     yield "viscosity_law", str(record["viscosity_law"])
     yield "density", _quantity(oil.density_15, "kg/m^3")
     yield "density_law", oil.density_law
-    if oil.correlation is not None:
+    if oil.stated_coefficient is not None and oil.stated_temperature is not None:
+        yield "pressure_viscosity", _quantity(oil.stated_coefficient, "1/Pa")
+        yield "pressure_viscosity_temperature", _quantity(oil.stated_temperature, "K")
+    elif oil.correlation is not None:
         yield "pressure_viscosity", oil.correlation
     for parameter in PRESSURE_LAWS[str(record["viscosity_law"])].parameters:
         if parameter.key in record:

@@ -195,6 +195,7 @@ _OIL_QUANTITIES: dict[str, tuple[str, float, float, Display]] = {
     "viscosity_100": ("m^2/s", 1e-7, 1e-1, _KINEMATIC),
     "pressure_viscosity_40": ("1/Pa", 1e-10, 1e-7, _COEFFICIENT),
     "pressure_viscosity_100": ("1/Pa", 1e-10, 1e-7, _COEFFICIENT),
+    "pressure_viscosity_temperature": ("K", 243.15, 473.15, TEMPERATURE),
     "density": ("kg/m^3", 300.0, 3000.0, _DENSITY),
     "density_slope": ("kg/(m^3 K)", -5.0, 0.0, Display("kg/(m^3 K)")),
     "fitted_pressure": ("Pa", 1e7, 1e10, _GPA),
@@ -203,7 +204,7 @@ _LAW_PARAMETERS = {parameter.key: parameter for law in PRESSURE_LAWS.values() fo
 _OIL_KEYS = ("viscosity_law", *_OIL_QUANTITIES, "pressure_viscosity", *_LAW_PARAMETERS, "density_law")
 _OIL_STATED = (
     "viscosity", "viscosity_40", "viscosity_100",
-    "pressure_viscosity", "pressure_viscosity_40", "pressure_viscosity_100",
+    "pressure_viscosity", "pressure_viscosity_40", "pressure_viscosity_100", "pressure_viscosity_temperature",
 )  # fmt: skip
 """Keys of `Stated`, in its order."""
 

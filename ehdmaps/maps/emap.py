@@ -337,7 +337,7 @@ class EHDMap:
 
     @property
     def own_points(self) -> str:
-        """Why its points are somebody's own, from which alone its laws are made; empty where they are not.
+        """Reason why its points are somebody's own, from which alone its laws are made; empty where they are not.
 
         That is so where films were changed after the map was made, and where the film table has become another one
         since: what a law reads is what the file says. What the check of its former laws found is then left out.

@@ -184,6 +184,9 @@ def lubricant_from_json(text: str) -> Lubricant:
             thermal_conductivity=record.get("thermal_conductivity"),
             heat_capacity=record.get("heat_capacity", HEAT_CAPACITY),
             correlation=record.get("correlation"),
+            stated_coefficient=record.get("stated_coefficient"),
+            stated_temperature=record.get("stated_temperature"),
+            assumed=record.get("assumed", ""),
             label=record.get("label"),
             fitted_pressure_stated=record.get("fitted_pressure_stated") is True,
         )

@@ -22,8 +22,12 @@ from ehdmaps.physics.own_oil import (
     CORRELATIONS,
     DENSITY,
     DENSITY_SLOPE,
+    Anchor,
     OilClass,
+    OilOverTemperature,
     Stated,
+    anchored_coefficient,
+    anchored_error,
     estimated_coefficient,
     own_laws,
 )
@@ -61,10 +65,11 @@ class OilData(TypedDict, total=False):
     pressure_viscosity: float | str | None
     pressure_viscosity_40: float | None
     pressure_viscosity_100: float | None
+    pressure_viscosity_temperature: float | None
     viscosity: float | None
     viscosity_40: float | None
     viscosity_100: float | None
-    density_slope: float
+    density_slope: float | None
     density_law: DensityLaw
     fitted_pressure: float
     thermal_conductivity: float | None
@@ -150,6 +155,11 @@ class Lubricant:
     correlation : str or None
         One of `CORRELATIONS`, which then gives alpha at each temperature; the coefficients of `pressure_viscosity` are
         its values at 40 and 100 degC.
+    stated_coefficient, stated_temperature : float or None
+        An alpha [1/Pa] and its temperature [K] that somebody stated, through which the correlation goes; None for one
+        that gives alpha itself.
+    assumed : str
+        What nobody stated of an own oil and is taken nevertheless, in words; no part of what makes oils equal.
     label : str or None
         Free text shown instead of the name; no part of what makes oils equal.
     fitted_pressure_stated : bool
@@ -178,6 +188,9 @@ class Lubricant:
     thermal_conductivity: float | None = None
     heat_capacity: float = HEAT_CAPACITY
     correlation: str | None = None
+    stated_coefficient: float | None = None
+    stated_temperature: float | None = None
+    assumed: str = field(default="", compare=False)
     label: str | None = field(default=None, compare=False)
     fitted_pressure_stated: bool = field(default=False, compare=False)
 
@@ -236,12 +249,36 @@ class Lubricant:
 
     @property
     def estimated(self) -> str:
-        """Statement of what is estimated and how well, in words; empty where nothing is."""
-        if not self.correlation:
-            return ""
+        """Statement of what is estimated or assumed, and how well, in words; empty where nothing is."""
+        if not self.correlation or self._anchor:
+            return self.assumed
         oil_class = self.oil_class
         by_class = f"{oil_class.sentence}; " if oil_class else ""
-        return by_class + CORRELATIONS[self.correlation].sentence
+        assumed = f"; {self.assumed}" if self.assumed and not oil_class else ""
+        return by_class + CORRELATIONS[self.correlation].sentence + assumed
+
+    @property
+    def _over_temperature(self) -> OilOverTemperature:
+        """All that a correlation asks for."""
+        return OilOverTemperature(self.viscosity, self.density_15, self.density_slope)
+
+    def coefficient_error(self, temperature: float) -> float:
+        """Relative error of the alpha that a correlation gives at a temperature [K]; 0 of a stated one.
+
+        Of a correlation that goes through a stated value it is what the other correlations have there.
+        """
+        if self.correlation is None:
+            return 0.0
+        if self._anchor is None:
+            return CORRELATIONS[self.correlation].rms
+        return anchored_error(self.correlation, self._over_temperature, self._anchor, temperature)
+
+    @property
+    def _anchor(self) -> Anchor | None:
+        """The stated alpha through which the correlation goes, if there is one."""
+        if self.stated_coefficient is None or self.stated_temperature is None:
+            return None
+        return Anchor(self.stated_coefficient, self.stated_temperature)
 
     @property
     def oil_class(self) -> OilClass | None:
@@ -351,10 +388,11 @@ class Lubricant:
         pressure_viscosity: float | str | None = None,
         pressure_viscosity_40: float | None = None,
         pressure_viscosity_100: float | None = None,
+        pressure_viscosity_temperature: float | None = None,
         viscosity: float | None = None,
         viscosity_40: float | None = None,
         viscosity_100: float | None = None,
-        density_slope: float = 0.0,
+        density_slope: float | None = None,
         density_law: DensityLaw = "dowson-higginson",
         fitted_pressure: float | None = None,
         thermal_conductivity: float | None = None,
@@ -372,16 +410,19 @@ class Lubricant:
         density : float
             rho0 at 15 degC [kg/m3].
         pressure_viscosity : float or str, optional
-            alpha [1/Pa], constant, or the name of a correlation that estimates it (`CORRELATIONS`); or both of the
-            next two. None of them with a law whose numbers give alpha.
+            alpha [1/Pa], or the name of a correlation that estimates it (`CORRELATIONS`); or both of the next two. None
+            of them with a law whose numbers give alpha. One alpha beside two viscosities changes with temperature as
+            the correlation of named oils does; beside a constant viscosity it is constant.
         pressure_viscosity_40, pressure_viscosity_100 : float, optional
             alpha at 40 and 100 degC [1/Pa]; ln alpha is linear in temperature.
+        pressure_viscosity_temperature : float, optional
+            Temperature of the one alpha [K]; 40 degC if left out.
         viscosity : float, optional
             eta0 [Pa s], constant; or both of the next two.
         viscosity_40, viscosity_100 : float, optional
             Kinematic viscosities at 40 and 100 degC [m2/s], joined by ASTM D341.
-        density_slope : float
-            d rho0/dT [kg/(m3 K)].
+        density_slope : float, optional
+            d rho0/dT [kg/(m3 K)]; if left out -0.6, that of mineral oils, and zero beside a constant viscosity.
         density_law : {"dowson-higginson", "incompressible"}
             Density over pressure.
         fitted_pressure : float, optional
@@ -407,21 +448,30 @@ class Lubricant:
         17.85
         """
         stated = Stated(
-            viscosity, viscosity_40, viscosity_100, pressure_viscosity, pressure_viscosity_40, pressure_viscosity_100
+            viscosity,
+            viscosity_40,
+            viscosity_100,
+            pressure_viscosity,
+            pressure_viscosity_40,
+            pressure_viscosity_100,
+            pressure_viscosity_temperature,
         )
         laws = own_laws(name, viscosity_law, stated, density, density_slope, numbers)
         return cls(
             name=name,
-            verified=laws.correlation is None,
+            verified=laws.correlation is None or laws.anchor is not None,
             viscosity=laws.viscosity,
             pressure_viscosity=laws.pressure_viscosity,
             density_15=density,
-            density_slope=density_slope,
+            density_slope=laws.density_slope,
             density_law=density_law,
             fitted_pressure=FITTED_PRESSURE if fitted_pressure is None else fitted_pressure,
             thermal_conductivity=thermal_conductivity,
             heat_capacity=heat_capacity,
             correlation=laws.correlation,
+            stated_coefficient=laws.anchor and laws.anchor.coefficient,
+            stated_temperature=laws.anchor and laws.anchor.temperature,
+            assumed=laws.assumed,
             fitted_pressure_stated=fitted_pressure is not None,
         )
 
@@ -444,7 +494,7 @@ class Lubricant:
             )
         try:
             viscosity = self.viscosity.at(temperature, density)
-            isotherm = self._isotherms(viscosity, density).at(temperature, viscosity)
+            isotherm = self._isotherms(temperature, viscosity, density).at(temperature, viscosity)
         except InputError as error:
             raise InputError([f"{where}, {problem}" for problem in error.problems]) from None
         return LubricantState(
@@ -456,11 +506,14 @@ class Lubricant:
             fitted_pressure=self.fitted_pressure,
         )
 
-    def _isotherms(self, viscosity: float, density: float) -> PressureViscosityLaw:
+    def _isotherms(self, temperature: float, viscosity: float, density: float) -> PressureViscosityLaw:
         """The law over pressure, with the alpha of the correlation where there is one."""
         if self.correlation is None:
             return self.pressure_viscosity
-        alpha = estimated_coefficient(self.correlation, self.viscosity, viscosity, density)
+        if self._anchor:
+            alpha = anchored_coefficient(self.correlation, self._over_temperature, self._anchor, temperature)
+        else:
+            alpha = estimated_coefficient(self.correlation, self.viscosity, viscosity, density)
         coefficients: dict[str, Any] = {"pressure_viscosity_40": alpha, "pressure_viscosity_100": alpha}
         return replace(self.pressure_viscosity, **coefficients)
 
@@ -481,7 +534,7 @@ class Lubricant:
             elif entry.name == "fitted_pressure_stated":
                 if value and self.fitted_pressure == FITTED_PRESSURE:
                     record[entry.name] = True
-            elif value is not None and not (entry.name == "heat_capacity" and value == HEAT_CAPACITY):
+            elif value is not None and value != "" and not (entry.name == "heat_capacity" and value == HEAT_CAPACITY):
                 record[entry.name] = value
         if self.estimated:
             record["estimated"] = self.estimated

@@ -99,10 +99,12 @@ def nodes_problem(
         Nodes along each coordinate.
     values : ndarray
         Should be finite numbers at all nodes, the fields along the last axis.
-    fields, errors : int
-        How many numbers a node has, and how many errors a cell.
+    fields : int
+        How many numbers a node has.
     codes : ndarray
         Should be bytes in all cells, the errors along the last axis.
+    errors : int
+        How many errors a cell has.
     """
     for nodes in axes:
         if nodes.ndim != 1 or nodes.size < 2 or not (np.all(np.isfinite(nodes)) and np.all(np.diff(nodes) > 0.0)):

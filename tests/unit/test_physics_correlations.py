@@ -1,6 +1,8 @@
 """Estimated pressure-viscosity: the formulas, their stated error, where they are refused, and what a map says."""
 
 import dataclasses
+import itertools
+import json
 import math
 import re
 import tomllib
@@ -9,6 +11,9 @@ from pathlib import Path
 import pytest
 
 from ehdmaps.errors import InputError
+from ehdmaps.jobs.job_text import lubricant_keys
+from ehdmaps.jobs.problem import read_lubricant
+from ehdmaps.jobs.table import Table
 from ehdmaps.maps.records import lubricant_from_json, record_json
 from ehdmaps.physics.lubricant import FITTED_PRESSURE, Lubricant
 from ehdmaps.physics.own_oil import CORRELATIONS, estimate, gold_mineral, so_klaus
@@ -44,6 +49,22 @@ def test_the_stated_error_is_the_one_against_published_oils(name):
     word = "high" if mean > 0 else "low"
     words = f"against {len(errors)} published values of mineral oils {abs(mean):.0%} {word} on average, {rms:.0%} rms"
     assert CORRELATIONS[name].error == words.replace("%", " %")
+
+
+@pytest.mark.parametrize("name", CORRELATIONS)
+def test_the_stated_error_of_a_change_is_the_one_against_published_oils(name):
+    """From the value at 30 degC on, which 12 of the oils have, to those at 60 and 100 degC."""
+    values, errors = list(published()), []
+    densest = max(density for _, density, *_ in values)  # at 30 degC
+    for k in (k for k, (_, density, *_) in enumerate(values) if density == densest):
+        cold, known = estimate(name, *values[k][:3]), values[k][3]
+        for *given, alpha in values[k + 1 : k + 3]:
+            errors.append(estimate(name, *given) / cold * known / alpha - 1.0)
+    mean, rms = sum(errors) / len(errors), math.sqrt(sum(error**2 for error in errors) / len(errors))
+    word = "high" if mean > 0 else "low"
+    change = f"from 30 degC on {abs(mean):.0%} {word} on average"
+    words = f"{change} against {len(errors)} published values of mineral oils, {rms:.0%} rms"
+    assert CORRELATIONS[name].change == words.replace("%", " %")
 
 
 def test_so_klaus_term_by_term():
@@ -89,8 +110,85 @@ def test_an_estimate_is_said_and_not_vouched_for(name):
     assert record["pressure_viscosity_40"] == pytest.approx(alpha_of(oil, 40.0), rel=1e-12)
     back = lubricant_from_json(record_json(record))
     assert back == oil and alpha_of(back, 70.0) == alpha_of(oil, 70.0)
-    stated = Lubricant.roelands(pressure_viscosity=2e-8, **VG32)
+    stated = Lubricant.roelands(pressure_viscosity_40=2e-8, pressure_viscosity_100=1.5e-8, **VG32)
     assert stated.verified and stated.estimated == "" and "estimated" not in stated.record()
+
+
+@pytest.mark.parametrize("make", MAKERS)
+@pytest.mark.parametrize("stated_at", [None, 298.15, 343.15])
+def test_one_stated_alpha_changes_with_temperature_as_that_of_named_oils(make, stated_at):
+    """An oil stated by the numbers of a named one is that oil at all temperatures, density and all."""
+    named = Lubricant.named("ISO VG 46")
+    alpha = alpha_of(named, 40.0 if stated_at is None else stated_at - 273.15)
+    data = {} if stated_at is None else {"pressure_viscosity_temperature": stated_at}
+    law = named.viscosity
+    oil = make(
+        viscosity_40=law.viscosity_40, viscosity_100=law.viscosity_100, density=880.0, pressure_viscosity=alpha, **data
+    )
+    for celsius in (-5.0, 20.0, 40.0, 70.0, 100.0, 150.0):
+        assert alpha_of(oil, celsius) == pytest.approx(alpha_of(named, celsius), rel=1e-12)  # round-off
+        state, other = oil.at(273.15 + celsius), named.at(273.15 + celsius)
+        assert (state.density, state.viscosity) == (other.density, other.viscosity)
+    at = "40 degC (assumed)" if stated_at is None else f"{stated_at - 273.15:.4g} degC"
+    assert oil.verified
+    assert oil.estimated == (
+        f"density -0.6 kg/m3 a K (assumed); pressure-viscosity {1e9 * alpha:.4g} 1/GPa at {at}, its change with "
+        f"temperature estimated by So and Klaus (1980), {CORRELATIONS['so-klaus'].change}"
+    )
+    back = lubricant_from_json(record_json(oil.record()))
+    assert back == oil and back.estimated == oil.estimated and alpha_of(back, 70.0) == alpha_of(oil, 70.0)
+    section = tomllib.loads("\n".join(f"{key} = {json.dumps(value)}" for key, value in lubricant_keys(oil).items()))
+    again = read_lubricant(Table(section, "[lubricant]", problems := []))
+    assert not problems and again is not None
+    assert alpha_of(again, 70.0) == pytest.approx(alpha_of(oil, 70.0), rel=1e-12)  # round-off of units
+
+
+def test_a_stated_alpha_is_refused_nowhere_for_the_sake_of_an_estimate():
+    """Beyond the reach of its correlation it stays as at the end of that, without a jump."""
+    thick = Lubricant.roelands(viscosity_40=320e-6, viscosity_100=24e-6, density=890.0, pressure_viscosity=22e-9)
+    alphas = [alpha_of(thick, celsius) for celsius in range(-25, 160, 5)]
+    assert max(abs(cold / warm - 1.0) for cold, warm in itertools.pairwise(alphas)) < 0.05  # as within the reach
+    assert alphas[0] == pytest.approx(alphas[5], rel=1e-9)  # of 40 halvings
+    assert alpha_of(thick, 40.0) == pytest.approx(22e-9, rel=1e-12)
+    very = Lubricant.roelands(viscosity_40=2e-3, viscosity_100=80e-6, density=900.0, pressure_viscosity=30e-9)
+    assert "Gold et al." in very.estimated
+    thin = Lubricant.roelands(viscosity_40=1.5e-6, viscosity_100=0.8e-6, density=800.0, pressure_viscosity=12e-9)
+    assert alpha_of(thin, 100.0) == alpha_of(thin, 20.0) == 12e-9
+    assert "pressure-viscosity constant over temperature: no correlation knows so thin an oil" in thin.estimated
+    assert (
+        Lubricant.barus(viscosity_40=32e-6, viscosity_100=5e-6, density=870.0, pressure_viscosity=0.0)
+        .at(373.15)
+        .pressure_viscosity.pressure_viscosity
+        == 0.0
+    )
+
+
+def test_its_error_is_none_where_it_is_stated_and_grows_from_there():
+    oil = Lubricant.roelands(pressure_viscosity=2e-8, **VG32)
+    errors = [oil.coefficient_error(273.15 + celsius) for celsius in (40.0, 60.0, 100.0)]
+    assert errors[0] < 1e-12 < 0.03 < errors[1] < errors[2] < 0.3
+    assert Lubricant.roelands(pressure_viscosity="so-klaus", **VG32).coefficient_error(313.15) == 0.17
+    assert Lubricant.named("FVA3").coefficient_error(373.15) == 0.0
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        {"pressure_viscosity": "so-klaus", **VG32},
+        {"pressure_viscosity_40": 2e-8, "pressure_viscosity_100": 1e-8, **VG32},
+        {"pressure_viscosity": 2e-8, "viscosity": 0.1, "density": 880.0},
+    ],
+)
+def test_a_temperature_of_no_alpha_is_refused(data):
+    words = "pressure_viscosity_temperature: stands without one pressure_viscosity in 1/Pa beside viscosity_40 and"
+    with pytest.raises(InputError, match=words):
+        Lubricant.roelands(pressure_viscosity_temperature=313.15, **data)
+
+
+def test_a_constant_oil_is_told():
+    oil = Lubricant.barus(viscosity=0.1, pressure_viscosity=2e-8, density=880.0)
+    assert oil.estimated == "density and viscosity constant over temperature" and oil.verified
+    assert oil.density_slope == 0.0
 
 
 def test_the_law_of_fva3_takes_no_alpha_of_fva3_silently():

@@ -178,7 +178,9 @@ def test_constant_barus_oil():
 
 
 def test_astm_viscosity_hits_both_of_its_points():
-    oil = Lubricant.barus(viscosity_40=100e-6, viscosity_100=11e-6, pressure_viscosity=2e-8, density=880.0)
+    oil = Lubricant.barus(
+        viscosity_40=100e-6, viscosity_100=11e-6, pressure_viscosity=2e-8, density=880.0, density_slope=0.0
+    )
     assert oil.at(C40).viscosity == pytest.approx(100e-6 * 880.0, rel=1e-11)  # double exponential of round-off
     assert oil.at(C100).viscosity == pytest.approx(11e-6 * 880.0, rel=1e-11)
 
@@ -197,7 +199,8 @@ def test_coefficient_at_40_and_100_degc_is_log_linear():
 
 
 def test_roelands_z_left_out_follows_from_the_coefficient():
-    oil = Lubricant.roelands(viscosity_40=100e-6, viscosity_100=11e-6, pressure_viscosity=2e-8, density=880.0)
+    alphas = {"pressure_viscosity_40": 2e-8, "pressure_viscosity_100": 2e-8}
+    oil = Lubricant.roelands(viscosity_40=100e-6, viscosity_100=11e-6, density=880.0, **alphas)
     for temperature in (C40, C100):
         state = oil.at(temperature)
         law = state.pressure_viscosity

@@ -12,7 +12,6 @@ import numpy.typing as npt
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, MapError
 from ehdmaps.jobs import solvers
-from ehdmaps.jobs.defaults import served
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.make.table_films import table_films, unserved
 from ehdmaps.jobs.make.tasks import of_groups
@@ -131,6 +130,8 @@ def table_map(
     """
     bearing = of if isinstance(of, BearingGeometry) else None
     if temperatures is None:
+        from ehdmaps.jobs.defaults import served  # with the texts of jobs, which others do without
+
         contacts = of.contacts(material, structural_law) if isinstance(of, BearingGeometry) else (of,)
         every = tuple(np.linspace(*TEMPERATURES, _POINTS[2]).tolist())
         known = served(lubricant, every, contacts, entrainment_speeds[1])
