@@ -14,6 +14,10 @@ from ehdmaps.arrays import FloatArray, Values, as_given
 DRY_COMPLIANCE = math.log(2.0) / math.pi
 """-dH0/dW of dry Hertz: lengths by b, film by b^2/R, pressure by p_H, log kernel with reference length b."""
 
+LINE_LIMIT, POINT_LIMIT = 4.0e9, 4.2e9
+"""Hertz pressures of the static load ratings of roller and of ball bearings after ISO 76 [Pa]: permanent deformation
+of 1e-4 of the diameter of a rolling element above them."""
+
 LARGEST_PRESSURE = 10e9
 """Hertz pressure above which no film is solved [Pa]; steel yields long before."""
 

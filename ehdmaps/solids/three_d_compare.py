@@ -10,6 +10,7 @@ import numpy as np
 
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.hertz import LINE_LIMIT
 from ehdmaps.solids.slices import balanced_loads, plane_law, slice_coupling
 from ehdmaps.solids.three_d import FiniteLine, LengthSolution, solve_length
 from ehdmaps.solids.three_d_reference import LengthCase, LengthReference, profile_depths
@@ -18,9 +19,6 @@ CELLS = (12, 80)
 """Cells of the solution over half the width and along the roller."""
 
 SLICES = 41
-
-WIDEST_PRESSURE = 4e9
-"""Hertz pressure for whose contact the coupling of slices is made: the static limit of bearings [Pa]."""
 
 _POINTS = 20001
 
@@ -106,7 +104,7 @@ def compare_lengths(
     model = reference.model
     line = FiniteLine(model.reduced_radius, model.roller_length, 0.5 * model.roller_diameter, model.race_depth)
     law = plane_law(line)
-    coupling = slice_coupling(line, SLICES, line.half_width_of(WIDEST_PRESSURE))
+    coupling = slice_coupling(line, SLICES, line.half_width_of(LINE_LIMIT))
     comparisons = []
     for case in reference.finest:
         profile = partial(profile_depths, case.profile, bearing)

@@ -31,7 +31,6 @@ from mbs.bearings.contact_report import (
     guessed,
     heated,
     outside_map,
-    overload,
     rolling_loss,
     spike_tip,
 )
@@ -40,6 +39,7 @@ from mbs.bearings.laws import Law
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import Load, Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
+from mbs.model.findings import Cause, Finding
 from mbs.model.system import System
 
 if TYPE_CHECKING:
@@ -124,7 +124,7 @@ def _hole(point: P, load: Any, speed: float, reason: str) -> P:
     size = np.array(load, dtype=np.float64)
     given = {"speed": speed} if isinstance(point, BearingPoint) else {"inner_speed": speed}
     blank: P = _blank(point)
-    return dataclasses.replace(blank, load=size, problems=(reason,), notes=(), failed=True, **given)
+    return dataclasses.replace(blank, load=size, findings=(Finding(Cause.FAILED, reason),), failed=True, **given)
 
 
 def _blank(value: Any) -> Any:
@@ -229,7 +229,9 @@ def bearing_point(
     rollers, u = element.rollers(pose, operation), element.entrainment_speed(operation)
     contacts = bearing_contacts(films, rollers, u, temperature)
     stiffness = balance.element_stiffness[0][1:3, 1:3]
-    problems = [overload(contacts), *outside_map(force.law, float(rollers.load_per_length.max()), u, temperature)]
+    gauge = element.gauge(pose, operation)
+    assert gauge is not None  # it has a `BearingForce`
+    problems = outside_map(force.law, float(rollers.load_per_length.max()), u, temperature)
     modulus = reduced_modulus(force.bearing.material, force.bearing.material)
     notes = [
         spike_tip(contacts),
@@ -251,8 +253,11 @@ def bearing_point(
         rollers=rollers,
         contacts=contacts,
         loss=rolling_loss(force.bearing, films, contacts, rollers, u, speed, temperature),
-        problems=tuple(filter(None, problems)),
-        notes=tuple(filter(None, notes)),
+        findings=(
+            *gauge.findings,
+            *(Finding(Cause.REACH, words) for words in problems),
+            *(Finding(Cause.FILM, words) for words in notes if words),
+        ),
     )
 
 

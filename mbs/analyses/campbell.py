@@ -26,6 +26,7 @@ from mbs.analyses.operating import held, operating, states_of
 from mbs.analyses.ramp import recorded_run, rehearsed, run_course, silent_run
 from mbs.analyses.reach import fade_of
 from mbs.analyses.sensors import chosen_sensors, followed_orders
+from mbs.analyses.soundness import Judged, findings_in_run
 from mbs.analyses.step_error import StepCheck, step_check
 from mbs.bearings.bearing_element import BearingElement, RingElement, RollerElement
 from mbs.bearings.bearing_force import BearingForce
@@ -36,6 +37,7 @@ from mbs.linearised.sweep_result import Sweep
 from mbs.model.drive import DrivenSpeed
 from mbs.model.elements import Element, OnRings, Operation, Sensor
 from mbs.model.equilibrium import equilibrium
+from mbs.model.findings import Finding
 from mbs.output.campbell_table import campbell_dataset, of_sensors
 from mbs.output.files import described
 from mbs.output.model_text import clearance_text, common_supply, temperature_text
@@ -196,6 +198,8 @@ class LawRun:
         the errors that the map states. None where no such runs were asked for, or the law states no errors.
     steps : StepCheck or None
         Errors of its levels by its step, up to the highest frequency; None where that was not possible.
+    findings : tuple of Finding
+        What is beyond the laws of the bearings, and whether the run itself is sound.
     """
 
     case: Case
@@ -205,6 +209,7 @@ class LawRun:
     seconds: float
     level_error: tuple[FloatArray, ...] | None = None
     steps: StepCheck | None = None
+    findings: tuple[Finding, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -395,6 +400,7 @@ def campbell(
     laws = "; ".join(f"{entry.case.label}: {entry.case.model.law}" for entry in runs)
     supplies = choice_attributes([(entry.case.label, entry.case.model) for entry in runs])
     dataset = described(dataset, **{**law_attributes(runs[0].case.model), "law": laws, **supplies})
+    dataset = Judged([(entry.case.label, entry.findings) for entry in runs]).marked(dataset)
     return CampbellResult(settings, tuple(seen), course, tuple(orders), tuple(runs), tuple(failed), dataset)
 
 
@@ -471,7 +477,8 @@ def _runs(
                 part = "" if signs is None else ", a run of its band"
                 lost.setdefault(index, f"{cases[index].label}{part}: {found.error}")
             elif isinstance(found, _Made):
-                runs[index] = LawRun(cases[index], *found[:4], steps=found.steps)
+                findings = findings_in_run(cases[index].model, found.record)
+                runs[index] = LawRun(cases[index], *found[:4], steps=found.steps, findings=findings)
             elif index not in lost:
                 levels.setdefault(index, []).append(found)
                 if len(levels[index]) == bands:

@@ -13,11 +13,13 @@ from ehdmaps.errors import AnalysisError, InputError
 from mbs.analyses.case import Case, Failed, Progress, side_by_side, silent
 from mbs.analyses.film_errors import film_errors
 from mbs.analyses.operating import operating
+from mbs.analyses.soundness import findings_at_rest, with_findings
 from mbs.linearised.averaged import steady_system
 from mbs.linearised.modes import Modes, modes
 from mbs.linearised.validity import FilmError
 from mbs.modal.records import Hits
 from mbs.model.equilibrium import Equilibrium, equilibrium
+from mbs.model.findings import Finding
 from mbs.output.files import described
 from mbs.scene.assembly import Model, law_attributes
 from mbs.scene.scene import Scene
@@ -80,6 +82,8 @@ class HammerResult:
         How wrong the films of each bearing are estimated to be; empty for laws without films.
     outside_hits : mapping of str to int
         How often each element was evaluated outside its map during nonlinear hits, by name.
+    findings : tuple of Finding
+        What is beyond the laws of its bearings at the equilibrium.
     """
 
     model: Model
@@ -89,6 +93,7 @@ class HammerResult:
     hits: tuple[Hits, ...]
     errors: tuple[FilmError, ...]
     outside_hits: Mapping[str, int]
+    findings: tuple[Finding, ...] = ()
 
     @cached_property
     def dataset(self) -> xr.Dataset:
@@ -116,7 +121,7 @@ class HammerResult:
                 "time": ("time", self.hits[0].step * np.arange(self.hits[0].force.shape[1]), {"units": "s"}),
             },
         )
-        return described(found, **law_attributes(self.model))
+        return with_findings(described(found, **law_attributes(self.model)), self.findings)
 
     def plot(self) -> Figure:
         """Figure of the frequency responses that the hits give, by H1 up to the highest frequency of interest."""
@@ -335,4 +340,5 @@ def _result(prepared: _Prepared, hits: tuple[Hits, ...], outside: Mapping[str, i
         hits=hits,
         errors=tuple(film_errors(model, balance.displacement, balance.operation)),
         outside_hits=outside,
+        findings=findings_at_rest(model, balance.displacement, balance.operation),
     )

@@ -10,13 +10,14 @@ import xarray as xr
 
 from mbs.analyses.film_errors import film_errors
 from mbs.analyses.operating import operating, states_of
-from mbs.analyses.soundness import Unsound, unsound_at_rest, with_unsound
+from mbs.analyses.soundness import findings_at_rest, with_findings
 from mbs.linearised.averaged import steady_system
 from mbs.linearised.modes import Modes
 from mbs.linearised.modes import modes as modes_at
 from mbs.linearised.validity import FilmError
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
+from mbs.model.findings import Finding
 from mbs.output.files import described
 from mbs.output.results import modes_dataset, with_states
 from mbs.scene.assembly import Model, law_attributes
@@ -42,8 +43,8 @@ class ModesResult:
         How wrong the films of each bearing are estimated to be; empty for laws without films.
     dataset : xarray.Dataset
         What `mbs modes -o` writes.
-    unsound : tuple of Unsound
-        Why its figures mean nothing; empty where they do.
+    findings : tuple of Finding
+        What is beyond the laws of its bearings.
     """
 
     model: Model
@@ -51,7 +52,7 @@ class ModesResult:
     modes: Modes
     errors: tuple[FilmError, ...]
     dataset: xr.Dataset
-    unsound: tuple[Unsound, ...] = ()
+    findings: tuple[Finding, ...] = ()
 
     def plot(self, highest: float | None = None) -> Figure:
         """Figure that `mbs modes --plot` writes: frequencies, damping ratios and strain energy of the modes.
@@ -101,5 +102,5 @@ def modes(model: Model, operation: Operation | None = None) -> ModesResult:
     found = modes_at(balance)
     dataset = described(with_states(modes_dataset(found, balance), states_of(model)), **law_attributes(model))
     errors = tuple(film_errors(model, balance.displacement, balance.operation))
-    unsound = unsound_at_rest(model, balance.displacement, balance.operation)
-    return ModesResult(model, balance, found, errors, with_unsound(dataset, unsound), unsound)
+    findings = findings_at_rest(model, balance.displacement, balance.operation)
+    return ModesResult(model, balance, found, errors, with_findings(dataset, findings), findings)

@@ -19,10 +19,11 @@ from mbs.analyses.operating import held, states_of
 from mbs.analyses.ramp import course_of
 from mbs.analyses.reach import fade_of
 from mbs.analyses.recorded import simulated
-from mbs.analyses.soundness import Unsound, unsound_run, with_unsound
+from mbs.analyses.soundness import findings_in_run, with_findings
 from mbs.analyses.step_error import StepCheck, step_check
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
+from mbs.model.findings import Finding, is_unsound
 from mbs.output.files import described
 from mbs.output.results import STEP_ERROR, run_dataset, with_energy, with_states
 from mbs.scene.assembly import Model, choice_attributes, law_attributes
@@ -58,8 +59,8 @@ class RunUpResult:
         How long the integration took, without compiling [s].
     dataset : xarray.Dataset
         What `mbs runup -o` writes.
-    unsound : tuple of Unsound
-        Why its figures mean nothing; empty where they do.
+    findings : tuple of Finding
+        What is beyond the laws of its bearings, and whether the run itself is sound.
     steps : StepCheck or None
         Errors of its signals by its step, estimated; None where that was not possible.
     """
@@ -69,7 +70,7 @@ class RunUpResult:
     record: Recording
     seconds: float
     dataset: xr.Dataset
-    unsound: tuple[Unsound, ...] = ()
+    findings: tuple[Finding, ...] = ()
     steps: StepCheck | None = None
 
     def plot(self) -> Figure:
@@ -135,7 +136,7 @@ class _Made(NamedTuple):
     record: Recording
     seconds: float
     dataset: xr.Dataset
-    unsound: tuple[Unsound, ...]
+    findings: tuple[Finding, ...]
     steps: StepCheck | None
 
 
@@ -175,11 +176,11 @@ def _run(model: Model, told: Callable[[int], None], settings: RunUp | None = Non
     if sensors:
         signals = signal_variables(simulated([(model.label, model, record)]))
         dataset = dataset.merge(signals).assign_attrs({**signals.attrs, **dataset.attrs})
-    unsound = unsound_run(model, record)
-    checked = None if unsound else step_check(model, course, record)
+    findings = findings_in_run(model, record)
+    checked = None if is_unsound(findings) else step_check(model, course, record)
     if checked is not None:
         dataset["step_error"] = ("sensor", checked.largest, STEP_ERROR)
-    return _Made(course, record, seconds, with_unsound(dataset, unsound), unsound, checked)
+    return _Made(course, record, seconds, with_findings(dataset, findings), findings, checked)
 
 
 class RunUps(NamedTuple):

@@ -1,27 +1,23 @@
-"""Results whose own checks failed so grossly that their figures mean nothing, and why.
+"""Findings about the bearings of a machine: at rest, over speed, with the motion of a linear analysis, in a run.
 
-Warnings say where a result is less exact than one may think. What is found here is another thing: figures that belong
-to no machine at all. Commands say so in their first line, end with the status 1, and files have the attribute
-`unsound`.
+Every analysis of every kind of bearing asks here. Causes, words and limits are those of `mbs.model.findings`; what the
+contacts feel is told by `OnRings.gauge`. Figures of an unsound result belong to no machine at all: commands say so in
+their first line, end with the status 1, and files have the attribute `unsound`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
-from enum import Enum
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.physics.hertz import half_width
-from ehdmaps.physics.surface import HARDNESS
-from ehdmaps.units import PRESSURE
-from mbs.bearings.bearing_element import BearingElement, ring_motion
-from mbs.bearings.bearing_force import BearingForce
+from ehdmaps.units import RPM
+from mbs.bearings.bearing_element import ring_motion
 from mbs.model.elements import Operation
-from mbs.scene.assembly import Model, ring_motions
+from mbs.model.findings import MEANINGLESS, Cause, Finding, Severity, worst_of
+from mbs.scene.assembly import Model
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -35,52 +31,32 @@ MOST_RESIDUAL = 0.1
 MOST_OUTSIDE = 0.5
 """Part of the calls of a bearing in a run that may lie outside its map."""
 
-_SPEEDS = 9
-"""Speeds of a sweep that are looked at."""
+_SAMPLES = 9
+"""Samples of a run that are looked at, besides the one with the largest force of each bearing."""
 
 
-class Cause(Enum):
-    """Check that failed."""
-
-    PRESSURE = "pressure"
-    ENERGY = "energy"
-    OUTSIDE = "outside"
-
-
-@dataclass(frozen=True)
-class Unsound:
-    """Reason why figures mean nothing.
-
-    Attributes
-    ----------
-    cause : Cause
-        Check that failed.
-    words : str
-        The same for people, with what was found and what is allowed.
-    """
-
-    cause: Cause
-    words: str
-
-
-def unsound_at_rest(model: Model, displacement: FloatArray, operation: Operation) -> tuple[Unsound, ...]:
-    """Find why the figures of an equilibrium mean nothing; empty where they are sound.
+def findings_at_rest(model: Model, displacement: FloatArray, operation: Operation) -> tuple[Finding, ...]:
+    """Find what is beyond the laws of the bearings at an equilibrium; empty where nothing is.
 
     Parameters
     ----------
     model : Model
-        The machine with its law.
+        The machine with its law, in operation.
     displacement : array, shape (n,)
         Displacement of all coordinates.
     operation : Operation
         Speed and angle.
     """
-    found = (_crushed(bearing, motion, operation) for bearing, motion in ring_motions(model, displacement))
-    return tuple(entry for entry in found if entry is not None)
+    found: list[Finding] = []
+    for bearing in model.on_rings:
+        motion = model.system.relative(bearing.inner, bearing.outer) @ displacement
+        gauge = bearing.gauge(motion, operation)
+        found += () if gauge is None else gauge.findings_of(bearing.name)
+    return tuple(found)
 
 
-def unsound_over_speed(model: Model, found: Sweep) -> tuple[Unsound, ...]:
-    """Find why the figures of a sweep mean nothing, by its first speed where that is so.
+def findings_over_speed(model: Model, found: Sweep) -> tuple[Finding, ...]:
+    """Find what is beyond the laws of the bearings in a sweep, each by its worst speed.
 
     Parameters
     ----------
@@ -89,15 +65,20 @@ def unsound_over_speed(model: Model, found: Sweep) -> tuple[Unsound, ...]:
     found : Sweep
         Sweep of the machine.
     """
-    for index in np.unique(np.linspace(0, found.speeds.size - 1, _SPEEDS).astype(int)).tolist():
-        reasons = unsound_at_rest(model, found.displacement[index], Operation(float(found.speeds[index])))
-        if reasons:
-            return reasons
-    return ()
+    from mbs.analyses.operating import operating
+
+    speeds = found.speeds.tolist()
+    each = [
+        findings_at_rest(operating(model, speed), displacement, Operation(speed))
+        for speed, displacement in zip(speeds, found.displacement, strict=True)
+    ]
+    return worst_of(each, [RPM.text(speed) for speed in speeds], "speeds")
 
 
-def unsound_run(model: Model, record: Recording) -> tuple[Unsound, ...]:
-    """Find why the figures of a run mean nothing; empty where they are sound.
+def findings_in_run(model: Model, record: Recording) -> tuple[Finding, ...]:
+    """Find what is beyond the laws of the bearings in a run, and whether the run itself is sound.
+
+    A run shows itself how contacts lose their load and get it again.
 
     Parameters
     ----------
@@ -106,61 +87,130 @@ def unsound_run(model: Model, record: Recording) -> tuple[Unsound, ...]:
     record : Recording
         The run.
     """
-    found: list[Unsound | None] = []
-    for bearing, forces, motions in zip(model.bearings, record.forces, record.motions, strict=False):
-        sample = int(np.argmax(np.hypot(forces[:, 1], forces[:, 2])))
-        motion = ring_motion(motions[sample])
-        at = Operation(float(record.speed[sample]), float(record.angle[sample]), float(record.time[sample]))
-        found.append(_crushed(bearing, motion, at))
+    found: list[Finding] = []
+    for bearing, index in zip(model.on_rings, model.ring_places, strict=True):
+        if not record.forces:
+            break
+        forces, motions = record.forces[index], ring_motion(record.motions[index])
+        samples = np.linspace(0, forces.shape[0] - 1, _SAMPLES).astype(int)
+        most = int(np.argmax(np.linalg.norm(forces[:, :3], axis=1)))
+        each, places = [], []
+        for sample in np.unique([*samples, most]).tolist():
+            at = Operation(float(record.speed[sample]), float(record.angle[sample]), float(record.time[sample]))
+            gauge = bearing.gauge(motions[sample], at)
+            known = () if gauge is None else gauge.findings_of(bearing.name)
+            each.append([one for one in known if one.cause is not Cause.UNLOADED])
+            places.append(f"{at.time:.4g} s")
+        found += worst_of(each, places, "samples that were looked at")
     left = record.energy.relative_residual
     if left > MOST_RESIDUAL:
-        found.append(
-            Unsound(
-                Cause.ENERGY,
-                f"{100.0 * left:.2g} % of the energy that went through the run is missing or too much (allowed: "
-                f"{100.0 * MOST_RESIDUAL:g} %)",
-            )
+        words = (
+            f"{100.0 * left:.2g} % of the energy that went through the run is missing or too much (allowed: "
+            f"{100.0 * MOST_RESIDUAL:g} %)"
         )
-    for bearing in model.bearings:
+        found.append(Finding(Cause.ENERGY, words, excess=left / MOST_RESIDUAL))
+    for bearing in model.on_rings:
         part = record.outside.get(bearing.name, 0) / max(record.iterations, 1)
         if part > MOST_OUTSIDE:
-            found.append(
-                Unsound(
-                    Cause.OUTSIDE,
-                    f"{bearing.name}: {100.0 * min(part, 1.0):.0f} % of the calls lie outside the map (allowed: "
-                    f"{100.0 * MOST_OUTSIDE:g} %), where the law is held at its edge",
-                )
+            words = (
+                f"{100.0 * min(part, 1.0):.0f} % of the calls lie outside the map (allowed: "
+                f"{100.0 * MOST_OUTSIDE:g} %), where the law is held at its edge"
             )
-    return tuple(entry for entry in found if entry is not None)
+            found.append(Finding(Cause.OUTSIDE, words, bearing.name, part / MOST_OUTSIDE))
+    return tuple(found)
 
 
-def with_unsound(dataset: xr.Dataset, found: Iterable[Unsound]) -> xr.Dataset:
-    """The result with the attribute `unsound`, where there is a reason.
+class Judged:
+    """Findings of the results of a command: its lines, its exit status, its mark in the file.
+
+    Parameters
+    ----------
+    found : sequence of (str, sequence of Finding)
+        Each case by its label, with its findings. The label is told where there are several.
+    """
+
+    def __init__(self, found: Sequence[tuple[str, Sequence[Finding]]]) -> None:
+        several = len(found) > 1
+        self._cases = [(f"{label}: " if several else "", findings) for label, findings in found]
+
+    @property
+    def first(self) -> list[str]:
+        """First lines: a line for each case whose figures mean nothing."""
+        lines = []
+        for label, findings in self._cases:
+            words = "; ".join(one.told for one in findings if one.severity is Severity.UNSOUND)
+            lines += [f"{Severity.UNSOUND.word}: {label}{MEANINGLESS}{words}"] if words else []
+        return lines
+
+    @property
+    def last(self) -> list[str]:
+        """Last lines: warnings, then notes; those that say the same of several cases once."""
+        told = [
+            f"{grave.word}: {label}{one.told}"
+            for grave in (Severity.BEYOND, Severity.WARNING, Severity.NOTE)
+            for label, findings in self._cases
+            for one in findings
+            if one.severity is grave
+        ]
+        return list(dict.fromkeys(told))
+
+    @property
+    def status(self) -> int:
+        """Exit status."""
+        return max((one.severity.status for _, findings in self._cases for one in findings), default=0)
+
+    def marked(self, dataset: xr.Dataset) -> xr.Dataset:
+        """A result with the attributes `unsound`, `warnings` and `notes`, where there is a reason.
+
+        Parameters
+        ----------
+        dataset : xarray.Dataset
+            The result of all cases.
+        """
+        if self._cases[1:]:  # without those of the first case alone
+            kept = {name: value for name, value in dataset.attrs.items() if name not in ("unsound", "notes")}
+            dataset = dataset.copy(deep=False)
+            dataset.attrs = kept
+        told = [(one.severity, f"{label}{one.told}") for label, findings in self._cases for one in findings]
+        return with_words(dataset, told)
+
+
+def with_findings(dataset: xr.Dataset, found: Iterable[Finding]) -> xr.Dataset:
+    """The result with the attributes `unsound`, `warnings` and `notes`, where there is a reason.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The result; what else it has of the attributes is kept.
+    found : iterable of Finding
+        What was found.
+    """
+    return with_words(dataset, [(one.severity, one.told) for one in found])
+
+
+def with_words(dataset: xr.Dataset, told: Iterable[tuple[Severity, str]]) -> xr.Dataset:
+    """The same of words, each with how grave it is.
 
     Parameters
     ----------
     dataset : xarray.Dataset
         The result.
-    found : iterable of Unsound
-        Reasons why its figures mean nothing.
+    told : iterable of (Severity, str)
+        What was found.
     """
-    words = "; ".join(entry.words for entry in found)
-    return dataset.assign_attrs(unsound=words) if words else dataset
+    attributes = dict(dataset.attrs)
+    for severity, words in told:
+        name, joint = _ATTRIBUTES[severity]
+        before = str(attributes.get(name, ""))
+        if words not in before:
+            attributes[name] = joint.join(filter(None, (before, words)))
+    return dataset.assign_attrs(attributes)
 
 
-def _crushed(bearing: BearingElement, motion: FloatArray, operation: Operation) -> Unsound | None:
-    """A pressure that no contact carries; None where there is none."""
-    if not isinstance(bearing.force, BearingForce):
-        return None
-    load = float(bearing.rollers(motion, operation).load_per_length.max(initial=0.0))
-    contacts = bearing.bearing.geometry.contacts(bearing.bearing.material, "iso16281")
-    inner = min(contacts, key=lambda contact: contact.radius)
-    half = half_width(load, inner.radius, inner.reduced_modulus)
-    pressure = 2.0 * load / (np.pi * half) if half > 0.0 else 0.0
-    if pressure <= HARDNESS:
-        return None
-    return Unsound(
-        Cause.PRESSURE,
-        f"{bearing.name}: Hertz pressure of {PRESSURE.text(pressure)} is above {PRESSURE.text(HARDNESS)}, the hardness "
-        "of bearing steel, which no contact carries",
-    )
+_ATTRIBUTES = {
+    Severity.UNSOUND: ("unsound", "; "),
+    Severity.BEYOND: ("warnings", "\n"),
+    Severity.WARNING: ("warnings", "\n"),
+    Severity.NOTE: ("notes", "\n"),
+}
+"""Attribute of a result that has the words, and what stands between them."""

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 
 from mbs.analyses.losses import contacts_and_losses
 from mbs.analyses.operating import operating, states_of
-from mbs.analyses.soundness import Unsound, unsound_at_rest, with_unsound
-from mbs.bearings.contact_report import BearingContacts, RollingLoss, overload
+from mbs.analyses.soundness import findings_at_rest, with_findings
+from mbs.bearings.contact_report import BearingContacts, RollingLoss
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium, free_lines, free_motions
+from mbs.model.findings import Finding, warned
 from mbs.output.files import described
 from mbs.scene.assembly import Model, law_attributes
 
@@ -35,21 +36,18 @@ class StaticsResult:
         Pressures and films, one a bearing.
     losses : tuple of RollingLoss
         What rolling costs, one a bearing.
-    overloads : tuple of str
-        Bearings whose pressures are above the static limit.
     free : tuple of str
         Motions that nothing holds.
-    unsound : tuple of Unsound
-        Why its figures mean nothing; empty where they do.
+    findings : tuple of Finding
+        What is beyond the laws of its bearings.
     """
 
     model: Model
     balance: Equilibrium
     contacts: tuple[BearingContacts, ...]
     losses: tuple[RollingLoss, ...]
-    overloads: tuple[str, ...]
     free: tuple[str, ...]
-    unsound: tuple[Unsound, ...] = ()
+    findings: tuple[Finding, ...] = ()
 
     @cached_property
     def dataset(self) -> xr.Dataset:
@@ -57,19 +55,19 @@ class StaticsResult:
         from mbs.output.results import statics_dataset, with_states
 
         model = self.model
-        dataset = statics_dataset(self.balance, self.contacts, self.losses, (*self.overloads, *self.free))
+        dataset = statics_dataset(self.balance, self.contacts, self.losses, self.free)
         dataset = with_states(dataset, states_of(model))
         if model.gears:
             from mbs.output.results import with_gears
 
             dataset = with_gears(dataset, model, self.balance)
-        return with_unsound(described(dataset, **law_attributes(model)), self.unsound)
+        return with_findings(described(dataset, **law_attributes(model)), self.findings)
 
     def plot(self) -> Figure:
         """Figure that `mbs statics --plot` writes: loads of the rollers and slices of each bearing."""
         from mbs.output.bearing_plot import statics_figure
 
-        return statics_figure(self.model, self.balance, self.contacts, self.overloads)
+        return statics_figure(self.model, self.balance, self.contacts, warned(self.findings))
 
 
 def statics(model: Model, operation: Operation | None = None) -> StaticsResult:
@@ -100,10 +98,5 @@ def statics(model: Model, operation: Operation | None = None) -> StaticsResult:
     free = tuple(free_lines(free_motions(balance)))
     found = contacts_and_losses(model, balance.displacement, balance.operation)
     contacts, losses = tuple(state for state, _ in found), tuple(loss for _, loss in found)
-    overloads = tuple(
-        f"{bearing.name}: {sentence}"
-        for bearing, state in zip(model.bearings, contacts, strict=True)
-        if (sentence := overload(state))
-    )
-    unsound = unsound_at_rest(model, balance.displacement, balance.operation)
-    return StaticsResult(model, balance, contacts, losses, overloads, free, unsound)
+    findings = findings_at_rest(model, balance.displacement, balance.operation)
+    return StaticsResult(model, balance, contacts, losses, free, findings)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -13,12 +14,14 @@ import xarray as xr
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.figures import typeset
+from ehdmaps.units import RPM
 from mbs.analyses.case import Case, Failed, Progress, as_cases, side_by_side, silent
 from mbs.analyses.film_errors import notable_from
 from mbs.analyses.losses import losses_over_speed
 from mbs.analyses.operating import operating, states_of
 from mbs.analyses.reach import fade_of
 from mbs.analyses.sensors import excited_orders
+from mbs.analyses.soundness import Judged, findings_over_speed, with_findings
 from mbs.linearised.critical import (
     CriticalSpeed,
     OrderResponse,
@@ -30,6 +33,9 @@ from mbs.linearised.critical import (
 from mbs.linearised.linear import response_display
 from mbs.linearised.sweep import sweep as sweep_system
 from mbs.linearised.sweep_result import Sweep
+from mbs.linearised.validity import DynamicLoad
+from mbs.model.elements import OnRings
+from mbs.model.findings import Cause, Finding
 from mbs.model.system import System
 from mbs.output.files import described
 from mbs.output.model_text import clearance_text, common_supply, temperature_text
@@ -78,12 +84,15 @@ class SweepResult:
         Number of speeds at which each bearing lies outside the map, one a case.
     dataset : xarray.Dataset
         What `mbs sweep -o` writes.
+    findings : tuple of tuple of Finding
+        What is beyond the laws of the bearings, one a case.
     """
 
     cases: tuple[Case, ...]
     sweeps: tuple[Sweep, ...]
     outside: tuple[Mapping[str, int], ...]
     dataset: xr.Dataset
+    findings: tuple[tuple[Finding, ...], ...] = ()
 
     def plot(self) -> Figure:
         """Figure that `mbs sweep --plot` writes: modes, bearings and responses over speed, what is not valid marked."""
@@ -212,7 +221,9 @@ def sweep(
             raise entry.error
         found.append(entry)
     outside = tuple({name: int(np.count_nonzero(there)) for name, there in entry.outside.items()} for entry in found)
-    return SweepResult(cases, tuple(found), outside, _dataset(cases, found))
+    findings = tuple(findings_over_speed(case.model, entry) for case, entry in zip(cases, found, strict=True))
+    judged = Judged(list(zip([case.label for case in cases], findings, strict=True)))
+    return SweepResult(cases, tuple(found), outside, judged.marked(_dataset(cases, found)), findings)
 
 
 def sweep_problems(scene: Scene) -> list[str]:
@@ -294,6 +305,8 @@ class CriticalResult:
         Response to all loads of each order; none without unbalances and excitations.
     dataset : xarray.Dataset
         What `mbs critical -o` writes.
+    findings : tuple of Finding
+        What is beyond the laws of the bearings.
     """
 
     model: Model
@@ -302,6 +315,7 @@ class CriticalResult:
     speeds: FloatArray
     responses: tuple[OrderResponse, ...]
     dataset: xr.Dataset
+    findings: tuple[Finding, ...] = ()
 
     def plot(self) -> Figure:
         """Figure that `mbs critical --plot` writes: modes with the orders, and the responses over speed."""
@@ -412,7 +426,28 @@ def _responded(swept: _Swept, speeds: FloatArray) -> CriticalResult:
                 "speeds, or add damping"
             ) from error
     dataset = critical_dataset(model.system, model.scene.sensors, sweep, found, speeds, responses)
-    return CriticalResult(model, sweep, found, speeds, responses, described(dataset, **law_attributes(model)))
+    findings = (*findings_over_speed(model, sweep), *_lift_off(model, sweep, speeds, responses))
+    dataset = with_findings(described(dataset, **law_attributes(model)), findings)
+    return CriticalResult(model, sweep, found, speeds, responses, dataset, findings)
+
+
+def _lift_off(model: Model, sweep: Sweep, speeds: FloatArray, responses: Sequence[OrderResponse]) -> Iterator[Finding]:
+    """Contacts that the loads of an order lift off, each from the first speed where they do."""
+    names = [model.system.elements[index].element.name for index in model.system.select(OnRings)]
+    for response, (index, name) in itertools.product(responses, enumerate(names)):
+        dynamic, static = response.lifting[:, index].T
+        above = np.flatnonzero(dynamic > static)
+        if not above.size:
+            continue
+        first = int(above[0])
+        of = response.lifted[first][index]
+        load = DynamicLoad(name, "", float(dynamic[first]), float(static[first]), 0.0, of)
+        begin = f"{RPM.value(float(speeds[first])):.5g} rpm"
+        words = (
+            f"order {response.order:.4g}: {load.words} from {begin} on, where contacts lift off: small motions no "
+            "more; see mbs runup"
+        )
+        yield Finding(Cause.LIFT_OFF, words, name, float(np.max(dynamic[above] / np.maximum(static[above], 1e-300))))
 
 
 def dataset_of_laws(labels: Sequence[str], results: Sequence[CriticalResult]) -> xr.Dataset:

@@ -23,6 +23,7 @@ import numpy.typing as npt
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.hertz import LINE_LIMIT
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.physics.surface import iso_profile
 
@@ -32,9 +33,6 @@ MOST_SLICES = 100_000
 
 MOST_COUPLED = 100
 """Slices that know of their neighbours: more would be narrower than the contacts are wide."""
-
-STATIC_LIMIT = 4e9
-"""Hertz pressure of the static load rating of roller bearings after ISO 76 [Pa]; permanent deformation above it."""
 
 _PROFILES = ("iso", "straight")
 
@@ -179,7 +177,7 @@ class Bearing:
         total = np.zeros((self.slices, self.slices))
         for radius in (geometry.inner_radius, geometry.outer_radius):
             line = FiniteLine(radius, geometry.roller_length, 0.5 * diameter, diameter, self.material)
-            total += slice_coupling(line, self.slices, line.half_width_of(STATIC_LIMIT))
+            total += slice_coupling(line, self.slices, line.half_width_of(LINE_LIMIT))
         return total
 
     @property

@@ -17,6 +17,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
+from ehdmaps.physics.hertz import LINE_LIMIT, max_pressure
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import NO_COUPLED_MEMORY, BearingForce, brought_by_speed, cage_moment, energy_at_rest
 from mbs.bearings.force_at_point import Arrays, RollerLoads
@@ -24,6 +25,7 @@ from mbs.bearings.laws import DryLaw, FlatLaw
 from mbs.bearings.slices import approaches_of_arrays
 from mbs.model.body import Body
 from mbs.model.elements import Excitation, Forces, OnRings, Operation, Port, Powers
+from mbs.model.findings import Gauge
 from mbs.model.relaxation import Films, Relaxation
 
 if TYPE_CHECKING:
@@ -242,6 +244,24 @@ class BearingElement(RingElement):
             return math.nan
         return float(self.rollers(displacement, operation).load_per_length.max())
 
+    def element_loads(self, displacement: FloatArray, operation: Operation) -> FloatArray | None:
+        """See `OnRings.element_loads`; None of forces that are no `BearingForce`."""
+        return self.rollers(displacement, operation).load if isinstance(self.force, BearingForce) else None
+
+    def gauge(self, displacement: FloatArray, operation: Operation) -> Gauge | None:
+        """See `OnRings.gauge`; None of forces that are no `BearingForce`."""
+        if not isinstance(self.force, BearingForce):
+            return None
+        lines = self.rollers(displacement, operation).load_per_length
+        sides = lines, np.maximum(lines + self.centrifugal_load(operation), 0.0)
+        contacts = self.bearing.geometry.contacts(self.bearing.material, "iso16281")
+        pressure = [
+            float(max_pressure(float(side.max(initial=0.0)), contact.radius, contact.reduced_modulus))
+            for side, contact in zip(sides, contacts, strict=True)
+        ]
+        load = np.array([side.sum(axis=1) for side in sides]) * self.bearing.slice_length
+        return Gauge("roller", load, np.array(pressure), LINE_LIMIT)
+
     def relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
         """Relaxation of the films, where they relax, see `Element.relaxation`."""
         return self.film_relaxation(displacement, operation) if self.films == "memory" else None
@@ -397,6 +417,14 @@ class RollerElement(RingElement):
     def excitation(self) -> Excitation | None:
         """The passing of the rollers."""
         return self.plain.excitation
+
+    def element_loads(self, displacement: FloatArray, operation: Operation) -> FloatArray | None:
+        """See `OnRings.element_loads`: those of rollers that follow in equilibrium."""
+        return self.plain.element_loads(ring_motion(displacement), operation)
+
+    def gauge(self, displacement: FloatArray, operation: Operation) -> Gauge | None:
+        """See `OnRings.gauge`: that of rollers that follow in equilibrium."""
+        return self.plain.gauge(ring_motion(displacement), operation)
 
     def relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
         """Relaxation of the films of both contacts, where they relax, see `Element.relaxation`."""

@@ -40,10 +40,11 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.solution import tip_words
 from ehdmaps.physics.surface import Surface
 from ehdmaps.units import LOAD, PRESSURE, SPEED, TEMPERATURE
-from mbs.bearings.bearing import STATIC_LIMIT, Bearing
-from mbs.bearings.films import SIDES, ContactState, FilmSource
+from mbs.bearings.bearing import Bearing
+from mbs.bearings.films import ContactState, FilmSource
 from mbs.bearings.force_at_point import RollerLoads
 from mbs.bearings.laws import DryLaw, Law, TableLaw
+from mbs.model.findings import Finding, WithFindings
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,19 +108,6 @@ def bearing_contacts(
     outer = np.maximum(inner + centrifugal_load, 0.0)
     return BearingContacts(
         films.state(0, inner, entrainment_speed, temperature), films.state(1, outer, entrainment_speed, temperature)
-    )
-
-
-def overload(contacts: BearingContacts) -> str:
-    """A sentence where a pressure is beyond the static limit; empty otherwise."""
-    pressure = contacts.hertz_pressure
-    worst = int(np.argmax(pressure))
-    if pressure[worst] <= STATIC_LIMIT:
-        return ""
-    return (
-        f"Hertz pressure of {PRESSURE.text(pressure[worst])} ({SIDES[worst]} raceway) is above "
-        f"{PRESSURE.text(STATIC_LIMIT)}, the static limit of ISO 76: permanent deformation; elastic contacts and films "
-        "no longer hold"
     )
 
 
@@ -401,7 +389,7 @@ SHARE = 0.01
 
 
 @dataclass(frozen=True, eq=False)
-class BearingPoint:
+class BearingPoint(WithFindings):
     """A bearing in equilibrium.
 
     Attributes
@@ -424,10 +412,8 @@ class BearingPoint:
         Pressures and films of all slices.
     loss : RollingLoss
         What rolling costs.
-    problems : tuple of str
-        Limits of the laws that the point exceeds, in words.
-    notes : tuple of str
-        What else should be known about it.
+    findings : tuple of Finding
+        What is beyond its laws, and what else is to be known.
     failed : bool
         Whether it has no answer: numbers are NaN, and `problems` say why.
     """
@@ -443,8 +429,7 @@ class BearingPoint:
     rollers: RollerLoads
     contacts: BearingContacts
     loss: RollingLoss
-    problems: tuple[str, ...]
-    notes: tuple[str, ...]
+    findings: tuple[Finding, ...]
     failed: bool = False
 
     @property

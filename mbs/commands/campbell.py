@@ -18,12 +18,12 @@ from mbs.analyses.film_errors import film_course
 from mbs.analyses.ramp import resolution, step_lines
 from mbs.analyses.reach import axes_outside, fade_lines, outside_lines, sources_of
 from mbs.analyses.recorded import RecordedRun, simulated_campbell
-from mbs.analyses.soundness import unsound_run
+from mbs.analyses.soundness import Judged
 from mbs.analyses.step_error import StepCheck
 from mbs.commands.auto import analysed
 from mbs.commands.campbell_recorded import measured_lines, measured_run, read_look, recorded_runs, signal_problems
 from mbs.commands.cases import load_cases
-from mbs.commands.common import Looked, Told, marked, unsound_lines, write, write_plot
+from mbs.commands.common import Looked, Told, write, write_plot
 from mbs.instruments.commands.tolerance import asked_tolerance, several_problems, tolerated_run
 from mbs.instruments.tolerance import Tolerated
 from mbs.linearised.sweep_result import ComplexSweep, Sweep
@@ -54,13 +54,9 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     done = analysed(arguments, _asked, lambda asked: _ran(asked, arguments.modes, workers), _looks_at)
     found, tolerated, beside = done.result.run, done.result.tolerated, done.result.measured
     settings, runs, course, bands = found.settings, found.runs, found.course, int(arguments.bands or "0")
-    unsound = [
-        line
-        for entry in runs
-        for line in unsound_lines(unsound_run(entry.case.model, entry.record), entry.case.label if runs[1:] else "")
-    ]
+    judged = Judged([(entry.case.label, entry.findings) for entry in runs])
     lines = [
-        *unsound,
+        *judged.first,
         *done.lines,
         f"{runs[0].case.model.scene.title}: run-up from {RPM.text(course.speed.at(0.0)[0])} to "
         f"{RPM.text(course.speed.at(course.duration)[0])} in {course.duration:.4g} s; {_sensor_words(found.sensors)}",
@@ -71,17 +67,17 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     for entry in runs:
         lines += [*_report(entry, found.sensors), *_band(entry, bands, found.sensors)]
     lines += measured_lines(beside, found) if beside else []
-    lines += [*_differences(runs, found.sensors), *(f"warning: {line}" for line in found.failed)]
+    lines += [*_differences(runs, found.sensors), *judged.last, *(f"warning: {line}" for line in found.failed)]
     dataset = found.dataset.assign_attrs(tolerance="\n".join(tolerated.lines)) if tolerated else found.dataset
     dataset = with_measured(dataset, beside.dataset) if beside else dataset
     measured = None if beside is None else (beside.record.label, beside.spectra)
-    lines += write(arguments, marked(dataset, unsound), found.plot(measured) if arguments.plot else None)
+    lines += write(arguments, dataset, found.plot(measured) if arguments.plot else None)
     if arguments.waterfall:
         lines += write_plot(found.waterfall(), arguments.waterfall)
     if getattr(arguments, "signals", None):
         lines += write_time_data(arguments.signals, simulated_campbell(runs))
     outside = any(any(entry.record.outside.values()) for entry in runs)
-    missed = unsound or found.failed or outside or (tolerated is not None and not tolerated.met)
+    missed = judged.status or found.failed or outside or (tolerated is not None and not tolerated.met)
     return "\n".join(lines), 1 if missed else done.status
 
 

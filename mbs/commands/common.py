@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import warnings
-from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Generic, TypeVar
@@ -12,7 +11,6 @@ from typing import TYPE_CHECKING, Generic, TypeVar
 from ehdmaps.errors import InputError
 from ehdmaps.outputs import write_figure
 from ehdmaps.units import Display, quantity
-from mbs.analyses.soundness import Unsound
 from mbs.output.files import write_dataset
 from mbs.scene.scene import Scene
 
@@ -86,33 +84,6 @@ class Told:
         if done > self._done:
             self._bar.solved(done - self._done)
             self._done = done
-
-
-def unsound_lines(found: Iterable[Unsound], label: str = "") -> list[str]:
-    """The first line of a result whose figures mean nothing, with the reasons; none of others.
-
-    Parameters
-    ----------
-    found : iterable of Unsound
-        Reasons why its figures mean nothing.
-    label : str
-        Which case, where several are compared.
-    """
-    words = "; ".join(entry.words for entry in found)
-    return [f"error: {f'{label}: ' if label else ''}the figures below mean nothing: {words}"] if words else []
-
-
-def marked(dataset: xr.Dataset, unsound: Sequence[str]) -> xr.Dataset:
-    """A result of several cases with the attribute `unsound`, where lines say that figures mean nothing.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        The result.
-    unsound : sequence of str
-        Lines of `unsound_lines`.
-    """
-    return dataset.assign_attrs(unsound="; ".join(unsound)) if unsound else dataset
 
 
 def write(arguments: argparse.Namespace, dataset: xr.Dataset | None, figure: Figure | None) -> list[str]:

@@ -13,11 +13,11 @@ from ehdmaps.units import MOTIONS, RPM
 from mbs.analyses.case import Case
 from mbs.analyses.operating import operating
 from mbs.analyses.reach import axes_outside, fade_lines, outside_lines, sources_of
-from mbs.analyses.soundness import unsound_over_speed
+from mbs.analyses.soundness import Judged
 from mbs.analyses.sweep import CriticalResult, SweepSettings, critical_of, critical_plot, dataset_of_laws, orders
 from mbs.commands.auto import analysed
 from mbs.commands.cases import load_cases
-from mbs.commands.common import Looked, marked, unsound_lines, write
+from mbs.commands.common import Looked, write
 from mbs.commands.lsa import MOST_COMPARED_CASES
 from mbs.commands.sweep import read_speeds
 from mbs.linearised.critical import CriticalSpeed
@@ -52,12 +52,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         _looks_at,
     )
     found = done.result
-    unsound = [
-        line
-        for label, entry in found
-        for line in unsound_lines(unsound_over_speed(entry.model, entry.sweep), label if found[1:] else "")
-    ]
-    lines, outside = [*unsound, *done.lines], list[str]()
+    judged = Judged([(label, entry.findings) for label, entry in found])
+    lines, outside = [*judged.first, *done.lines], list[str]()
     for label, entry in found:
         outside += [line for line in _outside(entry) if line not in outside]
         lines += _report(entry, label if found[1:] else "")
@@ -66,8 +62,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     labels, results = [label for label, _ in found], [entry for _, entry in found]
     figure = critical_plot(labels, results) if arguments.plot else None
     dataset = dataset_of_laws(labels, results)
-    lines += outside + write(arguments, marked(dataset, unsound), figure)
-    return "\n".join(lines), 1 if outside or unsound else done.status
+    lines += judged.last + outside + write(arguments, judged.marked(dataset), figure)
+    return "\n".join(lines), 1 if outside or judged.status else done.status
 
 
 class _Asked(NamedTuple):
@@ -118,7 +114,6 @@ def _report(found: CriticalResult, label: str) -> list[str]:
         f"  {swept.size} speeds from {_rpm(swept[0])} to {_rpm(np.abs(swept).max())}, {more} more around critical ones",
         *([] if label else _critical(found)),
         *_responses(found),
-        *_lifting(found),
         *fade_lines(model, swept),
     ]
 
@@ -199,23 +194,5 @@ def _responses(result: CriticalResult) -> list[str]:
             if force[worst] > 0.0:
                 lines.append(
                     f"  force of {connected.element.name}: {force[worst]:.4g} N at {_rpm(result.speeds[worst])}"
-                )
-    return lines
-
-
-def _lifting(result: CriticalResult) -> list[str]:
-    """Warnings of bearings whose dynamic force is above the static one, so that contacts lift off."""
-    lines = []
-    for index, bearing in enumerate(result.model.bearings):
-        static = np.hypot(*result.sweep.forces[index][:, 1:3].T)
-        at_rest = np.interp(result.speeds, result.sweep.speeds, static)
-        for response in result.responses:
-            force = result.dataset["element_force"].sel(order=response.order, element=bearing.name).values
-            if np.any(force > at_rest):
-                first = int(np.argmax(force > at_rest))
-                lines.append(
-                    f"warning: {bearing.name}: the force of order {response.order:.4g} is above the static one of "
-                    f"{at_rest[first]:.4g} N from {_rpm(result.speeds[first])} on, where contacts lift off: small "
-                    "motions no more; see mbs runup"
                 )
     return lines

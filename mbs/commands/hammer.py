@@ -15,10 +15,10 @@ from ehdmaps.workers import available_cores
 from mbs.analyses.case import Case
 from mbs.analyses.hammer import HIGHEST, HammerResult, HammerSettings, hammer_problems, hammers
 from mbs.analyses.reach import outside_at, source_of
-from mbs.analyses.soundness import unsound_at_rest
+from mbs.analyses.soundness import Judged
 from mbs.commands.auto import analysed
 from mbs.commands.cases import load_cases
-from mbs.commands.common import Looked, Told, unsound_lines
+from mbs.commands.common import Looked, Told
 from mbs.linearised.modes import Modes
 from mbs.modal.uff import UFF, Measurement, write_uff
 from mbs.model.relaxation import FILM_WORDS
@@ -43,22 +43,15 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     )
     found, labels = done.result
     paths = dict(zip(labels, _files(arguments.output, len(labels)), strict=True))
-    unsound = [
-        line
-        for label, entry in zip(found.labels, found.results, strict=True)
-        for line in unsound_lines(
-            unsound_at_rest(entry.model, entry.balance.displacement, entry.balance.operation),
-            label if labels[1:] else "",
-        )
-    ]
-    lines = [*unsound, *done.lines]
-    outside = bool(unsound)
+    judged = Judged([(label, entry.findings) for label, entry in zip(found.labels, found.results, strict=True)])
+    lines = [*judged.first, *done.lines]
+    outside = bool(judged.status)
     for label, entry in zip(found.labels, found.results, strict=True):
         words, warned = _report(entry, label if labels[1:] else "", settings.nonlinear)
         _write(paths[label], entry, label if labels[1:] else entry.model.label)
         lines += [*words, f"{paths[label]}: written"]
         outside = outside or warned
-    lines += [f"warning: {line}" for line in found.failed]
+    lines += [*judged.last, *(f"warning: {line}" for line in found.failed)]
     return "\n".join(lines), 1 if outside or found.failed else done.status
 
 

@@ -13,9 +13,10 @@ from ehdmaps.outputs import FIGURE, Output, output_problems
 from mbs.analyses.case import Case
 from mbs.analyses.lsa import LsaResult, LsaSettings, lsa_dataset, lsa_figure, lsa_of, lsa_problems
 from mbs.analyses.reach import fade_lines, outside_at
+from mbs.analyses.soundness import Judged
 from mbs.commands.auto import analysed
 from mbs.commands.cases import load_cases
-from mbs.commands.common import Looked, unsound_lines, write
+from mbs.commands.common import Looked, write
 from mbs.commands.sweep import whole
 from mbs.linearised.linear import peak_places, response_display
 from mbs.linearised.sweep import MOST_ANGLES
@@ -46,18 +47,18 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     found = done.result
     labels, results = [label for label, _ in found], [entry for _, entry in found]
     figure = lsa_figure(labels, results) if arguments.plot else None
-    unsound = [line for label, entry in found for line in unsound_lines(entry.unsound, label if found[1:] else "")]
-    lines = [*unsound, *done.lines]
+    judged = Judged([(label, entry.findings) for label, entry in found])
+    lines = [*judged.first, *done.lines]
     outside: list[str] = []
     for label, entry in found:
         outside += [line for line in outside_at(entry.model, entry.balance) if line not in outside]
         lines += _report(entry, label if found[1:] else "")
-    dataset = lsa_dataset(labels, results)
-    lines += [*outside, *write(arguments, dataset, figure)]
+    dataset = judged.marked(lsa_dataset(labels, results))
+    lines += [*judged.last, *outside, *write(arguments, dataset, figure)]
     if file := getattr(arguments, "state_space", None):
         write_spaces(Path(file), found)
         lines.append(f"{file}: written")
-    return "\n".join(lines), 1 if outside or unsound else done.status
+    return "\n".join(lines), 1 if outside or judged.status else done.status
 
 
 def _asked(arguments: argparse.Namespace) -> list[Case]:
@@ -96,9 +97,6 @@ def _looks_at(cases: list[Case]) -> Looked:
 def _report(found: LsaResult, label: str) -> list[str]:
     """Lines of one case; its label is empty if it is the only one."""
     model, scene, frequencies = found.model, found.model.scene, found.frequencies
-    amplitudes = {
-        entry.name: f"{entry.amplitude:.4g} {'N m' if np.any(entry.direction[3:]) else 'N'}" for entry in scene.inputs
-    }
     return [
         *heading(model, scene.speed),
         *([f"  case: {label}"] if label else []),
@@ -108,12 +106,6 @@ def _report(found: LsaResult, label: str) -> list[str]:
         *_peaks(model, found),
         *band_lines(model, found.film_share),
         *film_lines(found.errors, frequencies),
-        *(
-            f"warning: {load.element}: {load.dynamic:.3g} N of dynamic load at {load.frequency:.4g} Hz exceed the "
-            f"static {load.static:.4g} N (input {load.input} at its amplitude of {amplitudes[load.input]}): contacts "
-            "lift off, a linear analysis is not valid there"
-            for load in found.lifting
-        ),
         *(fade_lines(model, np.array([scene.speed])) if scene.speed else []),
     ]
 

@@ -15,9 +15,10 @@ from ehdmaps.outputs import FIGURE, Output, output_problems, write_text
 from ehdmaps.units import RPM
 from mbs.analyses.modes import ModesResult, modes
 from mbs.analyses.reach import fade_lines, outside_at
+from mbs.analyses.soundness import Judged
 from mbs.commands.auto import analysed
 from mbs.commands.cases import load_model
-from mbs.commands.common import Looked, read_option, unsound_lines, write, write_plot
+from mbs.commands.common import Looked, read_option, write, write_plot
 from mbs.linearised.modes import Modes
 from mbs.linearised.shapes import skeleton
 from mbs.output.files import RESULT
@@ -54,9 +55,9 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     above = swinging[found.frequency[swinging] > highest]
     notes = [*free_lines(free, model.system), *above_lines(found, above, highest)]
     figure = result.plot(highest) if arguments.plot else None
-    outside = outside_at(model, result.balance)
+    outside, judged = outside_at(model, result.balance), Judged([("", result.findings)])
     lines = [
-        *unsound_lines(result.unsound),
+        *judged.first,
         *done.lines,
         *heading(model, model.scene.speed),
         *_table(found, shown),
@@ -67,11 +68,12 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         *_lost(found),
         *film_lines(result.errors, found.frequency[shown]),
         *(fade_lines(model, np.array([model.scene.speed])) if model.scene.speed else []),
+        *judged.last,
         *outside,
         *write(arguments, result.dataset, figure),
         *_write_shapes(arguments, result, shown),
     ]
-    return "\n".join(lines), 1 if outside or result.unsound else done.status
+    return "\n".join(lines), 1 if outside or judged.status else done.status
 
 
 def _asked(arguments: argparse.Namespace) -> tuple[Model, float]:

@@ -12,6 +12,7 @@ import xarray as xr
 from ehdmaps.errors import InputError
 from ehdmaps.report.page import REPORT, write_report
 from mbs.analyses.case import Case
+from mbs.analyses.soundness import Judged
 from mbs.commands.auto import analysed
 from mbs.commands.cases import load_cases
 from mbs.commands.common import Looked
@@ -51,7 +52,9 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     write_report(arguments.output, text)
     failed = [reason for reason in (found.modes, found.sweep) if isinstance(reason, str) and reason]
     told = [f"warning: {line}" for line in (*warnings(found), *failed)]
-    return "\n".join([*done.lines, *told, f"{arguments.output}: written"]), 1 if told else done.status
+    judged = Judged([("", found.findings)])
+    lines = [*judged.first, *done.lines, *told, *judged.last, f"{arguments.output}: written"]
+    return "\n".join(lines), 1 if told or judged.status else done.status
 
 
 def _asked(arguments: argparse.Namespace) -> _Asked:

@@ -21,11 +21,12 @@ from mbs.analyses.ramp import resolution, silent_run, step_lines
 from mbs.analyses.reach import POINTS, Fade, axes_outside, fade_lines, fade_of, outside_lines, source_of, sources_of
 from mbs.analyses.recorded import amplitudes_at, simulated
 from mbs.analyses.runup import RunUpResult, RunUps, runup_figure, runup_problems, runups
+from mbs.analyses.soundness import Judged
 from mbs.analyses.step_error import StepCheck
 from mbs.commands.auto import analysed
 from mbs.commands.campbell_recorded import read_source, signal_problems
 from mbs.commands.cases import load_cases
-from mbs.commands.common import Looked, Told, read_option, unsound_lines, write
+from mbs.commands.common import Looked, Told, read_option, write
 from mbs.instruments.commands.tolerance import asked_tolerance, several_problems, tolerated_run
 from mbs.instruments.tolerance import Tolerated
 from mbs.output.files import described
@@ -90,17 +91,15 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     data = _signals(found, names)
     spectra = _spectra_of(data, asked.spectra, found.runs[0].model.scene) if data else []
     figure = runup_figure(found.runs, data.records if data else (), spectra) if arguments.plot else None
-    unsound = [
-        line for label, entry in _pairs(found) for line in unsound_lines(entry.unsound, label if found.runs[1:] else "")
-    ]
-    lines = [*unsound, *done.lines, *(tolerated.lines if tolerated else ())]
-    outside = bool(unsound) or (tolerated is not None and not tolerated.met)
+    judged = Judged([(label, entry.findings) for label, entry in _pairs(found)])
+    lines = [*judged.first, *done.lines, *(tolerated.lines if tolerated else ())]
+    outside = bool(judged.status) or (tolerated is not None and not tolerated.met)
     for label, entry in _pairs(found):
         lines += [*([label] if found.runs[1:] else []), *_report(entry)]
         outside = outside or any(entry.record.outside.values())
     lines += signal_lines(data.records) if data else []
-    lines += [f"warning: {line}" for line in found.failed]
-    dataset = with_spectra(found.dataset, spectra)
+    lines += [*judged.last, *(f"warning: {line}" for line in found.failed)]
+    dataset = judged.marked(with_spectra(found.dataset, spectra))
     dataset = dataset.assign_attrs(tolerance="\n".join(tolerated.lines)) if tolerated else dataset
     lines += write(arguments, dataset, figure)
     if getattr(arguments, "signals", None) and data:

@@ -11,13 +11,14 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.units import DAMPER, FILM, PRESSURE, SPRING
 from mbs.analyses.reach import fade_lines, outside_at
+from mbs.analyses.soundness import Judged
 from mbs.analyses.statics import statics
 from mbs.bearings.bearing_element import ring_matrices
 from mbs.bearings.contact_report import BearingContacts
 from mbs.bearings.force_at_point import RollerLoads
 from mbs.commands.auto import analysed
 from mbs.commands.cases import load_model
-from mbs.commands.common import Looked, unsound_lines, write
+from mbs.commands.common import Looked, write
 from mbs.model.equilibrium import Equilibrium
 from mbs.model.relaxation import NOTABLE
 from mbs.output.model_text import heading
@@ -38,8 +39,9 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     model = found.model
     balance, contacts = found.balance, found.contacts
     figure = found.plot() if arguments.plot else None
+    judged = Judged([("", found.findings)])
     lines = [
-        *unsound_lines(found.unsound),
+        *judged.first,
         *done.lines,
         *heading(model, model.scene.speed),
         f"equilibrium in {balance.steps} Newton steps, residual {balance.residual:.1e} of the largest force",
@@ -79,9 +81,9 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     lines += _slow(model, balance) if model.supplies or model.scene.tapered or model.balls else []
     lines += fade_lines(model, np.array([model.scene.speed]))
     outside = outside_at(model, balance)
-    lines += [f"warning: {line}" for line in (*found.overloads, *found.free)] + outside
+    lines += [*judged.last, *(f"warning: {line}" for line in found.free), *outside]
     lines += write(arguments, found.dataset if arguments.output else None, figure)
-    return "\n".join(lines), 1 if outside or found.overloads or found.unsound else done.status
+    return "\n".join(lines), 1 if outside or judged.status else done.status
 
 
 def _slow(model: Model, balance: Equilibrium) -> list[str]:

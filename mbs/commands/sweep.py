@@ -16,11 +16,11 @@ from mbs.analyses.case import Case
 from mbs.analyses.film_errors import film_errors
 from mbs.analyses.operating import operating
 from mbs.analyses.reach import axes_outside, fade_lines, outside_lines, sources_of
-from mbs.analyses.soundness import unsound_over_speed
+from mbs.analyses.soundness import Judged
 from mbs.analyses.sweep import SweepSettings, sweep, sweep_problems, waterfall_problems
 from mbs.commands.auto import analysed
 from mbs.commands.cases import load_cases
-from mbs.commands.common import Looked, marked, unsound_lines, write, write_plot
+from mbs.commands.common import Looked, write, write_plot
 from mbs.linearised.linear import response_display
 from mbs.linearised.modes import free_motions
 from mbs.linearised.sweep import MOST_ANGLES
@@ -60,12 +60,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     )
     result = done.result
     cases, found = result.cases, result.sweeps
-    unsound = [
-        line
-        for case, entry in zip(cases, found, strict=True)
-        for line in unsound_lines(unsound_over_speed(case.model, entry), case.label if len(cases) > 1 else "")
-    ]
-    lines = [*unsound, *done.lines]
+    judged = Judged(list(zip([case.label for case in cases], result.findings, strict=True)))
+    lines = [*judged.first, *done.lines]
     outside: list[str] = []
     torques = result.dataset["rolling_torque"].values
     for case, entry, calls, torque in zip(cases, found, result.outside, torques, strict=True):
@@ -89,10 +85,10 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             *fade_lines(case.model, entry.speeds),
         ]
     figure = result.plot() if arguments.plot else None
-    lines += outside + write(arguments, marked(result.dataset, unsound), figure)
+    lines += judged.last + outside + write(arguments, result.dataset, figure)
     if arguments.waterfall:
         lines += write_plot(result.waterfall(), arguments.waterfall)
-    return "\n".join(lines), 1 if outside or unsound else done.status
+    return "\n".join(lines), 1 if outside or judged.status else done.status
 
 
 class _Asked(NamedTuple):

@@ -19,7 +19,8 @@ from mbs.linearised.averaged import steady_system
 from mbs.linearised.dynamic import dynamic_stiffness, element_dynamic_stiffness
 from mbs.linearised.sweep import Point, solve_modes
 from mbs.linearised.sweep_result import ComplexSweep
-from mbs.model.elements import Operation
+from mbs.linearised.validity import lifting
+from mbs.model.elements import OnRings, Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.model.system import System
 
@@ -92,12 +93,19 @@ class OrderResponse:
         Amplitudes of the coordinates [m or rad]: q = Re[motion exp(i order angle)].
     forces : array, shape (speeds, elements, 2), complex
         Amplitudes of the forces along y and z of each element in its first port [N].
+    lifting : array, shape (speeds, bearings, 2)
+        Dynamic and static load that decide whether contacts of each bearing lift off, see `mbs.linearised.validity`
+        [N].
+    lifted : tuple of tuple of str, (speeds, bearings)
+        What they are loads of.
     """
 
     order: float
     names: tuple[str, ...]
     motion: ComplexArray
     forces: ComplexArray
+    lifting: FloatArray
+    lifted: tuple[tuple[str, ...], ...]
 
 
 def critical_speeds(
@@ -165,22 +173,35 @@ def order_responses(system_at: Callable[[float], System], speeds: FloatArray) ->
     """
     motions: dict[float, list[ComplexArray]] = {}
     forces: dict[float, list[ComplexArray]] = {}
+    lifts: dict[float, list[list[tuple[float, float]]]] = {}
+    lifted: list[tuple[str, ...]] = []
     names: dict[float, dict[str, None]] = {}
     start = None
     for speed in speeds.tolist():
         system = steady_system(system_at(speed))
         balance = equilibrium(system, Operation(speed), start)
         start = balance.displacement
+        rules = [(index, lifting(balance, index)) for index in system.select(OnRings)]
+        lifted.append(tuple(rule.of for _, rule in rules))
         for order in sorted({abs(load.order) for load in system.turning}):
             loads = [load for load in system.turning if abs(load.order) == order]
             size = np.sum([load.amplitude(speed) for load in loads], axis=0)
             rate = np.array([1j * order * speed])
             moved = np.linalg.solve(dynamic_stiffness(balance, rate)[0], size)
             motions.setdefault(order, []).append(moved)
-            forces.setdefault(order, []).append(_forces(balance, rate, moved))
+            felt = _forces(balance, rate, moved)
+            forces.setdefault(order, []).append(np.array([force[1:3] for force in felt]).reshape(-1, 2))
+            lifts.setdefault(order, []).append([rule.worst(felt[index]) for index, rule in rules])
             names.setdefault(order, {}).update(dict.fromkeys(name for load in loads for name in load.names))
     return tuple(
-        OrderResponse(order, tuple(names[order]), np.array(motions[order]), np.array(forces[order]))
+        OrderResponse(
+            order,
+            tuple(names[order]),
+            np.array(motions[order]),
+            np.array(forces[order]),
+            np.array(lifts[order]).reshape(len(lifted), -1, 2),
+            tuple(lifted),
+        )
         for order in motions
     )
 
@@ -281,10 +302,9 @@ def turning_places(system: System) -> list[tuple[str, float]]:
     ]
 
 
-def _forces(balance: Equilibrium, rate: ComplexArray, moved: ComplexArray) -> ComplexArray:
-    """Amplitudes of the forces of all elements along y and z in their first ports, shape (elements, 2)."""
-    forces = np.zeros((len(balance.system.elements), 2), dtype=np.complex128)
-    for index, connected in enumerate(balance.system.elements):
-        stiffness = element_dynamic_stiffness(balance, index, rate)[0]
-        forces[index] = -(stiffness @ (connected.transform @ moved))[1:3]
-    return forces
+def _forces(balance: Equilibrium, rate: ComplexArray, moved: ComplexArray) -> list[ComplexArray]:
+    """Amplitudes of the forces of all elements in their first ports, (6,) each."""
+    return [
+        -(element_dynamic_stiffness(balance, index, rate)[0] @ (connected.transform @ moved))[:6]
+        for index, connected in enumerate(balance.system.elements)
+    ]

@@ -13,10 +13,12 @@ import numpy as np
 
 from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.maps.kernels.film_response import FilmResponse, by_powers
+from mbs.bearings.bearing_element import ring_matrices
 from mbs.linearised.dynamic import element_dynamic_stiffness
 from mbs.model.condensed import Condensed
 from mbs.model.elements import Input, OnRings
 from mbs.model.equilibrium import Equilibrium
+from mbs.model.findings import CARRIES
 from mbs.model.relaxation import NOTABLE, Films
 
 _PLACES = np.array([0.1, 0.3, 1.0, 3.0, 10.0, 30.0])
@@ -205,16 +207,19 @@ class FilmError:
 
 @dataclass(frozen=True)
 class DynamicLoad:
-    """Largest dynamic force of an element in a linear analysis, beside its static one.
+    """Largest dynamic load of a bearing in a linear analysis, beside the static one that it takes away.
 
     Attributes
     ----------
     element, input : str
-        Which, and excited by what.
+        Which bearing, and excited by what.
     dynamic, static : float
-        Radial forces [N], at the amplitude of the input.
+        The loads that decide [N]: on the rolling element that lifts off first where all carry load at rest, as in a
+        preloaded bearing, else the force on the inner ring.
     frequency : float
-        Frequency at which the dynamic load is largest [Hz].
+        Frequency at which the dynamic load is largest beside the static one [Hz].
+    of : str
+        What rolling element it is a load of: ball, roller; empty for the force on the inner ring.
     """
 
     element: str
@@ -222,17 +227,96 @@ class DynamicLoad:
     dynamic: float
     static: float
     frequency: float
+    of: str = ""
 
     @property
     def exceeds(self) -> bool:
         """True where contacts would lift off, so that a linear analysis is not valid."""
         return self.dynamic > self.static
 
+    @property
+    def words(self) -> str:
+        """The loads for people, without what excites them."""
+        whose = f"a {self.of}" if self.of else "the bearing"
+        return f"the dynamic load of {whose}, {self.dynamic:.3g} N, exceeds its static one of {self.static:.4g} N"
+
+
+class Lifting(NamedTuple):
+    """Rule by which the contacts of a bearing lift off.
+
+    Attributes
+    ----------
+    static : array, shape (k,)
+        Loads at rest [N]: of all rolling elements where all carry load, else of the bearing alone.
+    by_force : array, shape (k, 6) or None
+        The same by a force on the inner ring; None where it is that of the bearing.
+    of : str
+        What the loads are of, as of `DynamicLoad`.
+    """
+
+    static: FloatArray
+    by_force: FloatArray | None
+    of: str
+
+    def worst(self, force: ComplexArray) -> tuple[float, float]:
+        """Dynamic and static load that decide under an oscillating force (6,) on the inner ring [N], [N m]."""
+        if self.by_force is None:
+            # the longest of the directions that the force takes in a turn
+            parts = np.array([force[:3].real, force[:3].imag])
+            return float(np.linalg.norm(parts, 2)), float(self.static[0])
+        dynamic = np.abs(self.by_force @ force)
+        first = int(np.argmax(dynamic / self.static))
+        return float(dynamic[first]), float(self.static[first])
+
+
+def lifting(balance: Equilibrium, index: int) -> Lifting:
+    """Find what lifts the contacts of a bearing off: a rolling element of a preloaded one, else all of them.
+
+    Loads of rolling elements go with the force as in slow motion: films that relax stiffen all of them alike, nearly.
+
+    Parameters
+    ----------
+    balance : Equilibrium
+        Equilibrium to linearise at.
+    index : int
+        Which element of the system it is: one on rings.
+    """
+    connected = balance.system.elements[index]
+    element, whole = connected.element, np.array([float(np.linalg.norm(balance.forces[index][:3]))])
+    assert isinstance(element, OnRings)
+    ports, operation = connected.transform @ balance.displacement, balance.operation
+    rest = element.element_loads(ports, operation)
+    if rest is None or not np.all(rest > CARRIES * rest.max()):
+        return Lifting(whole, None, "")
+    slopes = np.zeros((rest.size, 6))
+    for column in _MOVED:
+        step = np.zeros(ports.size)
+        step[column] = _STEP if column < 3 else _TILT
+        ends = [element.element_loads(ports + way * step, operation) for way in (1.0, -1.0)]
+        if ends[0] is None or ends[1] is None:
+            return Lifting(whole, None, "")
+        slopes[:, column] = (ends[0] - ends[1]) / (2.0 * step[column])
+    stiffness, _ = ring_matrices(balance.element_stiffness[index], balance.element_damping[index])
+    gauge = element.gauge(ports, operation)
+    scale = np.array([1.0, 1.0, 1.0, _ARM, _ARM, _ARM])
+    by_force = slopes / scale @ np.linalg.pinv(stiffness / np.outer(scale, scale), rcond=_SINGULAR) / scale
+    return Lifting(rest, by_force, "" if gauge is None else gauge.element)
+
+
+_MOVED = (0, 1, 2, 4, 5)
+"""Displacements of an inner ring that change loads: none about the axis."""
+
+_STEP, _TILT, _ARM = 1e-9, 1e-8, 0.05
+"""Steps of differences [m], [rad], and the lever by which tilts are compared with displacements [m]."""
+
+_SINGULAR = 1e-9
+"""Part of the largest stiffness below which a bearing holds nothing."""
+
 
 def dynamic_loads(
     balance: Equilibrium, inputs: Sequence[Input], frequencies: FloatArray, motion: ComplexArray
 ) -> tuple[DynamicLoad, ...]:
-    """Largest dynamic force of each bearing for each input.
+    """Dynamic load of each bearing for each input, at the frequency at which it is largest beside the static one.
 
     Parameters
     ----------
@@ -251,17 +335,14 @@ def dynamic_loads(
     s = np.asarray(2j * np.pi * frequencies, dtype=np.complex128)
     motion = motion * np.array([entry.amplitude for entry in inputs])
     for index in balance.system.select(OnRings):
-        connected = balance.system.elements[index]
+        connected, rule = balance.system.elements[index], lifting(balance, index)
         ports = np.einsum("mn,fni->fmi", connected.transform, motion)
-        force = element_dynamic_stiffness(balance, index, s) @ ports
-        # The first port of a bearing is the inner ring, its rows 1 and 2 are y and z.
-        size = np.linalg.norm(force[:, 1:3], axis=1)
-        static = float(np.linalg.norm(balance.forces[index][1:3]))
+        # The first port of a bearing is the inner ring.
+        force = (element_dynamic_stiffness(balance, index, s) @ ports)[:, :6]
         for i, entry in enumerate(inputs):
-            worst = int(np.argmax(size[:, i]))
-            loads.append(
-                DynamicLoad(
-                    connected.element.name, entry.name, float(size[worst, i]), static, float(frequencies[worst])
-                )
-            )
+            each = np.array([rule.worst(force[k, :, i]) for k in range(frequencies.size)])
+            with np.errstate(divide="ignore", invalid="ignore"):
+                worst = int(np.argmax(np.nan_to_num(each[:, 0] / each[:, 1], nan=0.0)))
+            found = float(each[worst, 0]), float(each[worst, 1])
+            loads.append(DynamicLoad(connected.element.name, entry.name, *found, float(frequencies[worst]), rule.of))
     return tuple(loads)

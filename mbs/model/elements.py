@@ -16,6 +16,7 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError
 from mbs.model.condensed import Condensed
+from mbs.model.findings import Gauge
 from mbs.model.profiles import Constant, LoadProfile
 from mbs.model.relaxation import Relaxation
 
@@ -319,6 +320,28 @@ class OnRings(ElementDefaults):
             Load of a ball [N], or load per length of a slice of a roller [N/m].
         """
         return math.nan
+
+    def element_loads(self, displacement: FloatArray, operation: Operation) -> FloatArray | None:
+        """Loads of all rolling elements on the inner raceway at rest, shape (Z,) [N]; None where none are known.
+
+        Parameters
+        ----------
+        displacement : array, shape (m,)
+            Displacements of its ports.
+        operation : Operation
+            Speed and angle.
+        """
+        return None
+
+    def gauge(self, displacement: FloatArray, operation: Operation) -> Gauge | None:
+        """Measure what its contacts feel at rest, and what is beyond their limits; None where none are known.
+
+        Parameters
+        ----------
+        displacement, operation
+            The same as of `element_loads`.
+        """
+        return None
 
     @property
     def error_words(self) -> str:

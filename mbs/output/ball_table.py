@@ -11,9 +11,11 @@ import numpy as np
 
 from ehdmaps.units import DAMPER, FILM, PRESSURE, RPM, SPRING, TEMPERATURE
 from mbs.bearings.balls.ball_element import MachineBalls, Settled
+from mbs.bearings.balls.ball_findings import ball_pressures
 from mbs.bearings.balls.ball_motion import ball_motion
-from mbs.bearings.balls.ball_point import SIDES, STATIC_LIMIT, BallPoint
-from mbs.output.bearing_table import OPEN, hole_line, lambda_line, shown, smallest, warning_lines, write_csv
+from mbs.bearings.balls.ball_point import BallPoint
+from mbs.bearings.films import SIDES
+from mbs.output.bearing_table import hole_line, lambda_line, shown, smallest, unsound_lines, warning_lines, write_csv
 from mbs.output.files import described
 from mbs.output.state_text import beside_class
 from mbs.scene.fields import DEGREE, FORCE, MICROMETRE
@@ -244,7 +246,7 @@ def ball_text(description: BallDescription, points: Points) -> list[str]:
         lines += _page(everything[0], description) + _balls(everything[0])
     else:
         lines += _table(everything, description)
-    return lines + warning_lines(everything)
+    return unsound_lines(everything) + lines + warning_lines(everything)
 
 
 def ball_heading(description: BallDescription, point: BallPoint) -> list[str]:
@@ -407,10 +409,7 @@ def ball_lines(model: Model, balance: Equilibrium) -> list[str]:
                 (balance.element_damping[index], DAMPER.factor, DAMPER.unit),
             )
         )
-        pressures = [
-            float(np.max(contact.max_pressure(loads[side])))
-            for side, contact in enumerate(element.force.geometry.contacts(element.force.material))
-        ]
+        pressures = ball_pressures(at.force, at.balls).max(axis=1)
         lines += [
             f"{element.name}: {force[0]:.5g} N along x, {math.hypot(force[1], force[2]):.5g} N across it on the inner "
             f"ring; contact angle {angles[0]:.4g} deg inner, {angles[1]:.4g} outer",
@@ -420,13 +419,4 @@ def ball_lines(model: Model, balance: Equilibrium) -> list[str]:
             *_moving(at),
             "  K " + "; C ".join(parts),
         ]
-        if not np.any(loads[0] > OPEN):
-            lines.append(
-                f"warning: {element.name}: no ball carries load: nothing holds the shaft there, preload is lost"
-            )
-        if max(pressures) > STATIC_LIMIT:
-            lines.append(
-                f"warning: {element.name}: Hertz pressure above {PRESSURE.text(STATIC_LIMIT)}, the static limit of ISO "
-                "76: elastic contacts no longer hold"
-            )
     return lines

@@ -14,8 +14,8 @@ from matplotlib.ticker import MaxNLocator
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.figures import COLOURS, WARNING, typeset
+from ehdmaps.physics.hertz import LINE_LIMIT
 from ehdmaps.units import PRESSURE, RPM
-from mbs.bearings.bearing import STATIC_LIMIT
 from mbs.bearings.contact_report import BearingContacts, BearingPoint
 from mbs.bearings.films import SIDES
 from mbs.model.equilibrium import Equilibrium
@@ -221,11 +221,11 @@ def _label(panels: Sequence[Axes], over_load: bool, roughness: float, points: Se
 
 def _static_limit(panel: Axes, pressures: FloatArray) -> None:
     """A line at the static limit, where pressures come near it."""
-    if np.max(pressures) > 0.75 * STATIC_LIMIT:
-        panel.axhline(1e-9 * STATIC_LIMIT, color=WARNING, lw=0.9, ls=":")
-        words = f"static limit {PRESSURE.text(STATIC_LIMIT)}"
+    if np.max(pressures) > 0.75 * LINE_LIMIT:
+        panel.axhline(1e-9 * LINE_LIMIT, color=WARNING, lw=0.9, ls=":")
+        words = f"static limit {PRESSURE.text(LINE_LIMIT)}"
         place = panel.get_yaxis_transform()
-        panel.text(0.02, 1e-9 * STATIC_LIMIT, words, color=WARNING, fontsize=7.5, va="bottom", transform=place)
+        panel.text(0.02, 1e-9 * LINE_LIMIT, words, color=WARNING, fontsize=7.5, va="bottom", transform=place)
 
 
 def _title(figure: Figure, description: BearingDescription, words: str, problems: Sequence[str]) -> None:

@@ -20,6 +20,7 @@ from mbs.bearings.bearing import Bearing
 from mbs.bearings.contact_report import BearingPoint
 from mbs.bearings.films import SIDES
 from mbs.bearings.thermal import BearingState
+from mbs.model.findings import MEANINGLESS, Severity, WithFindings
 from mbs.output.files import RESULT, described
 from mbs.output.state_text import beside_class, flooded_note, loss_words, state_words
 from mbs.scene.contact_laws import surface_label
@@ -28,12 +29,6 @@ from mbs.scene.fields import FORCE, MICROMETRE
 if TYPE_CHECKING:
     import xarray as xr
 
-    from mbs.bearings.balls.ball_point import BallPoint
-    from mbs.bearings.tapered.tapered_point import TaperedPoint
-
-
-OPEN = 1e-6
-"""Largest load of a contact up to which a bearing carries none [N]: films never quite let go."""
 
 WIDE_RANGE = 20.0
 """A range of loads whose end is further above its beginning is spaced, and drawn, in the logarithm."""
@@ -289,7 +284,8 @@ def bearing_text(description: BearingDescription, points: Points, corners: Seque
     else:
         lines += _table(everything, description)
     torque = max((point.loss.torque for point in everything if not point.failed), default=math.nan)
-    return lines + flooded_note(torque, [description.supply]) + warning_lines(everything)
+    flooded = flooded_note(torque, [description.supply])
+    return unsound_lines(everything) + lines + flooded + warning_lines(everything)
 
 
 def bearing_heading(description: BearingDescription) -> list[str]:
@@ -469,25 +465,42 @@ def hole_line(load: float, speed: float) -> str:
     return f"{load:10.5g} {RPM.value(speed):8.5g} {'no answer, see below':>29s} !"
 
 
-def warning_lines(points: Sequence[BearingPoint | BallPoint | TaperedPoint]) -> list[str]:
+def warning_lines(points: Sequence[WithFindings]) -> list[str]:
     """Each warning and note once, with how many points it is about.
 
     Parameters
     ----------
-    points : sequence of BearingPoint, BallPoint or TaperedPoint
+    points : sequence of WithFindings
         The points.
     """
-    lines = []
-    for word, name in (("warning", "problems"), ("note", "notes")):
-        # The number in a sentence differs from point to point; the first one is shown.
-        groups: dict[str, list[str]] = {}
-        for point in points:
-            for sentence in getattr(point, name):
-                groups.setdefault(without_numbers(sentence), []).append(sentence)
-        for sentences in groups.values():
-            more = f" ({len(sentences)} of {len(points)} points, the last of them here)" if len(points) > 1 else ""
-            lines.append(f"{word}: {sentences[-1]}{more}")
-    return lines
+    graves = (Severity.BEYOND, Severity.WARNING, Severity.NOTE)
+    return [f"{grave.word}: {words}" for grave in graves for words in _of_several(points, grave)]
+
+
+def unsound_lines(points: Sequence[WithFindings]) -> list[str]:
+    """The first line of points whose figures mean nothing, with the reasons; none of others.
+
+    Parameters
+    ----------
+    points : sequence of WithFindings
+        The points.
+    """
+    words = "; ".join(_of_several(points, Severity.UNSOUND))
+    return [f"{Severity.UNSOUND.word}: {MEANINGLESS}{words}"] if words else []
+
+
+def _of_several(points: Sequence[WithFindings], severity: Severity) -> list[str]:
+    """Words of findings of a severity, each kind once."""
+    # The number in a sentence differs from point to point; the last one is shown.
+    groups: dict[str, list[str]] = {}
+    for point in points:
+        for finding in point.findings:
+            if finding.severity is severity:
+                groups.setdefault(without_numbers(finding.words), []).append(finding.words)
+    return [
+        words[-1] + (f" ({len(words)} of {len(points)} points, the last of them here)" if len(points) > 1 else "")
+        for words in groups.values()
+    ]
 
 
 def without_numbers(sentence: str) -> str:

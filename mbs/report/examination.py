@@ -13,6 +13,7 @@ from mbs.analyses.modes import ModesResult, modes
 from mbs.analyses.statics import StaticsResult, statics
 from mbs.analyses.sweep import SweepResult, SweepSettings, sweep
 from mbs.budget.sources import error_budget
+from mbs.model.findings import Finding
 from mbs.scene.assembly import Model
 from mbs.scene.choices import Subject
 from mbs.scene.map_set import MapSet
@@ -51,6 +52,13 @@ class Examination:
     sweep: SweepResult | str
     maps: MapSet | None
     budget: Trade | str = ""
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """Findings about the bearings, in operation and over speed."""
+        swept = self.sweep.findings[0] if isinstance(self.sweep, SweepResult) else ()
+        known = {(one.bearing, one.cause) for one in self.statics.findings}
+        return (*self.statics.findings, *(one for one in swept if (one.bearing, one.cause) not in known))
 
     @property
     def model(self) -> Model:

@@ -19,6 +19,7 @@ from ehdmaps.units import FILM, LENGTH, PRESSURE, RPM
 from mbs.analyses.film_errors import film_errors
 from mbs.analyses.reach import fade_lines, outside_at
 from mbs.model.elements import GROUND
+from mbs.model.findings import Severity
 from mbs.model.relaxation import NOTABLE
 from mbs.output.bearing_table import regime
 from mbs.output.model_text import clearance_text, temperature_text, weight_text
@@ -222,7 +223,7 @@ def in_short(found: Examination) -> Iterator[str]:
 
 
 def warnings(found: Examination) -> list[str]:
-    """Return what is to be warned of: loads, pressures and speeds at which the law no longer holds.
+    """Return what is to be warned of beside the findings: what a law does not reach, motions that nothing holds.
 
     Parameters
     ----------
@@ -232,7 +233,6 @@ def warnings(found: Examination) -> list[str]:
     balance, model = found.statics.balance, found.model
     lines = [
         *model.warnings,
-        *found.statics.overloads,
         *found.statics.free,
         *outside_at(model, balance),
         *fade_lines(model, np.array([model.scene.speed])),
@@ -253,6 +253,7 @@ def notes(found: Examination) -> list[str]:
     torque = max((loss.torque for loss in found.statics.losses), default=math.nan)
     return [
         *(f"{name}: {words}" for words, name in geometry.items() if words),
+        *(one.told for one in found.findings if one.severity is Severity.NOTE),
         *(
             f"{entry.bearing}: stiffness and damping of slow motion are off by more than {100.0 * NOTABLE:g} % from "
             f"{shown(HERTZ, entry.frequency)} on (estimated)"

@@ -14,6 +14,7 @@ from ehdmaps.program import plain
 from ehdmaps.report.page import Markup, Section, document, joined, pairs, sentences, tag
 from ehdmaps.units import RPM
 from mbs.analyses.sensors import excited_orders
+from mbs.model.findings import warned
 from mbs.report.balls import balls
 from mbs.report.bearings import bearings
 from mbs.report.campbell import campbell, lines_of, mode_table, saved_campbell
@@ -45,7 +46,7 @@ def scene_report(
     """
     scene = found.model.scene
     used = list(used_maps(found))
-    warning_lines = warnings(found)
+    warning_lines = [*warned(found.findings), *warnings(found)]
     sections = [
         Section(
             "summary",

@@ -11,11 +11,12 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from ehdmaps.physics.hertz import POINT_LIMIT
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from ehdmaps.physics.solids import STEEL
 from mbs.bearings.balls.ball_bearing import BallForce
-from mbs.bearings.balls.ball_point import STATIC_LIMIT, ball_point
+from mbs.bearings.balls.ball_point import ball_point
 from mbs.bearings.balls.laws import dry_law
 from tests.cases import commands
 
@@ -183,7 +184,7 @@ def test_static_rating_is_at_the_static_limit() -> None:
     geometry = ball_estimate("6208")
     inner = geometry.contacts(STEEL)[0]
     pressure = inner.max_pressure(5.0 * 17900.0 / geometry.balls)
-    assert pressure == pytest.approx(STATIC_LIMIT, rel=0.12)
+    assert pressure == pytest.approx(POINT_LIMIT, rel=0.12)
 
 
 def test_angular_contact_without_axial_load_is_said(capsys, here) -> None:

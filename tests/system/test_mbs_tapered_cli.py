@@ -11,6 +11,7 @@ import xarray as xr
 
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.jobs.make.table_law import table_map
+from ehdmaps.physics.hertz import LINE_LIMIT
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.rollers.tapered_catalogue import tapered_boundary, tapered_estimate
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
@@ -18,7 +19,7 @@ from mbs.bearings.balls.normal_law import contact
 from mbs.bearings.tapered.line_film import LOADS, cylinder_of, line_film
 from mbs.bearings.tapered.reference_load import reference_load
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
-from mbs.bearings.tapered.tapered_point import STATIC_LIMIT, tapered_point
+from mbs.bearings.tapered.tapered_point import tapered_point
 from tests.cases import commands
 
 RPM = math.pi / 30.0
@@ -157,7 +158,7 @@ def test_no_equilibrium_and_overload_are_said() -> None:
     with pytest.raises(AnalysisError, match=r"above tan.alpha. .Fr . Z Fc. = 21\d\d N"):
         tapered_point(FORCE, (2000.0, 5000.0, 0.0), 20000.0 * RPM)
     point = tapered_point(FORCE, (1e5, 2e5, 0.0), 0.0)
-    assert point.pressure.max() > STATIC_LIMIT and "the static limit of ISO 76" in point.problems[0]
+    assert point.pressure.max() > LINE_LIMIT and "the static limit of ISO 76" in point.problems[0]
     little = tapered_point(FORCE, (1350.0, 5000.0, 0.0), 0.0)
     assert "less than half" in " ".join(little.notes) and little.life > 0.0
     free = tapered_point(FORCE, (2000.0, 5000.0, 0.0), 0.0, tilts=True)

@@ -421,7 +421,7 @@ MACHINES = ("mbs.transient", "mbs.linearised", "mbs.flexible", "mbs.spectral", "
 BUDGETS = (
     ("from mbs import Bearing", 20, (*SOLVING, *LATER, *MACHINES, "ehdmaps.jobs", "ehdmaps.maps", "numba", "pint")),
     ("from mbs.bearings import bearing_force", 50, (*SOLVING, *LATER, *MACHINES, "ehdmaps.jobs", "ehdmaps.maps.law")),
-    (BEARING, 89, (*SOLVING, *LATER, *MACHINES, "ehdmaps.jobs", "ehdmaps.maps.law", "ehdmaps.maps.emap")),
+    (BEARING, 90, (*SOLVING, *LATER, *MACHINES, "ehdmaps.jobs", "ehdmaps.maps.law", "ehdmaps.maps.emap")),
     (STATICS, 120, (*SOLVING, *LATER, *MACHINES, "ehdmaps.jobs.job", "ehdmaps.maps.law", "ehdmaps.maps.emap")),
     (FILMS_OF_TABLE, 115, (SOLVING[1], "matplotlib", "xarray", "pandas", "mbs")),
     ("import ehdmaps; ehdmaps.open_map(MAP).law('inner')", 95, (*SOLVING[:2], "matplotlib", "ehdmaps.jobs", "mbs")),

@@ -20,6 +20,7 @@ from ehdmaps.errors import InputError, MapError
 from ehdmaps.jobs.points.asked import ENDING, MADE
 from ehdmaps.netcdf_structure import DAMAGE, structure_problem
 from ehdmaps.outputs import MADE_AS, dataset_kind, written_aside
+from ehdmaps.physics.hertz import POINT_LIMIT
 from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from ehdmaps.physics.point.ball_geometry import BallGeometry
@@ -36,8 +37,8 @@ DIMS = ("contact", "load", "entrainment_speed", "temperature")
 
 SIDES = ("inner", "outer")
 
-LIGHTEST, HIGHEST_PRESSURE, LOADS = 1.0, 4.2e9, 32
-"""Lightest load [N], Hertz pressure of the inner contact at the heaviest one [Pa] (ISO 76), and how many there are."""
+LIGHTEST, LOADS = 1.0, 32
+"""Lightest load [N], and how many there are; the heaviest one has the inner contact at the static limit."""
 
 SPEEDS = (0.0, *np.round(np.geomspace(0.1, 20.0, 12), 4).tolist())
 TEMPERATURES = (293.15, 313.15, 333.15, 353.15, 373.15, 393.15)
@@ -132,7 +133,7 @@ def points_map(request: PointsRequest) -> xr.Dataset:
         Numbers and errors over `DIMS`, SI; status, and the number of its cause.
     """
     contacts = request.bearing.contacts(STEEL)
-    heaviest = float((HIGHEST_PRESSURE / contacts[0].max_pressure(1.0)) ** 3)
+    heaviest = float((POINT_LIMIT / contacts[0].max_pressure(1.0)) ** 3)
     loads = np.geomspace(LIGHTEST, heaviest, request.loads)
     speeds, temperatures = np.array(request.speeds), np.array(request.temperatures or _held(request.oil))
     table = shipped_point_table()

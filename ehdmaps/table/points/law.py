@@ -21,6 +21,7 @@ from scipy.interpolate import CubicSpline
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, MapError, OutsideMapError
+from ehdmaps.physics.hertz import POINT_LIMIT
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.physics.point.ellipse import Ellipse
@@ -30,8 +31,8 @@ from ehdmaps.table.points.films import PointFilms
 
 KINDS = ("series", "inner", "outer")
 
-LIGHTEST, HIGHEST_PRESSURE = 1e-3, 4.2e9
-"""Lightest load that is read [N], and Hertz pressure of the heaviest one [Pa]: the static limit of ISO 76."""
+LIGHTEST = 1e-3
+"""Lightest load that is read [N]; the heaviest one has the Hertz pressure of the static limit."""
 
 _LOADS, _NEWTON, _NEAR = 240, 60, 1e-13
 _KEPT = 64
@@ -200,7 +201,7 @@ class PointLaw:
         """
         if entrainment_speed == 0.0:
             return DryLawAt(self.contacts)
-        heaviest = min(float((HIGHEST_PRESSURE / contact.max_pressure(1.0)) ** 3) for contact in self.contacts)
+        heaviest = min(float((POINT_LIMIT / contact.max_pressure(1.0)) ** 3) for contact in self.contacts)
         loads, table = np.geomspace(LIGHTEST, heaviest, _LOADS), shipped_point_table()
         read = [table.films(one, self.lubricant, loads, entrainment_speed, temperature) for one in self.contacts]
         usable = np.all([film.usable & (film.film_offset > 0.0) for film in read], axis=0)

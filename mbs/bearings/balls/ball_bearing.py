@@ -47,6 +47,7 @@ from mbs.bearings.balls.ball_speed import Drive, ball_loads, mean_speed
 from mbs.bearings.balls.laws import BallLaw
 from mbs.bearings.balls.normal_law import load_approach, nothing_held
 from mbs.model.elements import Excitation, Forces, OnRings, Operation, Port
+from mbs.model.findings import CARRIES
 
 FASTEST = 2e4
 """Largest accepted speed of a ring [rad/s]; 1e5 rpm is half of it."""
@@ -56,10 +57,6 @@ NEGLIGIBLE = 1e-11
 
 HARMONICS = 3
 """Multiples of the passing frequency of the balls that are worth following."""
-
-
-LOADED = 0.01
-"""Part of the highest load from which on a ball counts as loaded."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,12 +94,15 @@ class BallLoads:
     @property
     def loaded(self) -> int:
         """Number of balls that carry more than 1 % of the highest inner load: films that hardly touch carry some."""
-        return int(np.count_nonzero(self.load[0] > LOADED * self.load[0].max()))
+        return int(np.count_nonzero(self.load[0] > CARRIES * self.load[0].max()))
 
     @property
     def gyroscopic_traction(self) -> float:
-        """Largest traction that holds a gyroscopic moment, over the load of its ball at the outer raceway."""
-        loaded = self.load[1] > 0.0
+        """Largest traction that holds a gyroscopic moment, over the load of its ball at the outer raceway.
+
+        Of balls that carry load: films press a little on all others.
+        """
+        loaded = self.load[1] > CARRIES * self.load[1].max()
         return float(np.max(np.abs(self.traction[loaded]) / self.load[1][loaded], initial=0.0))
 
     def mean_angle(self, side: int) -> float:
@@ -415,6 +415,10 @@ class BallElement(OnRings):
     def balls(self, displacement: FloatArray, operation: Operation) -> BallLoads:
         """Loads of all balls at rest at the displacement (6,) of the inner ring against the outer one."""
         return self.force.balls(displacement, **self.conditions(operation))
+
+    def element_loads(self, displacement: FloatArray, operation: Operation) -> FloatArray:
+        """See `OnRings.element_loads`."""
+        return np.asarray(self.balls(displacement, operation).load[0])
 
     def evaluate(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> Forces:
         """Force on the inner ring, stiffness and damping, see `Element.evaluate`."""

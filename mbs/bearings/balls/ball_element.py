@@ -20,12 +20,14 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, SolverError
 from ehdmaps.units import RPM
 from mbs.bearings.balls.ball_bearing import BallElement, BallForce, BallLoads
+from mbs.bearings.balls.ball_findings import ball_gauge
 from mbs.bearings.balls.ball_memory import FilmsOfBalls
 from mbs.bearings.balls.ball_speed import dry_energy, speed_work, turned_by
 from mbs.bearings.balls.laws import BallLaw
 from mbs.bearings.balls.normal_law import nothing_held
 from mbs.model.condensed import Condensed
 from mbs.model.elements import Forces, Operation, Powers
+from mbs.model.findings import Gauge
 from mbs.model.relaxation import Films, Relaxation
 
 MOST_SPEEDS = 64
@@ -189,6 +191,10 @@ class MachineBalls(BallElement):
     def balls(self, displacement: FloatArray, operation: Operation) -> BallLoads:
         """See `BallElement.balls`."""
         return self.settled(displacement, operation).balls
+
+    def gauge(self, displacement: FloatArray, operation: Operation) -> Gauge:
+        """See `OnRings.gauge`."""
+        return ball_gauge(self.force_at(operation), self.balls(displacement, operation))
 
     @property
     def entrainment_rate(self) -> float:

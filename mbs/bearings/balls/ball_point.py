@@ -18,29 +18,23 @@ from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.film_formulas import hamrock_dowson_central, hamrock_dowson_minimum
-from ehdmaps.units import PRESSURE
 from mbs.bearings.balls.ball_bearing import BallElement, BallForce, BallLoads
+from mbs.bearings.balls.ball_findings import ball_gauge, ball_pressures, reach_of
 from mbs.bearings.balls.ball_motion import Motion, ball_motion
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import Load, Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
+from mbs.model.findings import Finding, WithFindings
 from mbs.model.system import System
 
 if TYPE_CHECKING:
     from mbs.bearings.balls.films import BallFilms
 
-STATIC_LIMIT = 4.2e9
-"""Hertz pressure of the static load rating of ball bearings after ISO 76 [Pa]; permanent deformation above it."""
-
-SIDES = ("inner", "outer")
-
 _RING = "inner ring"
-_SLIP = 0.05
-"""Traction over load that a film is trusted to hold a ball by against its gyroscopic moment."""
 
 
 @dataclass(frozen=True, eq=False)
-class BallPoint:
+class BallPoint(WithFindings):
     """A ball bearing in equilibrium.
 
     Attributes
@@ -65,8 +59,8 @@ class BallPoint:
     film_errors : array (2, 4)
         Largest stated errors of film offset, central and smallest film, and damping, of the inner and outer contacts
         that carry more than 1 % of the highest load; NaN where films come from formulas, or there are none.
-    problems, notes : tuple of str
-        Why the laws do not hold at the point; what else is to be known.
+    findings : tuple of Finding
+        What is beyond its laws, and what else is to be known.
     failed : bool
         Whether it has no answer: numbers are NaN, and `problems` say why.
     """
@@ -84,8 +78,7 @@ class BallPoint:
     central_film: FloatArray
     minimum_film: FloatArray
     film_errors: FloatArray
-    problems: tuple[str, ...]
-    notes: tuple[str, ...]
+    findings: tuple[Finding, ...]
     failed: bool = False
 
     @property
@@ -190,8 +183,7 @@ def ball_point(
     balance = _balance(System([ring], loads=loads, elements=[element]), given, force)
     pose[[0, 1, 2, 4, 5][: len(free)]] = balance.displacement
     balls = element.balls(pose, Operation())
-    contacts = force.geometry.contacts(force.material)
-    pressure = np.array([contact.max_pressure(balls.load[side]) for side, contact in enumerate(contacts)])
+    contacts, pressure = force.geometry.contacts(force.material), ball_pressures(force, balls)
     motion = ball_motion(force, balls, inner_speed, outer_speed)
     central, minimum = np.full((2, *pressure.shape), np.nan)
     film_errors = np.full((2, 4), np.nan)
@@ -235,17 +227,9 @@ def ball_point(
         central_film=central,
         minimum_film=minimum,
         film_errors=film_errors,
-        problems=tuple(filter(None, [_overload(pressure), _shoulder(force, balls)])),
-        notes=tuple(
-            filter(
-                None,
-                [
-                    _slack(force, balls),
-                    _sliding(balls),
-                    _lost(balls),
-                    _beyond(force, balls),
-                ],
-            )
+        findings=(
+            *ball_gauge(force, balls).findings,
+            *filter(None, [reach_of(force, balls)]),
         ),
     )
 
@@ -292,70 +276,3 @@ def _balance(system: System, load: FloatArray, force: BallForce) -> Equilibrium:
                 "the tangent of its contact angle"
             )
         raise AnalysisError(f"{words}: {error.__cause__ or error}") from error
-
-
-def _overload(pressure: FloatArray) -> str:
-    """A sentence where a pressure is beyond the static limit; empty otherwise."""
-    side, ball = np.unravel_index(int(np.argmax(pressure)), pressure.shape)
-    if pressure[side, ball] <= STATIC_LIMIT:
-        return ""
-    return (
-        f"Hertz pressure of {PRESSURE.text(float(pressure[side, ball]))} ({SIDES[side]} raceway) is above "
-        f"{PRESSURE.text(STATIC_LIMIT)}, the static limit of ISO 76: permanent deformation; elastic contacts no longer "
-        "hold"
-    )
-
-
-def _shoulder(force: BallForce, balls: BallLoads) -> str:
-    """A sentence where balls of an angular contact bearing press the other way; empty otherwise."""
-    nominal = force.geometry.contact_angle
-    wrong = (balls.load[0] > 1e-3 * balls.load[0].max()) & (balls.contact_angle[0] * nominal < -1e-6)
-    if not np.any(wrong):
-        return ""
-    return (
-        f"{int(np.count_nonzero(wrong))} balls press against the shoulder that angular contact bearings lack; give an "
-        "axial load that holds the contact angle"
-    )
-
-
-def _slack(force: BallForce, balls: BallLoads) -> str:
-    """A sentence where the axial load does not hold the contact angle of an angular contact bearing."""
-    nominal, found = (abs(math.degrees(angle)) for angle in (force.geometry.contact_angle, balls.mean_angle(0)))
-    if found >= 0.5 * nominal:
-        return ""
-    return (
-        f"the axial load is too small to hold the contact angle: the rings slide to {found:.3g} deg of {nominal:.3g}; "
-        "a mounted bearing gets an axial load from the other one"
-    )
-
-
-def _sliding(balls: BallLoads) -> str:
-    """A sentence where the gyroscopic moment asks for more traction than a film is trusted to have."""
-    share = balls.gyroscopic_traction
-    if share <= _SLIP:
-        return ""
-    return (
-        f"the gyroscopic moment asks for a traction of {share:.2g} of the load at the outer raceway, more than films "
-        f"hold ({_SLIP:g}): balls may slide; more axial load prevents it"
-    )
-
-
-def _beyond(force: BallForce, balls: BallLoads) -> str:
-    """A sentence where contacts that matter have loads without a solution; empty otherwise."""
-    low, high = force.law.loads
-    largest = float(balls.load.max())
-    light = np.count_nonzero((balls.load < low) & (balls.load > 1e-2 * largest))
-    if largest <= high and not light:
-        return ""
-    return (
-        f"films are solved from {low:.3g} to {high:.4g} N; contacts carry up to {largest:.4g} N, and {light} less than "
-        "that: their films go on along straight lines in the logarithms"
-    )
-
-
-def _lost(balls: BallLoads) -> str:
-    """A sentence where centrifugal load lifts balls off the inner raceway; empty otherwise."""
-    count = int(np.count_nonzero((balls.load[0] <= 0.0) & (balls.load[1] > 0.0)))
-    if not count or float(balls.centrifugal.max()) < 1e-2 * float(balls.load.max()):
-        return ""
-    return f"{count} of {balls.angle.size} balls run on the outer raceway alone, by their centrifugal load"

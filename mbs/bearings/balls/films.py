@@ -22,6 +22,7 @@ from scipy.interpolate import CubicSpline, PPoly
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.compiled import in_python
 from ehdmaps.errors import SolverError
+from ehdmaps.physics.hertz import POINT_LIMIT
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.physics.point.ellipse import Ellipse
@@ -38,8 +39,8 @@ FEWEST = 4
 MISSING = 2
 """Neighbouring loads without a film at which a curve ends."""
 
-LIGHTEST, HIGHEST_PRESSURE = 2.0, 4.2e9
-"""Lightest load [N], and Hertz pressure of the heaviest one [Pa]: the static limit of ISO 76."""
+LIGHTEST = 2.0
+"""Lightest load [N]; the heaviest one has the Hertz pressure of the static limit."""
 
 _BEYOND = 30.0
 """Factor by which the law's table goes on above the heaviest load; below the lightest the kernel goes on straight."""
@@ -270,7 +271,7 @@ _NAMES = ("film_offset", "central_film", "minimum_film", "damping")
 
 def _contact_films(side: str, contact: Ellipse, point: _Point, table: bool, solves: bool) -> ContactFilms:
     """Films of a contact over load."""
-    heaviest = float((HIGHEST_PRESSURE / contact.max_pressure(1.0)) ** 3)
+    heaviest = float((POINT_LIMIT / contact.max_pressure(1.0)) ** 3)
     found, films = _read(contact, point, heaviest) if table else ([], None)
     kept = _together(found)
     read = len(kept) >= FEWEST

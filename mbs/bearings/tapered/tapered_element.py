@@ -19,11 +19,13 @@ from ehdmaps.errors import AnalysisError, EhdmapsError
 from ehdmaps.units import RPM
 from mbs.bearings.balls.ball_speed import turned_by
 from mbs.bearings.tapered.line_film import DRY_LINES, LineFilms
+from mbs.bearings.tapered.roller_findings import roller_gauge
 from mbs.bearings.tapered.tapered_bearing import TaperedForce, TaperedLoads
 from mbs.bearings.tapered.tapered_energy import TaperedStates, dry_energy, place_work
 from mbs.bearings.tapered.tapered_memory import FilmsOfRollers
 from mbs.model.condensed import Condensed
 from mbs.model.elements import Excitation, Forces, OnRings, Operation, Port, Powers
+from mbs.model.findings import Gauge
 from mbs.model.relaxation import Films, Relaxation
 
 HARMONICS = 3
@@ -203,6 +205,14 @@ class TaperedElement(OnRings):
     def rollers(self, displacement: FloatArray, operation: Operation) -> TaperedLoads:
         """Loads of all rollers at rest at the displacement (6,) of the inner ring against the outer one."""
         return self.force_at(operation).rollers(self.pose(displacement), **self.conditions(operation))
+
+    def element_loads(self, displacement: FloatArray, operation: Operation) -> FloatArray:
+        """See `OnRings.element_loads`: those of the cone."""
+        return np.array(self._at(displacement, operation)[0].last_rollers[:, 3])
+
+    def gauge(self, displacement: FloatArray, operation: Operation) -> Gauge:
+        """See `OnRings.gauge`."""
+        return roller_gauge(self.force_at(operation), self.rollers(displacement, operation))
 
     @property
     def entrainment_rate(self) -> float:

@@ -16,25 +16,19 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
-from ehdmaps.physics.hertz import max_pressure
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.film_formulas import hamrock_dowson_central
-from ehdmaps.physics.rollers.ribbed_geometry import LARGEST_SHARE, RibbedGeometry, axial_limit
 from ehdmaps.physics.rollers.tapered_catalogue import tapered_ratings
-from ehdmaps.units import PRESSURE
 from mbs.bearings.films import FormulaFilms
 from mbs.bearings.tapered.reference_load import reference_load
+from mbs.bearings.tapered.roller_findings import line_pressures, reach_of, roller_gauge
 from mbs.bearings.tapered.tapered_bearing import TaperedForce, TaperedLoads
 from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import Load, Operation
 from mbs.model.equilibrium import equilibrium
+from mbs.model.findings import Finding, WithFindings
 from mbs.model.system import System
-
-STATIC_LIMIT = 4.0e9
-"""Hertz pressure of the static load rating of roller bearings after ISO 76 [Pa]."""
-
-SIDES = ("inner", "outer")
 
 RIB_FRICTION = 0.05
 """Coefficient of friction at ribs, assumed: mixed friction with an oil film."""
@@ -43,7 +37,7 @@ _RING = "inner ring"
 
 
 @dataclass(frozen=True, eq=False)
-class TaperedPoint:
+class TaperedPoint(WithFindings):
     """A tapered roller bearing, or one with cylindrical rollers between ribs, in equilibrium.
 
     Attributes
@@ -75,8 +69,8 @@ class TaperedPoint:
         Centrifugal load of a roller [N].
     equivalent_load, life : float
         P_ref of ISO/TS 16281 [N], and L10r in millions of turns.
-    problems, notes : tuple of str
-        Why the laws do not hold at the point; what else is to be known.
+    findings : tuple of Finding
+        What is beyond its laws, and what else is to be known.
     failed : bool
         Whether it has no answer: numbers are NaN, and `problems` say why.
     """
@@ -101,8 +95,7 @@ class TaperedPoint:
     centrifugal_load: float
     equivalent_load: float
     life: float
-    problems: tuple[str, ...]
-    notes: tuple[str, ...]
+    findings: tuple[Finding, ...]
     failed: bool = False
 
     @property
@@ -215,7 +208,7 @@ def tapered_point(
     pose[[0, 1, 2, 4, 5][: len(free)]] = balance.displacement
     rollers = element.rollers(pose, Operation())
     speed = geometry.entrainment_speed(inner_speed, outer_speed)
-    pressure, central, minimum = _lines(force, rollers, speed, oil, temperature)
+    central, minimum = _lines(force, rollers, speed, oil, temperature)
     rib_pressure, rib_film, slides = _ribs(force, rollers, (inner_speed, outer_speed), oil, temperature)
     carries = rollers.ribs.max(axis=1, initial=0.0) > 0.0
     length = geometry.roller_length / force.positions.size
@@ -236,7 +229,7 @@ def tapered_point(
         stiffness=balance.element_stiffness[0],
         damping=balance.element_damping[0],
         rollers=rollers,
-        pressure=pressure,
+        pressure=line_pressures(force, rollers),
         central_film=central,
         minimum_film=minimum,
         rib_pressure=rib_pressure,
@@ -246,8 +239,7 @@ def tapered_point(
         centrifugal_load=centrifugal,
         equivalent_load=equivalent,
         life=life,
-        problems=tuple(filter(None, [_overload(pressure)])),
-        notes=tuple(filter(None, [_slack(force, rollers), _limits(force, given), _edges(force, rollers)])),
+        findings=(*roller_gauge(force, rollers).findings, *filter(None, [reach_of(force, rollers)])),
     )
 
 
@@ -280,68 +272,20 @@ def _ribs(
 
 def _lines(
     force: TaperedForce, rollers: TaperedLoads, speed: float, oil: Lubricant | None, temperature: float
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Largest Hertz pressures and smallest films of the slices, each with its own radius and speed, (2, Z) each."""
+) -> tuple[FloatArray, FloatArray]:
+    """Smallest central and smallest films of the slices, each with its own radius and speed, (2, Z) each."""
     geometry = force.geometry
     contacts = geometry.contacts(force.material)
-    pressure = np.zeros((2, rollers.angle.size))
     central, minimum = np.full((2, 2, rollers.angle.size), np.nan)
-    for side, contact in enumerate(contacts):
+    if oil is None or not speed > 0.0:
+        return central, minimum
+    for side in range(2):
         for index, place in enumerate(force.positions.tolist()):
             radius = geometry.radius_at(place, side)
+            local = tuple(dataclasses.replace(each, radius=radius) for each in contacts)
+            share = 1.0 - place / geometry.apex_distance
             loads = rollers.slices[side, :, index]
-            at_slice = np.asarray(max_pressure(loads, radius, contact.reduced_modulus))
-            pressure[side] = np.maximum(pressure[side], at_slice)
-            if oil is not None and speed > 0.0:
-                local = tuple(dataclasses.replace(each, radius=radius) for each in contacts)
-                share = 1.0 - place / geometry.apex_distance
-                state = FormulaFilms(local, oil).state(side, loads, speed * share, temperature)
-                central[side] = np.fmin(central[side], state.central_film)
-                minimum[side] = np.fmin(minimum[side], state.minimum_film)
-    return pressure, central, minimum
-
-
-def _overload(pressure: FloatArray) -> str:
-    """A sentence where a pressure is beyond the static limit; empty otherwise."""
-    side, roller = np.unravel_index(int(np.argmax(pressure)), pressure.shape)
-    if pressure[side, roller] <= STATIC_LIMIT:
-        return ""
-    return (
-        f"Hertz pressure of {PRESSURE.text(float(pressure[side, roller]))} ({SIDES[side]} raceway) is above "
-        f"{PRESSURE.text(STATIC_LIMIT)}, the static limit of ISO 76: permanent deformation; elastic contacts no longer "
-        "hold"
-    )
-
-
-def _limits(force: TaperedForce, load: FloatArray) -> str:
-    """A sentence where an axial load is beyond what catalogues allow ribs."""
-    if not isinstance(force.geometry, RibbedGeometry):
-        return ""
-    axial, radial = abs(float(load[0])), math.hypot(*load[1:])
-    limit, most = axial_limit(force.geometry.name), LARGEST_SHARE * radial
-    found = [f"{LARGEST_SHARE:g} Fr = {most:.4g} N"] * (axial > most)
-    found += [f"{limit:.4g} N, the strength of ribs"] * (limit is not None and axial > limit)
-    return f"axial load of {axial:.4g} N is above what SKF allows: {' and '.join(found)}" if found else ""
-
-
-def _slack(force: TaperedForce, rollers: TaperedLoads) -> str:
-    """A sentence where less than half of the tapered rollers carry load."""
-    if not force.geometry.contact_angle:
-        return ""
-    cone = rollers.load[0]
-    share = np.count_nonzero(cone > 0.01 * cone.max()) / cone.size
-    if share >= 0.45:
-        return ""
-    return (
-        f"{100.0 * share:.3g} % of the rollers carry load, less than half: the axial load is below 0.5 Fr/Y, which a "
-        "mounted bearing gets from the other one"
-    )
-
-
-def _edges(force: TaperedForce, rollers: TaperedLoads) -> str:
-    """A sentence where loads crowd at an end of the rollers."""
-    carries = rollers.load[:2] > 0.01 * rollers.load[:2].max()
-    off = float(np.max(np.abs(np.where(carries, rollers.centre, 0.0)))) / force.geometry.roller_length
-    if off < 1.0 / 6.0:
-        return ""
-    return f"loads lie {100.0 * off:.3g} % of the length beside the middle of rollers: they crowd at an end"
+            state = FormulaFilms(local, oil).state(side, loads, speed * share, temperature)
+            central[side] = np.fmin(central[side], state.central_film)
+            minimum[side] = np.fmin(minimum[side], state.minimum_film)
+    return central, minimum

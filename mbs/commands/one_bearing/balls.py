@@ -43,6 +43,7 @@ from mbs.commands.one_bearing.values import (
     read_one,
     read_values,
 )
+from mbs.model.findings import Cause, Finding
 from mbs.output.ball_table import BallDescription, ball_dataset, ball_text, write_ball_csv
 from mbs.output.files import write_dataset
 from mbs.scene.contact_laws import Damper
@@ -228,7 +229,10 @@ def _at_load(request: BallRequest, load: tuple[float, float, float], speed: floa
         temperature=request.description.temperature,
         films=at.films,
     )
-    return dataclasses.replace(point, problems=(*point.problems, *at.problems), notes=(*point.notes, *at.notes))
+    lacks = [Finding(Cause.REACH, words) for words in at.problems]
+    return dataclasses.replace(
+        point, findings=(*point.findings, *lacks, *(Finding(Cause.FILM, words) for words in at.notes))
+    )
 
 
 def _exported(request: BallRequest, points: list[BallPoint]) -> BallExport:

@@ -51,6 +51,7 @@ from mbs.commands.one_bearing.values import (
     read_values,
     read_whole,
 )
+from mbs.model.findings import Cause, Finding
 from mbs.output.files import write_dataset
 from mbs.scene.contact_laws import Damper
 from mbs.scene.fields import FORCE
@@ -243,7 +244,7 @@ def _at_load(
         oil=request.oil,
         temperature=request.description.temperature,
     )
-    return dataclasses.replace(point, problems=(*point.problems, *lacks))
+    return dataclasses.replace(point, findings=(*point.findings, *(Finding(Cause.REACH, words) for words in lacks)))
 
 
 def _force_at(request: TaperedRequest) -> Callable[[float], tuple[TaperedForce, tuple[str, ...]]]:

@@ -12,10 +12,12 @@ import numpy as np
 from ehdmaps.physics.rollers.ribbed_geometry import RibbedGeometry
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from ehdmaps.units import DAMPER, FILM, PRESSURE, RPM, SPRING, TEMPERATURE
-from mbs.bearings.balls.ball_bearing import LOADED
+from mbs.bearings.films import SIDES
+from mbs.bearings.tapered.roller_findings import line_pressures
 from mbs.bearings.tapered.tapered_element import TaperedElement
-from mbs.bearings.tapered.tapered_point import RIB_FRICTION, SIDES, TaperedPoint
-from mbs.output.bearing_table import OPEN, hole_line, lambda_line, shown, smallest, warning_lines, write_csv
+from mbs.bearings.tapered.tapered_point import RIB_FRICTION, TaperedPoint
+from mbs.model.findings import CARRIES
+from mbs.output.bearing_table import hole_line, lambda_line, shown, smallest, unsound_lines, warning_lines, write_csv
 from mbs.output.files import described
 from mbs.output.state_text import beside_class
 from mbs.scene.fields import DEGREE, FORCE, MICROMETRE
@@ -223,7 +225,7 @@ def tapered_text(description: TaperedDescription, points: Points) -> list[str]:
         lines += _page(everything[0], description) + _rollers(everything[0])
     else:
         lines += _table(everything, description)
-    return lines + warning_lines(everything)
+    return unsound_lines(everything) + lines + warning_lines(everything)
 
 
 def tapered_heading(description: TaperedDescription, point: TaperedPoint) -> list[str]:
@@ -367,6 +369,7 @@ def tapered_lines(model: Model, balance: Equilibrium) -> list[str]:
             continue
         rollers = element.rollers(connected.transform @ balance.displacement, balance.operation)
         force, cone = balance.forces[index], rollers.load[0]
+        pressures = line_pressures(element.force_at(balance.operation), rollers).max(axis=1)
         parts = (
             ", ".join(f"{axis} {factor * matrix[k, k]:.5g}" for k, axis in enumerate(_WAYS)) + f" {unit}"
             for matrix, factor, unit in (
@@ -376,12 +379,9 @@ def tapered_lines(model: Model, balance: Equilibrium) -> list[str]:
         )
         lines += [
             f"{element.name}: {force[0]:.5g} N along x, {math.hypot(force[1], force[2]):.5g} N across it on the inner "
-            f"ring; {np.count_nonzero(cone > LOADED * cone.max())} of {cone.size} rollers loaded, up to "
-            f"{cone.max():.5g} N at the inner raceway, rib up to {rollers.load[2].max():.4g} N",
+            f"ring; {np.count_nonzero(cone > CARRIES * cone.max())} of {cone.size} rollers loaded, up to "
+            f"{cone.max():.5g} N at the inner raceway, rib up to {rollers.load[2].max():.4g} N; Hertz pressure up to "
+            f"{PRESSURE.value(pressures[0]):.4g} inner, {PRESSURE.text(pressures[1])} outer",
             "  K " + "; C ".join(parts),
         ]
-        if not np.any(cone > OPEN):
-            lines.append(
-                f"warning: {element.name}: no roller carries load: nothing holds the shaft there, preload is lost"
-            )
     return lines
