@@ -21,17 +21,16 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from scipy import io, sparse
+from scipy import sparse
 
 from ehdmaps.arrays import IntArray
 from ehdmaps.errors import InputError
+from ehdmaps.inputs import first_bytes
+from ehdmaps.units import short
 from mbs.flexible.finite_elements import MOST_FREEDOMS, FiniteElementModel, NodePositions, named
 from mbs.flexible.number_table import NumberTable, check_file, check_last_line, read_numbers
 from mbs.flexible.plan import UNIT_SYSTEMS
 from mbs.flexible.rigid_motion import check_rigid_motion
-
-_BLOCK = 2**20
-"""Bytes of a file that are looked at in one piece."""
 
 _FIXED = 1e35
 """Stiffness from which on a degree of freedom is taken as fixed: Abaqus writes 1e36 for those."""
@@ -121,29 +120,63 @@ def read_matrix_market(path: Path, dofs: Path) -> Labelled:
     """
     nodes, directions = read_dof_table(dofs)
     check_file(path)
-    _check_plain(path)
-    try:
-        rows, columns, entries, _, values, _ = io.mminfo(path)
-    except (OSError, ValueError, OverflowError) as error:
-        raise InputError(
-            f"{path}: is no Matrix Market file ({_first_line(error)}); allowed: one that begins with %%MatrixMarket"
-        ) from error
+    head = first_bytes(path, 200, "a Matrix Market file").decode("ascii", "replace").partition("\n")[0].split()
+    if len(head) < 5 or head[0] != "%%MatrixMarket" or head[1].lower() != "matrix":
+        raise InputError(f"{path}: is no Matrix Market file; allowed: one that begins with %%MatrixMarket matrix")
+    shape, values, symmetry = (word.lower() for word in head[2:5])
     if values not in ("real", "integer", "double"):
-        raise InputError(f"{path}: got {values} entries; allowed: real ones")
-    if (rows, columns) != (nodes.size, nodes.size):
+        raise InputError(f"{path}: got {short(values)} entries; allowed: real ones")
+    if shape not in ("coordinate", "array") or symmetry not in ("symmetric", "general"):
         raise InputError(
-            f"{path}: got {rows} rows and {columns} columns; allowed: {nodes.size} of each, as many as lines in {dofs}"
+            f"{path}: got {short(f'{shape} {symmetry}')}; allowed: coordinate or array, symmetric or general"
         )
-    # An entry takes two characters at least: a header that promises more must not fill the memory.
-    if 2 * entries > path.stat().st_size:
-        raise InputError(f"{path}: the header promises {entries} entries, which the file does not hold; it was cut off")
-    check_last_line(path)
-    try:
-        matrix = sparse.csc_array(io.mmread(path, spmatrix=False), dtype=np.float64)
-    except (OSError, ValueError, OverflowError, MemoryError) as error:
-        raise InputError(f"{path}: cannot be read ({_first_line(error)}); it was cut off or damaged") from error
-    # Whether the entries are finite and symmetric, the model looks.
+    if shape == "array":
+        return Labelled(_dense(path, symmetry, nodes.size, dofs), nodes, directions)
+    # The line of the size has three numbers, as those of the entries.
+    table = read_numbers(path, 3, "%")
+    rows, columns, entries = (round(number) for number in table.values[0].tolist())
+    _check_shape(path, rows, columns, nodes.size, dofs)
+    if entries != table.values.shape[0] - 1:
+        raise InputError(
+            f"{path}: the header promises {entries} entries, and the file has {table.values.shape[0] - 1}; it was cut "
+            "off, or entries do not have a line each"
+        )
+    whole = table.whole(2)
+    bad = np.flatnonzero(((whole < 1) | (whole > nodes.size))[1:].any(axis=1))
+    if bad.size:
+        raise table.problem(int(bad[0]) + 1, f"allowed: rows and columns from 1 to {nodes.size}")
+    matrix = _symmetric(table, whole[:, 0] - 1, whole[:, 1] - 1, nodes.size, begin=1)
     return Labelled(matrix, nodes, directions)
+
+
+def _check_shape(path: Path, rows: int, columns: int, size: int, dofs: Path) -> None:
+    """Raise if a matrix has not as many rows and columns as there are degrees of freedom."""
+    if (rows, columns) != (size, size):
+        raise InputError(
+            f"{path}: got {rows} rows and {columns} columns; allowed: {size} of each, as many as lines in {dofs}"
+        )
+
+
+def _dense(path: Path, symmetry: str, size: int, dofs: Path) -> sparse.csc_array:
+    """A matrix whose entries are all written, column by column; of a symmetric one those below the diagonal."""
+    check_last_line(path)
+    with path.open(encoding="utf-8", errors="replace") as file:
+        words = [word for line in file if not line.startswith("%") for word in line.split()]
+    try:
+        rows, columns = (int(word) for word in words[:2])
+        _check_shape(path, rows, columns, size, dofs)
+        values = np.array(words[2:], dtype=np.float64)
+    except ValueError as error:
+        raise InputError(f"{path}: cannot be read ({str(error)[:200]}); allowed: numbers; was it damaged?") from error
+    place = np.tril_indices(size) if symmetry == "symmetric" else np.indices((size, size)).reshape(2, -1)
+    order = np.lexsort((place[0], place[1]))
+    if values.size != order.size:
+        raise InputError(f"{path}: got {values.size} entries; allowed: {order.size}, as its header says")
+    matrix = np.zeros((size, size))
+    matrix[place[0][order], place[1][order]] = values
+    if symmetry == "symmetric":
+        matrix[place[1][order], place[0][order]] = values
+    return sparse.csc_array(matrix)
 
 
 def read_abaqus_matrix(path: Path, dofs: Path | None = None) -> Labelled:
@@ -262,14 +295,14 @@ def _check_count(path: Path, count: int) -> None:
         )
 
 
-def _symmetric(table: NumberTable, rows: IntArray, columns: IntArray, size: int) -> sparse.csc_array:
-    """The whole matrix of values given once or twice for each pair of rows, rows and columns from 0."""
-    values = table.values[:, -1]
+def _symmetric(table: NumberTable, rows: IntArray, columns: IntArray, size: int, begin: int = 0) -> sparse.csc_array:
+    """The whole matrix of values given once or twice for each pair of rows; rows and columns from 0, from a line on."""
+    rows, columns, values = rows[begin:], columns[begin:], table.values[begin:, -1]
     entries = rows * size + columns
     _, first = np.unique(entries, return_index=True)
     if first.size < entries.size:
         again = int(np.setdiff1d(np.arange(entries.size), first)[0])
-        raise table.problem(again, "an entry that is there twice; allowed: each once")
+        raise table.problem(again + begin, "an entry that is there twice; allowed: each once")
     given = sparse.csc_array((values, (rows, columns)), shape=(size, size))
     apart = rows != columns
     mirrored = np.isin(entries[apart], columns[apart] * size + rows[apart])
@@ -279,26 +312,11 @@ def _symmetric(table: NumberTable, rows: IntArray, columns: IntArray, size: int)
     if not mirrored.all():
         row = int(np.flatnonzero(apart)[np.argmin(mirrored)])
         raise table.problem(
-            row,
+            row + begin,
             "an entry without its mirror image, while others have theirs; allowed: one half of the matrix, or the "
             "whole",
         )
     return given
-
-
-def _first_line(error: BaseException) -> str:
-    """Message of an error, in one line."""
-    return (str(error).splitlines() or [type(error).__name__])[0][:200]
-
-
-def _check_plain(path: Path) -> None:
-    """Refuse a text with zero bytes: the library that reads Matrix Market files reads on behind them, and crashes."""
-    with path.open("rb") as file:
-        while block := file.read(_BLOCK):
-            if b"\0" in block:
-                raise InputError(
-                    f"{path}: is no Matrix Market file (it has zero bytes); allowed: text; was it damaged?"
-                )
 
 
 _REFUSED = ("RIGIDBODY", "MPC", "DISTRIBUTINGCOUPLING", "KINEMATIC", "DISTRIBUTING", "COUPLING")

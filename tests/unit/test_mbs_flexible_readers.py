@@ -5,7 +5,7 @@ from __future__ import annotations
 import meshio
 import numpy as np
 import pytest
-from scipy import sparse
+from scipy import io, sparse
 
 from ehdmaps.errors import DependencyError, InputError
 from mbs.flexible.apart import run_apart
@@ -169,18 +169,56 @@ class TestReaders:
         size = next(line for line in text.splitlines() if not line.startswith("%"))
         for content, message in (
             ("nothing", "is no Matrix Market file"),
-            ("%%MatrixMarket matrix coordinate complex general\n36 36 1\n1 1 1 0\n", "got complex entries"),
+            ("%%MatrixMarket matrix coordinate complex general\n36 36 1\n1 1 1 0\n", "got 'complex' entries"),
             ("%%MatrixMarket matrix coordinate real general\n5 5 1\n1 1 1\n", "got 5 rows and 5 columns"),
             (text.replace(size, "36 36 999999999"), "promises 999999999 entries"),
             (text[: len(text) // 2], "promises|its last line has no end"),
             (text[:-5], "its last line has no end"),
-            (text.rstrip().rpartition("\n")[0] + "\n36 36 x\n", "cannot be read"),
+            (text.rstrip().rpartition("\n")[0] + "\n36 36 x\n", "got '36 36 x'; allowed: 3 numbers a line"),
+            (text.replace("general", "skew-symmetric").replace("symmetric", "hermitian", 1), "got 'coordinate herm"),
         ):
             path.write_text(content)
             with pytest.raises(InputError, match=message):
                 read_matrix_market(path, dofs)
         with pytest.raises(InputError, match=r"gone.mtx: cannot be read .*No such file"):
             read_matrix_market(folder / "gone.mtx", dofs)
+
+    @pytest.mark.parametrize(
+        ("text", "message"),
+        [
+            ("symmetric\n2 2 3\n1 1 2\n2 2 2\n1 1 5\n", "line 5: got '1 1 5'; an entry that is there twice"),
+            ("symmetric\n2 2 2\n1 1 2.0D+01\n2 2 2\n", "line 3: got '1 1 2.0D.01'; allowed: 3 numbers"),
+            ("symmetric\n2 2 1\n1 1 2 2 2 2\n", "line 3: got '1 1 2 2 2 2'; allowed: 3 numbers a line"),
+            ("symmetric\n2 2 1\n1 1 2\n2 2 2\n", "promises 1 entries, and the file has 2"),
+            ("symmetric\n2 2 2\n1 1 2\n3 2 2\n", "line 4: got '3 2 2'; allowed: rows and columns from 1 to 2"),
+        ],
+    )
+    def test_entries_that_a_lenient_reader_takes_otherwise(self, tmp_path, text, message):
+        """Summed, cut off at a letter, or passed over; the entries of both halves are those of one matrix."""
+        (tmp_path / "d").write_text("1 1\n1 2\n")
+        path = tmp_path / "a.mtx"
+        path.write_text("%%MatrixMarket matrix coordinate real " + text)
+        with pytest.raises(InputError, match=message):
+            read_matrix_market(path, tmp_path / "d")
+        path.write_text("%%MatrixMarket matrix coordinate real symmetric\n% a\n2 2 4\n1 1 2\n1 2 1\n2 1 1\n2 2 2\n")
+        assert read_matrix_market(path, tmp_path / "d").matrix.toarray().tolist() == [[2.0, 1.0], [1.0, 2.0]]
+
+    def test_matrices_that_are_written_whole(self, tmp_path):
+        (tmp_path / "d").write_text("1 1\n1 2\n1 3\n")
+        path = tmp_path / "a.mtx"
+        whole = np.array([[4.0, 1.0, 2.0], [1.0, 5.0, 3.0], [2.0, 3.0, 6.0]])
+        for symmetry in ("symmetric", "general"):
+            io.mmwrite(path, whole, symmetry=symmetry)
+            assert read_matrix_market(path, tmp_path / "d").matrix.toarray().tolist() == whole.tolist()
+        text = path.read_text()
+        for content, message in (
+            (text + "7\n", "got 10 entries; allowed: 9"),
+            (text.replace("3 3", "3 2"), "got 3 rows and 2 columns"),
+            (text.rstrip() + "D\n", "cannot be read .*; allowed: numbers"),
+        ):
+            path.write_text(content)
+            with pytest.raises(InputError, match=message):
+                read_matrix_market(path, tmp_path / "d")
 
     def test_files_that_are_too_long(self, files, monkeypatch):
         monkeypatch.setattr("mbs.flexible.number_table.LONGEST_FILE", 10)
