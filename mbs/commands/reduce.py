@@ -56,7 +56,7 @@ def _lines(reduced: ReducedBody, found: Extent, as_one: Strained, source: Path, 
         f"{source}: {reduced.attributes['finite_element_freedoms']} degrees of freedom to {reduced.size}: {count} of "
         f"interfaces, {len(kept)} modes up to {reduced.attributes['cutoff']}; {seconds:.3g} s",
         f"{found.mass:.6g} kg without what fixed nodes have of it",
-        f"{as_one.held.size} of {as_one.count} nodes are next to what is held",
+        f"{as_one.held.size} of {as_one.nodes} nodes are next to what is held",
         "",
         f"{'place':<20}{'x, mm':>12}{'y, mm':>12}{'z, mm':>12}",
     ]

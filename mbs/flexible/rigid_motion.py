@@ -44,13 +44,13 @@ class Strained(NamedTuple):
         Nodes that a shift strains: next to what is held.
     displaced : array of int
         Nodes that a turn strains, and a shift does not.
-    count : int
+    nodes : int
         Number of all nodes that were looked at.
     """
 
     held: IntArray
     displaced: IntArray
-    count: int
+    nodes: int
 
     def warnings(self) -> tuple[str, ...]:
         """Say which nodes a turn strains, few as they are; one sentence, or none."""
@@ -132,7 +132,7 @@ def check_rigid_motion(model: FiniteElementModel) -> None:
         If more nodes are strained by a motion as one than supports, springs and gaps of a sound model explain.
     """
     found = strained(model)
-    free = found.count - found.held.size
+    free = found.nodes - found.held.size
     problems = []
     if found.displaced.size > MOST_DISPLACED * free:
         problems.append(
@@ -141,9 +141,9 @@ def check_rigid_motion(model: FiniteElementModel) -> None:
             "matrices has them; check numbers and positions of nodes, systems of coordinates and units"
         )
     filled = model.stiffness.nnz / model.size**2
-    if found.held.size > MOST_HELD * found.count and filled < _DENSE:
+    if found.held.size > MOST_HELD * found.nodes and filled < _DENSE:
         problems.append(
-            f"finite-element body: a shift of the whole body strains {found.held.size} of {found.count} nodes, such as "
+            f"finite-element body: a shift of the whole body strains {found.held.size} of {found.nodes} nodes, such as "
             f"{named(found.held)}; allowed: a stiffness that is whole, of a body that is free or held at a part of its "
             "nodes; were values lost?"
         )

@@ -308,7 +308,7 @@ class TestStrained:
         assert found.displaced.size == 0
         # What is held next to: one layer of six.
         assert found.held.size == (9 if fixed else 0)
-        assert found.count == (54 if fixed else 63)
+        assert found.nodes == (54 if fixed else 63)
 
     def test_nodes_that_are_elsewhere(self):
         """A few nodes, such as the arms of a seat; one part turned; length in another unit for some."""
@@ -361,7 +361,7 @@ class TestStrained:
             np.array([[5.0, 5.0, 5.0], 5.0 + length * along]),
         )
         found = strained(model)
-        assert (found.held.size, found.displaced.size, found.count) == (0, 0, 2)
+        assert (found.held.size, found.displaced.size, found.nodes) == (0, 0, 2)
         found = strained(moved(model, positions=model.positions * 1.1))
         assert found.displaced.tolist() == [1, 2]
 
