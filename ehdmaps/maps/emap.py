@@ -99,6 +99,10 @@ class EHDMap:
         self._dataset = completed(dataset, contacts_of(dataset))
         self.backbone = backbone
 
+    def __getstate__(self) -> dict[str, object]:
+        """For other processes: without the laws that were made of it."""
+        return {name: value for name, value in self.__dict__.items() if name != "_laws"}
+
     @property
     def dataset(self) -> xr.Dataset:
         """All that the map holds; of an old map also the films that follow from it."""
@@ -322,6 +326,7 @@ class EHDMap:
             surface=key[3],
             errors=self.law_errors,
             continued=_continued(field, contacts, self.lubricant) if goes_on else None,
+            title="" if self.bearing is None else self.bearing.title,
         )
         return self._laws[key]
 
@@ -352,7 +357,7 @@ class EHDMap:
     @cached_property
     def law_errors(self) -> LawErrors:
         """Bounds of the errors of the laws of this map."""
-        return LawErrors(lambda: self.dataset, self.contacts, self.lubricant)
+        return LawErrors(partial(getattr, self, "dataset"), self.contacts, self.lubricant)
 
     def film_field(self, contacts: tuple[str, ...] | None = None) -> FilmField:
         """Film between the points, what a law is made from: of the film table, the backbone, or the map's own grid.

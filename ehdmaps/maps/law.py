@@ -34,6 +34,7 @@ from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.surface import SMOOTH, Surface
+from ehdmaps.units import TEMPERATURE
 
 if TYPE_CHECKING:
     from ehdmaps.maps.edges.continued import ContinuedField
@@ -93,6 +94,8 @@ class ContactLaw:
     continued : ContinuedField, optional
         The films below the lowest speed and outside the temperatures of the map. Without them smooth films fade from
         the lowest mapped speed on, and the temperature is held at the edge with any policy.
+    title : str
+        What has the contacts, for people: a bearing.
 
     Raises
     ------
@@ -122,10 +125,12 @@ class ContactLaw:
         surface: Surface = SMOOTH,
         errors: LawErrors | None = None,
         continued: ContinuedField | None = None,
+        title: str = "",
     ) -> None:
         if outside not in get_args(OutsidePolicy):
             raise InputError(f"contact law, outside: got {outside!r}; allowed: {', '.join(get_args(OutsidePolicy))}")
         self.kind: LawKind = kind
+        self.title = title
         self.outside: OutsidePolicy = outside
         self.contacts = tuple(contacts)
         self.load_range = field.load_range
@@ -148,6 +153,16 @@ class ContactLaw:
         self._plain = self._farthest_table()
         self._parts: list[tuple[ApproachTable, ApproachTable]] = []
         self._latest: LawAtPoint | None = None
+
+    def __repr__(self) -> str:
+        """Kind, bearing, oil and range."""
+        (cold, hot), of = self.temperature_range, f" of {self.title}" if self.title else ""
+        oil = "dry" if self._films.dry else self._films.lubricant.title
+        loads, speeds = (f"{low:.4g} to {high:.4g}" for low, high in (self.load_range, self.speed_range))
+        return (
+            f"<ContactLaw {self.kind}{of}, {oil}: {loads} N/m, {speeds} m/s, {TEMPERATURE.value(cold):.4g} to "
+            f"{TEMPERATURE.text(hot)}; outside: {self.outside}>"
+        )
 
     @cached_property
     def table(self) -> LawTable:
@@ -543,6 +558,12 @@ class LawAtPoint:
     point: Point
     law: ContactLaw
     outside: bool
+
+    def __repr__(self) -> str:
+        """Speed, temperature and load, and the law."""
+        thrown = f", {self.centrifugal_load:.4g} N/m centrifugal" if self.centrifugal_load else ""
+        at = f"{self.entrainment_speed:.4g} m/s, {TEMPERATURE.text(self.temperature)}{thrown}"
+        return f"<LawAtPoint {at}, of {self.law!r}>"
 
     @property
     def conditions(self) -> tuple[float, float, float]:

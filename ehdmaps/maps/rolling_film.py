@@ -23,7 +23,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -325,7 +325,7 @@ def rolling_film(
     reader: _Reader | None = None
     start = math.inf
     if callable(backbone):
-        reader, start = _made_later(backbone, lubricant), RIGID
+        reader, start = _MadeLater(backbone, lubricant), RIGID
     elif backbone is not None and all(name in backbone for name in NAMES):
         reader, start = _lines_reader(backbone, contacts, lubricant)
     if reader is None:
@@ -334,19 +334,39 @@ def rolling_film(
     return RollingFilm(contacts, lubricant, reader, load_range, temperature_range, start, speed_range)
 
 
-def _made_later(lines: LaterLines, lubricant: Lubricant) -> _Reader:
+# Readers are classes, not functions in functions, so that laws can be pickled.
+
+
+@dataclass(frozen=True, eq=False)
+class _MadeLater:
     """Reader of lines that are made when it is first called."""
 
-    @cache
-    def reader() -> _Reader:
-        found = _backbone_reader(*lines(), lubricant)
+    lines: LaterLines
+    lubricant: Lubricant
+
+    def __getstate__(self) -> dict[str, Any]:
+        """For other processes, which make it again."""
+        return {"lines": self.lines, "lubricant": self.lubricant}
+
+    @cached_property
+    def reader(self) -> _Reader:
+        """The reader."""
+        found = _backbone_reader(*self.lines(), self.lubricant)
         assert found is not None  # lines of the film table are whole
         return found
 
-    def read(contact: LineContact, loads: FloatArray, speed: float, T: float) -> FloatArray:
-        return reader()(contact, loads, speed, T)
+    def __call__(self, contact: LineContact, loads: FloatArray, speed: float, T: float) -> FloatArray:
+        return self.reader(contact, loads, speed, T)
 
-    return read
+
+@dataclass(frozen=True, eq=False)
+class _ByContact:
+    """Readers by the names of the contacts."""
+
+    readers: Mapping[str, _Reader]
+
+    def __call__(self, contact: LineContact, loads: FloatArray, speed: float, T: float) -> FloatArray:
+        return self.readers[contact.name](contact, loads, speed, T)
 
 
 def _lines_reader(
@@ -363,13 +383,13 @@ def _lines_reader(
         readers |= {contact.name: reader for contact in read}
         solved = [np.isfinite(group[name].values) for name in NAMES]
         starts.append(known_from(group[BACKBONE_DIMS[0]].values, np.all(solved, axis=0)))
-    return lambda contact, *at: readers[contact.name](contact, *at), max(starts)
+    return _ByContact(readers), max(starts)
 
 
 def _backbone_reader(group: Mapping[Any, Any], reference: LineContact, lubricant: Lubricant) -> _Reader | None:
     """Reader of the backbone; None where a line has too few solved points."""
     zeta, speeds, kelvins = (np.asarray(group[name], dtype=np.float64) for name in BACKBONE_DIMS)
-    first, log_speeds = float(zeta[0]), np.log(speeds)
+    first = float(zeta[0])
     nodes = 2 + math.ceil((zeta[-1] - first) / LATTICE_STEP)
     places = first + LATTICE_STEP * np.arange(nodes)
     solved_lines = [np.asarray(group[name], dtype=np.float64) for name in NAMES]
@@ -388,22 +408,33 @@ def _backbone_reader(group: Mapping[Any, Any], reference: LineContact, lubricant
                 values = spline(inside) + slope * (places - inside)
                 bend = np.where(inside == places, spline(inside, 2), 0.0)
                 lattices[i, j * kelvins.size + k, :, :3] = np.column_stack([values, slope, bend])
+    return _Backbone(lattices, first, np.log(speeds), kelvins, reference, lubricant)
 
-    def read(contact: LineContact, loads: FloatArray, speed: float, T: float) -> FloatArray:
-        state = lubricant.at(T)
+
+@dataclass(frozen=True, eq=False)
+class _Backbone:
+    """Reader of lattices (2, n_u n_T, nodes, 5) over zeta from `first` on, by speed and temperature."""
+
+    lattices: FloatArray
+    first: float
+    log_speeds: FloatArray
+    kelvins: FloatArray
+    reference: LineContact
+    lubricant: Lubricant
+
+    def __call__(self, contact: LineContact, loads: FloatArray, speed: float, T: float) -> FloatArray:
+        state = self.lubricant.at(T)
         alpha = state.pressure_viscosity.pressure_viscosity
         unit, L = moes_groups(1.0, speed, state.viscosity, alpha, contact.radius, contact.reduced_modulus)
         zetas = np.log(loads * unit / valley_load_number(L))
-        rows, by_speed = lagrange(log_speeds, math.log(speed * reference.radius / contact.radius))
-        columns, by_temperature = lagrange(kelvins, T)
-        lines = (rows[:, None] * kelvins.size + columns).ravel()
+        rows, by_speed = lagrange(self.log_speeds, math.log(speed * self.reference.radius / contact.radius))
+        columns, by_temperature = lagrange(self.kelvins, T)
+        lines = (rows[:, None] * self.kelvins.size + columns).ravel()
         weights = np.outer(by_speed, by_temperature).ravel()
         found = np.empty((2, 3, loads.size))
-        for lattice, out in zip(lattices, found, strict=True):
-            mix_lines(lattice, first, LATTICE_STEP, lines, weights, zetas, out)
+        for lattice, out in zip(self.lattices, found, strict=True):
+            mix_lines(lattice, self.first, LATTICE_STEP, lines, weights, zetas, out)
         return found[:, 0]
-
-    return read
 
 
 def _grid_reader(
@@ -415,15 +446,25 @@ def _grid_reader(
         [[[rolling_units(contact, lubricant, u, T) for T in kelvins] for u in speeds.tolist()] for contact in contacts]
     )
     logs = np.log(values / np.moveaxis(units, -1, 0)[:, :, None])
-    names = [contact.name for contact in contacts]
+    return _Grid([contact.name for contact in contacts], logs, np.log(loads), np.log(speeds), kelvins)
 
-    def read(contact: LineContact, wanted: FloatArray, speed: float, T: float) -> FloatArray:
-        along_w = spline_weights(np.log(loads), np.log(wanted))
-        (along_u,) = spline_weights(np.log(speeds), np.array([math.log(speed)]))
-        (along_t,) = spline_weights(kelvins, np.array([T]))
-        return np.asarray(np.einsum("vwut,nw,u,t->vn", logs[:, names.index(contact.name)], along_w, along_u, along_t))
 
-    return read
+@dataclass(frozen=True, eq=False)
+class _Grid:
+    """Reader of ln f and ln g (2, n_contacts, n_w, n_u, n_T)."""
+
+    names: Sequence[str]
+    logs: FloatArray
+    log_loads: FloatArray
+    log_speeds: FloatArray
+    kelvins: FloatArray
+
+    def __call__(self, contact: LineContact, wanted: FloatArray, speed: float, T: float) -> FloatArray:
+        along_w = spline_weights(self.log_loads, np.log(wanted))
+        (along_u,) = spline_weights(self.log_speeds, np.array([math.log(speed)]))
+        (along_t,) = spline_weights(self.kelvins, np.array([T]))
+        logs = self.logs[:, self.names.index(contact.name)]
+        return np.asarray(np.einsum("vwut,nw,u,t->vn", logs, along_w, along_u, along_t))
 
 
 def rolling_units(contact: LineContact, lubricant: Lubricant, speed: float, T: float) -> tuple[float, float]:

@@ -107,6 +107,11 @@ class TableField:
         self._lubricant = lubricant
         self._kept: dict[tuple[str, bytes, bytes], _Lines] = {}
 
+    def __getstate__(self) -> dict[str, object]:
+        """For other processes: without what is read from the film table, which every process has."""
+        state = {name: value for name, value in self.__dict__.items() if name not in ("_table", "_memory")}
+        return {**state, "_kept": {}}
+
     @cached_property
     def _table(self) -> FilmTable:
         return film_table(self._lubricant)

@@ -19,7 +19,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -309,6 +309,16 @@ class BearingForce:
         self._work = Arrays(self.bearing, self.coupling)
         self._current: ForceAtPoint | None = None
         self._in_time: ForceInTime | None = None
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """For other processes: as it was made; its arrays are views of each other, which copies would not be."""
+        return BearingForce, (self.bearing, self.law)
+
+    def __repr__(self) -> str:
+        """Bearing, clearance, slices and law."""
+        geometry = self.bearing.geometry
+        made = f"clearance {1e6 * geometry.diametral_clearance:.4g} um, {self.bearing.slices} slices"
+        return f"<BearingForce {geometry.title}, {made}: {self.law!r}>"
 
     def at(
         self, entrainment_speed: float = math.nan, temperature: float = math.nan, centrifugal_load: float = 0.0

@@ -296,6 +296,16 @@ class ForceAtPoint:
         w = self._work
         self.arrays = (*w.shape, w.cells, w.knots, w.rows, w.states)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """For other processes: as it was made, see `BearingForce`."""
+        return ForceAtPoint, (self._bearing, FlatLaw(self._flat_law.law), self.conditions)
+
+    def __repr__(self) -> str:
+        """Bearing, conditions and law."""
+        u, T, q = self.conditions
+        law = self._flat_law.law
+        return f"<ForceAtPoint {self._bearing.geometry.title} at {u:.4g} m/s, {T:.4g} K, {q:.4g} N/m: {law!r}>"
+
     def __call__(self, pose: npt.ArrayLike, velocity: npt.ArrayLike | None = None, cage_angle: float = 0.0) -> Triple:
         """Force, stiffness and damping; as calling the `BearingForce`. The arrays are new ones each time."""
         out, _ = self._found(pose, velocity, cage_angle)

@@ -336,7 +336,8 @@ def formula(
     films = [_films(contact, lubricant, solver, loads, speeds, temperatures) for contact in chosen]
     offset, compliance, loss = (np.stack(part) for part in zip(*films, strict=True))
     field = GridField(chosen, lubricant, loads, speeds, temperatures, offset, compliance, loss)
-    return ContactLaw(kind, chosen, lubricant, field, outside, supply=supply or FLOODED, surface=surface or SMOOTH)
+    title, oil = bearing.geometry.title, supply or FLOODED
+    return ContactLaw(kind, chosen, lubricant, field, outside, supply=oil, surface=surface or SMOOTH, title=title)
 
 
 def _films(

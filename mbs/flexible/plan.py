@@ -9,7 +9,6 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from types import MappingProxyType
 from typing import Literal, get_args
 
 import numpy as np
@@ -280,8 +279,8 @@ class ReductionPlan:
     names: tuple[str, str] = NASTRAN_NAMES
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "interfaces", MappingProxyType(dict(self.interfaces)))
-        object.__setattr__(self, "points", MappingProxyType(dict(self.points)))
+        object.__setattr__(self, "interfaces", dict(self.interfaces))
+        object.__setattr__(self, "points", dict(self.points))
 
     @property
     def files(self) -> tuple[Path, ...]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from types import MappingProxyType
 
 import numpy as np
 from scipy.linalg import eigh
@@ -107,8 +106,8 @@ class ReducedBody:
     def __post_init__(self) -> None:
         object.__setattr__(self, "coordinates", tuple(self.coordinates))
         object.__setattr__(self, "units", tuple(self.units))
-        object.__setattr__(self, "frames", MappingProxyType(dict(self.frames)))
-        object.__setattr__(self, "attributes", MappingProxyType(dict(self.attributes)))
+        object.__setattr__(self, "frames", dict(self.frames))
+        object.__setattr__(self, "attributes", dict(self.attributes))
         size = self.size
         problems = []
         if not 1 <= size <= MOST_COORDINATES:

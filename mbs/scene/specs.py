@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Protocol
 
 from ehdmaps.errors import InputError
@@ -320,8 +319,8 @@ class TaperedSpec:
 
 
 def _freeze(spec: object, *names: str) -> None:
-    """Make tuples of what may be given as lists, and read-only mappings of mappings."""
+    """Make tuples of what may be given as lists, and own copies of mappings, which can be pickled as they are."""
     for name in names:
         object.__setattr__(spec, name, tuple(getattr(spec, name)))
     if hasattr(spec, "frames"):
-        object.__setattr__(spec, "frames", MappingProxyType(dict(spec.frames)))
+        object.__setattr__(spec, "frames", dict(spec.frames))

@@ -47,6 +47,7 @@ from mbs.linearised.linear import peak_places
 from mbs.modal.uff import read_uff
 from mbs.model.elements import OnRings
 from tests.cases.jobs import map_job
+from tests.cases.masses import MASSES, OIL, masses_on
 
 JOB = map_job(
     '["1 N/mm", "10 N/mm", "100 N/mm", "400 N/mm"]', '["0.1 m/s", "0.5 m/s", "2 m/s", "10 m/s"]', '["40 degC"]'
@@ -145,33 +146,10 @@ def test_analyses_load_no_command_and_neither_they_nor_commands_load_figures():
     assert not [name for name in ("matplotlib", "scipy.signal") if f"'{name}'" in commands]
 
 
-OIL = '[lubricant]\nname = "ISO VG 32"\n'
-ROTOR = """
-[[bodies]]
-name = "{bearing}"
-freedoms = ["x", "y", "z"]
-spin = 1
-mass = "20 kg"
-polar_inertia = "0.05 kg m^2"
-transverse_inertia = "0.2 kg m^2"
-[[bearings]]
-name = "of {bearing}"
-bearing = "{bearing}"
-inner = "{bearing}"
-outer = "ground"
-[[loads]]
-name = "on {bearing}"
-on = "{bearing}"
-force = ["1500 N", "-2000 N", "0 N"]
-"""
-OPERATION = 'schema = 1\n[operation]\nspeed = "3000 rpm"\ntemperature = "60 degC"\n'
-ROTORS = "".join(ROTOR.format(bearing=name) for name in ("32208", "NUP210", "6208"))
-
-
 class TestDefaultLaw:
     """Without a law commands and `assemble` take the films of the table for every kind of bearing."""
 
-    @pytest.mark.parametrize("scene", ["nu308_rigid", "electric_drive", "two_stage", OPERATION + OIL + ROTORS])
+    @pytest.mark.parametrize("scene", ["nu308_rigid", "electric_drive", "two_stage", MASSES])
     def test_library_and_command_agree(self, tmp_path, capsys, scene):
         if "\n" in scene:
             (tmp_path / "own.toml").write_text(scene)
@@ -188,9 +166,9 @@ class TestDefaultLaw:
         for connected, damping in zip(model.system.elements, analysis(model).balance.element_damping, strict=True):
             assert not isinstance(connected.element, OnRings) or damping[1, 1] > 0.0
 
-    @pytest.mark.parametrize("rotors", [ROTORS, ROTOR.format(bearing="6208")])
-    def test_a_scene_without_oil_is_dry_and_says_so(self, tmp_path, capsys, rotors):
-        (tmp_path / "own.toml").write_text(OPERATION + rotors)
+    @pytest.mark.parametrize("masses", [masses_on("32208", "NUP210", "6208"), masses_on("6208")])
+    def test_a_scene_without_oil_is_dry_and_says_so(self, tmp_path, capsys, masses):
+        (tmp_path / "own.toml").write_text(masses.replace(OIL, ""))
         words = "dry, and so without damping, as the scene has no [lubricant]"
         model = assemble(read_scene(str(tmp_path / "own.toml")))
         assert words in model.law and words not in assemble(model.scene, "hertz").law

@@ -63,6 +63,11 @@ class ReadMap(EHDMap):
         self.supply, self.surface = job.supply or FLOODED, job.surface or SMOOTH
         self.solver = solver.name
 
+    def __getstate__(self) -> dict[str, Any]:
+        """For other processes, which make again what follows from the job."""
+        made = ("dataset", "_values", "rolling_film", "_laws")
+        return {name: value for name, value in self.__dict__.items() if name not in made}
+
     @cached_property
     def dataset(self) -> xr.Dataset:
         """All that the map holds."""

@@ -20,6 +20,7 @@ D. A. Maas, Journal of Tribology 111 (1989) 142. ISO/TS 16281.
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import dataclass
 from functools import cached_property
@@ -166,6 +167,11 @@ class BallForce:
         self._out = np.zeros(6), np.zeros((6, 6)), np.zeros((6, 6))
         self._rest = (0.0, 0.0)
         self.held = nothing_held()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """For other processes: as it was made, without what calls left behind."""
+        made = functools.partial(BallForce, compiled=self._kernel is ball_force)
+        return made, (self.geometry, self.law, self.material)
 
     def speed_loads(
         self, inner_speed: float, outer_speed: float, cage_speed: float | None = None

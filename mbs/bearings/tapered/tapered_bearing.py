@@ -19,6 +19,7 @@ ISO/TS 16281:2008. J. M. de Mul, J. M. Vree, D. A. Maas, Journal of Tribology 11
 from __future__ import annotations
 
 import copy
+import functools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -198,6 +199,18 @@ class TaperedForce:
         self._out = np.zeros(6), np.zeros((6, 6)), np.zeros((6, 6))
         self._work = roller_work(len(self.ribs), self.positions.size)
         self.held: FloatArray | None = None
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """For other processes: as it was made, without what calls left behind."""
+        made = functools.partial(
+            TaperedForce,
+            films=self.films,
+            profile=self.profile,
+            slices=self.positions.size,
+            material=self.material,
+            compiled=self._kernel is tapered_force,
+        )
+        return made, (self.geometry, self.damping, self.damping_time)
 
     def with_films(self, films: LineFilms) -> TaperedForce:
         """The same bearing with other films.
