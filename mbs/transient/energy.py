@@ -29,6 +29,9 @@ from ehdmaps.arrays import FloatArray
 from mbs.model.elements import Operation
 from mbs.model.system import System
 
+_ROUND_OFF = 1e-13
+"""Part of what is stored below which nothing went through a run."""
+
 
 @dataclass(frozen=True)
 class ElementEnergy:
@@ -83,6 +86,8 @@ class EnergyBalance:
         What the method of integration took; negative where it gave.
     kinetic, elastic : float
         Change of the kinetic energy, and of the elastic one of bodies and springs.
+    level : float
+        Energy that is stored at both ends together, by which a run that stays at rest is told.
     """
 
     loads: float
@@ -91,6 +96,7 @@ class EnergyBalance:
     numerical: float
     kinetic: float
     elastic: float
+    level: float = 0.0
 
     @property
     def driven(self) -> float:
@@ -119,11 +125,12 @@ class EnergyBalance:
 
     @property
     def through(self) -> float:
-        """Energy that went through: half the sum of the sizes of all terms of the balance."""
+        """Energy that went through: half the sum of the sizes of all terms; 0 for round-off of what is stored."""
         terms = [self.loads, self.numerical, self.kinetic, self.elastic, *self.parts.values()]
         for e in self.elements:
             terms += [value or 0.0 for value in (e.driven, e.by_speed, e.dissipated, e.change)] if e.told else [e.work]
-        return 0.5 * sum(abs(value) for value in terms)
+        total = 0.5 * sum(abs(value) for value in terms)
+        return total if total > _ROUND_OFF * self.level else 0.0
 
     @property
     def relative_residual(self) -> float:
@@ -298,4 +305,5 @@ def balance(system: System, sums: Sums, begin: Stored, end: Stored, by_speed: Se
         numerical=sums.numerical,
         kinetic=end.kinetic - begin.kinetic,
         elastic=end.elastic - begin.elastic,
+        level=sum(abs(value or 0.0) for at in (begin, end) for value in (at.kinetic, at.elastic, *at.elements)),
     )

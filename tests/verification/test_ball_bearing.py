@@ -8,8 +8,9 @@ import math
 import numpy as np
 import pytest
 
-from ehdmaps.physics.point.ball_catalogue import ball_estimate
+from ehdmaps.physics.point.ball_catalogue import ANGULAR_GROOVES, GROOVES, ball_estimate
 from mbs.bearings.balls.ball_bearing import BallForce
+from mbs.bearings.balls.ball_point import ball_point
 from mbs.bearings.balls.laws import dry_law
 from tests.cases.balls import ANGULAR, BEARINGS, DEEP, LOOSE, STEEP, in_space, rest
 
@@ -145,3 +146,31 @@ def test_stiffness_under_axial_load_is_that_of_one_ball() -> None:
     sin, cos = math.sin(angle) ** 2, math.cos(angle) ** 2
     assert found.stiffness[0, 0] == pytest.approx(16.0 * (k * sin + across * cos), rel=1e-8)
     assert found.stiffness[1, 1] == pytest.approx(8.0 * (k * cos + across * sin), rel=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("name", "load", "held", "stated"),
+    [
+        ("6208", (500.0, 2000.0, 0.0), 50e-6, GROOVES),
+        ("6208", (0.0, 2000.0, 0.0), 50e-6, GROOVES),
+        ("7014C", (1000.0, 500.0, 0.0), 6e-6, ANGULAR_GROOVES),
+        ("7208B", (3000.0, 1000.0, 0.0), 8e-6, ANGULAR_GROOVES),
+    ],
+)
+def test_groove_radii_change_stiffness_as_estimates_say(name, load, held, stated) -> None:
+    """An outer groove of 0.53 in place of 0.52: radial, axial and tilt K at a load, axial K of a held ring."""
+    speed, tight = 3000.0 * RPM, ball_estimate(name)
+    wide = dataclasses.replace(tight, outer_conformity=0.53)
+    forces = [BallForce(geometry, dry_law(geometry)) for geometry in (tight, wide)]
+    one, other = (np.diag(ball_point(force, load, speed).stiffness) for force in forces)
+    with np.errstate(invalid="ignore"):
+        change = 1.0 - other / one
+    at = np.array([held, 0.0, 0.0, 0.0, 0.0, 0.0])
+    one, other = (force(at, inner_speed=speed)[1][0, 0] for force in forces)
+    radial, along, kept = (0.01 * part for part in stated)
+    assert 0.0 < change[1] < radial
+    assert max(change[0], change[4], change[5]) < along
+    assert kept * 0.5 < 1.0 - other / one < kept
+    if load[0] == 0.0:  # the largest of them
+        assert max(change[0], change[4]) > 0.9 * along
+        assert 1.0 - other / one > 0.95 * kept

@@ -44,8 +44,15 @@ ISO 281 takes at most 0.52 and 0.53, which others use."""
 ANGLES = {"C": 15.0, "AC": 25.0, "B": 40.0}
 """Contact angle by its suffix [deg]."""
 
-ERRORS = "pitch diameter to {} %, ball diameter {} %, groove radii 0.515 to 0.53 of it, number of balls +-{}"
+ERRORS = (
+    "pitch diameter to {} %, ball diameter {} %, groove radii 0.515 to 0.53 of it (radial K {} %, axial and tilt K "
+    "{} %, of held rings {} %), number of balls +-{}"
+)
 """What an estimate is good for: measured on bearings whose inner geometry is known, see the tests."""
+
+GROOVES, ANGULAR_GROOVES = (5, 22, 50), (5, 10, 15)
+"""Change of K by an outer groove of 0.53 of the ball, of deep groove and of angular contact bearings [%]: radial; axial
+and against tilt; axial of rings that are held. K is smaller."""
 
 # f0 of ISO 76 by 100 Dw cos(alpha)/d_m
 _FACTORS = (
@@ -168,7 +175,7 @@ def ball_estimate(designation: str, basic_static_rating: float | None = None) ->
             diameter = _diameter(name, rating / balls, pitch, angle, section)
     whose = "own" if own else "SKF's" if series == "64" else "NSK's"
     basis = f"inner geometry estimated from catalogue dimensions and {whose} static rating (ISO 76): "
-    errors = ERRORS.format(2, 8, 2 if suffix else 1)
+    errors = ERRORS.format(2, 8, *(ANGULAR_GROOVES if suffix else GROOVES), 2 if suffix else 1)
     return BallGeometry(
         name, diameter, pitch, balls, INNER_CONFORMITY, OUTER_CONFORMITY, angle, 0.0, estimated=basis + errors
     ).delivered(delivered(designation, entry.bore))
