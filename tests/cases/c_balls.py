@@ -10,6 +10,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from tests.cases.c_kernel import STRICT
+from tests.cases.programs import needed
 
 _D, _P = ctypes.c_double, ctypes.c_void_p
 _ARGUMENTS = {
@@ -23,7 +24,7 @@ _ARGUMENTS = {
 def compiled_balls(source: Path) -> Path:
     """Compile a source with all warnings as errors, into a library beside it."""
     library = source.with_suffix(".so")
-    command = ["gcc", *STRICT, "-shared", "-fPIC", str(source), "-o", str(library), "-lm"]
+    command = [needed("gcc"), *STRICT, "-shared", "-fPIC", str(source), "-o", str(library), "-lm"]
     result = subprocess.run(command, capture_output=True, text=True, check=False)
     assert result.returncode == 0, result.stderr
     return library

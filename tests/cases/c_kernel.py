@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
+from tests.cases.programs import needed
 
 STRICT = ["-std=c99", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Werror"]
 
@@ -35,7 +36,7 @@ def compiled(folder: Path, *more: str, compiler: str = "gcc", name: str = "libeh
     """Compile a source of an export, with what else there is, into a file of the folder."""
     output = folder / name
     result = subprocess.run(
-        [compiler, *STRICT, *more, str(folder / "ehd.c"), "-o", str(output), *(["-lm"] if link else [])],
+        [needed(compiler), *STRICT, *more, str(folder / "ehd.c"), "-o", str(output), *(["-lm"] if link else [])],
         capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert result.returncode == 0, result.stderr

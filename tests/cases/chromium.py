@@ -10,7 +10,6 @@ import base64
 import json
 import os
 import selectors
-import shutil
 import signal
 import subprocess
 import sys
@@ -20,6 +19,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
+
+from tests.cases.programs import needed
 
 FLAGS = (
     "--headless",
@@ -46,11 +47,6 @@ os.execv(sys.argv[3], sys.argv[3:])
 
 PATIENCE = 60.0
 """Seconds for one answer; a busy machine takes some."""
-
-
-def chromium() -> str | None:
-    """Return the program, if there is one."""
-    return shutil.which("chromium") or shutil.which("chromium-browser")
 
 
 @dataclass
@@ -143,8 +139,7 @@ class Page:
 @contextmanager
 def browser(folder: Path) -> Iterator[Page]:
     """Start Chromium with a profile of its own, and end it."""
-    program = chromium()
-    assert program is not None
+    program = needed("chromium", "chromium-browser")
     to_read, write = os.pipe()
     read, to_write = os.pipe()
     process = subprocess.Popen(

@@ -15,6 +15,7 @@ from ehdmaps.openfoam.installation import Installation, installation
 from ehdmaps.openfoam.results import read_film, read_results
 from ehdmaps.physics.solution import Status
 from tests.cases import openfoam_runs
+from tests.cases.programs import needed
 
 pytestmark = pytest.mark.openfoam
 
@@ -198,17 +199,16 @@ def test_case_by_hand(installed: Installation, tmp_path: Path) -> None:
     assert fields.p.max() == pytest.approx(results.max_pressure, rel=1e-6)  # digits in the files
     write_fields(fields, tmp_path / "film.vtu")
     assert (tmp_path / "film.vtu").stat().st_size > 0
-    to_vtk = shutil.which("foamToVTK")
-    if to_vtk is not None:
-        ended = openfoam_runs.program(installed, to_vtk, case)
-        assert ended.returncode == 0, ended.stdout[-2000:]
-        (written,) = (case / "VTK").rglob("internal.vtu")
-        import meshio
+    to_vtk = needed("foamToVTK")
+    ended = openfoam_runs.program(installed, to_vtk, case)
+    assert ended.returncode == 0, ended.stdout[-2000:]
+    (written,) = (case / "VTK").rglob("internal.vtu")
+    import meshio
 
-        data = meshio.read(written).cell_data
-        assert {"p", "U", "mu", "rho", "liquidFraction"} <= set(data)
-        assert data["p"][0].max() == pytest.approx(results.max_pressure, rel=1e-5)  # single precision
-        shutil.rmtree(case / "VTK")
+    data = meshio.read(written).cell_data
+    assert {"p", "U", "mu", "rho", "liquidFraction"} <= set(data)
+    assert data["p"][0].max() == pytest.approx(results.max_pressure, rel=1e-5)  # single precision
+    shutil.rmtree(case / "VTK")
 
     assert subprocess.run([case / "Allclean"], check=False).returncode == 0
     assert sorted(path.relative_to(case) for path in case.rglob("*")) == before

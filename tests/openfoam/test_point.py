@@ -18,6 +18,7 @@ from ehdmaps.physics.point.ellipse import Ellipse, curvature_ratio
 from ehdmaps.physics.solution import Status
 from ehdmaps.point import solve
 from tests.cases import openfoam_runs
+from tests.cases.programs import needed
 
 pytestmark = pytest.mark.openfoam
 
@@ -94,9 +95,7 @@ def test_velocities_are_those_of_the_pressure(kept: tuple[PointFilm, Path]) -> N
 def test_tools_of_openfoam_take_the_mesh(kept: tuple[PointFilm, Path], installed: Installation) -> None:
     """Closed cells in upper triangular order, the six patches; that films are long and thin is all that it says."""
     _, case = kept
-    check = shutil.which("checkMesh")
-    if check is None:
-        pytest.skip("no checkMesh")
+    check = needed("checkMesh")
     said = openfoam_runs.program(installed, check, case).stdout
     assert "Upper triangular ordering OK" in said
     assert "Boundary openness" in said and said.count(" OK.") > 10

@@ -19,6 +19,7 @@ from ehdmaps.openfoam.fields import read_fields
 from ehdmaps.openfoam.installation import Installation, installation
 from ehdmaps.openfoam.parameters import Mesh
 from tests.cases import openfoam_runs
+from tests.cases.programs import needed
 
 pytestmark = pytest.mark.openfoam
 
@@ -118,8 +119,7 @@ def _wall_speeds(points: FloatArray, case: Path, patch: str, speed: float) -> st
 def _differences(folder: Path, columns: int) -> tuple[float, float, float]:
     """What simpleFoam has else: pressure over the peak pressure, mass flux, and how much its flux varies along x."""
     installed = installation()
-    simple_foam = shutil.which("simpleFoam")
-    assert simple_foam is not None
+    simple_foam = needed("simpleFoam")
     settings = openfoam_runs.parameters(0.02, 0.0, columns, ROWS, flow="full_stress", slide_to_roll=0.5)
     mesh = Mesh(film=settings.mesh.film, inlet_length=10.0)
     found = openfoam_runs.run(replace(settings, mesh=mesh), keep=folder)

@@ -16,6 +16,7 @@ from ehdmaps.maps.emap import open_map
 from mbs import Bearing, BearingForce
 from tests.cases.c_kernel import Kernel, compiled
 from tests.cases.jobs import DRY, LINE
+from tests.cases.programs import needed
 from tests.conftest import made_map
 
 DATA = Path(__file__).parents[1] / "data" / "c"
@@ -226,7 +227,7 @@ def test_fortran(refusing, strict, tmp_path):
     folder = shutil.copytree(strict, tmp_path / "c")
     compiled(folder, "-c", name="ehd.o", link=False)
     program = ["ehd.f90", str(DATA / "values.f90"), "ehd.o", "-o", "run", "-lm"]
-    subprocess.run(["gfortran", "-std=f2008", "-Wall", "-Werror", *program], cwd=folder, check=True)
+    subprocess.run([needed("gfortran"), "-std=f2008", "-Wall", "-Werror", *program], cwd=folder, check=True)
     printed = subprocess.run([folder / "run"], capture_output=True, text=True, check=True).stdout.split()
     numbers = np.array(printed, dtype=float)
     pose, velocity = [0.0, 4e-6, -2e-6, 0.0, 1e-4, -2e-4], [0.0, 1e-4, 2e-4, 0.0, 0.0, 1e-3]
@@ -265,7 +266,7 @@ def test_prefix_and_cplusplus(small_map, tmp_path, capsys):
     (folder / "use.cpp").write_text(
         '#include "left.h"\nint main() { return left_law(0, 0, 1, 300, 0, nullptr) == 0; }\n'
     )
-    subprocess.run(["g++", "-Wall", "-Werror", "-c", "use.cpp", "-o", "use.o"], cwd=folder, check=True)
+    subprocess.run([needed("g++"), "-Wall", "-Werror", "-c", "use.cpp", "-o", "use.o"], cwd=folder, check=True)
     capsys.readouterr()
     assert main(["export", str(small_map), "--to", "c", "-o", str(folder)]) == 2
     assert "which no export made" in capsys.readouterr().err

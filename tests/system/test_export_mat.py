@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import shutil
 import subprocess
 from pathlib import Path
 
@@ -20,6 +18,7 @@ from ehdmaps.jobs.reader import parse_job
 from ehdmaps.maps.kernels.lines import line_approach
 from ehdmaps.physics.closed_form import FormulaSolver
 from tests.cases.jobs import DRY, LINE, SMALL, map_job
+from tests.cases.programs import needed
 from tests.conftest import made_map
 
 HOSTILE = "x'); system('touch hit'); % é ☃"
@@ -52,11 +51,7 @@ def path(tmp_path_factory):
 
 
 def _octave(folder, script=SCRIPT):
-    program = shutil.which("octave-cli")
-    if program is None:
-        if os.environ.get("CI"):
-            pytest.fail("octave-cli is not on the PATH (in CI no test of Octave may be skipped)", pytrace=False)
-        pytest.skip("octave-cli is not on the PATH: apt-get install octave")
+    program = needed("octave-cli")
     (folder / "script.m").write_text(script)
     done = subprocess.run(
         [program, "--no-gui", "script.m"], cwd=folder, capture_output=True, text=True, timeout=120, check=False

@@ -15,6 +15,7 @@ from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
 from tests.cases.c_kernel import STRICT
 from tests.cases.jobs import SMALL
+from tests.cases.programs import needed
 
 MOCKS = Path(__file__).parents[1] / "data" / "c" / "mocks"
 CLEARANCE, KELVIN, SPIN, CAGE = 20e-6, 310.0, 60.0, 0.3
@@ -78,7 +79,8 @@ def exported(path, folder, target, *options):
 
 
 def made(folder, *command):
-    result = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    program, *rest = command
+    result = subprocess.run([needed(program), *rest], cwd=folder, capture_output=True, text=True, check=False)
     assert result.returncode == 0, result.stderr
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import shutil
 import subprocess
 
 import numpy as np
@@ -16,6 +14,7 @@ from mbs.cli import main
 from mbs.output.state_space_file import write_spaces
 from mbs.scene.assembly import assemble
 from mbs.scene.reader import read_scene
+from tests.cases.programs import needed
 
 SCRIPT = """
 s = load('space.mat'); f = load('f.txt');
@@ -35,11 +34,7 @@ end
 
 @pytest.fixture
 def octave():
-    program = shutil.which("octave-cli")
-    if program is None:
-        if os.environ.get("CI"):
-            pytest.fail("octave-cli is not on the PATH (in CI no test of Octave may be skipped)", pytrace=False)
-        pytest.skip("octave-cli is not on the PATH: apt-get install octave")
+    program = needed("octave-cli")
 
     def run(folder):
         (folder / "script.m").write_text(SCRIPT)

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import os
 import re
-import shutil
 import subprocess
 from pathlib import Path
 
@@ -14,6 +12,7 @@ import pytest
 import ehdmaps
 from ehdmaps.jobs.cli import main
 from tests.cases.jobs import SMALL
+from tests.cases.programs import needed
 
 PAGE = Path(__file__).parents[2] / "ehdmaps" / "REFERENCE.md"
 
@@ -21,11 +20,7 @@ PAGE = Path(__file__).parents[2] / "ehdmaps" / "REFERENCE.md"
 @pytest.fixture
 def octave():
     """The program; its tests are skipped without it, but in CI that is a failure."""
-    program = shutil.which("octave-cli")
-    if program is None:
-        if os.environ.get("CI"):
-            pytest.fail("octave-cli is not on the PATH (in CI no test of Octave may be skipped)", pytrace=False)
-        pytest.skip("octave-cli is not on the PATH: apt-get install octave octave-netcdf")
+    program = needed("octave-cli")
 
     def run(script, folder):
         (folder / "script.m").write_text(script)

@@ -22,6 +22,7 @@ from ehdmaps.jobs import cli
 from tests.cases.commands import without_note
 from tests.cases.interruptible import start
 from tests.cases.jobs import DRY
+from tests.cases.programs import needed
 
 ROOT = str(Path(errors.__file__).parents[1])
 DATA = Path(__file__).parents[1] / "data"
@@ -81,7 +82,7 @@ def test_a_result_that_finds_no_room_is_told(made):
 
 
 def shell(command):
-    return subprocess.run(["bash", "-c", f"{sys.executable} -m {command}"], capture_output=True, check=False)
+    return subprocess.run([needed("bash"), "-c", f"{sys.executable} -m {command}"], capture_output=True, check=False)
 
 
 def test_a_closed_stdout_is_told(made):

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases.programs import needed
+
 ROOT = Path(__file__).parents[2]
 
 PIP = """#!/bin/bash
@@ -40,7 +42,7 @@ def program(folder, name, text):
 
 
 def run(folder, script, *arguments):
-    command = ["bash", str(folder / "clone" / ".ci" / script), *arguments]
+    command = [needed("bash"), str(folder / "clone" / ".ci" / script), *arguments]
     return subprocess.run(command, capture_output=True, text=True, check=False)
 
 

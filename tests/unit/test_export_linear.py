@@ -29,8 +29,8 @@ from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import Input, Load, Operation, Sensor
 from mbs.model.equilibrium import equilibrium
 from mbs.model.system import System
-from tests.cases.calculix import needed_calculix
 from tests.cases.jobs import SMALL
+from tests.cases.programs import needed
 
 RPM = np.pi / 30.0
 ENDINGS = {
@@ -221,7 +221,7 @@ def test_page_and_file_say_the_same_of_what_ross_does_beyond_the_tables(path, tm
 @pytest.mark.slow
 def test_calculix_answers_as_linear_analysis_does(path, force, tmp_path):
     """A mass on the bearing, its receptances by `mbs lsa` and by CalculiX: 1e-5 is the last digit that ccx prints."""
-    ccx = needed_calculix()
+    ccx = needed("ccx")
     exported(path, tmp_path / "bearing.inp", "calculix", "--speed", "400 rpm", "--films", "slow")
     (tmp_path / "machine.inp").write_text(machine("bearing.inp"), encoding="ascii")
     subprocess.run([ccx, "machine"], cwd=tmp_path, check=True, capture_output=True, timeout=120)
@@ -258,7 +258,7 @@ def coupled(tmp_path_factory, request):
 @pytest.mark.slow
 def test_calculix_answers_along_all_axes(coupled, tmp_path):
     """Receptances of a mass on it by the symmetric parts of K and C: 1e-5 is the last digit that ccx prints."""
-    ccx = needed_calculix()
+    ccx = needed("ccx")
     folder, matrices = coupled
     k, c = (0.5 * (matrix + matrix.T)[:3, :3] for matrix in matrices)
     free, modes = ("*BOUNDARY\n1, 1, 1\n", "*BOUNDARY\n"), ("\n2\n*END STEP", "\n3\n*END STEP")

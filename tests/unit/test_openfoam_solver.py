@@ -29,6 +29,7 @@ from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.hertz import DRY_COMPLIANCE
 from ehdmaps.physics.solution import Status
 from tests.cases import openfoam_fake
+from tests.cases.programs import needed
 
 JOB = read_job("nu308_openfoam")
 CONTACT, OIL = JOB.contacts[0], JOB.lubricant
@@ -500,7 +501,7 @@ def test_a_build_on_another_processor_is_refused(fake, tmp_path):
 def test_the_processor_is_the_one_that_the_build_command_records():
     script = (Path(__file__).parents[2] / "openfoam_cases" / "build").read_text()
     function = re.search(r"(?ms)^processor\(\).*?^}$", script)[0]
-    told = subprocess.run(["bash", "-c", f"{function}\nprocessor"], capture_output=True, text=True, check=True)
+    told = subprocess.run([needed("bash"), "-c", f"{function}\nprocessor"], capture_output=True, text=True, check=True)
     assert told.stdout.strip() == installed.processor()
 
 

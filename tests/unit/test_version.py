@@ -2,7 +2,6 @@
 
 import os
 import re
-import shutil
 import subprocess
 import sys
 import time
@@ -17,6 +16,7 @@ import mbs
 from ehdmaps.jobs.make.assemble import package_versions
 from ehdmaps.provenance import source_state
 from ehdmaps.version import version
+from tests.cases.programs import needed
 
 ROOT = Path(__file__).parents[2]
 OURS = re.compile(r"\d+\.\d+\.\d+\+(g[0-9a-f]{10}(\.dirty\.[0-9a-f]{10})?|src\.[0-9a-f]{10})")
@@ -30,7 +30,7 @@ def missing(package):
 def git(folder, *arguments):
     who = ["-c", "user.name=n", "-c", "user.email=e", "-c", "commit.gpgsign=false", "-c", "core.hooksPath=/nowhere"]
     environment = {name: value for name, value in os.environ.items() if not name.startswith("GIT_")}
-    command = ["git", *who, "-C", str(folder), *arguments]
+    command = [needed("git"), *who, "-C", str(folder), *arguments]
     return subprocess.run(command, capture_output=True, text=True, check=True, env=environment).stdout.strip()
 
 
@@ -49,8 +49,7 @@ def copy(tmp_path, monkeypatch):
 
 @pytest.fixture
 def clone(copy):
-    if shutil.which("git") is None:
-        pytest.skip("needs git")
+    needed("git")
     git(copy, "init", "--quiet")
     git(copy, "add", ".")
     git(copy, "commit", "--quiet", "--message", "one")

@@ -33,7 +33,7 @@ from ehdmaps.solids.three_d_reference import (
     save_reference,
     shipped_reference,
 )
-from tests.cases.calculix import needed_calculix
+from tests.cases.programs import needed
 
 NU308 = BearingGeometry.named("NU308")
 LINE = FiniteLine(NU308.inner_radius, NU308.roller_length, 7e-3, 14e-3)
@@ -259,7 +259,7 @@ def test_a_coarse_mesh_gives_the_contact_of_the_fine_one(tmp_path):
 @pytest.mark.slow
 def test_calculix_finds_the_load_of_the_same_bricks(tmp_path):
     """CalculiX' own contact yields by its penalty: 0.5 % of the load."""
-    needed_calculix()
+    needed("ccx")
     contact = MeshedContact(quarter_model(NU308), 4.0)
     case = contact.solve("straight", np.zeros(contact.places.size), LOAD, 0.0)
     layers = contact.roller.positions.shape[0]

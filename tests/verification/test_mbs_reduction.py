@@ -16,8 +16,8 @@ from mbs.flexible.matrix_files import read_calculix
 from mbs.flexible.mesh_files import read_mesh_nodes
 from mbs.flexible.reduced_body import to_body
 from mbs.flexible.reduction import Interface, nodes_in_plane, nodes_on_cylinder, reduce, spider
-from tests.cases.calculix import needed_calculix
 from tests.cases.flexible import DENSITY, SIZE, block, ends, rigid_motion
+from tests.cases.programs import needed
 
 ROUND_OFF = 1e-8
 """Of factors and eigenvalues of bodies whose stiffnesses span ten orders of magnitude."""
@@ -301,7 +301,7 @@ def deck(matrices):
 
 
 def test_matrices_of_calculix_have_its_frequencies(tmp_path):
-    ccx = needed_calculix()
+    ccx = needed("ccx")
     for name, matrices in (("stored", True), ("solved", False)):
         (tmp_path / f"{name}.inp").write_text(deck(matrices))
         subprocess.run([ccx, name], cwd=tmp_path, check=True, capture_output=True, timeout=60)
