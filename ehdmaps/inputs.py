@@ -100,6 +100,40 @@ def read_text(path: str | Path, longest: int, allowed: str, advice: str = "", na
         raise InputError(f"{name or path}: is not UTF-8 text (byte {error.start}); allowed: {allowed}") from error
 
 
+def separator(head: str) -> str:
+    r"""Character between the cells of a table: the tabulator where its first line has one, else semicolon or comma.
+
+    Parameters
+    ----------
+    head : str
+        First line of the table.
+
+    Examples
+    --------
+    >>> separator("length [mm];outer diameter [mm]"), separator("a\tb, c\td")
+    (';', '\t')
+    """
+    return next((mark for mark in ("\t", ";") if mark in head), ",")
+
+
+def decimal_points(text: str, between: str) -> str:
+    """Return cells of a table with decimal points: a comma is one where it does not stand between cells.
+
+    Parameters
+    ----------
+    text : str
+        A cell, or a line of numbers.
+    between : str
+        Character between the cells.
+
+    Examples
+    --------
+    >>> decimal_points("12,5;3", ";"), decimal_points("12,5", ",")
+    ('12.5;3', '12,5')
+    """
+    return text if between == "," else text.replace(",", ".")
+
+
 def _size(path: str | Path, allowed: str, name: str) -> int:
     """Bytes of a regular file that may be read; InputError for anything else."""
     try:

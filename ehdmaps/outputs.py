@@ -324,7 +324,11 @@ MADE_AS = "made_as"
 """Global attribute of netCDF files other than maps: what the file is."""
 
 
-def dataset_kind(name: str, made_as: str, endings: tuple[str, ...] = ()) -> Kind:
+NETCDF = (".nc", ".nc4", ".cdf", ".h5", "")
+"""Endings of files in netCDF; a name may do without one."""
+
+
+def dataset_kind(name: str, made_as: str, endings: tuple[str, ...] = NETCDF) -> Kind:
     """Return the kind of a netCDF file that says by its attribute `MADE_AS` what it is.
 
     Parameters
@@ -334,7 +338,7 @@ def dataset_kind(name: str, made_as: str, endings: tuple[str, ...] = ()) -> Kind
     made_as : str
         Value of the attribute `MADE_AS`.
     endings : tuple of str
-        Endings that a path of this kind may have; any if empty.
+        Endings that a path of this kind may have.
     """
     return Kind(name, endings, lambda path: root_attributes(path).get(MADE_AS) == made_as)
 
@@ -343,7 +347,7 @@ FIGURE = Kind("a figure of ehdmaps", tuple(_FIGURE_KEYS), has_mark)
 SEALED = Kind("a job as it was planned", (".toml",), _has_seal)
 FIELDS = Kind("film fields of ehdmaps", (".vtu", ".xdmf"), has_mark)
 TABLE = Kind("a table of ehdmaps", (".csv",), has_mark)
-MAP = Kind("a map of ehdmaps", (), lambda path: {"schema_version", "job_toml"} <= root_attributes(path).keys())
+MAP = Kind("a map of ehdmaps", NETCDF, lambda path: {"schema_version", "job_toml"} <= root_attributes(path).keys())
 
 
 def _problem(output: Output, taken: dict[object, str]) -> str:
@@ -357,7 +361,8 @@ def _problem(output: Output, taken: dict[object, str]) -> str:
     if problem := name_problem(path):
         return f"{what}, {problem}"
     if kind.endings and path.suffix.lower() not in kind.endings:
-        return f"{what}; allowed: a file that ends in {', '.join(kind.endings)}"
+        form = "in netCDF, which " if kind.endings == NETCDF else "that "
+        return f"{what}; allowed: a file {form}ends in {', '.join(filter(None, kind.endings))}"
     try:
         if os.path.isdir(text):
             return f"{what}, which is a folder; allowed: a file in it; add its name"

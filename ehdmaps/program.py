@@ -27,6 +27,9 @@ DONE, NOT_DELIVERED, NO_RESULT, BAD_INPUT = 0, 1, 1, 2
 MOST = 1024
 """Largest number of processes, cores or points that a command line takes."""
 
+MOST_TOLD = 20
+"""Problems that are listed; who has mended these sees the others."""
+
 _THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 
 _CONTROLS = {code: f"\\x{code:02x}" for code in (*range(0x20), *range(0x80, 0xA0)) if chr(code) not in "\n\t"}
@@ -324,9 +327,10 @@ def tell(text: str) -> None:
 
 
 def complain(name: str, problems: Sequence[str]) -> None:
-    """List problems on stderr."""
+    """List problems on stderr, the first of many."""
     head = f"{name}: {len(problems)} problem{'s' if len(problems) > 1 else ''}"
-    tell("\n".join([head, *(f"  {problem}" for problem in problems)]))
+    more = [f"  ... and {len(problems) - MOST_TOLD} more"] * (len(problems) > MOST_TOLD)
+    tell("\n".join([head, *(f"  {problem}" for problem in problems[:MOST_TOLD]), *more]))
 
 
 def lack(error: BaseException) -> str:

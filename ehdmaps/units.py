@@ -226,7 +226,25 @@ class Display:
 
     def text(self, si: float, digits: int = 4) -> str:
         """Return the number with its unit, such as '62 N/mm'."""
-        return f"{self.value(si):.{digits}g} {self.unit}"
+        return f"{written(self.value(si), digits)} {self.unit}"
+
+
+def written(value: float, digits: int = 4) -> str:
+    """Return a number for people: with so many digits, and whole up to a million, where an exponent would stand.
+
+    Parameters
+    ----------
+    value : float
+        The number.
+    digits : int
+        How many digits count.
+
+    Examples
+    --------
+    >>> written(12000.0), written(0.123456), written(-12345.6), written(2.5e7)
+    ('12000', '0.1235', '-12346', '2.5e+07')
+    """
+    return f"{value:.0f}" if 10.0**digits <= abs(value) < 1e6 else f"{value:.{digits}g}"
 
 
 LOAD = Display("N/mm", 1e-3)

@@ -20,6 +20,7 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.solids import reduced_modulus
+from ehdmaps.units import written
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
@@ -212,7 +213,8 @@ def ring_at_rest(element: BearingElement, load: Sequence[float], operation: Oper
         if not isinstance(error.__cause__, InputError):
             raise
         raise AnalysisError(  # the ring went further than small displacements allow
-            f"no equilibrium of {element.bearing.geometry.name} under {np.hypot(*given):.4g} N: {error.__cause__}; the "
+            f"no equilibrium of {element.bearing.geometry.name} under {written(np.hypot(*given))} N: "
+            f"{error.__cause__}; the "
             "load is beyond what the bearing can carry"
         ) from error
 

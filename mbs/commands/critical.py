@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ehdmaps.errors import InputError
-from ehdmaps.units import MOTIONS, RPM
+from ehdmaps.units import MOTIONS, RPM, written
 from mbs.analyses.case import Case
 from mbs.analyses.operating import operating
 from mbs.analyses.reach import axes_outside, fade_lines, outside_lines, sources_of
@@ -156,7 +156,7 @@ def _row(entry: CriticalSpeed) -> str:
 
 def _rpm(speed: float) -> str:
     """A speed [rad/s] in words, with the digits that a critical speed is known by."""
-    return f"{RPM.value(float(speed)):.5g} rpm"
+    return f"{written(RPM.value(float(speed)), 5)} rpm"
 
 
 def _whirl_words(whirl: float) -> str:
@@ -193,6 +193,6 @@ def _responses(result: CriticalResult) -> list[str]:
             worst = int(np.argmax(force))
             if force[worst] > 0.0:
                 lines.append(
-                    f"  force of {connected.element.name}: {force[worst]:.4g} N at {_rpm(result.speeds[worst])}"
+                    f"  force of {connected.element.name}: {written(force[worst])} N at {_rpm(result.speeds[worst])}"
                 )
     return lines

@@ -9,7 +9,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.units import DAMPER, FILM, PRESSURE, SPRING
+from ehdmaps.units import DAMPER, FILM, PRESSURE, SPRING, written
 from mbs.analyses.reach import fade_lines, outside_at
 from mbs.analyses.soundness import Judged
 from mbs.analyses.statics import statics
@@ -110,7 +110,7 @@ def _loads(rollers: RollerLoads) -> list[str]:
     """Lines of the loads of all loaded rollers, each with its angle."""
     loaded = np.flatnonzero(rollers.load > 0.0)
     order = loaded[np.argsort(-rollers.load[loaded], kind="stable")]
-    shown = [f"{rollers.load[k]:.4g} N at {_clean(math.degrees(rollers.angle[k])):.4g} deg" for k in order]
+    shown = [f"{written(rollers.load[k])} N at {_clean(math.degrees(rollers.angle[k])):.4g} deg" for k in order]
     rows = [", ".join(shown[first : first + _IN_A_ROW]) for first in range(0, len(shown), _IN_A_ROW)]
     return [f"  {'rollers, from y towards z: ' if not row else '  '}{words}" for row, words in enumerate(rows)]
 

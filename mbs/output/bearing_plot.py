@@ -15,7 +15,7 @@ from matplotlib.ticker import MaxNLocator
 from ehdmaps.arrays import FloatArray
 from ehdmaps.figures import COLOURS, WARNING, typeset
 from ehdmaps.physics.hertz import LINE_LIMIT
-from ehdmaps.units import PRESSURE, RPM
+from ehdmaps.units import PRESSURE, RPM, written
 from mbs.bearings.contact_report import BearingContacts, BearingPoint
 from mbs.bearings.films import SIDES
 from mbs.model.equilibrium import Equilibrium
@@ -271,7 +271,7 @@ def statics_figure(
         What is to be warned of, written on the page.
     """
     count, elements = len(model.bearings) + len(model.balls), []
-    figure, axes = page(model, f"{model.scene.speed * _RPM:.4g} rpm", count)
+    figure, axes = page(model, f"{written(model.scene.speed * _RPM)} rpm", count)
     for bearing, state in zip(model.bearings, contacts, strict=False):
         motion = model.system.relative(bearing.inner, bearing.outer) @ balance.displacement
         rollers = bearing.rollers(motion, balance.operation)

@@ -15,7 +15,7 @@ from ehdmaps.outputs import MARK, TABLE, Kind, write_text
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.surface import Surface
-from ehdmaps.units import DAMPER, FILM, PRESSURE, RPM, SPRING, TEMPERATURE
+from ehdmaps.units import DAMPER, FILM, PRESSURE, RPM, SPRING, TEMPERATURE, written
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.contact_report import BearingPoint
 from mbs.bearings.films import SIDES
@@ -541,4 +541,4 @@ def shown(value: float, digits: int = 5) -> str:
     digits : int
         Digits that count.
     """
-    return "-" if math.isnan(value) else f"{value:.{digits}g}"
+    return "-" if math.isnan(value) else written(value, digits)

@@ -19,6 +19,7 @@ from matplotlib.patheffects import withStroke
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.figures import COLOURS, SHADE, WARNING, legend_columns, typeset, write_heading
+from ehdmaps.units import written
 from mbs.output.page import BAND_ALPHA, BAND_WORDS, ESTIMATED, grid, shade_handle, whole_numbers
 from mbs.spectral.campbell import Campbell, RunUpSpectra
 from mbs.spectral.levels import Reference, level
@@ -231,7 +232,7 @@ def _handles(
         handles.append(Line2D([], [], color=_LIMIT_COLOUR, lw=0.9, ls=_LIMIT, label=words))
     slow = max((reach.below for reach in reaches), default=0.0)
     if slow >= drawn.speeds.min():
-        handles.append(shade_handle(f"up to {slow * RPM:.4g} rpm: below the map, film fades to dry"))
+        handles.append(shade_handle(f"up to {written(slow * RPM)} rpm: below the map, film fades to dry"))
     return handles
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
-from ehdmaps.units import RPM, TEMPERATURE
+from ehdmaps.units import RPM, TEMPERATURE, written
 from mbs.bearings.bearing_element import error_words
 from mbs.bearings.thermal import HeatPaths
 from mbs.model.equilibrium import ROLLER
@@ -78,7 +78,7 @@ def span(values: Sequence[float], unit: str) -> str:
     unit : str
         Unit as it is written.
     """
-    low, high = f"{min(values):.4g}", f"{max(values):.4g}"
+    low, high = written(min(values)), written(max(values))
     return f"{low} {unit}" if low == high else f"{low} to {high} {unit}"
 
 

@@ -16,7 +16,7 @@ from matplotlib.patches import Patch
 
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.figures import COLOURS, legend_columns, typeset, without_latex, write_heading
-from ehdmaps.units import MOTIONS, Display
+from ehdmaps.units import MOTIONS, Display, written
 from mbs.linearised.modes import Modes
 from mbs.linearised.shapes import AXIS, EDGE, JOINT, MARK, Skeleton
 from mbs.modal.records import Channel
@@ -53,7 +53,7 @@ def modes_figure(model: Model, found: Modes, shown: IntArray, limit: float = mat
     words : str
         What is not drawn, below the axis.
     """
-    figure = headed(model, f"{model.scene.speed * _RPM:.4g} rpm")
+    figure = headed(model, f"{written(model.scene.speed * _RPM)} rpm")
     panel = figure.subplots()
     places = np.arange(shown.size)
     bottom = np.zeros(places.size)

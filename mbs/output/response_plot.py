@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 
 from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.figures import COLOURS, typeset
-from ehdmaps.units import RPM
+from ehdmaps.units import RPM, written
 from mbs.linearised.linear import response_display
 from mbs.output.page import BAND_ALPHA, BAND_WORDS, ESTIMATED, grid, headed, page, shade
 from mbs.scene.assembly import Model
@@ -70,7 +70,7 @@ def response_figure(model: Model, case: Curves, notes: Sequence[str] = ()) -> Fi
     for sensor in model.scene.sensors:
         for entry in model.scene.inputs:
             kinds.setdefault(typeset(response_display(sensor, entry).unit), sensor.quantity)
-    figure, axes = page(model, f"{RPM.value(model.scene.speed):.4g} rpm", len(kinds) + 1, stacked=True)
+    figure, axes = page(model, f"{written(RPM.value(model.scene.speed))} rpm", len(kinds) + 1, stacked=True)
     panels, phase = dict(zip(kinds, axes[:-1], strict=True)), axes[-1]
     colours = iter(COLOURS * 20)
     for s, sensor in enumerate(model.scene.sensors):
@@ -108,7 +108,7 @@ def comparison_figure(model: Model, cases: Sequence[Curves], notes: Sequence[str
     left_out = len(pairs) - MOST_COMPARED
     pairs = pairs[:MOST_COMPARED]
     size = (9.0, 1.7 + 1.8 * len(pairs) + 0.2 * (len(cases) + len(notes)))
-    figure = headed(model, f"{RPM.value(model.scene.speed):.4g} rpm", size, "laws side by side")
+    figure = headed(model, f"{written(RPM.value(model.scene.speed))} rpm", size, "laws side by side")
     rows = figure.subplots(len(pairs), 2, sharex=True, squeeze=False)
     styles = list(zip(cases, COLOURS * 6, _DASHES * 6, strict=False))
     for (s, i), (panel, phase) in zip(pairs, rows, strict=True):

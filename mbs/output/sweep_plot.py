@@ -17,7 +17,7 @@ from matplotlib.patches import Patch
 
 from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.figures import COLOURS, legend_columns, typeset, write_heading
-from ehdmaps.units import DAMPER, RPM, SPRING
+from ehdmaps.units import DAMPER, RPM, SPRING, written
 from mbs.linearised.critical import CriticalSpeed, OrderResponse
 from mbs.linearised.linear import response_display
 from mbs.linearised.sweep_result import Sweep, UndampedSweep
@@ -140,7 +140,7 @@ def sweep_figure(
     if any(np.isfinite(limit).any() for limit in limits):
         styles.append(Line2D([], [], color="0.3", lw=1.2, ls=_LIMIT, label=_ABOVE))
     if below > sweeps[0].speeds[0]:
-        styles.append(shade_handle(f"below {below * RPM.factor:.4g} rpm: {_BELOW}"))
+        styles.append(shade_handle(f"below {written(below * RPM.factor)} rpm: {_BELOW}"))
     styles += _bearing_names(sweeps[0].bearings.names)
     figure.set_figheight(figure.get_figheight() + _LEGEND_ROW * max(math.ceil(len(styles) / 3) - _ROWS_WITHIN, 0))
     parts[1].legend(handles=styles, loc="outside lower center", ncols=3, fontsize=7.5, frameon=False)

@@ -14,7 +14,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.inputs import read_text
+from ehdmaps.inputs import decimal_points, read_text, separator
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
@@ -68,10 +68,11 @@ def read_law(path: Path, roller_length: float) -> TableLaw:
     lines = [(i, line) for i, line in enumerate(text.splitlines(), 1) if line.strip() and not line.startswith("#")]
     if not lines:
         raise InputError(f"{name}: got an empty file; allowed: {_ALLOWED}")
-    names, factors = _columns(name, *lines[0])
+    between = separator(lines[0][1])
+    names, factors = _columns(name, *lines[0], between)
     if len(lines) > _MOST + 1:
         raise InputError(f"{name}: got {len(lines) - 1} points; allowed: 2 to {_MOST}")
-    rows = [_numbers(name, number, line, len(names)) for number, line in lines[1:]]
+    rows = [_numbers(name, number, line, len(names), between) for number, line in lines[1:]]
     values = np.array(rows).reshape(-1, len(names)) * factors
     found: dict[str, FloatArray] = dict(zip(names, values.T, strict=True))
     kind: Literal["series", "single"] = "series" if "approach" in found else "single"
@@ -85,10 +86,10 @@ def read_law(path: Path, roller_length: float) -> TableLaw:
     return law.series()
 
 
-def _columns(where: str, number: int, line: str) -> tuple[list[str], FloatArray]:
+def _columns(where: str, number: int, line: str, between: str) -> tuple[list[str], FloatArray]:
     """Names of the columns, and factors of their units to SI."""
     names, factors = [], []
-    for text in line.split(","):
+    for text in line.split(between):
         match = _COLUMN.fullmatch(text)
         if match is None or match[1] not in _UNITS or match[1] in names:
             raise InputError(f"{where}, line {number}: got the column {text.strip()!r:.60}; allowed: {_ALLOWED}")
@@ -102,15 +103,19 @@ def _columns(where: str, number: int, line: str) -> tuple[list[str], FloatArray]
     return names, np.array(factors)
 
 
-def _numbers(where: str, number: int, line: str, count: int) -> list[float]:
+_BETWEEN = {",": "commas", ";": "semicolons", "\t": "tabulators"}
+
+
+def _numbers(where: str, number: int, line: str, count: int, between: str) -> list[float]:
     """The numbers of a line."""
     try:
-        values = [float(text) for text in line.split(",")]
+        values = [float(text) for text in decimal_points(line, between).split(between)]
     except ValueError:
         values = []
     if len(values) != count:
         raise InputError(
-            f"{where}, line {number}: got {line.strip()!r:.60}; allowed: {count} numbers with commas between"
+            f"{where}, line {number}: got {line.strip()!r:.60}; allowed: {count} numbers with {_BETWEEN[between]} "
+            "between"
         )
     return values
 

@@ -25,6 +25,7 @@ from scipy.interpolate import make_interp_spline
 
 from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.errors import InputError
+from ehdmaps.units import written
 from mbs.spectral.levels import level
 from mbs.spectral.run_signal import RPM, RunSignal
 from mbs.spectral.spectra import LEAST_OVERSAMPLING, MOST_WINDOWS, without_mean
@@ -192,8 +193,8 @@ def angle_signal(run: RunSignal, highest: float, lowest_speed: float | None = No
         )
     if not 0.0 < lowest < top:
         problems.append(
-            f"orders, lowest speed: got {lowest * RPM:.4g} rpm; allowed: above 0, below the highest of "
-            f"{top * RPM:.4g} rpm"
+            f"orders, lowest speed: got {written(lowest * RPM)} rpm; allowed: above 0, below the highest of "
+            f"{written(top * RPM)} rpm"
         )
     if problems:
         raise InputError(problems)
@@ -211,7 +212,8 @@ def angle_signal(run: RunSignal, highest: float, lowest_speed: float | None = No
     fast = np.flatnonzero((run.speed >= lowest) & within)
     if fast.size < 2 or fast[-1] - fast[0] + 1 != fast.size:
         raise InputError(
-            f"orders, record: has no one part with more than {lowest * RPM:.4g} rpm; allowed: one ramp, some periods "
+            f"orders, record: has no one part with more than {written(lowest * RPM)} rpm; allowed: one "
+            "ramp, some periods "
             f"of the highest frequency {highest:.6g} Hz long; cut the record, or lower the lowest speed"
         )
     begin, end = run.angle[fast[0]] - run.angle[0], run.angle[fast[-1]] - run.angle[0]

@@ -8,6 +8,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
+from ehdmaps.units import written
 
 RPM = 30.0 / np.pi
 
@@ -88,7 +89,8 @@ class RunSignal:
             )
         if np.min(self.speed) < 0.0 < np.max(self.speed):
             problems.append(
-                f"run signal, speed: got {self.speed.min() * RPM:.4g} to {self.speed.max() * RPM:.4g} rpm, a rotation "
+                f"run signal, speed: got {written(self.speed.min() * RPM)} to "
+                f"{written(self.speed.max() * RPM)} rpm, a rotation "
                 "that reverses; allowed: one direction; cut the record where the speed is zero"
             )
         if problems:
@@ -131,8 +133,9 @@ class RunSignal:
         moving = np.flatnonzero(np.abs(change) > _HELD * top)
         if moving.size == 0 or abs(self.speed[-1] - self.speed[0]) < _LEAST_CHANGE * top:
             raise InputError(
-                f"run, speed: got {self.speed[0] * RPM:.4g} to {self.speed[-1] * RPM:.4g} rpm with at most "
-                f"{top * RPM:.4g} rpm; allowed: a ramp from one speed to another; at constant speed use `mbs lsa`, or "
+                f"run, speed: got {written(self.speed[0] * RPM)} to {written(self.speed[-1] * RPM)} rpm with at most "
+                f"{written(top * RPM)} rpm; allowed: a ramp from one speed to another; at constant "
+                "speed use `mbs lsa`, or "
                 "order spectra of the record"
             )
         begin, end = int(moving[0]), int(moving[-1]) + 1
@@ -142,7 +145,7 @@ class RunSignal:
         if wrong.size:
             at = begin + int(wrong[0])
             raise InputError(
-                f"run, speed: is held or turns round at {self.time[at]:.6g} s and {self.speed[at] * RPM:.4g} rpm; "
+                f"run, speed: is held or turns round at {self.time[at]:.6g} s and {written(self.speed[at] * RPM)} rpm; "
                 "allowed: a ramp that only rises or only falls; cut the record into such ramps"
             )
         return self.part(begin, end + 1)

@@ -26,6 +26,7 @@ from scipy.fft import next_fast_len
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
+from ehdmaps.units import written
 from mbs.spectral.run_signal import RPM, RunSignal
 
 LINE_WIDTH = 1.44
@@ -192,7 +193,8 @@ def amplitude_spectrum(run: RunSignal, speed: float, window: float, highest: flo
     slack = _SAME_SPEED * high
     if not low - slack <= speed <= high + slack:
         raise InputError(
-            f"spectrum, speed: got {speed * RPM:.5g} rpm; allowed: {low * RPM:.5g} to {high * RPM:.5g} rpm, where a "
+            f"spectrum, speed: got {written(speed * RPM, 5)} rpm; allowed: {written(low * RPM, 5)} to "
+            f"{written(high * RPM, 5)} rpm, where a "
             f"window of {1e3 * window:.4g} ms lies in the run as a whole; choose another speed or a shorter window"
         )
     near = np.flatnonzero(np.abs(inner - speed) <= np.abs(inner - speed).min() + slack)

@@ -25,7 +25,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.inputs import check_input, first_bytes
+from ehdmaps.inputs import check_input, decimal_points, first_bytes, separator
 from ehdmaps.outputs import MARK, TABLE, written_aside
 from ehdmaps.units import RPM, short
 from mbs.timedata.quantities import read_unit
@@ -106,7 +106,7 @@ def read_table(path: Path) -> tuple[list[TimeChannel], FloatArray, FloatArray]:
     """
     check_input(path, LONGEST_FILE, f"a table of numbers with names and units ({_EXAMPLE})", "record less in one file")
     head, skipped = _head(path)
-    delimiter = next((mark for mark in ("\t", ";") if mark in head), ",")
+    delimiter = separator(head)
     names = head.split(delimiter)
     while len(names) > 1 and not names[-1].strip():  # lines that end with a delimiter
         names.pop()
@@ -195,7 +195,7 @@ def _numbers(path: Path, skipped: int, delimiter: str, columns: int) -> FloatArr
 
 def _plain(text: str, delimiter: str, columns: int) -> str:
     """A row with decimal points, and without a delimiter behind its last number."""
-    text = text.replace(",", ".") if delimiter != "," else text
+    text = decimal_points(text, delimiter)
     ended = text.rstrip(" \r\n")
     if ended.endswith(delimiter) and ended.count(delimiter) == columns:
         return ended[: -len(delimiter)]

@@ -128,7 +128,7 @@ def test_speeds_without_films_are_dry_and_say_why(capsys, here) -> None:
     status, out, _ = run(capsys, *ask, "--speed", "30 rpm", "--speed", "30000 rpm", "-o", "out.nc")
     assert status == 1
     assert (
-        "warning: 3e+04 rpm: dry and without damping, as the film table has no films there (films of the inner" in out
+        "warning: 30000 rpm: dry and without damping, as the film table has no films there (films of the inner" in out
     )
     with xr.open_dataset("out.nc") as data:
         damping, words = data["damping_along"].values[0], data["outside"].values[0].tolist()

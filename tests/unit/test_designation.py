@@ -129,6 +129,8 @@ def test_every_class_from_7_on_makes_an_oil(grade):
         ("ISO VG 47", r"viscosity class: got 'ISO VG 47' \(did you mean 'ISO VG 46'\?\); allowed: ISO VG 2, 3, 5"),
         ("ISO VG 46, VI 900", r"viscosity index: got 900; allowed: 0 to 400; mineral oils have about 95"),
         ("ISO VG 5", r"viscosity index: got 95 for 4.6 mm2/s at 40 degC; allowed: what gives 2 mm2/s or more"),
+        ("ISO VG -46", r"lubricant name: got 'ISO VG -46'; allowed: FVA3"),
+        ("ISO VG 46, VI -95", r"lubricant name: got 'ISO VG 46, VI -95'; allowed: FVA3"),
         ("Mobil", r"lubricant name: got 'Mobil'; allowed: FVA3, Spirax MA 80W, or ISO VG 2"),
     ],
 )

@@ -95,7 +95,7 @@ def test_the_command_lists_every_problem(scene):
     refused(
         lambda: run_command(scene, sensor="aproach", highest="50 kHz", window="3 m"),
         "sensor 'aproach' is not there (did you mean 'approach'?); allowed: S1, approach",
-        "step: got 20 us; allowed: up to 8 us for frequencies up to 5e+04 Hz",
+        "step: got 20 us; allowed: up to 8 us for frequencies up to 50000 Hz",
         "--window: got",
     )
     refused(lambda: run_command(scene, plot="figure.xyz"), "--plot: got figure.xyz; allowed: a file that ends in .png")

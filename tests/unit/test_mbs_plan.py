@@ -280,7 +280,7 @@ def test_everything_wrong_is_said_at_once_and_nothing_written(here, capsys):
     assert "-o: got job.nc; allowed: a file that ends in .toml" in err
     status, _, err = run(capsys, "nu308_rigid", "-o", "job.toml", "--clearance", "-5 mm")
     assert status == 2
-    assert "allowed: 0.001 N/mm to 1e+04 N/mm" in err
+    assert "allowed: 0.001 N/mm to 10000 N/mm" in err
     assert [path.name for path in here.iterdir()] == ["dry.toml"]
 
 

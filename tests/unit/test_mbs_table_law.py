@@ -127,6 +127,16 @@ def test_laws_at_the_ends_of_what_is_allowed_are_numbers():
         assert np.isfinite(found).all() and np.isfinite(law.energy(np.array(at))).all()
 
 
+@pytest.mark.parametrize("between", [";", "\t"])
+def test_numbers_with_a_decimal_comma(tmp_path, between):
+    path, text = tmp_path / "law.csv", "approach [um], load [N/mm]\n0, 0\n1.5, 5.25\n2.5, 9.5\n"
+    path.write_text(text)
+    plain = read_law(path, LENGTH)
+    path.write_text(text.replace(",", between).replace(".", ","))
+    at = np.array([1e-6, 2e-6])
+    np.testing.assert_array_equal(read_law(path, LENGTH).evaluate(at, 0.0 * at), plain.evaluate(at, 0.0 * at))
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [

@@ -6,6 +6,7 @@ import signal
 import time
 from pathlib import Path
 
+import matplotlib as mpl
 import netCDF4
 import pytest
 import xarray as xr
@@ -13,6 +14,7 @@ from matplotlib.figure import Figure
 
 from ehdmaps import outputs
 from ehdmaps.errors import InputError
+from ehdmaps.figures import keep_within, write_heading
 from ehdmaps.outputs import FIELDS, FIGURE, MADE_AS, MAP, SEALED, TABLE, Kind, Output, output_problems
 
 NOTES = Kind("a note", (), outputs.has_mark)
@@ -236,6 +238,32 @@ def test_figures_are_known_again(here, ending):
     # as a figure of somebody else's script
     figure.savefig(here / f"b.{ending}", dpi=50)
     assert "is not a figure of ehdmaps" in problem(f"b.{ending}", FIGURE)
+
+
+def test_a_matplotlibrc_that_asks_for_latex_stops_no_figure(here):
+    """LaTeX is not there, or takes "a_b %" for its own; drawing makes texts too, such as ticks."""
+    with mpl.rc_context({"text.usetex": True}):
+        figure = Figure()
+        axes = figure.subplots()
+        axes.plot([1, 2], label="a_b %")
+        axes.legend()
+        write_heading(figure, "N/µm & 5 %", 9)
+        keep_within(figure, figure.text(0.1, 0.5, "a_b"))
+        outputs.write_figure(figure, "a.png", 50)
+    assert (here / "a.png").stat().st_size > 1000
+
+
+@pytest.mark.parametrize("name", ["res.csv", "res.txt", "res.json", "res.png", "res.2"])
+def test_what_is_netcdf_is_not_written_under_another_ending(here, name):
+    for kind in (MAP, outputs.dataset_kind("a result", "result")):
+        assert problem(name, kind) == f"-o: got {name}; allowed: a file in netCDF, which ends in .nc, .nc4, .cdf, .h5"
+        assert output_problems([Output("-o", "res.nc", kind), Output("-o", "res", kind)]) == []
+
+
+def test_c_has_no_quotation_marks_in_names(here):
+    from mbs.exports.balls.source import SOURCE
+
+    assert "allowed: no quotation mark, which ends the header's name in C" in problem('a"b.c', SOURCE)
 
 
 def test_a_figure_that_fails_leaves_the_old_one(here, monkeypatch):

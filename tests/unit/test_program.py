@@ -9,7 +9,7 @@ import pytest
 
 import ehdmaps.jobs.cli
 import mbs.cli
-from ehdmaps.program import Program
+from ehdmaps.program import Program, complain
 
 MOST_OPTIONS = 200
 """Options of both programs in all, a shared one once: what a user has to choose from."""
@@ -114,3 +114,12 @@ def test_old_names_are_told(main, words, said, capsys):
         main(words.split())
     assert ended.value.code == 2
     assert said in capsys.readouterr().err
+
+
+def test_a_long_list_of_problems_ends(capsys):
+    complain("mbs check", [f"problem {number}" for number in range(57)])
+    lines = capsys.readouterr().err.splitlines()
+    assert lines[0] == "mbs check: 57 problems"
+    assert lines[20:] == ["  problem 19", "  ... and 37 more"]
+    complain("mbs check", ["one"] * 20)
+    assert "more" not in capsys.readouterr().err

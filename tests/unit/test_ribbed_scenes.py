@@ -12,8 +12,10 @@ from ehdmaps.physics.rollers.ribbed_geometry import ribbed_estimate
 from mbs import assemble, parse_scene
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
 from mbs.bearings.tapered.tapered_element import TaperedElement
+from mbs.cli import main
 from mbs.linearised.modes import modes
 from mbs.model.equilibrium import equilibrium
+from mbs.scene.tapered.ribs import open_sides
 from tests.cases import commands
 
 MASS = 20.0
@@ -45,6 +47,35 @@ name = "push"
 on = "rotor"
 force = ["{force}", "-4000 N", "0 N"]
 """
+
+
+@pytest.mark.parametrize(
+    ("keys", "words"),
+    [
+        ({"bearing": "NJ210", "force": "-1500 N"}, "pushed to its open side by 1500 N along -x on rotor"),
+        ({"bearing": "NJ210", "more": "mirrored = true"}, "pushed to its open side by 1500 N along x on rotor"),
+        ({"bearing": "NJ210"}, ""),
+        ({"bearing": "NJ210", "more": "mirrored = true", "force": "-1500 N"}, ""),
+        ({"bearing": "NUP210", "force": "-1500 N"}, ""),
+        ({"bearing": "NJ210", "freedoms": '"y"', "force": "-1500 N"}, ""),
+    ],
+)
+def test_check_finds_a_bearing_on_its_open_side(tmp_path, capsys, keys, words) -> None:
+    scene = tmp_path / "rotor.toml"
+    scene.write_text(text(**keys), encoding="utf-8")
+    assert main(["check", str(scene), "--law", "hertz"]) == (1 if words else 0)
+    said = capsys.readouterr().out
+    assert ("problem: [[bearings]] one: NJ210 is" in said and words in said) if words else "no problem found" in said
+
+
+def test_the_ring_decides_and_another_bearing_may_hold(tmp_path) -> None:
+    """A body that is the outer ring is held the other way; a ball bearing beside takes the load."""
+    plain = text("NJ210", force="-1500 N")
+    assert open_sides(parse_scene(plain, "rotor", "rotor.toml"))
+    turned = plain.replace('inner = "rotor"', 'inner = "ground"').replace('outer = "ground"', 'outer = "rotor"')
+    assert not open_sides(parse_scene(turned, "rotor", "rotor.toml"))
+    more = '[[bearings]]\nname = "two"\nbearing = "6210"\ninner = "rotor"\nouter = "ground"\n'
+    assert not open_sides(parse_scene(plain + more, "rotor", "rotor.toml"))
 
 
 def model(law="hertz", clearance=None, **keys):

@@ -20,7 +20,7 @@ from ehdmaps.solids.plane_bearing import contact_meshes
 from ehdmaps.solids.sections import Sections
 from ehdmaps.solids.three_d_compare import LengthComparison
 from ehdmaps.solids.three_d_reference import LengthReference
-from ehdmaps.units import COMPLIANCE, LOAD
+from ehdmaps.units import COMPLIANCE, LOAD, written
 
 RESOLUTION = 200
 SHOWN_GRADING = 0.3
@@ -159,7 +159,7 @@ def _loads(panel: Axes, entry: LengthComparison) -> None:
         edges = np.linspace(case.places[0], case.places[-1], slices.places.size + 1)
         panel.stairs(1e-3 * slices.load_per_length, 1e3 * edges, baseline=None, color=colour, ls=dashes, label=label)
     tilted = f", {case.moment:.3g} N m" if case.moment else ""
-    panel.set_title(f"{case.profile}, {case.load:.4g} N{tilted}", fontsize=9.5)
+    panel.set_title(f"{case.profile}, {written(case.load)} N{tilted}", fontsize=9.5)
     _quiet(panel)
 
 

@@ -18,6 +18,7 @@ from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.film_formulas import hamrock_dowson_central, hamrock_dowson_minimum
+from ehdmaps.units import written
 from mbs.bearings.balls.ball_bearing import BallElement, BallForce, BallLoads
 from mbs.bearings.balls.ball_findings import ball_gauge, ball_pressures, reach_of
 from mbs.bearings.balls.ball_motion import Motion, ball_motion
@@ -268,7 +269,9 @@ def _balance(system: System, load: FloatArray, force: BallForce) -> Equilibrium:
         return equilibrium(system, Operation())
     except AnalysisError as error:
         geometry = force.geometry
-        words = f"no equilibrium of {geometry.name} under {load[0]:.4g} N axial, {math.hypot(*load[1:]):.4g} N radial"
+        words = (
+            f"no equilibrium of {geometry.name} under {written(load[0])} N axial, {math.hypot(*load[1:]):.4g} N radial"
+        )
         if geometry.contact_angle:
             way = "positive" if geometry.contact_angle > 0.0 else "negative"
             words += (

@@ -29,6 +29,7 @@ from ehdmaps.physics.point.ellipse import Ellipse
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.table.points.file import shipped_point_table
 from ehdmaps.table.points.films import PointFilms
+from ehdmaps.units import written
 from mbs.bearings.balls.laws import BallLaw, film_normal_law
 from mbs.bearings.balls.response import ContactResponse
 
@@ -147,7 +148,7 @@ class BallFilms:
         solved = sum(side.loads.size for side in self.sides) - read
         parts = [f"read from the table at {read}"] * (read > 0) + [f"solved at {solved}"] * (solved > 0)
         return (
-            f"{', '.join(parts)} loads, {low:.3g} to {high:.4g} N; errors "
+            f"{', '.join(parts)} loads, {low:.3g} to {written(high)} N; errors "
             f"up to {offset:.1%} of the film offset, {central:.1%} of the central and {minimum:.1%} of the smallest "
             f"film, {damping:.1%} of the damping"
         )
@@ -279,10 +280,11 @@ def _contact_films(side: str, contact: Ellipse, point: _Point, table: bool, solv
         count = max(FEWEST, math.ceil(LOADS_PER_DECADE * math.log10(heaviest / LIGHTEST)) + 1)
         found = list(_solved(contact, point, np.geomspace(LIGHTEST, heaviest, count)))
         kept = _together(found)
-    left_out = tuple(f"{one.load:.4g} N: {one.reason}" for one in found if one not in kept)
+    left_out = tuple(f"{written(one.load)} N: {one.reason}" for one in found if one not in kept)
     if len(kept) < FEWEST:
         raise SolverError(
-            f"films of the {side} contact: {len(kept)} of {len(found)} loads from {LIGHTEST:g} to {heaviest:.4g} N "
+            f"films of the {side} contact: {len(kept)} of {len(found)} loads from {LIGHTEST:g} to "
+            f"{written(heaviest)} N "
             f"have a film at {point.speed:.4g} m/s; at least {FEWEST} are needed ({'; '.join(left_out[:2])})"
         )
     loads = np.array([one.load for one in kept])

@@ -19,6 +19,7 @@ from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.film_formulas import hamrock_dowson_central
 from ehdmaps.physics.rollers.tapered_catalogue import tapered_ratings
+from ehdmaps.units import written
 from mbs.bearings.films import FormulaFilms
 from mbs.bearings.tapered.reference_load import reference_load
 from mbs.bearings.tapered.roller_findings import line_pressures, reach_of, roller_gauge
@@ -194,14 +195,14 @@ def tapered_point(
         balance = equilibrium(System([ring], loads=loads, elements=[element]), Operation(), start)
     except AnalysisError as error:
         radial = math.hypot(*given[1:])
-        words = f"no equilibrium of {geometry.name} under {given[0]:.4g} N axial, {radial:.4g} N radial"
+        words = f"no equilibrium of {geometry.name} under {written(given[0])} N axial, {written(radial)} N radial"
         thrown = geometry.rollers * force.speed_loads(inner_speed, outer_speed)[0]
         least = math.tan(geometry.cup_angle) * (radial + thrown)
         if geometry.contact_angle and math.copysign(given[0], given[0] * geometry.contact_angle) < least:
             sign = "positive" if geometry.contact_angle > 0.0 else "negative"
             words += (
                 f"; a tapered roller bearing falls apart without a {sign} axial load above tan(alpha) (Fr + Z Fc) = "
-                f"{least:.4g} N, Fc the centrifugal load of a roller"
+                f"{written(least)} N, Fc the centrifugal load of a roller"
             )
         raise AnalysisError(f"{words}: {error.__cause__ or error}") from error
     pose = np.zeros(6)

@@ -20,6 +20,7 @@ from mbs.scene.assembly import Model
 from mbs.scene.fields import HERTZ, MICROMETRE
 from mbs.scene.scene import Scene
 from mbs.scene.specs import BallSpec, BearingSpec, RigidSpec, ShaftSpec, TaperedSpec
+from mbs.scene.tapered.ribs import open_sides
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
@@ -30,7 +31,9 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     lines = [*heading(model, scene.speed), "", *_bodies(model), *_bearings(model)]
     lines += [f"  gear pair {entry.name}: {entry.on} against {entry.against}" for entry in scene.gears]
     lines += [f"  load {load.name}: on {load.on}" for load in scene.loads]
-    return "\n".join([*lines, "", *_analyses(scene), "no problem found"]), 0
+    found = open_sides(scene)
+    ends = [f"problem: {problem}" for problem in found] or ["no problem found"]
+    return "\n".join([*lines, "", *_analyses(scene), *ends]), 1 if found else 0
 
 
 def _bodies(model: Model) -> Iterator[str]:

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from ehdmaps.errors import InputError
-from ehdmaps.inputs import read_text
+from ehdmaps.inputs import decimal_points, read_text, separator
 from ehdmaps.jobs.table import Table
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.units import LENGTH, PRESSURE, Display, short
@@ -94,9 +94,9 @@ def csv_rows(path: Path) -> list[tuple[str, dict[str, object]]]:
         raise InputError(f"{path}: has no lines; allowed: {_ALLOWED}")
     if len(lines) - 1 > MOST_PARTS:
         raise InputError(f"{path}: got {len(lines) - 1} rows; allowed: 1 to {MOST_PARTS}; take longer sections")
-    comma = next((mark for mark in ("\t", ";") if mark in lines[0][1]), ",")
+    between = separator(lines[0][1])
     try:
-        cells = list(csv.reader((line for _, line in lines), delimiter=comma, strict=True))
+        cells = list(csv.reader((line for _, line in lines), delimiter=between, strict=True))
     except csv.Error as error:
         raise InputError(f"{path}: is not CSV ({error}); allowed: {_ALLOWED}") from error
     if len(cells) != len(lines):
@@ -107,8 +107,7 @@ def csv_rows(path: Path) -> list[tuple[str, dict[str, object]]]:
         where = f"{path}, line {number}"
         if len(row) > len(columns):
             raise InputError(f"{where}: got {len(row)} cells; allowed: up to {len(columns)}, as in the first line")
-        values = row if comma == "," else [cell.replace(",", ".") for cell in row]
-        rows.append((where, dict(_values(columns, values))))
+        rows.append((where, dict(_values(columns, [decimal_points(cell, between) for cell in row]))))
     return rows
 
 

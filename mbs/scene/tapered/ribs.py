@@ -6,17 +6,20 @@ Elsewhere nothing leans on a rib, and they are bearings like NU, with all that t
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from ehdmaps.physics.rollers.ribbed_geometry import NO_RIBS, RibbedGeometry, mirrored_ribs, ribbed_way, with_ribs
 from ehdmaps.units import short
-from mbs.scene.fields import MICROMETRE
+from mbs.gears.pair import GearPair
+from mbs.scene.fields import FORCE, MICROMETRE
 from mbs.scene.shafts.standing import FARTHEST
-from mbs.scene.specs import RIB_KEYS, BearingSpec, RigidSpec, ShaftSpec, TaperedSpec
+from mbs.scene.specs import RIB_KEYS, BallSpec, BearingSpec, RigidSpec, ShaftSpec, TaperedSpec
 
 if TYPE_CHECKING:
     from ehdmaps.jobs.table import Table
+    from mbs.scene.scene import Scene
     from mbs.scene.specs import BodySpec, ElementSpec
 
 _WITHOUT = ("rollers", "thermal", "fit", "expansion", "supply", "slices_coupled", "pocket_clearance")
@@ -95,6 +98,70 @@ def held_by_ribs(elements: Sequence[ElementSpec], bodies: Sequence[BodySpec], pr
                 for key in held.given
             ]
     return found
+
+
+def open_sides(scene: Scene) -> list[str]:
+    """Sentences on bearings NJ that loads and weight push to their open side, where nothing else holds the body.
+
+    Forces of gears are not known before an analysis, and left out.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene, with its bearings between ribs.
+    """
+    problems = []
+    for body in scene.bodies:
+        if not isinstance(body, RigidSpec | ShaftSpec) or "x" not in body.freedoms:
+            continue
+        force = _axial(scene, body)
+        way = math.copysign(1.0, force)
+        held = [entry for entry in scene.elements if _touches(entry, body.name)]
+        springs = any(body.name in (_body(entry.on), _body(entry.against)) for entry in scene.springs)
+        if force == 0.0 or springs or any(_carries(entry, body.name, way) for entry in held):
+            continue
+        problems += [
+            f"[[bearings]] {entry.name}: {entry.geometry.name} is pushed to its open side by {FORCE.text(abs(force))} "
+            f"along {'x' if force > 0.0 else '-x'} on {body.name}; it carries {entry.geometry.ways}, and nothing else "
+            "holds the body; allowed: mirrored = true, NUP in its place, or a locating bearing"
+            for entry in held
+            if isinstance(entry, TaperedSpec) and isinstance(entry.geometry, RibbedGeometry)
+        ]
+    return problems
+
+
+def _body(place: str) -> str:
+    """Body of a place."""
+    return place.partition(":")[0]
+
+
+def _axial(scene: Scene, body: RigidSpec | ShaftSpec) -> float:
+    """Force of loads and weight along x on a body [N]."""
+    pushed = sum(
+        load.force[0] * ((_body(load.on) == body.name) - (_body(load.against) == body.name)) for load in scene.loads
+    )
+    parts = body.parts if isinstance(body, RigidSpec) else (*body.sections, *(disc.inertia for disc in body.discs))
+    return float(pushed) + scene.gravity[0] * sum(part.mass for part in parts)
+
+
+def _touches(entry: ElementSpec, body: str) -> bool:
+    """Tell whether a machine element is at a body."""
+    places = [getattr(entry, name, "") for name in ("inner", "outer", "on", "against")]
+    return body in map(_body, places)
+
+
+def _carries(entry: ElementSpec, body: str, way: float) -> bool:
+    """Tell whether an element holds a body that is pushed along x, or along -x; what is not known, does."""
+    if isinstance(entry, BearingSpec):
+        return False
+    if isinstance(entry, GearPair):
+        return False
+    on_inner = way if _body(getattr(entry, "inner", "")) == body else -way
+    if isinstance(entry, TaperedSpec) and isinstance(entry.geometry, RibbedGeometry):
+        return entry.geometry.carries in ("both", "+x" if on_inner > 0.0 else "-x")
+    if isinstance(entry, BallSpec | TaperedSpec):
+        return entry.geometry.contact_angle * on_inner > 0.0 or entry.geometry.contact_angle == 0.0
+    return True
 
 
 def with_clearance(spec: TaperedSpec, clearance: float) -> TaperedSpec:
