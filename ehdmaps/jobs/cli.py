@@ -175,7 +175,11 @@ def parser() -> argparse.ArgumentParser:
     way.add_argument(
         "--install", action="store_true", help="Debian 12: install OpenFOAM and a compiler first, by apt-get"
     )
-    way.add_argument("--check", action="store_true", help="say whether the executable is up to date; build nothing")
+    way.add_argument(
+        "--check",
+        action="store_true",
+        help="say whether the executable is up to date, and solve a point with it; build nothing",
+    )
 
     _add_solids(top)
     _add_compare(top)

@@ -296,13 +296,20 @@ _NAMES = ("name", "label", "verified")
 
 def _differing(first: Mapping[str, object], second: Mapping[str, object]) -> list[str]:
     """Names of the entries in which two records differ, but for words."""
+    estimated = _ESTIMATED if first.get("correlation") and first.get("correlation") == second.get("correlation") else ()
     return sorted(
-        key for key in first.keys() | second.keys() if key not in _NAMES and not _alike(first.get(key), second.get(key))
+        key
+        for key in first.keys() | second.keys()
+        if key not in _NAMES and not _alike(first.get(key), second.get(key), 1e-9 if key in estimated else 1e-14)
     )
 
 
-def _alike(a: object, b: object) -> bool:
-    """Tell whether two entries are the same, to the 15 digits that a job file keeps."""
+_ESTIMATED = "pressure_viscosity_40", "pressure_viscosity_100"
+"""Entries that a correlation gives, with the round-off of its powers."""
+
+
+def _alike(a: object, b: object, tolerance: float) -> bool:
+    """Tell whether two entries are the same, to the 15 digits that a job file keeps, or so far."""
     if isinstance(a, float) and isinstance(b, float):
-        return math.isclose(a, b, rel_tol=1e-14)
+        return math.isclose(a, b, rel_tol=tolerance)
     return a == b

@@ -269,12 +269,16 @@ def _lubricant(oil: Lubricant) -> Iterator[tuple[str, Entry]]:
             for key, value in heat.items():
                 yield key, _quantity(value, _OIL_HEAT_UNITS[key])
             return
+    assumed = oil.assumed.split(", ")
     yield "viscosity_law", str(record["viscosity_law"])
     yield "density", _quantity(oil.density_15, "kg/m^3")
     yield "density_law", oil.density_law
     if oil.stated_coefficient is not None and oil.stated_temperature is not None:
         yield "pressure_viscosity", _quantity(oil.stated_coefficient, "1/Pa")
-        yield "pressure_viscosity_temperature", _quantity(oil.stated_temperature, "K")
+        if "pressure_viscosity_temperature" not in assumed:
+            yield "pressure_viscosity_temperature", _quantity(oil.stated_temperature, "K")
+    elif "pressure_viscosity" in assumed:
+        yield "pressure_viscosity", _quantity(float(record["pressure_viscosity_40"]), "1/Pa")
     elif oil.correlation is not None:
         yield "pressure_viscosity", oil.correlation
     for parameter in PRESSURE_LAWS[str(record["viscosity_law"])].parameters:
@@ -282,8 +286,11 @@ def _lubricant(oil: Lubricant) -> Iterator[tuple[str, Entry]]:
             value = float(record[parameter.key])
             yield parameter.key, _quantity(value, parameter.unit) if parameter.unit else value
     for key, unit in _OIL_UNITS.items():
-        derived = (oil.correlation and key.startswith("pressure_viscosity")) or (
-            key == "fitted_pressure" and oil.reach_assumed
+        estimated = oil.correlation is not None or "pressure_viscosity" in assumed
+        derived = (
+            (estimated and key.startswith("pressure_viscosity"))
+            or (key == "fitted_pressure" and oil.reach_assumed)
+            or key in assumed
         )
         if key in record and not derived:
             yield from _oil_quantity(key, float(record[key]), unit)

@@ -159,7 +159,8 @@ class Lubricant:
         An alpha [1/Pa] and its temperature [K] that somebody stated, through which the correlation goes; None for one
         that gives alpha itself.
     assumed : str
-        What nobody stated of an own oil and is taken nevertheless, in words; no part of what makes oils equal.
+        Keys of what nobody stated of an own oil: density_slope, pressure_viscosity_temperature, or pressure_viscosity
+        for its change with temperature, where no correlation knows that; no part of what makes oils equal.
     label : str or None
         Free text shown instead of the name; no part of what makes oils equal.
     fitted_pressure_stated : bool
@@ -250,12 +251,23 @@ class Lubricant:
     @property
     def estimated(self) -> str:
         """Statement of what is estimated or assumed, and how well, in words; empty where nothing is."""
-        if not self.correlation or self._anchor:
-            return self.assumed
-        oil_class = self.oil_class
-        by_class = f"{oil_class.sentence}; " if oil_class else ""
-        assumed = f"; {self.assumed}" if self.assumed and not oil_class else ""
-        return by_class + CORRELATIONS[self.correlation].sentence + assumed
+        words, oil_class = [], self.oil_class
+        if "density_slope" in self.assumed:
+            constant = isinstance(self.viscosity, ConstantViscosity)
+            slope = f"density {self.density_slope:+g} kg/m3 a K (assumed)"
+            words.append("density and viscosity constant over temperature" if constant else slope)
+        if "pressure_viscosity" in self.assumed.split(", "):
+            words.append("pressure-viscosity constant over temperature: no correlation knows so thin an oil")
+        if self.correlation and self._anchor:
+            by, (alpha, temperature) = CORRELATIONS[self.correlation], self._anchor
+            assumed = " (assumed)" if "pressure_viscosity_temperature" in self.assumed else ""
+            words.append(
+                f"pressure-viscosity {1e9 * alpha:.4g} 1/GPa at {temperature - ZERO_CELSIUS:.4g} degC{assumed}, its "
+                f"change with temperature estimated by {by.authors}, {by.change}"
+            )
+        elif self.correlation:
+            words += [*([oil_class.sentence] if oil_class else []), CORRELATIONS[self.correlation].sentence]
+        return "; ".join(words)
 
     @property
     def _over_temperature(self) -> OilOverTemperature:

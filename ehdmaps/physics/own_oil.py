@@ -232,7 +232,8 @@ _SOUND = {"viscosity": 0.1, "viscosity_40": 1e-4, "viscosity_100": 1e-5}
 class Laws(NamedTuple):
     """Laws that an own oil consists of; `correlation` is the name of the one that gives alpha, if one does.
 
-    With an `anchor` it goes through a stated alpha. `assumed` says what nobody stated.
+    With an `anchor` it goes through a stated alpha. `assumed` are the keys of what nobody stated, see
+    `Lubricant.assumed`.
     """
 
     viscosity: ViscosityLaw
@@ -275,33 +276,24 @@ def own_laws(
         raise InputError(problems)
     assumed, constant = [], isinstance(viscosity, ConstantViscosity)
     if density_slope is None:
+        assumed.append("density_slope")
         density_slope = 0.0 if constant else DENSITY_SLOPE
-        assumed.append(
-            "density and viscosity constant over temperature"
-            if constant
-            else f"density {DENSITY_SLOPE:+g} kg/m3 a K (assumed)"
-        )
     oil, anchor = OilOverTemperature(viscosity, density, density_slope), None
     if correlation:
         pair = _estimated_pair(name, correlation, oil)
     elif isinstance(stated.coefficient, (int, float)) and stated.coefficient > 0.0 and not constant:
         anchor = Anchor(stated.coefficient, stated.coefficient_at or STATED_AT)
-        at = f"{1e9 * anchor.coefficient:.4g} 1/GPa at {anchor.temperature - ZERO_CELSIUS:.4g} degC"
-        at += "" if stated.coefficient_at else " (assumed)"
         correlation = _reaching(oil, anchor)
         if correlation is None:
             anchor = None
-            assumed.append("pressure-viscosity constant over temperature: no correlation knows so thin an oil")
+            assumed.append("pressure_viscosity")
         else:
+            assumed += ["pressure_viscosity_temperature"] if stated.coefficient_at is None else []
             pair = (
                 anchored_coefficient(correlation, oil, anchor, ZERO_CELSIUS + 40.0),
                 anchored_coefficient(correlation, oil, anchor, ZERO_CELSIUS + 100.0),
             )
-            by = CORRELATIONS[correlation]
-            assumed.append(
-                f"pressure-viscosity {at}, its change with temperature estimated by {by.authors}, {by.change}"
-            )
-    return Laws(viscosity, _isotherms(word, pair, numbers), correlation, anchor, density_slope, "; ".join(assumed))
+    return Laws(viscosity, _isotherms(word, pair, numbers), correlation, anchor, density_slope, ", ".join(assumed))
 
 
 class OilOverTemperature(NamedTuple):

@@ -2,6 +2,7 @@
 
 import hashlib
 import os
+import re
 import shutil
 import subprocess
 import time
@@ -9,6 +10,11 @@ from pathlib import Path
 
 import pytest
 
+from ehdmaps.ehl.solver import ReynoldsSolver
+from ehdmaps.jobs.cli import main
+from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.solids import STEEL
 from tests.openfoam import conftest
 
 BUILD = Path(__file__).parents[2] / "openfoam_cases" / "build"
@@ -324,3 +330,14 @@ def test_without_the_solver_a_test_is_skipped_but_fails_in_ci(monkeypatch, ci, o
 def test_the_built_solver_is_up_to_date():
     result = subprocess.run([str(BUILD), "--check"], capture_output=True, text=True, check=False)
     assert result.stdout.startswith("up to date: ")
+
+
+@pytest.mark.openfoam
+def test_the_built_solver_runs(capfd):
+    """A check solves a point on few cells: within 1 % of the Reynolds equation, the error of 100 x 4 cells."""
+    assert main(["openfoam", "--check"]) == 0
+    told = capfd.readouterr().out
+    film = float(re.search(r"\nruns: .* has a central film of (\S+) um, in ", told)[1])
+    contact, *_ = BearingGeometry.named("NU308").contacts(STEEL, "iso16281")
+    (known,) = ReynoldsSolver().solve_line(contact, Lubricant.named("FVA3"), (2e4,), 2.0, 333.15)
+    assert film == pytest.approx(1e6 * known.central_film, rel=0.01)

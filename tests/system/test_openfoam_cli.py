@@ -287,6 +287,55 @@ def test_the_command_calls_the_script_that_builds(tmp_path, monkeypatch, capfd):
     assert f"bash is not in PATH; needed: a shell that runs {script}" in capfd.readouterr().err
 
 
+@pytest.fixture
+def checked(folder, tmp_path, monkeypatch, capfd):
+    """A check of a fake build that the script finds up to date: exit status, and what is told."""
+    script = tmp_path / "up_to_date"
+    script.write_text("echo up to date\n")
+    monkeypatch.setattr("ehdmaps.jobs.commands.openfoam.build_script", lambda: script)
+
+    def check(mode: str) -> tuple[int, str]:
+        openfoam_fake.set_mode(build_of(folder), mode)
+        status = cli.main(["openfoam", "--check"])
+        told = capfd.readouterr()
+        return status, told.out + told.err
+
+    return check
+
+
+def test_a_check_runs_the_solver(folder, checked):
+    status, told = checked("good")
+    assert status == 0
+    assert re.fullmatch(
+        r"up to date\nruns: a case of 100 x 4 cells \(NU308, FVA3\) has a central film of \S+ um, in \S+ s\n", told
+    )
+    assert openfoam_fake.grids(build_of(folder)) == ["50x2", "100x4<50"]
+
+
+@pytest.mark.parametrize(
+    ("mode", "cause"),
+    [
+        ("fatal", "ended as failed: coarse grid: ehlFoam ended with status 1; .*viscosity is negative"),
+        ("segv", r"ended as failed: coarse grid: ehlFoam crashed with signal 11 \(SIGSEGV\)"),
+        ("nothing", "ended as failed: "),
+        ("garbage", "ended as failed: "),
+        ("nan", "ended as failed: "),
+        ("stagnated", "ended as stagnated: "),
+    ],
+)
+def test_a_check_tells_that_the_solver_does_not_run(checked, mode, cause):
+    """Files that are there say nothing of a program that lacks a library, or crashes on this machine."""
+    status, told = checked(mode)
+    assert status == 1
+    assert re.match(rf"up to date\ndoes not run: a case of 100 x 4 cells \(NU308, FVA3\) {cause}", told)
+
+
+def test_a_check_names_what_a_run_lacks(folder, checked):
+    (build_of(folder) / "bin" / "ehlFoam.build").unlink()
+    status, told = checked("good")
+    assert status == 2 and "ehlFoam: there is no record" in told
+
+
 @pytest.mark.slow
 def test_everything_else_works_without_openfoam(folder, done, monkeypatch):
     monkeypatch.setenv("EHDMAPS_OPENFOAM", str(folder / "none"))

@@ -355,7 +355,9 @@ class TestSceneInPython:
         with pytest.raises(
             InputError, match=r"lubricant: .*pressure_viscosity_40 of 'own oil' cannot be said in a job"
         ):
-            estimated = dataclasses.replace(oils[1], correlation="so-klaus")  # beside an alpha of its own
+            stated = dict(viscosity_40=100e-6, viscosity_100=11e-6, density=880.0, pressure_viscosity_40=2e-8)
+            own = Lubricant.barus(**stated, pressure_viscosity_100=2e-8)
+            estimated = dataclasses.replace(own, correlation="so-klaus")  # beside an alpha of its own
             plan(own_scene(lubricant=estimated)).jobs()
 
     def test_a_body_of_matrices_is_taken_as_it_is(self):

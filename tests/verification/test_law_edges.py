@@ -6,7 +6,9 @@ import math
 import numpy as np
 import pytest
 
+import ehdmaps
 from ehdmaps.ehl.solver import ReynoldsSolver
+from ehdmaps.errors import MapError
 from ehdmaps.maps.compilation import OF_TABLE
 from ehdmaps.maps.edges.continued import ContinuedField, continued_field
 from ehdmaps.maps.film_field import FilmField
@@ -244,3 +246,77 @@ def point_load(point, delta):
     from ehdmaps.maps.kernels import kernel
 
     return kernel.evaluate_at(point.point, float(delta), 0.0, np.zeros(4, dtype=np.int64))[0]
+
+
+class Ending:
+    """Films of the table that end outside the map: beyond `fastest`, and beyond some degrees of its temperatures."""
+
+    def __init__(self, field: TableField, fastest: float, degrees: float) -> None:
+        self.field, self.fastest, self.degrees = field, fastest, degrees
+        self.contacts, self.dry = field.contacts, False
+        self.load_range, self.speed_range = field.load_range, field.speed_range
+        self.temperature_range = field.temperature_range
+        self.first_loads = field.first_loads
+
+    def films(self, contact, loads, speeds, temperatures):
+        cold, hot = self.temperature_range
+        if (
+            max(speeds) > self.fastest
+            or min(temperatures) < cold - self.degrees
+            or max(temperatures) > hot + self.degrees
+        ):
+            raise MapError("no films there")
+        return self.field.films(contact, loads, speeds, temperatures)
+
+
+@pytest.mark.parametrize(
+    ("fastest", "degrees", "share"), [(1e3, 1e3, 1.0), (15.0, 1e3, 0.5), (1e3, 15.0, 0.25), (3.0001, 0.001, 0.0)]
+)
+def test_a_law_holds_the_edge_where_there_are_no_films(plain, fastest, degrees, share):
+    """Nobody asked for the nodes of a table beyond the map: without films there the law is held nearer to the map."""
+    field = table_field((INNER,))
+    ending = Ending(field, fastest, degrees)
+    continued = ContinuedField(ending, (INNER,), OIL, None)
+    law = ContactLaw("inner", (INNER,), OIL, ending, "asymptote", OF_TABLE, continued=continued)
+    table = law.plain_table
+    assert table.highest_speed == pytest.approx(SPEEDS[1] * 10.0**share, rel=1e-12)
+    assert law.continued.reach == (table.lowest_temperature, table.highest_temperature)
+    assert table.highest_temperature == pytest.approx(TEMPERATURES[1] + 40.0 * share, abs=1e-9)
+    arguments = np.linspace(1e-6, 15e-6, 60), 0.0, np.linspace(0.3, 3.0, 60), np.linspace(304.0, 363.0, 60)
+    for one, other, rtol in zip(law(*arguments), plain(*arguments), (5e-4, 3e-3, 3e-2), strict=True):
+        np.testing.assert_allclose(one, other, rtol=rtol)  # nodes beyond the edge in place of its end conditions
+    beyond = law(8e-6, 0.0, 20.0 * SPEEDS[1], TEMPERATURES[1] + 60.0)
+    at_reach = law(8e-6, 0.0, table.highest_speed, table.highest_temperature)
+    np.testing.assert_allclose(beyond, at_reach, rtol=1e-12)
+
+
+def test_a_law_without_films_in_its_map_is_refused():
+    with pytest.raises(MapError, match="no films there"):
+        ending = Ending(table_field((INNER,)), 2.0, 1e3)
+        ContactLaw("inner", (INNER,), OIL, ending, "asymptote", OF_TABLE, continued=None)
+
+
+THREE = "NU207", "NU1005", "N1014"
+OILS = [
+    *((bearing, oil) for oil in ("FVA3", "ISO VG 68") for bearing in THREE),
+    *zip(THREE * 2, (f"ISO VG {grade}" for grade in (7, 15, 150, 680, 1500, 3200)), strict=True),
+]
+"""Oils from the thinnest class that has an index to the thickest; NU207 with ISO VG 68 was refused."""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("bearing", "oil"), OILS)
+def test_every_kind_and_policy_of_shipped_classes_makes_a_law(bearing, oil):
+    """With the ranges of who says nothing, far beyond which each is asked."""
+    made = {
+        (kind, outside): ehdmaps.law(bearing, oil, kind, outside=outside)
+        for kind, outside in (("series", "error"), ("series", "asymptote"), ("inner", "clamp"), ("outer", "asymptote"))
+    }
+    approach = np.linspace(-5e-6, 40e-6, 60)[:, None, None]
+    u, T = np.geomspace(1e-3, 300.0, 9)[:, None], np.linspace(250.0, 450.0, 7)
+    for (_, outside), law in made.items():
+        cold, hot = law.temperature_range
+        inside = approach[:40], 0.0, np.array([0.06, 1.0, 9.0])[:, None], np.linspace(cold, hot, 4)
+        for w, k, c in (law(*inside), *(() if outside == "error" else (law(approach, 0.0, u, T),))):
+            assert np.all(np.isfinite(w)) and np.all(np.isfinite(k)) and np.all(np.isfinite(c))
+            assert np.all(np.diff(w, axis=0) >= 0.0) and np.all(k >= 0.0) and np.all(c >= 0.0)
