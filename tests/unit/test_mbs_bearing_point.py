@@ -102,7 +102,9 @@ def test_one_roller_that_carries_all_is_said():
 
 def test_overload_is_said():
     assert dry_point("NU308", (9e4, 0.0)).problems == ()
-    (problem,) = dry_point("NU308", (1e6, 0.0)).problems
+    crushed = dry_point("NU308", (1e6, 0.0))
+    hardness, problem = crushed.problems
+    assert crushed.unsound == (hardness,) and "the hardness of bearing steel, which no contact carries" in hardness
     assert problem.startswith("Hertz pressure of 12.")
     assert "above 4 GPa, the static limit of ISO 76: permanent deformation" in problem
     with pytest.raises(AnalysisError, match=r"no equilibrium of NU308 under 1e\+08 N: .* beyond what the bearing can"):

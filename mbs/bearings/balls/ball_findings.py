@@ -14,7 +14,7 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.physics.hertz import POINT_LIMIT
 from mbs.bearings.balls.ball_bearing import BallForce, BallLoads
-from mbs.model.findings import CARRIES, SIDES, Cause, Finding, Gauge
+from mbs.model.findings import CARRIES, OPEN, SIDES, Cause, Finding, Gauge
 
 SHOULDERS = (0.2, 0.35)
 """Height of the loaded shoulder over the ball diameter, of deep groove and of angular contact bearings: usual, assumed.
@@ -102,7 +102,7 @@ def _missing_shoulder(force: BallForce, balls: BallLoads) -> Finding | None:
 def _slack(force: BallForce, balls: BallLoads) -> Finding | None:
     """An axial load that does not hold the contact angle of an angular contact bearing."""
     nominal, found = (abs(math.degrees(angle)) for angle in (force.geometry.contact_angle, balls.mean_angle(0)))
-    if found >= 0.5 * nominal:
+    if found >= 0.5 * nominal or not np.any(balls.load[0] > OPEN):
         return None
     words = (
         f"the axial load is too small to hold the contact angle: the rings slide to {found:.3g} deg of {nominal:.3g}; "

@@ -8,7 +8,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.physics.hertz import LINE_LIMIT, max_pressure
 from ehdmaps.physics.rollers.ribbed_geometry import LARGEST_SHARE, RibbedGeometry, axial_limit
 from mbs.bearings.tapered.tapered_bearing import TaperedForce, TaperedLoads
-from mbs.model.findings import CARRIES, Cause, Finding, Gauge
+from mbs.model.findings import CARRIES, OPEN, Cause, Finding, Gauge
 
 
 def roller_gauge(force: TaperedForce, rollers: TaperedLoads) -> Gauge:
@@ -69,7 +69,7 @@ def _slack(force: TaperedForce, rollers: TaperedLoads) -> Finding | None:
         return None
     cone = rollers.load[0]
     share = np.count_nonzero(cone > CARRIES * cone.max()) / cone.size
-    if share >= 0.45:
+    if share >= 0.45 or not np.any(cone > OPEN):
         return None
     words = (
         f"{100.0 * share:.3g} % of the rollers carry load, less than half: the axial load is below 0.5 Fr/Y, which a "
