@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from mbs.bearings.balls.ball_bearing import FASTEST, BallElement, BallForce
 from mbs.bearings.balls.laws import dry_law
 from mbs.model.elements import Operation
@@ -275,3 +276,12 @@ def test_element_turns_with_the_system() -> None:
     assert conditions["cage_angle"] == pytest.approx(3.0 * DEEP.cage_speed(2.0), rel=1e-14)
     assert element.excitation.order == pytest.approx(7.0 * DEEP.cage_speed(2.0), rel=1e-14)
     assert dataclasses.replace(element, inner_spin=0.0).excitation is None
+
+
+def test_idle_balls_between_rings_against_each_other_have_an_answer() -> None:
+    """They go around at next to no speed, and nothing presses them on a raceway."""
+    geometry = dataclasses.replace(ball_estimate("7014C"), clearance=20e-6)
+    pose = [4.01578328e-05, 4.07220817e-05, -3.56027299e-05, 0.0, -8.73386791e-05, 4.24532939e-04]
+    force, _, _ = BallForce(geometry, dry_law(geometry))(pose, inner_speed=1.4163468, outer_speed=-1.3458069)
+    still, _, _ = BallForce(geometry, dry_law(geometry))(pose)
+    np.testing.assert_allclose(force, still, atol=1e-3 * np.abs(still).max())

@@ -50,6 +50,9 @@ _BALANCE, _ROUGH_BALANCE = 1e-11, 1e-9
 derivatives alone, so that forces are exact to the square of it, stiffness and damping to itself."""
 
 _ROUND_OFF = 1e-15
+_NOTHING = 1e-7
+"""Force [N] by which an idle ball is in balance that hardly goes around, between rings that turn against each other."""
+
 _NEAR = 0.3
 """Force out of balance, over the sizes of its parts, from which Newton's method begins at once."""
 
@@ -254,7 +257,7 @@ def _newton(
             break
         x, r, state = nx, nr, ahead
     norm = math.sqrt(state.fx * state.fx + state.fr * state.fr)
-    return x, r, state, norm <= _ROUGH_BALANCE * state.size + allowed
+    return x, r, state, norm <= _ROUGH_BALANCE * state.size + allowed + _NOTHING
 
 
 @njit(error_model="numpy", _nrt=False)

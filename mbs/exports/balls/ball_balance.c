@@ -18,6 +18,7 @@
 #define BALANCE 1e-13
 #define ROUGH_BALANCE 1e-9
 #define ROUND_OFF 1e-15
+#define NOTHING 1e-7 /* force of an idle ball that hardly goes around [N] */
 
 /* Approach at which a contact carries a load, from a start near it [m]; zero without load. */
 static double approach_of(const ehd_contact *law, double load, double start) {
@@ -168,7 +169,7 @@ static int newton(const given *of, state *s, int steps) {
         }
         if (!moved) break;
     }
-    return left_of(s) <= ROUGH_BALANCE * s->size + allowed;
+    return left_of(s) <= ROUGH_BALANCE * s->size + allowed + NOTHING;
 }
 
 /* Distance of a ball from the outer groove's centre by which forces along e_o at an angle are in balance [m]. The force
