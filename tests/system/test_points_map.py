@@ -49,7 +49,9 @@ def test_numbers_are_those_of_the_table(made):
                 np.testing.assert_array_equal(here[f"{name}_error"], films.errors[name])
             assert reasons(data)[1, i, j, k] == films.reason
         known = usable(data)
-        assert 0.98 < float(known.mean()) < 1.0
+        assert 0.95 < float(known.mean()) < 1.0
+        wide = np.char.startswith(reasons(data), "film wider than 0.6 of the ball's radius")
+        assert 0.02 < wide.mean() < 0.03  # the lightest loads at the highest speeds
         assert bool((data["stiffness"].notnull() == known).all())  # no number without a status, and none missing
         assert bool((data["film_offset"].where(known, 1.0) >= 0.0).all())
 
