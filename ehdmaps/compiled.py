@@ -19,7 +19,6 @@ import multiprocessing
 import os
 import re
 import shutil
-import stat
 import tempfile
 import time
 from collections.abc import Callable, Iterator
@@ -30,7 +29,7 @@ import numba
 from llvmlite import binding
 from numba.core import config, runtime
 
-from ehdmaps.outputs import cache_folder
+from ehdmaps.outputs import cache_folder, own_folder
 from ehdmaps.program import tell
 from ehdmaps.provenance import compiled_hash
 
@@ -157,24 +156,27 @@ def _folder() -> Path | None:
     """Folder in which this process keeps compiled code; None for nowhere."""
     if not COMPILES:
         return None
+    why = "no folder for caches can be written ($XDG_CACHE_HOME, ~/.cache)"
     for place in (_user_folder, _temporary_folder):
-        with contextlib.suppress(OSError, RuntimeError):  # no home folder is a RuntimeError
+        try:
             folder = place() / f"{compiled_hash()}-{_processor()}"
             _use(folder)
+        except PermissionError as error:  # of our own check, without a number: others could give us code to run
+            why = why if error.errno or place is not _user_folder else str(error)
+        except (OSError, RuntimeError):  # no home folder is a RuntimeError
+            continue
+        else:
             if place is not _user_folder:
-                _say(f"compiled code is kept in {folder.parent}")
+                _say(why, f"compiled code is kept in {folder.parent}")
             return folder
-    _say("compiled code is not kept, and each process compiles anew")
+    _say(why, "compiled code is not kept, and each process compiles anew")
     return None
 
 
-def _say(what: str) -> None:
+def _say(why: str, what: str) -> None:
     """Tell once what becomes of compiled code; the processes that a program starts say nothing."""
     if multiprocessing.parent_process() is None:
-        tell(
-            f"ehdmaps: no folder for caches can be written ($XDG_CACHE_HOME, ~/.cache): {what}; "
-            f"${FOLDER_VARIABLE} names another folder"
-        )
+        tell(f"ehdmaps: {why}: {what}; ${FOLDER_VARIABLE} names another folder")
 
 
 def _user_folder() -> Path:
@@ -185,19 +187,13 @@ def _user_folder() -> Path:
 def _temporary_folder() -> Path:
     """Our folder among those for temporary files; nobody else may have put code there for us to run."""
     folder = Path(tempfile.gettempdir()) / f"ehdmaps-compiled-{os.getuid() if hasattr(os, 'getuid') else 'user'}"
-    with contextlib.suppress(FileExistsError):
-        folder.mkdir(mode=0o700)
-    status = folder.lstat()
-    foreign = hasattr(os, "getuid") and (status.st_uid != os.getuid() or status.st_mode & 0o077)
-    if not stat.S_ISDIR(status.st_mode) or foreign:
-        raise PermissionError(f"{folder}: belongs to somebody else, or others may write there")
-    return folder
+    return own_folder(folder)
 
 
 def _use(folder: Path) -> None:
     """Make a folder that can be written, note that it is used, and remove what was not used for longest."""
     new = not folder.is_dir()
-    folder.mkdir(parents=True, exist_ok=True)
+    own_folder(folder)
     with (folder / "lock").open("ab"):
         pass
     if new:

@@ -283,7 +283,66 @@ def cache_folder(name: str, variable: str, environment: Mapping[str, str]) -> Pa
     """
     if own := environment.get(variable):
         return Path(own).expanduser()
-    return Path(environment.get("XDG_CACHE_HOME") or "~/.cache").expanduser() / "ehdmaps" / name
+    caches = Path(environment.get("XDG_CACHE_HOME", ""))
+    # a relative one is to be ignored, says the specification: it would be a folder of whoever made the current one
+    return (caches if caches.is_absolute() else Path("~/.cache").expanduser()) / "ehdmaps" / name
+
+
+def own_folder(folder: Path) -> Path:
+    """Make a folder for what is kept, if it is not there, and refuse one in which others may have put something.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder.
+
+    Raises
+    ------
+    PermissionError
+        If it, or the link to it, belongs to somebody else, or others may write there.
+    OSError
+        If it cannot be made.
+    """
+    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+    if others := others_may_write(folder):
+        raise PermissionError(others)
+    return folder
+
+
+def others_may_write(path: Path) -> str:
+    """Tell why what is kept there may be of somebody else; empty if it is of this user alone, or not there.
+
+    The user is trusted, and root is; a group that has no other member is the user's own.
+
+    Parameters
+    ----------
+    path : Path
+        A folder, or a file.
+    """
+    if not hasattr(os, "getuid"):  # where there is no such user, homes are private
+        return ""
+    try:
+        link, status = path.lstat(), path.stat()
+    except OSError:
+        return ""
+    if not {link.st_uid, status.st_uid} <= {os.getuid(), 0}:
+        return f"{path} belongs to somebody else"
+    if status.st_mode & stat.S_IWOTH or (status.st_mode & stat.S_IWGRP and not _alone_in(status.st_gid)):
+        return f"others may write in {path}: look at what is there, and take their right with chmod go-w"
+    return ""
+
+
+def _alone_in(group: int) -> bool:
+    """Tell whether a group is this user's own."""
+    import grp
+    import pwd
+
+    try:
+        name = pwd.getpwuid(os.getuid()).pw_name
+        found = grp.getgrgid(group)
+    except KeyError:
+        return False
+    return found.gr_name == name and set(found.gr_mem) <= {name}
 
 
 def sealed(text: str) -> str:

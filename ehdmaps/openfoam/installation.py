@@ -16,7 +16,7 @@ from pathlib import Path
 
 from ehdmaps.errors import InputError
 from ehdmaps.extras import lacking
-from ehdmaps.outputs import cache_folder
+from ehdmaps.outputs import cache_folder, others_may_write
 
 BUILD_COMMAND = "ehdmaps openfoam"
 """Command that builds `ehlFoam`, by the script of `build_script`; with --install it installs what is needed, too."""
@@ -118,6 +118,8 @@ def installation(environment: Mapping[str, str] | None = None) -> Installation:
             f"ehlFoam: there is no program {solver}; build it with `{BUILD_COMMAND} --install`, "
             f"or set {FOLDER_VARIABLE} to the folder of a build"
         )
+    elif others := others_may_write(folder) or others_may_write(solver.parent) or others_may_write(solver):
+        problems.append(f"ehlFoam: {others}; or set {FOLDER_VARIABLE} to the folder of a build of yours")
     elif not record.is_file():
         problems.append(f"ehlFoam: there is no record {record} of its build; build it again with `{BUILD_COMMAND}`")
     else:

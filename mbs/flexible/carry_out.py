@@ -18,7 +18,7 @@ import numpy as np
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import InputError
 from ehdmaps.inputs import check_input
-from ehdmaps.outputs import Kind, cache_folder
+from ehdmaps.outputs import Kind, cache_folder, others_may_write, own_folder
 from ehdmaps.provenance import code_hash
 from ehdmaps.units import LENGTH
 from mbs.flexible.finite_elements import FiniteElementModel, extent
@@ -258,7 +258,8 @@ def kept_folder(environment: Mapping[str, str]) -> Path:
 def _from_disk(key: str) -> ReducedBody | None:
     """Read what was kept; None where there is nothing, or nothing that can be read."""
     try:
-        return read_reduced(kept_folder(os.environ) / f"{key}.npz")
+        folder = kept_folder(os.environ)
+        return None if others_may_write(folder) else read_reduced(folder / f"{key}.npz")
     except (InputError, RuntimeError):  # no home folder is a RuntimeError
         return None
 
@@ -266,6 +267,5 @@ def _from_disk(key: str) -> ReducedBody | None:
 def _to_disk(key: str, body: ReducedBody) -> None:
     """Keep a reduction, where it can be written."""
     with contextlib.suppress(InputError, OSError, RuntimeError):
-        folder = kept_folder(os.environ)
-        folder.mkdir(parents=True, exist_ok=True)
+        folder = own_folder(kept_folder(os.environ))
         write_reduced(folder / f"{key}.npz", body, _KEPT)

@@ -22,7 +22,7 @@ import numpy as np
 from ehdmaps.errors import InputError
 from ehdmaps.maps import schema
 from ehdmaps.maps.emap import EHDMap
-from ehdmaps.outputs import cache_folder
+from ehdmaps.outputs import cache_folder, others_may_write, own_folder
 from ehdmaps.provenance import code_hash
 from mbs.analyses.case import Progress
 from mbs.analyses.step_error import StepCheck
@@ -104,6 +104,8 @@ def _place(subject: Subject, tolerance: float, settings: CampbellSettings) -> Pa
 
 def _read(place: Path, subject: Subject) -> Tolerated | None:
     """A choice that was kept; None where there is none that can be read and applied."""
+    if others_may_write(place.parent):
+        return None
     try:
         found = json.loads(place.read_text(encoding="utf-8"))
         numerics = Numerics(*(found[key] for key in ("step", "slices", "cutoff")))
@@ -119,7 +121,7 @@ def _write(place: Path, made: Tolerated) -> None:
     """Keep a choice, where it can be written."""
     kept = {**dataclasses.asdict(made.numerics), "met": made.met, "confirmed": made.confirmed, "lines": made.lines}
     with contextlib.suppress(OSError):
-        place.parent.mkdir(parents=True, exist_ok=True)
+        own_folder(place.parent)
         beside = place.with_suffix(f".{os.getpid()}")
         beside.write_text(json.dumps(kept, indent=1), encoding="utf-8")
         beside.replace(place)
