@@ -22,7 +22,7 @@ from mbs.commands.common import Looked, read_option, write, write_plot
 from mbs.linearised.modes import Modes
 from mbs.linearised.shapes import skeleton
 from mbs.output.files import RESULT
-from mbs.output.model_text import band_lines, clean, film_law_line, film_lines, heading
+from mbs.output.model_text import LITTLE_DAMPING, OTHER_DAMPING, band_lines, clean, film_law_line, film_lines, heading
 from mbs.output.result_text import above_lines, free_lines, kinds, share_words
 from mbs.output.shapes.shapes_file import MOST_SHAPES as MOST_WRITTEN
 from mbs.output.shapes.shapes_file import SHAPES, series_files, write_shapes
@@ -61,6 +61,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         *done.lines,
         *heading(model, model.scene.speed),
         *_table(found, shown),
+        *([f"  {OTHER_DAMPING}"] if np.any(found.damping_ratio[shown] < LITTLE_DAMPING) else []),
         *band_lines(model, 0.0 if found.bands is None else found.bands.film_share),
         *film_law_line(model, found.film_law is not None),
         *_overdamped(found, overdamped),

@@ -160,6 +160,16 @@ def film_law_line(model: Model, known: bool) -> list[str]:
     return ["  film law: not known; the law holds no response of the film solver"]
 
 
+LITTLE_DAMPING = 0.01
+"""Damping ratio below which parts of a machine that no scene has are likely to add as much, and more."""
+
+OTHER_DAMPING = (
+    "damping is that of films, and of what the scene states; joints, seats, seals and material of a machine add to it, "
+    "so that ratios below 1 % are lower limits"
+)
+"""Said where a damping ratio is printed that is below `LITTLE_DAMPING`."""
+
+
 def clean(value: float) -> float:
     """The value, or 0 where it is round-off: of parts and ratios.
 

@@ -22,7 +22,7 @@ from mbs.model.elements import GROUND
 from mbs.model.findings import Severity
 from mbs.model.relaxation import NOTABLE
 from mbs.output.bearing_table import regime
-from mbs.output.model_text import clearance_text, temperature_text, weight_text
+from mbs.output.model_text import LITTLE_DAMPING, OTHER_DAMPING, clearance_text, temperature_text, weight_text
 from mbs.output.result_text import kinds
 from mbs.output.state_text import class_lines, flooded_note, state_lines
 from mbs.report.bearings import loaded
@@ -218,6 +218,8 @@ def in_short(found: Examination) -> Iterator[str]:
                 f"The lowest oscillating modes are at {first}, with damping ratios of {number(float(ratios.min()), 2)} "
                 f"to {number(float(ratios.max()), 2)}."
             )
+            if float(ratios.min()) < LITTLE_DAMPING:
+                yield f"{OTHER_DAMPING[0].upper()}{OTHER_DAMPING[1:]}."
             if float(all_modes.eigenvalues.real.max()) > 1e-6 * float(np.abs(all_modes.eigenvalues).max()):
                 yield "Warning: a motion grows: the equilibrium is not stable."
 

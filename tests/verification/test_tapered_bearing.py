@@ -175,6 +175,19 @@ def test_the_axial_displacement_is_that_of_a_catalogue(name, error, load) -> Non
     assert load / (0.9 * displacement) > stiffness > (1.0 - error) * load / (0.9 * displacement)
 
 
+@pytest.mark.parametrize(("load", "further", "softer"), [(500.0, 1.86, 0.52), (2e3, 1.0, 0.30), (1e4, 0.41, 0.12)])
+def test_the_default_profile_is_softer_than_straight_rollers_of_a_catalogue(load, further, softer) -> None:
+    """The same formula, as the page on balls has it for a 32208; digits of the page."""
+    geometry = tapered_estimate("32208")
+    force = TaperedForce(geometry)
+    sine, length = math.sin(geometry.cup_angle), 1e3 * geometry.roller_length
+    displacement = 7.7e-8 * load**0.9 / (sine**1.9 * geometry.rollers**0.9 * length**0.8)
+    ours = brentq(lambda x: force([x, 0.0, 0.0, 0.0, 0.0, 0.0])[0][0] + load, 0.0, 1e-4, xtol=1e-12)
+    stiffness = force([ours, 0.0, 0.0, 0.0, 0.0, 0.0])[1][0, 0]
+    assert ours / displacement - 1.0 == pytest.approx(further, abs=0.01)
+    assert 1.0 - stiffness / (load / (0.9 * displacement)) == pytest.approx(softer, abs=0.01)
+
+
 @pytest.mark.parametrize("name", ["30206", "32208", "31308", "32010"])
 def test_the_induced_axial_load_is_that_of_the_catalogue(name) -> None:
     """Half of the rollers loaded: Sjoevall's integrals, and Fa = 0.5 Fr/Y of catalogues."""

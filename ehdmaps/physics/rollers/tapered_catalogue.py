@@ -33,7 +33,7 @@ FILLED = 0.9
 
 ERRORS = (
     "contact angle to 0.5 deg, pitch diameter 3 %, roller diameter 5 %, roller length 8 %, number of rollers +-1; "
-    "end and rib are assumed"
+    "profile, end and rib are assumed"
 )
 
 _MM = 1e-3
