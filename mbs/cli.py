@@ -244,7 +244,9 @@ def _recorded(command: argparse.ArgumentParser) -> None:
         "--speed-channel", metavar="NAME", help="speed of a recorded run; default: its only channel in rpm, Hz or 1/min"
     )
     command.add_argument("--tacho", metavar="NAME", help="a channel of pulses instead, with --pulses")
-    command.add_argument("--pulses", metavar="N", help="pulses of the tacho a turn of the system (1)")
+    command.add_argument(
+        "--pulses", metavar="N", help="pulses of the tacho a turn of the system, with those of missing teeth (1)"
+    )
     command.add_argument("--speed-table", metavar="FILE.csv", help="a table of time and speed instead")
 
 

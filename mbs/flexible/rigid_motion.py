@@ -31,6 +31,9 @@ MOST_DISPLACED = 0.02
 MOST_HELD = 0.9
 """Of the nodes, where the matrix is sparse: more are next to what is held in no body, but where values are lost."""
 
+_BLOCK = 2_000_000
+"""Entries that are looked at in one piece."""
+
 _DENSE = 0.5
 """Part of a matrix that is filled by one that another program has reduced: there each node may feel what is held."""
 
@@ -71,40 +74,47 @@ def strained(model: FiniteElementModel) -> Strained:
         The body. Nodes without a position, and what is joined to them, are not looked at; coordinates of modes stay.
     """
     matrix = sparse.coo_array(model.stiffness)
-    value = matrix.data
     nodes, of_row = np.unique(model.nodes, return_inverse=True)
     places = np.full((nodes.size, 3), np.nan)
     known = np.isin(nodes, model.numbers)
     order = np.argsort(model.numbers)
     places[known] = model.positions[order[np.searchsorted(model.numbers[order], nodes[known])]]
-    row, column = matrix.row, matrix.col
-    moved = model.directions < 3
     # A node without displacements and place is a coordinate of a mode, which a motion as one leaves at zero.
-    abstract = ~known & (np.bincount(of_row, moved, nodes.size) == 0)
-    still = abstract[of_row[column]]
-    value = np.where(still, 0.0, value)
-    away = np.where(still[:, None], 0.0, places[of_row[column]] - places[of_row[row]])
+    abstract = ~known & (np.bincount(of_row, model.directions < 3, nodes.size) == 0)
     size = model.size
-    unknown = np.bincount(row, np.isnan(away).any(axis=1), size) > 0
-    away = np.nan_to_num(away)
-    reach = np.zeros(size)
-    distance = np.linalg.norm(away, axis=1)
-    np.maximum.at(reach, row, distance)
-    direction = model.directions[column]
-    shift = np.zeros(size)
-    # A rotation beside displacements counts by the length over which it acts.
-    length = np.where(direction < 3, 1.0, np.where(reach[row] > 0.0, reach[row], np.inf))
-    scale = np.bincount(row, np.abs(value) / length, size)
-    for axis in range(3):
-        shift = np.maximum(shift, np.abs(np.bincount(row, np.where(direction == axis, value, 0.0), size)))
-    turn = np.zeros(size)
-    # By the distance, not by the lever: of nodes in line with an axis that is rounding alone.
-    turn_scale = np.bincount(row, np.abs(value) * np.where(direction < 3, distance, 1.0), size)
-    for axis in range(3):
-        turn = np.maximum(turn, np.abs(np.bincount(row, value * _lever(away, direction, axis), size)))
+    reach, unknown = np.zeros(size), np.zeros(size, dtype=np.bool_)
+    shift, turn = np.zeros((3, size)), np.zeros((3, size))
+    shift_scale, turn_scale = np.zeros(size), np.zeros(size)
+    blocks = [slice(begin, begin + _BLOCK) for begin in range(0, matrix.nnz, _BLOCK)]
+
+    def away(block: slice) -> FloatArray:
+        """From the node of the row to that of the column, shape (entries, 3)."""
+        found = places[of_row[matrix.col[block]]] - places[of_row[matrix.row[block]]]
+        found[abstract[of_row[matrix.col[block]]]] = 0.0
+        return np.asarray(found)
+
+    for block in blocks:
+        distance = np.linalg.norm(away(block), axis=1)
+        np.maximum.at(reach, matrix.row[block], np.nan_to_num(distance))
+        unknown[matrix.row[block][np.isnan(distance)]] = True
+    for block in blocks:
+        row, between = matrix.row[block], np.nan_to_num(away(block))
+        value = np.where(abstract[of_row[matrix.col[block]]], 0.0, matrix.data[block])
+        direction = model.directions[matrix.col[block]]
+        distance = np.linalg.norm(between, axis=1)
+        # A rotation beside displacements counts by the length over which it acts.
+        length = np.where(direction < 3, 1.0, np.where(reach[row] > 0.0, reach[row], np.inf))
+        shift_scale += np.bincount(row, np.abs(value) / length, size)
+        # By the distance, not by the lever: of nodes in line with an axis that is rounding alone.
+        turn_scale += np.bincount(row, np.abs(value) * np.where(direction < 3, distance, 1.0), size)
+        for axis in range(3):
+            shift[axis] += np.bincount(row, np.where(direction == axis, value, 0.0), size)
+            turn[axis] += np.bincount(row, value * _lever(between, direction, axis), size)
+    shifted = np.max(np.abs(shift), axis=0) > TOLERANCE * shift_scale
+    turned = np.max(np.abs(turn), axis=0) > TOLERANCE * turn_scale
     judged = np.bincount(of_row, unknown, nodes.size) == 0
-    held = judged & (np.bincount(of_row, shift > TOLERANCE * scale, nodes.size) > 0)
-    displaced = judged & ~held & (np.bincount(of_row, turn > TOLERANCE * turn_scale, nodes.size) > 0)
+    held = judged & (np.bincount(of_row, shifted, nodes.size) > 0)
+    displaced = judged & ~held & (np.bincount(of_row, turned, nodes.size) > 0)
     return Strained(nodes[held], nodes[displaced], int(np.count_nonzero(judged & ~abstract)))
 
 

@@ -43,6 +43,10 @@ _MOST_MENDED = 0.1
 _EDGE = 3
 """Pulses at either end that may be left out."""
 
+_STEADY, _SCATTER = 8, 0.3
+"""Distances whose mean says how many are missing in a longer one; and the mean of their steps over their spread, above
+which they scatter, as few samples a pulse make them, and do not swing."""
+
 _EXTRA_IN_A_ROW = 2
 """Pulses too many, one after the other; more of them are a sudden slowness."""
 
@@ -138,9 +142,7 @@ def _followed(times: FloatArray) -> _Track:
     pitches = [float(gaps[0])]
     k, in_a_row = 1, 0
     while k < gaps.size:
-        before = pitches[-3:]
-        trend = (before[-1] / before[0]) ** (1.0 / max(len(before) - 1, 1))
-        expected = before[-1] * min(max(trend, 1.0 / _TREND), _TREND)
+        expected = _next(pitches)
         here, after = gaps[k] / expected, (gaps[k + 1] / expected if k + 1 < gaps.size else math.inf)
         count = 1
         both = here + after
@@ -154,8 +156,14 @@ def _followed(times: FloatArray) -> _Track:
         else:
             if gaps.size - k <= _EDGE:
                 break
-            # The mean of a distance before and one behind.
-            here /= math.sqrt(after) if _SHORT <= after <= _LONG else 1.0
+            # Of those that scatter the mean, else the mean of a distance before and one behind.
+            recent = np.array(pitches[-_STEADY:])
+            spread = float(np.ptp(recent))
+            scatters = recent.size == _STEADY and np.mean(np.abs(np.diff(recent))) > _SCATTER * spread
+            if scatters and spread < (_TREND - 1.0) * recent.min():
+                here = gaps[k] / float(np.mean(recent))
+            elif _SHORT <= after <= _LONG:
+                here /= math.sqrt(after)
             count, in_a_row = round(here), 0
             if count < 2 or abs(here - count) > _OFF * count or track.steps[-1] > 1:
                 raise InputError(
@@ -169,6 +177,13 @@ def _followed(times: FloatArray) -> _Track:
         pitches.append(float(abs(times[k + 1] - track.times[-2])) / count)
         k += 1
     return track
+
+
+def _next(pitches: list[float]) -> float:
+    """Distance that those before it let expect: the last one, and the trend of three."""
+    before = pitches[-3:]
+    trend = (before[-1] / before[0]) ** (1.0 / max(len(before) - 1, 1))
+    return before[-1] * min(max(trend, 1.0 / _TREND), _TREND)
 
 
 def _told(

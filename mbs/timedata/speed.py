@@ -52,7 +52,7 @@ class SpeedSource:
     tacho : str or None
         Channel of pulses.
     pulses : float
-        Pulses of the tacho a turn of the system.
+        Pulses of the tacho a turn of the system; those of missing teeth are counted.
     table : Path or None
         A table of time and speed (.csv), on the clock of the record.
 

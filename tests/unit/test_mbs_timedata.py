@@ -15,7 +15,7 @@ from mbs.analyses.recorded import recorded_campbell
 from mbs.output.time_files import ENDINGS, read_time_data, write_time_data
 from mbs.settings import CampbellSettings
 from mbs.spectral.spectra import amplitude_spectrum
-from mbs.timedata.pulses import counted
+from mbs.timedata.pulses import counted, rising_flanks
 from mbs.timedata.records import TimeData
 from mbs.timedata.speed import AS_IT_IS, SpeedSource, with_speed
 from tests.cases.run_up import refused
@@ -222,6 +222,18 @@ class TestPulses:
         truly = np.interp(found.times, times, np.arange(150.0))
         np.testing.assert_allclose(found.counts - found.counts[0], truly - truly[0], atol=1e-9)  # round-off
         assert found.times.size >= pitch.size - 3
+
+    def test_few_samples_a_pulse(self):
+        """Seven samples a pulse, of a wheel of 60 - 2 teeth from rest on: the distances scatter by a sample."""
+        step, time = 8e-5, np.arange(50_000) * 8e-5
+        turned = 60.0 * 4.0 * time**2
+        tooth = np.mod(turned, 60.0)
+        voltage = np.where((np.mod(turned, 1.0) < 0.5) & (tooth < 58.0), 5.0, 0.0)
+        found = counted(rising_flanks(time, voltage))
+        assert found.wheel == (58, 60)
+        truly = 60.0 * 4.0 * found.times**2
+        # A sample of the fastest pulse.
+        assert np.max(np.abs(found.counts - found.counts[0] - (truly - truly[0]))) < 60.0 * 8.0 * time[-1] * step
 
     def test_pulses_that_nobody_can_count(self):
         random = np.random.default_rng(0)
