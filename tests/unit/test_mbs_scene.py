@@ -9,15 +9,18 @@ import re
 import subprocess
 import sys
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+import mbs
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.reader import parse_job
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
 from mbs.bearings.laws import hertz
+from mbs.cli import main
 from mbs.commands.cases import load_cases
 from mbs.flexible.plan import Attached
 from mbs.flexible.shaft_parts import Disc, Section
@@ -563,3 +566,23 @@ class TestKinds:
     def test_rows_are_told_by_their_keys_and_classes(self):
         assert [kind.key for kind in KINDS] == ["bearings", "gears", "", "", ""]
         assert [kind.spec for kind in KINDS] == [BearingSpec, GearPair, MatrixSpec, BallSpec, TaperedSpec]
+
+
+def test_check_says_what_is_assumed_of_an_oil(tmp_path, capsys):
+    """One alpha of an own oil: its temperature, its change and that of the density are not the user's."""
+    shipped = (Path(mbs.__file__).parent / "systems" / "nu308_rigid.toml").read_text()
+    own = """[lubricant]
+label = "PAO"
+viscosity_law = "roelands"
+viscosity_40 = "46.5 mm^2/s"
+viscosity_100 = "7.8 mm^2/s"
+density = "833 kg/m^3"
+pressure_viscosity = "16.5 1/GPa"
+"""
+    scene = tmp_path / "own.toml"
+    scene.write_text(re.sub(r"\[lubricant\].*\nname = .*\n", own, shipped))
+    assert main(["check", str(scene), "--law", "hertz"]) == 0
+    assert (
+        "  oil PAO: density -0.6 kg/m3 a K (assumed); pressure-viscosity 16.5 1/GPa at 40 degC (assumed), its change "
+        "with temperature estimated by So and Klaus (1980), "
+    ) in capsys.readouterr().out

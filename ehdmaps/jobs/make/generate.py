@@ -399,9 +399,8 @@ def _refined(
     """
     dataset, group = _finished(planned, result, where)
     if planned.from_table and not _served(planned, dataset, result):
-        missed = "film table: the laws that it makes miss their bars beside fresh solves"
         tolerance = planned.check.tolerance if planned.check else None
-        planned = _solved(planned.job, planned.solver, planned.corrector, missed, tolerance)
+        planned = _solved(planned.job, planned.solver, planned.corrector, not_served(dataset.attrs), tolerance)
         solve(planned.everything)
         dataset, group = _finished(planned, result, where)
     while len(planned.halved) < MOST_HALVINGS and (finer := _finer(planned, dataset, group, result)) is not None:
@@ -409,6 +408,19 @@ def _refined(
         solve(finer.refined.tasks if finer.refined else ())
         dataset, group = _finished(planned, result, where)
     return dataset, group
+
+
+def not_served(attributes: Mapping[str, object]) -> str:
+    """Reason why a map that the film table was to serve is solved, by what the check of its laws found.
+
+    Parameters
+    ----------
+    attributes : mapping
+        Those of the map.
+    """
+    if REFUSED in attributes:
+        return f"film table: makes no law ({attributes[REFUSED]})"
+    return "film table: the laws that it makes miss their bars beside fresh solves"
 
 
 def _served(planned: _Plan, dataset: xr.Dataset, result: SweepResult) -> bool:

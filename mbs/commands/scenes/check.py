@@ -28,12 +28,18 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     arguments.output = arguments.plot = None
     model = load_model(arguments)
     scene = model.scene
-    lines = [*heading(model, scene.speed), "", *_bodies(model), *_bearings(model)]
+    lines = [*heading(model, scene.speed), *_oil(scene), "", *_bodies(model), *_bearings(model)]
     lines += [f"  gear pair {entry.name}: {entry.on} against {entry.against}" for entry in scene.gears]
     lines += [f"  load {load.name}: on {load.on}" for load in scene.loads]
     found = open_sides(scene)
     ends = [f"problem: {problem}" for problem in found] or ["no problem found"]
     return "\n".join([*lines, "", *_analyses(scene), *ends]), 1 if found else 0
+
+
+def _oil(scene: Scene) -> Iterator[str]:
+    """A line on what of the scene's oil is assumed or estimated."""
+    if scene.lubricant is not None and scene.lubricant.estimated:
+        yield f"  oil {scene.lubricant.title}: {scene.lubricant.estimated}"
 
 
 def _bodies(model: Model) -> Iterator[str]:
