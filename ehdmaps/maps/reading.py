@@ -359,14 +359,14 @@ def _not_of_table(dataset: xr.Dataset) -> int:
 
     points = dataset.transpose(*schema.DIMS, ...)
     axes = (points[name].values.astype(np.float64) for name in schema.DIMS[1:])
-    places = np.meshgrid(*axes, indexing="ij")
+    w, u, T = np.meshgrid(*axes, indexing="ij")
     thickest = float(read_json(dataset.attrs["solver_settings"], "solver_settings").get("thickest_film", THICKEST_FILM))
     lubricant = lubricant_from_json(dataset.attrs["lubricant"])
     wrong = np.zeros(points["status"].shape, dtype=bool)
     try:
         table = film_table(lubricant)
         for i, contact in enumerate(contacts_of(dataset)):
-            films = table.films(contact, lubricant, *places, thickest_film=thickest)
+            films = table.films(contact, lubricant, w, u, T, thickest_film=thickest)
             for name in _READ_BY_LAWS:
                 if name in points:
                     known = np.where(films.usable, getattr(films, name), np.nan)

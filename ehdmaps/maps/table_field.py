@@ -336,8 +336,8 @@ def _bridge(axis: FloatArray, values: FloatArray) -> None:
         left, right = at[before], at[before + 1]
         step = axis[right] - axis[left]
         part = (axis[gap] - axis[left]) / step
-        ends = ((values[0, end, line], values[1, end, line]) for end in (left, right))
-        values[0, gap, line], values[1, gap, line] = hermite(*ends, part, step)
+        begin, end = ((values[0, place, line], values[1, place, line]) for place in (left, right))
+        values[0, gap, line], values[1, gap, line] = hermite(begin, end, part, step)
         values[2, gap, line] = (1.0 - part) * values[2, left, line] + part * values[2, right, line]
 
 
