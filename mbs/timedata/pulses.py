@@ -182,7 +182,7 @@ def _followed(times: FloatArray) -> _Track:
 def _next(pitches: list[float]) -> float:
     """Distance that those before it let expect: the last one, and the trend of three."""
     before = pitches[-3:]
-    trend = (before[-1] / before[0]) ** (1.0 / max(len(before) - 1, 1))
+    trend = math.pow(before[-1] / before[0], 1.0 / max(len(before) - 1, 1))
     return before[-1] * min(max(trend, 1.0 / _TREND), _TREND)
 
 
