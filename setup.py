@@ -1,9 +1,24 @@
-"""What pyproject.toml cannot say: README.md as a package index shows it."""
+"""What pyproject.toml cannot say: README.md as a package index shows it, and what a build holds beside the packages."""
 
 from __future__ import annotations
 
 import re
+import shutil
 from pathlib import Path
+
+CASES = (
+    "COPYING",
+    "README.md",
+    "build",
+    "ehlFoam/**/*.[CH]",
+    "ehlFoam/Make/files",
+    "ehlFoam/Make/options",
+    "lineContact/All*",
+    "lineContact/constant/ehlProperties",
+    "lineContact/system/*",
+)
+"""Files of openfoam_cases in the package ehdmaps of an installation: what `ehdmaps openfoam` builds, and the case that
+the solver copies."""
 
 PLACES = "Files that are named here by their path are in the source distribution.\n"
 
@@ -29,8 +44,34 @@ def on_an_index(readme: str) -> str:
     return "".join(blocks).rstrip() + "\n\n" + PLACES
 
 
+def bring_cases(folder: Path) -> None:
+    """Copy the files of openfoam_cases that an installation has into a folder of that name in another one."""
+    source = Path(__file__).with_name("openfoam_cases")
+    for path in (found for pattern in CASES for found in sorted(source.glob(pattern))):
+        target = folder / source.name / path.relative_to(source)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy2(path, target)
+
+
 if __name__ == "__main__":
     from setuptools import setup
+    from setuptools.command.build_py import build_py
+
+    class Build(build_py):
+        """The files of this state of the sources alone: those of older ones are left in build/lib by setuptools."""
+
+        def run(self) -> None:
+            """Empty the folder, fill it, and bring the cases for OpenFOAM."""
+            if self.editable_mode:
+                super().run()
+                return
+            shutil.rmtree(self.build_lib, ignore_errors=True)
+            super().run()
+            bring_cases(Path(self.build_lib, "ehdmaps"))
 
     text = Path(__file__).with_name("README.md").read_text(encoding="utf-8")
-    setup(long_description=on_an_index(text), long_description_content_type="text/markdown")
+    setup(
+        long_description=on_an_index(text),
+        long_description_content_type="text/markdown",
+        cmdclass={"build_py": Build},
+    )

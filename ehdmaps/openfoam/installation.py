@@ -34,7 +34,7 @@ NO_PATH = re.compile(r"[\s\"']")
 
 _CASES = "openfoam_cases"
 _CASE = "lineContact"
-_NO_CASES = f"no folder {_CASES} is beside the package ehdmaps, and no share/ehdmaps/{_CASES} above it"
+_NO_CASES = f"no folder {_CASES} is beside the package ehdmaps, nor in it"
 _VERSION = re.compile(r"OpenFOAM\W+(?:version\W+)?(v?\d[\w.+-]*)", re.IGNORECASE)
 _PROCESSOR = re.compile(r"\bprocessor (\w+)")
 _RELEASE = re.compile(r"v?(\d+)")
@@ -166,10 +166,9 @@ def cases_folder(package: Path = Path(__file__).parents[1]) -> Path | None:
     Returns
     -------
     Path or None
-        `openfoam_cases` of a clone; else the nearest `share/ehdmaps/openfoam_cases` above the package, where
-        installations have it, whatever their scheme; None where there is neither.
+        `openfoam_cases` of a clone; else that in the package, where installations have it; None where there is neither.
     """
-    places = (package.parent / _CASES, *(above / "share" / "ehdmaps" / _CASES for above in package.parents))
+    places = (package.parent / _CASES, package / _CASES)
     return next((place for place in places if (place / "build").is_file()), None)
 
 

@@ -14,11 +14,16 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases.programs import needed
+
 ROOT = Path(__file__).parents[2]
 FOLDERS = ("ehdmaps", "mbs", "openfoam_cases")
 FILES = ("pyproject.toml", "setup.py", "MANIFEST.in", "README.md", "LICENSE")
 LEFT_OUT = shutil.ignore_patterns("__pycache__", "*.egg-info", "polyMesh", "*.pyc")
-GPL = "share/ehdmaps/openfoam_cases/"
+GPL = "ehdmaps/openfoam_cases/"
+
+PACKAGES = ("ehdmaps", "mbs")
+STALE = ("ehdmaps/of_an_older_commit.py", "mbs/gone/__init__.py", "openfoam/__init__.py")
 
 BUILD = """
 import sys
@@ -58,6 +63,10 @@ def distributions(tmp_path_factory):
     with tarfile.open(source) as archive:
         archive.extractall(folder, filter="data")
     unpacked = folder / source.name.removesuffix(".tar.gz")
+    # what a build of an older commit left there
+    for name in STALE:
+        (unpacked / "build/lib" / name).parent.mkdir(parents=True, exist_ok=True)
+        (unpacked / "build/lib" / name).write_text("old = True\n")
     return source, folder / done([python, "-c", BUILD, "wheel", folder], unpacked).splitlines()[-1]
 
 
@@ -73,7 +82,11 @@ def test_what_source_distribution_and_wheel_hold(distributions):
         told = message_from_bytes(archive.read(next(name for name in names if name.endswith(".dist-info/METADATA"))))
         modes = {name: archive.getinfo(name).external_attr >> 16 for name in names}
     outside = {name.partition("/")[0] for name in names} - {"ehdmaps", "mbs"}
-    assert {name.rpartition(".")[2] for name in outside} == {"data", "dist-info"}
+    assert {name.rpartition(".")[2] for name in outside} == {"dist-info"}
+    command = [needed("git"), "-C", ROOT, "ls-files", "-z", "--cached", "--others", "--exclude-standard", *PACKAGES]
+    if (ROOT / ".git").exists():
+        tracked = {name for name in done(command, ROOT).split("\0") if name.endswith(".py") and (ROOT / name).exists()}
+        assert {name for name in names if name.endswith(".py")} == tracked
     assert "ehdmaps/jobs/shipped/nu308.toml" in names and "mbs/systems/gearbox.toml" in names
     balls = {f"mbs/exports/balls/{name}" for name in ("contact_law.c", "ball_bearing.h", "unit_files/component.c")}
     balls |= {f"mbs/exports/tapered/tapered_{name}" for name in ("balance.c", "bearing.c", "bearing.h")}
@@ -112,7 +125,7 @@ def installed(distributions, tmp_path_factory):
 
 @pytest.mark.slow
 def test_an_installation_elsewhere_finds_what_builds_its_solver(installed, tmp_path):
-    scripts = installed / "share/ehdmaps/openfoam_cases"
+    (scripts,) = installed.glob("lib/python*/site-packages/ehdmaps/openfoam_cases")
     cache = tmp_path / "cache"
     told = done([installed / "bin/ehdmaps", "openfoam", "--check"], tmp_path, status=1, EHDMAPS_OPENFOAM=str(cache))
     problem, _, script = told.partition("; run ")
@@ -138,3 +151,13 @@ def test_an_installation_elsewhere_has_its_jobs_scenes_exports_and_solids(instal
     for target, name in (("csv", "k.csv"), ("c", "c")):
         done([program, "export", small_map, "--to", target, "-o", name], tmp_path, **in_python)
     assert "NU308" in done([program, "solids", "nu308"], tmp_path)
+
+
+@pytest.mark.slow
+def test_nothing_is_left_when_it_is_removed(installed, distributions):
+    """The last test of these: what was imported is compiled beside the modules, which goes too."""
+    pip = distributions[0].parent / "tools/bin/pip"
+    done([pip, "--python", installed / "bin/python", "uninstall", "--quiet", "--yes", "ehdmaps"], installed)
+    own = ("ehdmaps", "mbs", "openfoam_cases")
+    left = [path for path in installed.rglob("*") if path.stem.startswith(own)]
+    assert left == [] and not (installed / "share").exists()

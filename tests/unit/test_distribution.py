@@ -12,33 +12,39 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 TOLD = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-PROJECT, SETUPTOOLS = TOLD["project"], TOLD["tool"]["setuptools"]
+PROJECT = TOLD["project"]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 CASES = "openfoam_cases"
 NOT_INSTALLED = {"RESULTS.md", "film.png", "point.png"}
 """Of the folder of cases: results, for readers of the repository."""
 
 
-def test_an_installation_has_the_whole_solver_in_the_same_folders():
-    """Each file that the build takes, and each folder of the sources, is named; places are those of the clone."""
-    found = {}
-    for folder, patterns in SETUPTOOLS["data-files"].items():
-        for pattern in patterns:
-            matches = [path.relative_to(ROOT) for path in ROOT.glob(pattern)]
-            assert matches, pattern
-            found |= {str(Path(folder, path.name)): path for path in matches}
-    assert {name for name, path in found.items() if name != f"share/ehdmaps/{path}"} == set()
+@pytest.fixture(scope="module")
+def setup():
+    """Functions of setup.py."""
+    specification = importlib.util.spec_from_file_location("ehdmaps_setup", ROOT / "setup.py")
+    module = importlib.util.module_from_spec(specification)
+    specification.loader.exec_module(module)
+    return module
+
+
+def test_an_installation_has_the_whole_solver_in_the_same_folders(setup, tmp_path):
+    """Each file that the build takes; places and rights are those of the clone."""
+    setup.bring_cases(tmp_path)
+    found = {path.relative_to(tmp_path) for path in tmp_path.rglob("*") if path.is_file()}
     sources = {
         path.relative_to(ROOT)
         for path in (ROOT / CASES / "ehlFoam").rglob("*")
         if path.suffix in (".C", ".H") or path.parts[-2:] in (("Make", "files"), ("Make", "options"))
     }
     assert len(sources) > 70
-    assert sources <= set(found.values())
+    assert sources <= found
+    for path in found:
+        assert (ROOT / path).read_bytes() == (tmp_path / path).read_bytes()
+        assert (ROOT / path).stat().st_mode == (tmp_path / path).stat().st_mode
     top = {path.name for path in (ROOT / CASES).iterdir() if path.is_file()} - NOT_INSTALLED
-    assert (
-        {path.name for path in found.values() if path.parent == Path(CASES)} == top == {"build", "COPYING", "README.md"}
-    )
+    assert {path.name for path in found if path.parent == Path(CASES)} == top == {"build", "COPYING", "README.md"}
+    assert {path.parts[1] for path in found} - top == {"ehlFoam", "lineContact"}
 
 
 def test_licences_are_named_with_their_texts():
@@ -95,12 +101,10 @@ def test_authors_and_keywords_are_those_of_the_citation():
         assert f"- {word}\n" in citation
 
 
-@pytest.fixture(scope="module")
-def on_an_index():
-    specification = importlib.util.spec_from_file_location("ehdmaps_setup", ROOT / "setup.py")
-    module = importlib.util.module_from_spec(specification)
-    specification.loader.exec_module(module)
-    return module.on_an_index
+@pytest.fixture
+def on_an_index(setup):
+    """Function of setup.py."""
+    return setup.on_an_index
 
 
 def test_readme_on_an_index_has_nothing_that_is_relative(on_an_index):

@@ -523,23 +523,14 @@ def test_everything_that_is_missing_is_named_at_once(tmp_path, monkeypatch):
     assert len(raised.value.problems) == 5
 
 
-@pytest.mark.parametrize("packages", ["lib/python3.11/site-packages", "local/lib/python3.12/dist-packages", "."])
-def test_cases_of_an_installation_are_the_nearest_ones(tmp_path, packages):
-    """Of a virtual environment, Debian's folders for local packages, and `pip install --target`."""
-    package = tmp_path / "a b" / packages / "ehdmaps"
+def test_cases_of_an_installation_are_in_its_package_and_a_clone_has_its_own(tmp_path):
+    package = tmp_path / "a b" / "site-packages" / "ehdmaps"
     assert installed.cases_folder(package) is None
-    found = []
-    for above in ("share/ehdmaps", "a b/share/ehdmaps"):
-        cases = tmp_path / above / "openfoam_cases"
-        cases.mkdir(parents=True)
-        assert installed.cases_folder(package) == (found[-1] if found else None)  # a folder without the script
-        (cases / "build").write_text("")
-        found.append(cases)
-        assert installed.cases_folder(package) == cases
-    clone = package.parent / "openfoam_cases"
-    clone.mkdir(parents=True)
-    (clone / "build").write_text("")
-    assert installed.cases_folder(package) == clone
+    for folder in (package, package.parent):
+        (folder / "openfoam_cases").mkdir(parents=True)
+        assert installed.cases_folder(package) != folder / "openfoam_cases"  # a folder without the script
+        (folder / "openfoam_cases" / "build").write_text("")
+        assert installed.cases_folder(package) == folder / "openfoam_cases"
 
 
 def test_the_script_that_builds_is_that_of_the_clone(monkeypatch):
