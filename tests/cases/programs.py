@@ -22,6 +22,8 @@ PACKAGES = {
     "chromium-browser": "chromium",
     "checkMesh": "openfoam",
     "foamToVTK": "openfoam",
+    "mount": "mount",
+    "umount": "mount",
     "simpleFoam": "openfoam",
 }
 """Packages of Debian that have the programs, by their names; those of `.ci/tools` and `openfoam_cases/build --install`

@@ -4,9 +4,14 @@ from __future__ import annotations
 
 import ctypes
 import dataclasses
+import errno
 import gc
+import os
 import resource
+import subprocess
+import tempfile
 import zipfile
+from pathlib import Path
 from types import SimpleNamespace
 from unittest import mock
 
@@ -25,6 +30,7 @@ from tests.cases.fmu import OUTPUTS, Unit
 from tests.cases.fmu_rotor import Rotor, RotorOnUnits, side_by_side
 from tests.cases.fmu_run import coupled_run, stepped_run
 from tests.cases.jobs import LINE
+from tests.cases.programs import needed
 from tests.conftest import made_map
 
 T = 310.0
@@ -50,6 +56,7 @@ def files(small_map, tmp_path_factory):
 def units(files, tmp_path_factory):
     """Both, unpacked; FMPy compiles the sources of the first one."""
     unpacked = {fmi: Unit(path, tmp_path_factory.mktemp(f"unit{fmi}")) for fmi, path in files.items()}
+    needed("gcc")
     build_platform_binary(unpacked["2"].folder, tmp_path_factory.mktemp("build"), all_warnings=True)
     return unpacked
 
@@ -162,6 +169,61 @@ def test_states(units):
     model.reset()
     np.testing.assert_array_equal(unit.get(model), start)
     model.freeInstance()
+
+
+@pytest.mark.parametrize("fmi", ["2", "3"])
+def test_calls_that_are_none_are_errors(units, fmi):
+    """Derivatives by what is neither input, parameter nor state, and states that are not given."""
+    unit = units[fmi]
+    model = unit.instance()
+    force, names = unit.references["force.y"], unit.references
+    for known in (names["force.z"], 10**6):
+        with pytest.raises(FMICallException):
+            model.getDirectionalDerivative([force], [known], [1.0])
+    assert model.getDirectionalDerivative([force], [names["pose.y"]], [0.0]) == [0.0]
+    library, c, error = model.dll, model.component, 3
+    null, size, room = ctypes.c_void_p(), ctypes.c_size_t(), ctypes.create_string_buffer(8)
+    state, size_of, serialize, deserialize = (
+        ("fmi2SetFMUstate", "fmi2SerializedFMUstateSize", "fmi2SerializeFMUstate", "fmi2DeSerializeFMUstate")
+        if fmi == "2"
+        else ("fmi3SetFMUState", "fmi3SerializedFMUStateSize", "fmi3SerializeFMUState", "fmi3DeserializeFMUState")
+    )
+    component, eight = ctypes.c_void_p(c), ctypes.c_size_t(8)
+    assert library[state](component, null) == error
+    assert library[size_of](component, null, ctypes.byref(size)) == error
+    assert library[serialize](component, null, room, eight) == error
+    assert library[deserialize](component, room, eight, null) == error
+    # of nothing to free the standard says that it is no error
+    free = "fmi2FreeFMUstate" if fmi == "2" else "fmi3FreeFMUState"
+    assert library[free](component, null) == library[free](component, ctypes.byref(null)) == 0
+    assert np.all(np.isfinite(unit.get(model)))
+    model.freeInstance()
+
+
+@pytest.mark.parametrize("real", [False, pytest.param(True, marks=pytest.mark.slow)])
+def test_a_full_folder_for_temporary_files_is_said(small_map, tmp_path, monkeypatch, capsys, real):
+    full = tmp_path / "full"
+    full.mkdir()
+    if real:
+        mount = subprocess.run(
+            [needed("mount"), "-t", "tmpfs", "-o", "size=8k", "tmpfs", str(full)], capture_output=True, check=False
+        )
+        if mount.returncode:
+            pytest.skip("file systems are mounted by root only")
+    else:
+
+        def write(*_, **__):
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+        monkeypatch.setattr(Path, "write_text", write)
+    monkeypatch.setattr(tempfile, "tempdir", str(full))
+    try:
+        assert main(["export", small_map, "--to", "fmu", "-o", str(tmp_path / "a.fmu")]) == 2
+    finally:
+        if real:
+            subprocess.run([needed("umount"), str(full)], check=True)
+    assert "folder for temporary files (No space left on device); it takes some MB there" in capsys.readouterr().err
+    assert not (tmp_path / "a.fmu").exists()
 
 
 @pytest.mark.slow

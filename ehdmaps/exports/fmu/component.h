@@ -31,6 +31,7 @@ enum {
 #define FIRST_STATE VARIABLES
 #define FIRST_RATE (FIRST_STATE + FILMS)
 #define REFERENCES (FIRST_RATE + FILMS)
+#define IS_KNOWN(reference) ((reference) < FIRST_OUTPUT || ((reference) >= FIRST_STATE && (reference) < FIRST_RATE))
 #define NOMINAL_STATE 1e-7 /* [m] */
 
 /* All that a component has to remember. */

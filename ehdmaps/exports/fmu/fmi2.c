@@ -127,6 +127,7 @@ NONE(String)
 
 fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *state) {
     instance *self = c;
+    if (!state) return refuse(self, "no state is given");
     if (!*state) *state = calloc(1, sizeof self->of->now);
     if (!*state) return refuse(self, "no memory");
     memcpy(*state, &self->of->now, sizeof self->of->now);
@@ -135,25 +136,28 @@ fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *state) {
 
 fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
     instance *self = c;
+    if (!state) return refuse(self, "no state is given");
     component_restore(self->of, state);
     return fmi2OK;
 }
 
 fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *state) {
     (void)c;
+    if (!state) return fmi2OK; /* as free has it, says the standard */
     free(*state);
     *state = NULL;
     return fmi2OK;
 }
 
 fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_t *size) {
-    (void)state;
+    if (!state || !size) return refuse(c, "no state is given");
     *size = sizeof((instance *)c)->of->now;
     return fmi2OK;
 }
 
 fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size) {
     instance *self = c;
+    if (!state || !bytes) return refuse(self, "no state is given");
     if (size < sizeof self->of->now) return refuse(self, "too little room for a state");
     memcpy(bytes, state, sizeof self->of->now);
     return fmi2OK;
@@ -161,6 +165,7 @@ fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte b
 
 fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate *state) {
     instance *self = c;
+    if (!state || !bytes) return refuse(self, "no state is given");
     if (size != sizeof self->of->now) return refuse(self, "no state of this FMU");
     if (!*state) *state = calloc(1, size);
     if (!*state) return refuse(self, "no memory");
@@ -173,6 +178,8 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
                                         fmi2Real found[]) {
     instance *self = c;
     fmi2Status status = fmi2OK;
+    for (size_t j = 0; j < known_count; j++)
+        if (!IS_KNOWN(knowns[j])) return refuse(self, "derivative by neither input, parameter nor state");
     for (size_t i = 0; i < unknown_count; i++) {
         if (!component_is_unknown(unknowns[i])) return refuse(self, "derivative of neither output nor rate");
         found[i] = 0.0;

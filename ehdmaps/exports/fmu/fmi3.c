@@ -194,6 +194,7 @@ fmi3Status fmi3GetVariableDependencies(fmi3Instance c, reference variable, size_
 
 fmi3Status fmi3GetFMUState(fmi3Instance c, fmi3FMUState *state) {
     instance *self = c;
+    if (!state) return refuse(self, "no state is given");
     if (!*state) *state = calloc(1, sizeof self->of->now);
     if (!*state) return refuse(self, "no memory");
     memcpy(*state, &self->of->now, sizeof self->of->now);
@@ -202,25 +203,28 @@ fmi3Status fmi3GetFMUState(fmi3Instance c, fmi3FMUState *state) {
 
 fmi3Status fmi3SetFMUState(fmi3Instance c, fmi3FMUState state) {
     instance *self = c;
+    if (!state) return refuse(self, "no state is given");
     component_restore(self->of, state);
     return fmi3OK;
 }
 
 fmi3Status fmi3FreeFMUState(fmi3Instance c, fmi3FMUState *state) {
     (void)c;
+    if (!state) return fmi3OK; /* as free has it, says the standard */
     free(*state);
     *state = NULL;
     return fmi3OK;
 }
 
 fmi3Status fmi3SerializedFMUStateSize(fmi3Instance c, fmi3FMUState state, size_t *size) {
-    (void)state;
+    if (!state || !size) return refuse(c, "no state is given");
     *size = sizeof((instance *)c)->of->now;
     return fmi3OK;
 }
 
 fmi3Status fmi3SerializeFMUState(fmi3Instance c, fmi3FMUState state, fmi3Byte bytes[], size_t size) {
     instance *self = c;
+    if (!state || !bytes) return refuse(self, "no state is given");
     if (size < sizeof self->of->now) return refuse(self, "too little room for a state");
     memcpy(bytes, state, sizeof self->of->now);
     return fmi3OK;
@@ -228,6 +232,7 @@ fmi3Status fmi3SerializeFMUState(fmi3Instance c, fmi3FMUState state, fmi3Byte by
 
 fmi3Status fmi3DeserializeFMUState(fmi3Instance c, const fmi3Byte bytes[], size_t size, fmi3FMUState *state) {
     instance *self = c;
+    if (!state || !bytes) return refuse(self, "no state is given");
     if (size != sizeof self->of->now) return refuse(self, "no state of this FMU");
     if (!*state) *state = calloc(1, size);
     if (!*state) return refuse(self, "no memory");
@@ -240,6 +245,8 @@ static fmi3Status derivatives(instance *self, const reference unknowns[], size_t
                               const reference knowns[], size_t known_count, const fmi3Float64 seeds[], int adjoint,
                               fmi3Float64 found[]) {
     fmi3Status status = fmi3OK;
+    for (size_t j = 0; j < known_count; j++)
+        if (!IS_KNOWN(knowns[j])) return refuse(self, "derivative by neither input, parameter nor state");
     memset(found, 0, (adjoint ? known_count : unknown_count) * sizeof *found);
     for (size_t i = 0; i < unknown_count; i++) {
         if (!component_is_unknown(unknowns[i])) return refuse(self, "derivative of neither output nor rate");

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 
+from ehdmaps.errors import InputError
 from ehdmaps.exports.fmu.binaries import compiled, platforms
 from ehdmaps.exports.fmu.description import KIND, Identity, build_description, model_description
 from ehdmaps.exports.fmu.variables import Variable
@@ -138,18 +139,26 @@ def _compiled(
 ) -> tuple[dict[str, bytes], str]:
     """Return all files of a unit with its binaries, and what is inside in words."""
     entries, inside = {name: text.encode() for name, text in unit_files.items()}, ["sources"]
+    if sources_only:
+        return entries, ", ".join(inside)
     sources = {name.removeprefix(_SOURCES): text for name, text in unit_files.items() if name.startswith(_SOURCES)}
-    with tempfile.TemporaryDirectory() as folder:
-        for name, text in sources.items():
-            (Path(folder) / name).write_text(text, encoding="utf-8")
-        for target in () if sources_only else platforms():
-            if not target.compiler:
-                inside.append(f"no {target.name}, for which no compiler is found")
-                continue
-            place = target.name if fmi == "2" else target.folder
-            library = compiled(target, Path(folder), _to_compile(sources), identity.name)
-            entries[f"binaries/{place}/{identity.name}{target.ending}"] = library
-            inside.append(target.name)
+    try:
+        with tempfile.TemporaryDirectory() as folder:
+            for name, text in sources.items():
+                (Path(folder) / name).write_text(text, encoding="utf-8")
+            for target in platforms():
+                if not target.compiler:
+                    inside.append(f"no {target.name}, for which no compiler is found")
+                    continue
+                place = target.name if fmi == "2" else target.folder
+                library = compiled(target, Path(folder), _to_compile(sources), identity.name)
+                entries[f"binaries/{place}/{identity.name}{target.ending}"] = library
+                inside.append(target.name)
+    except OSError as error:
+        raise InputError(
+            f"export fmu: cannot compile in the folder for temporary files ({error.strerror or error}); it takes some "
+            "MB there: make room, set TMPDIR to another folder, or take --sources-only where a command has it"
+        ) from error
     return entries, ", ".join(inside)
 
 

@@ -37,6 +37,7 @@ enum {
 #define FIRST_STATE VARIABLES
 #define FIRST_RATE VARIABLES
 #define REFERENCES VARIABLES
+#define IS_KNOWN(reference) ((reference) < FIRST_OUTPUT || ((reference) >= FIRST_STATE && (reference) < FIRST_RATE))
 #define NOMINAL_STATE 1.0
 
 /* All that a component has to remember. */
