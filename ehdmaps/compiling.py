@@ -78,12 +78,12 @@ class Compiling(event.Listener):
 
 
 def stopwatch() -> Callable[[], float]:
-    """Start a watch that stands still while numba compiles; calling it gives the time so far [s]."""
+    """Start a watch of processor time, without that of compiling; calling it gives the time so far [s]."""
     compiling = _listening()
-    begin = time.perf_counter() - compiling.seconds
+    begin = time.process_time() - compiling.seconds
 
     def elapsed() -> float:
-        return time.perf_counter() - compiling.seconds - begin
+        return time.process_time() - compiling.seconds - begin
 
     return elapsed
 
@@ -91,6 +91,6 @@ def stopwatch() -> Callable[[], float]:
 @functools.cache
 def _listening() -> Compiling:
     """One listener for all watches of a process."""
-    found = Compiling(lambda _: None, time.perf_counter)
+    found = Compiling(lambda _: None, time.process_time)
     found.listen()
     return found

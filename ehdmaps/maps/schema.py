@@ -299,7 +299,7 @@ TABLE = (
     _model_error("stiffness_model_error", "stiffness"),
     _model_error("damping_model_error", "damping"),
     Variable("iterations", "1", "iterations of the solver, all grids together", "int32"),
-    Variable("solve_seconds", "s", "time to solve the point"),
+    Variable("solve_seconds", "s", "processor time to solve the point"),
     Variable(
         "viscosity_extrapolated",
         "1",

@@ -35,6 +35,7 @@ from ehdmaps.physics.point.film_formulas import hamrock_dowson_central
 from ehdmaps.physics.point.groups import kapitza_film, point_groups
 from ehdmaps.physics.rheology import wall_stress_note
 from ehdmaps.physics.solution import Status, peak_sampling_error
+from ehdmaps.processor import cpu_seconds
 
 ELLIPTICITIES = (1.0, 12.0)
 """Ellipticities that are solved; a little below a circle is one."""
@@ -80,7 +81,7 @@ damping_error, film_compliance_error, loss_compliance_error : float
     steps : int
         Newton's steps on all meshes.
     solve_seconds : float
-        Wall time.
+        Processor time.
     viscosity_extrapolated : bool
         The pressure left the range in which the viscosity law was fitted.
     columns : PointColumns or None
@@ -217,16 +218,16 @@ class OpenFoamPointSolver:
             *mesh,
             write_fields=with_fields or self.keep_cases is not None,
         )
-        began = time.perf_counter()
+        began = cpu_seconds()
         try:
             results, columns, fields = self._run(asked, name, with_fields)
         except InputError as error:
             return PointFilm(Status.OUTSIDE_VALIDITY, str(error), M, L)
         except SolverError as error:
-            seconds = time.perf_counter() - began
+            seconds = cpu_seconds() - began
             status, steps = (error.status, error.iterations) if isinstance(error, RunError) else (Status.FAILED, 0)
             return PointFilm(status, str(error), M, L, mesh, steps=steps, solve_seconds=seconds)
-        seconds = time.perf_counter() - began
+        seconds = cpu_seconds() - began
         return _film(asked, (M, L), results, columns, fields, seconds)
 
     def _run(

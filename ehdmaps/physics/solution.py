@@ -150,7 +150,7 @@ class FilmSolution:
     iterations : int
         Newton steps (or the solver's own count), all grids together.
     solve_seconds : float
-        Wall time without that of compiling [s].
+        Processor time without that of compiling [s].
     viscosity_extrapolated : bool
         The pressure left the range in which the viscosity law was fitted.
     """

@@ -153,7 +153,7 @@ minimum_film_error, max_pressure_error : float
     steps : int
         Newton steps.
     solve_seconds : float
-        Wall time.
+        Processor time.
     field : PointField or None
         Pressure and film of half of the roller; None where there is no film.
     """

@@ -124,7 +124,7 @@ central_film_error, minimum_film_error, max_pressure_error : float
     steps : int
         Newton steps, all grids and starts together.
     solve_seconds : float
-        Wall time.
+        Processor time.
     viscosity_extrapolated : bool
         The pressure left the range in which the viscosity law was fitted.
     response : PointResponse or None

@@ -171,8 +171,8 @@ def _report(entry: LawRun, sensors: Sequence[Sensor]) -> list[str]:
         f"{entry.case.label}: {entry.case.model.law}",
         *heading(entry.case.model)[1:],
         *held_lines(entry.case.model),
-        f"  {record.steps} steps, {record.halved} taken back, {1e6 * entry.seconds / max(record.steps, 1):.3g} us a "
-        f"step, {entry.seconds:.3g} s",
+        f"  {record.steps} steps, {record.halved} taken back, {1e6 * entry.seconds / max(record.steps, 1):.3g} us of "
+        f"processor time a step, {entry.seconds:.3g} s in all",
         *(
             f"{sensor_line(sensor.name, Reference.of(sensor), spectra)}{_elsewhere(entry, place)}"
             if sensors[1:]

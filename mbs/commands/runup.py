@@ -270,7 +270,7 @@ def _report(found: RunUpResult) -> list[str]:
         *held_lines(model),
         f"from {first} to {last} in {found.course.duration:.4g} s: {result.steps} steps, {result.halved} taken back, "
         f"{result.iterations / max(result.steps, 1):.3g} Newton iterations a step, "
-        f"{1e6 * found.seconds / max(result.steps, 1):.0f} us a step",
+        f"{1e6 * found.seconds / max(result.steps, 1):.0f} us of processor time a step",
         *step_lines(resolution(model, found.course)),
         *(found.steps.lines if found.steps else ()),
         *(f"note: {line}" for line in result.notes),

@@ -57,9 +57,9 @@ VOLATILE_WORDS = (
     (re.compile(r"\b[0-9a-f]{32,64}\b"), "HASH"),
     (re.compile(r"(code_hash: |code +hash )[0-9a-f]{16}\b"), "HASH"),
     (re.compile(r"\b(src\.|g)[0-9a-f]{10}(\.dirty)?(\.[0-9a-f]{10})?\b"), "VERSION"),
-    (re.compile(r"[\d.]+ us a step(, [\d.]+ s)?"), "TIME"),
-    (re.compile(r"time: +[\d.]+ s now; [\d.]+ s|time +about .* a point"), "TIME"),
-    (re.compile(r"time to solve +ms .*"), "TIME"),
+    (re.compile(r"[\d.]+ us of processor time a step(, [\d.]+ s)?"), "TIME"),
+    (re.compile(r"time: +[\d.]+ s now .wall time.; [\d.]+ s|time +about .* a point"), "TIME"),
+    (re.compile(r"processor time( to solve)? +ms .*"), "TIME"),
     (re.compile(r'"solve_seconds": .*'), "TIME"),
 )
 """What texts have of the kind, and what stands in its place."""

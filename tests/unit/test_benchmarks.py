@@ -46,5 +46,8 @@ def test_differences_name_the_variable_and_its_size():
 
 
 def test_words_that_change_from_run_to_run_are_left_out():
-    text = "created 2026-01-02T03:04:05+00:00\nversion 0.1.0+g0123456789\n3 steps, 12.5 us a step, 0.1 s\nload 12.5 N"
+    text = (
+        "created 2026-01-02T03:04:05+00:00\nversion 0.1.0+g0123456789\n"
+        "3 steps, 12.5 us of processor time a step, 0.1 s\nload 12.5 N"
+    )
     assert manifest._steady(text) == ["created DATE", "version VERSION", "3 steps, TIME", "load 12.5 N"]

@@ -8,8 +8,6 @@ that at each point they add up to the error.
 from __future__ import annotations
 
 import math
-import os
-import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -35,6 +33,7 @@ from ehdmaps.physics.closed_form import FormulaSolver
 from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.solution import natural_to_hertz
 from ehdmaps.physics.spectrum import HIGHEST_FREQUENCY, LOWEST_FREQUENCY
+from ehdmaps.processor import cpu_seconds
 from ehdmaps.trade.record import Choice, ErrorSummary, Judged, Scope, Trade
 from ehdmaps.units import LOAD, SPEED, TEMPERATURE
 
@@ -315,12 +314,6 @@ def _ask(model: ContactModel, questions: Sequence[Question]) -> Asked:
     answers = tuple(model(question) for question in questions) if many is None else many(questions)
     spent = cpu_seconds() - began
     return Asked(answers, spent / len(questions) if questions else math.nan)
-
-
-def cpu_seconds() -> float:
-    """Processor time of this process and of the programs that it ran and that ended [s]."""
-    times = os.times()
-    return time.process_time() + times.children_user + times.children_system
 
 
 def _choice(

@@ -134,7 +134,7 @@ def _lines(result: BatchResult, written: Path) -> Iterator[str]:
         yield f"{outcome.output.name}: {_words(outcome)}"
     if len(bad) > _SHOWN:
         yield f"and {len(bad) - _SHOWN} more, see the table"
-    yield f"time: {duration(result.wall_seconds)}"
+    yield f"wall time: {duration(result.wall_seconds)}"
     yield f"table: {written}"
 
 

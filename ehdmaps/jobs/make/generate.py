@@ -104,7 +104,9 @@ def _lines(generated: Generated, output: Path) -> Iterator[str]:
     yield from law_lines(dataset)
     yield from correction_lines(dataset)
     seconds = float(np.nansum(dataset["solve_seconds"].values))
-    yield f"time: {sweep.wall_seconds:.1f} s now; {seconds:.1f} s of solving in the whole map, all cores"
+    yield (
+        f"time: {sweep.wall_seconds:.1f} s now (wall time); {seconds:.1f} s of processor time for solving the whole map"
+    )
     estimated = json.loads(dataset.attrs["lubricant"]).get("estimated")
     if estimated or int(dataset.attrs["lubricant_verified"]) == 0:
         yield f"lubricant: {estimated or 'its data are not verified; see the reference page'}"

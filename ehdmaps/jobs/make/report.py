@@ -347,7 +347,7 @@ def _lines(dataset: xr.Dataset, record: Mapping[str, Any]) -> Iterator[str]:
     settings = ", ".join(f"{plain(key).replace('_', ' ')} {plain(value)}" for key, value in record["settings"].items())
     yield f"correction by {plain(record['solver'])}{f' ({settings})' if settings else ''}"
     counts = f"{int(record['asked'])} points, {int(record['usable'])} of them with a solution by both solvers"
-    yield f"  {counts}; {float(record['solve_seconds']):.3g} s of solving, all cores"
+    yield f"  {counts}; {float(record['solve_seconds']):.3g} s of processor time for solving"
     failed = defaultdict(list)
     for point in record["points"]:
         if point["status"] not in _USABLE:

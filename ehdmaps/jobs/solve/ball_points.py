@@ -333,7 +333,7 @@ def _table(request: _Request, solutions: dict[str, PointSolution]) -> str:
         rows.append((label, display.unit, shown))
     rows.append(
         (
-            "time to read" if request.films == TABLE else "time to solve",
+            "processor time to read" if request.films == TABLE else "processor time to solve",
             "ms",
             [f"{1e3 * solution.solve_seconds:.3g}" for solution in found],
         )

@@ -307,7 +307,7 @@ def _rows(records: list[dict[str, Any]], length: float | None) -> Iterator[tuple
     for name in ERRORS_OF_SOME:
         if any(record[name] is not None for record in records):
             yield row(f"error of {name.removesuffix('_error').replace('_', ' ')}", name, Display("K"))
-    yield row("time to solve", "solve_seconds", Display("ms", 1e3))
+    yield row("processor time", "solve_seconds", Display("ms", 1e3))
 
 
 def words_of(record: dict[str, Any]) -> str:

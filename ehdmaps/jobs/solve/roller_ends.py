@@ -178,7 +178,7 @@ def _table(request: _Request, solutions: dict[str, RollerSolution]) -> str:
             places = [shown_with_error(each.minimum_place, math.nan, LENGTH) for each in found]
             rows.append(("off the middle by", LENGTH.unit, places))
     rows.append(("dry k", SPRING.unit, [shown_with_error(each.dry_stiffness, math.nan, SPRING) for each in found]))
-    rows.append(("time to solve", "s", [f"{each.solve_seconds:.3g}" for each in found]))
+    rows.append(("processor time to solve", "s", [f"{each.solve_seconds:.3g}" for each in found]))
     place = f"{FORCE.text(request.load)} a roller, {SPEED.text(request.speed)}, {TEMPERATURE.text(request.temperature)}"
     lines = [
         f"{request.job.title}, {request.job.lubricant.title}: {place}",
