@@ -17,5 +17,4 @@ ehdmaps export NU210_ISO_VG_46.nc --to fmu -o NU210.fmu                         
 mbs new shaft -o mine.toml
 mbs check mine.toml                                                             # every problem, and what will be solved
 mbs run mine.toml -o results                                                    # every analysis it has a table for
-mbs critical mine.toml --plot critical.png
 mbs report mine.toml -o mine.html

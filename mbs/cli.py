@@ -24,6 +24,9 @@ _SCENES = ("check", "importing", "new")
 
 _OWN_PHYSICS = ("auto", "maps", PHYSICS.key, SHEAR.key, "auto_tolerance")
 
+_UFF = "universal files need pip install 'ehdmaps[modal]'"
+"""What is said where such files are read or written."""
+
 _RENAMED = {
     "--speeds": "--speed FROM TO POINTS",
     "--structure": "--structural-law",
@@ -207,7 +210,7 @@ def _campbell(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--measured",
         metavar="FILE",
-        help="a measured run beside the simulated ones: .csv, .uff, .wav or .nc with a speed",
+        help=f"a measured run beside the simulated ones: .csv, .uff, .wav or .nc with a speed; {_UFF}",
     )
     command.add_argument(
         "--channel",
@@ -238,7 +241,9 @@ def _level_tolerance(command: argparse.ArgumentParser) -> None:
 def _recorded(command: argparse.ArgumentParser) -> None:
     """Add where the speed of a recorded run is, and where signals are written."""
     command.add_argument(
-        "--signals", metavar="FILE", help="the signals of all sensors with the speed: .csv, .uff, .wav, or .nc"
+        "--signals",
+        metavar="FILE",
+        help=f"the signals of all sensors with the speed: .csv, .uff, .wav, or .nc; {_UFF}",
     )
     command.add_argument(
         "--speed-channel", metavar="NAME", help="speed of a recorded run; default: its only channel in rpm, Hz or 1/min"
@@ -409,11 +414,13 @@ def _modal_fit(top: Program) -> None:
     """Add the command that reads a universal file instead of a scene."""
     words = "frequencies and damping ratios from hammer hits or frequency responses"
     command = top.add_command(_MEASURED, "modal-fit", words)
-    command.add_argument("file", metavar="FILE", help="universal file (UFF), measured or made by `mbs hammer`")
+    command.add_argument("file", metavar="FILE", help=f"universal file (UFF), measured or made by `mbs hammer`; {_UFF}")
     command.add_argument("--band", nargs=2, metavar=("FROM", "TO"), help='such as "100 Hz" "5 kHz"')
     command.add_argument("--modes", type=int, metavar="N", help="how many to keep at most")
     command.add_argument("--order", type=int, metavar="N", help="highest number of pole pairs (24)")
-    command.add_argument("--method", choices=("rfp", "lscf", "both"), default="rfp", help="rational fractions, p-LSCF")
+    command.add_argument(
+        "--method", choices=("rfp", "lscf", "both"), default="rfp", help="rational fractions, p-LSCF (of [modal], too)"
+    )
     command.add_argument("--estimator", choices=("h1", "h2"), default="h1", help="noise on the responses, on the force")
     command.add_argument(
         "--window-decay",
@@ -473,7 +480,10 @@ _ON_SCENES = {
         _TIME, "a difference between two laws in a run-up under single changes, as a table", (_variants,), compares=True
     ),
     "hammer": _OnScene(
-        _TIME, "a simulated hammer test: records as a universal file", (_parallel, _hammer, _at_speed), compares=True
+        _TIME,
+        f"a simulated hammer test: records as a universal file; {_UFF}",
+        (_parallel, _hammer, _at_speed),
+        compares=True,
     ),
 }
 """Commands that take a scene, its choices, and physics of their own."""
@@ -530,10 +540,17 @@ def _auto(shared: argparse.ArgumentParser) -> None:
 
 def _run(top: Program) -> None:
     """Add the command that does every analysis for which the scene has a table."""
-    words = "every analysis for which the scene has a table: statics, modes, lsa, sweep, and campbell or runup"
+    words = (
+        "every analysis for which the scene has a table: statics, modes, lsa, sweep, critical, and campbell or runup"
+    )
     command = top.add_command(_LOOK, "run", words, (*_choices(), *_OWN_PHYSICS))
     command.add_argument("scene", metavar="SCENE")
-    command.add_argument("-o", "--output", metavar="FOLDER", help="results, figures and texts of all analyses")
+    command.add_argument(
+        "-o",
+        "--output",
+        metavar="FOLDER",
+        help="of results, figures and texts of all analyses; default: the scene's name with _results, in this folder",
+    )
     # The command asks for the others by their own words.
     command.set_defaults(parse=top.parse_args)
 

@@ -1,4 +1,7 @@
-"""`mbs run`: every analysis for which the scene has a table, with one map or with a map of its own (`--auto`)."""
+"""`mbs run`: every analysis for which the scene has a table, with one map or with a map of its own (`--auto`).
+
+Results, figures and texts of all of them are written into one folder.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +27,7 @@ TEXT = Kind("a text of mbs run", (".txt",), lambda path: path.read_bytes().start
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Do all of them; what has no result does not stop the others."""
     scene = read_scene(arguments.scene)
-    folder = _folder(arguments.output)
+    folder = _folder(arguments.output or f"{Path(arguments.scene).stem}_results")
     planned = {name: arguments.parse(_words(arguments, scene, name, folder)) for name in _analyses(scene)}
     lines, status = [f"{scene.title}: {', '.join(planned)}"], 0
     refused, told = 0, set[str]()
@@ -41,10 +44,9 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         shown = [line for line in text.splitlines() if line not in told or not line.startswith(_TOLD_ONCE)]
         told.update(text.splitlines())
         lines += ["", f"=== mbs {name} {arguments.scene}", *shown]
-        if folder is not None:
-            path = folder / f"{name}.txt"
-            write_text(path, f"{MARK} {arguments.scene}: {name}\n{text}\n", TEXT)
-            lines.append(f"{path}: written")
+        path = folder / f"{name}.txt"
+        write_text(path, f"{MARK} {arguments.scene}: {name}\n{text}\n", TEXT)
+        lines.append(f"{path}: written")
     return "\n".join(lines), status
 
 
@@ -55,15 +57,15 @@ def _analyses(scene: Scene) -> list[str]:
         found.append("lsa")
     if scene.sweep is not None:
         found.append("sweep")
+        if any(body.spin for body in scene.bodies):
+            found.append("critical")
     if scene.run_up is not None:
         found.append("runup" if campbell_problems(scene, scene.campbell) else "campbell")
     return found
 
 
-def _folder(given: str | None) -> Path | None:
+def _folder(given: str) -> Path:
     """The folder of the results, which is made where it is not there."""
-    if given is None:
-        return None
     folder = Path(given)
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -72,7 +74,7 @@ def _folder(given: str | None) -> Path | None:
     return folder
 
 
-def _words(arguments: argparse.Namespace, scene: Scene, name: str, folder: Path | None) -> list[str]:
+def _words(arguments: argparse.Namespace, scene: Scene, name: str, folder: Path) -> list[str]:
     """The command line of one analysis."""
     words = [name, arguments.scene]
     for choice in OPTIONS:
@@ -83,9 +85,7 @@ def _words(arguments: argparse.Namespace, scene: Scene, name: str, folder: Path 
             words += [f"--{option}", value]
     if arguments.auto:
         words.append("--auto")
-    if folder is not None:
-        check_outputs([Output("-o", folder / f"{name}.txt", TEXT)])
-        words += ["-o", str(folder / f"{name}.nc")]
-        # The figure of statics is one of rollers.
-        words += ["--plot", str(folder / f"{name}.png")] if name != "statics" or scene.bearings else []
-    return words
+    check_outputs([Output("-o", folder / f"{name}.txt", TEXT)])
+    # The figure of statics is one of rollers.
+    figure = ["--plot", str(folder / f"{name}.png")] if name != "statics" or scene.bearings else []
+    return [*words, "-o", str(folder / f"{name}.nc"), *figure]

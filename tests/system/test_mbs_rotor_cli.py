@@ -7,6 +7,7 @@ import pytest
 import xarray as xr
 
 from tests.cases.commands import run
+from tests.cases.masses import masses_on
 
 DAMPED = ("--law", "hertz:1.25e-5 s")
 
@@ -111,3 +112,18 @@ def test_a_mode_without_films_has_bands_of_zero(here, capsys):
     assert status == 0
     assert (axial[2], axial[5]) == ("0", "0")
     assert all(float(line.split()[2]) > 0.0 for line in out.splitlines() if " rotor 9" in line)
+
+
+@pytest.mark.slow
+def test_run_writes_all_that_it_computes(here, capsys):
+    """Without -o into a folder here, with critical speeds where there are speeds."""
+    sweep = '[sweep]\nfrom = "1000 rpm"\nto = "3000 rpm"\npoints = 3\n'
+    (here / "own.toml").write_text(masses_on("6208") + sweep)
+    status, said, _ = run(capsys, "run", "own.toml")
+    assert status == 0
+    names = ("statics", "modes", "sweep", "critical")
+    written = {path.name for path in (here / "own_results").iterdir()}
+    assert written == {f"{name}.{end}" for name in names for end in ("nc", "png", "txt")} - {"statics.png"}
+    assert all(f"own_results/{name}: written" in said for name in written)
+    with xr.open_dataset("own_results/critical.nc") as found:
+        assert {"critical_speed", "response_real"} & set(found.variables)

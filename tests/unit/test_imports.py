@@ -38,6 +38,7 @@ ALLOWED = {
     "ehdmaps.interrupts": set(),
     "ehdmaps.program": {"ehdmaps.errors", "ehdmaps.interrupts", "ehdmaps.version"},
     "ehdmaps.compiling": set(),
+    "ehdmaps.processor": set(),
     "ehdmaps.workers": {"ehdmaps.compiling", "ehdmaps.errors", "ehdmaps.interrupts", "ehdmaps.program"},
     "ehdmaps.physics": {"ehdmaps.arrays", "ehdmaps.errors", "ehdmaps.labels"},
     "ehdmaps.ehl": {
@@ -76,6 +77,7 @@ ALLOWED = {
         "ehdmaps.physics",
     },
     "ehdmaps.openfoam": {
+        "ehdmaps.processor",
         "ehdmaps.arrays",
         "ehdmaps.errors",
         "ehdmaps.extras",
@@ -104,6 +106,7 @@ ALLOWED = {
         "ehdmaps.maps",
     },
     "ehdmaps.jobs": {
+        "ehdmaps.processor",
         "ehdmaps",
         "ehdmaps.exports",
         "ehdmaps.arrays",
