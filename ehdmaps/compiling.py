@@ -1,9 +1,10 @@
-"""Time that numba spends on compiling, of which users are told and which no rate of work counts."""
+"""Processor time of work, and time that numba spends on compiling, of which users are told and which no rate counts."""
 
 from __future__ import annotations
 
 import contextlib
 import functools
+import os
 import time
 from collections.abc import Callable
 from typing import Any
@@ -75,6 +76,12 @@ class Compiling(event.Listener):
         """Listen no more."""
         with contextlib.suppress(ValueError):  # it has ended already
             _EVENTS.unregister("numba:compile", self)
+
+
+def cpu_seconds() -> float:
+    """Processor time of this process and of the programs that it ran and that ended [s]."""
+    times = os.times()
+    return time.process_time() + times.children_user + times.children_system
 
 
 def stopwatch() -> Callable[[], float]:

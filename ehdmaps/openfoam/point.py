@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.compiling import cpu_seconds
 from ehdmaps.errors import InputError, SolverError
 from ehdmaps.openfoam.case import working_case
 from ehdmaps.openfoam.fields import PointFields, read_point_fields
@@ -35,7 +36,6 @@ from ehdmaps.physics.point.film_formulas import hamrock_dowson_central
 from ehdmaps.physics.point.groups import kapitza_film, point_groups
 from ehdmaps.physics.rheology import wall_stress_note
 from ehdmaps.physics.solution import Status, peak_sampling_error
-from ehdmaps.processor import cpu_seconds
 
 ELLIPTICITIES = (1.0, 12.0)
 """Ellipticities that are solved; a little below a circle is one."""

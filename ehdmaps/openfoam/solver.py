@@ -13,6 +13,7 @@ from typing import Literal, Protocol
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.compiling import cpu_seconds
 from ehdmaps.errors import InputError, SolverError
 from ehdmaps.openfoam.grid_solver import GridSolution, GridSolver
 from ehdmaps.openfoam.installation import NO_PATH, Installation, installation
@@ -37,7 +38,6 @@ from ehdmaps.physics.solution import (
     slow_spectrum,
 )
 from ehdmaps.physics.spectrum import neighbours, read_beside
-from ehdmaps.processor import cpu_seconds
 
 CAVITATION_RANGE = 1e-6
 """Pressure over which liquid turns into the cavitated mixture, over the largest of the film (about)."""

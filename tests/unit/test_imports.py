@@ -38,7 +38,6 @@ ALLOWED = {
     "ehdmaps.interrupts": set(),
     "ehdmaps.program": {"ehdmaps.errors", "ehdmaps.interrupts", "ehdmaps.version"},
     "ehdmaps.compiling": set(),
-    "ehdmaps.processor": set(),
     "ehdmaps.workers": {"ehdmaps.compiling", "ehdmaps.errors", "ehdmaps.interrupts", "ehdmaps.program"},
     "ehdmaps.physics": {"ehdmaps.arrays", "ehdmaps.errors", "ehdmaps.labels"},
     "ehdmaps.ehl": {
@@ -77,8 +76,8 @@ ALLOWED = {
         "ehdmaps.physics",
     },
     "ehdmaps.openfoam": {
-        "ehdmaps.processor",
         "ehdmaps.arrays",
+        "ehdmaps.compiling",
         "ehdmaps.errors",
         "ehdmaps.extras",
         "ehdmaps.outputs",
@@ -106,7 +105,6 @@ ALLOWED = {
         "ehdmaps.maps",
     },
     "ehdmaps.jobs": {
-        "ehdmaps.processor",
         "ehdmaps",
         "ehdmaps.exports",
         "ehdmaps.arrays",

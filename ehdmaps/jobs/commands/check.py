@@ -6,7 +6,7 @@ import argparse
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from ehdmaps.compiling import stopwatch
+from ehdmaps.compiling import cpu_seconds, stopwatch
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.estimate_bands import band_lines
 from ehdmaps.jobs.job import Job
@@ -20,7 +20,6 @@ from ehdmaps.jobs.reader import read_job
 from ehdmaps.jobs.supply import supply_words, surface_words
 from ehdmaps.physics.closed_form import film_change
 from ehdmaps.physics.solution import ContactSolver, Status
-from ehdmaps.processor import cpu_seconds
 from ehdmaps.table.solver import TableSolver
 from ehdmaps.units import LOAD, SPEED, TEMPERATURE
 from ehdmaps.workers import available_cores

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.compiling import cpu_seconds
 from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.instruments.answers import COMPLIANCE_SHARE, DAMPING_SHARE, QUANTITIES, Answer, Question, scales
@@ -33,7 +34,6 @@ from ehdmaps.physics.closed_form import FormulaSolver
 from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.solution import natural_to_hertz
 from ehdmaps.physics.spectrum import HIGHEST_FREQUENCY, LOWEST_FREQUENCY
-from ehdmaps.processor import cpu_seconds
 from ehdmaps.trade.record import Choice, ErrorSummary, Judged, Scope, Trade
 from ehdmaps.units import LOAD, SPEED, TEMPERATURE
 
