@@ -170,7 +170,8 @@ class Scene:
     def clearance_ranges(self) -> dict[str, tuple[str, ClearanceRange]]:
         """Ranges of clearances that are not stated, or beside a class: designation and range, by the bearing."""
         found = {}
-        for entry in (*self.bearings, *self.balls, *self.tapered):
+        entries: tuple[BearingSpec | BallSpec | TaperedSpec, ...] = (*self.bearings, *self.balls, *self.tapered)
+        for entry in entries:
             if (reach := clearance_range(entry.geometry)) is not None:
                 found[entry.name] = entry.geometry.name, reach
         return found

@@ -137,11 +137,14 @@ def _body(place: str) -> str:
 
 def _axial(scene: Scene, body: RigidSpec | ShaftSpec) -> float:
     """Force of loads and weight along x on a body [N]."""
-    pushed = sum(
-        load.force[0] * ((_body(load.on) == body.name) - (_body(load.against) == body.name)) for load in scene.loads
-    )
-    parts = body.parts if isinstance(body, RigidSpec) else (*body.sections, *(disc.inertia for disc in body.discs))
-    return float(pushed) + scene.gravity[0] * sum(part.mass for part in parts)
+    pushed = 0.0
+    for load in scene.loads:
+        pushed += float(load.force[0]) * ((_body(load.on) == body.name) - (_body(load.against) == body.name))
+    if isinstance(body, RigidSpec):
+        mass = sum(part.mass for part in body.parts)
+    else:
+        mass = sum(part.mass for part in body.sections) + sum(disc.inertia.mass for disc in body.discs)
+    return pushed + scene.gravity[0] * mass
 
 
 def _touches(entry: ElementSpec, body: str) -> bool:
