@@ -140,7 +140,8 @@ class TableField:
             if len(self._kept) >= _KEPT:
                 self._kept.pop(next(iter(self._kept)))
             lines = self._kept[key] = self._lines(chosen, speeds, temperatures)
-        zeta = np.log(loads * lines.groups.unit / lines.groups.valley).reshape(loads.shape[0], -1)
+        zeta = np.log(loads * lines.groups.unit / lines.groups.valley)
+        zeta = zeta.reshape(loads.shape[0], math.prod(zeta.shape[1:]))  # also of no loads at all
         inside = np.clip(zeta, *lines.ends)
         beyond = zeta - inside
         value, steep = columns(lines.film.integral, inside)

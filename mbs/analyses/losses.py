@@ -13,13 +13,13 @@ from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.contact_report import BearingContacts, RollingLoss, bearing_contacts, rolling_loss
 from mbs.bearings.films import DryContacts, FilmSource
 from mbs.model.elements import Operation
-from mbs.scene.assembly import Model, ring_motions
+from mbs.scene.assembly import Model
 
 
 def contacts_and_losses(
     model: Model, displacement: FloatArray, operation: Operation
 ) -> list[tuple[BearingContacts, RollingLoss]]:
-    """Pressures and films of each bearing at an equilibrium, and what rolling costs in it.
+    """Pressures and films of each bearing on rings at an equilibrium, in the order of its elements, and its loss.
 
     Parameters
     ----------
@@ -30,10 +30,16 @@ def contacts_and_losses(
     operation : Operation
         Speed and angle.
     """
-    return [
-        _of_bearing(model.films[bearing.name], bearing, motion, operation)
-        for bearing, motion in ring_motions(model, displacement)
-    ]
+    rollers = {bearing.name: bearing for bearing in model.bearings}
+    found = []
+    for entry in model.on_rings:
+        motion = model.system.relative(entry.inner, entry.outer) @ displacement
+        bearing = rollers.get(entry.name)
+        if bearing is None:
+            found.append(entry.felt(motion, operation))
+        else:
+            found.append(_of_bearing(model.films[entry.name], bearing, motion, operation))
+    return found
 
 
 def losses_over_speed(
@@ -52,7 +58,7 @@ def losses_over_speed(
     displacements : array, shape (speeds, n)
         Displacements of the system at the equilibria.
     """
-    found = np.full((2, speeds.size, len(models[0].bearings)), np.nan)
+    found = np.full((2, speeds.size, len(models[0].on_rings)), np.nan)
     for index, (model, speed) in enumerate(zip(models, speeds.tolist(), strict=True)):
         losses = [loss for _, loss in contacts_and_losses(model, displacements[index], Operation(speed))]
         found[:, index] = [[loss.torque for loss in losses], [loss.total for loss in losses]]

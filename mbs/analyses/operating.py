@@ -11,6 +11,8 @@ thin, that of the other is too thick.
 
 from __future__ import annotations
 
+import math
+
 from mbs.bearings.thermal import BearingState, Clearance
 from mbs.scene.assembly import Model
 
@@ -68,14 +70,22 @@ def held(model: Model) -> Model:
 def states_of(model: Model) -> tuple[BearingState, ...]:
     """Temperatures and clearances of all bearings of a model, those of the scene where it is not in operation.
 
+    Balls, tapered rollers and rollers between ribs keep those of the scene; tapered rollers have no clearance.
+
     Parameters
     ----------
     model : Model
         Scene with its law.
     """
-    return model.states or tuple(
+    found = model.states or tuple(
         BearingState(
             entry.name, entry.temperature, entry.temperature, Clearance(entry.bearing.geometry.diametral_clearance)
         )
         for entry in model.bearings
     )
+    scene = model.scene
+    clearances = {spec.name: spec.geometry.clearance for spec in scene.balls}
+    clearances |= {spec.name: getattr(spec.geometry, "diametral_clearance", math.nan) for spec in scene.tapered}
+    others = model.on_rings[len(model.bearings) :]
+    kelvin = scene.temperature
+    return (*found, *(BearingState(one.name, kelvin, kelvin, Clearance(clearances[one.name])) for one in others))

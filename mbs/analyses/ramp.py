@@ -48,7 +48,7 @@ def course_of(model: Model, course: RunUp) -> SpeedProfile:
         If there is no equilibrium at a speed.
     """
     speed = course.speed
-    if not isinstance(speed, DrivenSpeed) or not model.bearings:
+    if not isinstance(speed, DrivenSpeed) or not model.on_rings:
         return speed
     speeds = max(map(abs, speed.course.values)) * np.arange(1, SPEEDS + 1) / SPEEDS
     if speeds[0] <= 0.0:

@@ -273,15 +273,13 @@ def _dataset(cases: Sequence[Case], found: Sequence[Sweep]) -> xr.Dataset:
     losses = [
         losses_over_speed(there, entry.speeds, entry.displacement) for there, entry in zip(models, found, strict=True)
     ]
-    rollers = {"bearing": [entry.name for entry in cases[0].model.bearings]}
     for name, unit, words, part in (
         ("rolling_torque", "N m", "torque that rolling takes", 0),
-        ("rolling_power", "W", "power that the films of all rollers take", 1),
+        ("rolling_power", "W", "power that the films of all rollers or balls take", 1),
     ):
         values = np.stack([both[part] for both in losses])
-        attributes = {"units": unit, "long_name": f"{words}; none without a map with rolling forces"}
-        of_rollers = xr.DataArray(values, rollers, ("case", "speed", "bearing"), attrs=attributes)
-        dataset[name] = of_rollers.reindex(bearing=dataset["bearing"])  # ball bearings have none
+        attributes = {"units": unit, "long_name": f"{words}; films only; none of laws without rolling forces"}
+        dataset[name] = (("case", "speed", "bearing"), values, attributes)
     supplies = choice_attributes([(case.label, case.model) for case in cases])
     dataset = with_states(dataset, [[states_of(there) for there in row] for row in models], ("case", "speed"))
     return described(dataset, **{**law_attributes(cases[0].model), "law": "; ".join(named), **supplies})

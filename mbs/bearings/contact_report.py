@@ -379,8 +379,25 @@ def rolling_loss(
         loads = inner, np.maximum(inner + centrifugal_load, 0.0)
         driven = driven_rollers(bearing, contacts.sides, loads, films.lubricant.at(temperature), u)
         power, slowest = driven.power, float(driven.spin.min())
+    return loss_of(power, rollers.load, ring_speed, slowest)
+
+
+def loss_of(power: FloatArray, load: FloatArray, ring_speed: float, slowest: float = 1.0) -> RollingLoss:
+    """Loss of a bearing by what its rolling elements take.
+
+    Parameters
+    ----------
+    power : array (2, Z)
+        Power that the films of each element take at the inner and at the outer raceway [W]; NaN where none is known.
+    load : array (Z,)
+        Loads of the elements on the inner raceway [N].
+    ring_speed : float
+        Speed of one ring against the other [rad/s], of either sign.
+    slowest : float
+        Speed of the slowest element over that of rolling.
+    """
     total = float(power.sum())
-    idle = float(power[:, rollers.load < IDLE * np.max(rollers.load)].sum()) / total if total > 0.0 else math.nan
+    idle = float(power[:, load < IDLE * np.max(load)].sum()) / total if total > 0.0 else math.nan
     return RollingLoss(power, abs(ring_speed), idle, slowest)
 
 

@@ -22,7 +22,7 @@ from mbs.commands.common import Looked, write
 from mbs.model.equilibrium import Equilibrium
 from mbs.model.relaxation import NOTABLE
 from mbs.output.model_text import heading
-from mbs.output.state_text import DAMPINGS, STIFFNESSES, flooded_note, loss_words
+from mbs.output.state_text import DAMPINGS, STIFFNESSES, flooded_note, largest_torque, loss_words
 from mbs.planning.question import at_one_speed
 from mbs.scene.assembly import Model, ring_motions
 
@@ -73,11 +73,13 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         from mbs.commands.one_bearing.tapered_table import tapered_lines
 
         lines += tapered_lines(model, balance)
+    others = list(zip(model.on_rings, contacts, found.losses, strict=True))[len(model.bearings) :]
+    lines += [f"{entry.name}: {_contact_words(state)}; {loss_words(loss, 'elements')}" for entry, state, loss in others]
     if model.gears:
         from mbs.output.results import gear_lines
 
         lines += gear_lines(model, balance)
-    lines += flooded_note(max((loss.torque for loss in found.losses), default=math.nan), model.supplies.values())
+    lines += flooded_note(largest_torque(found.losses), model.supplies.values())
     lines += _slow(model, balance) if model.supplies or model.scene.tapered or model.balls else []
     lines += fade_lines(model, np.array([model.scene.speed]))
     outside = outside_at(model, balance)
@@ -101,7 +103,7 @@ def _slow(model: Model, balance: Equilibrium) -> list[str]:
 def _asked(arguments: argparse.Namespace) -> Model:
     """The model, whose rollers are drawn if asked for."""
     model = load_model(arguments)
-    if arguments.plot and not model.bearings and not model.balls:
+    if arguments.plot and not model.on_rings:
         raise InputError(f"--plot: {model.scene.name} has no bearing of rollers or balls to draw; leave it out")
     return model
 

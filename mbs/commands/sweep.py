@@ -215,9 +215,13 @@ def _bearings(result: Sweep, torque: FloatArray) -> list[str]:
         )
         wide = 100.0 * float(entry.stiffness_spread[:, index].max())
         spread = f"; mean of {entry.angles} cage angles, k within {wide:.2g} % of it" if entry.angles > 1 else ""
+        stiff = (
+            f"along the load k {SPRING.value(k[0]):.4g} to {SPRING.text(k[1])} ({_change(*k)}), "
+            f"c {DAMPER.value(c[0]):.4g} to {DAMPER.text(c[1])} ({_change(*c)})"
+        )
+        stiff = stiff if np.all(np.isfinite(k)) else "no radial load, along which it would have a stiffness"
         lines.append(
-            f"  {name}: {changed}; along the load k {SPRING.value(k[0]):.4g} to {SPRING.text(k[1])} ({_change(*k)}), "
-            f"c {DAMPER.value(c[0]):.4g} to {DAMPER.text(c[1])} ({_change(*c)}){spread}"
+            f"  {name}: {changed}; {stiff}{spread}"
             + _band("; k", entry.stiffness_error[:, index], entry.stiffness[:, index])
             + _band(", c", entry.damping_error[:, index], entry.damping[:, index])
         )

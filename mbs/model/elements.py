@@ -304,6 +304,20 @@ class OnRings(ElementDefaults):
         """Entrainment speed of its contacts by the speed of the system [m]; 0 where nothing rolls, or none is known."""
         return 0.0
 
+    def felt(self, displacement: FloatArray, operation: Operation) -> tuple[Any, Any]:
+        """Pressures and films of its contacts at rest, and what rolling costs, by the law in force.
+
+        `BearingContacts` and `RollingLoss` of `mbs.bearings.contact_report`.
+
+        Parameters
+        ----------
+        displacement : array (6,)
+            Displacement of the inner ring against the outer one.
+        operation : Operation
+            Speed and angle.
+        """
+        raise NotImplementedError
+
     def largest_load(self, displacement: FloatArray, operation: Operation) -> float:
         """Load of its most loaded contact at rest, in the unit of its law; NaN where none is known.
 

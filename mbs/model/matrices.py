@@ -97,6 +97,8 @@ class MatrixElement(ElementDefaults):
         operation : Operation
             Speed of the system; angle and time change nothing.
         """
+        if not (np.all(np.isfinite(displacement)) and np.all(np.isfinite(velocity))):
+            raise InputError(f"{self.name!r}: got a motion of {displacement} and {velocity}; allowed: finite numbers")
         stiffness, damping = self.at(operation.speed)
         force = -(stiffness @ displacement) - damping @ velocity
         return Forces(force, stiffness, damping, self.beyond(operation.speed))

@@ -257,7 +257,7 @@ _RPM = 30.0 / np.pi
 def statics_figure(
     model: Model, balance: Equilibrium, contacts: Sequence[BearingContacts], warnings: Sequence[str] = ()
 ) -> Figure:
-    """Load of each roller or ball around each bearing, with pressures, films, contact angles, and warnings.
+    """Load of each roller or ball around each bearing, with pressures, films and warnings.
 
     Parameters
     ----------
@@ -270,18 +270,21 @@ def statics_figure(
     warnings : sequence of str
         What is to be warned of, written on the page.
     """
-    count, elements = len(model.bearings) + len(model.balls), []
+    count, elements = len(model.on_rings), []
     figure, axes = page(model, f"{written(model.scene.speed * _RPM)} rpm", count)
-    for bearing, state in zip(model.bearings, contacts, strict=False):
+    balls = {entry.name: entry for entry in model.balls}
+    for bearing, state in zip(model.on_rings, contacts, strict=True):
         motion = model.system.relative(bearing.inner, bearing.outer) @ balance.displacement
-        rollers = bearing.rollers(motion, balance.operation)
-        elements.append((bearing.name, _contact_words(state), rollers.angle, rollers.load))
-    for ball in model.balls:
-        motion = model.system.relative(ball.inner, ball.outer) @ balance.displacement
-        loads = ball.balls(motion, balance.operation)
-        angles = " and ".join(f"{math.degrees(loads.mean_angle(side)):.3g}" for side in (0, 1))
-        words = f"contact angles {angles}\N{DEGREE SIGN}, inner and outer"
-        elements.append((ball.name, words, loads.angle, loads.load[0]))
+        ball, words = balls.get(bearing.name), _contact_words(state)
+        if ball is None:
+            rollers = bearing.rollers(motion, balance.operation)
+            angle, load = rollers.angle, np.atleast_2d(rollers.load)[0]
+        else:
+            found = ball.balls(motion, balance.operation)
+            angle, load = found.angle, found.load[0]
+            angles = " and ".join(f"{math.degrees(found.mean_angle(side)):.3g}" for side in (0, 1))
+            words = f"{words}\ncontact angles {angles}\N{DEGREE SIGN}, inner and outer"
+        elements.append((bearing.name, words, angle, load))
     for panel, (name, words, angle, load) in zip(axes, elements, strict=False):
         panel.bar(np.degrees(angle), load, width=0.6 * 360.0 / angle.size, color=COLOURS[0])
         panel.set_title(f"{name}\n{words}", fontsize=9)
@@ -290,7 +293,7 @@ def statics_figure(
         grid(panel)
     for panel in axes[count:]:
         panel.set_visible(False)
-    kinds = ["roller"] * bool(model.bearings) + ["ball"] * bool(model.balls)
+    kinds = ["roller"] * (len(balls) < count) + ["ball"] * bool(balls)
     figure.supylabel(f"load of the {' or '.join(kinds)}, N", fontsize=10)
     words = f"angle of the {' or '.join(kinds)} from y towards z, degrees"
     wrapped = [part for line in warnings for part in textwrap.wrap(f"warning: {line}", 110)]

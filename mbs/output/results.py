@@ -11,7 +11,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from ehdmaps.arrays import ComplexArray, FloatArray
-from mbs.bearings.bearing_element import RingElement, error_words, ring_matrices
+from mbs.bearings.bearing_element import error_words, ring_matrices
 from mbs.bearings.films import SIDES
 from mbs.bearings.thermal import BearingHeat, BearingState
 from mbs.gears.gear import GearMesh
@@ -146,7 +146,7 @@ def with_states(dataset: xr.Dataset, states: _States, dims: tuple[str, ...] = ()
     if not everything:
         return dataset
     rows = _STATE
-    if any(state.clearance.operating != state.clearance.stated for state in everything):
+    if any(abs(state.clearance.operating - state.clearance.stated) > 0.0 for state in everything):
         rows += _CHANGES
     if any(state.heat is not None for state in everything):
         rows += _HEAT
@@ -287,9 +287,9 @@ _ORDERS = {"displacement": "", "velocity": "/s", "acceleration": "/s2"}
 
 
 _CONTACTS = (
-    ("hertz_pressure", "Pa", "largest Hertz pressure of the rollers on the raceway"),
-    ("central_film", "m", "smallest central film of the rollers on the raceway; none without an oil"),
-    ("minimum_film", "m", "smallest film of the rollers on the raceway; none without an oil"),
+    ("hertz_pressure", "Pa", "largest Hertz pressure of rollers or balls on the raceway"),
+    ("central_film", "m", "smallest central film of rollers or balls on the raceway; none of dry contacts"),
+    ("minimum_film", "m", "smallest film of rollers or balls on the raceway; none of dry contacts"),
 )
 
 
@@ -336,19 +336,19 @@ def statics_dataset(
     if contacts:
         coordinates["contact"] = list(SIDES)
         for name, unit, words in _CONTACTS:
-            values = _of_rollers(balance.system, [getattr(state, name) for state in contacts])
+            values = np.array([getattr(state, name) for state in contacts])
             variables[name] = (("bearing", "contact"), values, {"units": unit, "long_name": words})
     if losses:
-        known = "none without a map with rolling forces"
+        known = "films only; none of laws without rolling forces"
         variables["rolling_torque"] = (
             "bearing",
-            _of_rollers(balance.system, [loss.torque for loss in losses]),
+            np.array([loss.torque for loss in losses]),
             {"units": "N m", "long_name": f"torque that rolling takes; {known}"},
         )
         variables["rolling_power"] = (
             "bearing",
-            _of_rollers(balance.system, [loss.total for loss in losses]),
-            {"units": "W", "long_name": f"power that the films of all rollers take; {known}"},
+            np.array([loss.total for loss in losses]),
+            {"units": "W", "long_name": f"power that the films of all rollers or balls take; {known}"},
         )
     attributes = {**_operation(balance), "warnings": "\n".join(warnings)}
     return xr.Dataset(variables, coords={**_coordinates(balance.system), **coordinates}, attrs=attributes)
@@ -550,14 +550,6 @@ def _bearings(system: System) -> tuple[int, ...]:
 def _bearing_names(system: System) -> npt.NDArray[np.str_]:
     """Names of the bearings; texts also where there is none."""
     return np.array([system.elements[i].element.name for i in _bearings(system)], dtype=np.str_)
-
-
-def _of_rollers(system: System, values: Sequence[npt.ArrayLike]) -> FloatArray:
-    """Values of the roller bearings among those of all bearings; NaN for ball bearings."""
-    rows = np.asarray(values, dtype=np.float64)
-    whole = np.full((len(_bearings(system)), *rows.shape[1:]), np.nan)
-    whole[[i for i, index in enumerate(_bearings(system)) if index in system.select(RingElement)]] = rows
-    return whole
 
 
 def _operation(balance: Equilibrium, film_share: float = 0.0) -> dict[str, Any]:

@@ -108,17 +108,24 @@ def _heat(heat: BearingHeat) -> str:
     return f"friction {heat.friction:.4g} W{added}; {', '.join(ways) or 'no heat flows'}; {heat.left:.1g} W left"
 
 
-def loss_words(loss: RollingLoss) -> str:
-    """Rolling loss of a bearing, in words."""
+def loss_words(loss: RollingLoss, elements: str = "rollers") -> str:
+    """Rolling loss of a bearing with its rolling elements, in words."""
     if math.isnan(loss.total):
         return "rolling torque: none, no map with rolling forces"
     words = f"rolling torque {1e3 * loss.torque:.4g} N mm, power {loss.total:.4g} W"
     if not loss.total:
         return words
-    words = f"{words}, {loss.idle:.0%} of it in idle rollers"
+    words = f"{words}, {loss.idle:.0%} of it in idle {elements}"
+    if elements != "rollers":
+        return f"{words} (films only: no slip and drilling, ribs, cage, seals, churning)"
     if loss.slowest == 1.0:
         return f"{words} (films only: no flanges, cage, seals, churning)"
     return f"{words}, the slowest at {loss.slowest:.2g} of rolling (films and pockets: no flanges, seals, churning)"
+
+
+def largest_torque(losses: Iterable[RollingLoss]) -> float:
+    """Return the largest rolling torque that is known [N m]; NaN where none is."""
+    return max((loss.torque for loss in losses if not math.isnan(loss.torque)), default=math.nan)
 
 
 def flooded_note(torque: float, supplies: Iterable[OilSupply]) -> list[str]:

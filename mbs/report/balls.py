@@ -11,9 +11,10 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.figures import typeset
 from ehdmaps.report.chart import number, shown
 from ehdmaps.report.page import Markup, joined, pairs, table, tag
-from ehdmaps.units import DAMPER, PRESSURE, SPRING
+from ehdmaps.units import DAMPER, FILM, PRESSURE, SPRING, Display
 from mbs.bearings.balls.ball_element import MachineBalls
-from mbs.output.state_text import DAMPINGS, STIFFNESSES
+from mbs.bearings.contact_report import BearingContacts, RollingLoss
+from mbs.output.state_text import DAMPINGS, STIFFNESSES, loss_words
 from mbs.report.examination import Examination
 from mbs.scene.fields import FORCE
 
@@ -30,17 +31,16 @@ def balls(found: Examination) -> Iterator[Markup]:
     found : Examination
         What was found.
     """
-    balance = found.statics.balance
-    for index, connected in enumerate(found.model.system.elements):
-        element = connected.element
+    model, balance = found.model, found.statics.balance
+    for element, place, contacts, loss in zip(
+        model.on_rings, model.ring_places, found.statics.contacts, found.statics.losses, strict=True
+    ):
         if not isinstance(element, MachineBalls):
             continue
-        at = element.settled(connected.transform @ balance.displacement, balance.operation)
-        force, loads, angles = balance.forces[index], at.balls.load, np.degrees(at.balls.contact_angle)
-        contacts = element.force.geometry.contacts(element.force.material)
-        pressures = np.array([contact.max_pressure(load) for contact, load in zip(contacts, loads, strict=True)])
+        at = element.settled(model.system.elements[place].transform @ balance.displacement, balance.operation)
+        force, loads, angles = balance.forces[place], at.balls.load, np.degrees(at.balls.contact_angle)
+        pressures = [side.hertz_pressure[:, 0] for side in contacts.sides]
         means = [number(_clean(math.degrees(at.balls.mean_angle(side)))) for side in (0, 1)]
-        peaks = [number(PRESSURE.value(float(side.max()))) for side in pressures]
         rows = [
             (
                 "force on the inner ring",
@@ -49,7 +49,7 @@ def balls(found: Examination) -> Iterator[Markup]:
             ("mean contact angle", f"{means[0]} inner, {means[1]} ° outer"),
             ("loaded balls", f"{np.count_nonzero(loads[0] > 0.0)} of {loads.shape[1]}"),
             ("highest ball load", shown(FORCE, float(loads[0].max()))),
-            ("Hertz pressure", f"{peaks[0]} inner, {peaks[1]} {PRESSURE.unit} outer"),
+            *contact_rows(contacts, loss),
         ]
         each = [
             (
@@ -67,12 +67,48 @@ def balls(found: Examination) -> Iterator[Markup]:
             tag("h3", f"Bearing {element.name}, {element.force.geometry.name}"),
             pairs((name, typeset(value)) for name, value in rows),
             table(heads, each, "Balls, from y towards z", ()),
-            tag("div", *(_matrix(words, of_all[index]) for words, of_all in matrices), class_="matrices"),
+            tag("div", *(located_matrix(words, of_all[place]) for words, of_all in matrices), class_="matrices"),
         )
 
 
-def _matrix(words: str, matrix: FloatArray) -> Markup:
-    """A matrix on the inner ring, without the turning about its axis."""
+def contact_rows(contacts: BearingContacts, loss: RollingLoss) -> list[tuple[str, str]]:
+    """Rows on pressures, films and the torque of a bearing.
+
+    Parameters
+    ----------
+    contacts : BearingContacts
+        Contacts of the bearing.
+    loss : RollingLoss
+        What rolling costs in it.
+    """
+    return [
+        (words, _pair(display, values))
+        for words, display, values in (
+            ("Hertz pressure", PRESSURE, contacts.hertz_pressure),
+            ("central film", FILM, contacts.central_film),
+            ("smallest film", FILM, contacts.minimum_film),
+        )
+    ] + [("rolling", loss_words(loss, "elements").removeprefix("rolling "))]
+
+
+def _pair(display: Display, values: FloatArray) -> str:
+    """A value of the inner and one of the outer contact."""
+    if not np.isfinite(values).all():
+        return "none known"
+    inner, outer = (number(display.value(float(value))) for value in values)
+    return f"{inner} inner, {outer} {display.unit} outer"
+
+
+def located_matrix(words: str, matrix: FloatArray) -> Markup:
+    """A matrix on the inner ring, without the turning about its axis.
+
+    Parameters
+    ----------
+    words : str
+        Name, such as "Stiffness K" or "Damping C".
+    matrix : ndarray, shape (6, 6)
+        The matrix.
+    """
     units, display = (STIFFNESSES, SPRING) if words.startswith("S") else (DAMPINGS, DAMPER)
     values = display.factor * matrix
     scale = np.sqrt(np.abs(np.diag(values)))

@@ -24,7 +24,7 @@ from mbs.model.relaxation import NOTABLE
 from mbs.output.bearing_table import regime
 from mbs.output.model_text import LITTLE_DAMPING, OTHER_DAMPING, clearance_text, temperature_text, weight_text
 from mbs.output.result_text import kinds
-from mbs.output.state_text import class_lines, flooded_note, state_lines
+from mbs.output.state_text import class_lines, flooded_note, largest_torque, state_lines
 from mbs.report.bearings import loaded
 from mbs.report.examination import Examination
 from mbs.scene.assembly import ring_motions
@@ -187,16 +187,6 @@ def in_short(found: Examination) -> Iterator[str]:
             f"{shown(FORCE, float(rollers.load.max()))} on one, with a Hertz pressure of "
             f"{shown(PRESSURE, float(contacts.hertz_pressure.max()))}."
         )
-        films = [float(np.min(state.minimum_film)) for state in found.statics.contacts]
-        if np.isfinite(films).any():
-            thin = int(np.nanargmin(films))
-            words = f"The thinnest film is {shown(FILM, films[thin])}, in bearing {motions[thin][0].name}"
-            if model.surface is not None and not model.surface.smooth:
-                parameter = films[thin] / model.surface.roughness
-                words += f": Λ = {number(parameter)} ({regime(parameter)})"
-            yield f"{words}."
-        else:
-            yield "The law knows no film: contacts are dry."
     elif not (model.balls or model.scene.tapered):
         yield "The scene has no bearing of rollers or balls."
     for ball in model.balls:
@@ -206,6 +196,16 @@ def in_short(found: Examination) -> Iterator[str]:
             f"Ball bearing {ball.name} has {loads.loaded} of {loads.angle.size} balls loaded, "
             f"up to {shown(FORCE, float(loads.load[0].max()))} on one."
         )
+    films = [float(np.min(state.minimum_film)) for state in found.statics.contacts]
+    if np.isfinite(films).any():
+        thin = int(np.nanargmin(films))
+        words = f"The thinnest film is {shown(FILM, films[thin])}, in bearing {model.on_rings[thin].name}"
+        if model.surface is not None and not model.surface.smooth:
+            parameter = films[thin] / model.surface.roughness
+            words += f": Λ = {number(parameter)} ({regime(parameter)})"
+        yield f"{words}."
+    elif films:
+        yield "The law knows no film: contacts are dry."
     if isinstance(found.modes, str):
         yield f"There are no modes: {found.modes}"
     else:
@@ -252,7 +252,7 @@ def notes(found: Examination) -> list[str]:
     """
     balance, model = found.statics.balance, found.model
     geometry = {entry.geometry.estimated: entry.geometry.title for entry in model.scene.bearings}
-    torque = max((loss.torque for loss in found.statics.losses), default=math.nan)
+    torque = largest_torque(found.statics.losses)
     return [
         *(f"{name}: {words}" for words, name in geometry.items() if words),
         *(one.told for one in found.findings if one.severity is Severity.NOTE),

@@ -20,6 +20,7 @@ from mbs.report.bearings import bearings
 from mbs.report.campbell import campbell, lines_of, mode_table, saved_campbell
 from mbs.report.examination import Examination, highest_of
 from mbs.report.machine import in_short, machine, map_sections, notes, used_maps, warnings
+from mbs.report.tapered import tapered
 
 
 def scene_report(
@@ -62,6 +63,8 @@ def scene_report(
         sections.append(Section("bearings", "Bearings in operation", list(bearings(found))))
     if found.model.balls:
         sections.append(Section("balls", "Ball bearings in operation", list(balls(found))))
+    if found.model.scene.tapered:
+        sections.append(Section("tapered", "Bearings of rollers with ribs in operation", list(tapered(found))))
     for index, one in enumerate(used):
         sections += map_sections(one, f"map-{index}", len(used) > 1)
     if not used:

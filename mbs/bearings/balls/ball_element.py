@@ -12,7 +12,7 @@ import math
 from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -29,6 +29,9 @@ from mbs.model.condensed import Condensed
 from mbs.model.elements import Forces, Operation, Powers
 from mbs.model.findings import Gauge
 from mbs.model.relaxation import Films, Relaxation
+
+if TYPE_CHECKING:
+    from mbs.bearings.contact_report import BearingContacts, RollingLoss
 
 MOST_SPEEDS = 64
 """Speeds whose films are kept."""
@@ -195,6 +198,14 @@ class MachineBalls(BallElement):
     def gauge(self, displacement: FloatArray, operation: Operation) -> Gauge:
         """See `OnRings.gauge`."""
         return ball_gauge(self.force_at(operation), self.balls(displacement, operation))
+
+    def felt(self, displacement: FloatArray, operation: Operation) -> tuple[BearingContacts, RollingLoss]:
+        """See `OnRings.felt`."""
+        from mbs.bearings.reports.ball_report import ball_contacts
+
+        at = self.settled(displacement, operation)
+        speeds = at.conditions["inner_speed"], at.conditions["outer_speed"]
+        return ball_contacts(at.force, at.balls, getattr(self.films, "points", None), speeds)
 
     @property
     def entrainment_rate(self) -> float:

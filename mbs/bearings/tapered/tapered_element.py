@@ -10,7 +10,7 @@ from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, EhdmapsError
 from ehdmaps.units import RPM
 from mbs.bearings.balls.ball_speed import turned_by
-from mbs.bearings.tapered.line_film import DRY_LINES, LineFilms
+from mbs.bearings.tapered.line_film import DRY_LINES, LineFilms, cylinder_of
 from mbs.bearings.tapered.roller_findings import roller_gauge
 from mbs.bearings.tapered.tapered_bearing import TaperedForce, TaperedLoads
 from mbs.bearings.tapered.tapered_energy import TaperedStates, dry_energy, place_work
@@ -27,6 +27,9 @@ from mbs.model.condensed import Condensed
 from mbs.model.elements import Excitation, Forces, OnRings, Operation, Port, Powers
 from mbs.model.findings import Gauge
 from mbs.model.relaxation import Films, Relaxation
+
+if TYPE_CHECKING:
+    from mbs.bearings.contact_report import BearingContacts, RollingLoss
 
 HARMONICS = 3
 """Multiples of the passing frequency of the rollers that are worth following."""
@@ -213,6 +216,18 @@ class TaperedElement(OnRings):
     def gauge(self, displacement: FloatArray, operation: Operation) -> Gauge:
         """See `OnRings.gauge`."""
         return roller_gauge(self.force_at(operation), self.rollers(displacement, operation))
+
+    def felt(self, displacement: FloatArray, operation: Operation) -> tuple[BearingContacts, RollingLoss]:
+        """See `OnRings.felt`."""
+        from mbs.bearings.films import DryContacts
+        from mbs.bearings.reports.roller_report import roller_contacts
+
+        conditions = self.conditions(operation)
+        source = getattr(self.films, "lines", None)
+        films = source or DryContacts(cylinder_of(self.force.geometry).contacts(self.force.material, "iso16281"))
+        speeds = conditions["inner_speed"], conditions["outer_speed"]
+        temperature = 0.0 if source is None else self.films.films.temperature
+        return roller_contacts(self.force, self.rollers(displacement, operation), films, speeds, temperature)
 
     @property
     def entrainment_rate(self) -> float:

@@ -14,10 +14,13 @@ from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
+from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.surface import SMOOTH, Surface
+from mbs.bearings.films import FilmSource, FormulaFilms, MapFilms
 from mbs.bearings.tapered.line_film import LOADS, LineFilms, cylinder_of, line_films
 
 if TYPE_CHECKING:
+    from ehdmaps.maps.emap import EHDMap
     from ehdmaps.maps.law import ContactLaw
 
 _SPEEDS, _BEYOND = (0.05, 10.0), 1.05
@@ -71,6 +74,11 @@ class FilmsOfLines:
         return _films_at(cylinder_of(self.geometry), self.films, u)
 
     @property
+    def lines(self) -> FilmSource:
+        """Source of pressures, films and rolling forces of both lines."""
+        return _lines(cylinder_of(self.geometry), self.films)
+
+    @property
     def source(self) -> str:
         """Name what films are read from, for people."""
         return "the film table" if self.films.law == "table" else "the table of the film formula"
@@ -94,9 +102,31 @@ def _films_at(cylinder: BearingGeometry, films: OilOfLines, u: float) -> LineFil
 
 
 @functools.lru_cache(maxsize=16)
+def _map(cylinder: BearingGeometry, films: OilOfLines) -> EHDMap:
+    """The map with the films of the table."""
+    from ehdmaps.jobs.make.table_law import TEMPERATURES, table_map
+
+    temperatures = min(TEMPERATURES[0], films.temperature), max(TEMPERATURES[1], films.temperature)
+    return table_map(cylinder, films.oil, LOADS, _speeds(films), temperatures)
+
+
+@functools.lru_cache(maxsize=16)
+def _lines(cylinder: BearingGeometry, films: OilOfLines) -> FilmSource:
+    """Pressures, films and rolling forces."""
+    if films.law == "formula":
+        return FormulaFilms(cylinder.contacts(STEEL, "iso16281"), films.oil, films.supply)
+    return MapFilms(_map(cylinder, films), films.supply)
+
+
+def _speeds(films: OilOfLines) -> tuple[float, float]:
+    """Entrainment speeds of the laws [m/s]."""
+    return _SPEEDS[0], max(_SPEEDS[1], _BEYOND * films.fastest)
+
+
+@functools.lru_cache(maxsize=16)
 def _laws(cylinder: BearingGeometry, films: OilOfLines) -> tuple[ContactLaw, ContactLaw]:
     """Laws of the inner and the outer contact, held where the table ends."""
-    speeds = _SPEEDS[0], max(_SPEEDS[1], _BEYOND * films.fastest)
+    speeds = _speeds(films)
     if films.law == "formula":
         from mbs.bearings import laws
         from mbs.bearings.bearing import Bearing
@@ -115,9 +145,6 @@ def _laws(cylinder: BearingGeometry, films: OilOfLines) -> tuple[ContactLaw, Con
             for kind in ("inner", "outer")
         )
         return inner, outer
-    from ehdmaps.jobs.make.table_law import TEMPERATURES, table_map
-
-    temperatures = min(TEMPERATURES[0], films.temperature), max(TEMPERATURES[1], films.temperature)
-    emap = table_map(cylinder, films.oil, LOADS, speeds, temperatures)
+    emap = _map(cylinder, films)
     inner, outer = (emap.law(kind, "clamp", supply=films.supply, surface=films.surface) for kind in ("inner", "outer"))
     return inner, outer

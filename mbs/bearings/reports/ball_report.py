@@ -1,0 +1,102 @@
+"""Pressures and films of the contacts of balls at rest, and the cost of rolling.
+
+Pressures are those of dry Hertz. Central and smallest films are those of the law in force. The rolling force of an
+ellipse is that of strips along the motion, each a line contact under the load that Hertz gives it: side flow is left
+out. So are drilling and slip within the ellipse, which often take more than the films.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Protocol
+
+import numpy as np
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.physics.point.ellipse import Ellipse
+from mbs.bearings.balls.ball_bearing import BallForce, BallLoads
+from mbs.bearings.contact_report import BearingContacts, RollingLoss, loss_of
+from mbs.bearings.films import ContactState
+
+STRIPS = 12
+"""Places of Gauss' rule across an ellipse; 24 change the force by less than 1e-3."""
+
+
+class PointFilmSource(Protocol):
+    """Films of both contacts of a ball."""
+
+    def films(self, side: int, load: FloatArray, entrainment_speed: float) -> tuple[FloatArray, FloatArray]:
+        """Central and smallest film of the inner (0) or outer (1) contact at loads [N], > 0, each (k,) [m].
+
+        Parameters
+        ----------
+        side : int
+            0: inner contact, 1: outer contact.
+        load : array (k,)
+            Loads [N], > 0.
+        entrainment_speed : float
+            u [m/s], > 0.
+        """
+        ...
+
+    def line_force(self, side: int, load: FloatArray, entrainment_speed: float) -> FloatArray:
+        """Rolling force of lines with the radius of a contact along the motion, in the shape of the loads [N/m].
+
+        Parameters
+        ----------
+        side : int
+            0: inner contact, 1: outer contact.
+        load : array
+            Loads per length [N/m], >= 0.
+        entrainment_speed : float
+            u [m/s], > 0.
+        """
+        ...
+
+
+def strips(ellipse: Ellipse, load: FloatArray, line_force: Callable[[FloatArray], FloatArray]) -> FloatArray:
+    """Force of an ellipse by strips along the motion, each under the load per length that Hertz gives it, (k,) [N].
+
+    Parameters
+    ----------
+    ellipse : Ellipse
+        The contact.
+    load : array (k,)
+        Loads [N], > 0.
+    line_force : callable
+        Force per length of a line contact [N/m] over its load per length [N/m].
+    """
+    places, weights = np.polynomial.legendre.leggauss(STRIPS)
+    half = np.asarray(ellipse.semi_axes(load)[1])[:, None]
+    return np.asarray((half * line_force(0.75 * load[:, None] / half * (1.0 - places**2))) @ weights)
+
+
+def ball_contacts(
+    force: BallForce, balls: BallLoads, films: PointFilmSource | None, speeds: tuple[float, float]
+) -> tuple[BearingContacts, RollingLoss]:
+    """Pressures and films of all balls, and the loss of rolling.
+
+    Parameters
+    ----------
+    force : BallForce
+        Geometry and laws.
+    balls : BallLoads
+        Loads at rest.
+    films : PointFilmSource or None
+        What knows the films; None for dry contacts.
+    speeds : (float, float)
+        Speeds of the inner and the outer ring [rad/s].
+    """
+    u = abs(force.geometry.entrainment_speed(*speeds))
+    sides = []
+    for side, ellipse in enumerate(force.geometry.contacts(force.material)):
+        load = balls.load[side][:, None]
+        pressure, loaded = np.asarray(ellipse.max_pressure(load)), load > 0.0
+        central, smallest, rolling = np.full((3, *load.shape), np.nan)
+        if films is not None and u > 0.0:
+            central[loaded], smallest[loaded] = films.films(side, load[loaded], u)
+            rolling[~loaded] = 0.0
+            rolling[loaded] = strips(ellipse, load[loaded], lambda w, side=side: films.line_force(side, w, u))
+        sides.append(ContactState(pressure, pressure, central, smallest, rolling, np.zeros(load.shape)))
+    power = np.stack([side.rolling_force[:, 0] for side in sides]) * u
+    return BearingContacts(*sides), loss_of(power, balls.load[0], speeds[0] - speeds[1])

@@ -1,0 +1,46 @@
+"""Pressures and films of tapered rollers, and of rollers between ribs, at rest, and the cost of rolling.
+
+Hertz pressures are those at the radius of each slice. Films and rolling forces are those at the radius and speed of the
+middle of a roller, as in the balance, see `mbs.bearings.tapered.line_film`; ribs are left out.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+
+from mbs.bearings.contact_report import BearingContacts, RollingLoss, loss_of
+from mbs.bearings.films import FilmSource
+from mbs.bearings.tapered.tapered_bearing import TaperedForce, TaperedLoads
+
+
+def roller_contacts(
+    force: TaperedForce, rollers: TaperedLoads, films: FilmSource, speeds: tuple[float, float], temperature: float
+) -> tuple[BearingContacts, RollingLoss]:
+    """Pressures and films of all slices, and the loss of rolling.
+
+    Parameters
+    ----------
+    force : TaperedForce
+        Geometry and laws.
+    rollers : TaperedLoads
+        Loads at rest.
+    films : FilmSource
+        What knows the films of lines of the middle of a roller.
+    speeds : (float, float)
+        Speeds of the inner and the outer ring [rad/s].
+    temperature : float
+        Temperature of the raceways [K].
+    """
+    geometry, u = force.geometry, abs(force.geometry.entrainment_speed(*speeds))
+    sides = []
+    for side, contact in enumerate(geometry.contacts(force.material)):
+        state = films.state(side, rollers.slices[side], u, temperature)
+        radii = np.array([geometry.radius_at(place, side) for place in force.positions.tolist()])
+        pressure = np.sqrt(rollers.slices[side] * contact.reduced_modulus / (2.0 * np.pi * radii))
+        higher = np.where(state.hertz_pressure > 0.0, pressure / np.maximum(state.hertz_pressure, 1e-300), 1.0)
+        sides.append(dataclasses.replace(state, hertz_pressure=pressure, max_pressure=higher * state.max_pressure))
+    rolling = np.stack([side.rolling_force.sum(axis=1) for side in sides])
+    power = rolling * geometry.roller_length / force.positions.size * u
+    return BearingContacts(*sides), loss_of(power, rollers.load[0], speeds[0] - speeds[1])

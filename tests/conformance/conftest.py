@@ -1,0 +1,22 @@
+"""Each test of a machine tells its cell of the table of kinds and claims."""
+
+from __future__ import annotations
+
+import pytest
+
+
+@pytest.fixture(autouse=True)
+def cell(request, record_property):
+    """The machine is the row, the other parameters, or the name of the test, the column."""
+    given = dict(request.node.callspec.params) if hasattr(request.node, "callspec") else {}
+    machine = given.pop("kind", given.pop("machine", None))
+    if machine is not None:
+        words = [getattr(value, "name", getattr(value, "__name__", value)) for value in given.values()]
+        record_property("machine", machine.name)
+        record_property("claim", " ".join(map(str, words)) or request.node.originalname.removeprefix("test_"))
+
+
+@pytest.fixture(autouse=True)
+def one_compilation(monkeypatch):
+    """Compiled runs have all kinds, also those of which a machine has none: they are compiled once for all machines."""
+    monkeypatch.setattr("mbs.transient.run_elements._is_common", lambda kind: True)

@@ -1,0 +1,63 @@
+"""Every shipped scene, with fewer points and a short run-up: `mbs run` with all its analyses, and critical speeds."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+import mbs
+from mbs import shipped_systems
+from tests.cases.commands import run
+
+SYSTEMS = Path(mbs.__file__).parent / "systems"
+
+SHORTER = (
+    (r"points = \d{3,}", "points = 12"),  # of frequencies
+    (r"points = \d\d\b", "points = 2"),  # of speeds
+    (r"slices = \d+", "slices = 3"),
+    (r'(?<=duration = )"[^"]*"', '"30 ms"'),
+    (r'(?<=\nstep = )"[^"]*"', '"100 us"'),
+    (r'(?<=\nsample = )"[^"]*"', '"100 us"'),
+    (r'(?<=\nhighest = )"[^"]*"', '"2 kHz"'),
+)
+
+
+@pytest.fixture
+def shortened(tmp_path, monkeypatch):
+    """Writes a short copy of a scene, with the bodies that it reads beside it."""
+    monkeypatch.chdir(tmp_path)
+    for body in SYSTEMS.glob("*.nc"):
+        (tmp_path / body.name).symlink_to(body)
+
+    def write(name):
+        text = (SYSTEMS / f"{name}.toml").read_text(encoding="utf-8")
+        for pattern, short in SHORTER:
+            text = re.sub(pattern, short, text)
+        Path("scene.toml").write_text(text, encoding="utf-8")
+        return text
+
+    return write
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", shipped_systems())
+def test_every_analysis_of_a_shipped_scene(name, shortened, capsys):
+    """Of two speeds and 300 steps: whatever ends with another status than 0 says why."""
+    text = shortened(name)
+    status, out, err = run(capsys, "run", "scene.toml", "-o", "folder")
+    assert status == (1 if "warning: " in out and "held at" in out else 0), err or out
+    assert "no result" not in out and "nan" not in out.lower().split()
+    analyses = ["statics", "modes", "lsa", *["sweep", "critical"] * ("[sweep]" in text)]
+    for analysis in analyses:
+        assert f"=== mbs {analysis} scene.toml" in out and Path(f"folder/{analysis}.nc").exists()
+    assert "=== mbs campbell" in out or "=== mbs runup" in out
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", shipped_systems())
+def test_critical_speeds_of_a_shipped_scene(name, shortened, capsys):
+    shortened(name)
+    status, out, err = run(capsys, "critical", "scene.toml", "--speed", "600 rpm", "1200 rpm", "2")
+    assert status == 0, err or out

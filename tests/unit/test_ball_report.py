@@ -1,0 +1,29 @@
+"""Rolling forces of ellipses by strips: integrals that are known, and places enough."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from ehdmaps.physics.point.ball_catalogue import ball_estimate
+from ehdmaps.physics.solids import STEEL
+from mbs.bearings.reports import ball_report
+from mbs.bearings.reports.ball_report import strips
+
+ELLIPSE = ball_estimate("6208").contacts(STEEL)[0]
+LOADS = np.array([1.0, 300.0, 5e3])
+
+
+def test_strips_of_hertz_carry_the_load_over_the_width_of_the_ellipse():
+    """Parabolas and constants are exact to round-off."""
+    np.testing.assert_allclose(strips(ELLIPSE, LOADS, lambda w: w), LOADS, rtol=1e-13)
+    np.testing.assert_allclose(strips(ELLIPSE, LOADS, np.ones_like), 2.0 * ELLIPSE.semi_axes(LOADS)[1], rtol=1e-13)
+
+
+def test_a_force_that_ends_steeply_has_places_enough(monkeypatch):
+    """The rigid film's, by sqrt(w), integrates to pi/2 of its middle: Gauss' rule bends at the ends, 1e-3."""
+    half = np.asarray(ELLIPSE.semi_axes(LOADS)[1])
+    exact = 0.5 * np.pi * half * np.sqrt(0.75 * LOADS / half)
+    np.testing.assert_allclose(strips(ELLIPSE, LOADS, np.sqrt), exact, rtol=1e-3)
+    monkeypatch.setattr(ball_report, "STRIPS", 48)
+    assert strips(ELLIPSE, LOADS, np.sqrt) == pytest.approx(exact, rel=2e-5)
