@@ -15,7 +15,7 @@ from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.errors import InputError
 from mbs.analyses.film_errors import film_errors
 from mbs.analyses.operating import operating, states_of
-from mbs.analyses.soundness import findings_at_rest, with_findings
+from mbs.analyses.soundness import findings_at_rest, lift_off, with_findings
 from mbs.linearised.averaged import AveragedEquilibrium, averaged, over_pitch, steady_system
 from mbs.linearised.linear import StateSpace, frequency_response, level_bands, sensed, state_space, with_peaks
 from mbs.linearised.linear import responses as responses_of
@@ -24,7 +24,7 @@ from mbs.linearised.sweep import MOST_ANGLES
 from mbs.linearised.validity import DynamicLoad, FilmError, dynamic_loads
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
-from mbs.model.findings import Cause, Finding
+from mbs.model.findings import Finding
 from mbs.output.files import described
 from mbs.output.results import linear_dataset, with_states
 from mbs.scene.assembly import Model, law_attributes, laws_attributes
@@ -226,7 +226,7 @@ def _responded(found: _Linearised, frequencies: FloatArray) -> LsaResult:
             dataset[f"response_{name}"] = (dataset["response_real"].dims, values, attributes)
     findings = (
         *findings_at_rest(model, balance.displacement, balance.operation),
-        *(_lift_off(load, scene) for load in lifting),
+        *(lift_off(load, scene) for load in lifting),
     )
     return LsaResult(
         model=model,
@@ -243,17 +243,6 @@ def _responded(found: _Linearised, frequencies: FloatArray) -> LsaResult:
         dataset=with_findings(described(with_states(dataset, states_of(model)), **law_attributes(model)), findings),
         findings=findings,
     )
-
-
-def _lift_off(load: DynamicLoad, scene: Scene) -> Finding:
-    """Contacts that lift off at the amplitude of an input."""
-    given = next(entry for entry in scene.inputs if entry.name == load.input)
-    amplitude = f"{given.amplitude:.4g} {'N m' if np.any(given.direction[3:]) else 'N'}"
-    words = (
-        f"{load.words} at {load.frequency:.4g} Hz (input {load.input} at its amplitude of {amplitude}): contacts lift "
-        "off, a linear analysis is not valid there"
-    )
-    return Finding(Cause.LIFT_OFF, words, load.element, load.dynamic / max(load.static, 1e-300))
 
 
 def _pitch_range(balance: Equilibrium, scene: Scene, frequencies: FloatArray) -> FloatArray | None:

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from mbs.linearised.sweep_result import Sweep
+    from mbs.linearised.validity import DynamicLoad
+    from mbs.scene.scene import Scene
     from mbs.transient.run import Recording
 
 MOST_RESIDUAL = 0.1
@@ -72,7 +74,28 @@ def findings_over_speed(model: Model, found: Sweep) -> tuple[Finding, ...]:
         findings_at_rest(operating(model, speed), displacement, Operation(speed))
         for speed, displacement in zip(speeds, found.displacement, strict=True)
     ]
+    for index, loads in enumerate(found.lifted):
+        each[index] += tuple(lift_off(load, model.scene) for load in loads)
     return worst_of(each, [RPM.text(speed) for speed in speeds], "speeds")
+
+
+def lift_off(load: DynamicLoad, scene: Scene) -> Finding:
+    """Contacts that lift off at the amplitude of an input.
+
+    Parameters
+    ----------
+    load : DynamicLoad
+        Load that exceeds the static one.
+    scene : Scene
+        Scene with the input.
+    """
+    given = next(entry for entry in scene.inputs if entry.name == load.input)
+    amplitude = f"{given.amplitude:.4g} {'N m' if np.any(given.direction[3:]) else 'N'}"
+    words = (
+        f"{load.words} at {load.frequency:.4g} Hz (input {load.input} at its amplitude of {amplitude}): contacts lift "
+        "off, a linear analysis is not valid there"
+    )
+    return Finding(Cause.LIFT_OFF, words, load.element, load.dynamic / max(load.static, 1e-300))
 
 
 def findings_in_run(model: Model, record: Recording) -> tuple[Finding, ...]:

@@ -22,10 +22,11 @@ from mbs.bearings.bearing_element import ring_matrices
 from mbs.linearised.averaged import AveragedEquilibrium, PitchSpread, averaged, over_pitch, pitch_spread, steady_system
 from mbs.linearised.bands import film_share, law_bands
 from mbs.linearised.dynamic import LostMode
-from mbs.linearised.linear import checked_response, peak_places, with_peaks
+from mbs.linearised.linear import checked_response, peak_places, responses, with_peaks
 from mbs.linearised.modes import StateModes, UndampedModes, energy_shares, state_modes, undamped_modes
 from mbs.linearised.sweep_result import BearingSweep, ComplexSweep, ResponseSweep, Sweep, UndampedSweep, straightened
 from mbs.linearised.tracking import Match, ModeSet, compose, match, numbers, tracks
+from mbs.linearised.validity import DynamicLoad, dynamic_loads
 from mbs.model.elements import Input, OnRings, Operation, Sensor
 from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.model.system import System
@@ -292,6 +293,7 @@ def sweep(
     values = np.empty((speeds.size, frequencies.size, len(sensors), len(inputs)), dtype=np.complex128)
     errors = np.zeros(speeds.size)
     peaks: list[list[FloatArray]] = []
+    lifted: list[tuple[DynamicLoad, ...]] = []
     # Speeds in between cost as much as others: together at most as many as were asked for.
     spare = max(speeds.size, FEWEST_BETWEEN)
     first = before = at(float(speeds[0]), None)
@@ -304,6 +306,7 @@ def sweep(
         there, errors[index] = checked_response(point.balance, point.states, inputs, sensors, axis)
         values[index] = there[np.searchsorted(axis, frequencies)]
         peaks.append(_peaks(axis, np.abs(there)))
+        lifted.append(_lifted(point, inputs, frequencies, peaks[-1]))
         points.append(_record(point))
         before = point
     peak_frequency, peak_size = _padded(peaks, values)
@@ -318,6 +321,7 @@ def sweep(
         bearings=_bearings(points, first),
         responses=ResponseSweep(frequencies, tuple(inputs), tuple(sensors), values, peak_frequency, peak_size, errors),
         between=sum(link.between for link in links),
+        lifted=tuple(lifted),
         film_share=film_share(*np.hstack([[point.by_films[1], point.complex_errors[1]] for point in points])),
     )
 
@@ -394,6 +398,17 @@ def _peaks(axis: FloatArray, size: FloatArray) -> list[FloatArray]:
     """Frequency and size of the peaks of each response (frequencies, sensors, inputs), shape (2, peaks) each."""
     columns = size.reshape(axis.size, math.prod(size.shape[1:])).T
     return [np.array([axis[at], column[at]]) for column in columns for at in [peak_places(column)]]
+
+
+def _lifted(
+    point: Point, inputs: Sequence[Input], frequencies: FloatArray, peaks: Sequence[FloatArray]
+) -> tuple[DynamicLoad, ...]:
+    """Loads that lift contacts off, at the peaks of the responses and at the ends of the frequencies."""
+    if not inputs or not frequencies.size:
+        return ()
+    looked = np.unique(np.concatenate([frequencies[[0, -1]], *(pairs[0] for pairs in peaks)]))
+    found = dynamic_loads(point.balance, inputs, looked, responses(point.balance, inputs, looked))
+    return tuple(load for load in found if load.exceeds)
 
 
 def _padded(peaks: Sequence[Sequence[FloatArray]], values: ComplexArray) -> FloatArray:

@@ -26,6 +26,7 @@ import numpy.typing as npt
 from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
 from mbs.linearised.dynamic import LostMode
 from mbs.linearised.modes import damping_ratio
+from mbs.linearised.validity import DynamicLoad
 from mbs.model.elements import Input, Sensor
 
 
@@ -224,6 +225,8 @@ class Sweep:
         Speeds that were put in between to follow the modes.
     film_share : float
         Median part of the bands of complex modes that is what films with memory leave out.
+    lifted : tuple of tuple of DynamicLoad
+        Dynamic loads that lift contacts off at the amplitudes of the inputs, by speed.
     """
 
     speeds: FloatArray
@@ -237,6 +240,7 @@ class Sweep:
     responses: ResponseSweep
     between: int
     film_share: float = 0.0
+    lifted: tuple[tuple[DynamicLoad, ...], ...] = ()
 
 
 _BESIDE = 3

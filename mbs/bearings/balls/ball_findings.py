@@ -18,7 +18,7 @@ from mbs.model.findings import CARRIES, OPEN, SIDES, Cause, Finding, Gauge
 
 SHOULDERS = (0.2, 0.35)
 """Height of the loaded shoulder over the ball diameter, of deep groove and of angular contact bearings: usual, assumed.
-Axial loads that reach it go with the height: of a 6208 from 11 kN (0.17) to 26 kN (0.25)."""
+Axial loads that reach it go with the height: of a 6208 from 11 kN (0.17) to 24 kN (0.25)."""
 
 _SLIP = 0.05
 """Traction over load that a film is trusted to hold a ball by against its gyroscopic moment."""
