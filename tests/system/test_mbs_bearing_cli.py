@@ -185,7 +185,7 @@ def test_a_bearing_of_ones_own(here, capsys):
     assert value(soft, "Hertz pressure") < 0.8 * value(out, "Hertz pressure")
     assert value(soft, "stiffness") < 0.6 * value(out, "stiffness")
     shipped = run(capsys, "nu308", *DRY, "--load", "5 kN", "--speed", "1500 rpm")[1]
-    assert "assumed: temperature 40 degC, combined rms roughness 0.3 um (for Lambda only), no clearance\n" in shipped
+    assert "combined rms roughness 0.3 um (for Lambda only), no clearance, an assumption: CN would" in shipped
 
 
 def test_overload_and_what_is_outside_the_map_make_status_1(here, capsys, formula_map):
