@@ -271,33 +271,6 @@ class OnRings(ElementDefaults):
     """
 
     locating: ClassVar[bool] = False
-    name: str
-
-    def check_apart(self, pose: FloatArray, most: tuple[float, float], time: float, *, beyond: bool = False) -> None:
-        """Refuse rings of a locating bearing that nothing holds together any more; values that are none pass.
-
-        Parameters
-        ----------
-        pose : array (6,)
-            Pose of the inner ring in the outer one.
-        most : (float, float)
-            Largest displacement [m] and tilt [rad] at which rolling bodies are between raceways.
-        time : float
-            Time [s].
-        beyond : bool
-            Whether the inner ring is where it has no raceway, however near.
-
-        Raises
-        ------
-        AnalysisError
-            For such rings.
-        """
-        if beyond or np.any(np.abs(pose[:3]) > most[0]) or np.any(np.abs(pose[4:]) > most[1]):
-            raise AnalysisError(
-                f"bearing {self.name!r}: its rings are apart by {1e6 * pose[0]:.4g} um along and "
-                f"{1e6 * math.hypot(pose[1], pose[2]):.4g} um across at {time:.6g} s, where no raceway is: preload is "
-                "lost; take more preload, a stop, or smaller loads"
-            )
 
     @property
     def entrainment_rate(self) -> float:
@@ -373,6 +346,35 @@ class OnRings(ElementDefaults):
             Speed, angle and time.
         """
         return None
+
+
+def check_apart(name: str, pose: FloatArray, most: tuple[float, float], time: float, *, beyond: bool = False) -> None:
+    """Refuse rings of a locating bearing that nothing holds together any more; values that are none pass.
+
+    Parameters
+    ----------
+    name : str
+        Name of the bearing, for messages.
+    pose : array (6,)
+        Pose of the inner ring in the outer one.
+    most : (float, float)
+        Largest displacement [m] and tilt [rad] at which rolling bodies are between raceways.
+    time : float
+        Time [s].
+    beyond : bool
+        Whether the inner ring is where it has no raceway, however near.
+
+    Raises
+    ------
+    AnalysisError
+        For such rings.
+    """
+    if beyond or np.any(np.abs(pose[:3]) > most[0]) or np.any(np.abs(pose[4:]) > most[1]):
+        raise AnalysisError(
+            f"bearing {name!r}: its rings are apart by {1e6 * pose[0]:.4g} um along and "
+            f"{1e6 * math.hypot(pose[1], pose[2]):.4g} um across at {time:.6g} s, where no raceway is: preload is "
+            "lost; take more preload, a stop, or smaller loads"
+        )
 
 
 @dataclass(frozen=True, eq=False)

@@ -22,6 +22,7 @@ PACKAGES = {
     "chromium-browser": "chromium",
     "checkMesh": "openfoam",
     "foamToVTK": "openfoam",
+    "setpriv": "util-linux",
     "mount": "mount",
     "umount": "mount",
     "simpleFoam": "openfoam",

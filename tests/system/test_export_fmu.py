@@ -45,6 +45,7 @@ FREE = [1, 2, 4, 5]
 @pytest.fixture(scope="module")
 def files(small_map, tmp_path_factory):
     """Units by FMI 2.0, of sources alone, and by FMI 3.0, with binaries."""
+    needed("gcc", "clang")
     folder = tmp_path_factory.mktemp("fmu")
     for fmi, more in (("2", ["--sources-only"]), ("3", ["--outside", "clamp"])):
         options = ["--to", "fmu", "--fmi", fmi, "-o", str(folder / f"{fmi}.fmu"), "--clearance", "10 um", *more]

@@ -41,6 +41,7 @@ OF_GRID = 4 / 400**2 + 1 / 6**2
 @pytest.fixture
 def fake(tmp_path, monkeypatch):
     """Folder of a fake build, in which ehlFoam does what `set_mode` says; the working folder and home are empty."""
+    needed("setpriv")
     folder = tmp_path / "build"
     for key, value in openfoam_fake.build(folder).items():
         monkeypatch.setenv(key, value)
@@ -506,6 +507,7 @@ def test_the_processor_is_the_one_that_the_build_command_records():
 
 
 def test_everything_that_is_missing_is_named_at_once(tmp_path, monkeypatch):
+    needed("setpriv")
     monkeypatch.setattr(installed, "cases_folder", lambda: None)
     monkeypatch.setattr(tempfile, "tempdir", "/tmp/with space")
     monkeypatch.setitem(sys.modules, "PyFoam", None)

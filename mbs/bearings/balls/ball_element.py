@@ -26,7 +26,7 @@ from mbs.bearings.balls.ball_speed import dry_energy, speed_work, turned_by
 from mbs.bearings.balls.laws import BallLaw
 from mbs.bearings.balls.normal_law import nothing_held
 from mbs.model.condensed import Condensed
-from mbs.model.elements import Forces, Operation, Powers
+from mbs.model.elements import Forces, Operation, Powers, check_apart
 from mbs.model.findings import Gauge
 from mbs.model.relaxation import Films, Relaxation
 
@@ -238,7 +238,7 @@ class MachineBalls(BallElement):
         shape = force.shape
         # an angular contact bearing beyond its middle has no raceway
         beyond = shape.axial * (shape.axial + pose[0]) < 0.0
-        self.check_apart(pose, (shape.most_travel, shape.most_tilt), operation.time, beyond=beyond)
+        check_apart(self.name, pose, (shape.most_travel, shape.most_tilt), operation.time, beyond=beyond)
         films, step = None if states is None else states.films, 0.0 if states is None else operation.time - states.time
         if films is not None:
             force.held = films.held(step)

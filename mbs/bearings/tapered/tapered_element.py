@@ -24,7 +24,7 @@ from mbs.bearings.tapered.tapered_bearing import TaperedForce, TaperedLoads
 from mbs.bearings.tapered.tapered_energy import TaperedStates, dry_energy, place_work
 from mbs.bearings.tapered.tapered_memory import FilmsOfRollers
 from mbs.model.condensed import Condensed
-from mbs.model.elements import Excitation, Forces, OnRings, Operation, Port, Powers
+from mbs.model.elements import Excitation, Forces, OnRings, Operation, Port, Powers, check_apart
 from mbs.model.findings import Gauge
 from mbs.model.relaxation import Films, Relaxation
 
@@ -256,7 +256,7 @@ class TaperedElement(OnRings):
             Where the rings have come apart.
         """
         shape = self.force.shape
-        self.check_apart(self.pose(displacement), (shape.most_travel, shape.most_tilt), operation.time)
+        check_apart(self.name, self.pose(displacement), (shape.most_travel, shape.most_tilt), operation.time)
         films, force = None if states is None else states.films, self.force_at(operation)
         step = 0.0 if states is None else operation.time - states.time
         force.held = None if films is None else films.held(step)
