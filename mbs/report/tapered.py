@@ -10,8 +10,8 @@ import numpy as np
 from ehdmaps.figures import typeset
 from ehdmaps.report.chart import number, shown
 from ehdmaps.report.page import Markup, joined, pairs, table, tag
-from mbs.bearings.balls.ball_bearing import LOADED
 from mbs.bearings.tapered.tapered_element import TaperedElement
+from mbs.model.findings import CARRIES
 from mbs.report.balls import contact_rows, located_matrix
 from mbs.report.examination import Examination
 from mbs.scene.fields import FORCE
@@ -38,7 +38,7 @@ def tapered(found: Examination) -> Iterator[Markup]:
                 "force on the inner ring",
                 f"{number(force[0], 4)} N along x, {shown(FORCE, math.hypot(*force[1:3]))} across",
             ),
-            ("loaded rollers", f"{np.count_nonzero(cone > LOADED * cone.max())} of {cone.size}"),
+            ("loaded rollers", f"{np.count_nonzero(cone > CARRIES * cone.max())} of {cone.size}"),
             ("highest roller load", shown(FORCE, float(cone.max()))),
             ("highest load of the ribs", shown(FORCE, float(rollers.load[2].max()))),
             *contact_rows(contacts, loss),
