@@ -123,7 +123,7 @@ def without_holes(path: str, points: list[P]) -> list[P]:
 def _hole(point: P, load: Any, speed: float, reason: str) -> P:
     """A point without an answer in the shape of one that has one."""
     size = np.array(load, dtype=np.float64)
-    given = {"speed": speed} if isinstance(point, BearingPoint) else {"inner_speed": speed}
+    given: dict[str, Any] = {"speed": speed} if isinstance(point, BearingPoint) else {"inner_speed": speed}
     blank: P = _blank(point)
     return dataclasses.replace(blank, load=size, findings=(Finding(Cause.FAILED, reason),), failed=True, **given)
 

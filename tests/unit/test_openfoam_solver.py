@@ -507,7 +507,6 @@ def test_the_processor_is_the_one_that_the_build_command_records():
 
 
 def test_everything_that_is_missing_is_named_at_once(tmp_path, monkeypatch):
-    needed("setpriv")
     monkeypatch.setattr(installed, "cases_folder", lambda: None)
     monkeypatch.setattr(tempfile, "tempdir", "/tmp/with space")
     monkeypatch.setitem(sys.modules, "PyFoam", None)
@@ -518,7 +517,7 @@ def test_everything_that_is_missing_is_named_at_once(tmp_path, monkeypatch):
         "the solver 'openfoam': the package PyFoam cannot be loaded",
         "setpriv is not in PATH; install the package util-linux",
         "ehlFoam: there is no program",
-        f"case lineContact: is not in {tmp_path}, and no folder openfoam_cases is beside the package ehdmaps, and",
+        f"case lineContact: is not in {tmp_path}, and no folder openfoam_cases is beside the package ehdmaps, nor in",
         "the folder for temporary files: got '/tmp/with space'; OpenFOAM takes no spaces",
     ):
         assert part in found
