@@ -316,7 +316,7 @@ def test_every_kind_and_policy_of_shipped_classes_makes_a_law(bearing, oil):
     u, T = np.geomspace(1e-3, 300.0, 9)[:, None], np.linspace(250.0, 450.0, 7)
     for (_, outside), law in made.items():
         cold, hot = law.temperature_range
-        inside = approach[:20], 0.0, np.array([0.06, 1.0, 9.0])[:, None], np.linspace(cold, hot, 4)
+        inside = approach[:20], 0.0, np.array([0.06, 0.5, 2.0])[:, None], np.linspace(cold, hot, 4)
         for w, k, c in (law(*inside), *(() if outside == "error" else (law(approach, 0.0, u, T),))):
             assert np.all(np.isfinite(w)) and np.all(np.isfinite(k)) and np.all(np.isfinite(c))
             assert np.all(np.diff(w, axis=0) >= 0.0) and np.all(k >= 0.0) and np.all(c >= 0.0)
