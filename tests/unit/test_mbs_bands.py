@@ -258,6 +258,7 @@ def test_the_band_of_a_level_is_the_largest_difference_of_its_runs(models, monke
 
     monkeypatch.setattr("mbs.analyses.campbell.recorded_run", run)
     monkeypatch.setattr("mbs.analyses.campbell.step_check", lambda *given: None)  # made-up runs have no step
+    monkeypatch.setattr("mbs.analyses.campbell.findings_in_run", lambda *given: ())  # and no forces
     found = campbell(model, bands=2)
     change = law_changes(model, [0.5 * found.course.speed.at(found.course.duration)[0]])["bearing_left"][0]
     assert len(told) == 3
