@@ -30,6 +30,7 @@ from mbs.analyses.modes import modes
 from mbs.bearings.balls.laws import FilmCurve, film_normal_law
 from mbs.model.elements import Operation
 from mbs.scene.balls.element import _film_law as made_film_law
+from mbs.scene.balls.element import _films_at as read_films
 
 MEAN_LOAD = 100.0
 """Load of a ball at which the offset is held [N]."""
@@ -76,7 +77,8 @@ def main(speed: float = 6000.0) -> None:
                 text = scene.text.replace('{ x = "1e5 N/m" }', f'{{ x = "{WALL:g} N/m" }}')
                 text = text.replace('"300 N"', f'"{WALL * places[LAWS[0]]:.9g} N"')
                 used = parse_scene(text, scene.name, "electric_drive.toml")
-            made_film_law.cache_clear()  # laws are kept by their oil, speed and temperature
+            made_film_law.cache_clear()
+            read_films.cache_clear()  # laws are kept by their oil, speed and temperature
             with patch.object(ball_films_module, "film_normal_law", split(law)):
                 model = assemble(used, "hertz" if law == LAWS[0] else "table")
                 found = modes(model, Operation(speed * math.pi / 30.0))
