@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import textwrap
 from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -31,6 +32,10 @@ from mbs.output.page import grid, page
 from mbs.output.page import grid as quiet_grid
 from mbs.scene.assembly import Model
 from mbs.scene.fields import FORCE, MICROMETRE
+
+if TYPE_CHECKING:
+    from mbs.bearings.bearing_element import BearingElement
+    from mbs.bearings.tapered.tapered_element import TaperedElement
 
 _SIDES = COLOURS[:2]
 """Colours of the inner and the outer contact."""
@@ -277,7 +282,7 @@ def statics_figure(
         motion = model.system.relative(bearing.inner, bearing.outer) @ balance.displacement
         ball, words = balls.get(bearing.name), _contact_words(state)
         if ball is None:
-            rollers = bearing.rollers(motion, balance.operation)
+            rollers = cast("BearingElement | TaperedElement", bearing).rollers(motion, balance.operation)
             angle, load = rollers.angle, np.atleast_2d(rollers.load)[0]
         else:
             found = ball.balls(motion, balance.operation)

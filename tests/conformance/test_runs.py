@@ -42,7 +42,7 @@ def runs(request):
 def test_compiled_is_python(runs, index):
     """Forces at every step, and energies where elements tell them."""
     within, (ours, theirs) = runs
-    assert (ours.compiled, theirs.compiled, ours.steps, theirs.steps) == (STEPS, 0, STEPS, STEPS)
+    assert ours.compiled == ours.steps == theirs.steps >= STEPS and theirs.compiled == 0
     size = np.abs(theirs.forces[index]).max()
     assert size > 10.0
     np.testing.assert_allclose(ours.forces[index], theirs.forces[index], atol=within * size)

@@ -8,6 +8,7 @@ out. So are drilling and slip within the ellipse, which often take more than the
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Protocol
 
 import numpy as np
@@ -96,7 +97,7 @@ def ball_contacts(
         if films is not None and u > 0.0:
             central[loaded], smallest[loaded] = films.films(side, load[loaded], u)
             rolling[~loaded] = 0.0
-            rolling[loaded] = strips(ellipse, load[loaded], lambda w, side=side: films.line_force(side, w, u))
+            rolling[loaded] = strips(ellipse, load[loaded], partial(films.line_force, side, entrainment_speed=u))
         sides.append(ContactState(pressure, pressure, central, smallest, rolling, np.zeros(load.shape)))
     power = np.stack([side.rolling_force[:, 0] for side in sides]) * u
     return BearingContacts(*sides), loss_of(power, balls.load[0], speeds[0] - speeds[1])

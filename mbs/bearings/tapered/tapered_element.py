@@ -226,7 +226,7 @@ class TaperedElement(OnRings):
         source = getattr(self.films, "lines", None)
         films = source or DryContacts(cylinder_of(self.force.geometry).contacts(self.force.material, "iso16281"))
         speeds = conditions["inner_speed"], conditions["outer_speed"]
-        temperature = 0.0 if source is None else self.films.films.temperature
+        temperature = float(getattr(self.films, "temperature", 0.0))  # of dry lines nothing depends on it
         return roller_contacts(self.force, self.rollers(displacement, operation), films, speeds, temperature)
 
     @property

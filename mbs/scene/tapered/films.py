@@ -79,6 +79,11 @@ class FilmsOfLines:
         return _lines(cylinder_of(self.geometry), self.films)
 
     @property
+    def temperature(self) -> float:
+        """Temperature of the raceways [K]."""
+        return self.films.temperature
+
+    @property
     def source(self) -> str:
         """Name what films are read from, for people."""
         return "the film table" if self.films.law == "table" else "the table of the film formula"
