@@ -150,7 +150,7 @@ def sentences(lines: Iterable[Child]) -> Markup:
 
 REPORT = Kind("a report of ehdmaps", (".html", ".htm"), has_mark)
 
-LARGEST = 1_000_000
+LARGEST = 2_000_000
 """Bytes of a report: what every mail server takes."""
 
 

@@ -49,7 +49,7 @@ points = 2
 [runup]
 from = "1500 rpm"
 to = "1600 rpm"
-duration = "15 ms"
+duration = "60 ms"
 step = "100 us"
 sample = "100 us"
 [campbell]

@@ -17,7 +17,7 @@ SHORTER = (
     (r"points = \d{3,}", "points = 12"),  # of frequencies
     (r"points = \d\d\b", "points = 2"),  # of speeds
     (r"slices = \d+", "slices = 3"),
-    (r'(?<=duration = )"[^"]*"', '"30 ms"'),
+    (r'(?<=duration = )"[^"]*"', '"60 ms"'),
     (r'(?<=\nstep = )"[^"]*"', '"100 us"'),
     (r'(?<=\nsample = )"[^"]*"', '"100 us"'),
     (r'(?<=\nhighest = )"[^"]*"', '"2 kHz"'),
