@@ -110,31 +110,6 @@ def test_a_slice_out_of_contact_has_no_stiffness():
         assert (w, tangent, xi) == (pytest.approx(0.0, abs=1e-20), 0.0, table.lift_off)
 
 
-def test_a_bearing_in_python_answers_small_oscillations_as_the_linear_analyses_have_it():
-    element = bearing()
-    rest = np.array([0.0, 14e-6, 3e-6, 0.0, 1e-5, 2e-5])
-    direction = np.array([0.0, 1.0, 0.5, 0.0, 0.0, 0.0])
-    at_rest = element.evaluate(rest, np.zeros(6), Operation(SPEED))
-    relaxation = element.relaxation(rest, Operation(SPEED))
-    for frequency in (100.0, 2000.0, 10000.0):
-        steps, periods, amplitude = 100, 4, 1e-10
-        h = 1.0 / (steps * frequency)
-        states, forces = None, []
-        for i in range(steps * periods + 1):
-            turn = math.sin(2.0 * math.pi * frequency * i * h)
-            # the cage stands: its angle is not that of the time
-            moved = rest + amplitude * turn * direction
-            answer, states = element.advance(states, moved, np.zeros(6), Operation(SPEED, 0.0, i * h))
-            forces.append(answer.force)
-        last = np.array(forces[-steps:]) - forces[0]
-        place = np.arange(steps * (periods - 1) + 1, steps * periods + 1) / steps
-        found = -2j * np.exp(-2j * math.pi * place) @ last / steps / amplitude
-        s = np.array([2j * math.pi * frequency])
-        z = at_rest.stiffness + s[0] * at_rest.damping + relaxation.more(s)[0]
-        # A hundred steps a period make some 1e-3 of the damper's part; cubics of the table the rest.
-        assert found == pytest.approx(z @ direction, abs=5e-3 * np.max(np.abs(z @ direction)))
-
-
 @functools.cache
 def model(films="memory", outside_speed=1.0):
     scene = read_scene("nu308_rigid")
@@ -147,18 +122,6 @@ def trajectory(system, compiled, duration=2e-3, **changes):
     start = balance.displacement * 1.02
     speed = SpeedProfile.constant(SPEED)
     return run(system, speed, duration, settings, (), start, options=Options(states=True, compiled=compiled))
-
-
-@pytest.mark.slow
-def test_runs_in_compiled_code_are_those_in_python():
-    compiled, python = (trajectory(model().system, how) for how in (True, False))
-    assert compiled.compiled == compiled.steps and python.compiled == 0
-    for ours, reference in zip(compiled.forces, python.forces, strict=True):
-        # Parabolas of the table's cubics, 1e-5 of the force.
-        assert ours == pytest.approx(reference, abs=1e-4 * np.max(np.abs(reference)))
-    slow = trajectory(model("slow").system, True)
-    apart = np.max(np.abs(slow.forces[0] - compiled.forces[0])) / np.max(np.abs(compiled.forces[0]))
-    assert apart > 1e-3  # memory is no round-off
 
 
 @pytest.mark.slow
