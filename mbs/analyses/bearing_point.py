@@ -124,8 +124,9 @@ def _hole(point: P, load: Any, speed: float, reason: str) -> P:
     """A point without an answer in the shape of one that has one."""
     size = np.array(load, dtype=np.float64)
     given: dict[str, Any] = {"speed": speed} if isinstance(point, BearingPoint) else {"inner_speed": speed}
-    blank: P = _blank(point)
-    return dataclasses.replace(blank, load=size, findings=(Finding(Cause.FAILED, reason),), failed=True, **given)
+    blank: Any = _blank(point)
+    hole: P = dataclasses.replace(blank, load=size, findings=(Finding(Cause.FAILED, reason),), failed=True, **given)
+    return hole
 
 
 def _blank(value: Any) -> Any:
