@@ -430,11 +430,12 @@ def _modal_fit(top: Program) -> None:
     )
     command.add_argument(
         "--windowed",
-        metavar="TIME",
+        nargs="+",
+        metavar=("TIME", "force"),
         help='exponential window that an analyser has put on the responses: its time constant, such as "50 ms", or '
-        'what it leaves at the end of a record, such as "1 %%"',
+        'what it leaves at the end of a record, such as "1 %%"; with the word force where the hits have been through '
+        "it, too",
     )
-    command.add_argument("--windowed-force", action="store_true", help="the force of the hits has been through it too")
     command.add_argument("--no-refine", action="store_true", help="poles as the method finds them")
     command.add_argument("-o", "--output", metavar="OUT.nc", help="result as netCDF")
     command.add_argument("--responses", metavar="FRF.uff", help="estimated responses and coherences")

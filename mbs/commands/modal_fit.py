@@ -66,7 +66,7 @@ def _declared(measured: Measurement, windowed: float | None, arguments: argparse
         return 1.0 / windowed if windowed > 0.0 else -math.log(-windowed) / duration
 
     hits = tuple(
-        dataclasses.replace(entry, decay=decay(entry.duration), force_decays=arguments.windowed_force)
+        dataclasses.replace(entry, decay=decay(entry.duration), force_decays="force" in arguments.windowed[1:])
         for entry in measured.hits
     )
     responses = measured.responses
@@ -122,11 +122,11 @@ def _options(
     windowed: float | None = None
     if arguments.windowed is not None:
         try:
-            windowed = _windowed(arguments.windowed)
+            windowed = _windowed(arguments.windowed[0])
         except InputError as error:
             problems.append(f"--windowed: {error.problems[0]}, or what it leaves at the end, as 1 %")
-    elif arguments.windowed_force:
-        problems.append("--windowed-force: stands without --windowed; allowed: beside it")
+        if arguments.windowed[1:] not in ([], ["force"]):
+            problems.append(f"--windowed: got {' '.join(arguments.windowed[1:])!r:.40} behind the time; allowed: force")
     files = (
         ("-o", arguments.output, RESULT),
         ("--plot", arguments.plot, FIGURE),

@@ -12,6 +12,7 @@ import xarray as xr
 from ehdmaps.errors import InputError
 from ehdmaps.report.page import REPORT, write_report
 from mbs.analyses.case import Case
+from mbs.analyses.reach import outside_at
 from mbs.analyses.soundness import Judged
 from mbs.commands.auto import analysed
 from mbs.commands.cases import load_cases
@@ -54,7 +55,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     told = [f"warning: {line}" for line in (*warnings(found), *failed)]
     judged = Judged([("", found.findings)])
     lines = [*judged.first, *done.lines, *told, *judged.last, f"{arguments.output}: written"]
-    return "\n".join(lines), 1 if told or judged.status else done.status
+    outside = outside_at(found.model, found.statics.balance)
+    return "\n".join(lines), 1 if failed or outside or judged.status else done.status
 
 
 def _asked(arguments: argparse.Namespace) -> _Asked:

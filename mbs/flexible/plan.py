@@ -17,6 +17,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.inputs import check_input
 from mbs.flexible.number_table import check_file
+from mbs.frozen import frozen
 from mbs.model.body import FREEDOMS, Body, Inertia, lever_arm
 
 AXES = ("x", "y", "z")
@@ -279,8 +280,8 @@ class ReductionPlan:
     names: tuple[str, str] = NASTRAN_NAMES
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "interfaces", dict(self.interfaces))
-        object.__setattr__(self, "points", dict(self.points))
+        object.__setattr__(self, "interfaces", frozen(self.interfaces))
+        object.__setattr__(self, "points", frozen(self.points))
 
     @property
     def files(self) -> tuple[Path, ...]:

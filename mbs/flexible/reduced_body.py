@@ -11,6 +11,7 @@ from scipy.linalg import eigh
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
+from mbs.frozen import frozen
 from mbs.model.body import Body, Frame, Skin
 
 
@@ -106,8 +107,8 @@ class ReducedBody:
     def __post_init__(self) -> None:
         object.__setattr__(self, "coordinates", tuple(self.coordinates))
         object.__setattr__(self, "units", tuple(self.units))
-        object.__setattr__(self, "frames", dict(self.frames))
-        object.__setattr__(self, "attributes", dict(self.attributes))
+        object.__setattr__(self, "frames", frozen(self.frames))
+        object.__setattr__(self, "attributes", frozen(self.attributes))
         size = self.size
         problems = []
         if not 1 <= size <= MOST_COORDINATES:

@@ -15,6 +15,7 @@ from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.surface import CrownedProfile, TabulatedProfile
 from mbs.bearings.thermal import GivenTemperatures, HeatPaths, Mounting
+from mbs.frozen import frozen
 from mbs.model.body import Body, Inertia, rigid_problems
 
 if TYPE_CHECKING:
@@ -319,8 +320,8 @@ class TaperedSpec:
 
 
 def _freeze(spec: object, *names: str) -> None:
-    """Make tuples of what may be given as lists, and own copies of mappings, which can be pickled as they are."""
+    """Make tuples of what may be given as lists, and frozen copies of mappings."""
     for name in names:
         object.__setattr__(spec, name, tuple(getattr(spec, name)))
     if hasattr(spec, "frames"):
-        object.__setattr__(spec, "frames", dict(spec.frames))
+        object.__setattr__(spec, "frames", frozen(spec.frames))

@@ -190,7 +190,7 @@ def test_bad_input_lists_every_problem_and_writes_nothing(here, capsys):
         ),
         (("modal-fit", "b.uff", "--windowed", "100 %"), ("--windowed: got '100 %'; allowed: above 0 %, below 100 %",)),
         (("modal-fit", "b.uff", "--windowed", "x %"), ("--windowed: got 'x %'",)),
-        (("modal-fit", "b.uff", "--windowed-force"), ("--windowed-force: stands without --windowed",)),
+        (("modal-fit", "b.uff", "--windowed", "1 s", "x"), ("--windowed: got 'x' behind the time; allowed: force",)),
         (
             ("modal-fit", "c.uff", "--windowed", "1 s", "--window-decay", "1 s"),
             ("--window-decay, --windowed: got both for frequency responses",),

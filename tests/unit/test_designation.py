@@ -114,7 +114,7 @@ def test_oils_by_class():
     assert Lubricant.named("fva 3") is Lubricant.named("FVA3")
     assert lubricant_keys(other) == {"name": "ISO VG 46, VI 150"}
     own = Lubricant.barus(viscosity=0.1, pressure_viscosity=2e-8, density=880.0, name="ISO VG 46")
-    assert own.oil_class is None and not own.estimated
+    assert own.oil_class is None and own.estimated == "density and viscosity constant over temperature"
 
 
 @pytest.mark.parametrize("grade", [grade for grade in CLASSES if grade >= 7])

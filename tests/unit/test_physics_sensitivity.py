@@ -55,7 +55,7 @@ def test_check_says_how_much_alpha_matters(tmp_path, capsys):
     path = tmp_path / "job.toml"
     path.write_text(JOB.format(alpha="20 1/GPa"))
     assert main(["check", str(path)]) == 0
-    (line,) = (line for line in capsys.readouterr().out.splitlines() if "pressure-viscosity" in line)
+    (line,) = (line for line in capsys.readouterr().out.splitlines() if "pressure-viscosity that" in line)
     state = Lubricant.roelands(viscosity_40=32e-6, viscosity_100=5.4e-6, density=870.0, pressure_viscosity=2e-8).at(
         313.15
     )
@@ -70,7 +70,7 @@ def test_check_says_what_is_estimated(tmp_path, capsys):
     path = tmp_path / "job.toml"
     path.write_text(JOB.format(alpha="so-klaus"))
     assert main(["check", str(path)]) == 0
-    assert "  lubricant: pressure-viscosity estimated by So and Klaus (1980); against 38" in capsys.readouterr().out
+    assert "; pressure-viscosity estimated by So and Klaus (1980); against 38" in capsys.readouterr().out
 
 
 def test_check_of_an_isoviscous_oil_says_nothing_of_alpha(tmp_path, capsys):
@@ -85,8 +85,7 @@ def test_a_map_of_an_estimated_oil_says_so(tmp_path, capsys):
     path.write_text(JOB.format(alpha="gold-mineral"))
     assert main(["generate", str(path), "-o", str(made), "--workers", "1"]) == 0
     sentence = CORRELATIONS["gold-mineral"].sentence
-    assert f"lubricant: {sentence}" in capsys.readouterr().out
+    assert f"; {sentence}" in capsys.readouterr().out
     assert ehdmaps.open_map(made).dataset.attrs["lubricant_verified"] == 0
     assert main(["show", str(made)]) == 0
-    assert "oil own oil: NOT VERIFIED\n  " + sentence in (out := capsys.readouterr().out)
-    assert sentence in out
+    assert "oil own oil: NOT VERIFIED\n  density -0.6 kg/m3 a K (assumed); " + sentence in capsys.readouterr().out

@@ -63,7 +63,7 @@ def not_served(text: str) -> str:
 
     Examples
     --------
-    >>> not_served("22208 E/C3")[:49], not_served("NU208"), not_served("housing")
+    >>> not_served("22208 E/C3")[:51], not_served("NU208"), not_served("housing")
     ("got '22208 E/C3', spherical roller bearing: not yet", '', '')
     """
     typed = text.strip()
