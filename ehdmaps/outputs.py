@@ -419,18 +419,18 @@ def _problem(output: Output, taken: dict[object, str]) -> str:
     path = Path(text)
     if problem := name_problem(path):
         return f"{what}, {problem}"
-    if kind.endings and path.suffix.lower() not in kind.endings:
-        form = "in netCDF, which " if kind.endings == NETCDF else "that "
-        return f"{what}; allowed: a file {form}ends in {', '.join(filter(None, kind.endings))}"
     try:
+        other = taken.get(_place(text) or os.path.realpath(text))
+        if other:
+            return f"{what}, which would be written over {other}; choose another name"
+        if kind.endings and path.suffix.lower() not in kind.endings:
+            form = "in netCDF, which " if kind.endings == NETCDF else "that "
+            return f"{what}; allowed: a file {form}ends in {', '.join(filter(None, kind.endings))}"
         if os.path.isdir(text):
             return f"{what}, which is a folder; allowed: a file in it; add its name"
         folder = Path(os.path.realpath(text)).parent
         if not folder.is_dir():
             return f"{what}, but {path.parent} is no folder; allowed: a file in a folder that exists"
-        other = taken.get(_place(text) or os.path.realpath(text))
-        if other:
-            return f"{what}, which would be written over {other}; choose another name"
         try:
             status = os.stat(text)
         except FileNotFoundError:

@@ -49,8 +49,8 @@ points = 2
 [runup]
 from = "1500 rpm"
 to = "1600 rpm"
-duration = "60 ms"
-step = "100 us"
+duration = "80 ms"
+step = "20 us"
 sample = "100 us"
 [campbell]
 sensor = "seen"

@@ -308,7 +308,7 @@ BODIES = {
     ('"b.dof"', '"pipe"'): "it is a pipe",
     ('"m.inp"', '"pipe"'): "it is a pipe",
     ('"m.inp"', '"link_to_pipe.msh"'): "it is a pipe",
-    ('"m.inp"', '"b.sti"'): "cannot be read as a mesh",
+    ('"m.inp"', '"b.sti"'): "of a mesh whose numbers of nodes are not read",
     ('"m.inp"', '"a\\u0000b"'): "mesh: got",
     ('"m.inp"', f'"{"x" * 300}"'): "cannot be read",
     ('"m.inp"', '"loop.inp"'): "cannot be read",

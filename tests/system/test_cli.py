@@ -494,20 +494,20 @@ def test_a_picture_that_fails_leaves_the_old_one(here, capsys, monkeypatch):
 
 def test_generate_writes_over_nothing_but_maps(here, capsys):
     os.mkfifo(here / "pipe")
-    (here / "letter.doc").write_text("Dear Sir")
+    (here / "letter.nc").write_text("Dear Sir")
     os.link(here / "mine.toml", here / "hard")
     for output, message in (
         ("mine.toml", "-o: got mine.toml, which would be written over mine.toml, which is read"),
         ("hard", "-o: got hard, which would be written over mine.toml, which is read"),
         ("pipe", "-o: got pipe, which is no regular file"),
-        ("letter.doc", "-o: got letter.doc, which is there and is not a map of ehdmaps"),
+        ("letter.nc", "-o: got letter.nc, which is there and is not a map of ehdmaps"),
     ):
         before = names(here)
         status, _, err = run(capsys, "generate", "mine.toml", "--workers", "1", "-o", output)
         assert (status, names(here)) == (2, before), output
         assert message in err
     assert (here / "mine.toml").read_text() == TEXT
-    assert (here / "letter.doc").read_text() == "Dear Sir"
+    assert (here / "letter.nc").read_text() == "Dear Sir"
     assert (here / "pipe").is_fifo()
     for _ in range(2):  # a map over a map
         assert run(capsys, "generate", "mine.toml", "--workers", "1")[0] == 0

@@ -171,9 +171,9 @@ def test_the_solver_of_a_job_may_be_another(tmp_path):
 
 
 def test_a_map_is_not_written_over_its_job(tmp_path):
-    (tmp_path / "job").write_text(built().text)
-    with pytest.raises(InputError, match=r"output: got .*job, which would be written over"):
-        ehdmaps.generate(tmp_path / "job", tmp_path / "job")
+    (tmp_path / "job.toml").write_text(built().text)
+    with pytest.raises(InputError, match=r"output: got .*job.toml, which would be written over"):
+        ehdmaps.generate(tmp_path / "job.toml", tmp_path / "job.toml")
 
 
 def test_maps_are_compared_from_files_and_from_memory(tmp_path):

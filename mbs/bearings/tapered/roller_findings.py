@@ -88,7 +88,7 @@ def _limits(force: TaperedForce, rollers: TaperedLoads) -> Finding | None:
             along, across = along + rib.normal[0] * float(load.sum()), across + rib.normal[1] * load
     axial, radial = abs(along), abs(complex(across @ np.exp(1j * rollers.angle)))
     limit, most = axial_limit(force.geometry.name), LARGEST_SHARE * radial
-    found = [(axial / max(most, 1e-300), f"{LARGEST_SHARE:g} Fr = {most:.4g} N")] if axial > most else []
+    found = [(axial / max(most, 1e-300), f"{LARGEST_SHARE:g} Fr = {most:.4g} N")] if axial > max(most, OPEN) else []
     if limit is not None and axial > limit:
         found.append((axial / limit, f"{limit:.4g} N, the strength of ribs"))
     if not found:
