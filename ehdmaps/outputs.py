@@ -419,13 +419,15 @@ def _problem(output: Output, taken: dict[object, str]) -> str:
     path = Path(text)
     if problem := name_problem(path):
         return f"{what}, {problem}"
+    netcdf, ending = kind.endings == NETCDF, not kind.endings or path.suffix.lower() in kind.endings
+    if not ending and not netcdf:
+        return f"{what}; allowed: a file that ends in {', '.join(kind.endings)}"
     try:
         other = taken.get(_place(text) or os.path.realpath(text))
         if other:
             return f"{what}, which would be written over {other}; choose another name"
-        if kind.endings and path.suffix.lower() not in kind.endings:
-            form = "in netCDF, which " if kind.endings == NETCDF else "that "
-            return f"{what}; allowed: a file {form}ends in {', '.join(filter(None, kind.endings))}"
+        if not ending:
+            return f"{what}; allowed: a file in netCDF, which ends in {', '.join(filter(None, kind.endings))}"
         if os.path.isdir(text):
             return f"{what}, which is a folder; allowed: a file in it; add its name"
         folder = Path(os.path.realpath(text)).parent

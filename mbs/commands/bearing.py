@@ -512,12 +512,12 @@ FORMULA_LOADS = (100.0, 1e8)
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Compute all points, describe and write them; status 1 where one is outside of what the laws hold for."""
-    if not os.path.isfile(arguments.bearing) and (words := not_served(arguments.bearing)):
-        raise InputError(f"BEARING: {words}")
     if _BALLS.match(arguments.bearing) and not os.path.isfile(arguments.bearing):
         from mbs.commands.one_bearing.balls import run_balls  # with kernels that others do not need
 
         return run_balls(arguments)
+    if not os.path.isfile(arguments.bearing) and (words := not_served(arguments.bearing)):
+        raise InputError(f"BEARING: {words}")
     axial = getattr(arguments, "axial", None) is not None and ribbed_way(arguments.bearing)
     if (axial or _TAPERED.match(arguments.bearing)) and not os.path.isfile(arguments.bearing):
         from mbs.commands.one_bearing.tapered import run_tapered  # with kernels that others do not need

@@ -20,6 +20,7 @@ class Command:
     options: tuple[str, ...] = ()
     output: str = ""
     slow: bool = False
+    laws: tuple[str, ...] = ("dry", "films")
 
 
 COMMANDS = (
@@ -31,8 +32,8 @@ COMMANDS = (
     Command("critical", output="-o result.nc"),
     Command("hammer", ("--hits", "1", "--duration", "20 ms", "--workers", "1"), output="-o result.uff"),
     Command("report", output="-o result.html", slow=True),
-    Command("runup", ("--workers", "1"), output="-o result.nc", slow=True),
-    Command("run", output="-o folder", slow=True),  # with the Campbell diagram, which is a run-up too
+    Command("runup", ("--workers", "1"), output="-o result.nc", slow=True, laws=("films",)),
+    Command("run", output="-o folder", slow=True),  # with the Campbell diagram, whose runs are run-ups too
 )
 
 LAWS = {"dry": ("--law", "hertz:1.25e-5 s"), "films": ("--law", "table")}
@@ -45,6 +46,7 @@ CELLS = [
     for law in LAWS
     if machine.films or law == "dry"
     for command in COMMANDS
+    if law in command.laws
 ]
 
 

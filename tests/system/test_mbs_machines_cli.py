@@ -113,7 +113,7 @@ class TestFiles:
             (("-o", "own.toml"), "-o: got own.toml, which would be written over own.toml, which is read"),
             (("-o", "./sub/../own.toml"), "which would be written over own.toml"),
             (("--plot", "own.toml"), "--plot: got own.toml; allowed: a file that ends in .png, .pdf, .svg"),
-            (("-o", "a.png", "--plot", "a.png"), "--plot: got a.png, which would be written over the file of -o"),
+            (("-o", "a.png", "--plot", "a.png"), "-o: got a.png; allowed: a file in netCDF, which ends in .nc"),
             (("-o", "sub"), "-o: got sub, which is a folder; allowed: a file in it"),
             (("--plot", "a\0.png"), "allowed: the path of a file"),
             (("-o", "pipe"), "-o: got pipe, which is no regular file"),
