@@ -70,7 +70,8 @@ SPEED_TABLE = "its table of speeds"
 def sources_of(model: Model) -> dict[str, str]:
     """Source that each element reads, in words.
 
-    `source_of` the laws of bearings, `SPEED_TABLE` of matrices over speed, `BALL_LOADS` of ball bearings.
+    `source_of` the laws of bearings, `SPEED_TABLE` of matrices over speed, `BALL_LOADS` of ball bearings, and what
+    films of tapered and ribbed rollers are read from.
 
     Parameters
     ----------
@@ -80,8 +81,15 @@ def sources_of(model: Model) -> dict[str, str]:
     elements = [entry.element for entry in model.system.elements]
     source = source_of(model)
     kinds = {entry.name: BALL_LOADS for entry in model.balls}
+    tapered = {spec.name for spec in model.scene.tapered}
+    kinds |= {entry.name: _read_by(entry, source) for entry in elements if entry.name in tapered}
     kinds |= {entry.name: SPEED_TABLE for entry in elements if isinstance(entry, MatrixElement)}
     return {entry.name: kinds.get(entry.name, source) for entry in elements}
+
+
+def _read_by(element: object, source: str) -> str:
+    """Source that the films of tapered or ribbed rollers are read from; `source` where they do not say it."""
+    return str(getattr(getattr(element, "films", None), "source", source))
 
 
 def fade_of(model: Model) -> Fade | None:
@@ -169,7 +177,7 @@ _ADVICE = {
     "the map": "make a map that reaches there",
     SPEED_TABLE: "give it these speeds too",
     POINTS: "add points that reach there",
-    BALL_LOADS: "smaller loads or more speed lie inside",
+    **dict.fromkeys((BALL_LOADS, "the film table"), "smaller loads or more speed lie inside"),
 }
 
 
