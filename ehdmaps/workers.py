@@ -54,6 +54,8 @@ class WorkersDied(BrokenProcessPool):
     ----------
     begun : bool
         Whether one of the pool had begun a task.
+    cause : str
+        Cause of its end, in words.
     error : WorkerError
         What is said where the work ends by it: with the cause, or that it is in the script that each process runs
         again.
@@ -61,7 +63,7 @@ class WorkersDied(BrokenProcessPool):
 
     def __init__(self, begun: bool, cause: str, script: bool = False) -> None:
         self.begun = begun
-        cause = cause or "nobody says why"
+        self.cause = cause = cause or "nobody says why"
         when = "in their first task" if begun else "before they do anything"
         text = f"worker processes die {when} ({cause}); {_ADVICE}"
         if script:

@@ -322,10 +322,10 @@ class OpenFoamSolver(ContactSolverDefaults):
             return FilmSolution(Status.OUTSIDE_VALIDITY, reason), None, None
         state = lubricant.at(point.temperature)
         began = cpu_seconds()
-        end = time.monotonic() + self.timeout
         stage, done = "coarse grid", 0
         try:
             fine = self.parameters(contact, lubricant, point, frequencies)
+            end = time.monotonic() + self.timeout  # from here: the first start of a process may compile for minutes
             short = self._inlet_too_short(contact, point, fine.mesh)
             if short:
                 return FilmSolution(Status.OUTSIDE_VALIDITY, short), None, None

@@ -64,7 +64,7 @@ def test_generate_show_plot_compare(here, capsys):
     assert status == 0
     assert "points: 0 taken over, 48 solved now, 0 without a solution" in out
     assert err.splitlines()[0] == "0 of 48 points taken over"
-    assert names(here) == ["mine.nc", "mine.nc.store", "mine.toml"]
+    assert names(here) == ["mine.nc", "mine.nc.log", "mine.nc.store", "mine.toml"]
 
     status, out, _ = run(capsys, "show", "mine.nc")
     assert (status, out.splitlines()[0]) == (0, "EHD map of NU308, FVA3, by the solver formula")

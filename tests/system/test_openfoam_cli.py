@@ -119,7 +119,7 @@ def test_a_map_and_the_same_command_again(folder, done):
     # another build solves its own points
     openfoam_fake.record(build_of(folder), sources="4567")
     assert counts(done("generate", "job.toml", "--workers", "1").stdout) == (0, POINTS, 0)
-    assert sorted(os.listdir(folder)) == ["job.nc", "job.nc.store", "job.toml"]
+    assert sorted(os.listdir(folder)) == ["job.nc", "job.nc.log", "job.nc.store", "job.toml"]
     assert left_cases(folder) == []
     assert not (folder.parent / "home").exists()
 

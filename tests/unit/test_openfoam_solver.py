@@ -161,6 +161,18 @@ def test_a_run_that_fails_is_a_point_with_its_cause(fake, capfd, mode):
         assert not Path(f"/proc/{pid}").exists()
 
 
+def test_a_start_that_compiles_takes_no_time_of_the_runs(fake, monkeypatch):
+    """The first one of a process may take minutes in a fresh installation."""
+    clock, passed = time.monotonic, [0.0]
+    monkeypatch.setattr(time, "monotonic", lambda: clock() + passed[0])
+
+    def long(*_):
+        passed[0] += 1e4
+
+    assert solved(OpenFoamSolver(starter=long)).status is Status.CONVERGED
+    assert passed[0] >= 1e4
+
+
 def test_a_fine_grid_that_fails(fake):
     openfoam_fake.set_mode(fake, "hang_fine")
     film = solved(OpenFoamSolver(timeout=2.0))

@@ -48,6 +48,9 @@ class Stub:
     def is_final(self, arrays):
         return self.kind != "unlucky"
 
+    def where(self, points):
+        return f"Stub {self.number}"
+
 
 @dataclass
 class Heard:

@@ -5,6 +5,7 @@ tasks              `Job` -> `LineTask`, units of work with their keys; lines tha
 store              results by key in a file beside the map; survives kill -9
 sweep              tasks -> results, over all cores, past dead workers and Ctrl-C
 status             how far a map is: a bar, lines, a small file for others
+log                what happened in all runs that worked on a map, in a file beside it
 sampling           random operating points of a job
 table_films        films of a map from the film table, or why not
 table_law          laws without a file of a map

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, Future, as_completed
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -20,6 +20,7 @@ from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.make.batch import Batch, Member
 from ehdmaps.jobs.make.generate import Within, generate, planned_tasks, read_map
 from ehdmaps.jobs.make.law_check import unmet
+from ehdmaps.jobs.make.log import RunLog
 from ehdmaps.jobs.make.report import holes, unsolved
 from ehdmaps.jobs.make.status import StatusFile
 from ehdmaps.jobs.make.store import Store, store_path
@@ -274,15 +275,27 @@ def generate_batch(
     with Store(store_path(place), fresh) as store:
         due = [planned for planned in plan if _is_due(planned, batch, folder, fresh, outcomes)]
         about = f"batch {batch.name}, {len(batch.members)} maps"
-        with StatusFile(place, about, 0, processes) as status:
-            run = _Run(batch, folder, store, status, processes, progress, executor, told)
+        log = RunLog(place, [about], 0, processes, fresh)
+        with StatusFile(place, about, 0, processes) as status, log:
+            run = _Run(batch, folder, store, status, log, processes, progress, executor, told)
             alone = run.read([planned for planned in due if planned.reads], outcomes)
             alone += [planned for planned in due if not planned.reads]
-            status.more(sum(task.points for planned in alone for task in planned.tasks))
+            points = sum(task.points for planned in alone for task in planned.tasks)
+            status.more(points)
+            log.more(points)
             for planned in alone:
                 outcomes[planned.member.name] = run.alone(planned)
+            log.finish("\n".join(_lines(outcomes.values())))
     ordered = tuple(outcomes[member.name] for member in batch.members)
     return BatchResult(batch, ordered, run.result, time.monotonic() - begin)
+
+
+def _lines(outcomes: Iterable[Outcome]) -> Iterator[str]:
+    """Number of maps of each state, and why some failed."""
+    found = list(outcomes)
+    for state in (MADE, KEPT, FAILED):
+        yield f"maps {state}: {sum(outcome.state == state for outcome in found)}"
+    yield from (f"{outcome.output}: {outcome.reason}" for outcome in found if outcome.state == FAILED)
 
 
 def _is_due(planned: Planned, batch: Batch, folder: Path, fresh: bool, outcomes: dict[str, Outcome]) -> bool:
@@ -348,6 +361,7 @@ class _Run:
     folder: Path
     store: Store
     status: StatusFile
+    log: RunLog
     workers: int
     progress: Callable[[int], Progress] | None
     executor: Executor | None
@@ -358,7 +372,7 @@ class _Run:
         """Make a map whose films are solved."""
         member, begin = planned.member, time.monotonic()
         output = self.folder / f"{member.name}.nc"
-        within = Within(self.store, self.status, _marks(self.batch, planned.fingerprint))
+        within = Within(self.store, self.status, self.log, _marks(self.batch, planned.fingerprint))
         try:
             made = generate(
                 planned.job, output, self.workers, False, self.progress, executor=self.executor, within=within

@@ -18,6 +18,7 @@ from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.make.assemble import assemble, placed, with_correction
 from ehdmaps.jobs.make.correction import Correction, correction
 from ehdmaps.jobs.make.law_check import HALVED, REFUSED, LawCheck, checked_laws, coarse_axis, films_met, met, plan_check
+from ehdmaps.jobs.make.log import RunLog, job_lines
 from ehdmaps.jobs.make.report import (
     correction_lines,
     error_lines,
@@ -121,10 +122,11 @@ MOST_HALVINGS = 3
 
 @dataclass(frozen=True)
 class Within:
-    """Surroundings of a map that is one of several: their common store and status, and what marks it as theirs."""
+    """Surroundings of a map that is one of several: their store, status and log, and what marks it as theirs."""
 
     store: Results
     status: StatusFile
+    log: RunLog
     attributes: Mapping[str, str | int]
 
 
@@ -166,12 +168,12 @@ def generate(
     job : Job
         What to make.
     output : Path
-        The map file; its store stands beside it.
+        The map file; its store and its log stand beside it.
     workers : int, optional
         Number of processes; all cores if left out. A script that uses more than one needs the usual
         ``if __name__ == "__main__":``.
     fresh : bool
-        Drop the store first.
+        Drop store and log first.
     progress : callable, optional
         Takes the number of points, gives the `Progress` to tell.
     solver : ContactSolver, optional
@@ -198,8 +200,11 @@ def generate(
         if within is None:
             store: Results = stack.enter_context(Store(store_path(output), fresh))
             status = stack.enter_context(StatusFile(output, about(job), planned.points, processes))
+            lines = job_lines(job, chosen_solver, planned.corrector)
+            log = stack.enter_context(RunLog(output, lines, planned.points, processes, fresh))
         else:
-            store, status = within.store, within.status
+            store, status, log = within.store, within.status, within.log
+            log.told(f"map {output}", list(job_lines(job, chosen_solver, planned.corrector)))
         result = SweepResult()
 
         def solve(tasks: Sequence[LineTask], more: bool = True) -> Mapping[str, Arrays]:
@@ -207,10 +212,11 @@ def generate(
             points = sum(task.points for task in missing)
             if more:
                 status.more(points)
+                log.more(points)
             if missing:
                 counter = progress(points) if progress else None
                 few = isinstance(chosen_solver, TableSolver) and points <= FEW
-                result.add(sweep(missing, store, 1 if few else processes, counter, [status], executor))
+                result.add(sweep(missing, store, 1 if few else processes, counter, [status, log], executor))
             status.write()
             return result.arrays
 
@@ -219,7 +225,10 @@ def generate(
         dataset, group = _refined(planned, result, str(output), solve)
         dataset.attrs.update(within.attributes if within else {})
         write_map(dataset, output, {schema.BACKBONE: group} if group is not None else None)
-    return Generated(dataset, group, result)
+        generated = Generated(dataset, group, result)
+        if within is None:
+            log.finish(summary(generated, output))
+    return generated
 
 
 def generate_in_memory(

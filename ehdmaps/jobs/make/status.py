@@ -364,6 +364,9 @@ class StatusFile:
         if time.monotonic() - self._last >= WRITE_SECONDS or (now and task.slow):
             self.write()
 
+    def told(self, words: str) -> None:
+        """Nothing of it is in the file."""
+
     def write(self) -> None:
         """Write the file."""
         self._last = time.monotonic()

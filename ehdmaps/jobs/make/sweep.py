@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import time
 from collections import deque
-from collections.abc import Generator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from dataclasses import dataclass, field
 from typing import Protocol
@@ -59,6 +59,10 @@ class Task(Protocol):
         """Tell whether a result is kept; one that is not is tried again by the next run."""
         ...
 
+    def where(self, points: Sequence[int]) -> str:
+        """Say for people which of its points these are."""
+        ...
+
 
 class Progress(Protocol):
     """Listener that the sweep tells how far it is."""
@@ -97,6 +101,10 @@ class Watch(Protocol):
         now : bool
             True if it was solved now, False if the store had it.
         """
+        ...
+
+    def told(self, words: str) -> None:
+        """Hear what happened to the processes that do the work."""
         ...
 
 
@@ -172,6 +180,11 @@ def sweep(
         On Ctrl-C, after the workers are stopped and the store is committed.
     """
     counter = progress or NoProgress()
+
+    def tell(words: str) -> None:
+        for watch in watches:
+            watch.told(words)
+
     begin = time.monotonic()
     result = SweepResult()
     todo: list[Task] = []
@@ -187,9 +200,9 @@ def sweep(
     result.damaged = store.damaged
     counter.taken_over(result.taken_over)
     if executor is not None:
-        outcomes = _in_executor(todo, executor, store)
+        outcomes = _in_executor(todo, executor, store, tell)
     else:
-        outcomes = _in_process(todo) if workers <= 1 else _in_pool(todo, min(workers, len(todo)), store)
+        outcomes = _in_process(todo) if workers <= 1 else _in_pool(todo, min(workers, len(todo)), store, tell)
     try:
         for task, arrays, final in outcomes:
             if final and task.is_final(arrays):
@@ -222,6 +235,9 @@ def _run(task: Task) -> Arrays:
         return task.failed(str(error))
 
 
+_Tell = Callable[[str], None]
+"""Takes what happened to the processes that do the work."""
+
 _Outcomes = Generator[tuple[Task, Arrays, bool], None, None]
 """Task, its arrays, and whether they are kept: not those of a dead worker, so the next run tries again."""
 
@@ -249,7 +265,7 @@ class _Deaths:
             raise died.error from None
 
 
-def _in_pool(tasks: Sequence[Task], workers: int, store: Results) -> _Outcomes:
+def _in_pool(tasks: Sequence[Task], workers: int, store: Results, tell: _Tell) -> _Outcomes:
     """Run tasks in worker processes; those that were out when a worker died are tried again alone.
 
     The first task runs alone while the other workers import. In a fresh installation it compiles what all need, and
@@ -280,8 +296,10 @@ def _in_pool(tasks: Sequence[Task], workers: int, store: Results) -> _Outcomes:
                         yield running.pop(future), arrays, True
         except WorkersDied as died:
             deaths.add(died)
+            out = sum(task.points for task in running.values())
+            tell(f"a worker process died ({died.cause}): the {out} points that were out are tried again one at a time")
             # Nobody knows which task killed the worker: those that were out run one at a time.
-            yield from _alone(list(running.values()), deaths)
+            yield from _alone(list(running.values()), deaths, tell)
 
 
 @dataclass(frozen=True)
@@ -299,7 +317,7 @@ def _caught(task: Task) -> Arrays | _Raised:
         return _Raised(error)
 
 
-def _in_executor(tasks: Sequence[Task], executor: Executor, store: Results) -> _Outcomes:
+def _in_executor(tasks: Sequence[Task], executor: Executor, store: Results, tell: _Tell) -> _Outcomes:
     """Run tasks by an executor of the caller's; what it loses is handed out once more, then given up for this time."""
     waiting = deque((task, True) for task in tasks)
     running: dict[Future[Arrays | _Raised], tuple[Task, bool]] = {}
@@ -323,6 +341,7 @@ def _in_executor(tasks: Sequence[Task], executor: Executor, store: Results) -> _
                     outcome = future.result()
                 except Exception as error:  # of the executor's own kind, which is not known here
                     if first:
+                        tell(f"the executor lost {task.where(range(task.points))} ({error!s:.200}): handed out again")
                         waiting.append((task, False))
                         continue
                     reason = f"the executor lost the task twice ({error!s:.200}); the same command tries again"
@@ -336,7 +355,7 @@ def _in_executor(tasks: Sequence[Task], executor: Executor, store: Results) -> _
             future.cancel()
 
 
-def _alone(tasks: Sequence[Task], deaths: _Deaths) -> _Outcomes:
+def _alone(tasks: Sequence[Task], deaths: _Deaths, tell: _Tell) -> _Outcomes:
     """Run tasks one at a time, in a process that each may take down with it; the next one gets another then."""
     waiting = deque(tasks)
     while waiting:
@@ -350,4 +369,5 @@ def _alone(tasks: Sequence[Task], deaths: _Deaths) -> _Outcomes:
             deaths.add(died)
             reason = "the worker process died twice (killed, or out of memory); the same command tries again"
             task = waiting.popleft()
+            tell(f"a worker process died ({died.cause}) at {task.where(range(task.points))}")
             yield task, task.failed(reason), False

@@ -28,6 +28,7 @@ from ehdmaps.physics.solids import Material
 from ehdmaps.physics.solution import ContactSolver, FilmSolution, FilmSpectrum, Status, no_spectrum
 from ehdmaps.provenance import PACKAGES, code_hash
 from ehdmaps.table.solver import TableSolver
+from ehdmaps.units import LOAD, SPEED, TEMPERATURE
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -142,6 +143,16 @@ class LineTask:
     def is_final(self, arrays: Arrays) -> bool:
         """Tell whether no point failed: a crash, a kill or an end of time may not happen again."""
         return not (arrays["status"] == int(Status.FAILED)).any()
+
+    def where(self, points: Sequence[int]) -> str:
+        """Say for people which of its points these are."""
+        loads = [self.loads[point] for point in points]
+        load = LOAD.text(loads[0])
+        if len(loads) > 1:
+            load = f"{len(loads)} loads from {load} to {LOAD.text(loads[-1])}"
+        return (
+            f"{self.contact.name}, {load}, {SPEED.text(self.entrainment_speed)}, {TEMPERATURE.text(self.temperature)}"
+        )
 
 
 def knows_heat(solver: ContactSolver) -> bool:
