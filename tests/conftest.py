@@ -11,6 +11,7 @@ import pytest
 from hypothesis import settings
 
 from tests.cases.jobs import FINE, SMALL, WIDE_AXES, map_job
+from tests.cases.programs import held_to_run
 
 # CI must not fail on an example that nobody has seen before; a developer wants to see new ones
 settings.register_profile("ci", derandomize=True, deadline=None)
@@ -90,6 +91,18 @@ def pytest_runtest_setup(item: pytest.Item) -> Iterator[None]:
 @pytest.hookimpl(hookwrapper=True, tryfirst=True)
 def pytest_runtest_call(item: pytest.Item) -> Iterator[None]:
     yield from spend(item, "call")
+
+
+@pytest.hookimpl(hookwrapper=True)
+def pytest_runtest_makereport() -> Iterator[None]:
+    outcome = yield
+    held_to_run(outcome.get_result())
+
+
+@pytest.hookimpl(hookwrapper=True)
+def pytest_make_collect_report() -> Iterator[None]:
+    outcome = yield
+    held_to_run(outcome.get_result())
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:

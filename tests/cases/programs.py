@@ -1,10 +1,9 @@
-"""Programs that tests start, and that are no Python: skipped without them on a user's machine, a failure in CI."""
+"""What tests need besides the product: skipped without it on a user's machine, a failure in CI."""
 
 from __future__ import annotations
 
 import os
 import shutil
-from typing import NoReturn
 
 import pytest
 
@@ -31,6 +30,10 @@ PACKAGES = {
 among them."""
 
 
+DOES_NOT_APPLY = "does not apply"
+"""What the reason says of a test that is skipped in CI, too."""
+
+
 def needed(*names: str) -> str:
     """Path of the first of some programs that is there; ends the test where none is.
 
@@ -42,17 +45,19 @@ def needed(*names: str) -> str:
     for name in names:
         if found := shutil.which(name):
             return found
-    missing(f"{' or '.join(names)} is not on the PATH: apt-get install {PACKAGES[names[0]]}")
+    pytest.skip(f"{' or '.join(names)} is not on the PATH: apt-get install {PACKAGES[names[0]]}")
 
 
-def missing(reason: str) -> NoReturn:
-    """End a test that cannot run here, for a reason: skipped, but a failure in CI.
+def held_to_run(report: pytest.TestReport | pytest.CollectReport) -> None:
+    """Turn the report of a skip into one of a failure in CI, unless the test does not apply to what it is given.
 
     Parameters
     ----------
-    reason : str
-        What is missing, and how to get it.
+    report : TestReport or CollectReport
+        Changed in place.
     """
-    if os.environ.get("CI"):
-        pytest.fail(f"{reason} (in CI no test may be skipped for a missing program)", pytrace=False)
-    pytest.skip(reason)
+    if not os.environ.get("CI") or not report.skipped or hasattr(report, "wasxfail"):
+        return
+    reason = report.longrepr[2] if isinstance(report.longrepr, tuple) else str(report.longrepr)
+    if DOES_NOT_APPLY not in reason:
+        report.outcome, report.longrepr = "failed", f"{reason} (in CI no test may be skipped)"

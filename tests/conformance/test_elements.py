@@ -16,6 +16,7 @@ from ehdmaps.errors import AnalysisError, InputError
 from mbs import assemble, parse_scene
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
+from tests.cases.programs import DOES_NOT_APPLY
 from tests.conformance.machines import KINDS
 
 DRY, FILMS = "hertz:1.25e-5 s", "table"
@@ -213,5 +214,5 @@ WITH_CONTACTS = (definite, closed_paths, lifts_off, remembers, creeps)
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.name)
 def test_claim(kind, claim):
     if not kind.films and claim in WITH_CONTACTS:
-        pytest.skip("by matrices: no contacts")
+        pytest.skip(f"{DOES_NOT_APPLY}: by matrices, no contacts")
     claim(kind)

@@ -4,7 +4,9 @@ import functools
 import subprocess
 from pathlib import Path
 
-from tests.cases.programs import missing, needed
+import pytest
+
+from tests.cases.programs import needed
 
 BUILD = Path(__file__).parents[2] / "openfoam_cases" / "build"
 
@@ -17,4 +19,4 @@ def why_not() -> str:
 
 def pytest_runtest_setup(item):
     if item.get_closest_marker("openfoam") and (reason := why_not()):
-        missing(reason)
+        pytest.skip(reason)

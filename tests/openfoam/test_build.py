@@ -314,15 +314,13 @@ def test_two_at_the_same_time(machine):
     assert machine.number_of_builds() == 1
 
 
-@pytest.mark.parametrize(("ci", "outcome"), [("", pytest.skip.Exception), ("true", pytest.fail.Exception)])
-def test_without_the_solver_a_test_is_skipped_but_fails_in_ci(monkeypatch, ci, outcome):
+def test_without_the_solver_a_test_is_skipped(monkeypatch):
     class Marked:
         def get_closest_marker(self, name):
             return name == "openfoam"
 
-    monkeypatch.setenv("CI", ci)
     monkeypatch.setattr(conftest, "why_not", lambda: "ehlFoam is missing: no bin/ehlFoam")
-    with pytest.raises(outcome, match="ehlFoam is missing"):
+    with pytest.raises(pytest.skip.Exception, match="ehlFoam is missing"):
         conftest.pytest_runtest_setup(Marked())
 
 

