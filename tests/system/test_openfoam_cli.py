@@ -17,20 +17,19 @@ import pytest
 
 from ehdmaps import errors
 from ehdmaps.jobs import cli
+from ehdmaps.jobs.reader import parse_job
 from ehdmaps.maps.emap import open_map
 from ehdmaps.openfoam.case import remove_leftovers
 from tests.cases import openfoam_fake
 from tests.cases.interruptible import start
 from tests.cases.jobs import map_job, spaced
 
-JOB = (
-    map_job(spaced("2 N/mm", "200 N/mm", 2), '["1 m/s"]', '["40 degC"]', solver="openfoam")
-    + """columns = 40
+SETTINGS = """columns = 40
 rows = 4
 start = "hertz"
 fill = "none"
 """
-)
+JOB = map_job(spaced("2 N/mm", "200 N/mm", 2), '["1 m/s"]', '["40 degC"]', solver="openfoam") + SETTINGS
 POINTS = 4
 
 
@@ -219,6 +218,16 @@ def test_one_point_of_a_bare_contact_has_one_file(folder, done):
     done("solve", "job.toml", *POINT, "--fields", "film.xdmf", "--keep-cases", "cases")
     assert meshio.read(folder / "film.xdmf").cell_data["p"][0].size == 160
     assert sorted(os.listdir(folder / "cases")) == [f"line_w62000_u1.7_T313.15_{grid}" for grid in ("20x2", "40x4")]
+
+
+def test_axes_with_other_ends_share_the_points_that_differ_by_round_off_only(folder, done):
+    axes = spaced("1 N/mm", "1000 N/mm", 4), spaced("0.1 N/mm", "1000 N/mm", 9)
+    coarse, fine = (map_job(axis, '["1 m/s"]', '["40 degC"]', solver="openfoam") + SETTINGS for axis in axes)
+    loads = [set(parse_job(text, "job", "job.toml").loads) for text in (coarse, fine)]
+    assert len(loads[0] & loads[1]) == 1  # all four are there, three of them with other last bits
+    for text, counted in ((coarse, (0, 8, 0)), (fine, (8, 10, 0)), (fine, (18, 0, 0))):
+        (folder / "job.toml").write_text(text)
+        assert counts(done("generate", "job.toml", "--workers", "1").stdout) == counted
 
 
 def test_one_point_that_fails_has_no_files(folder, done):

@@ -33,6 +33,65 @@ def test_arrays_come_back_bit_for_bit(tmp_path):
         assert store.damaged == 0
 
 
+PLACE = "family", (1e4, 0.0, 313.15, 0.3)
+
+
+def moved(index, by):
+    numbers = [*PLACE[1]]
+    numbers[index] *= 1.0 + by
+    return PLACE[0], tuple(numbers)
+
+
+def test_a_site_is_the_same_within_1e_9_of_each_of_its_numbers(tmp_path):
+    with Store(tmp_path / "a.store") as store:
+        store.put("k", ARRAYS, site=PLACE)
+    with Store(tmp_path / "a.store") as store:
+        assert store.get("other") is None
+        for index in (0, 2, 3):
+            for by in (0.0, 1e-16, 9e-10, -9e-10):
+                assert same(store.get("other", moved(index, by)), ARRAYS)
+            for by in (1.1e-9, -1.1e-9, 1e-6):
+                assert store.get("other", moved(index, by)) is None
+        for numbers in ((1e4, 1e-300, 313.15, 0.3), (1e4, 0.0, 313.15), (1e4, 0.0, 0.0, 313.15, 0.3)):
+            assert store.get("other", (PLACE[0], numbers)) is None
+        assert store.get("other", ("another", PLACE[1])) is None
+
+
+def test_a_key_comes_before_a_site_and_a_damaged_entry_is_found_by_neither(tmp_path):
+    path = tmp_path / "a.store"
+    with Store(path) as store:
+        store.put("first", {"x": np.array([1.0])}, site=PLACE)
+        store.put("second", {"x": np.array([2.0])}, site=moved(0, 1e-12))
+    with Store(path) as store:
+        assert store.get("second", PLACE)["x"] == 2.0
+        assert store.get("third", PLACE)["x"] == 1.0
+    with sqlite3.connect(path) as database:
+        database.execute("UPDATE results SET checksum = '' WHERE key = 'first'")
+        database.execute("UPDATE sites SET last = 0.25, numbers = zeroblob(32) WHERE key = 'second'")
+    database.close()
+    with Store(path) as store:
+        assert store.get("third", PLACE) is None
+        assert store.get("third", (PLACE[0], (0.0,) * 4)) is None
+
+
+def test_a_store_without_sites_still_serves_and_fresh_forgets_them(tmp_path):
+    path = tmp_path / "a.store"
+    with Store(path) as store:
+        store.put("k", ARRAYS)
+    with sqlite3.connect(path) as database:
+        database.execute("DROP TABLE sites")  # as it was made before there were some
+    database.close()
+    with Store(path) as store:
+        assert same(store.get("k", PLACE), ARRAYS)
+        assert store.get("other", PLACE) is None
+        store.put("new", ARRAYS, site=PLACE)
+    with Store(path) as store:
+        assert same(store.get("other", PLACE), ARRAYS)
+    with Store(path, fresh=True) as store:
+        store.put("new", ARRAYS)
+        assert store.get("other", PLACE) is None
+
+
 def test_the_store_stands_beside_the_map(tmp_path):
     assert store_path(tmp_path / "nu308.nc") == tmp_path / "nu308.nc.store"
 

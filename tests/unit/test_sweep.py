@@ -29,6 +29,10 @@ class Stub:
     def key(self):
         return f"{self.kind} {self.number}"
 
+    @property
+    def site(self):
+        return self.kind, (float(self.number),)
+
     def run(self):
         if self.kind == "gives up":
             raise SolverError("no film")

@@ -2,7 +2,8 @@
 
 The file survives kill -9 at any moment (SQLite rolls half-written work back), and SQLite's own exclusive
 lock, which the operating system drops with the process, keeps a second job out. The store knows keys and
-arrays, nothing else.
+arrays, and of a key the site, if it has one: numbers that another key may have but for their round-off, as the same
+point on two axes. What is found by its site is as good: no result changes by more than round-off allows.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from __future__ import annotations
 import hashlib
 import io
 import sqlite3
+import struct
 import time
 import zipfile
 from collections.abc import Mapping
@@ -25,8 +27,23 @@ from ehdmaps.errors import StoreError
 Arrays = dict[str, npt.NDArray[Any]]
 """What a task returns: arrays by name, none of object type."""
 
+Site = tuple[str, tuple[float, ...]]
+"""Site of a task: the hash of all that shapes its result but some numbers, and these. Two tasks of one hash whose
+numbers agree within `SAME` have the same result."""
+
 COMMIT_SECONDS = 0.25
 """Results are brought to the disk this often; shorter would wait for the disk more than it computes."""
+
+SAME = 1e-9
+"""Relative difference up to which numbers of two sites are the same: far above round-off, far below what anything is
+solved to."""
+
+_TABLES = (
+    "CREATE TABLE IF NOT EXISTS results (key TEXT PRIMARY KEY, checksum TEXT NOT NULL, content BLOB NOT NULL)",
+    "CREATE TABLE IF NOT EXISTS sites (key TEXT PRIMARY KEY, checksum TEXT NOT NULL, family TEXT NOT NULL, "
+    "first REAL NOT NULL, last REAL NOT NULL, numbers BLOB NOT NULL)",
+    "CREATE INDEX IF NOT EXISTS by_site ON sites (family, first, last)",
+)
 
 _APPLICATION_ID = 0x45484D31  # "EHM1"
 _ID_AT = 68
@@ -41,11 +58,13 @@ class NoStore:
 
     damaged = 0
 
-    def get(self, key: str) -> Arrays | None:
+    def get(self, key: str, site: Site | None = None) -> Arrays | None:
         """Return None: nothing is solved already."""
         return None
 
-    def put(self, key: str, arrays: Mapping[str, npt.NDArray[Any]], at_once: bool = False) -> None:
+    def put(
+        self, key: str, arrays: Mapping[str, npt.NDArray[Any]], at_once: bool = False, site: Site | None = None
+    ) -> None:
         """Do nothing; arguments as of `Store.put`."""
 
     def commit_if_due(self) -> None:
@@ -102,6 +121,7 @@ class Store:
                 raise self._unusable(again) from again
         if fresh:
             self._write("DELETE FROM results", ())
+            self._write("DELETE FROM sites", ())
             self.commit()
 
     def __enter__(self) -> Self:
@@ -116,14 +136,48 @@ class Store:
         finally:
             self._database.close()
 
-    def get(self, key: str) -> Arrays | None:
-        """Return the arrays of a key, or None if it is not solved.
+    def get(self, key: str, site: Site | None = None) -> Arrays | None:
+        """Return the arrays of a key, or of another one at the same site, or None if neither is solved.
+
+        Parameters
+        ----------
+        key : str
+            Key of a task.
+        site : Site, optional
+            Site of the task.
 
         Raises
         ------
         StoreError
             If the store cannot be read.
         """
+        arrays = self._of_key(key)
+        if arrays is None and site is not None:
+            found = (self._of_key(other) for other in self._at(site))
+            arrays = next((other for other in found if other is not None), None)
+        return arrays
+
+    def _at(self, site: Site) -> list[str]:
+        """Keys at a site; an entry that is damaged is none."""
+        family, wanted = site
+        ranges = [bound for number in (wanted[0], wanted[-1]) for bound in _range(number)]
+        query = (
+            "SELECT CAST(key AS BLOB), CAST(checksum AS BLOB), CAST(numbers AS BLOB) FROM sites "
+            "WHERE family = ? AND first BETWEEN ? AND ? AND last BETWEEN ? AND ? ORDER BY key"
+        )
+        try:
+            rows = self._database.execute(query, (family, *ranges)).fetchall()
+        except sqlite3.Error as error:
+            raise self._unusable(error) from error
+        sound = [
+            (key.decode(), numbers)
+            for key, checksum, numbers in rows
+            if None not in (key, checksum, numbers) and _site_checksum(key, family, numbers).encode() == checksum
+        ]
+        return [key for key, numbers in sound if _same(numbers, wanted)]
+
+    def _of_key(self, key: str) -> Arrays | None:
+        """Arrays of a key; None if it is not solved."""
         try:
             # As bytes: what was damaged may be no text, or another kind of value.
             row = self._database.execute(
@@ -139,7 +193,9 @@ class Store:
             return None
         return unpack(content)
 
-    def put(self, key: str, arrays: Mapping[str, npt.NDArray[Any]], at_once: bool = False) -> None:
+    def put(
+        self, key: str, arrays: Mapping[str, npt.NDArray[Any]], at_once: bool = False, site: Site | None = None
+    ) -> None:
         """Keep the arrays of a key; on disk within `COMMIT_SECONDS` of the next call, or `at_once`.
 
         Parameters
@@ -150,6 +206,8 @@ class Store:
             What to keep, by name.
         at_once : bool
             Whether it is on disk when this returns.
+        site : Site, optional
+            Site of the task, by which others find it.
 
         Raises
         ------
@@ -161,6 +219,14 @@ class Store:
             "INSERT OR REPLACE INTO results VALUES (?, ?, ?)",
             (key, _checksum(key, content), content),
         )
+        if site is not None:
+            family, numbers = site
+            packed = struct.pack(f"<{len(numbers)}d", *numbers)
+            checksum = _site_checksum(key.encode(), family, packed)
+            self._write(
+                "INSERT OR REPLACE INTO sites VALUES (?, ?, ?, ?, ?, ?)",
+                (key, checksum, family, numbers[0], numbers[-1], packed),
+            )
         if at_once:
             self.commit()
         else:
@@ -203,14 +269,13 @@ class Store:
             (tables,) = database.execute("SELECT count(*) FROM sqlite_master").fetchone()
             if tables and application_id != _APPLICATION_ID:
                 raise sqlite3.DatabaseError("a database of another program")
-            if not tables:  # a store that is there is not written to before a result comes
+            if not tables:
                 database.execute(f"PRAGMA application_id = {_APPLICATION_ID}")
-                database.execute(
-                    "CREATE TABLE results (key TEXT PRIMARY KEY, checksum TEXT NOT NULL, content BLOB NOT NULL)"
-                )
             (verdict,) = database.execute("PRAGMA quick_check(1)").fetchone()
             if verdict != "ok":
                 raise sqlite3.DatabaseError(verdict)
+            for statement in _TABLES:  # those of sites are missing in stores that are older than they
+                database.execute(statement)
             database.commit()
         except sqlite3.Error:
             database.close()
@@ -288,6 +353,24 @@ def _code(error: Exception) -> int:
 def _checksum(key: str, content: bytes) -> str:
     """Return the checksum of an entry: of its key too, so that damage gives no key the arrays of another."""
     return hashlib.sha256(key.encode() + b"\0" + content).hexdigest()
+
+
+def _site_checksum(key: bytes, family: str, numbers: bytes) -> str:
+    """Return the checksum of a site."""
+    return hashlib.sha256(key + b"\0" + family.encode() + b"\0" + numbers).hexdigest()
+
+
+def _range(number: float) -> tuple[float, float]:
+    """Return the bounds of what is the same number."""
+    return number - SAME * abs(number), number + SAME * abs(number)
+
+
+def _same(packed: bytes, numbers: tuple[float, ...]) -> bool:
+    """Tell whether the numbers of a site are these."""
+    if len(packed) != 8 * len(numbers):
+        return False
+    others = struct.unpack(f"<{len(numbers)}d", packed)
+    return all(low <= other <= high for other, (low, high) in zip(others, map(_range, numbers), strict=True))
 
 
 def pack(arrays: Mapping[str, npt.NDArray[Any]]) -> bytes:

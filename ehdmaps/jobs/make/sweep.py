@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 from ehdmaps.errors import SolverError, WorkerError
-from ehdmaps.jobs.make.store import COMMIT_SECONDS, Arrays, Results
+from ehdmaps.jobs.make.store import COMMIT_SECONDS, Arrays, Results, Site
 from ehdmaps.program import lack
 from ehdmaps.workers import WorkersDied, worker_pool
 
@@ -35,6 +35,11 @@ class Task(Protocol):
     @property
     def key(self) -> str:
         """Hash of everything that changes its numbers."""
+        ...
+
+    @property
+    def site(self) -> Site:
+        """Its site, where another task may have left its numbers but for round-off."""
         ...
 
     @property
@@ -189,7 +194,7 @@ def sweep(
     result = SweepResult()
     todo: list[Task] = []
     for task in tasks:
-        known = store.get(task.key)
+        known = store.get(task.key, task.site)
         if known is None:
             todo.append(task)
         else:
@@ -206,7 +211,7 @@ def sweep(
     try:
         for task, arrays, final in outcomes:
             if final and task.is_final(arrays):
-                store.put(task.key, arrays, at_once=task.slow)
+                store.put(task.key, arrays, at_once=task.slow, site=task.site)
             result.arrays[task.key] = arrays
             result.solved += task.points
             counter.solved(task.points)

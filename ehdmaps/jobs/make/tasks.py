@@ -33,7 +33,7 @@ from ehdmaps.units import LOAD, SPEED, TEMPERATURE
 if TYPE_CHECKING:
     import xarray as xr
 
-    from ehdmaps.jobs.make.store import Arrays
+    from ehdmaps.jobs.make.store import Arrays, Site
 
 LONGEST_LINE = 32
 """Loads of one task, which is lost as a whole when its process is killed: well under a second."""
@@ -98,23 +98,31 @@ class LineTask:
     @cached_property
     def key(self) -> str:
         """Hash of what changes the numbers, and of their names; the structural law does not change a film."""
-        record = {
+        place = {"loads": self.loads, "entrainment_speed": self.entrainment_speed, "temperature": self.temperature}
+        return hashlib.sha256(record_json({**self._family, **place}).encode()).hexdigest()
+
+    @cached_property
+    def site(self) -> Site:
+        """Site by which the same points on other axes are found: loads, temperature and speed but for round-off."""
+        family = hashlib.sha256(record_json(self._family).encode()).hexdigest()
+        return family, (*self.loads, self.temperature, self.entrainment_speed)
+
+    @property
+    def _family(self) -> dict[str, Any]:
+        """All that changes the numbers but the operating points."""
+        return {
             "kind": "line",
             "radius": self.contact.radius,
             "youngs_modulus": self.contact.material.youngs_modulus,
             "poisson_ratio": self.contact.material.poisson_ratio,
             **_solid_heat(self.contact.material, self.solver),
             "lubricant": {key: value for key, value in self.lubricant.record().items() if key not in _SHOWN},
-            "loads": self.loads,
-            "entrainment_speed": self.entrainment_speed,
-            "temperature": self.temperature,
             "solver": self.solver.name,
             "settings": self.solver.settings(),
             "version": solver_version(self.solver),
             "fields": [name for name in FILM_FIELDS if name not in LATER_FIELDS],
             **({"natural_frequencies": self.natural_frequencies} if self.natural_frequencies else {}),
         }
-        return hashlib.sha256(record_json(record).encode()).hexdigest()
 
     @property
     def points(self) -> int:
