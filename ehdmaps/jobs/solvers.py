@@ -363,6 +363,23 @@ def carried(options: Mapping[str, Any], name: str) -> dict[str, Any]:
     return {key: value for key, value in options.items() if key in PHYSICAL and key in known}
 
 
+def reference(job: Job, solver: ContactSolver) -> ContactSolver | None:
+    """A fast solver of films of the same physics as those of a map; None where there is none, or no errors are stated.
+
+    Parameters
+    ----------
+    job : Job
+        The job.
+    solver : ContactSolver
+        What solves its map.
+    """
+    if solver.name != job.solver or job.solver in ("hertz", "formula"):
+        return None  # somebody's own, of which nothing is known; or closed forms, which know no errors
+    if not SOLVERS[job.solver].keeps_cases:
+        return solver
+    return build("reynolds", carried(job.solver_options, "reynolds"))
+
+
 def solver_words(options: Mapping[str, Any]) -> str:
     """Words on a solver's own keys behind its name: physics, law of shear, sliding; nothing of the defaults.
 

@@ -1,14 +1,16 @@
 """A contact law that is a little wrong on purpose: its table with another stiffness, damping and film.
 
-Three kinds of error, each relative, at a load, entrainment speed and temperature:
+Four kinds of error, each relative, at a load, entrainment speed and temperature:
 
 - numerical: the estimates of the map at its points, `stiffness_error`, `damping_error` and `film_offset_error`,
   linear in ln(load), ln(speed) and temperature between them and held at the edges;
 - of the law: what its check against fresh solves found, the 95 % quantile over the map, in the damping valley the
   larger one of that and the quantile of the valley;
+- of the spacing, of a law that is made from the points of a map alone: `film_offset_spacing_error` and those of k and
+  c, likewise linear between the points, of which each has the largest error around it;
 - of the model: `stiffness_model_error` and `damping_model_error`, where the map has them.
 
-Physics that the films leave out, and of which the size is known, is added as a fourth where whoever uses the map says
+Physics that the films leave out, and of which the size is known, is added as a fifth where whoever uses the map says
 so (`EHDMap.with_left_out`). All are taken as systematic: an estimate that has one sign at one point has it at all
 loads, in both contacts of a roller, and in all bearings that share the map. So the kinds are added, and so are the
 contacts of a roller. Where signs alternate, as those of an interpolation do, that is more than need be.
@@ -35,7 +37,7 @@ from ehdmaps.maps import schema
 from ehdmaps.maps.backbone_plan import VALLEY
 from ehdmaps.maps.film_field import valley_loads
 from ehdmaps.maps.kernels.tables import ApproachTable
-from ehdmaps.maps.records import MODEL_ERRORS
+from ehdmaps.maps.records import MODEL_ERRORS, SPACING_ERRORS
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 
@@ -232,6 +234,11 @@ class LawErrors:
         """True where the map states errors of its model."""
         return any(name in self._data for name in MODEL_ERRORS)
 
+    @property
+    def has_spacing_errors(self) -> bool:
+        """True where the map states what its laws lose between its points."""
+        return any(name in self._data for name in SPACING_ERRORS)
+
     @cached_property
     def _read(self) -> tuple[FloatArray, tuple[str, ...]]:
         """Data that bounds are read from, and the errors that the map does not state; read when first asked for.
@@ -243,7 +250,8 @@ class LawErrors:
             name: data[name].values.astype(np.float64) for name in ("stiffness", "film_compliance", "loss_compliance")
         }
         needed = ("stiffness", "damping", "film_offset")
-        found = {name: self._error(name) for name in (*(f"{name}_error" for name in needed), *MODEL_ERRORS)}
+        names = (*(f"{name}_error" for name in needed), *MODEL_ERRORS, *SPACING_ERRORS)
+        found = {name: self._error(name) for name in names}
         size = values["stiffness"].size and self._axes[1].size
         unknown = tuple(f"{name}_error" for name in needed if found[f"{name}_error"] is None and size)
         errors = {
@@ -253,9 +261,9 @@ class LawErrors:
         # One array, so that it is read at a speed and temperature at once.
         grid = np.stack(
             [
-                errors["stiffness_error"] + errors[MODEL_ERRORS[0]],
-                errors["damping_error"] + errors[MODEL_ERRORS[1]],
-                errors["film_offset_error"] * offset,
+                errors["stiffness_error"] + errors[MODEL_ERRORS[0]] + errors[SPACING_ERRORS[1]],
+                errors["damping_error"] + errors[MODEL_ERRORS[1]] + errors[SPACING_ERRORS[2]],
+                (errors["film_offset_error"] + errors[SPACING_ERRORS[0]]) * offset,
                 offset,
                 1.0 / values["stiffness"],
                 np.abs(values["loss_compliance"]),
@@ -284,13 +292,16 @@ class LawErrors:
         parts = ["numerical errors of the map"]
         if self._checked is not None:
             parts.append(f"errors of its law ({TAKEN} of {self.checked_points} checked points)")
+        if self.has_spacing_errors:
+            parts.append("errors of its law between its points")
         if self.has_model_errors:
             parts.append("errors of its model")
         if any(self.left_out):
             k, c = (f"{100.0 * part:.2g} %" for part in self.left_out)
             parts.append(f"physics of known size that its films leave out ({k} of k, {c} of c)")
+        told = self._checked is not None or self.has_spacing_errors
         lacking = [
-            *([] if self._checked is not None else ["errors of its law between its points (it was not checked)"]),
+            *([] if told else ["errors of its law between its points (it was not checked)"]),
             *([] if self.has_model_errors else ["errors of its model (none stated)"]),
             *(f"{name} (not known)" for name in self.unknown),
         ]

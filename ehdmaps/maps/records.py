@@ -340,6 +340,9 @@ DERIVED = Structured._fields
 MODEL_ERRORS = ("stiffness_model_error", "damping_model_error")
 """What remains to the solver that corrected a map, of quantities that contain the solids; see `_model_errors`."""
 
+SPACING_ERRORS = ("film_offset_spacing_error", "stiffness_spacing_error", "damping_spacing_error")
+"""What laws lose between the points of a map that has no lines, see `ehdmaps.jobs.make.spacing`."""
+
 SAME = 1e-9
 """Relative difference up to which a derived variable is what its film and structural law say: far above the round-off
 of a few operations and powers, far below any error of a solver."""
@@ -400,6 +403,8 @@ def restructured(dataset: xr.Dataset, contacts: Sequence[LineContact]) -> xr.Dat
     values = _derived(dataset, contacts, DERIVED)
     if all(name in dataset for name in MODEL_ERRORS):
         values |= _model_errors(dataset, values["stiffness"])
+    if all(name in dataset for name in SPACING_ERRORS):
+        values |= _spacing_errors(dataset, values["stiffness"])
     return dataset.assign(_typed(values)).assign_attrs(
         schema_version=schema.SCHEMA_VERSION,
         structural_law=contacts[0].structural_law,
@@ -489,6 +494,13 @@ def _model_errors(dataset: xr.Dataset, stiffness: FloatArray) -> dict[str, Float
     of_k, of_c = (dataset[name].values.astype(np.float64) for name in MODEL_ERRORS)
     new = of_k * stiffness / dataset["stiffness"].values
     return dict(zip(MODEL_ERRORS, (new, np.sqrt(np.maximum(of_c**2 - 4.0 * of_k**2, 0.0) + 4.0 * new**2)), strict=True))
+
+
+def _spacing_errors(dataset: xr.Dataset, stiffness: FloatArray) -> dict[str, FloatArray]:
+    """Spacing errors of k and c by another structural law; that of c has the one of k^2, at worst with its sign."""
+    _, of_k, of_c = (dataset[name].values.astype(np.float64) for name in SPACING_ERRORS)
+    new = of_k * stiffness / dataset["stiffness"].values
+    return dict(zip(SPACING_ERRORS[1:], (new, np.maximum(of_c - 2.0 * of_k, 0.0) + 2.0 * new), strict=True))
 
 
 def _typed(values: Mapping[str, Any]) -> dict[str, xr.Variable]:

@@ -24,7 +24,8 @@ natural frequencies to the backbone, where the solver has it: complex, in units 
 omega sqrt(b^2 + 2 h R)/u with b and the film offset h of each point. Version 4 added the model errors of stiffness and
 damping, of a map whose films are corrected by a dearer solver. Version 5 added traction, wall stress and temperatures
 of films, where the solver finds them, and to the backbone the films of the outer contact, where heat makes them its
-own. Version 7 added the errors of temperatures.
+own. Version 7 added the errors of temperatures. Version 8 added what laws lose between the points of a map
+without lines.
 
 To add a variable, write one row in `TABLE` with ``since=`` the new version, and raise `SCHEMA_VERSION`. With
 ``required=False`` a map may lack it. It is then written, where `dataset` or `backbone` is given values for it, read,
@@ -45,7 +46,7 @@ from ehdmaps.physics.solution import Status
 if TYPE_CHECKING:
     import xarray as xr
 
-SCHEMA_VERSION = 7
+SCHEMA_VERSION = 8
 """Version of the table; files of this and of all lower versions are read."""
 
 DIMS = ("contact", "load", "entrainment_speed", "temperature")
@@ -186,6 +187,12 @@ def _model_error(name: str, of: str) -> Variable:
     return Variable(name, "1", words, required=False, since=4)
 
 
+def _spacing_error(name: str, of: str) -> Variable:
+    """Row of what laws lose between the points of a map."""
+    words = f"estimated error of {of} of a law between this point and those around it, relative"
+    return Variable(name, "1", words, required=False, since=8)
+
+
 def _of_films(name: str, units: str, long_name: str) -> Variable:
     """Row of what only some solvers find of a film."""
     return Variable(name, units, long_name, required=False, since=5)
@@ -298,6 +305,9 @@ TABLE = (
     _error("mass_flow_error", "mass_flow", required=False, since=3),
     _model_error("stiffness_model_error", "stiffness"),
     _model_error("damping_model_error", "damping"),
+    _spacing_error("film_offset_spacing_error", "film_offset"),
+    _spacing_error("stiffness_spacing_error", "stiffness"),
+    _spacing_error("damping_spacing_error", "damping"),
     Variable("iterations", "1", "iterations of the solver, all grids together", "int32"),
     Variable("solve_seconds", "s", "processor time to solve the point"),
     Variable(

@@ -10,6 +10,7 @@ import pytest
 import ehdmaps
 from ehdmaps.jobs.make.generate import Generated, generate, summary
 from ehdmaps.jobs.make.law_check import EDGE_SHARE
+from ehdmaps.jobs.make.spacing import RANDOM
 from ehdmaps.jobs.reader import parse_job
 from ehdmaps.maps.schema import BACKBONE
 
@@ -66,7 +67,7 @@ def test_without_backbone(tmp_path: Path) -> None:
     generated = generate(
         parse_job(TEXT.replace("law_check = 40", 'backbone = "none"'), "thin", "thin"), tmp_path / "bare.nc", workers=1
     )
-    assert generated.sweep.solved == 24
+    assert generated.sweep.solved == 24 + 8 + RANDOM  # and what tells the errors between them: two points a cell
     assert ehdmaps.open_map(tmp_path / "bare.nc").backbone is None
     assert BACKBONE not in generated.dataset
     assert not any(name.startswith("law_") for name in generated.dataset.attrs)

@@ -13,7 +13,7 @@ import ehdmaps
 from ehdmaps import STEEL, BearingGeometry, Job, LineContact, Lubricant, OperatingPoint
 from ehdmaps.errors import InputError, MapError, SolverError
 from ehdmaps.maps import schema
-from ehdmaps.maps.records import MODEL_ERRORS
+from ehdmaps.maps.records import MODEL_ERRORS, SPACING_ERRORS
 from ehdmaps.physics.catalogue import estimate, estimate_from_dimensions
 from ehdmaps.physics.closed_form import FormulaSolver, HertzSolver
 from ehdmaps.physics.solution import ContactSolverDefaults, Status
@@ -21,7 +21,7 @@ from ehdmaps.physics.solution import ContactSolverDefaults, Status
 NU308, FVA3 = BearingGeometry.named("NU308"), Lubricant.named("FVA3")
 CONTACT = NU308.contacts(STEEL, "iso16281")[0]
 AXES = {"loads": (1e4, 33333.3, 1e5), "entrainment_speeds": (0.7, 2.0), "temperatures": (313.15, 333.15)}
-LEFT_OUT = ("solve_seconds", *MODEL_ERRORS)  # a time; what only corrected maps have
+LEFT_OUT = ("solve_seconds", *MODEL_ERRORS, *SPACING_ERRORS)  # a time; what only maps have
 SAME = [entry.name for entry in schema.table() if not entry.axis and entry.name not in LEFT_OUT]
 
 

@@ -394,7 +394,7 @@ def test_validate_lists_every_problem():
     ):
         assert part in text
     dataset.attrs["schema_version"] = 99
-    with pytest.raises(MapError, match=r"schema_version is 99; this ehdmaps reads 1 to 7; .*newer one: update"):
+    with pytest.raises(MapError, match=r"schema_version is 99; this ehdmaps reads 1 to 8; .*newer one: update"):
         validate(dataset)
 
 

@@ -26,8 +26,10 @@ from ehdmaps.jobs.make.report import (
     films_lines,
     holes,
     law_lines,
+    spacing_lines,
     status_lines,
 )
+from ehdmaps.jobs.make.spacing import SpacingPlan, plan_spacing, with_spacing
 from ehdmaps.jobs.make.status import StatusFile, about
 from ehdmaps.jobs.make.store import Arrays, NoStore, Results, Store, store_path
 from ehdmaps.jobs.make.sweep import Progress, SweepResult, sweep
@@ -103,6 +105,7 @@ def _lines(generated: Generated, output: Path) -> Iterator[str]:
     yield "accuracy"
     yield from error_lines(dataset)
     yield from law_lines(dataset)
+    yield from spacing_lines(dataset)
     yield from correction_lines(dataset)
     seconds = float(np.nansum(dataset["solve_seconds"].values))
     yield (
@@ -303,9 +306,10 @@ def read_map(job: Job, output: Path, attributes: Mapping[str, str | int]) -> xr.
 
 
 def planned_tasks(job: Job, solver: ContactSolver | None = None) -> tuple[LineTask, ...]:
-    """All that is known to be solved for a map before anything is solved.
+    """All that is known to be solved by the solver of a map before anything is solved.
 
     Points that hang on results come later: those of a correction, of lines that turn out too coarse, of a tolerance.
+    Those that a faster solver is asked for besides are left out, see `ehdmaps.jobs.make.spacing`.
 
     Parameters
     ----------
@@ -314,12 +318,15 @@ def planned_tasks(job: Job, solver: ContactSolver | None = None) -> tuple[LineTa
     solver : ContactSolver, optional
         Instead of the job's.
     """
-    return _plan(job, _solver(job, solver), None).everything
+    plan = _plan(job, _solver(job, solver), None)
+    return tuple(task for task in plan.everything if task.solver.name == plan.solver.name)
 
 
 @dataclass(frozen=True)
 class _Plan:
     """All that is solved for a map: its points, the lines of a contact law, and the check of the laws.
+
+    Laws that are made from the points alone, and not checked, have points for the errors of their spacing.
 
     With `from_table` points and laws are read from the film table, and the check is all that is solved; `unserved` says
     why they are not, where they were to be. `halved` are the axes along which the steps of the lines were halved, in
@@ -332,6 +339,7 @@ class _Plan:
     tasks: tuple[LineTask, ...]
     refined: Refinement | None
     check: LawCheck | None
+    spacing: SpacingPlan | None = None
     from_table: bool = False
     unserved: str = ""
     halved: tuple[Axis, ...] = ()
@@ -341,7 +349,8 @@ class _Plan:
     def everything(self) -> tuple[LineTask, ...]:
         """All tasks, in the order in which they are solved."""
         parts = (self.refined, self.check)
-        return (*self.tasks, *(task for part in parts if part for task in part.tasks))
+        besides = self.spacing.besides(self.tasks) if self.spacing else ()
+        return (*self.tasks, *(task for part in parts if part for task in part.tasks), *besides)
 
     @property
     def points(self) -> int:
@@ -379,10 +388,9 @@ def _solved(
         solver = solvers.in_place_of_table(job, solver)
     else:
         why = ""
-    lines = refinement(job, solver)
-    return _Plan(
-        job, solver, corrector, line_tasks(job, solver), lines, plan_check(job, solver, tolerance), unserved=why
-    )
+    lines, check = refinement(job, solver), plan_check(job, solver, tolerance)
+    spacing = plan_spacing(job, solver) if lines is None and check is None else None
+    return _Plan(job, solver, corrector, line_tasks(job, solver), lines, check, spacing, unserved=why)
 
 
 def _corrected(planned: _Plan, solve: Callable[[Sequence[LineTask]], Mapping[str, Arrays]]) -> _Plan:
@@ -473,6 +481,8 @@ def _finished(planned: _Plan, result: SweepResult, where: str) -> tuple[xr.Datas
         group = backbone_group(planned.refined, arrays).assign_attrs({schema.SEAL: points_seal(dataset)})
     if planned.check:
         dataset.attrs.update(checked_laws(planned.check, EHDMap(dataset, group), arrays))
+    if planned.spacing:
+        dataset = with_spacing(dataset, planned.job, planned.spacing, result.arrays)
     if planned.unserved:
         dataset.attrs[schema.UNSERVED] = planned.unserved
     if planned.halved:

@@ -15,7 +15,7 @@ from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.errors import MapError
 from ehdmaps.jobs.make.correction import JUDGED
 from ehdmaps.maps import schema
-from ehdmaps.maps.records import MODEL_ERRORS, lubricant_from_json, record_from_json
+from ehdmaps.maps.records import MODEL_ERRORS, SPACING_ERRORS, lubricant_from_json, record_from_json
 from ehdmaps.maps.schema import FILM_TABLE, OWN_POINTS, UNSERVED
 from ehdmaps.physics.closed_form import BELOW_ROUGHNESS, CONTINUUM, NO_CONTINUUM
 from ehdmaps.physics.solution import Status, tip_words
@@ -297,6 +297,65 @@ def law_rows(dataset: xr.Dataset) -> Iterator[tuple[str, str]]:
         if key.startswith(_LAW_PREFIX):
             text = f"{value:.2%}" if key.endswith("_within_bar") else plain(value)
             yield key.removeprefix(_LAW_PREFIX).replace("_", " "), text
+
+
+def spacing_lines(dataset: xr.Dataset) -> Iterator[str]:
+    """Yield what laws lose between the points of a map, and where most; nothing of a map that does not state it."""
+    rows = list(spacing_rows(dataset))
+    if not rows:
+        return
+    yield f"contact laws between the points of the map: what its axes lose, by films of {_reference(dataset)}"
+    yield "  estimated relative error       median       95 %    largest"
+    for label, (middle, high, most), where in rows:
+        yield f"  {label:25s} {middle:11.2g} {high:10.2g} {most:10.2g}  {where}"
+    if text := spacing_coverage(dataset):
+        yield f"  {text}"
+    yield f"  bounds of the laws have these errors; {spacing_remedy(str(dataset.attrs.get('solver', '')))}"
+
+
+def spacing_remedy(solver: str) -> str:
+    """Say what makes the laws of a map better between its points.
+
+    Parameters
+    ----------
+    solver : str
+        Name of the solver of the map.
+    """
+    more = "more loads, speeds and temperatures make them smaller"
+    return {
+        "reynolds": '`backbone = "law"` solves lines between the points, which leaves hardly any',
+        "openfoam": f"a map of reynolds that a few points of openfoam correct has hardly any, as nu308_cfd; {more}",
+    }.get(solver, more)
+
+
+def spacing_rows(dataset: xr.Dataset) -> Iterator[tuple[str, tuple[float, float, float], str]]:
+    """Yield each quantity with median, 95 % quantile and largest of what laws lose, and where that is."""
+    for name in SPACING_ERRORS if all(name in dataset for name in SPACING_ERRORS) else ():
+        values = dataset[name].transpose(*schema.DIMS).values
+        known = values[np.isfinite(values)]
+        if known.size:
+            middle, high, most = (float(value) for value in np.quantile(known, (0.5, 0.95, 1.0)))
+            i, *place = np.unravel_index(int(np.nanargmax(values)), values.shape)
+            at = zip(AXES, place, strict=True)
+            near = [display.text(float(dataset[axis].values[n])) for (axis, display), n in at]
+            label = name.removesuffix("_spacing_error").replace("_", " ")
+            yield label, (middle, high, most), f"around {dataset['contact'].values[i]}, {', '.join(near)}"
+
+
+def _reference(dataset: xr.Dataset) -> str:
+    """Name of the solver of the films that told."""
+    return plain(dataset.attrs.get("spacing_solver", "a solver that is not named"))
+
+
+def spacing_coverage(dataset: xr.Dataset) -> str:
+    """Say how often these errors are enough; empty where that was not looked at."""
+    points = int(dataset.attrs.get("spacing_points", 0))
+    shares = [
+        f"{name.removesuffix('_spacing_error').replace('_', ' ')} {float(dataset.attrs[f'{name}_within']):.0%}"
+        for name in SPACING_ERRORS
+        if f"{name}_within" in dataset.attrs
+    ]
+    return f"not exceeded at {points} random points: {', '.join(shares)}" if points and shares else ""
 
 
 _LEVELS = ("median", "95 %", "largest")

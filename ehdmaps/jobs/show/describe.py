@@ -17,6 +17,7 @@ from ehdmaps.jobs.make.report import (
     extrapolated_lines,
     films_lines,
     law_lines,
+    spacing_lines,
     span,
     status_lines,
     value_lines,
@@ -107,10 +108,10 @@ def _lines(emap: EHDMap, name: str) -> Iterator[str]:
         yield ""
     yield "accuracy of the points"
     yield from error_lines(dataset)
-    law = list(law_lines(dataset))
-    if law:
-        yield ""
-        yield from law
+    for found in (list(law_lines(dataset)), list(spacing_lines(dataset))):
+        if found:
+            yield ""
+            yield from found
     corrected = list(correction_lines(dataset))
     if corrected:
         yield ""

@@ -18,6 +18,7 @@ from ehdmaps.jobs.make.report import (
     extrapolated_lines,
     holes,
     law_rows,
+    spacing_lines,
     span,
     status_rows,
     tip_line,
@@ -435,6 +436,8 @@ def accuracy(emap: EHDMap) -> Markup:
     law = list(law_rows(dataset))
     if law:
         parts.append(table(("check", "found"), law, "Contact laws at random points against fresh solves", (0, 1)))
+    elif lines := list(spacing_lines(dataset)):
+        parts += [tag("h3", typeset(f"{lines[0][0].upper()}{lines[0][1:]}")), tag("pre", "\n".join(lines[1:]))]
     else:
         parts.append(tag("p", "The contact laws of this map were not checked against fresh solves."))
     if lines := list(correction_lines(dataset)):
