@@ -43,6 +43,10 @@ class StoreError(EhdmapsError):
     """The store of solved points cannot be read, written or shared."""
 
 
+class DiskFullError(EhdmapsError):
+    """A disk has no room for the files of a run, which is then not one that failed; what was solved is kept."""
+
+
 class WorkerError(EhdmapsError):
     """Processes that do the work cannot be started, or die before they do any; what was solved is kept.
 

@@ -1,4 +1,4 @@
-"""A working folder for one run, copied from the template; folders of runs that were killed.
+"""A working folder for one run, copied from the template; folders of runs that were killed; disks that are full.
 
 A folder in work holds a file that its process has locked; the lock goes with the process, however that ends. A folder
 of our own with such a file and no lock on it was left by a killed run. One that is kept, as that of a failed run is,
@@ -7,6 +7,7 @@ has no such file; neither has one that somebody else made.
 
 from __future__ import annotations
 
+import errno
 import fcntl
 import itertools
 import os
@@ -17,7 +18,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from functools import cache
 from pathlib import Path
 
-from ehdmaps.errors import SolverError
+from ehdmaps.errors import DiskFullError, SolverError
 from ehdmaps.openfoam.run import RunError
 
 CLAIM = ".in-work"
@@ -88,6 +89,13 @@ def _abandoned(folder: Path) -> bool:
         os.close(descriptor)
 
 
+ROOM = 1_000_000
+"""Bytes that a disk must still take beside a run that failed, else that is why: programs do not always say so. A case
+with 400 x 6 cells takes 0.1 MB, with its fields 0.8 MB."""
+
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+"""Errors of the system: the disk, or what this user may have of it, is used up, or a file may not grow (ulimit -f)."""
+
 PARAMETER_FILE = Path("constant") / "ehlProperties"
 
 _PARTS = ("system", "0", "constant")
@@ -121,6 +129,8 @@ def working_case(template: Path, parameters: str, name: str, keep: Path | None =
     ------
     SolverError
         If it cannot be made.
+    DiskFullError
+        If it cannot be made, or the work in it failed, for want of room on the disk; the folder is removed.
     """
     parent = Path(tempfile.gettempdir()) if keep is None else keep
     if keep is None:
@@ -136,23 +146,48 @@ def working_case(template: Path, parameters: str, name: str, keep: Path | None =
                     shutil.copytree(template / part, folder / part, ignore=_LEFT_OUT)
             (folder / PARAMETER_FILE).write_text(parameters, encoding="ascii")
         except OSError as error:
+            full = _full(parent, error)
             if folder is not None:
                 shutil.rmtree(folder, ignore_errors=True)
-            raise SolverError(
+            raise full or SolverError(
                 f"a case cannot be made in {parent} ({error.strerror or error}); "
                 "allowed: a folder that may be written, with space on the disk"
             ) from error
-        failed = False
+        removed = keep is None
         try:
             yield folder
-        except SolverError as error:
-            failed = True
+        except (SolverError, OSError) as error:
+            if full := _full(parent, error):
+                removed = True
+                raise full from error
+            removed = removed and not isinstance(error, SolverError)
             if isinstance(error, RunError):
                 error.case = folder
             raise
         finally:
-            if keep is None and not failed:
+            if removed:
                 shutil.rmtree(folder, ignore_errors=True)
+
+
+def _full(parent: Path, error: Exception) -> DiskFullError | None:
+    """Error to raise in place of one that a full disk is behind; None where the disk still takes `ROOM`."""
+    causes = [error] if isinstance(error, OSError) else []
+    try:
+        with tempfile.TemporaryFile(dir=parent) as file:
+            os.posix_fallocate(file.fileno(), 0, ROOM)
+    except OSError as refused:
+        causes.append(refused)
+    cause = next((cause for cause in causes if cause.errno in _FULL), None)
+    if cause is None:
+        return None
+    free = ""
+    with suppress(OSError):
+        free = f", {shutil.disk_usage(parent).free / 1e6:.3g} MB are free"
+    return DiskFullError(
+        f"{parent}: no room for the case of a point ({cause.strerror}{free}); allowed: {ROOM / 1e6:g} MB or more for "
+        f"each worker; free space there (folders {PREFIX}* are cases of points that failed), or choose another folder "
+        "with TMPDIR or --keep-cases; the same command goes on: what was solved is kept"
+    )
 
 
 def _own_name() -> str:

@@ -1,8 +1,10 @@
 """Jobs of the solver `openfoam` from the command line, with a stand-in for ehlFoam: kills, ends, resumption."""
 
+import errno
 import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -14,6 +16,7 @@ from pathlib import Path
 import meshio
 import numpy as np
 import pytest
+import xarray as xr
 
 from ehdmaps import errors
 from ehdmaps.jobs import cli
@@ -220,14 +223,40 @@ def test_one_point_of_a_bare_contact_has_one_file(folder, done):
     assert sorted(os.listdir(folder / "cases")) == [f"line_w62000_u1.7_T313.15_{grid}" for grid in ("20x2", "40x4")]
 
 
+def test_a_full_temporary_disk_stops_a_map_that_goes_on_later(folder, done, monkeypatch):
+    asked = []
+
+    def copytree(*arguments, **options):
+        asked.append(arguments)
+        if len(asked) > 10:  # two parts of the template a grid, two grids a point
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return usual(*arguments, **options)
+
+    usual = shutil.copytree
+    command = "generate", "job.toml", "--workers", "1"
+    with monkeypatch.context() as full:
+        full.setattr(shutil, "copytree", copytree)
+        told = done(*command, status=2).stderr
+    assert re.search(r"no room for the case of a point .*; the same command goes on: what was solved is kept\n$", told)
+    assert left_cases(folder) == [] and not (folder / "job.nc").exists()
+    _, every, lost = counts(done(*command, "-o", "whole.nc").stdout)
+    taken, solved, _ = counts(done(*command).stdout)
+    assert (taken + solved, lost) == (every, 0) and taken > 0
+    maps = [open_map(name).dataset.drop_vars("solve_seconds").drop_attrs() for name in ("job.nc", "whole.nc")]
+    xr.testing.assert_identical(*maps)
+
+
 def test_axes_with_other_ends_share_the_points_that_differ_by_round_off_only(folder, done):
     axes = spaced("1 N/mm", "1000 N/mm", 4), spaced("0.1 N/mm", "1000 N/mm", 9)
     coarse, fine = (map_job(axis, '["1 m/s"]', '["40 degC"]', solver="openfoam") + SETTINGS for axis in axes)
     loads = [set(parse_job(text, "job", "job.toml").loads) for text in (coarse, fine)]
     assert len(loads[0] & loads[1]) == 1  # all four are there, three of them with other last bits
-    for text, counted in ((coarse, (0, 8, 0)), (fine, (8, 10, 0)), (fine, (18, 0, 0))):
+    runs = []
+    for text in (coarse, fine, fine):
         (folder / "job.toml").write_text(text)
-        assert counts(done("generate", "job.toml", "--workers", "1").stdout) == counted
+        done("generate", "job.toml", "--workers", "1")
+        runs.append(len(openfoam_fake.starts(build_of(folder))))
+    assert runs == [2 * 8, 2 * 18, 2 * 18]  # two grids a point, and both contacts
 
 
 def test_one_point_that_fails_has_no_files(folder, done):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from ehdmaps.errors import InputError, WorkerError
+from ehdmaps.errors import DiskFullError, InputError, WorkerError
 from ehdmaps.jobs import cli
 from ehdmaps.jobs.make import batch_generate
 from ehdmaps.jobs.make.batch import MOST_MEMBERS, is_batch, parse_batch, read_batch
@@ -253,12 +253,13 @@ def test_check_tells_what_is_solved_and_other_commands_refuse_a_batch(tmp_path, 
     assert "is a batch file, of many jobs; allowed: one job" in capsys.readouterr().err
 
 
-def test_processes_that_die_are_no_failure_of_each_map(tmp_path, monkeypatch):
+@pytest.mark.parametrize("error", [WorkerError("worker processes die", kept=1), DiskFullError("no room")])
+def test_what_ends_all_maps_is_no_failure_of_each(tmp_path, monkeypatch, error):
     def dying(*_, **__):
-        raise WorkerError("worker processes die", kept=1)
+        raise error
 
     monkeypatch.setattr(batch_generate, "generate", dying)
-    with pytest.raises(WorkerError, match="worker processes die"):
+    with pytest.raises(type(error), match=str(error)):
         generate_batch(read(batch_text(SMALL_LISTS)), tmp_path / "maps", workers=1)
 
 

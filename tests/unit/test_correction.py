@@ -16,10 +16,10 @@ from ehdmaps.jobs.job import CorrectedBy, Job
 from ehdmaps.jobs.make import generate as generating
 from ehdmaps.jobs.make.correction import Films, Place, _slow_change, correction, error_of
 from ehdmaps.jobs.make.correction_design import VALLEY, candidates, places_of, spread_out
-from ehdmaps.jobs.make.regression import Regression
 from ehdmaps.jobs.make.sampling import draw, draw_in_valley
 from ehdmaps.jobs.make.tasks import LineTask
 from ehdmaps.jobs.reader import parse_job
+from ehdmaps.jobs.regression import Regression
 from ehdmaps.maps import schema
 from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.physics.bearing import BearingGeometry

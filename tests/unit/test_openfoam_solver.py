@@ -1,8 +1,10 @@
 """The solver `openfoam` with a stand-in for ehlFoam: statuses, errors, what is missing, what is left behind."""
 
+import errno
 import hashlib
 import os
 import re
+import resource
 import shutil
 import subprocess
 import sys
@@ -15,7 +17,7 @@ import numpy as np
 import pytest
 
 from ehdmaps.ehl.start import reynolds_start
-from ehdmaps.errors import InputError
+from ehdmaps.errors import DiskFullError, InputError
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.make.tasks import line_tasks
 from ehdmaps.jobs.reader import parse_job, read_job
@@ -355,12 +357,65 @@ def test_a_case_that_cannot_be_made(fake):
     assert re.match(r"coarse grid: a case cannot be made in .*file/kept \(Not a directory\); allowed: ", film.reason)
 
 
-def test_a_case_that_cannot_be_made_leaves_nothing(fake, monkeypatch):
-    def full(*_, **__):
-        raise OSError(28, "No space left on device")
+def no_room(*_, **__):
+    raise OSError(errno.ENOSPC, "No space left on device")
 
-    monkeypatch.setattr("ehdmaps.openfoam.case.shutil.copytree", full)
-    assert "(No space left on device); allowed: " in solved(OpenFoamSolver()).reason
+
+FULL = r"temporary: no room for the case of a point \(No space left on device, .* MB are free\); allowed: 1 MB or more"
+
+
+@pytest.mark.parametrize(
+    "error", [OSError(errno.ENOSPC, "No space left on device"), shutil.Error([("a", "b", "full")])]
+)
+def test_a_case_that_finds_no_room_is_no_point_that_failed(fake, monkeypatch, error):
+    """`copytree` collects errors into one that has no number: then the disk itself is asked."""
+
+    def copytree(*_, **__):
+        raise error
+
+    monkeypatch.setattr("ehdmaps.openfoam.case.shutil.copytree", copytree)
+    monkeypatch.setattr(os, "posix_fallocate", no_room)
+    with pytest.raises(DiskFullError, match=FULL):
+        solved(OpenFoamSolver())
+    assert left(fake, "temporary") == []
+
+
+def test_a_case_that_cannot_be_made_leaves_nothing(fake, monkeypatch):
+    def refused(*_, **__):
+        raise OSError(errno.EIO, "Input/output error")
+
+    monkeypatch.setattr("ehdmaps.openfoam.case.shutil.copytree", refused)
+    assert "(Input/output error); allowed: " in solved(OpenFoamSolver()).reason
+    assert left(fake, "temporary") == []
+
+
+@pytest.mark.parametrize("mode", ["fatal", "nothing", "garbage", "stagnated"])
+def test_a_run_that_fails_on_a_full_disk_is_no_point_that_failed(fake, monkeypatch, mode):
+    """What the program says, if anything, is not asked: it cannot say that its files are cut off."""
+    openfoam_fake.set_mode(fake, mode)
+    monkeypatch.setattr(os, "posix_fallocate", no_room)
+    with pytest.raises(DiskFullError, match=FULL):
+        solved(OpenFoamSolver())
+    assert left(fake, "temporary") == []
+
+
+def test_files_that_the_system_cuts_off(fake):
+    """The program writes 3000 bytes of its columns, and no more."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    solver = OpenFoamSolver()
+    resource.setrlimit(resource.RLIMIT_FSIZE, (3000, hard))
+    try:
+        with pytest.raises(DiskFullError, match=r"no room for the case of a point \(File too large, "):
+            solved(solver)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    assert solved(solver).status is Status.CONVERGED
+
+
+def test_a_log_that_the_disk_does_not_take(fake, monkeypatch):
+    monkeypatch.setattr("ehdmaps.openfoam.grid_solver.run", no_room)
+    with pytest.raises(DiskFullError, match=FULL):
+        solved(OpenFoamSolver())
     assert left(fake, "temporary") == []
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from ehdmaps import workers as processes
-from ehdmaps.errors import SolverError, WorkerError
+from ehdmaps.errors import DiskFullError, SolverError, WorkerError
 from ehdmaps.jobs.make.store import Store
 from ehdmaps.jobs.make.sweep import sweep
 from ehdmaps.workers import worker_pool
@@ -36,6 +36,8 @@ class Stub:
     def run(self):
         if self.kind == "gives up":
             raise SolverError("no film")
+        if self.kind == "no room":
+            raise DiskFullError("no room")
         if self.kind == "bug":
             raise ZeroDivisionError("a bug")
         if self.kind == "dies" or (self.kind == "dies once" and not Path(self.marker).exists()):
@@ -202,6 +204,18 @@ def test_deaths_after_a_first_result_cost_their_tasks_only(tmp_path):
         result = sweep(tasks, store, 2)
     assert [float(result.arrays[f"square {n}"]["value"][0]) for n in (0, 6)] == [0.0, 36.0]
     assert all("died twice" in str(result.arrays[f"dies {n}"]["reason"][0]) for n in range(1, 6))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("workers", [1, 2])
+def test_a_full_disk_is_the_end_and_what_was_out_counts_as_not_tried(tmp_path, workers):
+    tasks = [*(Stub(number) for number in range(5)), Stub(5, "no room"), *(Stub(number) for number in range(6, 500))]
+    heard = Heard()
+    with Store(tmp_path / "s") as store:
+        with pytest.raises(DiskFullError, match="no room"):
+            sweep(tasks, store, workers, heard)
+        kept = [task.number for task in tasks if store.get(task.key) is not None]
+        assert kept[:5] == list(range(5)) and 5 not in kept and len(kept) == heard.after / 3 < 500
 
 
 @dataclass(frozen=True)

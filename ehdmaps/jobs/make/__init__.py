@@ -10,10 +10,10 @@ sampling           random operating points of a job
 table_films        films of a map from the film table, or why not
 table_law          laws without a file of a map
 table_make         the film table itself
-regression         a smooth function through few points, with what it is uncertain by
 correction_design  where a dearer solver tells most about a cheaper one
 correction         films of one solver corrected by few points of a dearer one
 law_check          the contact laws against fresh solves
+spacing            errors of contact laws between the points of a map
 assemble           results -> dataset of the map, isolated holes filled from their neighbours
 report             statuses by cause, error estimates, correction, in lines
 generate           the whole story: job -> map file, or a map in memory

@@ -14,7 +14,7 @@ from typing import TypeVar
 import numpy as np
 import xarray as xr
 
-from ehdmaps.errors import EhdmapsError, InputError, WorkerError
+from ehdmaps.errors import DiskFullError, EhdmapsError, InputError, WorkerError
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.make.batch import Batch, Member
@@ -377,7 +377,7 @@ class _Run:
             made = generate(
                 planned.job, output, self.workers, False, self.progress, executor=self.executor, within=within
             )
-        except WorkerError:  # nothing of this map alone
+        except (WorkerError, DiskFullError):  # nothing of this map alone
             raise
         except EhdmapsError as error:
             return Outcome(member, output, FAILED, reason=str(error))

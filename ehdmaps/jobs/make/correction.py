@@ -36,10 +36,10 @@ from ehdmaps.errors import MapError
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.make.correction_design import Candidates, candidates, free, per_zeta, places_of, spread_out
 from ehdmaps.jobs.make.law_check import SMALL_DAMPING
-from ehdmaps.jobs.make.regression import Regression
 from ehdmaps.jobs.make.sampling import SamplePoint
 from ehdmaps.jobs.make.store import Arrays
 from ehdmaps.jobs.make.tasks import SPECTRUM_FIELDS, LineTask, with_later_fields
+from ehdmaps.jobs.regression import Regression
 from ehdmaps.maps.backbone import LOSS_SCALE
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width, natural_time

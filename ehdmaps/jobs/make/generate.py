@@ -193,7 +193,7 @@ def generate(
 
     Raises
     ------
-    InputError, StoreError, MapError, WorkerError
+    InputError, StoreError, MapError, WorkerError, DiskFullError
         With what to do; everything solved is kept.
     """
     chosen_solver = _solver(job, solver)

@@ -181,6 +181,8 @@ def sweep(
         If a result cannot be kept.
     WorkerError
         If processes cannot be started, or die before any finishes a task; what is solved is kept.
+    DiskFullError
+        If a task has no room for its files; neither it nor those beside it count as tried, and what is solved is kept.
     KeyboardInterrupt
         On Ctrl-C, after the workers are stopped and the store is committed.
     """
