@@ -2,7 +2,7 @@
 
 | module | one idea |
 |---|---|
-| `grid` | nodes graded by a smooth map: inlet, exit, Hertz zone, spike; deflection of the half-spaces on them |
+| `grid` | nodes graded by a smooth map: inlet, exit, Hertz zone, spike; deflection of half-spaces; points across |
 | `column` | oil laws and groups of heat for compiled code; one column of an oil that is not Newtonian |
 | `reynolds` | the discrete equations and their exact Jacobian |
 | `dense` | linear systems: rows scaled, LU factors, and what they solve |

@@ -27,6 +27,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.compiled import njit
+from ehdmaps.ehl.grid import ACROSS, Across, points_across
 from ehdmaps.errors import InputError
 from ehdmaps.physics.heat import HeatData
 from ehdmaps.physics.isotherm import Isotherm, log_viscosity
@@ -65,6 +66,8 @@ class Heat(NamedTuple):
         First temperature of the laws [K above T_0].
     log_eta, alpha, curvature, shape : ndarray, shape (k,)
         ln(eta/eta_0) at p = 0, and the numbers of the isotherm, every `STEP`; of no length in an isothermal film.
+    across : Across
+        Points across the film at which temperatures stand.
     """
 
     convection: float
@@ -79,6 +82,7 @@ class Heat(NamedTuple):
     alpha: FloatArray
     curvature: FloatArray
     shape: FloatArray
+    across: Across
 
     def scaled(self, factor: float) -> Heat:
         """The same contact, oil and speed at `factor` times the load: p_H and b go with its square root."""
@@ -94,7 +98,9 @@ class Heat(NamedTuple):
         )
 
 
-NO_HEAT = Heat(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, np.empty(0), np.empty(0), np.empty(0), np.empty(0))
+NO_HEAT = Heat(
+    0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, np.empty(0), np.empty(0), np.empty(0), np.empty(0), points_across(ACROSS)
+)
 """Heat of an isothermal film."""
 
 
@@ -139,6 +145,7 @@ def heat_groups(
         alpha=laws[1] * peak,
         curvature=laws[2] * peak,
         shape=laws[3].copy(),
+        across=points_across(ACROSS),
     )
 
 

@@ -7,9 +7,9 @@ Columns stand at the faces of the grid. Lengths across are zeta = z/H, along X i
 
 Each Lobatto point has a cell as high as its weight. Conduction is that of the polynomial through the points, in weak
 form: what a cell gives its neighbours get, and the heat that flows into a wall is what is left over in the wall's cell.
-Along the film oil carries the temperature of where it comes from, extrapolated, and across it the mean of two points,
-with as much conduction more as exponential fitting asks for: the inlet's eddies, whose heat goes with the oil, need
-that. So the heat that goes into the walls and out with the oil is the heat made, to rounding.
+Along the film oil carries the temperature of where it comes from, extrapolated, and across it that of a parabola
+through two points where it comes from and one where it goes. So the heat that goes into the walls and out with the oil
+is the heat made, to rounding.
 
 Before the column `first` the oil that enters has the temperature of the surfaces, and what flows back is lost.
 
@@ -30,10 +30,7 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.compiled import njit
 from ehdmaps.ehl.reynolds import LineProblem, face_weights, node_pressure
-from ehdmaps.ehl.warm_column import CONDUCTION, HEIGHTS, POINTS, WEIGHTS, Columns
-
-ROWS = POINTS + 2
-"""Equations of a column: those of its temperatures, the walls' first and last, and of the fluxes into both walls."""
+from ehdmaps.ehl.warm_column import Columns
 
 
 class EnergyEquations(NamedTuple):
@@ -78,24 +75,6 @@ class EnergyEquations(NamedTuple):
     last_back: int
 
 
-@njit
-def fitted(peclet: float) -> tuple[float, float]:
-    """Relative excess of the conductance of an exponentially fitted face over conduction, P/2 coth P/2 - 1, and its
-    derivative.
-
-    Parameters
-    ----------
-    peclet : float
-        P, heat that goes with the flow over that which is conducted.
-    """
-    half = 0.5 * abs(peclet)
-    if half < 1e-2:
-        return half * half / 3.0, peclet / 6.0
-    cotangent = 1.0 / math.tanh(half)
-    slope = 0.5 * (cotangent + half * (1.0 - cotangent * cotangent))
-    return half * cotangent - 1.0, math.copysign(slope, peclet)
-
-
 def energy(
     problem: LineProblem, columns: Columns, face_step: FloatArray, walls: FloatArray, rises: FloatArray, first: int
 ) -> EnergyEquations:
@@ -138,11 +117,12 @@ def _energy(
     problem: LineProblem, columns: Columns, face_step: FloatArray, walls: FloatArray, rises: FloatArray, first: int
 ) -> EnergyEquations:
     """`energy` without the inverses."""
-    n, k, heat = face_step.size, POINTS, problem.heat
+    n, k, heat = face_step.size, rises.shape[1], problem.heat
+    across, weights = heat.across, heat.across.weights
     out = np.zeros((n, k))
     itself, inverse = np.zeros((n, k, k)), np.zeros((n, k, k))
     before, before_that = np.zeros((n, k, k)), np.zeros((n, k, k))
-    behind, behind_that, slopes = np.zeros((n, k)), np.zeros((n, k)), np.zeros((n, 3, 4, ROWS))
+    behind, behind_that, slopes = np.zeros((n, k)), np.zeros((n, k)), np.zeros((n, 3, 4, k + 2))
     taken = np.empty((2, n, n))
     taken[0], taken[1] = heat.lower * walls, heat.upper * walls
     flux, flux_warm = np.zeros((2, n)), np.zeros((n, 3, 2, k))
@@ -159,7 +139,7 @@ def _energy(
         by_one[:] = 0.0
         by_two[:] = 0.0
         for j in range(k):
-            weight, y = WEIGHTS[j], flow[f, j]
+            weight, y = weights[j], flow[f, j]
             share = along * weight
             # what enters and leaves between columns, its temperature extrapolated from where it comes
             leaves, enters = 1.5 * y - 0.5 * flow[f - 1, j], 1.5 * flow[f - 1, j] - 0.5 * flow[f - 2, j]
@@ -211,31 +191,32 @@ def _energy(
             slopes[f, 0, 2, j] += by_gradient
             for q in range(k):
                 matrix[j, q] += by_gradient * columns.gradient_warm[f, q]
-                matrix[j, q] += CONDUCTION[j, q] - weight * made * columns.heat_warm[f, j, q]
-                total[j] += CONDUCTION[j, q] * here[q]
+                matrix[j, q] += across.conduction[j, q] - weight * made * columns.heat_warm[f, j, q]
+                total[j] += across.conduction[j, q] * here[q]
         # between the cells of a column
         upwards = 0.0
         for j in range(k - 1):
-            upwards -= WEIGHTS[j] * (1.5 * flow[f, j] - 2.0 * flow[f - 1, j] + 0.5 * flow[f - 2, j])
-            apart, step = HEIGHTS[j + 1] - HEIGHTS[j], here[j + 1] - here[j]
-            more, slope = fitted(along * upwards * apart)
-            below, above = 0.5 * along * upwards - more / apart, 0.5 * along * upwards + more / apart
-            total[j] += below * step
-            total[j + 1] += above * step
-            matrix[j, j] -= below
-            matrix[j, j + 1] += below
-            matrix[j + 1, j] -= above
-            matrix[j + 1, j + 1] += above
-            below, above = (0.5 - slope) * step * along, (0.5 + slope) * step * along
+            upwards -= weights[j] * (1.5 * flow[f, j] - 2.0 * flow[f - 1, j] + 0.5 * flow[f - 2, j])
+            carried = across.rising[j] if upwards >= 0.0 else across.falling[j]
+            face = 0.0
+            for q in range(k):
+                face += carried[q] * here[q]
+                matrix[j, q] += along * upwards * carried[q]
+                matrix[j + 1, q] -= along * upwards * carried[q]
+            matrix[j, j] -= along * upwards
+            matrix[j + 1, j + 1] += along * upwards
+            below, above = along * (face - here[j]), along * (here[j + 1] - face)
+            total[j] += below * upwards
+            total[j + 1] += above * upwards
             slopes[f, 0, 1, j] += below * upwards / film_here
             slopes[f, 0, 1, j + 1] += above * upwards / film_here
             for q in range(j + 1):
-                own[j, q] -= 1.5 * WEIGHTS[q] * below
-                own[j + 1, q] -= 1.5 * WEIGHTS[q] * above
-                by_one[j, q] += 2.0 * WEIGHTS[q] * below
-                by_one[j + 1, q] += 2.0 * WEIGHTS[q] * above
-                by_two[j, q] -= 0.5 * WEIGHTS[q] * below
-                by_two[j + 1, q] -= 0.5 * WEIGHTS[q] * above
+                own[j, q] -= 1.5 * weights[q] * below
+                own[j + 1, q] -= 1.5 * weights[q] * above
+                by_one[j, q] += 2.0 * weights[q] * below
+                by_one[j + 1, q] += 2.0 * weights[q] * above
+                by_two[j, q] -= 0.5 * weights[q] * below
+                by_two[j + 1, q] -= 0.5 * weights[q] * above
         matrix += own @ columns.flow_warm[f]
         if f - 1 > first:
             before[f] += by_one @ columns.flow_warm[f - 1]
@@ -289,13 +270,13 @@ def marched(equations: EnergyEquations, right: FloatArray, first: int) -> FloatA
     first : int
         Last column that is not heated.
     """
-    n, many = right.shape[0], right.shape[2]
-    temperatures, start, end = np.zeros((n, POINTS, many)), first + 1, first + 1
+    n, k, many = right.shape[0], right.shape[1] - 2, right.shape[2]
+    temperatures, start, end = np.zeros((n, k, many)), first + 1, first + 1
     if equations.last_back > first:
         # columns with backflow and the two that these see, at once
         end = min(equations.last_back + 3, n)
         matrix, side = _together(equations, right, start, end)
-        temperatures[start:end] = np.linalg.solve(matrix, side).reshape((end - start, POINTS, many))
+        temperatures[start:end] = np.linalg.solve(matrix, side).reshape((end - start, k, many))
     _one_by_one(equations, right, first, end, temperatures)
     return temperatures
 
@@ -327,8 +308,9 @@ def _wall_fluxes(
     equations: EnergyEquations, right: FloatArray, first: int, f: int, temperatures: FloatArray, fluxes: FloatArray
 ) -> None:
     """Fill the fluxes of a column into both walls, from its temperatures and those before it."""
+    k = temperatures.shape[1]
     for wall in range(2):
-        fluxes[wall, f] = right[f, POINTS + wall]
+        fluxes[wall, f] = right[f, k + wall]
         for g in range(min(3, f - first)):
             fluxes[wall, f] += equations.flux_warm[f, g, wall] @ temperatures[f - g]
 
@@ -336,7 +318,7 @@ def _wall_fluxes(
 @njit
 def _together(equations: EnergyEquations, right: FloatArray, start: int, end: int) -> tuple[FloatArray, FloatArray]:
     """Matrix and right-hand sides of the columns from `start` to before `end`."""
-    k, many = POINTS, right.shape[2]
+    k, many = right.shape[1] - 2, right.shape[2]
     size = (end - start) * k
     matrix, side = np.zeros((size, size)), np.empty((size, many))
     for f in range(start, end):
@@ -420,7 +402,7 @@ def followed(
     apart = np.diff(node_pressure(unknowns)) / face_step - columns.place[:, 2]
     films = _films(x, kernel, float(unknowns[x.size - 1]))
     if equations is None:
-        following = np.zeros((face_step.size, POINTS, unknowns.size + 1))
+        following = np.zeros((face_step.size, columns.flow.shape[1], unknowns.size + 1))
     else:
         following = marched(equations, _by_unknowns(equations, face_step, films, apart, first), first)
     return following, *_factor_rows(columns, face_step, films, apart, following)
@@ -447,14 +429,14 @@ def _by_unknowns(
     equations: EnergyEquations, face_step: FloatArray, films: FloatArray, apart: FloatArray, first: int
 ) -> FloatArray:
     """Right-hand sides of `marched` for all unknowns, and for what is left of the energy."""
-    n, size = films.shape
-    right = np.zeros((n, ROWS, size + 1))
+    (n, size), k = films.shape, equations.residual.shape[1]
+    right = np.zeros((n, k + 2, size + 1))
     for f in range(first + 1, n):
-        for j in range(POINTS):
+        for j in range(k):
             right[f, j, size] = -equations.residual[f, j]
         for g in range(3):
             slope, i = equations.slopes[f, g], f - g
-            for j in range(ROWS):
+            for j in range(k + 2):
                 by_film, by_pressure, by_gradient = slope[1, j], 0.5 * slope[0, j], slope[2, j] / face_step[i]
                 if by_film != 0.0:
                     for q in range(size):

@@ -8,9 +8,9 @@ from functools import cached_property
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.ehl.grid import DRY_DATUM, Grid, GridShape, Layout, Spike
+from ehdmaps.ehl.grid import DRY_DATUM, Grid, GridShape, Layout, Spike, moved_across
 from ehdmaps.ehl.reynolds import MOST_LOG_VISCOSITY, LineProblem, face_films, film, node_pressure, shear_factors
-from ehdmaps.ehl.warm_column import POINTS, empty_columns, fill_columns
+from ehdmaps.ehl.warm_column import empty_columns, fill_columns
 from ehdmaps.physics.films import film_times_rise, rolling_force_of_inlet
 from ehdmaps.physics.isotherm import log_viscosity
 from ehdmaps.physics.rheology import NEWTONIAN
@@ -165,7 +165,7 @@ class Profile:
             log_eta = log_viscosity(problem.isotherm, 0.5 * (pressure[1:] + pressure[:-1]))[0]
             return problem.slide * np.exp(np.minimum(log_eta, MOST_LOG_VISCOSITY)) / faces, rise
         if self.warmth is not None:
-            columns, nothing = empty_columns(self.cells), np.empty(0)
+            columns, nothing = empty_columns(self.cells, self.warmth.rises.shape[1]), np.empty(0)
             fill_columns(
                 problem, grid.x, grid.face_step, self.kernel, self.unknowns, self.warmth.rises, nothing, columns
             )
@@ -235,12 +235,23 @@ def _parabola(x: FloatArray, y: FloatArray, i: int) -> tuple[float, float, float
     return float(y[i]), float((down * right + up * left) / (left + right)), float(curvature)
 
 
-def warm_start(profile: Profile | None, grid: Grid) -> FloatArray:
-    """Temperatures of a solution nearby at the faces of another grid, shape (n, k); none where it has none."""
-    rises = np.zeros((grid.face.size, POINTS))
+def warm_start(profile: Profile | None, grid: Grid, points: int) -> FloatArray:
+    """Temperatures of a solution nearby at the faces of another grid, shape (n, k); zero where it has none.
+
+    Parameters
+    ----------
+    profile : Profile or None
+        Solution nearby.
+    grid : Grid
+        The other grid.
+    points : int
+        Number k of points across the film.
+    """
+    rises = np.zeros((grid.face.size, points))
     if profile is not None and profile.warmth is not None:
-        for k in range(POINTS):
-            rises[:, k] = np.interp(grid.face, profile.grid.face, profile.warmth.rises[:, k])
+        known = moved_across(profile.warmth.rises, points)
+        for k in range(points):
+            rises[:, k] = np.interp(grid.face, profile.grid.face, known[:, k])
     return rises
 
 

@@ -17,12 +17,11 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.compiled import njit
 from ehdmaps.ehl.dense import factorised, solved
-from ehdmaps.ehl.energy import ROWS, EnergyEquations, energy, followed, marched
+from ehdmaps.ehl.energy import EnergyEquations, energy, followed, marched
 from ehdmaps.ehl.newton import CONVERGED, DIVERGED, SOFT_ABOVE, STAGNATED, YIELDING_STEP, lifted, relaxed, step_length
 from ehdmaps.ehl.newton import step_size as size_of
 from ehdmaps.ehl.reynolds import Factors, LineProblem, film, node_pressure, residual_with
 from ehdmaps.ehl.warm_column import (
-    POINTS,
     Columns,
     asked_flows,
     empty_columns,
@@ -173,8 +172,8 @@ def warm_temperatures(
     most_steps : int
         Steps at most.
     """
-    n = face_step.size
-    right = np.zeros((n, ROWS, 1))
+    n, k = rises.shape
+    right = np.zeros((n, k + 2, 1))
     last = math.inf
     count = 0
     while True:
@@ -187,7 +186,7 @@ def warm_temperatures(
                 hold_gradients(problem, unknowns[n - 1], rises, columns)
                 equations = energy(problem, columns, face_step, walls, rises, first)
             return equations, last
-        right[:, :POINTS, 0] = -equations.residual
+        right[:, :k, 0] = -equations.residual
         move = marched(equations, right, first)[:, :, 0]
         last = np.max(np.abs(move))
         if not math.isfinite(last):
@@ -235,11 +234,12 @@ def warm_newton(
     first = first_column(film(x, kernel, unknowns), unknowns[n - 1])
     rises[: first + 1] = 0.0
     walls = wall_weights(face, first)
-    columns = empty_columns(n)
+    k = rises.shape[1]
+    columns = empty_columns(n, k)
     out, jacobian = np.empty(size), np.empty((size, size))
     last, relaxation = math.inf, 1.0
     old = np.zeros(n - 1)
-    before, warm_before, taken, warming = unknowns, rises, np.zeros(size), np.zeros((n, POINTS))
+    before, warm_before, taken, warming = unknowns, rises, np.zeros(size), np.zeros((n, k))
     frozen, known = not near, near
 
     def flows() -> FloatArray:
@@ -290,7 +290,7 @@ def warm_newton(
         most = min(relaxation, YIELDING_STEP / last) if problem.shear.form == LIMITING else relaxation
         length = step_length(problem, x, kernel, unknowns, move, lowest, most)
         before, warm_before, taken = unknowns, rises, length * move
-        warming = (following.reshape((n * POINTS, size + 1)) @ np.append(taken, length)).reshape((n, POINTS))
+        warming = (following.reshape((n * k, size + 1)) @ np.append(taken, length)).reshape((n, k))
         warming *= min(1.0, LARGEST_RISE / max(np.max(np.abs(warming)), 1e-300))
         unknowns, rises = before + taken, warm_before + warming
         if frozen and (last < SMOOTH or count == MOST_FROZEN):

@@ -19,12 +19,12 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.compiled import njit
 from ehdmaps.ehl.dense import Factorised, factorised, solved
-from ehdmaps.ehl.energy import EnergyEquations, fitted, followed, marched, stored
+from ehdmaps.ehl.energy import EnergyEquations, followed, marched, stored
 from ehdmaps.ehl.grid import Grid, log_kernel
 from ehdmaps.ehl.linearisation import Neighbour, Response, StoredOil, accumulated, carried_mass, stored_mass_rate
 from ehdmaps.ehl.reynolds import Factors, LineProblem, face_films, film, node_pressure, residual_with
 from ehdmaps.ehl.spectrum import FilmSpace, arnoldi
-from ehdmaps.ehl.warm_column import HEIGHTS, POINTS, WEIGHTS, Columns, empty_columns
+from ehdmaps.ehl.warm_column import Columns, empty_columns
 from ehdmaps.ehl.warm_newton import MOST_STEPS, wall_weights, warm_factors, warm_temperatures
 from ehdmaps.physics.hertz import DRY_COMPLIANCE
 from ehdmaps.physics.isotherm import density
@@ -58,7 +58,7 @@ def _state(
 ) -> _State:
     """Temperatures, residual and mass of a film on a grid."""
     kernel, n = log_kernel(grid.x, grid.step), grid.face.size
-    columns, rises = empty_columns(n), rises.copy()
+    columns, rises = empty_columns(n, rises.shape[1]), rises.copy()
     walls = wall_weights(grid.face, first)
     equations, _ = warm_temperatures(
         problem, grid.x, grid.face_step, kernel, unknowns, walls, first, rises, columns, np.empty(0), EXACT, MOST_STEPS
@@ -80,7 +80,7 @@ def _at_nodes(faces: FloatArray) -> FloatArray:
 
 def _thinned(problem: LineProblem, rises: FloatArray) -> FloatArray:
     """Mean density across the film at the nodes over that at the temperature of the surfaces."""
-    return 1.0 + problem.heat.density_slope * _at_nodes(rises @ WEIGHTS)
+    return 1.0 + problem.heat.density_slope * _at_nodes(rises @ problem.heat.across.weights)
 
 
 @dataclass(frozen=True)
@@ -188,7 +188,7 @@ class WarmLinearisation:
         """
         problem, here, unknowns = self.problem, self.here, self.unknowns
         grid, columns, n = here.grid, here.columns, here.grid.face.size
-        rate, rises = state[: unknowns.size], self.warmest * state[self.rows :].reshape(n, POINTS)
+        rate, rises = state[: unknowns.size], self.warmest * state[self.rows :].reshape(n, -1)
         shift = float(state[unknowns.size]) if self.by_grid is not None else 0.0
         # mass
         pressure, moved = np.maximum(node_pressure(unknowns), 0.0), node_pressure(rate)
@@ -197,7 +197,7 @@ class WarmLinearisation:
         by_hand = StoredOil(rho * thinned * grid.step, rho_slope * thinned * here.gap * grid.step)
         mass = np.asarray(stored_mass_rate(by_hand, grid.x, here.kernel, float(unknowns[n]), rate))
         still = rises if self.by_grid is None else rises - self.by_grid.rises * shift
-        warming = problem.heat.density_slope * _at_nodes(still @ WEIGHTS)
+        warming = problem.heat.density_slope * _at_nodes(still @ problem.heat.across.weights)
         mass = mass + np.asarray(accumulated(rho * warming * here.gap * grid.step))
         mass = mass - np.asarray(carried_mass(here.mass)) * rate[n]
         if self.by_grid is not None:
@@ -219,7 +219,7 @@ class WarmLinearisation:
             flow_rate = np.concatenate([np.zeros(g), added[: n - g]])
             heat[:, :, 0] -= here.equations.slopes[:, g, 3, :] * flow_rate[:, None]
         heat[: self.first + 1] = 0.0
-        for side, row in ((0, 0), (1, POINTS - 1)):
+        for side, row in ((0, 0), (1, rises.shape[1] - 1)):
             speed = 1.0 + (side - 0.5) * problem.slide
             if speed > SLOWEST_WALL:
                 wall = np.where(np.arange(n) > self.first, warmed[:, row], 0.0)
@@ -230,7 +230,7 @@ class WarmLinearisation:
         """State of a unit load: the film's unknowns, the spike's place where the grid follows it, temperatures."""
         unit = np.zeros(self.rows)
         unit[self.height] = 1.0
-        return self.solve(unit, np.zeros((self.here.grid.face.size, POINTS + 2, 1)))
+        return self.solve(unit, np.zeros((self.here.rises.shape[0], self.here.rises.shape[1] + 2, 1)))
 
     def _next(self, state: FloatArray) -> FloatArray:
         """State that the storage of another one brings about, T z of `spectrum`."""
@@ -288,32 +288,33 @@ def _cell_storage(
     Rates are those of faces that move with `moving`.
     """
     heat, (n, k) = problem.heat, rises.shape
+    across, weights = heat.across, heat.across.weights
     added, still = np.zeros((n, k)), np.empty((n, k))
     for j in range(k):
         mass = columns.density[:, j] * columns.place[:, 1]
         for f in range(n):
             still[f, j] = rate[f, j] - moving[f] * _along(rises[:, j], face_step, f)
             film, gradient = columns.place[f, 1], columns.place[f, 2]
-            share = WEIGHTS[j] * heat.convection * film
+            share = weights[j] * heat.convection * film
             added[f, j] += share * mass[f] * still[f, j]
             squeezed = heat.compression * film * film * (pressure_rate[f] - moving[f] * gradient)
             warm = (heat.temperature + rises[f, j]) * columns.density_warm[f] / columns.density[f, j]
-            added[f, j] += WEIGHTS[j] * squeezed * warm
+            added[f, j] += weights[j] * squeezed * warm
     for f in range(2, n):
         film = columns.place[f, 1]
-        along = heat.convection * film / face_step[f]
         upwards = change = 0.0
         for j in range(k - 1):
             mass = columns.density[:, j] * columns.place[:, 1]
             density_rate = columns.density_slope[f, j] * pressure_rate[f] + columns.density_warm[f] * rate[f, j]
             mass_rate = film_rate[f] * columns.density[f, j] + film * density_rate
-            change -= WEIGHTS[j] * (mass_rate - moving[f] * _along(mass, face_step, f))
+            change -= weights[j] * (mass_rate - moving[f] * _along(mass, face_step, f))
             flow = columns.flow[:, j]
-            upwards -= WEIGHTS[j] * (1.5 * flow[f] - 2.0 * flow[f - 1] + 0.5 * flow[f - 2])
-            slope = fitted(along * upwards * (HEIGHTS[j + 1] - HEIGHTS[j]))[1]
-            step = heat.convection * film * change * (rises[f, j + 1] - rises[f, j])
-            added[f, j] += (0.5 - slope) * step
-            added[f, j + 1] += (0.5 + slope) * step
+            upwards -= weights[j] * (1.5 * flow[f] - 2.0 * flow[f - 1] + 0.5 * flow[f - 2])
+            face = 0.0
+            for q in range(k):
+                face += (across.rising[j, q] if upwards >= 0.0 else across.falling[j, q]) * rises[f, q]
+            added[f, j] += heat.convection * film * change * (face - rises[f, j])
+            added[f, j + 1] += heat.convection * film * change * (rises[f, j + 1] - face)
     return added, still
 
 
@@ -379,16 +380,16 @@ def warm_linearised(
 
 def _balance(problem: LineProblem, here: _State, first: int) -> float:
     """Heat into the walls and out with the oil less heat made, over the heat of shear."""
-    heat, columns = problem.heat, here.columns
+    heat, columns, weights = problem.heat, here.columns, problem.heat.across.weights
     faces, step, rises = columns.place[:, 1], here.grid.face_step, here.rises
     on = slice(first + 1, None)
-    shear = heat.dissipation * (faces * step * (columns.heat @ WEIGHTS))[on].sum()
+    shear = heat.dissipation * (faces * step * (columns.heat @ weights))[on].sum()
     warm = (heat.temperature + rises) * columns.density_warm[:, None] / columns.density**2 * columns.flow
-    pressed = -heat.compression * (columns.place[:, 2] * step * (warm @ WEIGHTS))[on].sum()
+    pressed = -heat.compression * (columns.place[:, 2] * step * (warm @ weights))[on].sum()
     walls = float(np.sum(here.equations.flux[:, on] * step[on]))
     leaves = (1.5 * columns.flow[-1] - 0.5 * columns.flow[-2]) * (1.5 * rises[-1] - 0.5 * rises[-2])
     # what flows back out of the first heated column
     enters = np.minimum(1.5 * columns.flow[first] - 0.5 * columns.flow[first - 1], 0.0)
     enters = enters * (1.5 * rises[first + 1] - 0.5 * rises[first + 2])
-    carried = heat.convection * float((leaves - enters) @ WEIGHTS)
+    carried = heat.convection * float((leaves - enters) @ weights)
     return float((walls + carried - shear - pressed) / shear)

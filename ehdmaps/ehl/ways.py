@@ -137,7 +137,7 @@ def _converged_warm(
     near: Profile | None,
 ) -> tuple[Profile | None, int, int]:
     """Newton on one grid for a film with its temperatures."""
-    rises = warm_start(near, grid)
+    rises = warm_start(near, grid, problem.heat.across.heights.size)
     metric = (grid.x, grid.step, grid.face, grid.face_step, kernel)
     steps = 0
     try:

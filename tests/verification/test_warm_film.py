@@ -9,14 +9,12 @@ import numpy as np
 import pytest
 
 from ehdmaps.ehl.column import STEP, heat_groups, warm_viscosity
+from ehdmaps.ehl.grid import ACROSS, moved_across, points_across
 from ehdmaps.ehl.group_solution import GroupSolution
 from ehdmaps.ehl.line import solve_groups
 from ehdmaps.ehl.profile import Resolution
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.ehl.warm_column import (
-    CONDUCTION,
-    HEIGHTS,
-    WEIGHTS,
     empty_columns,
     fill_column,
     gradient_asked,
@@ -62,13 +60,30 @@ def test_nahme_couette(nahme: float) -> None:
     theta'' + Na tau^2 exp(theta) = 0 with a stress tau that the difference of the walls' speeds gives, by Picard steps.
     Nine points resolve the profile at Na = 10, where the middle is warmer by 0.8/beta, to 4e-6.
     """
-    theta = np.zeros_like(HEIGHTS)
+    across = points_across(ACROSS)
+    theta = np.zeros(ACROSS)
     for _ in range(200):
-        stress = 1.0 / (WEIGHTS @ np.exp(theta))
-        inside = np.linalg.solve(CONDUCTION[1:-1, 1:-1], nahme * stress**2 * (WEIGHTS * np.exp(theta))[1:-1])
+        stress = 1.0 / (across.weights @ np.exp(theta))
+        made = nahme * stress**2 * across.weights * np.exp(theta)
+        inside = np.linalg.solve(across.conduction[1:-1, 1:-1], made[1:-1])
         theta[1:-1] += 0.5 * (inside - theta[1:-1])
-    middle = theta[HEIGHTS.size // 2]
+    middle = theta[ACROSS // 2]
     assert middle == pytest.approx(math.log1p(nahme / 8.0), rel=1e-5)
+
+
+@pytest.mark.parametrize("points", [ACROSS, 13, 29])
+def test_points_across_a_film(points: int) -> None:
+    """What is said of the polynomial through the points holds of a polynomial, to rounding."""
+    across = points_across(points)
+    z, faces = across.heights, np.cumsum(across.weights)[:-1]
+    assert across.integral @ z**4 == pytest.approx(z**5 / 5.0, abs=1e-12)
+    assert z**2 @ across.conduction @ z**3 == pytest.approx(6.0 / 4.0, abs=1e-10)  # Int 2 zeta 3 zeta^2
+    for carried in (across.rising, across.falling):
+        assert carried @ (1.0 - 3.0 * z + z**2) == pytest.approx(1.0 - 3.0 * faces + faces**2, abs=1e-12)
+    # of what does not go into the oil ahead by one point, nothing comes back
+    ahead = np.arange(points)[None, :] > np.arange(1, points)[:, None]
+    assert not np.any(across.rising[1:][ahead[1:]])
+    assert moved_across((z**4)[None, :], 19)[0] == pytest.approx(points_across(19).heights ** 4, abs=1e-12)
 
 
 def test_viscosity_between_its_temperatures() -> None:
@@ -88,10 +103,10 @@ def test_viscosity_between_its_temperatures() -> None:
 def test_column_of_one_temperature() -> None:
     """Mobility and carriage of a Newtonian column are 1 at T_0, and its flow is the one asked for."""
     problem, _, _ = THERMAL._problem(INNER, OIL, OperatingPoint(5e4, 2.0, 333.15))
-    columns = empty_columns(1)
-    fill_column(problem, 0, 0.01, 0.5, 0.02, 0.45, np.zeros(HEIGHTS.size), columns)
+    columns = empty_columns(1, ACROSS)
+    fill_column(problem, 0, 0.01, 0.5, 0.02, 0.45, np.zeros(ACROSS), columns)
     assert columns.mobility[0, 0] == pytest.approx(1.0, abs=1e-12)
-    assert WEIGHTS @ columns.flow[0] == pytest.approx(0.45, abs=1e-12)
+    assert points_across(ACROSS).weights @ columns.flow[0] == pytest.approx(0.45, abs=1e-12)
 
 
 @pytest.mark.parametrize("slide", [0.0, 0.1])
@@ -101,8 +116,8 @@ def test_gradient_that_a_yielding_column_is_asked_for(slide: float) -> None:
     The flow rises there with the gradient by a power of up to 500: 1e-4.
     """
     problem = replace(LIMITING, slide_to_roll=slide)._problem(INNER, OIL, OperatingPoint(2e5, 10.0, 373.15))[0]
-    rises = 20.0 * HEIGHTS * (1.0 - HEIGHTS)
-    columns = empty_columns(1)
+    rises = 20.0 / 6.0 * points_across(ACROSS).parabola
+    columns = empty_columns(1, ACROSS)
     for asked in (1e-3, -1e3, 1e6):
         gradient = gradient_asked(problem, 0.8, 0.15, rises, asked, 0.0)
         fill_column(problem, 0, 0.8, 0.15, gradient, 0.15, rises, columns)
@@ -193,8 +208,10 @@ def test_heat_goes_with_the_oil_of_the_eddies() -> None:
 def test_walls_that_yield_both_ways(guess: float) -> None:
     """The stress at the lower wall of a column in pure rolling is half of the rise, wherever the search begins."""
     problem = LIMITING._problem(INNER, OIL, OperatingPoint(2e5, 10.0, 373.15))[0]
-    fluid = np.full(HEIGHTS.size, 1e-8)
-    assert lower_stress(problem.shear, 0.8, -2168.25, 0.0, fluid, guess) == pytest.approx(1084.125, rel=1e-8)
+    fluid = np.full(ACROSS, 1e-8)
+    assert lower_stress(problem.shear, problem.heat.across, 0.8, -2168.25, 0.0, fluid, guess) == pytest.approx(
+        1084.125, rel=1e-8
+    )
 
 
 def test_no_traction_in_pure_rolling() -> None:

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from ehdmaps.ehl.column import NO_HEAT, STEP, Heat
+from ehdmaps.ehl.grid import ACROSS, points_across
 from ehdmaps.ehl.group_solution import GroupSolution
 from ehdmaps.ehl.line import solve_groups
 from ehdmaps.ehl.newton import CONVERGED
@@ -45,6 +46,7 @@ def solved(M: float, L: float, loading: float, slide: float = 0.0) -> GroupSolut
         alpha=np.full(count, alpha),
         curvature=np.zeros(count),
         shape=np.ones(count),
+        across=points_across(ACROSS),
     )
     problem = LineProblem(
         3.0 * math.pi**2 / (8.0 * M * M),
