@@ -99,6 +99,9 @@ _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 PARAMETER_FILE = Path("constant") / "ehlProperties"
 
 _PARTS = ("system", "0", "constant")
+_SCRIPTS = ("Allrun", "Allclean")
+"""What runs a case by hand: a folder that stays can be tried again, and changed, where it lies."""
+
 _RUNS = itertools.count()
 _LEFT_OUT = shutil.ignore_patterns("polyMesh", "ehlProperties")
 
@@ -112,7 +115,7 @@ def working_case(template: Path, parameters: str, name: str, keep: Path | None =
     Parameters
     ----------
     template : Path
-        The case that runs by hand; its system, 0 and constant are copied, its mesh and results are not.
+        The case that runs by hand; its system, 0, constant and scripts are copied, its mesh and results are not.
     parameters : str
         Text of the one file that differs.
     name : str
@@ -144,6 +147,9 @@ def working_case(template: Path, parameters: str, name: str, keep: Path | None =
             for part in _PARTS:
                 if (template / part).is_dir():
                     shutil.copytree(template / part, folder / part, ignore=_LEFT_OUT)
+            for script in _SCRIPTS:
+                if (template / script).is_file():
+                    shutil.copy(template / script, folder / script)
             (folder / PARAMETER_FILE).write_text(parameters, encoding="ascii")
         except OSError as error:
             full = _full(parent, error)

@@ -13,6 +13,10 @@ import pytest
 from ehdmaps.openfoam.fields import read_fields, write_fields
 from ehdmaps.openfoam.installation import Installation, installation
 from ehdmaps.openfoam.results import read_film, read_results
+from ehdmaps.openfoam.solver import OpenFoamSolver
+from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.solution import Status
 from tests.cases import openfoam_runs
 from tests.cases.programs import needed
@@ -180,6 +184,20 @@ def test_numbers_that_overflow_are_a_status(installed: Installation, template_co
     ended = openfoam_runs.program(installed, installed.solver, template_copy)
     assert ended.returncode == 0, ended.stdout[-500:]
     assert read_results(template_copy).status in (Status.DIVERGED, Status.STAGNATED)
+
+
+def test_a_kept_case_by_hand_gives_the_same_again(installed: Installation, tmp_path: Path) -> None:
+    solver = OpenFoamSolver(columns=100, rows=4, installed=installed, keep_cases=tmp_path / "kept")
+    contact, *_ = BearingGeometry.named("NU308").contacts(STEEL, "iso16281")
+    (film,) = solver.solve_line(contact, Lubricant.named("FVA3"), (2e4,), 2.0, 333.15)
+    (case,) = (tmp_path / "kept").glob("*_100x4")
+    for name in ("results", "film.dat"):
+        (case / name).unlink()
+    ended = subprocess.run(["sh", "Allrun"], cwd=case, capture_output=True, text=True, timeout=120.0, check=False)
+    assert ended.returncode == 0, ended.stderr
+    assert read_results(case).central_film == film.central_film
+    subprocess.run([case / "Allclean"], cwd=tmp_path, timeout=20.0, check=True)
+    assert not (case / "results").exists() and not (case / "1").exists()
 
 
 def test_case_by_hand(installed: Installation, tmp_path: Path) -> None:
