@@ -37,6 +37,15 @@ _CASE = "lineContact"
 _NO_CASES = f"no folder {_CASES} is beside the package ehdmaps, nor in it"
 _VERSION = re.compile(r"OpenFOAM\W+(?:version\W+)?(v?\d[\w.+-]*)", re.IGNORECASE)
 _PROCESSOR = re.compile(r"\bprocessor (\w+)")
+_LOADED = re.compile(r"^Using: +OpenFOAM\W+v?(\d{4})\b", re.MULTILINE)
+"""What the library that a program has loaded says of itself."""
+
+_PLACES = ("WM_PROJECT_DIR", "LD_LIBRARY_PATH", "LD_PRELOAD")
+"""Environment variables that say which OpenFOAM a program finds."""
+
+_PATIENCE = 60.0
+"""Seconds that a program has to print its help, which takes it a tenth of one."""
+
 _RELEASE = re.compile(r"v?(\d+)")
 
 
@@ -124,7 +133,10 @@ def installation(environment: Mapping[str, str] | None = None) -> Installation:
         problems.append(f"ehlFoam: there is no record {record} of its build; build it again with `{BUILD_COMMAND}`")
     else:
         build = " ".join(record.read_text(encoding="utf-8", errors="replace").split())[:500]
-        problems += _other_machine(solver, build, known)
+        refused = tuple(_other_machine(solver, build, known)) or _does_not_start(
+            solver, build, {**known, **dict(extra)}
+        )
+        problems += refused
     if template is None:
         problems.append(
             f"case {_CASE}: is not in {folder}, and {_NO_CASES}; install ehdmaps again, or copy "
@@ -208,6 +220,37 @@ def _other_machine(solver: Path, build: str, environment: Mapping[str, str]) -> 
             f"ehlFoam: {solver} is built for the instructions of another processor (record "
             f"{made_on[1] if made_on else 'none'}, here {processor()}) and may crash on this one; build it again with "
             f"`{BUILD_COMMAND}`, or set {FOLDER_VARIABLE} to a folder for builds of this machine"
+        )
+
+
+def _does_not_start(solver: Path, build: str, environment: Mapping[str, str]) -> Iterator[str]:
+    """Say why a program cannot run here, or which other OpenFOAM its libraries are of: it is asked for its help."""
+    try:
+        asked = subprocess.run(
+            [solver, "-help"],
+            env=environment,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            encoding="utf-8",
+            errors="replace",
+            timeout=_PATIENCE,
+            check=False,
+        )
+    except (OSError, subprocess.TimeoutExpired) as error:
+        yield f"ehlFoam: {solver} cannot be started ({error}); build it again with `{BUILD_COMMAND}`"
+        return
+    places = [f"{name} {environment[name][:300]!r}" for name in _PLACES if environment.get(name)]
+    see = f"see to {' and '.join(places)}"
+    made_for, loaded = _VERSION.search(build), _LOADED.search(asked.stdout)
+    if asked.returncode:
+        said = [line.strip() for line in asked.stdout.splitlines() if line.strip()]
+        cause = " | ".join(said[-2:])[-300:] or f"status {asked.returncode}"
+        yield f"ehlFoam: {solver} does not start ({cause}); {see}, or build it again with `{BUILD_COMMAND}`"
+    elif made_for and loaded and loaded[1] != _release(made_for[1]):
+        yield (
+            f"ehlFoam: {solver} is built for OpenFOAM {made_for[1]}, the libraries that it finds are of OpenFOAM "
+            f"{loaded[1]}; {see}, or build it again with `{BUILD_COMMAND}`"
         )
 
 

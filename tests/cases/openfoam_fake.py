@@ -11,6 +11,10 @@ from pathlib import Path
 from ehdmaps.openfoam.installation import processor
 
 PROGRAM = """
+import sys
+if "-help" in sys.argv:
+    print("Usage: ehlFoam\\nUsing: OpenFOAM- (1912) - visit www.openfoam.com")
+    sys.exit(0)
 import json, math, os, re, signal, sys, time
 from pathlib import Path
 

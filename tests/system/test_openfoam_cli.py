@@ -374,6 +374,24 @@ def test_a_check_names_what_a_run_lacks(folder, checked):
     assert status == 2 and "ehlFoam: there is no record" in told
 
 
+FOREIGN = {"WM_PROJECT_VERSION": "v2312", "LD_LIBRARY_PATH": "/opt/foreign/lib"}
+
+
+@pytest.mark.parametrize("variable", FOREIGN)
+def test_a_check_refuses_what_a_map_refuses(folder, checked, capfd, monkeypatch, variable):
+    monkeypatch.setenv(variable, FOREIGN[variable])
+    if variable == "LD_LIBRARY_PATH":
+        program = build_of(folder) / "bin" / "ehlFoam"
+        program.write_text('#!/bin/sh\necho "$LD_LIBRARY_PATH/libOpenFOAM.so: undefined symbol"; exit 127\n')
+    status, told = checked("good")
+    assert cli.main(["generate", "job.toml"]) == 2
+    refused = capfd.readouterr().err
+    problem = told.partition("\n")[2].strip().rpartition("problem\n")[2].strip()
+    assert status == 2 and problem.startswith("ehlFoam: ")
+    assert problem in refused and FOREIGN[variable] in problem
+    assert not (folder / "job.nc.store").exists()
+
+
 @pytest.mark.slow
 def test_everything_else_works_without_openfoam(folder, done, monkeypatch):
     monkeypatch.setenv("EHDMAPS_OPENFOAM", str(folder / "none"))

@@ -553,6 +553,29 @@ def test_a_build_for_another_openfoam_is_refused(fake, monkeypatch):
     assert "without the version of OpenFOAM in its record, found is OpenFOAM v2312" in installed.missing()[0]
 
 
+STARTS = {
+    "cat no_such_library": r"does not start \(cat: no_such_library: .*\); see to .* LD_LIBRARY_PATH '/o/lib'",
+    "exit 3": r"does not start \(status 3\); see to WM_PROJECT_DIR",
+    "echo 'Using: OpenFOAM-v2312 (2312)'": r"for OpenFOAM v1912, the libraries that it finds are of OpenFOAM 2312; ",
+}
+
+
+@pytest.mark.parametrize("script", STARTS)
+def test_a_program_that_finds_foreign_libraries_is_refused_before_anything_is_solved(fake, monkeypatch, script):
+    (fake / "bin" / "ehlFoam").write_text(f"#!/bin/sh\n{script}\n")
+    monkeypatch.setenv("LD_LIBRARY_PATH", "/o/lib")
+    (problem,) = installed.missing()
+    assert re.search(STARTS[script], problem)
+    assert problem.endswith("or build it again with `ehdmaps openfoam`")
+    monkeypatch.delenv("LD_LIBRARY_PATH")
+    assert "LD_LIBRARY_PATH" not in installed.missing()[0]
+
+
+def test_a_program_that_is_none_is_refused(fake):
+    (fake / "bin" / "ehlFoam").write_text("")
+    assert re.search(r"cannot be started \(.*Exec format error.*\); build it again", installed.missing()[0])
+
+
 def test_a_build_on_another_processor_is_refused(fake, tmp_path):
     openfoam_fake.record(fake, machine="0123456789abcdef")
     (problem,) = installed.missing()
