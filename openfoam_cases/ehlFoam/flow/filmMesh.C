@@ -288,6 +288,7 @@ Foam::tmp<Foam::surfaceScalarField> Foam::filmMesh::carriedSmooth
 Foam::tmp<Foam::surfaceScalarField> Foam::filmMesh::carriedSharp
 (
     const volScalarField& field,
+    const surfaceScalarField& flux,
     const scalar inletValue
 ) const
 {
@@ -296,7 +297,7 @@ Foam::tmp<Foam::surfaceScalarField> Foam::filmMesh::carriedSharp
     forAll(columnFace_, face)
     {
         const label k = columnFace_[face];
-        if (k > 0) value[face] = field[cell(k - 1, faceRow_[face])];
+        if (k > 0) value[face] = field[cell(flux[face] < 0 ? k : k - 1, faceRow_[face])];
     }
     value.boundaryFieldRef()[inlet()] = inletValue;
     return tface;

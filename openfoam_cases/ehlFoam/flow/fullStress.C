@@ -309,7 +309,7 @@ Foam::List<Foam::scalarField> Foam::fullStress::residual
         volumeFlux -= film_.sweptFlux(rate->x, rate->h);
     }
     flux_ = volumeFlux
-       *film_.carriedSmooth(rho_, oil_.density(0))*film_.carriedSharp(fraction_, 1);
+       *film_.carriedSmooth(rho_, oil_.density(0))*film_.carriedSharp(fraction_, volumeFlux, 1);
     // nothing passes the surfaces
     flux_.boundaryFieldRef()[film_.lower()] = 0.0;
     flux_.boundaryFieldRef()[film_.upper()] = 0.0;

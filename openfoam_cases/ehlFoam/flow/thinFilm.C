@@ -151,17 +151,30 @@ void Foam::thinFilm::balance(filmState& state) const
 
 void Foam::thinFilm::settle(const filmState& before, filmState& after)
 {
-    if (newtonian()) return;
     film_.move(after.x, after.h);
     for (label i = 0; i < film_.columns(); ++i)
     {
         for (label j = 0; j < film_.rows(); ++j) p_[film_.cell(i, j)] = oil_.pressure(after.column[i]);
     }
+    p_.boundaryFieldRef()[film_.inlet()] == inletPressure(after);
     p_.correctBoundaryConditions();
     const scalarField gradient(fvc::grad(p_)().primitiveField().component(vector::X));
     const scalar speed = contact_.entrainment(), slide = contact_.upperSpeed - contact_.lowerSpeed;
     for (label i = 0; i < film_.columns(); ++i)
     {
+        auto put = [&](const shearedColumn& column)
+        {
+            const scalarField settled(column.velocity()/speed);
+            forAll(settled, j) after.local[place(i, j, velocity)] = settled[j];
+        };
+        shearedColumn byGradient(sheared(after, i));
+        byGradient.meetGradient(gradient[film_.cell(i, 0)]);
+        if (newtonian())
+        {
+            // a step may change viscosities a hundredfold: what its tangent adds to velocities, pressure does not drive
+            put(byGradient);
+            continue;
+        }
         // where the column was: its flux, and the gradient of its stress
         const scalarField was(addedVelocity(before, i));
         const scalar h = 0.5*(before.h[i] + before.h[i + 1]);
@@ -174,19 +187,14 @@ void Foam::thinFilm::settle(const filmState& before, filmState& after)
         };
         const scalar wasGradient = (stress(film_.rows()) - stress(0))/h;
 
-        shearedColumn byGradient(sheared(after, i)), byFlow(byGradient);
-        byGradient.meetGradient(gradient[film_.cell(i, 0)]);
+        shearedColumn byFlow(sheared(after, i));
         byFlow.meetFlow(average(addedVelocity(after, i)), wasGradient);
         const scalar unit = oil_.shear().stress(pressure)/h;
         auto moved = [&](const shearedColumn& column)
         {
             return mag(column.gradient() - wasGradient)/unit + mag(column.flow() - average(was))/speed;
         };
-        const scalarField settled
-        (
-            (moved(byGradient) < moved(byFlow) ? byGradient : byFlow).velocity()/speed
-        );
-        forAll(settled, j) after.local[place(i, j, velocity)] = settled[j];
+        put(moved(byGradient) < moved(byFlow) ? byGradient : byFlow);
     }
 }
 
@@ -297,7 +305,7 @@ Foam::List<Foam::scalarField> Foam::thinFilm::residual
         volumeFlux -= film_.sweptFlux(rate->x, rate->h);
     }
     flux_ = (1 - film_.acrossFilm)*volumeFlux
-       *film_.carriedSmooth(rho_, oil_.density(0))*film_.carriedSharp(fraction_, 1);
+       *film_.carriedSmooth(rho_, oil_.density(0))*film_.carriedSharp(fraction_, volumeFlux, 1);
     rho_ *= fraction_;
 
     List<scalarField> result(heat_.valid() ? 5 : 2);

@@ -22,12 +22,16 @@ static constexpr scalar mostWarmth = 0.08;
 //- Defect of the mass flux upstream of rupture that counts as none; that of a cell may be a hundred times as large
 static constexpr scalar mostDefect = 1e-8;
 
-//- Steps that are cut one after another, and full steps of no length beside balances that are not met, before it is
-//  given up; and steps in which none is half as long as the shortest before
-static constexpr label mostCuts = 12, mostIdle = 3, mostLost = 15;
+//- Steps that are cut one after another, and full steps of no length beside balances that are not met (a step by a
+//  tangent that is new may come between, with its noise), before it is given up; and full steps in which none
+//  is half as long as the shortest before
+static constexpr label mostCuts = 25, mostIdle = 3, mostLost = 15;
 
 //- Length of a step up to which the law of shear is as good as its tangent
 static constexpr scalar straight = 1e-3;
+
+//- Last change of a wall's temperature over the largest one: a light film warms walls by less than other steps tell
+static constexpr scalar sameWarmth = 1e-5;
 
 //- Length of a step that is none
 static constexpr scalar noLength = 1e-12;
@@ -219,6 +223,8 @@ Foam::newtonResult Foam::newton
         if (backAndForth > 2) part *= 0.5;
         if (part < 1) next = stepped(s, u, part, change);
         const scalar moved = length(next);
+        const bool warm = s.wallSize() == 0
+          || (next.wall - u.wall).cwiseAbs().maxCoeff() <= max(sameWarmth*next.wall.cwiseAbs().maxCoeff(), noLength);
         Eigen::Index most = 0;
         (next.column - u.column).cwiseAbs().maxCoeff(&most);
         const bool edge = crossed(s, u, next);
@@ -231,7 +237,7 @@ Foam::newtonResult Foam::newton
         // the balances, before this step; in time the flux is not the same everywhere
         const bool balanced = (rateOf || s.fluxDefect() < mostDefect)
           && s.flow().cellContinuity() < 100*mostDefect;
-        if (part == 1 && moved < controls.tolerance && balanced)
+        if (part == 1 && moved < controls.tolerance && balanced && warm)
         {
             return {outcome::converged, "", iteration, u};
         }
@@ -240,16 +246,21 @@ Foam::newtonResult Foam::newton
             return {outcome::stagnated, "Newton's steps are cut to nothing", iteration, u};
         }
         cuts = part < 1 ? cuts + 1 : 0;
-        idle = part == 1 && moved < noLength ? idle + 1 : 0;
-        lost = moved < 0.5*shortest ? 0 : lost + 1;
+        if (part == 1 && moved < noLength) ++idle;
+        if (moved < 0.5*shortest) lost = 0;
+        else if (part == 1) ++lost;
         shortest = min(shortest, moved);
-        if (cuts >= mostCuts || idle >= mostIdle || lost >= mostLost)
+        const bool last = iteration == controls.maxIterations;
+        if (cuts >= mostCuts || idle >= mostIdle || lost >= mostLost || last)
         {
             return
             {
                 outcome::stagnated,
                 cuts >= mostCuts ? "the last " + std::to_string(cuts) + " of Newton's steps had to be cut"
-              : idle >= mostIdle ? "Newton's steps end where mass is not conserved"
+              : shortest < controls.tolerance && !balanced
+              ? "Newton's steps end at a length of " + name(shortest) + " where the mass flux upstream of rupture varies"
+                " by " + name(s.fluxDefect()) + ", continuity of a cell by " + name(s.flow().cellContinuity())
+              : last ? "no convergence in " + std::to_string(iteration) + " steps"
               : "Newton's steps have not become shorter for " + std::to_string(lost) + " steps",
                 iteration,
                 u
@@ -260,11 +271,5 @@ Foam::newtonResult Foam::newton
         previous = moved;
         if (part < 1 || edge) kept.reset();
     }
-    return
-    {
-        outcome::stagnated,
-        "no convergence in " + std::to_string(controls.maxIterations) + " steps",
-        controls.maxIterations,
-        u
-    };
+    return {outcome::stagnated, "no step of Newton's method is allowed", 0, u};
 }
