@@ -43,6 +43,7 @@ PAGES = (
     "docs/measured.md",
     "docs/accuracy.md",
     "docs/point_contacts.md",
+    "docs/cfd.md",
     "docs/solids.md",
     "docs/python.md",
     "ehdmaps/GLOSSARY.md",

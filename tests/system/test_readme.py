@@ -114,6 +114,7 @@ PAGES = (
     "docs/measured.md",
     "docs/accuracy.md",
     "docs/evidence.md",
+    "docs/cfd.md",
     "docs/solids.md",
     "ehdmaps/REFERENCE.md",
     "mbs/REFERENCE.md",
