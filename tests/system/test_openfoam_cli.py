@@ -20,6 +20,7 @@ import xarray as xr
 
 from ehdmaps import errors
 from ehdmaps.jobs import cli
+from ehdmaps.jobs.make.spacing import RANDOM
 from ehdmaps.jobs.reader import parse_job
 from ehdmaps.maps.emap import open_map
 from ehdmaps.openfoam.case import remove_leftovers
@@ -31,9 +32,12 @@ SETTINGS = """columns = 40
 rows = 4
 start = "hertz"
 fill = "none"
+backbone = "none"
 """
 JOB = map_job(spaced("2 N/mm", "200 N/mm", 2), '["1 m/s"]', '["40 degC"]', solver="openfoam") + SETTINGS
 POINTS = 4
+BESIDE = POINTS + 4 + RANDOM
+"""Points of `reynolds` by which a map tells what its axes lose: those of the map, two a cell, and random ones."""
 
 
 @pytest.fixture
@@ -41,6 +45,7 @@ def folder(tmp_path, monkeypatch):
     """Folder with a job, where the commands run; a fake build beside it; `build` is where its mode stands."""
     for key, value in openfoam_fake.build(tmp_path / "build").items():
         monkeypatch.setenv(key, value)
+    monkeypatch.setattr("ehdmaps.jobs.make.generate.plan_spacing", lambda *_: None)  # not in commands of their own
     monkeypatch.setattr(tempfile, "tempdir", None)  # python asks for TMPDIR only once
     monkeypatch.setenv("PYTHONPATH", str(Path(errors.__file__).parents[1]))  # for commands in their own process
     monkeypatch.setenv("HOME", str(tmp_path / "home"))
@@ -134,7 +139,7 @@ def test_kill_9_of_a_running_solver_costs_nothing(folder):
     os.kill(int(openfoam_fake.starts(build_of(folder))[-1][0]), signal.SIGKILL)
     out, _ = job.communicate(timeout=60)
     assert job.returncode == 0
-    assert counts(out) == (0, POINTS, 0)
+    assert counts(out) == (0, POINTS + BESIDE, 0)
     assert "1 x solved at the second try, the first ehlFoam was killed by signal 9 (SIGKILL)" in out
     assert left_cases(folder) == []  # the second try made it good
 
@@ -395,7 +400,6 @@ def test_a_check_refuses_what_a_map_refuses(folder, checked, capfd, monkeypatch,
 @pytest.mark.slow
 def test_everything_else_works_without_openfoam(folder, done, monkeypatch):
     monkeypatch.setenv("EHDMAPS_OPENFOAM", str(folder / "none"))
-    (folder / "job.toml").write_text(JOB.replace("[solver]", "[solver]\nbackbone = 'none'"))
     assert counts(done("generate", "job.toml", "--workers", "1", "--solver", "reynolds").stdout) == (0, POINTS, 0)
     code = (
         "import sys; from ehdmaps.jobs.cli import main; status = main(sys.argv[1:]); "

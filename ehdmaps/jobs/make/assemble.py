@@ -149,8 +149,10 @@ def assembled(job: Job, films: Mapping[str, npt.NDArray[Any]]) -> dict[str, npt.
     return values | {"filled": holes_filled.astype(np.int8)}
 
 
-def with_correction(dataset: xr.Dataset, job: Job, correction: Correction, corrector: ContactSolver) -> xr.Dataset:
-    """The map of a job whose films are corrected: with its model errors, and what corrected it.
+def with_correction(
+    dataset: xr.Dataset, job: Job, correction: Correction, corrector: ContactSolver, lines_of: str = ""
+) -> xr.Dataset:
+    """The map of a job whose films are corrected, or those of its lines: with its model errors, and what corrected it.
 
     Parameters
     ----------
@@ -162,6 +164,8 @@ def with_correction(dataset: xr.Dataset, job: Job, correction: Correction, corre
         The correction.
     corrector : ContactSolver
         The dearer solver.
+    lines_of : str
+        Name of the solver of the lines, where these alone are corrected, by points of the map.
     """
     from ehdmaps.jobs.make.correction import Films, Place
     from ehdmaps.jobs.make.correction_design import places_of
@@ -183,13 +187,14 @@ def with_correction(dataset: xr.Dataset, job: Job, correction: Correction, corre
         "solver": corrector.name,
         "settings": corrector.settings(),
         "version": solver_version(corrector),
+        **({"lines": lines_of} if lines_of else {}),
         **correction.record(),
     }
     variables = {name: schema.typed(schema.variable(name), array) for name, array in values.items()}
     return dataset.assign(variables).assign_attrs(
         {
             **corrector.provenance,
-            "title": f"{dataset.attrs['title']}, corrected by {corrector.name}",
+            **({} if lines_of else {"title": f"{dataset.attrs['title']}, corrected by {corrector.name}"}),
             schema.CORRECTION: record_json(made_by),
         }
     )

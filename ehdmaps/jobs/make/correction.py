@@ -25,7 +25,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from math import ceil
 from typing import Any, NamedTuple
 
@@ -34,7 +34,7 @@ import numpy as np
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.errors import MapError
 from ehdmaps.jobs.job import Job
-from ehdmaps.jobs.make.correction_design import Candidates, candidates, free, per_zeta, places_of, spread_out
+from ehdmaps.jobs.make.correction_design import Candidates, candidates, free, per_zeta, places_of, spread_out, usable
 from ehdmaps.jobs.make.law_check import SMALL_DAMPING
 from ehdmaps.jobs.make.sampling import SamplePoint
 from ehdmaps.jobs.make.store import Arrays
@@ -48,6 +48,9 @@ from ehdmaps.units import LOAD, SPEED, TEMPERATURE
 
 FEWEST = 4
 """Points with a solution by both solvers that a correction needs."""
+
+MOST_OWN = 64
+"""Points of a map that correct its lines, at most: more hardly change a difference that is smooth."""
 
 ALSO = ("central_film", "minimum_film", "rolling_force", "mass_flow")
 """Positive quantities that are corrected besides, where both solvers have them."""
@@ -102,6 +105,8 @@ class Correction:
         and of the corrected one, each of these points left out of the correction in turn.
     shares : array (n,)
         Part of the job's range that is nearest to each of these points.
+    witnesses : mapping of str to array (n,)
+        Signed relative errors of the corrected solver at points that are no part of the correction; empty without any.
     """
 
     points: tuple[SamplePoint, ...]
@@ -115,6 +120,7 @@ class Correction:
     before: Mapping[str, FloatArray]
     left_out: Mapping[str, FloatArray]
     shares: FloatArray
+    witnesses: Mapping[str, FloatArray] = field(default_factory=dict)
 
     def corrected(self, task: LineTask, arrays: Arrays) -> Arrays:
         """The arrays of a task of the cheaper solver with the correction.
@@ -215,6 +221,11 @@ class Correction:
                 name for name, used in zip(("film_offset", "loss_compliance"), self.applied, strict=True) if not used
             ],
             "before": {name: quantiles(self.before[name], self.shares) for name in JUDGED},
+            **(
+                {"witnesses": {name: quantiles(self.witnesses[name], _even(self.witnesses[name])) for name in JUDGED}}
+                if self.witnesses
+                else {}
+            ),
             "leave_one_out": {name: quantiles(self.left_out[name], self.shares) for name in JUDGED},
             "lengths": {
                 name: dict(zip(("arsinh(zeta/0.3)", "ln(1+L)", "temperature"), one.settings.lengths, strict=True))
@@ -293,6 +304,41 @@ def correction(
     return _regressed(job, among, sample, both)
 
 
+def correction_by_points(
+    job: Job, points: Sequence[SamplePoint], cheap: Sequence[Arrays], dear: Sequence[Arrays]
+) -> Correction | None:
+    """Regress what two solvers differ by at points that both were asked for anyway; None with too few solutions.
+
+    At most `MOST_OWN` of the points with a solution are taken, which fill the range. The others are witnesses.
+
+    Parameters
+    ----------
+    job : Job
+        What is made.
+    points : sequence of SamplePoint
+        The points, with speeds above zero.
+    cheap, dear : sequence of Arrays
+        What both solvers found, a point each.
+
+    """
+    every = _Sample([], [with_later_fields(one) for one in cheap], [with_later_fields(one) for one in dear])
+    good = {points[i]: i for i in np.flatnonzero(_both(every)).tolist()}
+    among = usable(job, tuple(good))
+    if len(among.points) < FEWEST:
+        return None
+    chosen = spread_out(among, MOST_OWN)
+    at = [good[among.points[i]] for i in chosen]
+    sample = _Sample(chosen, [every.cheap[i] for i in at], [every.dear[i] for i in at])
+    made = _regressed(job, among, sample, np.ones(len(at), dtype=bool))
+    others = free(among, chosen)
+    if not others.size:
+        return made
+    left, where = [among.points[i] for i in others], _place([among.points[i] for i in others])
+    films = [_films([found[good[point]] for point in left]) for found in (every.cheap, every.dear)]
+    errors = _errors(left, where, made.films(films[0], among.places[others], where), films[1])
+    return replace(made, witnesses=errors)
+
+
 def error_of(contact: LineContact, where: Place, films: Films, true: Films) -> dict[str, FloatArray]:
     """Relative errors of `JUDGED`, signed; that of damping over `SMALL_DAMPING` where damping is below it.
 
@@ -335,6 +381,11 @@ def quantiles(errors: FloatArray, shares: FloatArray) -> dict[str, float]:
         "95 %": float(sizes[order[at[1]]]),
         "largest": float(sizes[order[-1]]),
     }
+
+
+def _even(values: FloatArray) -> FloatArray:
+    """Equal shares that sum to one."""
+    return np.full(values.size, 1.0 / values.size)
 
 
 def point_words(point: SamplePoint) -> str:

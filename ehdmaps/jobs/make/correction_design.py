@@ -144,6 +144,19 @@ def candidates(job: Job) -> Candidates:
     rng = np.random.default_rng(SEED)
     drawn = [draw(job, rng) for _ in range(CANDIDATES)]
     drawn += [point for _ in range(IN_VALLEY) if (point := draw_in_valley(job, rng)) is not None]
+    return usable(job, drawn)
+
+
+def usable(job: Job, drawn: Sequence[SamplePoint]) -> Candidates:
+    """Points of a job as candidates; those whose film Moes' formula cannot give are left out.
+
+    Parameters
+    ----------
+    job : Job
+        The job.
+    drawn : sequence of SamplePoint
+        Its points, with speeds above zero.
+    """
     kept, places, shares = [], [], []
     solver = FormulaSolver()
     for point in drawn:

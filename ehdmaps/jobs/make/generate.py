@@ -16,7 +16,7 @@ from ehdmaps.errors import InputError, MapError
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.make.assemble import assemble, placed, with_correction
-from ehdmaps.jobs.make.correction import Correction, correction
+from ehdmaps.jobs.make.correction import Correction, correction, correction_by_points
 from ehdmaps.jobs.make.law_check import HALVED, REFUSED, LawCheck, checked_laws, coarse_axis, films_met, met, plan_check
 from ehdmaps.jobs.make.log import RunLog, job_lines
 from ehdmaps.jobs.make.report import (
@@ -29,12 +29,21 @@ from ehdmaps.jobs.make.report import (
     spacing_lines,
     status_lines,
 )
+from ehdmaps.jobs.make.sampling import SamplePoint
 from ehdmaps.jobs.make.spacing import SpacingPlan, plan_spacing, with_spacing
 from ehdmaps.jobs.make.status import StatusFile, about
 from ehdmaps.jobs.make.store import Arrays, NoStore, Results, Store, store_path
 from ehdmaps.jobs.make.sweep import Progress, SweepResult, sweep
 from ehdmaps.jobs.make.table_films import table_films, unserved
-from ehdmaps.jobs.make.tasks import MOST_LINE_POINTS, LineTask, Refinement, backbone_group, line_tasks, refinement
+from ehdmaps.jobs.make.tasks import (
+    MOST_LINE_POINTS,
+    LineTask,
+    Refinement,
+    backbone_group,
+    knows_heat,
+    line_tasks,
+    refinement,
+)
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone_plan import Axis
 from ehdmaps.maps.emap import EHDMap
@@ -330,7 +339,8 @@ class _Plan:
 
     With `from_table` points and laws are read from the film table, and the check is all that is solved; `unserved` says
     why they are not, where they were to be. `halved` are the axes along which the steps of the lines were halved, in
-    turn; `correction` is what the points of the `corrector` made, once they are solved.
+    turn; `correction` is what the points of the `corrector` made, once they are solved. With `own_lines` it is made by
+    the points of the map: the lines are those of a fast solver, and it corrects nothing else.
     """
 
     job: Job
@@ -344,6 +354,12 @@ class _Plan:
     unserved: str = ""
     halved: tuple[Axis, ...] = ()
     correction: Correction | None = None
+    own_lines: bool = False
+
+    @property
+    def line_solver(self) -> ContactSolver:
+        """What solves the lines."""
+        return (self.own_lines and _beside(self.job, self.solver)) or self.solver
 
     @property
     def everything(self) -> tuple[LineTask, ...]:
@@ -389,8 +405,47 @@ def _solved(
     else:
         why = ""
     lines, check = refinement(job, solver), plan_check(job, solver, tolerance)
-    spacing = plan_spacing(job, solver) if lines is None and check is None else None
-    return _Plan(job, solver, corrector, line_tasks(job, solver), lines, check, spacing, unserved=why)
+    fast = None if lines else _beside(job, solver)
+    own = refinement(job, fast) if fast else None
+    spacing = plan_spacing(job, solver) if lines is None and (check is None or own) else None
+    if spacing is None:
+        own = None
+    tasks = line_tasks(job, solver)
+    return _Plan(job, solver, corrector, tasks, lines or own, check, spacing, unserved=why, own_lines=own is not None)
+
+
+def _beside(job: Job, solver: ContactSolver) -> ContactSolver | None:
+    """What solves the lines of a map by CFD, in seconds; None where that takes as long as the map, as with heat."""
+    fast = solvers.reference(job, solver)
+    return None if fast is None or fast is solver or knows_heat(fast) else fast
+
+
+def _with_own_lines(planned: _Plan, result: SweepResult) -> _Plan:
+    """The plan with its lines corrected by its points, once these are solved; without lines where they are too few."""
+    if not planned.own_lines or planned.spacing is None:
+        return planned
+    cheap, dear = (_by_place(tasks, result) for tasks in (planned.spacing.nodes, planned.tasks))
+    job = planned.job
+    axes = job.contacts, job.loads, job.entrainment_speeds, job.temperatures
+    points = {
+        place: SamplePoint(*(axis[index] for axis, index in zip(axes, place, strict=True)))  # type: ignore[arg-type]
+        for place in dear
+        if job.entrainment_speeds[place[2]] > 0.0
+    }
+    made = correction_by_points(job, list(points.values()), *([found[at] for at in points] for found in (cheap, dear)))
+    if made is None:
+        return replace(planned, refined=None, own_lines=False)
+    return replace(planned, correction=made)
+
+
+def _by_place(tasks: Sequence[LineTask], result: SweepResult) -> dict[tuple[int, int, int, int], Arrays]:
+    """Arrays of single points by their indices in the map."""
+    return {
+        (i, load + n, j, k): {name: values[n : n + 1] for name, values in result.arrays[task.key].items()}
+        for task in tasks
+        for n in range(task.points)
+        for i, load, j, k in [task.place]
+    }
 
 
 def _corrected(planned: _Plan, solve: Callable[[Sequence[LineTask]], Mapping[str, Arrays]]) -> _Plan:
@@ -406,7 +461,8 @@ def _results(planned: _Plan, result: SweepResult) -> Mapping[str, Arrays]:
     """Arrays of all tasks by key, corrected where that is wanted."""
     if planned.correction is None:
         return result.arrays
-    return {task.key: planned.correction.corrected(task, result.arrays[task.key]) for task in planned.everything}
+    tasks = planned.refined.tasks if planned.own_lines and planned.refined else planned.everything
+    return {**result.arrays, **{t.key: planned.correction.corrected(t, result.arrays[t.key]) for t in tasks}}
 
 
 def _refined(
@@ -416,6 +472,7 @@ def _refined(
 
     `solve` adds to the result.
     """
+    planned = _with_own_lines(planned, result)
     dataset, group = _finished(planned, result, where)
     if planned.from_table and not _served(planned, dataset, result):
         tolerance = planned.check.tolerance if planned.check else None
@@ -450,6 +507,15 @@ def _served(planned: _Plan, dataset: xr.Dataset, result: SweepResult) -> bool:
     return met(dataset.attrs) or check is None or films_met(check, EHDMap(dataset), result.arrays)
 
 
+def _makes_laws(dataset: xr.Dataset, group: xr.Dataset | None) -> bool:
+    """Tell whether laws can be made from the lines of a map."""
+    try:
+        EHDMap(dataset, group).check_usable()
+    except MapError:
+        return False
+    return True
+
+
 def _finer(planned: _Plan, dataset: xr.Dataset, group: xr.Dataset | None, result: SweepResult) -> _Plan | None:
     """The plan with half the step along one axis of its lines; None where that would not help, or be too much."""
     if planned.check is None or planned.refined is None or met(dataset.attrs) or REFUSED in dataset.attrs:
@@ -457,7 +523,7 @@ def _finer(planned: _Plan, dataset: xr.Dataset, group: xr.Dataset | None, result
     axis = coarse_axis(planned.check, EHDMap(dataset, group), _results(planned, result))
     if axis is None:
         return None
-    lines = refinement(planned.job, planned.solver, planned.refined.steps.finer(axis))
+    lines = refinement(planned.job, planned.line_solver, planned.refined.steps.finer(axis))
     if lines is None or lines.points > MOST_LINE_POINTS:
         return None
     return replace(planned, refined=lines, halved=(*planned.halved, axis))
@@ -473,15 +539,18 @@ def _finished(planned: _Plan, result: SweepResult, where: str) -> tuple[xr.Datas
     dataset = assemble(planned.job, planned.solver, films)
     if planned.from_table:
         dataset.attrs[schema.FILM_TABLE] = shipped_tables().attributes[CHECKSUM]
-    if planned.correction and planned.corrector:
-        dataset = with_correction(dataset, planned.job, planned.correction, planned.corrector)
+    if planned.correction:
+        by, lines_of = planned.corrector or planned.solver, planned.line_solver.name if planned.own_lines else ""
+        dataset = with_correction(dataset, planned.job, planned.correction, by, lines_of)
     validate(dataset, where)
     group = None
     if planned.refined:
         group = backbone_group(planned.refined, arrays).assign_attrs({schema.SEAL: points_seal(dataset)})
+    if planned.own_lines and not _makes_laws(dataset, group):
+        return _finished(replace(planned, refined=None, correction=None, own_lines=False), result, where)
     if planned.check:
         dataset.attrs.update(checked_laws(planned.check, EHDMap(dataset, group), arrays))
-    if planned.spacing:
+    if planned.spacing and not planned.refined and not planned.check:
         dataset = with_spacing(dataset, planned.job, planned.spacing, result.arrays)
     if planned.unserved:
         dataset.attrs[schema.UNSERVED] = planned.unserved

@@ -324,7 +324,8 @@ def spacing_remedy(solver: str) -> str:
     more = "more loads, speeds and temperatures make them smaller"
     return {
         "reynolds": '`backbone = "law"` solves lines between the points, which leaves hardly any',
-        "openfoam": f"a map of reynolds that a few points of openfoam correct has hardly any, as nu308_cfd; {more}",
+        "openfoam": "a map of reynolds that a few points of openfoam correct has hardly any, as nu308_cfd, nor have "
+        f'isothermal films with `backbone = "law"`; {more}',
     }.get(solver, more)
 
 
@@ -404,7 +405,12 @@ def unsolved(dataset: xr.Dataset) -> int:
 def _lines(dataset: xr.Dataset, record: Mapping[str, Any]) -> Iterator[str]:
     """Yield the lines of a correction."""
     settings = ", ".join(f"{plain(key).replace('_', ' ')} {plain(value)}" for key, value in record["settings"].items())
-    yield f"correction by {plain(record['solver'])}{f' ({settings})' if settings else ''}"
+    what = (
+        f"refinement lines by {plain(record['lines'])}, corrected at points of the map"
+        if "lines" in record
+        else "correction"
+    )
+    yield f"{what} by {plain(record['solver'])}{f' ({settings})' if settings else ''}"
     counts = f"{int(record['asked'])} points, {int(record['usable'])} of them with a solution by both solvers"
     yield f"  {counts}; {float(record['solve_seconds']):.3g} s of processor time for solving"
     failed = defaultdict(list)
@@ -419,7 +425,9 @@ def _lines(dataset: xr.Dataset, record: Mapping[str, Any]) -> Iterator[str]:
         words = plain(name).replace("_", " ")
         yield f"  {words} left as it was: points left out one by one are no better with the correction"
     yield f"  {'difference from it, relative':{_WIDTH}s}" + "".join(f"{level:>11s}" for level in _LEVELS)
-    for kind, words in (("before", "not corrected"), ("leave_one_out", "corrected, leaving out each point")):
+    kinds = {"before": "not corrected", "leave_one_out": "corrected, leaving out each point"}
+    kinds |= {"witnesses": "corrected, at others"} if "witnesses" in record else {}
+    for kind, words in kinds.items():
         for name in JUDGED:
             values = "".join(f"{float(record[kind][name][level]):11.2g}" for level in _LEVELS)
             yield f"  {name.replace('_', ' ') + ', ' + words:{_WIDTH}s}{values}"
