@@ -38,7 +38,7 @@ def parser() -> argparse.ArgumentParser:
         prog="ehdmaps",
         description="Elastohydrodynamic contact maps for roller bearings.",
         epilog="JOB is a job file, a map (its job is repeated), or the name of a shipped job: nu308, n1014, "
-        "nu308_openfoam, nu308_night; for generate, check and status also a batch file, of many maps. "
+        "nu308_cfd, nu308_openfoam, nu308_night; for generate, check and status also a batch file, of many maps. "
         "Exit status: 0 done; 1 done, with failed points or laws that miss their bars; 2 bad input, nothing "
         "written; 130 stopped with Ctrl-C, 143 by SIGTERM.",
         renamed=_RENAMED,

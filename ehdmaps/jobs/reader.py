@@ -241,7 +241,7 @@ def _solver(
 
 
 def _corrected_by(section: Table, top: Table, name: str, options: dict[str, object]) -> CorrectedBy | None:
-    """Read by what the films are corrected, and the keys of that solver in [correction]."""
+    """Read by what the films are corrected, and the keys of that solver in [correction], which repeats the physics."""
     with_films = tuple(known for known in solvers.SOLVER_NAMES if known != "hertz")
     by = section.choice("corrected_by", with_films)
     points = section.integer("correction_points", FEWEST_CORRECTION_POINTS, MOST_CORRECTION_POINTS)
@@ -253,9 +253,13 @@ def _corrected_by(section: Table, top: Table, name: str, options: dict[str, obje
         return None
     if by is None:
         return None
-    of_corrector = {} if own is None else solvers.read_options(by, own)
+    stated = {} if own is None else solvers.read_options(by, own)
     if own is not None:
         own.close()
+    physics = solvers.carried(options, by)
+    if "physics" in physics and not solvers.takes(by, "physics", str(physics["physics"])):
+        del physics["physics"]
+    of_corrector = {**physics, **stated}
     if name == "hertz":
         section.note("corrected_by", "stands beside name = 'hertz', which has no film to correct; delete it")
     elif by == name and of_corrector == options:

@@ -38,6 +38,10 @@ PAIRS = {
     "formula-reynolds": (("formula", {}), ("reynolds", {})),
     "coarse-reynolds": (("reynolds", {"density": 4.0}), ("reynolds", {"density": 12.0})),
     "reynolds-thin_film": (("reynolds", {}), ("openfoam", {"flow": "thin_film"})),
+    "heat-thin_film": (
+        ("reynolds", {"physics": "thermal", "shear": "limiting"}),
+        ("openfoam", {"physics": "thermal", "shear": "limiting"}),
+    ),
     "reynolds-full_stress": (("reynolds", {}), ("openfoam", {"flow": "full_stress"})),
 }
 """Cheaper and dearer solver, each with its keys."""

@@ -145,6 +145,23 @@ def test_shipped_jobs_are_what_the_contract_asks_for(name):
     assert (job.temperatures[0], job.temperatures[-1]) == (293.15, 393.15)
 
 
+def test_a_correction_has_the_physics_of_the_map():
+    """Also in the shipped job, by the two keys that it names."""
+    text = read_job("nu308_cfd").text
+    isothermal = parse(text)
+    assert isothermal.corrected_by is not None
+    assert (isothermal.corrected_by.options, isothermal.backbone) == ({}, "law")
+    text = text.replace("# physics", "physics").replace("# shear", "shear")
+    warm = parse(f"{text}\n[correction]\nrows = 12\n")
+    assert warm.corrected_by is not None
+    assert warm.solver_options == {"physics": "thermal", "shear": "limiting"}
+    assert warm.corrected_by.options == {**warm.solver_options, "rows": 12}
+    with pytest.raises(InputError, match=r"\[correction\] physics: got 'isothermal' for films that are thermal"):
+        parse(f'{text}\n[correction]\nphysics = "isothermal"\n')
+    with pytest.raises(InputError, match=r"\[correction\] physics: got 'isothermal' for films that are inlet-heat"):
+        parse(text.replace('"thermal"', '"inlet-heat"'))  # which openfoam does not know
+
+
 def test_the_commented_alternatives_of_the_shipped_job_are_valid():
     text = read_job("nu308").text
     for key in ("inner_raceway_diameter", "outer_raceway_diameter", "roller_diameter", "roller_length", "rollers"):

@@ -111,7 +111,10 @@ STANDS_ON_LINES = (
     "do not bring them closer to their bars; the quantiles of their errors stand above; `ehdmaps solve` gives a single "
     "point without a law"
 )
-STANDS_ON_POINTS = "these laws are made from the points of the map: more temperatures, speeds or loads help"
+STANDS_ON_POINTS = (
+    "these laws are made from the points of the map: more temperatures, speeds or loads help; so do refinement lines, "
+    "of reynolds, which CFD corrects in nu308_cfd"
+)
 STANDS_ON_TABLE = (
     "films from the film table are within these bars: what misses is the table of the law, at the bottom of the "
     "damping valley; the quantiles of its errors stand above; `ehdmaps solve` gives a single point without a law"
