@@ -155,7 +155,7 @@ def usable(job: Job, drawn: Sequence[SamplePoint]) -> Candidates:
     job : Job
         The job.
     drawn : sequence of SamplePoint
-        Its points, with speeds above zero.
+        Points of its range, with speeds above zero.
     """
     kept, places, shares = [], [], []
     solver = FormulaSolver()

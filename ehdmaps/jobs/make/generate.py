@@ -358,7 +358,7 @@ class _Plan:
 
     @property
     def line_solver(self) -> ContactSolver:
-        """What solves the lines."""
+        """Solver of the lines."""
         return (self.own_lines and _beside(self.job, self.solver)) or self.solver
 
     @property
@@ -415,7 +415,7 @@ def _solved(
 
 
 def _beside(job: Job, solver: ContactSolver) -> ContactSolver | None:
-    """What solves the lines of a map by CFD, in seconds; None where that takes as long as the map, as with heat."""
+    """Solver of the lines of a map by CFD, in seconds; None where that takes as long as the map, as with heat."""
     fast = solvers.reference(job, solver)
     return None if fast is None or fast is solver or knows_heat(fast) else fast
 
