@@ -18,7 +18,7 @@ from ehdmaps.exports.target import Target
 from ehdmaps.maps.emap import EHDMap, curves, film_between, rough_layers
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.rough_layer import FILM_PARAMETER, FILM_SHARE, RoughLayer, load_sharing
-from ehdmaps.maps.usable import check_grid
+from ehdmaps.maps.usable import known_grid
 from ehdmaps.outputs import MARK, TABLE, Output, check_outputs, write_text
 from ehdmaps.program import count, plain
 from ehdmaps.units import SPEED, TEMPERATURE, Display, quantity
@@ -47,7 +47,7 @@ class Chosen:
     speeds, temperatures : tuple of float
         [m/s], [K]; every pair is a curve.
     points : int
-        Loads of a curve, evenly over their logarithm from the lowest to the highest of the map.
+        Loads of a curve, evenly over their logarithm from the lowest to the highest that is known there.
     """
 
     contact: str
@@ -82,10 +82,8 @@ def _lines(emap: EHDMap, chosen: Chosen, name: str) -> Iterator[str]:
     contacts = tuple(contact for contact in emap.contacts if contact.name in names)
     field = emap.film_field(names)
     films = FILMS if len(contacts) == 1 else ()
-    if films:
-        check_grid(emap.dataset, contacts)
-    axis = emap.dataset["load"].values
-    loads = np.geomspace(axis[0], axis[-1], chosen.points if axis.size > 1 else 1)
+    reach = known_grid(emap.dataset, contacts)[0] if films else emap.reach(names)
+    points = chosen.points if reach.axes[0].size > 1 else 1
     layers = rough_layers(emap)
     rough = f", {emap.surface.label}" if layers else ""
     rough += "; central and minimum film and Lambda of smooth surfaces" if layers and films else ""
@@ -96,6 +94,7 @@ def _lines(emap: EHDMap, chosen: Chosen, name: str) -> Iterator[str]:
     yield ",".join([*COLUMNS, *(f"{film} [m]" for film in films), *(f"{name} [1]" for name in of_roughness)])
     for temperature in chosen.temperatures:
         for speed in chosen.speeds:
+            loads = np.geomspace(*reach.loads_at(speed, temperature), points)
             curve = curves(field, contacts, loads, speed, temperature, layers)
             columns = [loads, curve.approach, curve.film_offset, curve.stiffness, curve.damping]
             between = [film_between(emap, film, contacts[0].name, loads, speed, temperature) for film in films]

@@ -6,7 +6,7 @@ The modules in the order in which data pass through them:
 schema         names, units and types of everything in a map file
 records        contacts, bearing and oil from the attributes of a map; stiffness and damping by a structural law
 reading        a map file as datasets: whether it is a map, and whether it was changed
-edges          films beyond the speeds and temperatures of a map
+edges          where the points of a map are known; films beyond its speeds and temperatures
 emap           `EHDMap`, `open_map`: a map file as a value; its curves over load, dense, for charts and tables
 usable         whether a law can be made from a map
 film_field     `FilmField`: film of each contact at any load, speed and temperature; down to which load it is known

@@ -31,6 +31,7 @@ from ehdmaps.errors import MapError
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone_plan import NEIGHBOURS, VALLEY, Axis
 from ehdmaps.maps.film_field import first_loads, known_from, lifted_loss
+from ehdmaps.maps.kernels.lines import one_end
 from ehdmaps.maps.kernels.locked_film import MOST, film_of, fitted_factor, law_differences, response_error
 from ehdmaps.maps.kernels.splines import mix_lines
 from ehdmaps.physics.contact import LineContact
@@ -333,6 +334,11 @@ class BackboneField:
         """
         contacts = list(self._contacts.values())
         return first_loads(contacts, self._lubricant, self.load_range[0], self._start, speeds, temperatures)
+
+    @property
+    def ends(self) -> FloatArray:
+        """The highest load everywhere; see `FilmField.ends`."""
+        return one_end(self.load_range[1])
 
     def locked_factors(self, contact: str, loads: FloatArray, speed: float, temperature: float) -> FloatArray | None:
         """Factors of the closed formula of the locked film; see `FilmField.locked_factors`."""

@@ -25,6 +25,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import MapError
 from ehdmaps.maps.contact_curve import ContactCurve, Curve
 from ehdmaps.maps.film_field import FilmField, valley_loads
+from ehdmaps.maps.kernels.lines import ends_at
 from ehdmaps.maps.kernels.splines import hermite, spline_coefficients, spline_slopes
 from ehdmaps.maps.kernels.tables import COLDEST, HALF_SPACE, POWER_LAW, ApproachTable
 from ehdmaps.maps.oil_layer import oil_layer
@@ -41,6 +42,7 @@ _LAYERED_STEP, _ROOT_STEP = 0.02, 0.1
 _FOOT = 0.1
 _MARGIN = 4
 _BEYOND = 2.0
+_SHARED = 0.98
 _WIDEST_CONTACT = 0.9
 
 
@@ -167,8 +169,7 @@ def compile_table(
     # nodes beyond the map come besides those that the map has without them
     lowest = float(np.min(stretched[lifted])) - _MARGIN * resolution.approach
     start -= resolution.approach * max(0, math.ceil((start - lowest) / resolution.approach - 1e-9))
-    held = np.count_nonzero(root[:, 0, 0] <= np.cbrt(held_load))
-    end = float(np.max(stretched[held - 1])) + _MARGIN * resolution.approach
+    end = float(np.max(stretched[root <= np.cbrt(held_load)])) + _MARGIN * resolution.approach
     nodes: FloatArray = start + resolution.approach * np.arange(math.ceil((end - start) / resolution.approach) + 1.0)
 
     logs = np.log(curve.loss_ratio)
@@ -280,7 +281,12 @@ def _sampled(
     """Samples of g and of the summed curve, from below lift-off to beyond the held load."""
     curves = [ContactCurve(field, contact, speeds, temperatures) for contact in contacts]
     lowest, highest = field.load_range
-    begins = field.first_loads(speeds, temperatures)
+    begins, ends = field.first_loads(speeds, temperatures), ends_at(field.ends, speeds, temperatures)
+    # loads that all lines share; where lines end at loads of their own, every line goes on beyond them
+    if np.max(begins) > lowest:
+        lowest = float(np.max(begins)) / _SHARED
+    if np.min(ends) < highest:
+        highest = float(np.min(ends)) * _SHARED
     first = np.cbrt(begins)
     faded = 0.7 * np.cbrt(np.min([curve.fade_load for curve in curves], axis=0))
     linear = np.linspace(-0.6, 1.0, 97)[:, None, None] * faded
@@ -291,16 +297,14 @@ def _sampled(
     part = np.linspace(0.0, 1.0, count + 1)[1:-1, None, None]
     tail = np.concatenate((linear, faded * (first / faded) ** part))
 
-    low_loads = _log_lines(begins, lowest, resolution.log_load)[:-1]
-    mapped = _log_range(lowest, highest, resolution.log_load)
-    most = min(highest_structural_load(contact) for contact in contacts)
-    beyond = _log_range(highest, min(_BEYOND * held_load, most), resolution.log_load)[1:]
-    shape = (speeds.size, temperatures.size)
-    mapped_loads, beyond_loads = (
-        np.broadcast_to(loads[:, None, None], (loads.size, *shape)).copy() for loads in (mapped, beyond)
+    lows, highs = np.full_like(begins, lowest), np.full_like(ends, highest)
+    low_loads, mapped, high_loads = (
+        _log_lines(low, high, resolution.log_load) for low, high in ((begins, lows), (lows, highs), (highs, ends))
     )
-    known = np.concatenate((low_loads, mapped_loads))
-    films = [curve.film(tail, known, beyond_loads) for curve in curves]
+    known = np.concatenate((low_loads[:-1], mapped, high_loads[1:]))
+    most = min(highest_structural_load(contact) for contact in contacts)
+    beyond = _log_lines(ends, np.full_like(ends, min(_BEYOND * held_load, most)), resolution.log_load)[1:]
+    films = [curve.film(tail, known, beyond) for curve in curves]
     if layer < math.inf:
         films = [
             oil_layer(contact, layer, curve.tail, rolling, speeds, temperatures, field)(film)
@@ -324,19 +328,12 @@ def _dense_at_zero(end: FloatArray, unit: float) -> FloatArray:
     return np.concatenate((-lower[::-1], np.zeros((1, *end.shape)), upper))
 
 
-def _log_range(low: float, high: float, step: float) -> FloatArray:
-    """Values from low to high, uniform in their logarithm; the ends exactly."""
-    values = np.geomspace(low, high, max(2, math.ceil(math.log(high / low) / step) + 1))
-    values[0], values[-1] = low, high
-    return values
-
-
-def _log_lines(lows: FloatArray, high: float, step: float) -> FloatArray:
-    """Values from each low (n_u, n_T) to high, uniform in their logarithm, as many for each; high alone if all are."""
-    reach = float(np.max(np.log(high / lows)))
+def _log_lines(lows: FloatArray, highs: FloatArray, step: float) -> FloatArray:
+    """Values from each low to its high (n_u, n_T), uniform in their logarithm, as many for each; one of equal ones."""
+    reach = float(np.max(np.log(highs / lows)))
     if not reach > 0.0:
-        return np.full((1, *lows.shape), high)
-    values: FloatArray = np.geomspace(lows, np.full_like(lows, high), max(2, math.ceil(reach / step) + 1))
+        return highs[None]
+    values: FloatArray = np.geomspace(lows, highs, max(2, math.ceil(reach / step) + 1))
     return values
 
 

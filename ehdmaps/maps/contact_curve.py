@@ -26,6 +26,7 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import MapError
 from ehdmaps.maps.film_field import FilmField
+from ehdmaps.maps.kernels.lines import ends_at
 from ehdmaps.physics.contact import LineContact
 
 THICK_FILM = 0.005
@@ -281,7 +282,7 @@ class ContactCurve:
         self._speeds = speeds
         self._temperatures = temperatures
         first = field.first_loads(speeds, temperatures)
-        low, self._high = self._edges(first, np.full_like(first, field.load_range[1]))
+        low, self._high = self._edges(first, ends_at(field.ends, speeds, temperatures))
         self._tail = Tail(
             first, low.film_offset, low.film_compliance, low.damping, low.damping_exponent, contact.radius
         )

@@ -48,7 +48,7 @@ from ehdmaps.maps.records import (
 from ehdmaps.maps.rolling_film import NAMES as ROLLING
 from ehdmaps.maps.rolling_film import LaterLines, RollingFilm, rolling_film
 from ehdmaps.maps.rough_layer import LEAST_SPEED, RoughLayer
-from ehdmaps.maps.usable import check_backbone, check_grid, check_loads
+from ehdmaps.maps.usable import check_backbone, check_loads, known_grid
 from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import BearingGeometry, with_law
 from ehdmaps.physics.contact import LineContact
@@ -60,6 +60,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from ehdmaps.maps.edges.continued import ContinuedField
+    from ehdmaps.maps.edges.reach import Reach
 
 _CLOSED_FORMS = ("formula", "hertz")
 """Solvers whose films differ from those of the film table by tens of percent: their laws are held at the edges of the
@@ -370,46 +371,71 @@ class EHDMap:
         Raises
         ------
         MapError
-            If it has holes left, or clusters of filled points.
+            If no law can be made of them.
         """
         chosen = tuple(contact for contact in self.contacts if contacts is None or contact.name in contacts)
-        self._check_films(chosen)
         if self.from_table or self.backbone is not None:
+            self._check_films(chosen)
             ranges = self._range("load"), self._range("entrainment_speed"), self._range("temperature")
             if self.backbone is not None:
                 return line_field(self.backbone, chosen, self.lubricant, *ranges)
             from ehdmaps.maps.table_field import TableField  # with the film table, that other maps do not need
 
             return TableField(chosen, self.lubricant, *ranges)
+        reach, read = known_grid(self.dataset, chosen)
         data = self.dataset.sel(contact=[contact.name for contact in chosen]).transpose(*schema.DIMS, ...)
-        return GridField(
-            line_contacts=chosen,
-            lubricant=self.lubricant,
-            loads=data["load"].values.astype(np.float64),
-            speeds=data["entrainment_speed"].values.astype(np.float64),
-            temperatures=data["temperature"].values.astype(np.float64),
-            **{name: data[name].values.astype(np.float64) for name in FILMS},
-        )
+        offset, compliance, loss = (np.asarray(data[name].values, dtype=np.float64) for name in FILMS)
+        if reach.whole:  # with its standstill
+            return GridField(chosen, self.lubricant, *reach.axes, offset, compliance, loss)
+        axes = reach.loads, reach.speeds, reach.temperatures
+        offset, compliance, loss = (reach.part(np.where(read, film, np.nan)) for film in (offset, compliance, loss))
+        return GridField(chosen, self.lubricant, *axes, offset, compliance, loss, reach=reach)
+
+    def reach(self, contacts: tuple[str, ...] | None = None) -> Reach:
+        """Loads, speeds and temperatures at which the films of contacts are known.
+
+        Parameters
+        ----------
+        contacts : tuple of str, optional
+            Those of a law; all, as of a roller between both raceways, if left out.
+
+        Raises
+        ------
+        MapError
+            If no law can be made of them.
+        """
+        chosen = tuple(contact for contact in self.contacts if contacts is None or contact.name in contacts)
+        self._check_films(chosen)
+        if self.known_between:
+            return self._whole_reach
+        return known_grid(self.dataset, chosen)[0]
 
     @cached_property
     def rolling_film(self) -> RollingFilm | None:
         """Rolling force and mass flow at any load, speed and temperature; None where the map does not hold them.
 
-        Maps of schema 1 and 2 and those of the solvers `formula` and `hertz` hold none, nor do those with holes.
+        Maps of schema 1 and 2 and those of the solvers `formula` and `hertz` hold none. Where points are missing, see
+        `reach`, both go on straight.
         """
         lines: xr.Dataset | LaterLines | None = self.backbone
-        axes = [self.axis(name) for name in schema.DIMS[1:]]
-        moving = axes[1] > 0.0
-        found = [values[:, :, moving] for name in ROLLING if (values := self.points(name)) is not None]
-        if len(found) < len(ROLLING) or not np.any(moving):
+        values = [self.points(name) for name in ROLLING]
+        found = [array for array in values if array is not None]
+        if len(found) < len(ROLLING) or not np.any(self.axis("entrainment_speed") > 0.0):
             return None
+        reach, read = self._whole_reach, np.ones(found[0].shape, dtype=bool)
+        if not self.known_between:
+            try:
+                reach, read = known_grid(self.dataset, self.contacts)
+            except MapError:
+                return None
         if self.from_table:
             from ehdmaps.maps.table_field import table_lines
 
             loads, speeds, kelvins = (self._range(axis) for axis in schema.DIMS[1:])
             lines = partial(table_lines, self.contacts, self.lubricant, loads, speeds, kelvins, SPEED_REACH)
-        axes[1] = axes[1][moving]
-        return rolling_film(np.stack(found), axes, lines, self.contacts, self.lubricant)
+        both = reach.part(np.stack([np.where(read, array, np.nan) for array in found]))
+        axes = reach.loads, reach.speeds, reach.temperatures
+        return rolling_film(both, reach.part(read), axes, lines, self.contacts, self.lubricant)
 
     @cached_property
     def low_loads(self) -> LowLoads | None:
@@ -450,11 +476,23 @@ class EHDMap:
         if self.from_table:
             return  # the field itself tells what the table lacks
         if self.backbone is None:
-            check_grid(self.dataset, chosen)
+            known_grid(self.dataset, chosen)
         else:
             ranges = self._range("load"), self._range("entrainment_speed")
             for group, reference, read in lines_by_contact(self.backbone, chosen):
                 check_backbone(group, reference, read, self.lubricant, *ranges)
+
+    @property
+    def _whole_reach(self) -> Reach:
+        """Reach of laws whose films are known all over the map."""
+        from ehdmaps.maps.edges.reach import whole_reach
+
+        return whole_reach(self._axes)
+
+    @property
+    def _axes(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Loads [N/m], entrainment speeds [m/s] and temperatures [K]."""
+        return self.axis("load"), self.axis("entrainment_speed"), self.axis("temperature")
 
     @property
     def _resolution(self) -> Resolution | None:
@@ -623,7 +661,7 @@ def film_between(
     Parameters
     ----------
     emap : EHDMap
-        A map without holes.
+        The map.
     film : str
         A film that the map holds at its points only, such as "central_film".
     contact : str
@@ -636,17 +674,25 @@ def film_between(
     Returns
     -------
     ndarray, shape (n,)
-        [m]; 0 at a standstill.
+        [m]; 0 at a standstill, NaN where points that are read are not known.
     """
-    dataset = emap.dataset.sel(contact=contact)
-    moving = dataset["entrainment_speed"].values > 0.0
-    values = dataset[film].transpose("load", "entrainment_speed", "temperature").values[:, moving]
-    if speed == 0.0 or not np.any(values):
+    from ehdmaps.maps.edges.reach import continued_lines, known_runs, reach_of
+
+    values = emap.dataset.sel(contact=contact)[film].transpose(*schema.DIMS[1:]).values
+    if speed == 0.0 or not np.any(np.nan_to_num(values)):
         return np.zeros(loads.size)
-    speeds, temperatures = dataset["entrainment_speed"].values[moving], dataset["temperature"].values
-    at_speed = _between(np.log(values), np.log(speeds), float(np.log(speed)), 1)
-    at_point = _between(at_speed, temperatures, temperature, 1)
-    return np.asarray(np.exp(np.interp(np.log(loads), np.log(dataset["load"].values), at_point)))
+    axes = emap.axis("load"), emap.axis("entrainment_speed"), emap.axis("temperature")
+    known = known_runs((np.isfinite(values) & (values > 0.0))[None])
+    reach = reach_of(known, axes)
+    if reach is None:
+        return np.full(loads.size, np.nan)
+    log_loads, lines = np.log(reach.loads), reach.part(np.where(known[0], values, np.nan))
+    logs = continued_lines(np.log(lines).reshape(log_loads.size, -1), log_loads).reshape(lines.shape)
+    at_speed = _between(logs, np.log(reach.speeds), float(np.log(speed)), 1)
+    at_point = _between(at_speed, reach.temperatures, temperature, 1)
+    first, last = reach.loads_at(speed, temperature)
+    found = np.exp(np.interp(np.log(loads), log_loads, at_point))
+    return np.asarray(np.where((loads >= 0.999 * first) & (loads <= 1.001 * last), found, np.nan))
 
 
 def _between(values: FloatArray, axis: FloatArray, at: float, along: int) -> FloatArray:

@@ -16,6 +16,7 @@ from typing import Protocol
 import numpy as np
 
 from ehdmaps.arrays import BoolArray, ComplexArray, FloatArray
+from ehdmaps.maps.kernels.lines import ends_at
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant, LubricantState
 from ehdmaps.physics.moes import moes_groups, valley_load_number
@@ -102,7 +103,9 @@ class FilmField(Protocol):
         ...
 
     def first_loads(self, speeds: FloatArray, temperatures: FloatArray) -> FloatArray:
-        """Loads from which on the film of every contact is known [N/m], (n_u, n_T): that of `load_range` or lower.
+        """Loads from which on the film of every contact is known [N/m], (n_u, n_T).
+
+        That of `load_range` or lower; of a map with holes it may be higher.
 
         Parameters
         ----------
@@ -110,6 +113,14 @@ class FilmField(Protocol):
             Entrainment speeds [m/s], > 0.
         temperatures : array (n_T,)
             [K].
+        """
+        ...
+
+    @property
+    def ends(self) -> FloatArray:
+        """Loads up to which the film of every contact is known, see `ehdmaps.maps.kernels.lines`.
+
+        That of `load_range` or lower.
         """
         ...
 
@@ -302,6 +313,29 @@ def same_load(lowest_load: float, speeds: FloatArray, temperatures: FloatArray) 
     return np.full((len(speeds), len(temperatures)), lowest_load)
 
 
+def known_at(field: FilmField, loads: FloatArray, speed: float, temperature: float) -> BoolArray:
+    """Tell at which loads the films of all contacts are known, (n,): within the reach of a law.
+
+    Parameters
+    ----------
+    field : FilmField
+        The films.
+    loads : array (n,)
+        [N/m].
+    speed, temperature : float
+        u [m/s] and T [K]; at a standstill, where there is no film, all is known.
+    """
+    (slow, fast), (cold, hot) = field.speed_range, field.temperature_range
+    if speed == 0.0 or field.dry:
+        return np.ones(loads.shape, dtype=bool)
+    low, high = 1.0 - _ROUND_OFF, 1.0 + _ROUND_OFF
+    if not (low * slow <= speed <= high * fast and low * cold <= temperature <= high * hot):
+        return np.zeros(loads.shape, dtype=bool)
+    at = np.array([speed]), np.array([temperature])
+    first, last = float(field.first_loads(*at)[0, 0]), float(ends_at(field.ends, *at)[0, 0])
+    return np.asarray((loads >= low * first) & (loads <= high * last))
+
+
 def low_loads(
     first: FirstLoads,
     contacts: Sequence[LineContact],
@@ -427,6 +461,11 @@ class DryField:
     def first_loads(self, speeds: FloatArray, temperatures: FloatArray) -> FloatArray:
         """The lowest load everywhere; see `FilmField.first_loads`."""
         return same_load(self.load_range[0], speeds, temperatures)
+
+    @property
+    def ends(self) -> FloatArray:
+        """Those of the map; see `FilmField.ends`."""
+        return self.origin.ends
 
     def locked_factors(self, contact: str, loads: FloatArray, speed: float, temperature: float) -> None:
         """Nothing is known of films that oscillate; see `FilmField.locked_factors`."""

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property, reduce
 from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
@@ -27,6 +27,7 @@ from ehdmaps.arrays import ComplexArray, FloatArray, IndexArray
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone import BackboneField
 from ehdmaps.maps.film_field import FilmField, lifted_loss, same_load
+from ehdmaps.maps.kernels.lines import one_end
 from ehdmaps.maps.kernels.splines import hermite, spline_weights
 from ehdmaps.maps.records import contacts_from_json
 from ehdmaps.physics.contact import LineContact
@@ -36,6 +37,8 @@ from ehdmaps.physics.moes import moes_speed_number
 
 if TYPE_CHECKING:
     import xarray as xr
+
+    from ehdmaps.maps.edges.reach import Reach
 
 _STEP = 0.02
 _FORGOTTEN = 0.5
@@ -77,9 +80,11 @@ class GridField:
     loads, speeds, temperatures : array
         Axes [N/m], [m/s], [K]; only speeds above zero are used.
     film_offset, film_compliance, loss_compliance : array (contacts, n_w, n_u, n_T)
-        [m], [m2/N], [m2 s/N]; the offset is positive where the speed is, or all zero in a dry map. Where
-        the loss of a contact is not positive everywhere (at the bottom of its valley it may be solved negative), it
-        is lifted smoothly, see `lifted_loss`.
+        [m], [m2/N], [m2 s/N]; the offset is positive where the speed is, or all zero in a dry map; NaN where nothing
+        is known: each line of loads is known along one stretch. Where the loss of a contact is not positive everywhere
+        (at the bottom of its valley it may be solved negative), it is lifted smoothly, see `lifted_loss`.
+    reach : Reach, optional
+        Loads between which all contacts are known; those of the axis if left out.
     """
 
     line_contacts: tuple[LineContact, ...]
@@ -90,6 +95,7 @@ class GridField:
     film_offset: FloatArray
     film_compliance: FloatArray
     loss_compliance: FloatArray
+    reach: Reach | None = field(default=None, kw_only=True)
 
     @property
     def contacts(self) -> tuple[str, ...]:
@@ -99,7 +105,7 @@ class GridField:
     @property
     def load_range(self) -> tuple[float, float]:
         """Lowest and highest load [N/m]."""
-        return float(self.loads[0]), float(self.loads[-1])
+        return (float(self.loads[0]), float(self.loads[-1])) if self.reach is None else self.reach.load_range
 
     @property
     def speed_range(self) -> tuple[float, float]:
@@ -118,8 +124,15 @@ class GridField:
         return not np.any(self.film_offset)
 
     def first_loads(self, speeds: FloatArray, temperatures: FloatArray) -> FloatArray:
-        """The lowest load everywhere; see `FilmField.first_loads`."""
-        return same_load(self.load_range[0], speeds, temperatures)
+        """The lowest known load; see `FilmField.first_loads`."""
+        if self.reach is None:
+            return same_load(self.load_range[0], speeds, temperatures)
+        return self.reach.first_loads(speeds, temperatures)
+
+    @property
+    def ends(self) -> FloatArray:
+        """The highest known load; see `FilmField.ends`."""
+        return one_end(self.load_range[1]) if self.reach is None else self.reach.ends
 
     def locked_factors(self, contact: str, loads: FloatArray, speed: float, temperature: float) -> None:
         """Nothing is known of films that oscillate; see `FilmField.locked_factors`."""
@@ -183,21 +196,24 @@ class GridField:
         nodes = start + _STEP * np.arange(int((np.max(log_load) - start) / _STEP) + 2)
         tables = np.empty((4, nodes.size, *numbers.shape))
         ends = np.empty((2, *numbers.shape), dtype=int)
+        places = np.empty((2, *numbers.shape))
         for j, k in np.ndindex(*numbers.shape):
-            line = log_load[:, j, k]
+            known = np.isfinite(offset[:, j, k])
+            line = log_load[known, j, k]
+            places[:, j, k] = line[0], line[-1]
             inside = np.clip(nodes, line[0], line[-1])
             pieces: Sequence[CubicHermiteSpline | PchipInterpolator]
             if line.size > 1:
                 pieces = (
-                    CubicHermiteSpline(line, log_film[:, j, k], film_slope[:, j, k]),
-                    PchipInterpolator(line, log_loss[:, j, k]),
+                    CubicHermiteSpline(line, log_film[known, j, k], film_slope[known, j, k]),
+                    PchipInterpolator(line, log_loss[known, j, k]),
                 )
                 for row, piece in enumerate(pieces):
                     slope = piece(inside, nu=1)
                     tables[2 * row, :, j, k] = piece(inside) + (nodes - inside) * slope
                     tables[2 * row + 1, :, j, k] = slope
             ends[:, j, k] = np.searchsorted(nodes, line[0]), np.searchsorted(nodes, line[-1], side="right") - 1
-        _complete(tables, ends, np.argsort(numbers, axis=None))
+        _complete(tables, ends, [np.argsort(places[0], axis=None), np.argsort(-places[1], axis=None)])
         trends = _trends(tables, ends[:, -1, :], np.log(speeds))
         return Lines(start, tables[0], tables[1], tables[2], tables[3], trends)
 
@@ -245,10 +261,10 @@ def _along(place: FloatArray, start: float, values: FloatArray, slopes: FloatArr
     return value + _STEP * (x - inside) * slope, slope
 
 
-def _complete(tables: FloatArray, ends: IndexArray, rising: IndexArray) -> None:
+def _complete(tables: FloatArray, ends: IndexArray, farthest: Sequence[IndexArray]) -> None:
     """Continue each line beyond its own loads in the shape of the next line that goes there.
 
-    Of two lines the one with the larger speed number reaches lower M, the other one higher M. The shape is
+    Of two lines of all loads the one with the larger speed number reaches lower M, the other one higher M. The shape is
     followed from equal value and slope; the difference of slopes dies away within `_FORGOTTEN` of ln M.
 
     Parameters
@@ -257,11 +273,11 @@ def _complete(tables: FloatArray, ends: IndexArray, rising: IndexArray) -> None:
         Values, slopes, values, slopes; changed in place. Beyond the lines' ends they hold tangents.
     ends : array (2, n_u, n_T)
         First and last node inside each line.
-    rising : array
-        Lines in the order of their speed numbers.
+    farthest : sequence of array
+        Lines in the order in which they reach low M, and high M.
     """
     shape = ends.shape[1:]
-    for order, end in ((rising[::-1], 0), (rising, 1)):
+    for end, order in enumerate(farthest):
         for leader, follower in pairwise(order):
             a, b = np.unravel_index(leader, shape), np.unravel_index(follower, shape)
             last = ends[(end, *b)]
@@ -387,6 +403,11 @@ class _OwnFields:
     def first_loads(self, speeds: FloatArray, temperatures: FloatArray) -> FloatArray:
         """Loads from which on the lines are read, the lowest of all contacts; see `FilmField.first_loads`."""
         return reduce(np.minimum, (field.first_loads(speeds, temperatures) for field in self._fields.values()))
+
+    @property
+    def ends(self) -> FloatArray:
+        """The highest load everywhere; see `FilmField.ends`."""
+        return one_end(self.load_range[1])
 
     def locked_factors(self, contact: str, loads: FloatArray, speed: float, temperature: float) -> FloatArray | None:
         """Factors of the closed formula of the locked film; see `FilmField.locked_factors`."""

@@ -22,6 +22,7 @@ from ehdmaps.maps.compilation import (
 from ehdmaps.maps.film_field import DryField, FilmField, LowLoads
 from ehdmaps.maps.kernels import bulk, kernel
 from ehdmaps.maps.kernels.film_response import FilmResponse
+from ehdmaps.maps.kernels.lines import ends_at
 from ehdmaps.maps.kernels.locked_film import LockedFactors
 from ehdmaps.maps.kernels.memory import FilmMemory, FilmState
 from ehdmaps.maps.kernels.tables import LOAD, ApproachTable, LawTable, Point
@@ -223,6 +224,22 @@ class ContactLaw:
     def low_loads(self) -> LowLoads | None:
         """Loads where the film goes over into that of a rigid contact, and whether that is right; None of a dry law."""
         return self._films.low_loads
+
+    def known_load(self, entrainment_speed: float, temperature: float) -> float:
+        """Load [N/m] up to which the films are known: that of `load_range`, less where points of the map are missing.
+
+        Parameters
+        ----------
+        entrainment_speed, temperature : float
+            u [m/s], of either sign, and T [K]; held at the edges of the map.
+        """
+        return float(self._known_loads(np.array([float(entrainment_speed)]), np.array([float(temperature)]))[0])
+
+    def _known_loads(self, speeds: FloatArray, temperatures: FloatArray) -> FloatArray:
+        """Loads [N/m] up to which the films are known, (n,)."""
+        table = self._plain
+        held = np.clip(np.abs(speeds), table.lowest_speed, table.highest_speed)
+        return np.array([ends_at(table.ends, held[i : i + 1], temperatures[i : i + 1])[0, 0] for i in range(held.size)])
 
     def guessed_below(self, entrainment_speed: float, temperature: float) -> float:
         """Load [N/m] below which the film is a guess, see `low_loads`; 0 where it is none.
@@ -467,18 +484,22 @@ class ContactLaw:
         self._speeds, self._held_load = (low, high), held
         self._slowest, self._temperatures = slowest, (cold, hot)
         own = self._approach_table(self.contacts)
+        ends = self._films.field.ends
+        known = float(np.min(ends[1:, 1:]))
         return LawTable(
             own=own,
             inner=own,
             outer=own,
             structure=np.array([structural_parameters(contact) for contact in self.contacts]),
+            ends=ends,
             film_speed=0.0 if rough else np.inf if self._films.dry else slowest,
             lowest_speed=slowest,
             highest_speed=high,
             lowest_temperature=cold,
             highest_temperature=hot,
             highest_load=highest,
-            highest_root=float(np.cbrt(highest)),
+            known_load=known,
+            known_root=float(np.cbrt(known)),
             held_load=held,
             counted_speed=self.speed_range[1],
             counted_cold=self.temperature_range[0],
@@ -520,7 +541,7 @@ class ContactLaw:
 
     def _settle(self, counts: IntArray, named: Mapping[str, FloatArray], flat: Sequence[FloatArray]) -> None:
         """Add up the counts of a call, and raise what they ask for."""
-        self._outside.settle(counts, named, flat, self._loads_at_rest)
+        self._outside.settle(counts, named, flat, self._loads_at_rest, self._known_loads)
 
     def _note_slow(self, speeds: FloatArray) -> None:
         """Keep speeds below the map, where films are continued; they are no error with any policy."""
@@ -652,11 +673,11 @@ class LawAtPoint:
         if not above:
             return
         self.law.counts[LOAD] += above
-        self.law.note_outside("load", loads)
+        self.law._outside.keep(Range("load", -np.inf, self.point.highest_load).excursions(loads))
         if self.law.outside == "error":
             raise OutsideMapError(
                 f"film memory, load: got {float(np.max(loads)):.6g} N/m, above the map, which ends at "
-                f"{self.law.load_range[1]:.6g} N/m, at {self.entrainment_speed:.6g} m/s, {self.temperature:.6g} K "
+                f"{self.point.highest_load:.6g} N/m, at {self.entrainment_speed:.6g} m/s, {self.temperature:.6g} K "
                 f"({above} of {loads.size} points above)\nmake a map that reaches there, or take a law with "
                 "outside='clamp' or outside='asymptote'"
             )

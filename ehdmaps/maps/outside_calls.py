@@ -52,8 +52,8 @@ class Excursion:
         return f"{self.axis} {about} {self.side} the map, which {ends} at {self.limit:.6g} {unit}"
 
     def __add__(self, other: Excursion) -> Excursion:
-        farthest = max if self.side == "above" else min
-        return replace(self, calls=self.calls + other.calls, extreme=farthest(self.extreme, other.extreme))
+        farther = other.extreme > self.extreme if self.side == "above" else other.extreme < self.extreme
+        return replace(other if farther else self, calls=self.calls + other.calls)
 
 
 @dataclass(frozen=True)
@@ -220,6 +220,7 @@ class OutsideCalls:
         named: Mapping[str, FloatArray],
         flat: Sequence[FloatArray],
         loads_at_rest: Callable[[Sequence[FloatArray]], FloatArray],
+        known_loads: Callable[[FloatArray, FloatArray], FloatArray],
     ) -> None:
         """Add up the counts of a call, and raise what they ask for.
 
@@ -236,6 +237,8 @@ class OutsideCalls:
             speed, temperature and centrifugal load only.
         loads_at_rest : callable
             Loads on the inner contact at rest [N/m], (n,), of such arrays.
+        known_loads : callable
+            Loads up to which films are known [N/m], (n,), at speeds and temperatures (n,).
 
         Raises
         ------
@@ -249,7 +252,7 @@ class OutsideCalls:
         self.counts += counts
         if not np.any(counts[[LOAD, SPEED, TEMPERATURE]]):
             return
-        problems = self._problems(counts, named, flat, loads_at_rest)
+        problems = self._problems(counts, named, flat, loads_at_rest, known_loads)
         if self._refused:
             raise OutsideMapError(
                 "\n".join(f"contact law {self._kind!r}, {problem}" for problem in problems)
@@ -262,11 +265,16 @@ class OutsideCalls:
         named: Mapping[str, FloatArray],
         flat: Sequence[FloatArray],
         loads_at_rest: Callable[[Sequence[FloatArray]], FloatArray],
+        known_loads: Callable[[FloatArray, FloatArray], FloatArray],
     ) -> list[str]:
         """Note what was outside, and say it."""
         problems = []
-        if counts[LOAD]:
-            problems.append(self._load_problem(int(counts[LOAD]), flat, loads_at_rest))
+        if counts[LOAD] and len(flat) < 5:
+            at = (named[axis].reshape(-1) for axis in ("entrainment_speed", "temperature"))
+            ends = f"{float(known_loads(*at)[0]):.6g} N/m"
+            problems.append(f"load: got more than is mapped in the outer contact, above the map, which ends at {ends}")
+        elif counts[LOAD]:
+            problems.append(self._load_problem(int(counts[LOAD]), flat, loads_at_rest(flat), known_loads(*flat[2:4])))
         axes: tuple[Axis, ...] = "entrainment_speed", "temperature"
         for place, axis in enumerate(axes, start=2):
             if not counts[_CAUSES[axis]]:
@@ -275,18 +283,13 @@ class OutsideCalls:
             problems += [f"{axis}: got {one.text.removeprefix(axis).strip()}" for one in self.note(axis, full)]
         return problems
 
-    def _load_problem(
-        self, count: int, flat: Sequence[FloatArray], loads_at_rest: Callable[[Sequence[FloatArray]], FloatArray]
-    ) -> str:
+    def _load_problem(self, count: int, flat: Sequence[FloatArray], loads: FloatArray, known: FloatArray) -> str:
         """Note the loads that are too high, and say which."""
-        highest = self._ranges["load"].high
-        if len(flat) < 5:
-            return f"load: got more than is mapped in the outer contact, above the map, which ends at {highest:.6g} N/m"
-        loads = loads_at_rest(flat)
-        self.note("load", loads + flat[4])
-        worst = int(np.argmax(loads))
+        for highest in np.unique(known):
+            self.keep(Range("load", -np.inf, float(highest)).excursions((loads + flat[4])[known == highest]))
+        worst = int(np.argmax(loads / known))
         return (
-            f"load: got about {loads[worst]:.6g} N/m above the map, which ends at {highest:.6g} N/m, "
+            f"load: got about {loads[worst]:.6g} N/m above the map, which ends at {known[worst]:.6g} N/m, "
             f"at the approach {flat[0][worst]:.6g} m, {flat[2][worst]:.6g} m/s, {flat[3][worst]:.6g} K "
             f"({count} of {flat[0].size} points above)"
         )

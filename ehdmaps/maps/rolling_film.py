@@ -30,7 +30,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import CubicSpline, PPoly
 
-from ehdmaps.arrays import FloatArray
+from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.maps.backbone import FEWEST_NODES, LATTICE_STEP, lagrange
 from ehdmaps.maps.film_field import RIGID, FilmField, known_from, load_at
 from ehdmaps.maps.grid_field import lines_by_contact
@@ -300,17 +300,20 @@ LaterLines = Callable[[], tuple[Mapping[str, npt.NDArray[Any]], LineContact]]
 
 def rolling_film(
     values: FloatArray,
+    known: BoolArray,
     axes: Sequence[FloatArray],
     backbone: xr.Dataset | LaterLines | None,
     contacts: Sequence[LineContact],
     lubricant: Lubricant,
 ) -> RollingFilm | None:
-    """Rolling force and mass flow of a map; None where it does not hold them at all its points.
+    """Rolling force and mass flow of a map; None where it does not hold them at all points that are known.
 
     Parameters
     ----------
     values : ndarray, shape (2, n_contacts, n_w, n_u, n_T)
         Both at the points of the map with a speed, by `NAMES`.
+    known : ndarray, shape (n_contacts, n_w, n_u, n_T)
+        Which points are known, along one stretch of loads; both go on straight beyond it.
     axes : sequence of ndarray
         Their loads [N/m], speeds [m/s], > 0, and temperatures [K].
     backbone : xarray.Dataset, callable or None
@@ -320,7 +323,7 @@ def rolling_film(
     lubricant : Lubricant
         The oil.
     """
-    if not axes[1].size or not np.all(np.isfinite(values) & (values > 0.0)):
+    if not axes[1].size or not np.all((np.isfinite(values) & (values > 0.0))[:, known]):
         return None
     reader: _Reader | None = None
     start = math.inf
@@ -445,8 +448,14 @@ def _grid_reader(
     units = np.array(
         [[[rolling_units(contact, lubricant, u, T) for T in kelvins] for u in speeds.tolist()] for contact in contacts]
     )
-    logs = np.log(values / np.moveaxis(units, -1, 0)[:, :, None])
-    return _Grid([contact.name for contact in contacts], logs, np.log(loads), np.log(speeds), kelvins)
+    logs, log_loads = np.log(values / np.moveaxis(units, -1, 0)[:, :, None]), np.log(loads)
+    from ehdmaps.maps.edges.reach import (
+        continued_lines,  # with points of a map, that laws of the film table do not need
+    )
+
+    by_load = np.moveaxis(logs, 2, 0)
+    logs = np.moveaxis(continued_lines(by_load.reshape(loads.size, -1), log_loads).reshape(by_load.shape), 0, 2)
+    return _Grid([contact.name for contact in contacts], logs, log_loads, np.log(speeds), kelvins)
 
 
 @dataclass(frozen=True, eq=False)

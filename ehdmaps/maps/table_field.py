@@ -23,6 +23,7 @@ from ehdmaps.maps import schema
 from ehdmaps.maps.backbone import ERROR, IMAGINARY, LOSS_SCALE, REAL, BackboneField, OffsetLine
 from ehdmaps.maps.backbone_plan import STEPS, plan_backbone, zeta_axis
 from ehdmaps.maps.film_field import RIGID, first_loads, lifted_loss
+from ehdmaps.maps.kernels.lines import one_end
 from ehdmaps.maps.kernels.splines import hermite
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width
@@ -161,6 +162,11 @@ class TableField:
         """Loads from which on films are read [N/m], (n_u, n_T): down to rigid ones; see `FilmField.first_loads`."""
         contacts = list(self._contacts.values())
         return first_loads(contacts, self._lubricant, self.load_range[0], RIGID, speeds, temperatures)
+
+    @property
+    def ends(self) -> FloatArray:
+        """The highest load everywhere; see `FilmField.ends`."""
+        return one_end(self.load_range[1])
 
     def locked_factors(self, contact: str, loads: FloatArray, speed: float, temperature: float) -> FloatArray | None:
         """Factors of the closed formula of the locked film; see `FilmField.locked_factors`."""

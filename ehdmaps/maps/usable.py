@@ -1,4 +1,4 @@
-"""Conditions for a law from a map: no holes, no clusters of filled points, films and stiffness positive.
+"""Conditions for a law from a map: where its points are known, and that their films and stiffness are positive.
 
 Only what the law reads is looked at: the backbone where a map has one, else the grid, of the law's own contacts.
 """
@@ -23,6 +23,8 @@ from ehdmaps.units import LOAD, SPEED, TEMPERATURE
 
 if TYPE_CHECKING:
     import xarray as xr
+
+    from ehdmaps.maps.edges.reach import Reach
 
 _SHOWN = 3
 _AGAIN = "generate the map again"
@@ -63,8 +65,8 @@ def check_loads(loads: FloatArray, contacts: Sequence[LineContact]) -> None:
         )
 
 
-def check_grid(dataset: xr.Dataset, contacts: Sequence[LineContact]) -> None:
-    """Refuse a map without a backbone that a law of these contacts cannot stand on.
+def known_grid(dataset: xr.Dataset, contacts: Sequence[LineContact]) -> tuple[Reach, BoolArray]:
+    """Reach of a law of these contacts, from a map without a backbone.
 
     Parameters
     ----------
@@ -73,35 +75,50 @@ def check_grid(dataset: xr.Dataset, contacts: Sequence[LineContact]) -> None:
     contacts : sequence of LineContact
         Contacts that the law uses.
 
+    Returns
+    -------
+    reach : Reach
+        Loads, speeds and temperatures of the law.
+    read : array (contacts, n_w, n_u, n_T)
+        Points that it reads, all with a speed.
+
     Raises
     ------
     MapError
-        With every reason, each with places and what to do.
+        Where no law can be made at all: with every reason, each with places and what to do.
     """
+    from ehdmaps.maps.edges.reach import known_runs, reach_of, whole_reach  # with points, that others do not need
+
     names = [contact.name for contact in contacts]
     chosen = dataset.sel(contact=names).transpose(*DIMS, ...)
     filled = chosen["filled"].values.astype(bool) if "filled" in chosen else np.zeros(_shape(chosen), bool)
     usable = np.isin(chosen["status"].values, [int(status) for status in Status if status.usable]) | filled
     for name in FILMS:
         usable &= np.isfinite(chosen[name].values)
-    problems = []
-    if not np.all(usable):
-        problems.append(
-            f"{np.count_nonzero(~usable)} holes, {_places(chosen, ~usable)}; "
-            "solve them again with other settings of the solver, let `generate` fill them, or leave them "
-            "out of the axes"
-        )
+    # of filled points beside one another nothing is known
     clusters = _clusters(filled)
-    if np.any(clusters):
-        problems.append(
-            f"{np.count_nonzero(clusters)} filled points beside one another, {_places(chosen, clusters)}; "
-            "nothing is known there; solve them again with other settings of the solver"
+    loads, speeds, temperatures = (chosen[name].values.astype(np.float64) for name in DIMS[1:])
+    axes, moving = (loads, speeds, temperatures), speeds > 0.0
+    known = known_runs(usable & ~clusters)
+    reach: Reach | None = whole_reach(axes)
+    if not np.all(known[:, :, moving]):
+        reach = reach_of(known, axes)
+    if reach is None:
+        missing = ~known & moving[:, None]
+        raise MapError(
+            f"law of {', '.join(names)}: no two loads are known at any speed and temperature; the map has "
+            f"{np.count_nonzero(missing)} holes, {_places(chosen, missing)}; solve them again with other settings of "
+            "the solver, let `generate` fill them, or take films that need no points: --law table"
         )
-    if not problems and np.any(chosen["film_offset"].values):  # else a dry map, of which all is known
-        check_loads(chosen["load"].values, contacts)
-        problems = _unphysical(chosen, contacts)
-    if problems:
-        raise MapError("\n".join(f"law of {', '.join(names)}: the map has {problem}" for problem in problems))
+    read = np.zeros_like(known)
+    read[:, :, reach.rows[:, None], reach.columns] = True
+    read &= known
+    if np.any(np.nan_to_num(chosen["film_offset"].values)):  # else a dry map, of which all is known
+        check_loads(loads, contacts)
+        problems = _unphysical(chosen, contacts, read)
+        if problems:
+            raise MapError("\n".join(f"law of {', '.join(names)}: the map has {problem}" for problem in problems))
+    return reach, read
 
 
 def check_backbone(
@@ -233,17 +250,16 @@ def _clusters(filled: BoolArray) -> BoolArray:
     return found
 
 
-def _unphysical(chosen: xr.Dataset, contacts: Sequence[LineContact]) -> list[str]:
-    """Values of which no law can be made.
+def _unphysical(chosen: xr.Dataset, contacts: Sequence[LineContact], known: BoolArray) -> list[str]:
+    """Values of known points of which no law can be made.
 
     A damping that is negative at the bottom of its valley is for the film field to lift.
     """
-    moving = np.broadcast_to((chosen["entrainment_speed"].values > 0.0)[:, None], _shape(chosen))
     problems = []
     dry = np.array([contact.structural_compliance(chosen["load"].values) for contact in contacts])[:, :, None, None]
     compliance = dry + chosen["film_compliance"].values
     for values, word in ((chosen["film_offset"].values, "film offset"), (compliance, "stiffness")):
-        wrong = moving & ~(values > 0.0)
+        wrong = known & ~(values > 0.0)
         if np.any(wrong):
             problems.append(
                 f"{np.count_nonzero(wrong)} points whose {word} is not positive, {_places(chosen, wrong)}; "
@@ -251,22 +267,22 @@ def _unphysical(chosen: xr.Dataset, contacts: Sequence[LineContact]) -> list[str
             )
     if problems:
         return problems
-    slow = moving & ~(chosen["loss_compliance"].values <= _SLOWEST * compliance)
+    slow = known & ~(chosen["loss_compliance"].values <= _SLOWEST * compliance)
     if np.any(slow):
         problems.append(
             f"{np.count_nonzero(slow)} points whose damping is more than {_SLOWEST:g} s times the stiffness, "
             f"{_places(chosen, slow)}; look at loss_compliance, or damping, there: the unit is m2 s/N, or N s/m2"
         )
-    return problems + _contradicting(chosen, moving)
+    return problems + _contradicting(chosen, known)
 
 
-def _contradicting(chosen: xr.Dataset, moving: BoolArray) -> list[str]:
+def _contradicting(chosen: xr.Dataset, known: BoolArray) -> list[str]:
     """Lines over the loads whose film compliance is not the slope of their film offset."""
-    loads, offset = chosen["load"].values[:, None, None], np.where(moving, chosen["film_offset"].values, 1.0)
-    steps = np.diff(np.log(loads), axis=0)
-    slope = np.where(moving, chosen["film_compliance"].values * loads / offset, 0.0)
+    loads, offset = chosen["load"].values[:, None, None], np.where(known, chosen["film_offset"].values, 1.0)
+    steps = np.diff(np.log(loads), axis=0) * (known[:, 1:] & known[:, :-1])
+    slope = np.where(known, chosen["film_compliance"].values * loads / offset, 0.0)
     by_compliance = np.sum(0.5 * (slope[:, 1:] + slope[:, :-1]) * steps, axis=1)
-    found = np.log(offset[:, 0] / offset[:, -1])
+    found = -np.sum(np.diff(np.log(offset), axis=1) * (steps > 0.0), axis=1)
     part, least = _CONTRADICTS
     # between two loads the slope is anything between those there
     unknown = np.sum(0.5 * np.abs(np.diff(slope, axis=1)) * steps, axis=1)

@@ -132,11 +132,12 @@ def axes_outside(model: Model, speed: float, loads: Mapping[str, float] | None =
         if law is None or (isinstance(law, DryLaw) and not isinstance(law, TableLaw)):
             continue
         load = (loads or {}).get(bearing.name, 0.0)
-        axes = axes_left(law, load, bearing.entrainment_speed(Operation(speed)), bearing.temperature)
+        u = bearing.entrainment_speed(Operation(speed))
+        axes = axes_left(law, load, u, bearing.temperature)
         if isinstance(law, TableLaw):
             end = f"{LOAD.text(float(law.line_load[-1]))}, the last one"
         else:
-            end = f"{LOAD.text(law.load_range[1])}, where the map ends"
+            end = f"{LOAD.text(law.known_load(u, bearing.temperature))}, where the map ends"
         words = "; ".join(axes) or f"a load above {end}"
         found[bearing.name] = words.replace("the map", source_of(model))
     return found

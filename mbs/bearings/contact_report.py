@@ -165,8 +165,9 @@ def axes_left(law: Law, load: float, entrainment_speed: float, temperature: floa
         return [f"load per length of {LOAD.text(load)} is above the last point of the law, {LOAD.text(last)}"] * above
     if isinstance(law, DryLaw):
         return []
+    loads = law.load_range[0], law.known_load(entrainment_speed, temperature)
     axes = (
-        ("load per length", load, (0.0, law.load_range[1]), law.load_range, LOAD),
+        ("load per length", load, (0.0, loads[1]), loads, LOAD),
         ("entrainment speed", abs(entrainment_speed), (0.0, law.speed_range[1]), law.speed_range, SPEED),
         ("temperature", temperature, law.temperature_range, law.temperature_range, TEMPERATURE),
     )

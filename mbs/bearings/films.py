@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from ehdmaps.arrays import FloatArray
+from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.errors import MapError
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.films import dowson_higginson_minimum, martin_minimum, moes_central
@@ -29,6 +29,7 @@ from ehdmaps.physics.moes import dowson_groups, film_from_moes, moes_groups
 from ehdmaps.physics.oil_supply import FLOODED, RIGID_FLOW, OilSupply, film_ratio, passing, pressure_ratio
 
 if TYPE_CHECKING:
+    from ehdmaps.maps.edges.reach import Reach
     from ehdmaps.maps.emap import EHDMap
 
 SIDES = ("inner", "outer")
@@ -224,7 +225,7 @@ class MapFilms:
     Raises
     ------
     MapError
-        For a map without the contacts of a roller, or with points that have no pressure or film.
+        For a map without the contacts of a roller, or without pressures and films at any of its points.
     """
 
     emap: EHDMap
@@ -234,12 +235,10 @@ class MapFilms:
     def __post_init__(self) -> None:
         if tuple(contact.name for contact in self.emap.contacts) != SIDES:
             raise MapError("films: got the map of a bare contact; allowed: a map of a bearing")
-        missing = sum(int(np.count_nonzero(~np.isfinite(values))) for values in self._moving(_VARIABLES))
-        if missing:
+        if self._known[0] is None:
             raise MapError(
-                f"films: the map lacks {missing} values of {', '.join(_VARIABLES)}, at points without a solution; "
-                "solve them again with other settings of the solver, let `generate` fill them, or leave them out of "
-                "the axes"
+                f"films: the map has no two loads at any speed and temperature with {', '.join(_VARIABLES)}; solve its "
+                "points again with other settings of the solver, or take films that need no points: --law table"
             )
         object.__setattr__(self, "_formula", FormulaFilms(self.emap.contacts, self.emap.lubricant))
 
@@ -302,19 +301,31 @@ class MapFilms:
         number, _ = moes_groups(1.0, speed, state.viscosity, 0.0, contact.radius, contact.reduced_modulus)
         return -math.log(number)
 
-    def _moving(self, names: tuple[str, ...]) -> list[FloatArray]:
-        """Variables at the points with a speed, (2, n_w, n_u, n_T) each; NaN where the map does not hold one."""
-        moving = self.emap.axis("entrainment_speed") > 0.0
-        shape = 2, *(self.emap.axis(name).size for name in ("load", "entrainment_speed", "temperature"))
-        found = [self.emap.points(name) for name in names]
-        return [(np.full(shape, np.nan) if values is None else values)[:, :, moving] for values in found]
+    def _points(self, name: str) -> FloatArray:
+        """A variable at all points, (2, n_w, n_u, n_T); NaN where the map does not hold it."""
+        found = self.emap.points(name)
+        return np.full((2, *(axis.size for axis in self._axes)), np.nan) if found is None else found
+
+    @property
+    def _axes(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Loads, speeds and temperatures of the map."""
+        return self.emap.axis("load"), self.emap.axis("entrainment_speed"), self.emap.axis("temperature")
+
+    @cached_property
+    def _known(self) -> tuple[Reach | None, BoolArray]:
+        """Reach of the points of both contacts that have all variables, and which points of each have."""
+        from ehdmaps.maps.edges.reach import known_runs, reach_of  # with a map only
+
+        known = known_runs(np.all([np.isfinite(self._points(name)) for name in _VARIABLES], axis=0))
+        return reach_of(known, self._axes), known
 
     @cached_property
     def _lines(self) -> tuple[_Lines, ...]:
-        """Ratios of each contact at the points of the map."""
-        loads, speeds, kelvins = (self.emap.axis(name) for name in ("load", "entrainment_speed", "temperature"))
-        speeds = speeds[speeds > 0.0]
-        both = self._moving((*_VARIABLES, _PEAK_ERROR))
+        """Ratios of each contact at the points of the map; beyond those that are known the last ones."""
+        reach, known = self._known
+        assert reach is not None
+        loads, speeds, kelvins = reach.loads, reach.speeds, reach.temperatures
+        both, here = [reach.part(self._points(name)) for name in (*_VARIABLES, _PEAK_ERROR)], reach.part(known)
         lines = []
         for side in range(len(SIDES)):
             values = np.stack([variable[side] for variable in both], axis=-1)
@@ -323,6 +334,8 @@ class MapFilms:
                     plain = self._formula.state(side, loads, float(speed), float(kelvin))
                     values[:, j, k, 0] /= plain.hertz_pressure
                     values[:, j, k, 1:3] /= plain.central_film[:, None]
+                    at = np.flatnonzero(here[side, :, j, k])
+                    values[:, j, k] = values[np.clip(np.arange(loads.size), at[0], at[-1]), j, k]
             lines.append(_Lines(np.log(loads), (speeds, kelvins), values))
         return tuple(lines)
 

@@ -476,7 +476,7 @@ class ForceAtPoint:
                 )
             raise OutsideMapError(
                 f"bearing force, load: got about {highest:.6g} N/m in a slice at the pose {work.state[:6].tolist()}; "
-                f"mapped: up to {law.load_range[1]:.6g} N/m\n"
+                f"mapped: up to {law.known_load(*self.conditions[:2]):.6g} N/m\n"
                 "make a map that reaches there, or take a law with outside='clamp' or outside='asymptote'"
             )
         return True

@@ -568,7 +568,9 @@ class FlatTable(NamedTuple):
         The numbers of each, in their order.
     structure : array (n, 3)
         The array of the `LawTable`.
-    numbers : array (11,)
+    ends : array (1 + n_u, 1 + n_T)
+        The array of the `LawTable`.
+    numbers : array (12,)
         The numbers of the `LawTable`, in their order.
     """
 
@@ -580,6 +582,7 @@ class FlatTable(NamedTuple):
     outer_place: FloatArray
     axes: FloatArray
     structure: FloatArray
+    ends: FloatArray
     numbers: FloatArray
 
 
@@ -595,7 +598,8 @@ def flat_table(table: LawTable) -> FlatTable:
         outer_place=table.outer.place,
         axes=np.array([part[2:] for part in parts]),
         structure=table.structure,
-        numbers=np.array(table[4:]),
+        ends=table.ends,
+        numbers=np.array(table[5:]),
     )
 
 
@@ -629,7 +633,8 @@ def law_table(flat: FlatTable) -> LawTable:
         ApproachTable(flat.inner, flat.inner_place, *fixed_tuple(flat.axes[1], 6)),
         ApproachTable(flat.outer, flat.outer_place, *fixed_tuple(flat.axes[2], 6)),
         flat.structure,
-        *fixed_tuple(flat.numbers, 11),
+        flat.ends,
+        *fixed_tuple(flat.numbers, 12),
     )
 
 

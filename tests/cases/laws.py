@@ -11,7 +11,8 @@ from scipy.special import erf
 
 from ehdmaps.maps import schema
 from ehdmaps.maps.contact_curve import ContactCurve, Curve
-from ehdmaps.maps.records import contacts_json, record_json
+from ehdmaps.maps.kernels.lines import one_end
+from ehdmaps.maps.records import DERIVED, contacts_json, record_json
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.closed_form import FormulaSolver, HertzSolver
 from ehdmaps.physics.contact import LineContact, OperatingPoint
@@ -19,7 +20,7 @@ from ehdmaps.physics.films import moes_central_and_slope, rolling_film_damping
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import film_from_moes, moes_groups
 from ehdmaps.physics.solids import STEEL
-from ehdmaps.physics.solution import contact_solution
+from ehdmaps.physics.solution import Status, contact_solution
 
 NU308 = BearingGeometry.named("NU308")
 OIL = Lubricant.named("FVA3")
@@ -46,6 +47,11 @@ class ValleyField:
     def first_loads(self, speeds, temperatures):
         """The lowest load everywhere; see `FilmField.first_loads`."""
         return np.full((len(speeds), len(temperatures)), self.load_range[0])
+
+    @property
+    def ends(self):
+        """The highest load everywhere; see `FilmField.ends`."""
+        return one_end(self.load_range[1])
 
     def locked_factors(self, contact, loads, speed, temperature):
         """Nothing is known of films that oscillate; see `FilmField.locked_factors`."""
@@ -147,3 +153,13 @@ def dataset_of(
 def dry_dataset(**axes) -> xr.Dataset:
     """Map dataset of the solver `hertz`."""
     return dataset_of(HertzSolver(), **axes)
+
+
+def with_holes(dataset, *places, status=Status.STAGNATED):
+    """Copy of a dataset that has no solution at some places (contact, load, speed, temperature)."""
+    copy = dataset.copy(deep=True).drop_vars(list(DERIVED), errors="ignore")
+    for place in places:
+        copy["status"].values[place] = int(status)
+        for name in ("film_offset", "film_compliance", "loss_compliance", "central_film", "minimum_film"):
+            copy[name].values[place] = np.nan
+    return copy

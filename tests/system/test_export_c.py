@@ -12,10 +12,11 @@ import pytest
 
 from ehdmaps.errors import OutsideMapError
 from ehdmaps.jobs.cli import main
-from ehdmaps.maps.emap import open_map
+from ehdmaps.maps.emap import EHDMap, open_map
 from mbs import Bearing, BearingForce
 from tests.cases.c_kernel import Kernel, compiled
 from tests.cases.jobs import DRY, LINE
+from tests.cases.laws import dataset_of, with_holes
 from tests.cases.programs import needed
 from tests.conftest import made_map
 
@@ -270,3 +271,36 @@ def test_prefix_and_cplusplus(small_map, tmp_path, capsys):
     capsys.readouterr()
     assert main(["export", str(small_map), "--to", "c", "-o", str(folder)]) == 2
     assert "which no export made" in capsys.readouterr().err
+
+
+@pytest.fixture(scope="module")
+def corner(tmp_path_factory):
+    """A map without the heaviest loads at its highest speed and lowest temperature."""
+    path = tmp_path_factory.mktemp("corner") / "map.nc"
+    EHDMap(with_holes(dataset_of(), (0, slice(13, None), 3, 0))).dataset.to_netcdf(path)
+    return path
+
+
+@pytest.mark.parametrize("outside", ["clamp", "asymptote"])
+def test_loads_end_where_points_of_the_map_are_missing(corner, tmp_path, outside):
+    kernel = Kernel(
+        compiled(exported(corner, tmp_path / "c", "--outside", outside, "--centrifugal"), "-shared", "-fPIC")
+    )
+    law = open_map(corner).law("series", outside)
+    ends = [law.known_load(u, T) for u, T in ((2.4, 313.15), (1.7, 316.0), (1.2, 313.15), (-0.1, 340.0))]
+    assert ends[0] < ends[1] < ends[2] == pytest.approx(ends[3], rel=1e-14)  # round-off
+    for u, T in ((2.4, 313.15), (1.7, 316.0), (3.0, 310.0), (-0.1, 340.0)):
+        for q in (0.0, 3e3):
+            assert_law(kernel, law, u, T, q)
+    assert kernel.at(2.4, 313.15, 0.99 * ends[0]) == 0
+    assert kernel.at(2.4, 313.15, 1.01 * ends[0]) == BAD_CENTRIFUGAL
+    assert kernel.at(1.2, 313.15, 1.01 * ends[0]) == 0
+
+
+def test_a_load_that_is_not_known_is_refused(corner, tmp_path):
+    kernel = Kernel(compiled(exported(corner, tmp_path / "c"), "-shared", "-fPIC"))
+    law = open_map(corner).law("series", "clamp")
+    for u, status in ((2.4, ABOVE_LOAD), (1.2, 0)):
+        delta = law.at(2.4, 313.15).point.held_approach + 1e-6
+        found, force = kernel.law(float(delta), 0.0, u, 313.15)
+        assert found == status and np.isnan(force[0]) == bool(status)

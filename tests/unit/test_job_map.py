@@ -525,7 +525,8 @@ def test_maps_that_share_some_points_or_none_are_compared_between_them():
 
 
 def test_compare_says_why_nothing_is_compared_between_points():
-    holey = made(job_of(fill="none"), Holey((job_of().loads[3],)))
+    holey = made(job_of(fill="none"), Holey(job_of().loads[1:]))
+    holey["status"].values[:, 1:] = int(Status.STAGNATED)
     second = made(job_of(SMALL.replace('"1 m/s", "2 m/s"', '"1 m/s", "3 m/s"')))
     found = compare(holey, second, ("a", "b"))
     assert found.between is None and found.common == 56
@@ -533,6 +534,17 @@ def test_compare_says_why_nothing_is_compared_between_points():
     apart = made(job_of(SMALL.replace('"20 degC", "40 degC"', '"25 degC"')))
     with pytest.raises(MapError, match="a: "):
         compare(holey, apart, ("a", "b"))
+
+
+def test_compare_looks_between_points_where_both_maps_are_known():
+    holey = made(job_of(fill="none"), Holey(job_of().loads[4:]))
+    second = made(job_of(SMALL.replace('"1 m/s", "2 m/s"', '"1 m/s", "3 m/s"')))
+    found = compare(holey, second, ("a", "b"))
+    assert found.between is not None
+    reach, places = EHDMap(holey).reach(("inner",)), found.between.sample.places
+    ends = [reach.loads_at(float(place["entrainment_speed"]), float(place["temperature"]))[1] for place in places]
+    assert 50 < len(places) < 300
+    assert all(float(place["load"]) <= end for place, end in zip(places, ends, strict=True))
 
 
 def test_compare_refuses_maps_without_a_common_contact_or_range():

@@ -141,11 +141,26 @@ def test_axes_of_one_value_and_maps_of_a_bare_contact(tmp_path):
         MapFilms(bare)
 
 
-def test_films_of_a_map_with_holes_are_refused(tmp_path):
-    """Also where the contact law, made from a backbone, does not read them."""
-    dataset = a_map(tmp_path, "formula").dataset.copy(deep=True)
-    dataset["central_film"].values[1, 2, 0, 1] = np.nan
-    with pytest.raises(MapError, match="films: the map lacks 1 values of max_pressure, central_film, minimum_film, at"):
+def test_films_of_a_map_with_holes_go_on_from_the_last_known_point(tmp_path):
+    """Their ratios to the formula are those of the last known point of each line, whatever the hole would have had."""
+    whole = a_map(tmp_path, "formula").dataset
+    loads, speed, kelvin = (
+        whole["load"].values,
+        *(float(whole[axis][0]) for axis in ("entrainment_speed", "temperature")),
+    )
+    dataset, held = whole.copy(deep=True), whole.copy(deep=True)
+    dataset["central_film"].values[1, 3:, 0, 0] = np.nan
+    formula = FormulaFilms(EHDMap(whole).contacts, EHDMap(whole).lubricant).state(1, loads, speed, kelvin).central_film
+    held["central_film"].values[1, 3:, 0, 0] = formula[3:] * float(whole["central_film"][1, 2, 0, 0]) / formula[2]
+    found, wanted = (
+        MapFilms(EHDMap(one)).state(1, np.geomspace(loads[0], loads[-1], 9), speed * 1.1, kelvin).central_film
+        for one in (dataset, held)
+    )
+    assert found == pytest.approx(wanted, rel=1e-12)  # round-off
+    dataset["central_film"].values[1] = np.nan
+    with pytest.raises(
+        MapError, match="films: the map has no two loads at any speed and temperature with max_pressure"
+    ):
         MapFilms(EHDMap(dataset))
 
 

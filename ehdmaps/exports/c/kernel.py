@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.exports.c.locked_table import locked_table
 from ehdmaps.exports.c.text import array, comment, define, number, renamed, template
@@ -139,7 +140,7 @@ def _public_numbers(law: ContactLaw, bearing: BearingGeometry | None, options: K
         define("EHD_REFUSED", refused, f"parts of a status that refuse: the policy is {law.outside!r}"),
         define("EHD_HAS_CENTRIFUGAL", int(options.centrifugal), "whether centrifugal loads are taken"),
         define("EHD_CONTACTS", len(law.contacts), "contacts in series: " + ", ".join(c.name for c in law.contacts)),
-        define("EHD_HIGHEST_LOAD", table.highest_load, "highest mapped load [N/m]"),
+        define("EHD_HIGHEST_LOAD", table.highest_load, "highest mapped load, at some speeds less [N/m]"),
         define("EHD_LOWEST_SPEED", law.speed_range[0], "lowest mapped speed [m/s]"),
         define("EHD_HIGHEST_SPEED", table.counted_speed, "highest mapped entrainment speed [m/s]"),
         define("EHD_LOWEST_TEMPERATURE", table.counted_cold, "lowest mapped temperature [K]"),
@@ -176,13 +177,28 @@ def _private_numbers(law: ContactLaw, centrifugal: bool) -> str:
         + define("HIGHEST_SPEED", table.highest_speed, "beyond it the law is held")
         + define("LOWEST_TEMPERATURE", table.lowest_temperature, "temperatures of the table [K]")
         + define("HIGHEST_TEMPERATURE", table.highest_temperature, "beyond them the law is held")
+        + define("KNOWN_LOAD", table.known_load, "load that is mapped at all speeds and temperatures [N/m]")
         + define("HELD_LOAD", table.held_load, "load above which the law is its tangent [N/m]"),
         f"static const structure STRUCTURE[EHD_CONTACTS] = {{\n{rows}}};\n",
+        _ends(table.ends),
         _table("OWN", table.own, "the law"),
     ]
     if centrifugal:
         parts += [_table("INNER", table.inner, "the inner contact"), _table("OUTER", table.outer, "the outer contact")]
     return "\n".join(parts)
+
+
+def _ends(ends: FloatArray) -> str:
+    """Loads up to which films are mapped."""
+    speeds, kelvins = (", ".join(map(number, axis.tolist())) for axis in (ends[1:, 0], ends[0, 1:]))
+    rows = ",\n".join("    {" + ", ".join(map(number, row)) + "}" for row in ends[1:, 1:].tolist())
+    return (
+        define("END_SPEEDS", ends.shape[0] - 1, "places of ln u with highest mapped loads")
+        + define("END_TEMPERATURES", ends.shape[1] - 1, "temperatures with them")
+        + f"static const double END_LOG_SPEEDS[END_SPEEDS] = {{{speeds}}};\n"
+        f"static const double END_KELVINS[END_TEMPERATURES] = {{{kelvins}}};\n"
+        f"static const double ENDS[END_SPEEDS][END_TEMPERATURES] = {{\n{rows}}}; /* [N/m] */\n"
+    )
 
 
 def _film_numbers(law: ContactLaw) -> str:

@@ -136,6 +136,30 @@ static void place_of(const axes *table, double log_speed, double T, node *i, nod
     *j = node_of((1.0 / (T - COLDEST) - table->temperature_start) * table->temperature_step, table->temperatures);
 }
 
+/* Nodes beside a place of an axis, and the weight of the second one. */
+static double beside(const double *nodes, int count, double x, int *first, int *second) {
+    int i = 0;
+    *first = *second = x > nodes[0] ? count - 1 : 0;
+    if (!(x > nodes[0]) || x >= nodes[count - 1]) return 0.0;
+    while (nodes[i + 1] <= x) i++;
+    *first = i;
+    *second = i + 1;
+    return (x - nodes[i]) / (nodes[i + 1] - nodes[i]);
+}
+
+/* Highest mapped load at a speed and temperature: its logarithm is straight over ln u and T. */
+static double end_at(double log_speed, double T) {
+    int i, j, up, on;
+    const double a = beside(END_LOG_SPEEDS, END_SPEEDS, log_speed, &i, &up);
+    const double b = beside(END_KELVINS, END_TEMPERATURES, T, &j, &on);
+    const double corner = ENDS[i][j];
+    double low, high;
+    if (ENDS[i][on] == corner && ENDS[up][j] == corner && ENDS[up][on] == corner) return corner;
+    low = (1.0 - b) * log(corner) + b * log(ENDS[i][on]);
+    high = (1.0 - b) * log(ENDS[up][j]) + b * log(ENDS[up][on]);
+    return exp((1.0 - a) * low + a * high);
+}
+
 /* A table at one speed and temperature. */
 static void collapse(const axes *table, double log_speed, double T, ehd_line *line) {
     node i, j;
@@ -379,7 +403,7 @@ static int outside_map(double speed, double T) {
 }
 
 int ehd_at(ehd_point *point, double u, double T, double q) {
-    double compliance, held, log_speed;
+    double compliance, held, log_speed, end;
     if (!point) return EHD_BAD_ARGUMENT;
     point->entrainment_speed = fabs(u);
     point->temperature = T;
@@ -394,8 +418,13 @@ int ehd_at(ehd_point *point, double u, double T, double q) {
     T = least(most(T, LOWEST_TEMPERATURE), HIGHEST_TEMPERATURE);
     log_speed = log(most(least(fabs(u), HIGHEST_SPEED), LOWEST_SPEED));
     point->film = film_part(least(fabs(u), HIGHEST_SPEED));
-    point->highest_load = EHD_HIGHEST_LOAD - q;
-    point->held_load = HELD_LOAD - q;
+    end = end_at(log_speed, T);
+    if (q >= end) {
+        point->status |= EHD_BAD_CENTRIFUGAL;
+        return point->status;
+    }
+    point->highest_load = end - q;
+    point->held_load = HELD_LOAD * (end / EHD_HIGHEST_LOAD) - q;
     collapse(&OWN, log_speed, T, &point->own);
     point->inner_lift_off = point->outer_start = 0.0;
     point->lift_off = line_approach(&point->own, 0.0);
@@ -406,7 +435,7 @@ int ehd_at(ehd_point *point, double u, double T, double q) {
         point->inner_lift_off = line_approach(&point->inner, 0.0);
         point->outer_start = line_approach(&point->outer, q);
         point->lift_off = point->inner_lift_off + point->outer_start;
-        held = line_approach(&point->inner, point->held_load) + line_approach(&point->outer, HELD_LOAD);
+        held = line_approach(&point->inner, point->held_load) + line_approach(&point->outer, point->held_load + q);
     } else
 #endif
         held = line_approach(&point->own, point->held_load);
@@ -450,7 +479,7 @@ int ehd_law(double approach, double rate, double u, double T, double q, ehd_forc
     if (FILM_SPEED <= speed && LOWEST_SPEED <= speed && speed <= EHD_HIGHEST_SPEED && EHD_LOWEST_TEMPERATURE <= T &&
         T <= EHD_HIGHEST_TEMPERATURE && q == 0.0) {
         const contact_state found = table_state(&OWN, approach, log(speed), T);
-        if (found.w <= EHD_HIGHEST_LOAD) {
+        if (found.w <= KNOWN_LOAD) {
             unilateral(found.w, found.dw, found.w * found.ratio, found.dc, rate, force);
             return settled(EHD_OK, force);
         }

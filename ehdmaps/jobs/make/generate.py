@@ -26,6 +26,7 @@ from ehdmaps.jobs.make.report import (
     films_lines,
     holes,
     law_lines,
+    reach_lines,
     spacing_lines,
     status_lines,
 )
@@ -111,6 +112,7 @@ def _lines(generated: Generated, output: Path) -> Iterator[str]:
         yield f"store: {sweep.damaged} damaged entries were solved again"
     yield from status_lines(dataset)
     yield from extrapolated_lines(dataset)
+    yield from reach_lines(EHDMap(dataset, generated.backbone))
     yield "accuracy"
     yield from error_lines(dataset)
     yield from law_lines(dataset)

@@ -20,7 +20,7 @@ from ehdmaps.jobs.make.tasks import LineTask
 from ehdmaps.maps.backbone import BackboneField
 from ehdmaps.maps.backbone_plan import Axis
 from ehdmaps.maps.emap import EHDMap
-from ehdmaps.maps.film_field import FilmField
+from ehdmaps.maps.film_field import FilmField, known_at
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.law_errors import quantiles_text
 from ehdmaps.maps.schema import FILM_TABLE
@@ -293,7 +293,8 @@ def _between(
         field = emap.film_field((contact.name,))
         for task, region in zip(check.tasks, check.regions, strict=True):
             arrays = results[task.key]
-            if region in INSIDE and task.contact == contact and Status(int(arrays["status"][0])).usable:
+            usable = task.contact == contact and Status(int(arrays["status"][0])).usable
+            if region in INSIDE and usable and _is_known(field, task):
                 missed = _missed_between(field, task, fresh_solution(task, arrays), check)
                 yield field, task, region, missed
 
@@ -343,6 +344,8 @@ def check_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> 
             for task, region in zip(check.tasks, check.regions, strict=True)
             if region in wanted and task.contact == contact and Status(int(results[task.key]["status"][0])).usable
         ]
+        field = emap.film_field((contact.name,))
+        chosen = [point for point in chosen if _is_known(field, point[0], policy != "error")]
         if not chosen:
             continue
         # Fresh solves are those of flooded films between smooth surfaces, whatever the job states.
@@ -374,6 +377,14 @@ def check_laws(check: LawCheck, emap: EHDMap, results: Mapping[str, Arrays]) -> 
     if check.tolerance is not None:
         record[TOLERANCE] = check.tolerance
     return record
+
+
+def _is_known(field: FilmField, task: LineTask, held: bool = False) -> bool:
+    """Tell whether the films of a law are known at a point; where speed and temperature are held, at the edge."""
+    u, T = task.entrainment_speed, task.temperature
+    if held:
+        u, T = float(np.clip(u, *field.speed_range)), float(np.clip(T, *field.temperature_range))
+    return bool(known_at(field, np.array(task.loads), u, T).all())
 
 
 def _reaches(law: ContactLaw, task: LineTask) -> bool:

@@ -6,6 +6,7 @@ import re
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from itertools import zip_longest
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.errors import MapError
 from ehdmaps.jobs.make.correction import JUDGED
 from ehdmaps.maps import schema
+from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.records import MODEL_ERRORS, SPACING_ERRORS, lubricant_from_json, record_from_json
 from ehdmaps.maps.schema import FILM_TABLE, OWN_POINTS, UNSERVED
 from ehdmaps.physics.closed_form import BELOW_ROUGHNESS, CONTINUUM, NO_CONTINUUM
@@ -281,6 +283,28 @@ def value_lines(dataset: xr.Dataset) -> Iterator[str]:
         else:
             low, middle, high = (display.value(float(value)) for value in np.quantile(known, (0.0, 0.5, 1.0)))
             yield f"  {name:25s} {low:11.4g} {middle:10.4g} {high:10.4g}  {display.unit}"
+
+
+def reach_lines(emap: EHDMap) -> Iterator[str]:
+    """Yield the reach of the contact laws of a map, laws with the same one together, and why there is none.
+
+    Parameters
+    ----------
+    emap : EHDMap
+        The map.
+    """
+    names = [contact.name for contact in emap.contacts]
+    kinds = [*([("series", ("inner", "outer"))] if "inner" in names else []), *((name, (name,)) for name in names)]
+    by_text = defaultdict(list)
+    for kind, contacts in kinds:
+        try:
+            emap.check_usable(contacts)
+            by_text[emap.reach(contacts).parts].append(kind)
+        except MapError as error:
+            by_text[(f"none: {error}",)].append(kind)
+    yield "contact laws"
+    for parts, which in by_text.items():
+        yield from (f"  {words:20s} {part}" for words, part in zip_longest([", ".join(which)], parts, fillvalue=""))
 
 
 def law_lines(dataset: xr.Dataset) -> Iterator[str]:

@@ -21,6 +21,7 @@ from ehdmaps.errors import InputError, MapError
 from ehdmaps.jobs.make.report import AXES, NONE_STATED, span
 from ehdmaps.jobs.make.sampling import log_uniform
 from ehdmaps.maps.emap import EHDMap
+from ehdmaps.maps.film_field import known_at
 from ehdmaps.maps.records import record_from_json
 from ehdmaps.physics.contact import structured
 from ehdmaps.physics.solution import Status
@@ -79,7 +80,7 @@ def sampled_films(first: EHDMap, second: EHDMap, names: tuple[str, str], seed: i
     Raises
     ------
     MapError
-        If an axis has no range in common, or a map has holes left: it has no films between its points.
+        If an axis has no range in common, or a map has no films between its points.
     """
     ranges = _ranges(first, second, names)
     contacts = [contact.name for contact in first.contacts if contact.name in second.dataset["contact"].values]
@@ -94,12 +95,14 @@ def sampled_films(first: EHDMap, second: EHDMap, names: tuple[str, str], seed: i
         }
         for _ in range(count)
     ]
-    films = []
     for emap, name in zip((first, second), names, strict=True):
         try:
-            films.append(_films(emap, places))
+            places = _known(emap, places)
         except MapError as error:
             raise MapError(f"{name}: {error}") from error
+    if not places:
+        raise MapError(f"{names[0]} and {names[1]}: no films between points in common; generate one of them again")
+    films = [_films(emap, places) for emap in (first, second)]
     return FilmSample(seed, ranges, tuple(places), films[0], films[1])
 
 
@@ -119,6 +122,21 @@ def _ranges(first: EHDMap, second: EHDMap, names: tuple[str, str]) -> dict[str, 
             )
         ranges[name] = float(low), float(high)
     return ranges
+
+
+def _known(emap: EHDMap, places: list[Mapping[str, str | float]]) -> list[Mapping[str, str | float]]:
+    """Places of which a map knows the films."""
+    fields = {name: emap.film_field((name,)) for name in sorted({str(place["contact"]) for place in places})}
+    return [
+        place
+        for place in places
+        if known_at(
+            fields[str(place["contact"])],
+            np.array([float(place["load"])]),
+            float(place["entrainment_speed"]),
+            float(place["temperature"]),
+        ).all()
+    ]
 
 
 def _films(emap: EHDMap, places: list[Mapping[str, str | float]]) -> dict[str, FloatArray]:

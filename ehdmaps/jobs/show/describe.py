@@ -17,6 +17,7 @@ from ehdmaps.jobs.make.report import (
     extrapolated_lines,
     films_lines,
     law_lines,
+    reach_lines,
     spacing_lines,
     span,
     status_lines,
@@ -102,6 +103,8 @@ def _lines(emap: EHDMap, name: str) -> Iterator[str]:
     yield "statuses"
     yield from status_lines(dataset, emap.surface.roughness)
     yield from extrapolated_lines(dataset)
+    yield ""
+    yield from reach_lines(emap)
     yield ""
     if films := list(films_lines(dataset)):
         yield from films

@@ -16,7 +16,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import MapError
 from ehdmaps.figures import WARNING, typeset
 from ehdmaps.maps.emap import EHDMap, curves, film_between, rough_layers
-from ehdmaps.maps.film_field import FilmField
+from ehdmaps.maps.film_field import FilmField, known_at
 from ehdmaps.maps.rough_layer import BOUNDARY, FILM_PARAMETER, MIXED
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.solution import Status
@@ -162,7 +162,7 @@ class MapCurves:
             except (FloatingPointError, ValueError):
                 return np.full(at.size, np.nan)
         curve = curves(self.field, (contact,), at, speed, temperature, rough_layers(self.emap))
-        return np.asarray(getattr(curve, name))
+        return np.where(known_at(self.field, at, speed, temperature), getattr(curve, name), np.nan)
 
 
 def contact_charts(of: MapCurves, contact: LineContact, operated: Sequence[Operated], prefix: str) -> Markup:

@@ -109,7 +109,8 @@ def _sentences(emap: EHDMap) -> Iterator[str]:
     except MapError as error:
         yield f"No contact law can be made from this map: {error}."
     else:
-        yield "Contact laws can be made from this map."
+        reach = emap.reach()
+        yield "Contact laws can be made from this map" + ("." if reach.whole else f": {reach.text}.")
     beyond = next(iter(extrapolated_lines(dataset)), None)
     if beyond:
         yield f"{_sentence(beyond)}: the oil is less certain there than the solution."

@@ -15,7 +15,7 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullLocat
 from ehdmaps.arrays import FloatArray
 from ehdmaps.figures import WARNING
 from ehdmaps.maps.emap import EHDMap, curves
-from ehdmaps.maps.film_field import FilmField
+from ehdmaps.maps.film_field import FilmField, known_at
 from ehdmaps.physics.solution import Status
 from ehdmaps.units import LOAD, Display
 
@@ -141,7 +141,7 @@ def _dense(sheet: Sheet, name: str, contact: int, temperature: int, speed: int) 
     loads = np.geomspace(axis[0], axis[-1], CURVE_POINTS)
     celsius = float(sheet.dataset["temperature"].values[temperature])
     curve = curves(sheet.field, (sheet.emap.contacts[contact],), loads, u, celsius)
-    return loads, getattr(curve, name)
+    return loads, np.where(known_at(sheet.field, loads, u, celsius), getattr(curve, name), np.nan)
 
 
 def _marks(

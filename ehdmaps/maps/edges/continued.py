@@ -140,6 +140,11 @@ class ContinuedField:
         """Loads from which on films are known [N/m], (n_u, n_T); see `FilmField.first_loads`."""
         return self.origin.first_loads(speeds, temperatures)
 
+    @property
+    def ends(self) -> FloatArray:
+        """Loads up to which films are known; see `FilmField.ends`."""
+        return self.origin.ends
+
     def locked_factors(self, contact: str, loads: FloatArray, speed: float, temperature: float) -> FloatArray | None:
         """Factors of the closed formula of the locked film; see `FilmField.locked_factors`."""
         return self.origin.locked_factors(contact, loads, speed, temperature)

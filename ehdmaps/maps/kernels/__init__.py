@@ -7,7 +7,7 @@ them:
 ==============  ======================================================================================
 splines         cubic splines on uniform axes: the coefficients of a table, weights, mixed lines
 tables          the arrays of a compiled law
-lines           splines and states in compiled code, with exp and log for it
+lines           splines and states in compiled code, with exp and log for it; where films end
 roller_balance  a roller between its two contacts
 kernel          the law at run time, one point at a time, for compiled code
 bulk            the law at run time, many points

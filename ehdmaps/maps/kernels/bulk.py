@@ -192,7 +192,7 @@ def _others(
     """Mark the points that the table alone does not answer, and count them."""
     count = 0
     slowest, fastest = max(table.film_speed, table.lowest_speed), table.counted_speed
-    coldest, hottest, highest = table.counted_cold, table.counted_hot, table.highest_root
+    coldest, hottest, highest = table.counted_cold, table.counted_hot, table.known_root
     for i in range(delta.size):
         size, t, d, r = abs(entrainment_speed[i]), temperature[i], delta[i], rate[i]
         within = (size >= slowest) & (size <= fastest) & (t >= coldest) & (t <= hottest) & (roots[i] <= highest)

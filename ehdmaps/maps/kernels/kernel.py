@@ -31,6 +31,7 @@ from ehdmaps.maps.kernels.lines import (
     FAST,
     State,
     collapsed_line,
+    end_at,
     exp,
     force_of,
     line_approach,
@@ -40,7 +41,15 @@ from ehdmaps.maps.kernels.lines import (
     table_state,
 )
 from ehdmaps.maps.kernels.roller_balance import LEAST_LOAD, balanced_state
-from ehdmaps.maps.kernels.tables import HALF_SPACE, LOAD, NOT_FINITE, SPEED, TEMPERATURE, LawTable, Point
+from ehdmaps.maps.kernels.tables import (
+    HALF_SPACE,
+    LOAD,
+    NOT_FINITE,
+    SPEED,
+    TEMPERATURE,
+    LawTable,
+    Point,
+)
 from ehdmaps.physics.contact import Force
 
 LOAD_TOLERANCE = 1e-3
@@ -242,11 +251,13 @@ def collapse(
     film = film_part(speed, table.film_speed)
     log_speed = log(max(speed, table.lowest_speed))
     q = centrifugal_load
-    if q >= table.held_load:
-        counts[LOAD] += 1
-        q = 0.5 * table.held_load
-    held_load = table.held_load - q
     sums = workspace[3].reshape(-1)
+    highest_load = end_at(table.ends, log_speed, temperature)
+    held_load = table.held_load * (highest_load / table.highest_load)
+    if q >= held_load:
+        counts[LOAD] += 1
+        q = 0.5 * held_load
+    highest_load, held_load = highest_load - q, held_load - q
     own = collapsed_line(table.own, workspace[0], sums, log_speed, temperature)
     inner, outer, inner_lift_off, outer_start = own, own, 0.0, 0.0
     if q > 0.0:
@@ -254,7 +265,7 @@ def collapse(
         outer = collapsed_line(table.outer, workspace[2], sums, log_speed, temperature)
         inner_lift_off, outer_start = line_approach(inner, 0.0), line_approach(outer, q)
         lift_off = inner_lift_off + outer_start
-        held = line_approach(inner, held_load) + line_approach(outer, table.held_load)
+        held = line_approach(inner, held_load) + line_approach(outer, held_load + q)
     else:
         lift_off = line_approach(own, 0.0)
         held = line_approach(own, held_load)
@@ -262,12 +273,12 @@ def collapse(
     held = (1.0 - film) * dry + film * held
     unheld = Point(
         own, inner, outer, table.structure, film, q, inner_lift_off, outer_start, lift_off,
-        table.highest_load - q, held_load, held, 1.0 / compliance, 0.0,
+        highest_load, held_load, held, 1.0 / compliance, 0.0,
     )  # fmt: skip
     _, _, ratio, _ = _rest_state(unheld, held)
     return Point(
         own, inner, outer, table.structure, film, q, inner_lift_off, outer_start, lift_off,
-        table.highest_load - q, held_load, held, 1.0 / compliance, ratio * held_load,
+        highest_load, held_load, held, 1.0 / compliance, ratio * held_load,
     )  # fmt: skip
 
 
@@ -315,6 +326,6 @@ def evaluate(
         and centrifugal_load == 0.0
     ):
         state = table_state(table.own, delta, log(speed), temperature, workspace[3, 0])
-        if state[0] <= table.highest_load:
+        if state[0] <= table.known_load:
             return force_of(state, rate)
     return _through_point(table, workspace, delta, rate, entrainment_speed, temperature, centrifugal_load, counts)

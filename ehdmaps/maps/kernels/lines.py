@@ -5,6 +5,9 @@ The state of a contact at rest is (w, dw/ddelta, c/w, dc/ddelta) throughout.
 exp and log are own ones that the compiler can put into vector instructions, without a branch or a call: the textbook
 reductions with Taylor series long enough for double precision, exp to 4e-16 relative for |x| < 700, log to 3e-16
 absolute or relative for positive normal numbers.
+
+An array (1 + n_u, 1 + n_T) holds the loads at which films end [N/m], with ln u of their speeds in the first column and
+their temperatures [K] in the first row. Between these ln of the load is straight over ln u and T, outside it is held.
 """
 
 from __future__ import annotations
@@ -383,3 +386,73 @@ def line_approach(line: Line, load: float) -> float:
             break
     approach: float = line.offset + math.sinh(line.start + (low + t) / line.step) / line.inverse_scale
     return approach
+
+
+def one_end(load: float) -> FloatArray:
+    """Ends that are the same load at all speeds and temperatures.
+
+    Parameters
+    ----------
+    load : float
+        [N/m].
+    """
+    return np.array([[0.0, 0.0], [0.0, load]])
+
+
+@njit(error_model="numpy", fastmath=FAST)
+def _between(nodes: FloatArray, place: float) -> tuple[int, int, float]:
+    """Nodes beside a place, and the weight of the second one."""
+    last = nodes.size - 1
+    if not place > nodes[0]:
+        return 0, 0, 0.0
+    if place >= nodes[last]:
+        return last, last, 0.0
+    i = 0
+    while nodes[i + 1] <= place:
+        i += 1
+    return i, i + 1, (place - nodes[i]) / (nodes[i + 1] - nodes[i])
+
+
+@njit(error_model="numpy", fastmath=FAST)
+def end_at(ends: FloatArray, log_speed: float, temperature: float) -> float:
+    """Load at which films end at a speed and temperature [N/m].
+
+    Parameters
+    ----------
+    ends : array (1 + n_u, 1 + n_T)
+        Ends of the loads.
+    log_speed, temperature : float
+        ln u, u in m/s, and T [K].
+    """
+    i, up, a = _between(ends[1:, 0], log_speed)
+    j, on, b = _between(ends[0, 1:], temperature)
+    corner: float = ends[1 + i, 1 + j]
+    if ends[1 + i, 1 + on] == corner and ends[1 + up, 1 + j] == corner and ends[1 + up, 1 + on] == corner:
+        return corner
+    low = (1.0 - b) * log(corner) + b * log(ends[1 + i, 1 + on])
+    high = (1.0 - b) * log(ends[1 + up, 1 + j]) + b * log(ends[1 + up, 1 + on])
+    found: float = exp((1.0 - a) * low + a * high)
+    return found
+
+
+@njit(error_model="numpy")
+def _fill(ends: FloatArray, log_speeds: FloatArray, temperatures: FloatArray, found: FloatArray) -> None:
+    """Loads at which films end, into `found` (n_u, n_T)."""
+    for i in range(log_speeds.size):
+        for j in range(temperatures.size):
+            found[i, j] = end_at(ends, log_speeds[i], temperatures[j])
+
+
+def ends_at(ends: FloatArray, speeds: FloatArray, temperatures: FloatArray) -> FloatArray:
+    """Loads at which films end [N/m], (n_u, n_T).
+
+    Parameters
+    ----------
+    ends : array
+        Ends of the loads.
+    speeds, temperatures : array (n_u,), (n_T,)
+        u [m/s], > 0, and T [K].
+    """
+    found = np.empty((len(speeds), len(temperatures)))
+    _fill(ends, np.log(np.asarray(speeds, np.float64)), np.asarray(temperatures, np.float64), found)
+    return found

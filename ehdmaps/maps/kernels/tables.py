@@ -95,6 +95,8 @@ class LawTable(NamedTuple):
         no centrifugal load.
     structure : array (n, 3)
         Structural law of each contact: kind, and two parameters.
+    ends : array (1 + n_u, 1 + n_T)
+        Mapped loads, see `ehdmaps.maps.kernels.lines`; those above are counted.
     film_speed : float
         Speed below which the film is faded [m/s]; inf for a map without films, 0 where it goes over into asperities.
     lowest_speed, highest_speed : float
@@ -102,11 +104,11 @@ class LawTable(NamedTuple):
     lowest_temperature, highest_temperature : float
         Temperatures at which the table is held [K].
     highest_load : float
-        Highest mapped load [N/m]; loads above it are counted.
-    highest_root : float
-        Cube root of the highest load.
+        Highest mapped load at any speed and temperature [N/m].
+    known_load, known_root : float
+        Load that is mapped at all speeds and temperatures [N/m], and its cube root.
     held_load : float
-        Load above which the law is its dry tangent [N/m].
+        Load above which the law is its dry tangent [N/m], where the highest load is mapped; less by as much elsewhere.
     counted_speed : float
         Speeds above it are counted [m/s].
     counted_cold, counted_hot : float
@@ -117,13 +119,15 @@ class LawTable(NamedTuple):
     inner: ApproachTable
     outer: ApproachTable
     structure: FloatArray
+    ends: FloatArray
     film_speed: float
     lowest_speed: float
     highest_speed: float
     lowest_temperature: float
     highest_temperature: float
     highest_load: float
-    highest_root: float
+    known_load: float
+    known_root: float
     held_load: float
     counted_speed: float
     counted_cold: float
