@@ -35,7 +35,7 @@ from mbs.bearings.contact_report import (
     rolling_loss,
     spike_tip,
 )
-from mbs.bearings.films import FilmSource
+from mbs.bearings.films import FilmSource, MapFilms
 from mbs.bearings.laws import Law
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import Load, Operation
@@ -55,6 +55,9 @@ _FREE = 1e-9
 
 
 P = TypeVar("P", bound="BearingPoint | BallPoint | TaperedPoint")
+
+_NOTABLE = 0.01, 0.05
+"""Errors of k and c along the load from which on they are told."""
 
 _KEPT = ("bearing", "force", "angle", "position", "temperature", "outer_speed")
 """Fields of points that are known without an answer."""
@@ -243,6 +246,7 @@ def bearing_point(
         guessed(force.law, rollers.load_per_length, u, temperature),
         heated(contacts, films.lubricant, modulus, u, temperature),
         _loose(stiffness, given),
+        _between_points(films, element, pose, operation, given),
     ]
     return BearingPoint(
         bearing=force.bearing,
@@ -261,6 +265,30 @@ def bearing_point(
             *(Finding(Cause.REACH, words) for words in problems),
             *(Finding(Cause.FILM, words) for words in notes if words),
         ),
+    )
+
+
+def _between_points(
+    films: FilmSource, element: BearingElement, pose: FloatArray, operation: Operation, load: FloatArray
+) -> str:
+    """A sentence where laws of the points of a map alone are wrong by more than the bars of other laws."""
+    if not isinstance(films, MapFilms) or films.emap.known_between or not films.emap.law_errors.has_spacing_errors:
+        return ""
+    wrong, whole = np.zeros(2), np.zeros(2)
+    for group in element.contact_groups(pose, operation):
+        loads, k, c, _ = group.state()
+        if (bounds := group.law.bounds(loads)) is None:
+            return ""
+        along = np.array([k, c]) * (group.rows[:, 1:3] @ load / np.hypot(*load)) ** 2
+        wrong += np.sum(along * [bounds.stiffness, bounds.damping], axis=1)
+        whole += np.sum(along, axis=1)
+    shares = wrong / np.maximum(whole, 1e-300)
+    if np.all(shares < _NOTABLE):
+        return ""
+    k, c = (f"{100.0 * share:.2g} %" for share in shares)
+    return (
+        f"stiffness along the load may be wrong by {k}, damping by {c}: by the errors of the map, and by what its axes "
+        "lose between its points; `ehdmaps show` says more"
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,6 +22,10 @@ from ehdmaps.maps.records import SPACING_ERRORS
 from ehdmaps.physics.closed_form import FormulaSolver
 from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.solution import FilmSolution, Status, contact_solution
+from mbs.analyses.bearing_point import bearing_point
+from mbs.bearings.bearing import Bearing
+from mbs.bearings.bearing_force import BearingForce
+from mbs.bearings.films import MapFilms
 
 TEXT = """schema = 1
 [bearing]
@@ -94,6 +99,23 @@ def test_another_structural_law_has_the_same_films(made):
         of = [m.dataset[name] / (m.dataset["stiffness"] if one else 1.0) for m in (emap, other)]
         np.testing.assert_allclose(*of, rtol=1e-9)  # round-off
     assert np.nanmax(np.abs(other.dataset[SPACING_ERRORS[2]] / emap.dataset[SPACING_ERRORS[2]] - 1.0)) > 1e-3
+
+
+def test_a_bearing_says_what_it_costs(made):
+    """Against errors of all slices alike, of which the bearing's has to be the same, beside the numerical ones."""
+    emap = open_map(made[1])
+    bearing = Bearing.named("NU308")
+    load = 5e3, 0.0
+    for k, c, words in ((0.02, 0.3, r"wrong by 2(\.[0-2])? %, damping by 3[0-3] %"), (0.001, 0.002, None)):
+        even = emap.dataset.copy(deep=True)
+        for name, value in zip(SPACING_ERRORS, (0.0, k, c), strict=True):
+            even[name].values[:] = value
+        even.attrs.pop("content_sha256")
+        films = MapFilms(EHDMap(even))
+        point = bearing_point(BearingForce(bearing, films.emap.law("series")), films, load, 100.0, 333.15)
+        told = [finding.words for finding in point.findings if "what its axes lose" in finding.words]
+        assert len(told) == (words is not None)
+        assert words is None or re.search(words, told[0])
 
 
 @dataclass(frozen=True)
