@@ -85,12 +85,12 @@ def cpu_seconds() -> float:
 
 
 def stopwatch() -> Callable[[], float]:
-    """Start a watch of processor time, without that of compiling; calling it gives the time so far [s]."""
+    """Start a watch of processor time, of `cpu_seconds` but without compiling; calling it gives the time so far [s]."""
     compiling = _listening()
-    begin = time.process_time() - compiling.seconds
+    begin = cpu_seconds() - compiling.seconds
 
     def elapsed() -> float:
-        return time.process_time() - compiling.seconds - begin
+        return cpu_seconds() - compiling.seconds - begin
 
     return elapsed
 

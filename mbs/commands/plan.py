@@ -11,7 +11,8 @@ from pathlib import Path
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers
-from ehdmaps.jobs.commands.check import estimated_time
+from ehdmaps.jobs.commands.check import cost_of
+from ehdmaps.jobs.instruments.cost import total
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.make.generate import planned_tasks
 from ehdmaps.outputs import SEALED, Output, output_problems, sealed, write_text
@@ -149,7 +150,7 @@ def _described(planned: _Planned) -> list[str]:
     return [
         *lines,
         f"  points             {points}, {points - job.points} of them for the contact laws",
-        f"  time               {estimated_time(job, solvers.of_map(job), points).words}",
+        total([cost_of(job, solvers.of_map(job), points)]),
     ]
 
 

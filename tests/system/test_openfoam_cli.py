@@ -294,12 +294,15 @@ def test_a_picture_that_cannot_be_written(folder, done):
     assert "--plot: got film.png, which is a folder; allowed: a file in it" in result.stderr
 
 
-def test_check_tries_a_point(folder, done):
-    assert "for one point in the middle of the map: converged)" in done("check", "job.toml").stdout
+def test_check_tries_points(folder, done):
+    told = done("check", "job.toml").stdout
+    assert re.search(r"\n  time    about \S+ s of wall time on \d+ cores?\n  memory  about \d+ MB\n", told)
+    assert re.search(r"\n    openfoam +4 points, .* \(2 points tried over the map took .*, 0 of them without", told)
     openfoam_fake.set_mode(build_of(folder), "fatal")
     tried = done("check", "job.toml", status=1).stdout
-    assert tried.startswith("job.toml: no problems of the job itself, but the point that was tried has no solution\n")
-    assert re.search(r"time    not estimated; .* for one point in the middle of the map: failed: coarse grid: ", tried)
+    assert tried.startswith("job.toml: no problems of the job itself, but no point that was tried has a solution\n")
+    assert "\n  time    not estimated\n" in tried
+    assert re.search(r"not estimated; 2 points tried .* have no solution: coarse grid: .*viscosity is neg", tried)
 
 
 def test_check_names_what_is_missing_beside_other_problems(folder, done):

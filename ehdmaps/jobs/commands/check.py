@@ -4,33 +4,26 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Iterator
-from dataclasses import dataclass
 
-from ehdmaps.compiling import cpu_seconds, stopwatch
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.estimate_bands import band_lines
+from ehdmaps.jobs.instruments.cost import Cost, cost, total
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.make.batch import is_batch, read_batch
 from ehdmaps.jobs.make.batch_generate import plan_batch
-from ehdmaps.jobs.make.generate import planned_tasks
+from ehdmaps.jobs.make.generate import FEW, planned_tasks, tasks_besides
 from ehdmaps.jobs.make.report import AXES, span
 from ehdmaps.jobs.make.table_films import unserved
-from ehdmaps.jobs.make.tasks import LineTask, line_tasks
+from ehdmaps.jobs.make.tasks import line_tasks
 from ehdmaps.jobs.reader import read_job
 from ehdmaps.jobs.supply import supply_words, surface_words
 from ehdmaps.physics.closed_form import film_change
-from ehdmaps.physics.solution import ContactSolver, Status
+from ehdmaps.physics.solution import ContactSolver
 from ehdmaps.table.solver import TableSolver
 from ehdmaps.units import LOAD, SPEED, TEMPERATURE
 from ehdmaps.workers import available_cores
 
-_BYTES_PER_POINT = 800
-_SECONDS_PER_POINT = 1e-4
-"""Results, dataset and the copy that is written; keeping and assembling: measured on a map of 200 000 points."""
-
-_SAMPLES = 4
-
-UNSOLVED = " of the job itself, but the point that was tried has no solution"
+UNSOLVED = " of the job itself, but no point that was tried has a solution"
 
 OFF = 0.2
 """Relative error of the pressure-viscosity for which the change of the film is told."""
@@ -39,7 +32,7 @@ OFF = 0.2
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Read the job (its problems are raised), then estimate points, time and memory.
 
-    The exit status is 1 where a point that a slow solver tries has no solution.
+    The exit status is 1 where no point that a slow solver tries has a solution.
     """
     import numpy as np
 
@@ -55,14 +48,16 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     names = ", ".join(contact.name for contact in job.contacts)
     planned = sum(task.points for task in planned_tasks(job))
     read = isinstance(solver, TableSolver) and not unserved(job, solver)
-    by = job.corrected_by
+    by, besides = job.corrected_by, tasks_besides(job)
     extra = planned if read else planned - job.points
     corrected = f", {by.points} for its correction" if by else ""
-    cheap = planned + (by.points if by else 0)
-    estimates = [estimated_time(job, solver, cheap)]
+    costs = {job.solver: cost_of(job, solver, planned + (by.points if by else 0))}
     if by is not None:
-        estimates.append(estimated_time(job, solvers.build(by.solver, by.options), by.points))
-    solved = all(estimate.solved for estimate in estimates)
+        costs[by.solver] = cost_of(job, solvers.build(by.solver, by.options), by.points)
+    if besides:
+        points = sum(task.points for task in besides)
+        costs[besides[0].solver.name] = cost(besides, points, available_cores())
+    solved = all(one.solved for one in costs.values())
     lines = [
         f"{arguments.job}: no problems{'' if solved else UNSOLVED}",
         f"  {job.title}, {job.lubricant.title}, solver {job.solver}, structural law {job.contacts[0].structural_law}",
@@ -77,16 +72,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         f"  points  {job.points} of the map read from the film table, {extra} solved to check its contact laws"
         if read
         else f"  points  {job.points} of the map, {extra} for its contact laws{corrected}",
-        f"  time    {estimates[0].words}",
-        *(
-            []
-            if by is None
-            else [
-                f"  correction by {by.solver}: {by.points} points besides, chosen one after the other",
-                f"  time    {estimates[1].words}",
-            ]
-        ),
-        f"  memory  about {max(100.0 + cheap * _BYTES_PER_POINT / 1e6, 1.0):.0f} MB",
+        total(tuple(costs.values())),
+        *(f"    {name:20s} {one.words}" for name, one in costs.items()),
     ]
     return "\n".join(lines), 0 if solved else 1
 
@@ -107,16 +94,9 @@ def _batch(source: str, solver: str | None) -> tuple[str, int]:
         f"  points  {points} to solve",
     ]
     job = batch.members[0].job
-    estimate = estimated_time(job, solvers.of_map(job), points)
-    return "\n".join([*lines, f"  time    {estimate.words}, and that of putting maps together"]), 0
-
-
-@dataclass(frozen=True)
-class Estimate:
-    """The time of a run in words, and whether the point that was tried for it has a solution."""
-
-    words: str
-    solved: bool = True
+    found = cost_of(job, solvers.of_map(job), points)
+    parts = [f"    {found.words}, and what putting maps together takes"]
+    return "\n".join([*lines, total([found]), *parts]), 0
 
 
 def oil_lines(job: Job) -> Iterator[str]:
@@ -134,46 +114,19 @@ def oil_lines(job: Job) -> Iterator[str]:
     )
 
 
-def estimated_time(job: Job, solver: ContactSolver, points: int) -> Estimate:
-    """Estimate the time of a run by solving a few lines of it.
+def cost_of(job: Job, solver: ContactSolver, points: int) -> Cost:
+    """Estimate what a run costs by solving a little of it.
 
     Parameters
     ----------
     job : Job
         What is to be solved.
     solver : ContactSolver
-        Solver whose time is estimated.
+        Solver whose cost is estimated.
     points : int
         How many points in all.
     """
     # what is not read is solved
+    few = isinstance(solver, TableSolver) and points <= FEW
     solver = solver.other if isinstance(solver, TableSolver) else solver
-    tasks = line_tasks(job, solver)
-    if solver.slow:
-        return _time_of_slow(tasks[len(tasks) // 2], points)
-    tasks[0].run()  # compiles, where the solver does
-    sample = tasks[:: max(len(tasks) // _SAMPLES, 1)][:_SAMPLES]
-    watch = stopwatch()
-    for task in sample:
-        task.run()
-    per_point = watch() / sum(task.points for task in sample)
-    cores = available_cores()
-    seconds = points * (per_point / cores + _SECONDS_PER_POINT)
-    words = (
-        f"about {seconds:.2g} s of wall time on {cores} cores ({per_point * 1e3:.2g} ms of processor time a point, "
-        f"from {len(sample)} lines)"
-    )
-    return Estimate(words)
-
-
-def _time_of_slow(task: LineTask, points: int) -> Estimate:
-    """Estimate the time from one point in the middle of the map, which shows that the solver runs, too."""
-    began = cpu_seconds()  # with the programs that it runs
-    arrays = task.run()
-    seconds = cpu_seconds() - began
-    status = Status(int(arrays["status"][0]))
-    trial = f"{seconds:.2g} s of processor time for one point in the middle of the map: {status.word}"
-    if not status.usable:
-        return Estimate(f"not estimated; {trial}: {arrays['reason'][0]}", solved=False)
-    cores = available_cores()
-    return Estimate(f"about {points * seconds / cores:.2g} s of wall time on {cores} cores ({trial})")
+    return cost(line_tasks(job, solver), points, 1 if few else available_cores())

@@ -333,6 +333,18 @@ def planned_tasks(job: Job, solver: ContactSolver | None = None) -> tuple[LineTa
     return tuple(task for task in plan.everything if task.solver.name == plan.solver.name)
 
 
+def tasks_besides(job: Job) -> tuple[LineTask, ...]:
+    """Points that a faster solver than that of a job is asked for besides, see `ehdmaps.jobs.make.spacing`.
+
+    Parameters
+    ----------
+    job : Job
+        What to make.
+    """
+    plan = _plan(job, _solver(job, None), None)
+    return tuple(task for task in plan.everything if task.solver.name != plan.solver.name)
+
+
 @dataclass(frozen=True)
 class _Plan:
     """All that is solved for a map: its points, the lines of a contact law, and the check of the laws.
