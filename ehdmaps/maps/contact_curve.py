@@ -356,7 +356,8 @@ class ContactCurve:
         loads = np.concatenate((low * steps, high / steps))  # read at once: a reading costs more than its loads
         film, film_compliance, loss = self._field.films(self._contact.name, loads, self._speeds, self._temperatures)
         damping = loss / (self._contact.structural_compliance(loads) + film_compliance) ** 2
-        logs = np.log(damping)
+        with np.errstate(invalid="ignore"):  # of an impossible film, which is refused
+            logs = np.log(damping)
         edges = []
         for load, at, direction in ((low, 0, 1.0), (high, 3, -1.0)):
             exponent = direction * (-1.5 * logs[at] + 2.0 * logs[at + 1] - 0.5 * logs[at + 2]) / _SMALL_STEP

@@ -28,7 +28,6 @@ from ehdmaps.maps.film_field import (
     first_loads,
     known_from,
     low_loads,
-    same_load,
 )
 from ehdmaps.maps.grid_field import GridField, line_field, lines_by_contact
 from ehdmaps.maps.law import SPEED_REACH, ContactLaw, LawKind, OutsidePolicy
@@ -298,7 +297,7 @@ class EHDMap:
         InputError
             For a kind that the map does not have.
         MapError
-            If the map has one load only, or if what the law is made from has holes left, or clusters of filled points.
+            If the map has one load only, or if no two loads are known at any speed and temperature, see `reach`.
         """
         by_name = {contact.name: contact for contact in self.contacts}
         allowed = [name for name in get_args(LawKind) if name in by_name or (name == "series" and "inner" in by_name)]
@@ -445,10 +444,15 @@ class EHDMap:
             return None
         temperatures = self.dataset["temperature"].values.astype(np.float64)
         (lowest, _), speeds = self._range("load"), self._range("entrainment_speed")
-        first: FirstLoads = partial(same_load, lowest)
+        first: FirstLoads
         if self.from_table:
             first = partial(first_loads, self.contacts, self.lubricant, lowest, RIGID)
-        elif self.backbone is not None:
+        elif self.backbone is None:
+            try:
+                first = self.reach().first_loads
+            except MapError:
+                return None
+        else:
             start = max(_known_from(group) for group, *_ in lines_by_contact(self.backbone, self.contacts))
             first = partial(first_loads, self.contacts, self.lubricant, lowest, start)
         ends = float(temperatures[0]), float(temperatures[-1])

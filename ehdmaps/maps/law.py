@@ -75,11 +75,12 @@ class ContactLaw:
     field : FilmField
         Film of each contact.
     outside : {"error", "clamp", "asymptote"}
-        What happens outside the map; counted always. `error`: OutsideMapError. `clamp`: load, speed and
-        temperature are held at the edge, with the dry tangent above the highest load. `asymptote`: film offset
-        and c go on with their end exponents, in speed at constant Moes number M, up to `LOAD_REACH` times the
-        highest load and `SPEED_REACH` times the highest speed, and as `clamp` beyond; films go on over temperature
-        too, see `continued`. Where there are no films so far away, speed and temperature are held nearer to the map.
+        What happens outside the map, also where points of it are missing, see `known_load`; counted always. `error`:
+        OutsideMapError. `clamp`: load, speed and temperature are held at the edge, with the dry tangent above the
+        highest load. `asymptote`: film offset and c go on with their end exponents, in speed at constant Moes number M,
+        up to `LOAD_REACH` times the highest load and `SPEED_REACH` times the highest speed, and as `clamp` beyond;
+        films go on over temperature too, see `continued`. Where there are no films so far away, speed and temperature
+        are held nearer to the map.
     resolution : Resolution, optional
         Spacing of the nodes of the table.
     rolling : RollingFilm, optional

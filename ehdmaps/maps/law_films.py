@@ -91,7 +91,7 @@ class LawFilms:
         """
         if self.low_loads is None or not self.low_loads.guessed:
             return []
-        low = np.nonzero((loads > 0.0) & (loads < self.field.load_range[0]))[0]
+        low = np.nonzero((loads > 0.0) & (loads < self.low_loads.begins[1]))[0]
         if not low.size:
             return []
         limits = self._guessed_below

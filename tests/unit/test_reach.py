@@ -7,6 +7,7 @@ import pytest
 
 from ehdmaps.errors import MapError, OutsideMapError
 from ehdmaps.exports.csv import Chosen, table
+from ehdmaps.exports.resampled import differences, resampled
 from ehdmaps.jobs.make.report import reach_lines
 from ehdmaps.maps.edges.reach import known_runs, reach_of
 from ehdmaps.maps.emap import EHDMap, film_between
@@ -16,6 +17,8 @@ from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.records import DERIVED
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.surface import Surface
+from ehdmaps.units import LOAD, RPM
+from tests.cases import commands
 from tests.cases.laws import LOADS, dataset_of, dry_dataset, with_holes
 
 FAST, COLD = 3, 0
@@ -229,3 +232,41 @@ def test_films_of_points_are_not_known_beyond_them(corner, whole):
     assert film_between(corner, "central_film", "inner", loads, 1.2, 313.15) == pytest.approx(
         film_between(whole, "central_film", "inner", loads, 1.2, 313.15), rel=1e-12
     )
+
+
+def test_a_bearing_is_refused_nothing_that_it_does_not_read(corner, tmp_path, monkeypatch, capsys):
+    """The same load at half the speed is within the map; at the full one the law is held, and says where it ends."""
+    monkeypatch.chdir(tmp_path)
+    corner.dataset.to_netcdf("map.nc")
+    outputs = []
+    for speed, wanted in (("700 rpm", 0), ("1450 rpm", 1)):
+        asked = ("NU308", "--map", "map.nc", "--load", "5 kN", "--speed", speed, "--temperature", "40 degC")
+        status, out, err = commands.run(capsys, "bearing", *asked)
+        assert status == wanted, err
+        outputs.append(out)
+    assert "outside the map" not in outputs[0]
+    u = corner.bearing.entrainment_speed(1450.0 / RPM.factor, 0.0)
+    end = LOAD.text(corner.law("series").known_load(u, 313.15))
+    assert f"is outside the map (1 to {end}), where the law is held at its edge" in outputs[1]
+
+
+def test_a_resampled_law_ends_where_the_loads_do(corner):
+    """Where nothing is known it has no number; elsewhere it is as close to the law as it says."""
+    law = corner.law("inner")
+    grid = resampled(law, 40)
+    read = grid.at(np.array([2e-5, 2e-5]), np.array([2.4, 1.2]), np.array([313.15, 340.0]))
+    assert np.isnan(read[0, 0]) and read[0, 1] == pytest.approx(law(2e-5, 0.0, 1.2, 340.0)[0], rel=0.02)
+    assert all(np.all(np.isfinite(values)) for values in differences(grid, law).values())
+
+
+def test_below_missing_light_loads_the_film_is_a_guess(whole):
+    """The tail begins where points are known; loads below are within the law, and are told."""
+    lost = EHDMap(with_holes(whole.dataset, (0, slice(None, 6), 0, 0)))
+    law, u, T = lost.law("series"), 0.3, 313.15
+    assert lost.reach().text.endswith("; from 10 N/mm at 0.3 m/s and 40 degC")
+    assert lost.low_loads.begins == law.low_loads.begins == pytest.approx((1e3, 1e4), rel=1e-12)
+    assert law.guessed_below(u, T) == pytest.approx(1e4, rel=1e-12)
+    for load, told in ((2e4, 0), (5e3, 1)):
+        law.reset_counts()
+        assert law(approach_at(law, load, u, T), 0.0, u, T)[0] == pytest.approx(load, rel=1e-3)
+        assert [(one.side, one.limit) for one in law.excursions] == [("below", law.guessed_below(u, T))] * told
