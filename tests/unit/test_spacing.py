@@ -14,7 +14,7 @@ from ehdmaps.jobs.make.generate import generate, generate_in_memory, planned_tas
 from ehdmaps.jobs.make.law_check import at_loads
 from ehdmaps.jobs.make.report import spacing_remedy
 from ehdmaps.jobs.make.sampling import draw
-from ehdmaps.jobs.make.spacing import plan_spacing
+from ehdmaps.jobs.make.spacing import RAISING, RANDOM, plan_spacing
 from ehdmaps.jobs.reader import parse_job
 from ehdmaps.jobs.show.describe import describe
 from ehdmaps.maps.emap import EHDMap, open_map
@@ -83,10 +83,10 @@ def test_the_file_says_it_and_so_do_summary_and_show(made):
     for name in SPACING_ERRORS:
         assert np.all(np.isnan(data[name].sel(entrainment_speed=0.0)))
         assert np.all(data[name].sel(entrainment_speed=[0.1, 0.7, 5.0]) > 0.0)
-    assert data.attrs["spacing_points"] == 60
+    assert data.attrs["spacing_points"] == RANDOM - RAISING
     for text in (summary(generated, path), describe(open_map(path), "a.nc")):
         assert "what its axes lose, by films of reynolds" in text
-        assert "not exceeded at 60 random points: film offset" in text
+        assert "not exceeded at 40 random points: film offset" in text
     words = open_map(path).law_errors.words
     assert "errors of its law between its points" in words and "it was not checked" not in words
 

@@ -39,8 +39,11 @@ from ehdmaps.physics.solution import ContactSolver, Status
 SHARES = (0.25, 0.75)
 """Of the way from one load to the next, where a cell is looked at."""
 
-RANDOM, SEED = 60, 20262
-"""Points that are used for nothing but to tell how often the estimate is enough."""
+RANDOM, RAISING, SEED = 100, 60, 20262
+"""Random points, and how many of them raise the estimate; the others tell how often it is enough."""
+
+WANTED = 0.95
+"""Share of the points that raise it at which the estimate is enough then."""
 
 
 @dataclass(frozen=True)
@@ -142,13 +145,17 @@ def with_spacing(dataset: xr.Dataset, job: Job, plan: SpacingPlan, results: Mapp
     if not np.any(np.isfinite(cells)):
         return dataset
     errors = np.full((len(SPACING_ERRORS), *job.shape), np.nan)
-    errors[:, :, :, moving] = _around(cells, known.shape)
+    around = _around(cells, known.shape)
+    ratios = _at_random(plan, field, around, axes, results)
+    raised, told = ratios[: len(ratios) * RAISING // RANDOM], ratios[len(ratios) * RAISING // RANDOM :]
+    factors = np.maximum(np.quantile(raised, WANTED, axis=0), 1.0) if len(raised) else np.ones(len(SPACING_ERRORS))
+    errors[:, :, :, moving] = factors[:, None, None, None, None] * around
     variables = {
         name: schema.typed(schema.variable(name), values) for name, values in zip(SPACING_ERRORS, errors, strict=True)
     }
-    return dataset.assign(variables).assign_attrs(
-        {"spacing_solver": plan.name, **_coverage(plan, field, errors[:, :, :, moving], axes, results)}
-    )
+    shares = np.mean(told <= factors, axis=0).tolist() if len(told) else []
+    within = dict(zip((f"{name}_within" for name in SPACING_ERRORS), shares, strict=False))
+    return dataset.assign(variables).assign_attrs({"spacing_solver": plan.name, "spacing_points": len(told), **within})
 
 
 def _middles(axis: FloatArray) -> FloatArray:
@@ -207,18 +214,18 @@ def _around(cells: FloatArray, shape: Sequence[int]) -> FloatArray:
     return errors
 
 
-def _coverage(
+def _at_random(
     plan: SpacingPlan,
     field: GridField,
     errors: FloatArray,
     axes: tuple[FloatArray, FloatArray, FloatArray],
     results: Mapping[str, Arrays],
-) -> dict[str, float | int]:
-    """Share of the random points at which the law of the reference is within the errors as they are read."""
+) -> FloatArray:
+    """Errors of the law of the reference at random points, over those that are read there, shape (n, 3)."""
     several = [axis.size > 1 for axis in axes]
     names = [contact.name for contact in field.line_contacts]
     scaled = [np.log(axes[0]), np.log(axes[1]), axes[2]]
-    within = []
+    found = []
     for task in plan.random:
         missed = _missed(field, task.contact, task, results[task.key])[:, 0]
         at = [np.log(task.loads[0]), np.log(task.entrainment_speed), task.temperature]
@@ -226,9 +233,7 @@ def _coverage(
         values = values[(slice(None), *(slice(None) if more else 0 for more in several))]
         nodes = [axis for axis, more in zip(scaled, several, strict=True) if more]
         place = [value for value, more in zip(at, several, strict=True) if more]
-        stated = RegularGridInterpolator(nodes, np.moveaxis(values, 0, -1))(place)[0]
-        if np.all(np.isfinite(missed) & np.isfinite(stated)):
-            within.append(missed <= stated)
-    shares = np.mean(within, axis=0).tolist() if within else []
-    names = [f"{name}_within" for name in SPACING_ERRORS]
-    return {"spacing_points": len(within), **dict(zip(names, shares, strict=False))}
+        ratios = missed / RegularGridInterpolator(nodes, np.moveaxis(values, 0, -1))(place)[0]
+        if np.all(np.isfinite(ratios)):
+            found.append(ratios)
+    return np.array(found).reshape(-1, len(SPACING_ERRORS))
