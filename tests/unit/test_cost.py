@@ -25,7 +25,7 @@ def trial(seconds=1.0, usable=True, own=300, programs=60, began=2.0):
 
 
 def found(trials, slow=True, processes=2, points=100, seconds=50.0):
-    return Cost(seconds, points, tuple(trials), slow, processes)
+    return Cost(seconds, points, tuple(trials), slow, processes, 200)
 
 
 def test_points_are_tried_at_the_ends_and_in_the_middle_of_the_axes():
@@ -82,7 +82,7 @@ def test_time_is_shared_and_the_dearest_point_is_waited_for():
 
 def test_memory_is_that_of_all_processes_and_their_programs():
     several = [trial(own=250), trial(own=300, programs=50), trial(programs=70)]
-    assert found(several).memory == 3 * 300 + 2 * 70 + 100 * BYTES_PER_POINT
+    assert found(several).memory == 200 + 2 * 300 + 2 * 70 + 100 * BYTES_PER_POINT
     assert found(several, processes=1).memory == 300 + 70 + 100 * BYTES_PER_POINT
 
 

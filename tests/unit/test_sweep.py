@@ -215,7 +215,8 @@ def test_a_full_disk_is_the_end_and_what_was_out_counts_as_not_tried(tmp_path, w
         with pytest.raises(DiskFullError, match="no room"):
             sweep(tasks, store, workers, heard)
         kept = [task.number for task in tasks if store.get(task.key) is not None]
-        assert kept[:5] == list(range(5)) and 5 not in kept and len(kept) == heard.after / 3 < 500
+        assert 5 not in kept and 0 in kept and len(kept) == heard.after / 3 < 500
+        assert workers > 1 or kept == list(range(5))
 
 
 @dataclass(frozen=True)

@@ -76,6 +76,8 @@ class Cost:
         Whether these were single points of a slow solver.
     processes : int
         Processes that work; 1 means that there are no others.
+    parent : int
+        Memory of the process that hands out the work [bytes].
     """
 
     seconds: float
@@ -83,6 +85,7 @@ class Cost:
     trials: tuple[Trial, ...]
     slow: bool
     processes: int
+    parent: int
 
     @property
     def solved(self) -> bool:
@@ -99,8 +102,8 @@ class Cost:
     def memory(self) -> float:
         """Memory of all processes and of the programs that they run [bytes]."""
         own, programs = max(trial.own for trial in self.trials), max(trial.programs for trial in self.trials)
-        others = self.processes if self.processes > 1 else 0
-        return (1 + others) * own + self.processes * programs + self.points * BYTES_PER_POINT
+        python = self.parent + self.processes * own if self.processes > 1 else max(self.parent, own)
+        return python + self.processes * programs + self.points * BYTES_PER_POINT
 
     @property
     def words(self) -> str:
@@ -151,17 +154,20 @@ def cost(tasks: Sequence[LineTask], points: int, processes: int) -> Cost:
     slow = tasks[0].slow
     if slow:
         chosen = _places(tasks, points)
+        with worker_pool(1) as pool:  # compiles, where that is due: memory of compiling is none of the run's
+            pool.submit(_tried, chosen[0]).result()
         with worker_pool(processes) as pool:
             trials = [future.result() for future in [pool.submit(_tried, task) for task in chosen]]
         total = float(np.sum(_between(tasks, chosen, [trial.seconds for trial in trials])))
         of_tasks = sum(task.points for task in tasks)
-        return Cost(total * points / of_tasks, points, tuple(trials), slow, processes)
+        return Cost(total * points / of_tasks, points, tuple(trials), slow, processes, _largest(resource.RUSAGE_SELF))
     tasks[0].run()  # compiles, where the solver does
     chosen = list(tasks[:: max(len(tasks) // TRIED_LINES, 1)][:TRIED_LINES])
     trials = [_tried(task) for task in chosen]
     per_point = sum(trial.seconds for trial in trials) / sum(task.points for task in chosen)
     trials = [replace(trial, began=0.0) for trial in trials]
-    return Cost(points * (per_point + SECONDS_PER_POINT * processes), points, tuple(trials), slow, processes)
+    total = points * (per_point + SECONDS_PER_POINT * processes)
+    return Cost(total, points, tuple(trials), slow, processes, _largest(resource.RUSAGE_SELF))
 
 
 def _tried(task: LineTask) -> Trial:
@@ -177,6 +183,11 @@ def _tried(task: LineTask) -> Trial:
         resource.getrusage(who).ru_maxrss * _UNIT for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)
     )
     return Trial(seconds, began, own, programs, usable, str(arrays["reason"][0]))
+
+
+def _largest(who: int) -> int:
+    """Largest memory so far of this process, or of the largest program that it ran [bytes]."""
+    return resource.getrusage(who).ru_maxrss * _UNIT
 
 
 def _axes(task: LineTask) -> tuple[float, float, float]:
