@@ -285,10 +285,10 @@ def _between_points(
     shares = wrong / np.maximum(whole, 1e-300)
     if np.all(shares < _NOTABLE):
         return ""
-    k, c = (f"{100.0 * share:.2g} %" for share in shares)
+    of_k, of_c = (f"{100.0 * share:.2g} %" for share in shares)
     return (
-        f"stiffness along the load may be wrong by {k}, damping by {c}: by the errors of the map, and by what its axes "
-        "lose between its points; `ehdmaps show` says more"
+        f"stiffness along the load may be wrong by {of_k}, damping by {of_c}: by the errors of the map, and by "
+        "what its axes lose between its points; `ehdmaps show` says more"
     )
 
 
