@@ -324,7 +324,7 @@ class Across(NamedTuple):
 
 
 ACROSS = 9
-"""Points across the film, both walls included."""
+"""Points across the film with which a solution begins, both walls included; more are taken where heat asks for them."""
 
 
 @lru_cache(maxsize=8)

@@ -121,6 +121,7 @@ def assembled(
     coarse: Profile,
     resolution: Resolution,
     steps: int,
+    witness: Profile | None = None,
 ) -> GroupSolution:
     """Response, numbers and error estimates from the fine and the coarse solution.
 
@@ -134,6 +135,8 @@ def assembled(
         Settings of the solve that gave them.
     steps : int
         Newton steps that they took.
+    witness : Profile, optional
+        The coarse solution with other points across the film, of one with temperatures: their error is added.
     """
     linear, rough_linear = linearised_profile(fine), linearised_profile(coarse)
     if linear.singular or rough_linear.singular:
@@ -172,7 +175,7 @@ def assembled(
     held = max(fronts[0].offset, 0.5 * fronts[1].offset)
     by_front = held / abs(fine.film_offset)
     film_error, surface_error = _rise_errors(fine, coarse)
-    return GroupSolution(
+    solution = GroupSolution(
         outcome=CONVERGED,
         profile=fine,
         rough=coarse,
@@ -201,6 +204,75 @@ def assembled(
         film_rise_error=film_error,
         surface_rise_error=surface_error,
         steps=steps,
+    )
+    if witness is None:
+        return solution
+    return _with_error_across(solution, coarse, rough, witness)
+
+
+POINTS_ORDER = 3.0
+"""Order of what the points across a film leave of its numbers."""
+
+
+def points_share(points: int, others: int) -> float:
+    """Share of the difference between films with some points across and with others that is left with the former.
+
+    Half as much again for safety as the order says of the one with more points.
+
+    Parameters
+    ----------
+    points, others : int
+        Points across.
+    """
+    ratio = max(points, others) / min(points, others)
+    left = float(1.5 / (ratio**POINTS_ORDER - 1.0))
+    return left if points > others else 1.0 + left
+
+
+def left_across(profile: Profile, witness: Profile) -> float:
+    """Relative error of a film offset by the points across the film, always positive.
+
+    Parameters
+    ----------
+    profile, witness : Profile
+        Two solutions on the same grid with temperatures at different points across.
+    """
+    share = points_share(profile.points, witness.points)
+    return share * abs(witness.film_offset / profile.film_offset - 1.0)
+
+
+def _with_error_across(
+    solution: GroupSolution, profile: Profile, response: Response, witness: Profile
+) -> GroupSolution:
+    """The same with the errors of its points across, from those of the coarse solution and its witness."""
+    other = linearised_profile(witness).slow_response()
+    share = points_share(profile.points, witness.points)
+    towards = 1.0 if profile.points < witness.points else -1.0
+
+    def added(name: str, here: float, there: float) -> float:
+        """Stated error of a number with what the points leave of it, > 0 where the value is too large."""
+        stated, left = getattr(solution, f"{name}_error"), towards * share * (here - there) / getattr(solution, name)
+        return math.copysign(abs(stated) + abs(left), stated if abs(stated) > abs(left) else left)
+
+    def added_rise(name: str, where: slice | list[int]) -> float:
+        """Stated error of a rise of temperature with what the points leave of it [K]."""
+        here, there = (float(np.max(each.warmth.rises[:, where])) for each in (profile, witness) if each.warmth)
+        return float(getattr(solution, f"{name}_error")) + share * abs(here - there)
+
+    (central, minimum), (other_central, other_minimum) = (each.central_and_minimum_film for each in (profile, witness))
+    peak, other_peak = (float(np.max(each.pressure)) for each in (profile, witness))
+    return replace(
+        solution,
+        film_offset_error=added("film_offset", profile.film_offset, witness.film_offset),
+        film_compliance_error=added("film_compliance", response.compliance, other.compliance),
+        loss_error=added("loss", response.loss, other.loss),
+        central_film_error=abs(added("central_film", central, other_central)),
+        minimum_film_error=abs(added("minimum_film", minimum, other_minimum)),
+        max_pressure_error=abs(added("max_pressure", peak, other_peak)),
+        rolling_force_error=abs(added("rolling_force", profile.rolling_force, witness.rolling_force)),
+        mass_flow_error=abs(added("mass_flow", profile.mass_flow, witness.mass_flow)),
+        film_rise_error=added_rise("film_rise", slice(None)),
+        surface_rise_error=added_rise("surface_rise", [0, -1]),
     )
 
 

@@ -12,12 +12,12 @@ from typing import NamedTuple
 import numpy as np
 
 from ehdmaps.arrays import ComplexArray, FloatArray
-from ehdmaps.ehl.group_solution import GroupSolution, assembled, response_share
+from ehdmaps.ehl.group_solution import GroupSolution, assembled, left_across, response_share
 from ehdmaps.ehl.newton import CONVERGED
 from ehdmaps.ehl.profile import Profile, Resolution
 from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.ehl.spectrum import film_compliances
-from ehdmaps.ehl.ways import coarse_solution, on_fine_grid
+from ehdmaps.ehl.ways import coarse_solution, on_fine_grid, with_points
 from ehdmaps.physics.moes import valley_load_number
 from ehdmaps.physics.rheology import LIMITING
 from ehdmaps.physics.spectrum import NEIGHBOUR, neighbours, read_beside
@@ -31,6 +31,13 @@ circles, as a front stands between two cells. First of all where an oil has a li
 
 THIN_FILM = 20.0
 """Load M above which a negative loss can only be a numerical one."""
+
+
+MORE_ACROSS, LESS_ACROSS = (13, 19, 29), 7
+"""Points across a film with temperatures that are tried after `ACROSS`, and instead where none of them are found."""
+
+ACROSS_TOLERANCE = 1e-3
+"""Relative error of the film offset by the points across up to which they are enough."""
 
 
 def solve_groups(
@@ -89,15 +96,60 @@ def _solve_once(
     resolution: Resolution,
     previous: Profile | None,
 ) -> GroupSolution:
-    """One solve at one resolution."""
+    """One solve at one resolution.
+
+    A film with temperatures takes as many points across as its error asks for; where that leads to no solution, those
+    that do, and says what error they leave.
+    """
     coarse, steps, outcome = coarse_solution(problem, M, L, resolution, previous)
     if coarse is None:
         return GroupSolution(outcome=outcome, profile=None, steps=steps)
-    fine, more, outcome = on_fine_grid(coarse, resolution.tolerance)
+    if coarse.warmth is None:
+        fine, more, outcome = on_fine_grid(coarse, resolution.tolerance)
+        if fine is None:
+            return GroupSolution(outcome=outcome, profile=None, steps=steps + more)
+        return assembled(M, L, fine, coarse, resolution, steps + more)
+    known, more, outcome = _by_points(coarse, resolution.tolerance)
     steps += more
-    if fine is None:
-        return GroupSolution(outcome=outcome, profile=None, steps=steps)
-    return assembled(M, L, fine, coarse, resolution, steps)
+    for chosen in _in_turn(known):
+        fine, more, outcome = on_fine_grid(chosen, resolution.tolerance)
+        steps += more
+        if fine is not None:
+            return assembled(M, L, fine, chosen, resolution, steps, _witness(known, chosen))
+    return GroupSolution(outcome=outcome, profile=None, steps=steps)
+
+
+def _by_points(coarse: Profile, tolerance: float) -> tuple[list[Profile], int, int]:
+    """Films on the coarse grid by their points across, up to where the error of these is small: two at least, or none.
+
+    Newton steps that they took, and how the last one that was asked for ended.
+    """
+    known, total, outcome = [coarse], 0, CONVERGED
+    for points in MORE_ACROSS:
+        trial, steps, outcome = with_points(known[-1], points, tolerance)
+        total += steps
+        if trial is None:
+            break
+        known.append(trial)
+        if left_across(known[-1], known[-2]) <= ACROSS_TOLERANCE:
+            break
+    if len(known) == 1:
+        trial, steps, _ = with_points(coarse, LESS_ACROSS, tolerance)
+        total += steps
+        known = [] if trial is None else [trial, coarse]
+    return known, total, outcome
+
+
+def _witness(known: list[Profile], chosen: Profile) -> Profile:
+    """The film with the most points but for the chosen one, which shows the error of the points of that."""
+    return [each for each in known if each is not chosen][-1]
+
+
+def _in_turn(known: list[Profile]) -> list[Profile]:
+    """The same, the one that is to be refined first: that of the fewest points whose error is small, or of the most."""
+    good = [each for each in known if left_across(each, _witness(known, each)) <= ACROSS_TOLERANCE]
+    first = good[0] if good else known[-1] if known else None
+    return [] if first is None else [first, *(each for each in reversed(known) if each is not first)]
 
 
 RESOLVED = 1.0 / 3.0

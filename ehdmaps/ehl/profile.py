@@ -119,6 +119,11 @@ class Profile:
         """Number of cells."""
         return self.grid.face.size
 
+    @property
+    def points(self) -> int:
+        """Points across the film; 0 without temperatures."""
+        return 0 if self.warmth is None else self.warmth.rises.shape[1]
+
     @cached_property
     def pressure(self) -> FloatArray:
         """P at the nodes, shape (n + 1,) [p_H]."""

@@ -431,8 +431,6 @@ class ReynoldsSolver(ContactSolverDefaults):
             word = "diverged" if groups.outcome == DIVERGED else "stagnated"
             status = Status.DIVERGED if groups.outcome == DIVERGED else Status.STAGNATED
             reason = f"Newton {word} at M = {M:.4g}, L = {L:.4g} on every grid tried"
-            if self.physics == THERMAL and self.shear_law.form == NEWTONIAN:
-                reason += "; films with temperatures are found more often with shear = 'eyring' or 'limiting'"
             return FilmSolution(status, reason, iterations=groups.steps, solve_seconds=seconds), groups
         half = float(half_width(load, contact.radius, contact.reduced_modulus))
         film = _in_si(groups, contact, state, half, peak, speed, seconds)

@@ -152,8 +152,8 @@ def gradient_asked(
                 by_stress += weights[j] * fluid[j] * steep
                 by_raised += weights[j] * fluid[j] * steep * heights[j]
         lever = (weights @ (secant * heights)) / (weights @ secant)
-        held, end = below @ secant, weights @ secant
-        mobility = -scale * (below @ (secant * (heights - lever)))
+        held, end = float(below @ secant), float(weights @ secant)
+        mobility = -scale * float(below @ (secant * (heights - lever)))
         if count == 0:
             # an oil that yields lets more pass than one that does not
             high = wanted / mobility
