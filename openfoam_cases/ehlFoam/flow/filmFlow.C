@@ -13,6 +13,10 @@ namespace Foam
 {
     defineTypeNameAndDebug(filmFlow, 0);
     defineRunTimeSelectionTable(filmFlow, dictionary);
+
+//- Least change of a velocity, over that of the surfaces, of which difference quotients keep some digits
+static constexpr scalar leastVelocityStep = 1e-11;
+
 }
 
 
@@ -195,5 +199,5 @@ Foam::scalar Foam::filmFlow::velocityStep
     const scalar newtonian =
         oil_.shearStress(oil_.pressure(v))*thickness/(oil_.viscosity(v)*contact_.entrainment());
     const scalar least = min(mag(velocity - below), mag(above - velocity));
-    return min(scalar(1e-6), 1e-4*max(newtonian, least));
+    return min(scalar(1e-6), max(1e-4*max(newtonian, least), leastVelocityStep));
 }

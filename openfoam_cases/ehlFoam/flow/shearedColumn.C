@@ -159,6 +159,14 @@ Foam::scalarField Foam::shearedColumn::velocity() const
 }
 
 
+Foam::scalar Foam::shearedColumn::rateByVelocity(const label rows, const label face, const label row)
+{
+    if (face == 0) return row == 0 ? 3.5 : row == 1 ? -0.5 : 0;
+    if (face == rows) return row == rows - 1 ? -3.5 : row == rows - 2 ? 0.5 : 0;
+    return row == face ? 1 : row == face - 1 ? -1 : 0;
+}
+
+
 Foam::scalarField Foam::shearedColumn::rates
 (
     const scalarField& velocity,
@@ -167,9 +175,10 @@ Foam::scalarField Foam::shearedColumn::rates
 )
 {
     const label n = velocity.size();
-    scalarField rate(n + 1);
-    rate[0] = 3.5*velocity[0] - 0.5*velocity[1];
-    rate[n] = -3.5*velocity[n - 1] + 0.5*velocity[n - 2];
-    for (label k = 1; k < n; ++k) rate[k] = velocity[k] - velocity[k - 1];
+    scalarField rate(n + 1, Zero);
+    for (label k = 0; k <= n; ++k)
+    {
+        for (label j = max(k - 2, 0); j < min(k + 2, n); ++j) rate[k] += rateByVelocity(n, k, j)*velocity[j];
+    }
     return (rate*n + slide)/film;
 }

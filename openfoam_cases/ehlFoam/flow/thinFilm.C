@@ -319,6 +319,77 @@ Foam::List<Foam::scalarField> Foam::thinFilm::residual
 }
 
 
+void Foam::thinFilm::exactDerivatives
+(
+    const filmState& state,
+    const label column,
+    Eigen::Ref<Eigen::MatrixXd> block
+) const
+{
+    const label rows = film_.rows();
+    const scalar v = state.column[column], p = max(oil_.pressure(v), scalar(0));
+    const scalar h = 0.5*(state.h[column] + state.h[column + 1]);
+    const scalar slide = contact_.upperSpeed - contact_.lowerSpeed, perStep = rows*contact_.entrainment()/h;
+    const scalarField viscosity(faceViscosity(state, column));
+    auto stress = [&](const label k, const scalar rate)
+    {
+        return viscosity[k]*rate*oil_.shear().yielding(viscosity[k]*rate, p).factor;
+    };
+    const scalarField velocities(addedVelocity(state, column)), rate(shearedColumn::rates(velocities, h, slide));
+
+    // of rates and stresses on the faces, by the velocities of the rows
+    Eigen::MatrixXd rateBy(rows + 1, rows), stressBy(rows + 1, rows);
+    for (label k = 0; k <= rows; ++k)
+    {
+        const scalar tangent = viscosity[k]*oil_.shear().yielding(viscosity[k]*rate[k], p).slope;
+        for (label j = 0; j < rows; ++j)
+        {
+            rateBy(k, j) = perStep*shearedColumn::rateByVelocity(rows, k, j);
+            stressBy(k, j) = tangent*rateBy(k, j);
+        }
+    }
+
+    // the momentum of a cell is the difference of the stresses on its two faces
+    for (label j = 0; j < rows; ++j)
+    {
+        const scalar mu = heat_.valid()
+          ? heat_->oil().viscosity(oil_.pressure(v), heat_->temperature(state.local[place(column, j, warmth)]))
+          : oil_.viscosity(v);
+        const scalar unit = rows*h/(mu*contact_.entrainment());
+        for (label k = 0; k < rows; ++k)
+        {
+            block(j*cellSize(), k*cellSize()) = unit*(stressBy(j + 1, k) - stressBy(j, k));
+        }
+    }
+    if (!heat_.valid()) return;
+
+    // heat of shear: what the difference quotients have of it is taken out
+    const scalar unit = heat_->shearUnit(h)*oil_.fraction(v);
+    auto heatOf = [&](const scalarField& r)
+    {
+        scalarField heat(rows);
+        forAll(heat, j) heat[j] = filmHeat::shearHeat(stress(j, r[j]), stress(j + 1, r[j + 1]), r[j], r[j + 1]);
+        return heat;
+    };
+    const scalarField heat(heatOf(rate));
+    for (label k = 0; k < rows; ++k)
+    {
+        const scalar step = cellStep(state, velocity, column, k);
+        scalarField moved(velocities);
+        moved[k] += contact_.entrainment()*step;
+        const scalarField movedHeat(heatOf(shearedColumn::rates(moved, h, slide)));
+        for (label j = 0; j < rows; ++j)
+        {
+            // bilinear in stresses and rates
+            const scalar exact =
+                filmHeat::shearHeat(stressBy(j, k), stressBy(j + 1, k), rate[j], rate[j + 1])
+              + filmHeat::shearHeat(stress(j, rate[j]), stress(j + 1, rate[j + 1]), rateBy(j, k), rateBy(j + 1, k));
+            block(j*cellSize() + warmth, k*cellSize()) -= unit*(exact - (movedHeat[j] - heat[j])/step);
+        }
+    }
+}
+
+
 void Foam::thinFilm::warmFaces(surfaceScalarField& muFace) const
 {
     const fvMesh& mesh = film_.mesh();

@@ -129,7 +129,7 @@ Foam::scalarField Foam::filmHeat::shearHeat
         {
             const scalar low = onAcross(stress, i, j), high = onAcross(stress, i, j + 1);
             const scalar slow = onAcross(rate, i, j), fast = onAcross(rate, i, j + 1);
-            heat[film_.cell(i, j)] = (2*low*slow + 2*high*fast + low*fast + high*slow)/6;
+            heat[film_.cell(i, j)] = shearHeat(low, high, slow, fast);
         }
     }
     return heat;

@@ -154,6 +154,7 @@ void Foam::linearisation::addCellUnknowns
     }
     for (label i = 0; i < n; ++i)
     {
+        flow.exactDerivatives(film, i, block(i, i));
         const label source = size*rows;
         for (label j = 0; j < rows; ++j)
         {

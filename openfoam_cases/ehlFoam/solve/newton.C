@@ -257,7 +257,7 @@ Foam::newtonResult Foam::newton
             {
                 outcome::stagnated,
                 cuts >= mostCuts ? "the last " + std::to_string(cuts) + " of Newton's steps had to be cut"
-              : shortest < controls.tolerance && !balanced
+              : idle >= mostIdle && !balanced
               ? "Newton's steps end at a length of " + name(shortest) + " where the mass flux upstream of rupture varies"
                 " by " + name(s.fluxDefect()) + ", continuity of a cell by " + name(s.flow().cellContinuity())
               : last ? "no convergence in " + std::to_string(iteration) + " steps"

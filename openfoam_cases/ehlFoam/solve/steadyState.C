@@ -20,6 +20,11 @@ namespace Foam
 static constexpr scalar firstFactor = 64, firstRatio = 8, leastRatio = 1.1, roughly = 1e-3;
 static constexpr label roughIterations = 20;
 
+/*-  Where the heat is not met at once: from so small a part of it, so many
+     times as much in each stage, less where one fails
+*/
+static constexpr scalar firstHeat = 1.0/64, heatRatio = 4;
+
 /*-  Where the film that slides is not met at once: from the one that rolls,
      sliding by so large a part more, less where a stage fails
 */
@@ -196,9 +201,22 @@ Foam::solvedFilm Foam::steadyState
         if (heated > 0 && !solve("thinFilm", shear, controls, heated))
         {
             // a little heat first: it thins the oil where most of it is made
-            for (scalar share = 1.0/64; share <= 1; share *= 4)
+            scalar reached = 0, ratio = heatRatio;
+            while (reached < heated)
             {
-                if (!solve("thinFilm", shear, controls, share)) return false;
+                const scalar next = reached > 0 ? min(heated, ratio*reached) : firstHeat;
+                if (solve("thinFilm", shear, controls, next))
+                {
+                    reached = next;
+                }
+                else if (reached == 0 || ratio < leastRatio)
+                {
+                    return false;
+                }
+                else
+                {
+                    ratio = Foam::sqrt(ratio);
+                }
             }
         }
         return true;
