@@ -36,7 +36,7 @@ correction_points = 5
 columns = 100
 rows = 4
 """
-"""So few cells that OpenFOAM differs by a percent, which the correction has to carry."""
+"""So few columns that OpenFOAM may differ by parts in a thousand; the error of its rows is taken off."""
 
 
 def test_with_heat_and_a_limiting_stress_films_become_those_of_cfd(tmp_path: Path) -> None:
@@ -59,5 +59,9 @@ def test_with_heat_and_a_limiting_stress_films_become_those_of_cfd(tmp_path: Pat
         mapped = made.sel(contact=contact.name).sel(at, method="nearest")
         errors.append([abs(h / dear.film_offset - 1.0) for h in (float(mapped["film_offset"]), cheap.film_offset)])
     corrected, uncorrected = np.max(errors, axis=0)
-    assert uncorrected > 2e-3  # else there were nothing to correct
-    assert corrected < 0.5 * uncorrected  # of five points, over a factor of eight of the load
+    # a correction that five points do not show to be one is left out: then both programs agree as they are, within
+    # what so few columns cost a film
+    if "film_offset" in record["not_applied"]:
+        assert corrected == uncorrected < 2e-3
+    else:
+        assert corrected < 0.5 * uncorrected  # of five points, over a factor of eight of the load
