@@ -237,7 +237,7 @@ SOLVERS: Mapping[str, SolverEntry] = {
                 ("reynolds", "hertz"),
                 "start of a point: its Reynolds solution, which also places the cells, or the dry contact",
             ),
-            Number("timeout", 1.0, 1e6, "seconds after which a point, both grids together, is stopped and failed"),
+            Number("timeout", 1.0, 1e6, "seconds after which a point, all grids together, is stopped and failed"),
         ),
         _openfoam,
         missing=_openfoam_missing,
