@@ -56,6 +56,8 @@ NOTES: Mapping[str, str] = {
     "x": "from the contact centre [m]",
     "pressure": "[Pa]",
     "centralFilm": "[m]",
+    "levels": "across the film, 0 and 1 at its surfaces",
+    "temperatures": "at each level over all x [K]",
     "frequencies": "[Hz], 0 is the low-frequency limit",
     "frequency": "[Hz]",
     "amplitude": "of the load",

@@ -8,12 +8,13 @@ from pathlib import Path
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import SolverError
 from ehdmaps.openfoam.case import working_case
 from ehdmaps.openfoam.fields import FilmFields, read_fields
 from ehdmaps.openfoam.installation import Installation
-from ehdmaps.openfoam.parameters import Parameters, Start
-from ehdmaps.openfoam.results import THIN_FILM, FilmTable, Results, read_film, read_results
+from ehdmaps.openfoam.parameters import Parameters, Start, Temperatures
+from ehdmaps.openfoam.results import THIN_FILM, FilmTable, Results, read_film, read_results, read_temperatures
 from ehdmaps.openfoam.run import KilledError, RunError, log_tail, run
 from ehdmaps.physics.rheology import NEWTONIAN, wall_stress_note
 from ehdmaps.physics.solution import Status
@@ -30,15 +31,19 @@ LEAST_ROWS = 2
 BETWEEN = 0.75
 """Cells each way of a grid between the coarse one and the fine one, over those of the fine one."""
 
+QUARTER = -7.0 / 128.0, 105.0 / 128.0, 35.0 / 128.0, -5.0 / 128.0
+"""Weights of four points of equal distance in the cubic through them, a quarter of the way from second to third."""
+
 
 @dataclass(frozen=True)
 class GridSolution:
-    """Result of one run; `note` says so where it took two tries."""
+    """Result of one run; `temperatures` are None of an isothermal film, `note` says so where it took two tries."""
 
     results: Results
     film: FilmTable
     fields: FilmFields | None
     cavitation_range: float
+    temperatures: Temperatures | None = None
     note: str = ""
 
     @property
@@ -47,10 +52,16 @@ class GridSolution:
 
         The mixture behind the film's rupture is told by a pressure below zero. With all stresses what loads the
         surfaces there is another one, of the oil that is drawn apart.
+
+        With heat it has values between the columns, too: on straight lines between those of a coarse grid the front of
+        a spike stands beside its place, by more than Newton's method finds back with a limiting stress.
         """
         mixture = -self.cavitation_range * (1.0 - self.film.liquid_fraction)
         pressure = np.where(self.film.liquid_fraction < 1.0, mixture, self.film.pressure)
-        return Start(self.film.x, pressure, self.results.central_film)
+        if self.temperatures is None:
+            return Start(self.film.x, pressure, self.results.central_film)
+        temperatures = replace(self.temperatures, values=_between(self.temperatures.values))
+        return Start(_between(self.film.x), _between(pressure), self.results.central_film, temperatures)
 
 
 @dataclass(frozen=True)
@@ -100,9 +111,12 @@ class GridSolver:
         tries: list[tuple[Parameters, ...]] = [(parameters,), (moved,)]
         if start is not None:
             begun = replace(parameters, start=start)
+            # without its temperatures heat comes in steps
+            cold = [] if start.temperatures is None else [(replace(begun, start=replace(start, temperatures=None)),)]
             # all stresses start from the thin film of the same grid in any case: whatever that was started from
-            through = [(_resized(begun, BETWEEN, BETWEEN), parameters), *tries]
-            tries = [(begun,), *(through if parameters.flow == "thin_film" else tries[1:])]
+            thin = parameters.flow == "thin_film"
+            through = [(_resized(begun, BETWEEN, BETWEEN), parameters)] if thin else []
+            tries = [(begun,), *cold, *through, *tries[0 if thin else 1 :]]
         for attempt in tries:
             try:
                 grid = self._in_turn(attempt, name, with_fields, end)
@@ -164,7 +178,7 @@ class GridSolver:
                 if results.status is Status.CONVERGED:
                     film = read_film(case, parameters.columns)
                     fields = read_fields(case) if with_fields else None
-                    return GridSolution(results, film, fields, parameters.cavitation_range)
+                    return GridSolution(results, film, fields, parameters.cavitation_range, _warmth(case, parameters))
                 status, reason = _cause(parameters, results, case)
             except SolverError as error:
                 raise RunError(f"{error}; {log_tail(log)}") from error
@@ -181,6 +195,41 @@ class GridSolver:
         """Remove the folder of a failed run after which another one follows, unless cases are kept."""
         if self.keep_cases is None and error.case is not None:
             shutil.rmtree(error.case, ignore_errors=True)
+
+
+def _warmth(case: Path, parameters: Parameters) -> Temperatures | None:
+    """Temperatures of a run, over its columns; None of an isothermal film."""
+    if parameters.heat is None:
+        return None
+    rows = parameters.rows
+    levels = np.concatenate([[0.0], (np.arange(rows) + 0.5) / rows, [1.0]])
+    return Temperatures(levels, read_temperatures(case, parameters.columns, rows))
+
+
+def _between(values: FloatArray) -> FloatArray:
+    """Values of columns, and those a quarter of the way to the columns beside them: where twice as many have theirs.
+
+    On cubics through four columns, kept between the two at both sides.
+
+    Parameters
+    ----------
+    values : ndarray, shape (..., n)
+
+    Returns
+    -------
+    ndarray, shape (..., 3 n - 2)
+        Without those beyond the first and the last column.
+    """
+    count = values.shape[-1]
+    table = np.empty((*values.shape[:-1], 3 * count - 2))
+    table[..., ::3] = values
+    near, far = values[..., :-1], values[..., 1:]
+    before = np.concatenate([values[..., :1], values[..., :-2]], axis=-1)
+    behind = np.concatenate([values[..., 2:], values[..., -1:]], axis=-1)
+    for first, ends in ((1, (before, near, far, behind)), (2, (behind, far, near, before))):
+        curve = sum(weight * end for weight, end in zip(QUARTER, ends, strict=True))
+        table[..., first::3] = np.clip(curve, np.minimum(near, far), np.maximum(near, far))
+    return table
 
 
 def _cause(parameters: Parameters, results: Results, case: Path) -> tuple[Status, str]:

@@ -104,6 +104,22 @@ NEWTON = ShearLaw()
 
 
 @dataclass(frozen=True)
+class Temperatures:
+    """Temperatures of a film.
+
+    Attributes
+    ----------
+    levels : ndarray, shape (k,)
+        Heights across the film, from 0 at the lower surface to 1 at the upper one.
+    values : ndarray, shape (k, n)
+        Temperatures there, over the places along the film [K].
+    """
+
+    levels: FloatArray
+    values: FloatArray
+
+
+@dataclass(frozen=True)
 class Start:
     """A film to start from.
 
@@ -115,11 +131,15 @@ class Start:
         [Pa].
     central_film : float
         [m].
+    temperatures : Temperatures, optional
+        Those at the positions: the run begins with all of its heat, and ends where that leads nowhere. Without them it
+        begins with an isothermal film.
     """
 
     x: FloatArray
     pressure: FloatArray
     central_film: float
+    temperatures: Temperatures | None = None
 
 
 @dataclass(frozen=True)
@@ -284,6 +304,9 @@ class Parameters:
                 number_list("pressure", self.start.pressure),
                 entry("centralFilm", self.start.central_film),
             ]
+            if self.start.temperatures is not None:
+                start.append(number_list("levels", self.start.temperatures.levels))
+                start.append(number_list("temperatures", self.start.temperatures.values.ravel()))
             yield from block("start", start)
         yield from block("response", [number_list("frequencies", self.frequencies)])
         if self.oscillation is not None:

@@ -1,4 +1,4 @@
-"""Output of a run of `ehlFoam`: the dictionary `results` and the tables `film.dat` and `thinFilm.dat`."""
+"""Output of a run of `ehlFoam`: the dictionary `results`, and tables of the film and its temperatures."""
 
 from __future__ import annotations
 
@@ -36,8 +36,11 @@ HEAT: Mapping[str, str] = {
 FILM, THIN_FILM = "film.dat", "thinFilm.dat"
 """Tables of the film as it is, and, of a run with all stresses, of the thin film from which it starts."""
 
+TEMPERATURE = "temperature.dat"
+"""Table of the temperatures of a film with heat: a line a column of cells, across it from surface to surface."""
+
 COLUMNS = ("x", "pressure", "film", "flux", "density", "liquid_fraction")
-"""Columns of both."""
+"""Columns of the tables of the film."""
 
 
 @dataclass(frozen=True)
@@ -207,6 +210,29 @@ def read_film(case: Path, columns: int, name: str = FILM) -> FilmTable:
         If it is not there or is not a table of finite numbers with the columns of `COLUMNS`.
     """
     return FilmTable(*read_table(case / name, columns, COLUMNS))
+
+
+def read_temperatures(case: Path, columns: int, rows: int) -> FloatArray:
+    """Read the temperatures of a film with heat.
+
+    Parameters
+    ----------
+    case : Path
+        The case folder.
+    columns, rows : int
+        Cells that it has along and across the film.
+
+    Returns
+    -------
+    ndarray, shape (rows + 2, columns)
+        Of the lower surface, of the rows and of the upper surface [K].
+
+    Raises
+    ------
+    SolverError
+        If it is not there or is not such a table of finite numbers.
+    """
+    return read_table(case / TEMPERATURE, columns, ("lower", *map(str, range(rows)), "upper"))
 
 
 def read_table(path: Path, count: int, columns: tuple[str, ...]) -> FloatArray:

@@ -143,6 +143,23 @@ void Foam::reportHeat(const Time& runTime, resultsFile& results, slice& s, newto
             << heat->fluxUnit()*state.local[s.flow().fluxPlace(i, 0)] << ' '
             << heat->fluxUnit()*state.local[s.flow().fluxPlace(i, 1)] << nl;
     }
+
+    // across each column, from the lower surface to the upper one
+    OFstream temperatures(runTime.path()/"temperature.dat");
+    temperatures.precision(12);
+    const label rows = s.flow().film().rows();
+    temperatures << "# lower";
+    for (label j = 0; j < rows; ++j) temperatures << ' ' << j;
+    temperatures << " upper" << nl;
+    for (label i = 0; i < n; ++i)
+    {
+        temperatures << heat->temperature(state.wall[i]);
+        for (label j = 0; j < rows; ++j)
+        {
+            temperatures << ' ' << heat->temperature(state.local[s.flow().place(i, j, s.flow().warmthKind())]);
+        }
+        temperatures << ' ' << heat->temperature(state.wall[n + i]) << nl;
+    }
 }
 
 

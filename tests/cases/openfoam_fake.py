@@ -158,6 +158,9 @@ head = "# x pressure film flux density liquid_fraction\\n"
 (case / "film.dat").write_text(head + "".join(table[: 3 if mode[0] == "cut" else None]))
 if "fullStress;" in text:
     (case / "thinFilm.dat").write_text(head + "".join(table))
+if "isotherms" in text:
+    heads = " ".join(["# lower", *map(str, range(rows)), "upper"])
+    (case / "temperature.dat").write_text("\\n".join([heads, *[" ".join(["313.15"] * (rows + 2))] * columns, ""]))
 if mode[0] == "table":
     (case / "film.dat").write_text("# x pressure\\nwhat is this\\n")
 if re.search("writeFields +true", text):

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.ehl.start import reynolds_start
 from ehdmaps.openfoam.fields import read_fields
 from ehdmaps.openfoam.grid_solver import GridSolution
@@ -192,3 +193,26 @@ def test_the_stated_error_covers_that_of_the_rows(load: float, celsius: float) -
     # what is left of the rows' error is a fraction of what six of them have
     rows = fine.results.film_offset - many.film_offset
     assert abs(film.film_offset - many.film_offset) < max(0.25 * abs(rows), 5e-4 * many.film_offset)
+
+
+def test_a_run_from_its_own_film_is_there() -> None:
+    cold, warm = _solved(), openfoam_runs.run(replace(_parameters(), start=_solved().start))
+    # 1e-9 is the length of the last step of both
+    assert warm.results.film_offset == pytest.approx(cold.results.film_offset, rel=1e-8)
+    assert warm.results.film_temperature == pytest.approx(cold.results.film_temperature, rel=1e-8)
+    # heat at once, and no way from the isothermal film, which is thicker by a tenth
+    assert warm.results.iterations < 0.5 * cold.results.iterations
+
+
+def test_a_limiting_stress_and_heat_at_the_highest_pressures() -> None:
+    """From a coarse grid on, each grid is near the one before it, with its temperatures: from cold films none is."""
+    contact = BearingGeometry.named("NU308").contacts(STEEL, "iso16281")[1]
+    point = OperatingPoint(1e6, 10.0**-0.15, 293.15)
+    solver = OpenFoamSolver(physics="thermal", shear="limiting", starter=reynolds_start)
+    (film,) = solver.solve_line(contact, OIL, (point.load,), point.entrainment_speed, point.temperature)
+    assert film.status.usable, film.reason
+    reynolds = ReynoldsSolver(physics="thermal", shear="limiting")
+    (known,) = reynolds.solve_line(contact, OIL, (point.load,), point.entrainment_speed, point.temperature)
+    stated = abs(film.film_offset_error) + abs(known.film_offset_error)
+    # two ways to write the same equations: what both state, and what inlet and the mean of columns differ by
+    assert film.film_offset == pytest.approx(known.film_offset, rel=stated + 3e-3)

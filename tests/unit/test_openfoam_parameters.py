@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from ehdmaps.errors import InputError
-from ehdmaps.openfoam.parameters import STEP, Heat, Mesh, Oscillation, Parameters, Start, isotherms
+from ehdmaps.openfoam.parameters import STEP, Heat, Mesh, Oscillation, Parameters, Start, Temperatures, isotherms
 from ehdmaps.openfoam.pyfoam import parse
 from ehdmaps.physics.heat import HeatData
 from ehdmaps.physics.lubricant import Lubricant
@@ -204,7 +204,9 @@ def test_the_file_has_no_character_that_could_do_more():
 def test_the_file_reads_as_the_case_by_hand():
     """One entry a line, of 130 letters at most, with the units of the case that runs by hand."""
     heat = Heat(333.15, HeatData(), isotherms(Lubricant.named("FVA3"), 333.15))
-    many = replace(GOOD, heat=heat, start=Start(np.linspace(-1e-4, 1e-4, 400), np.full(400, 1e8 / 3.0), 1e-7))
+    warmth = Temperatures(np.array([0.0, 0.5, 1.0]), np.full((3, 400), 1e3 / 3.0))
+    start = Start(np.linspace(-1e-4, 1e-4, 400), np.full(400, 1e8 / 3.0), 1e-7, warmth)
+    many = replace(GOOD, heat=heat, start=start)
     text = many.text()
     assert max(map(len, text.split("\n"))) <= 130
     assert not re.search(r";.*;|\{.*\S|\S.*\{", text)

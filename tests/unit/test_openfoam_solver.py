@@ -24,7 +24,10 @@ from ehdmaps.jobs.reader import parse_job, read_job
 from ehdmaps.jobs.solve.film_plot import colour_limits, places
 from ehdmaps.openfoam import installation as installed
 from ehdmaps.openfoam.case import CLAIM, PREFIX, claimed, remove_leftovers
+from ehdmaps.openfoam.grid_solver import GridSolution
+from ehdmaps.openfoam.parameters import Temperatures
 from ehdmaps.openfoam.pyfoam import parse
+from ehdmaps.openfoam.results import FilmTable, Results
 from ehdmaps.openfoam.run import RunError, run
 from ehdmaps.openfoam.solver import OpenFoamSolver
 from ehdmaps.physics.contact import OperatingPoint
@@ -717,3 +720,19 @@ def test_a_thin_streak_takes_no_colours():
     values[:, 1] = 20.0
     assert colour_limits(x, values)[0] == 20.0
     assert colour_limits(x, np.full((3, 7), 60.0)) == (60.0, 60.0)
+
+
+def test_a_start_with_heat_has_values_between_its_columns():
+    x = np.linspace(-2.0, 3.0, 11)
+    cubic = x**3 - 2.0 * x
+    film = FilmTable(x, cubic, *[np.ones(11)] * 4)
+    warmth = Temperatures(np.array([0.0, 1.0]), np.array([300.0 + x, np.where(x < 0.1, 300.0, 350.0)]))
+    start = GridSolution(Results(Status.CONVERGED, central_film=1e-7), film, None, 1.0, warmth).start
+    np.testing.assert_allclose(start.x[::3], x, rtol=1e-15, atol=1e-15)
+    # a cubic is itself but where it turns, and at the ends; a straight line everywhere
+    inside = (start.x > 1.4) & (start.x < 2.4)
+    np.testing.assert_allclose(start.pressure[inside], (start.x**3 - 2.0 * start.x)[inside], rtol=1e-13)
+    np.testing.assert_allclose(start.temperatures.values[0, 3:-3], 300.0 + start.x[3:-3], rtol=1e-14)
+    # a front stays between the columns at its sides
+    assert set(np.round(start.temperatures.values[1], 6)) >= {300.0, 350.0}
+    assert start.temperatures.values[1].min() == 300.0 and start.temperatures.values[1].max() == 350.0

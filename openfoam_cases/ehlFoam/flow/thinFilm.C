@@ -137,7 +137,15 @@ void Foam::thinFilm::balance(filmState& state) const
     }
     auto mass = [&](const label i)
     {
-        return oil_.density(state.column[i])*0.5*(state.h[i] + state.h[i + 1]);
+        const scalar h = 0.5*(state.h[i] + state.h[i + 1]);
+        if (!heat_.valid()) return oil_.density(state.column[i])*h;
+        scalar sum = 0;
+        for (label j = 0; j < film_.rows(); ++j)
+        {
+            const scalar T = heat_->temperature(state.local[place(i, j, warmth)]);
+            sum += heat_->oil().density(oil_.pressure(state.column[i]), T);
+        }
+        return sum/film_.rows()*h;
     };
     forAll(state.column, i)
     {

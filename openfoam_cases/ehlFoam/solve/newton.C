@@ -13,8 +13,8 @@ namespace Foam
 //- A linearisation is renewed when a step is not below this part of the one before
 static constexpr scalar slow = 0.3;
 
-//- Most that one step changes pressures [Hertz pressures] and ln(viscosity), least it leaves of a film
-static constexpr scalar mostPressure = 0.25, mostViscosity = 5, leastFilm = 0.4;
+//- Most that one step changes ln(viscosity), least it leaves of a film
+static constexpr scalar mostViscosity = 5, leastFilm = 0.4;
 
 //- Most that one step changes temperatures [T_b]
 static constexpr scalar mostWarmth = 0.08;
@@ -116,8 +116,14 @@ static scalar warmed(const slice& s, const slice::unknowns& step)
 }
 
 
-//- Part of a step that may be taken
-static scalar allowedPart(const slice& s, const slice::unknowns& u, const slice::unknowns& step)
+//- Part of a step that may be taken, of which pressures may change by so many Hertz pressures
+static scalar allowedPart
+(
+    const slice& s,
+    const slice::unknowns& u,
+    const slice::unknowns& step,
+    const scalar mostPressure
+)
 {
     const filmFlow& flow = s.flow();
     auto v = [&](const scalar column) { return flow.oil().unknown(flow.loadPressure(column)); };
@@ -218,7 +224,7 @@ Foam::newtonResult Foam::newton
         {
             return {outcome::diverged, "Newton's step has no finite length", iteration, u};
         }
-        scalar part = allowedPart(s, u, change);
+        scalar part = allowedPart(s, u, change, controls.mostPressure);
         // a column at the edge of the mixture that goes back and forth is met half-way
         if (backAndForth > 2) part *= 0.5;
         if (part < 1) next = stepped(s, u, part, change);

@@ -30,6 +30,68 @@ static constexpr scalar firstHeat = 1.0/64, heatRatio = 4;
 */
 static constexpr scalar firstSlide = 0.25, leastSlide = 1.0/256;
 
+/*-  From a start with temperatures, which is near the film: most that a step
+     changes pressures [Hertz pressures]. Longer ones leave the neighbourhood
+     where the front of a spike stands between other columns.
+*/
+static constexpr scalar nearPressure = 0.08;
+
+
+//- Temperatures of the case's start, if it has them: over its places x, one level across the film after the other
+static void putWarmth(const dictionary& dict, const slice& s, slice::unknowns& u)
+{
+    if (!dict.found("start") || !dict.subDict("start").found("temperatures")) return;
+    const dictionary& start = dict.subDict("start");
+    const filmFlow& flow = s.flow();
+    const scalar bulk = flow.heat()->bulk();
+    const scalarField places(start.lookup("x")), levels(start.lookup("levels")), all(start.lookup("temperatures"));
+    if (levels.size() < 2 || all.size() != levels.size()*places.size())
+    {
+        FatalIOErrorInFunction(start)
+            << "temperatures: got " << all.size() << " at " << levels.size() << " levels of " << places.size()
+            << " places, allowed is one for each of at least 2 levels of each place" << exit(FatalIOError);
+    }
+    const label n = s.columns(), rows = flow.film().rows();
+    for (label i = 0; i < n; ++i)
+    {
+        const scalar middle = 0.5*(flow.film().x()[i] + flow.film().x()[i + 1]);
+        scalarField across(levels.size());
+        forAll(levels, k)
+        {
+            const scalarField along(SubList<scalar>(all, places.size(), k*places.size()));
+            across[k] = interpolateXY(middle, places, along)/bulk - 1;
+        }
+        auto at = [&](const scalar level) { return interpolateXY(level, levels, across); };
+        for (label j = 0; j < rows; ++j) u.local[flow.place(i, j, flow.warmthKind())] = at(flow.film().middle(j));
+        u.wall[i] = at(0);
+        u.wall[n + i] = at(1);
+    }
+}
+
+
+//- What flows across a film whose velocities and temperatures are known: mass through the upper faces of its cells, as
+//  continuity asks for, and heat into its walls
+static void putFluxes(slice& s, slice::unknowns& u)
+{
+    const filmFlow& flow = s.flow();
+    const Eigen::VectorXd lack = s.residual(u, nullptr);
+    const label across = flow.warmthKind() - 1;
+    for (label i = 0; i < s.columns(); ++i)
+    {
+        scalar leaves = 0;
+        for (label j = 0; j < flow.film().rows(); ++j)
+        {
+            leaves -= lack[flow.place(i, j, across)];
+            u.local[flow.place(i, j, across)] += leaves;
+        }
+        for (label side = 0; side < 2; ++side)
+        {
+            const label place = flow.fluxPlace(i, side);
+            u.local[place] -= lack[place];
+        }
+    }
+}
+
 } // End namespace Foam
 
 
@@ -126,9 +188,11 @@ Foam::solvedFilm Foam::steadyState
                 }
             }
         }
-        else if (!newtonian)
+        else
         {
-            start = found.contact->balanced(start);
+            if (heated > 0) putWarmth(dict, *found.contact, start);
+            if (!newtonian || heated > 0) start = found.contact->balanced(start);
+            if (heated > 0) putFluxes(*found.contact, start);
         }
         found.result = newton(*found.contact, start, contact.load, stageControls, found.tangent);
         iterations += found.result.iterations;
@@ -244,8 +308,12 @@ Foam::solvedFilm Foam::steadyState
         return true;
     };
     const bool slides = contact.upperSpeed != contact.lowerSpeed;
-    bool met = slides && solve("thinFilm", shear, controls)
-        && (heated == 0 || solve("thinFilm", shear, controls, heated));
+    // a start with temperatures is near the film with all of its heat; who gives it has others where it leads nowhere
+    const bool warm = heated > 0 && dict.found("start") && dict.subDict("start").found("temperatures");
+    const newtonControls near{controls.tolerance, controls.maxIterations, nearPressure};
+    if (warm && !solve("thinFilm", shear, near, heated)) return found;
+    bool met = warm || (slides && solve("thinFilm", shear, controls)
+        && (heated == 0 || solve("thinFilm", shear, controls, heated)));
     if (slides && !met)
     {
         from = first;
