@@ -15,6 +15,7 @@ import signal
 import sys
 import tempfile
 import threading
+import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
@@ -37,6 +38,9 @@ _RUN_AGAIN = "_fixup_main_from"
 
 _LONGEST_CAUSE = 10_000
 """Bytes at the end of what silent processes printed."""
+
+_LONGEST_WAIT = 1.0
+"""For the end of a process [s], and then for its exit status."""
 
 _ADVICE = (
     "look after memory, limits (ulimit -a) and the libraries of this Python, or take one worker; what was solved is "
@@ -193,9 +197,9 @@ class WorkerPool:
         """Report why a process died, as far as it says so: the last line that it printed, or its signal."""
         ends = []
         for child in self._children:
-            child.join(1.0)
-            if child.exitcode is not None and child.exitcode not in (0, -signal.SIGTERM):  # by which others are ended
-                ends.append(child.exitcode)
+            end = _exit_status(child)
+            if end is not None and end not in (0, -signal.SIGTERM):  # by which others are ended
+                ends.append(end)
         cause = next((f"signal {signal.Signals(-end).name}" for end in ends if end < 0), "")
         printed = ""
         if self._printed is not None:
@@ -211,6 +215,18 @@ class WorkerPool:
             self._printed.close()
         if self._stderr is not None:
             os.close(self._stderr)
+
+
+def _exit_status(child: BaseProcess) -> int | None:
+    """Exit status of a process that ends; None while it lives.
+
+    The thread of the executor asks the system, too: the one that asks second is told by the first, a moment later.
+    """
+    child.join(_LONGEST_WAIT)
+    until = time.monotonic() + _LONGEST_WAIT
+    while child.exitcode is None and wait_for_process([child.sentinel], 0.0) and time.monotonic() < until:
+        time.sleep(0.01)
+    return child.exitcode
 
 
 class _Inherited:

@@ -129,7 +129,7 @@ class OpenFoamSolver(ContactSolverDefaults):
     starter : callable, optional
         Gives a start to each point; without one it starts from the dry contact.
     timeout : float
-        Time of a point, both grids together, after which it is stopped and failed [s].
+        Time of a point, all grids together, after which it is stopped and failed [s].
     keep_cases : Path, optional
         Folder in which the cases of all runs are kept, with their fields.
     installed : Installation
