@@ -36,7 +36,7 @@ class Thicker:
         self.contacts, self.dry = field.contacts, False
         self.load_range, self.speed_range = field.load_range, field.speed_range
         self.temperature_range = field.temperature_range
-        self.first_loads = field.first_loads
+        self.first_loads, self.ends = field.first_loads, field.ends
 
     def films(self, contact, loads, speeds, temperatures):
         offset, compliance, loss = self.field.films(contact, loads, speeds, temperatures)
@@ -256,7 +256,7 @@ class Ending:
         self.contacts, self.dry = field.contacts, False
         self.load_range, self.speed_range = field.load_range, field.speed_range
         self.temperature_range = field.temperature_range
-        self.first_loads = field.first_loads
+        self.first_loads, self.ends = field.first_loads, field.ends
 
     def films(self, contact, loads, speeds, temperatures):
         cold, hot = self.temperature_range
