@@ -8,6 +8,7 @@ import pytest
 from ehdmaps.errors import MapError, OutsideMapError
 from ehdmaps.exports.csv import Chosen, table
 from ehdmaps.exports.resampled import differences, resampled
+from ehdmaps.jobs import cli
 from ehdmaps.jobs.make.report import reach_lines
 from ehdmaps.maps.edges.reach import known_runs, reach_of
 from ehdmaps.maps.emap import EHDMap, film_between
@@ -19,6 +20,7 @@ from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.surface import Surface
 from ehdmaps.units import LOAD, RPM
 from tests.cases import commands
+from tests.cases.jobs import map_job
 from tests.cases.laws import LOADS, dataset_of, dry_dataset, with_holes
 
 FAST, COLD = 3, 0
@@ -270,3 +272,15 @@ def test_below_missing_light_loads_the_film_is_a_guess(whole):
         law.reset_counts()
         assert law(approach_at(law, load, u, T), 0.0, u, T)[0] == pytest.approx(load, rel=1e-3)
         assert [(one.side, one.limit) for one in law.excursions] == [("below", law.guessed_below(u, T))] * told
+
+
+def test_a_map_of_a_standstill_alone_is_known(tmp_path, capsys):
+    """It is made, shown and read; its contacts are dry."""
+    grid = ('["1 N/mm", "9 N/mm", "300 N/mm"]', '["0 m/s"]', '["40 degC"]')
+    (tmp_path / "job.toml").write_text(map_job(*grid, solver="hertz"))
+    path = str(tmp_path / "still.nc")
+    assert cli.main(["generate", str(tmp_path / "job.toml"), "-o", path, "--workers", "1"]) == 0
+    assert "series, inner, outer 1 to 300 N/mm, 0 m/s, 40 degC" in capsys.readouterr().out
+    status, out, _ = commands.run(capsys, "bearing", "NU308", "--map", path, "--load", "1 kN", "--speed", "0 rpm")
+    assert status == 0
+    assert "smallest film                    um                  0            0" in out

@@ -89,7 +89,9 @@ class Reach:
 
     @property
     def load_range(self) -> tuple[float, float]:
-        """Lowest and highest load that is known at some speed and temperature [N/m]."""
+        """Lowest and highest load that is known at some speed and temperature [N/m]; those of a map at a standstill."""
+        if not self.rows.size:
+            return float(self.axes[0][0]), float(self.axes[0][-1])
         return float(np.min(self.first)), float(np.max(self.last))
 
     def first_loads(self, speeds: FloatArray, temperatures: FloatArray) -> FloatArray:
@@ -135,7 +137,8 @@ class Reach:
     @property
     def parts(self) -> tuple[str, ...]:
         """Parts of `text`: the ranges, places of the map where loads end early or begin late, and what is left out."""
-        axes = (np.array(self.load_range), LOAD), (self.speeds, SPEED), (self.temperatures, TEMPERATURE)
+        speeds = self.speeds if self.rows.size else np.zeros(1)
+        axes = (np.array(self.load_range), LOAD), (speeds, SPEED), (self.temperatures, TEMPERATURE)
         parts = [", ".join(_span(values, display) for values, display in axes)]
         parts += self._early(self.last, self.load_range[1], "up to")
         parts += self._early(self.first, self.load_range[0], "from")
@@ -197,7 +200,7 @@ def known_runs(known: BoolArray) -> BoolArray:
 
 
 def reach_of(runs: BoolArray, axes: Axes) -> Reach | None:
-    """Reach of a law that needs all of some contacts; None where there is none.
+    """Reach of a law that needs all of some contacts; None where there is none. A map of a standstill alone is known.
 
     Parameters
     ----------
@@ -207,6 +210,8 @@ def reach_of(runs: BoolArray, axes: Axes) -> Reach | None:
         Axes of the map.
     """
     loads, moving = axes[0], np.flatnonzero(axes[1] > 0.0)
+    if not moving.size:  # a dry contact, of which all is known
+        return whole_reach(axes)
     both: BoolArray = np.logical_and.reduce(runs[:, :, moving])
     first = loads[np.argmax(both, axis=0)]
     last = loads[loads.size - 1 - np.argmax(both[::-1], axis=0)]
