@@ -218,7 +218,7 @@ def _between(values: FloatArray) -> FloatArray:
     Returns
     -------
     ndarray, shape (..., 3 n - 2)
-        Without those beyond the first and the last column.
+        Values of the columns and between them, none beyond the first and the last column.
     """
     count = values.shape[-1]
     table = np.empty((*values.shape[:-1], 3 * count - 2))

@@ -225,7 +225,7 @@ def read_temperatures(case: Path, columns: int, rows: int) -> FloatArray:
     Returns
     -------
     ndarray, shape (rows + 2, columns)
-        Of the lower surface, of the rows and of the upper surface [K].
+        Temperatures of the lower surface, of the rows and of the upper surface [K].
 
     Raises
     ------
