@@ -141,14 +141,7 @@ class RunLog:
     def found(self, task: Task, arrays: Arrays, now: bool) -> None:
         """Tell of points that have no solution, and of what a point that took long has noted; now and then the pace.
 
-        Parameters
-        ----------
-        task : Task
-            What was solved, or found in the store.
-        arrays : Arrays
-            Result of the task.
-        now : bool
-            True if it was solved now, False if the store had it: its story was told when it was solved.
+        The story of a point that the store had was told when it was solved; arguments as of `Watch.found`.
         """
         if not now:
             self._pace.taken_over(task.points)

@@ -343,17 +343,7 @@ class StatusFile:
         self.write()
 
     def found(self, task: Task, arrays: Arrays, now: bool) -> None:
-        """Count a result, and write now and then.
-
-        Parameters
-        ----------
-        task : Task
-            What was solved, or found in the store.
-        arrays : Arrays
-            Result of the task.
-        now : bool
-            True if it was solved now, False if the store had it.
-        """
+        """Count a result, and write now and then; arguments as of `Watch.found`."""
         if now:
             self._pace.solved(task.points)
         else:
