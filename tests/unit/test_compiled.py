@@ -55,7 +55,9 @@ def site(tmp_path):
 def outer(site, cache, **variables):
     """What the compiled function says of 1, and what was told on stderr, in a process of its own."""
     kept = {name: value for name, value in os.environ.items() if name not in ("NUMBA_CACHE_DIR", "XDG_CACHE_HOME")}
-    kept |= {"XDG_CACHE_HOME": str(cache), "PYTHONPATH": str(site), **variables}
+    # Python knows a changed file by its second and its length: a test that changes a digit within a second would read
+    # bytecode of the old one
+    kept |= {"XDG_CACHE_HOME": str(cache), "PYTHONPATH": str(site), "PYTHONDONTWRITEBYTECODE": "1", **variables}
     code = "from ehdmaps.caller import outer; print(outer(1.0), len(outer.stats.cache_hits))"
     found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=kept, cwd=site, check=True)
     return found.stdout.split(), found.stderr
