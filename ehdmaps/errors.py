@@ -31,6 +31,10 @@ class DependencyError(InputError):
     """A package that an extra of the distribution installs is not there; the message names the extra."""
 
 
+class KernelError(EhdmapsError):
+    """The C library of the equations cannot be loaded or built; the message says what to install."""
+
+
 class SolverError(EhdmapsError):
     """A contact solver gave up in a way it could not express as a status; the sweep records it as `failed`."""
 
