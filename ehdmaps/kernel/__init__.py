@@ -13,10 +13,17 @@ The C files in the order in which data pass through them; `kernel.c` includes al
 unit. So every `static` name is unique among all files. A public name begins with `ehd_`, and a public function takes a
 pointer to its data first: C keeps no state of its own.
 
-==============  ======================================================================================
-numbers.h       what every part needs: statuses, the lesser and the greater of two numbers
-kernel.c        the unit that is compiled
-==============  ======================================================================================
+===================  ==================================================================================
+numbers.h            what every part needs: the lesser and the greater of two numbers
+status.[hc]          what calls find, and how it is called
+law.[hc]             contact law over approach, rate, speed and temperature: tables, points, ends
+cells.c              cells of tables that are the binary digits of a number
+film.[hc]            films with memory of one contact: equilibrium, steps in time, rates
+cylinder_law.c       the law at one speed and temperature, as a table for bearings with cylindrical rollers
+cylinder.[hc]        bearings with cylindrical rollers: force, stiffness and damping at a pose
+cylinder_films.[hc]  the same with films that have a memory
+kernel.c             the unit that is compiled
+===================  ==================================================================================
 
 Nothing is imported here: take the names from their modules.
 """

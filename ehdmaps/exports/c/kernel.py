@@ -8,7 +8,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from ehdmaps.arrays import FloatArray
+import numpy as np
+
 from ehdmaps.errors import InputError
 from ehdmaps.exports.c.locked_table import locked_table
 from ehdmaps.exports.c.text import array, comment, define, number, renamed, template
@@ -20,12 +21,18 @@ from ehdmaps.physics.bearing import BearingGeometry
 
 ProfileName = Literal["iso", "straight"]
 
-_LEAST_SLICES = 201
+_MOST_SLICES = 201
 _NAME = re.compile(r"[a-z][a-z0-9_]*")
 _ALL, _WRONG = 127, 127 - (1 + 2 + 4)
 """All parts of a status of `law.h`, and those that are no matter of the range of the map."""
 
-_INCLUDES = ("float.h", "math.h", "stddef.h", "stdint.h", "string.h")
+_LAW_NUMBERS = (
+    "film_speed", "lowest_speed", "highest_speed", "lowest_temperature", "highest_temperature",
+    "highest_load", "known_load", "held_load", "counted_speed", "counted_cold", "counted_hot",
+)  # fmt: skip
+"""Numbers of `ehdmaps.maps.kernels.tables.LawTable` that the law has in C by the same names."""
+
+_TABLES = {"own": "the law", "inner": "the inner contact", "outer": "the outer contact"}
 
 
 BEYOND: Mapping[OutsidePolicy, str] = {"error": "refused", "clamp": "held", "asymptote": "extended"}
@@ -68,8 +75,8 @@ class KernelOptions:
             problems.append(
                 f"export c, prefix: got {self.prefix!r}; allowed: lower-case letters, digits and _, a letter first"
             )
-        if not 1 <= self.slices <= _LEAST_SLICES:
-            problems.append(f"export c, slices: got {self.slices!r}; allowed: 1 to {_LEAST_SLICES}")
+        if not 1 <= self.slices <= _MOST_SLICES:
+            problems.append(f"export c, slices: got {self.slices!r}; allowed: 1 to {_MOST_SLICES}")
         if self.clearance is not None and not math.isfinite(self.clearance):
             problems.append(f"export c, clearance: got {self.clearance!r}; allowed: a finite number of metres")
         if problems:
@@ -101,24 +108,28 @@ def kernel_files(emap: EHDMap, options: KernelOptions, header: Sequence[str]) ->
     law = emap.law(kind, options.outside)
     bearing = emap.bearing if kind == "series" else None
     banner = comment(header)
-    heads, bodies = ["law", "film"], ["law", "cells", "film"]
+    heads, bodies, facades = ["status", "law", "film"], ["status", "law", "cells", "film"], ["law_facade"]
     if bearing is not None:
-        heads += ["bearing", "film_bearing"]
-        bodies += ["prepare", "bearing", "film_bearing"]
+        heads += ["cylinder", "cylinder_films"]
+        bodies += ["cylinder_law", "cylinder", "cylinder_films"]
+        facades += ["bearing_facade"]
     guard = "EHD_H"
     top = [
-        banner, f"#ifndef {guard}\n#define {guard}\n\n#include <stddef.h>\n",
+        banner, f"#ifndef {guard}\n#define {guard}\n\n#include <stddef.h>\n#include <stdint.h>\n",
         _public_numbers(law, bearing, options),
         '#ifdef __cplusplus\nextern "C" {\n#endif\n',
-        *(_template(f"{part}.h") for part in heads),
+        *(template("ehdmaps.kernel", f"c/{part}.h") for part in heads),
+        *(_template(f"{part}.h") for part in facades),
         f"#ifdef __cplusplus\n}}\n#endif\n\n#endif /* {guard} */\n",
     ]  # fmt: skip
     source = [
-        banner, "".join(f"#include <{name}>\n" for name in _INCLUDES) + '\n#include "ehd.h"\n',
-        _template("tables.c"),
-        _private_numbers(law, options.centrifugal),
-        _film_numbers(law),
-        *(_template(f"{part}.c") for part in bodies),
+        banner, '#include "ehd.h"\n',
+        template("ehdmaps.kernel", "c/numbers.h"),
+        *(template("ehdmaps.kernel", f"c/{part}.c") for part in bodies),
+        _law_data(law, options.centrifugal),
+        _film_data(law),
+        "" if bearing is None else _bearing_data(bearing, options),
+        *(_template(f"{part}.c") for part in facades),
     ]  # fmt: skip
     texts = {"ehd.h": "\n".join(top), "ehd.c": "\n".join(source)}
     if bearing is not None:
@@ -157,7 +168,6 @@ def _public_numbers(law: ContactLaw, bearing: BearingGeometry | None, options: K
             define("EHD_ISO_PROFILE", int(options.profile == "iso"), "1: profile of ISO/TS 16281, 0: straight"),
             define("EHD_CLEARANCE", clearance, "diametral clearance of the export [m]"),
             define("EHD_SLICES", options.slices, "slices of a roller of the export"),
-            define("EHD_MOST_SLICES", max(options.slices, _LEAST_SLICES), "room for slices"),
             define("EHD_CAGE_INNER", 0.5 * (1.0 - bearing.gamma), "turns of the cage for each of the inner ring"),
             define("EHD_CAGE_OUTER", 0.5 * (1.0 + bearing.gamma), "turns of the cage for each of the outer ring"),
             define("EHD_ENTRAINMENT", bearing.entrainment_speed(1.0, 0.0), "entrainment speed [m/rad], see below"),
@@ -165,72 +175,90 @@ def _public_numbers(law: ContactLaw, bearing: BearingGeometry | None, options: K
     return "".join(lines)
 
 
-def _private_numbers(law: ContactLaw, centrifugal: bool) -> str:
-    """Constants and tables that only the functions read."""
+def _law_data(law: ContactLaw, centrifugal: bool) -> str:
+    """Numbers and tables of the law."""
     table: LawTable = law.table if centrifugal else law.plain_table
-    rows = "".join(
-        f"    {{{int(kind == HALF_SPACE)}, {number(a)}, {number(b)}}},\n" for kind, a, b in table.structure.tolist()
-    )
-    parts = [
-        define("FILM_SPEED", table.film_speed, "speed below which films fade [m/s]")
-        + define("LOWEST_SPEED", table.lowest_speed, "speeds of the table [m/s]")
-        + define("HIGHEST_SPEED", table.highest_speed, "beyond it the law is held")
-        + define("LOWEST_TEMPERATURE", table.lowest_temperature, "temperatures of the table [K]")
-        + define("HIGHEST_TEMPERATURE", table.highest_temperature, "beyond them the law is held")
-        + define("KNOWN_LOAD", table.known_load, "load that is mapped at all speeds and temperatures [N/m]")
-        + define("HELD_LOAD", table.held_load, "load above which the law is its tangent [N/m]"),
-        f"static const structure STRUCTURE[EHD_CONTACTS] = {{\n{rows}}};\n",
-        _ends(table.ends),
-        _table("OWN", table.own, "the law"),
-    ]
-    if centrifugal:
-        parts += [_table("INNER", table.inner, "the inner contact"), _table("OUTER", table.outer, "the outer contact")]
-    return "\n".join(parts)
-
-
-def _ends(ends: FloatArray) -> str:
-    """Loads up to which films are mapped."""
-    speeds, kelvins = (", ".join(map(number, axis.tolist())) for axis in (ends[1:, 0], ends[0, 1:]))
-    rows = ",\n".join("    {" + ", ".join(map(number, row)) + "}" for row in ends[1:, 1:].tolist())
-    return (
-        define("END_SPEEDS", ends.shape[0] - 1, "places of ln u with highest mapped loads")
-        + define("END_TEMPERATURES", ends.shape[1] - 1, "temperatures with them")
-        + f"static const double END_LOG_SPEEDS[END_SPEEDS] = {{{speeds}}};\n"
-        f"static const double END_KELVINS[END_TEMPERATURES] = {{{kelvins}}};\n"
-        f"static const double ENDS[END_SPEEDS][END_TEMPERATURES] = {{\n{rows}}}; /* [N/m] */\n"
-    )
-
-
-def _film_numbers(law: ContactLaw) -> str:
-    """Constants and the table of films with memory."""
-    table, film = locked_table(law), locked_film.film_of(law.contacts, 0.0)
-    speeds, temperatures, loads = table.speeds, table.temperatures, table.loads
-    rows = ",\n".join(
-        "    {" + ",\n     ".join("{" + ", ".join(map(number, line)) + "}" for line in part) + "}"
-        for part in table.factors.tolist()
-    )
+    tables = {"own": table.own, "inner": table.inner, "outer": table.outer}
+    if not centrifugal:
+        del tables["inner"], tables["outer"]
+    rows = [value for kind, a, b in table.structure.tolist() for value in (float(kind == HALF_SPACE), a, b)]
+    fields = {
+        "refused": "EHD_REFUSED",
+        "contacts": "EHD_CONTACTS",
+        "centrifugal": "EHD_HAS_CENTRIFUGAL",
+        **{name: number(getattr(table, name)) for name in _LAW_NUMBERS},
+        "structure": "STRUCTURE",
+        "end_rows": str(table.ends.shape[0]),
+        "end_columns": str(table.ends.shape[1]),
+        "ends": "ENDS",
+    }
     return "\n".join(
         (
-            define("FILM_PI", math.pi, "pi")
-            + define("FILM_RADIUS", film.radius, "mean reduced radius of the contacts [m]")
-            + define("FILM_MODULUS", film.modulus, "E' [Pa]")
-            + define("LOCKED", locked_film.LOCKED, "closed formula of the locked film")
-            + define("LOCKED_BY_LOAD", locked_film.LOCKED_BY_LOAD, "its part that goes with the film's exponent")
-            + define("MOST_LOCKED", locked_film.MOST_LOCKED, "most of the structure's compliance that it takes off")
-            + define("LONGEST", locked_film.LONGEST, "longest relaxation time, in natural times")
-            + define("FACTOR_SPEEDS", speeds.count, "places of ln u")
-            + define("FACTOR_LOG_SPEED", speeds.start, "the first one")
-            + define("FACTOR_SPEED_STEP", speeds.per_step, "inverse distance of two")
-            + define("FACTOR_TEMPERATURES", temperatures.count, "places of 1/(T - COLDEST)")
-            + define("FACTOR_COLD", temperatures.start, "the first one")
-            + define("FACTOR_COLD_STEP", temperatures.per_step, "inverse distance of two")
-            + define("FACTOR_LOADS", loads.count, "places of ln of the load")
-            + define("FACTOR_LOG_LOAD", loads.start, "the first one")
-            + define("FACTOR_LOAD_STEP", loads.per_step, "inverse distance of two"),
-            "/* Factors of the closed formula of the locked film. */\n"
-            f"static const double FACTORS[FACTOR_SPEEDS][FACTOR_TEMPERATURES][FACTOR_LOADS] = {{\n{rows}}};\n",
+            *(_coefficients(name, part) for name, part in tables.items()),
+            "/* Laws of the contacts without films: kind, and two numbers. */",
+            array("STRUCTURE", np.array(rows)),
+            "/* Loads up to which films are mapped [N/m], over ln u and T. */",
+            array("ENDS", table.ends),
+            _data("ehd_law_data", "LAW", fields | {name: _axes(name, part) for name, part in tables.items()}),
         )
     )
+
+
+def _film_data(law: ContactLaw) -> str:
+    """Numbers and the table of films with memory."""
+    table, film = locked_table(law), locked_film.film_of(law.contacts, 0.0)
+    fields = {
+        "law": "&LAW",
+        "radius": number(film.radius),
+        "modulus": number(film.modulus),
+        "lowest_speed": "EHD_LOWEST_SPEED",
+        "locked": number(locked_film.LOCKED),
+        "locked_by_load": number(locked_film.LOCKED_BY_LOAD),
+        "most_locked": number(locked_film.MOST_LOCKED),
+        "longest": number(locked_film.LONGEST),
+    }
+    for axis, places, name in (
+        ("speeds", table.speeds, "log_speed"),
+        ("temperatures", table.temperatures, "temperature"),
+        ("loads", table.loads, "log_load"),
+    ):
+        fields[axis] = str(places.count)
+        fields[f"{name}_start"], fields[f"{name}_step"] = number(places.start), number(places.per_step)
+    return "\n".join(
+        (
+            "/* Factors of the closed formula of the locked film. */",
+            array("FACTORS", table.factors),
+            _data("ehd_film_data", "FILMS_WITH_MEMORY", fields | {"factors": "FACTORS"}),
+        )
+    )
+
+
+def _bearing_data(bearing: BearingGeometry, options: KernelOptions) -> str:
+    """Numbers of the bearing."""
+    angles = 2.0 * math.pi * np.arange(bearing.rollers) / bearing.rollers
+    fields = {
+        "law": "&LAW",
+        "rollers": "EHD_ROLLERS",
+        "roller_length": "EHD_ROLLER_LENGTH",
+        "roller_diameter": "EHD_ROLLER_DIAMETER",
+        "iso_profile": "EHD_ISO_PROFILE",
+        "cosine": "COSINES",
+        "sine": "SINES",
+    }
+    return "\n".join(
+        (
+            "/* Directions of the rollers in the cage. */",
+            array("COSINES", np.cos(angles)),
+            array("SINES", np.sin(angles)),
+            _data("ehd_cylinder_data", "CYLINDER", fields),
+        )
+    )
+
+
+def _data(kind: str, name: str, fields: Mapping[str, str]) -> str:
+    """A structure with its fields."""
+    lines = "".join(f"    .{field} = {value},\n" for field, value in fields.items())
+    return f"static const {kind} {name} = {{\n{lines}}};\n"
 
 
 def _places(table: ApproachTable) -> int:
@@ -238,18 +266,25 @@ def _places(table: ApproachTable) -> int:
     return int(table.coefficients.shape[2]) // 2
 
 
-def _table(name: str, table: ApproachTable, words: str) -> str:
-    """A table with its axes."""
+def _coefficients(name: str, table: ApproachTable) -> str:
+    """Arrays of a table."""
     speeds, temperatures, _ = table.coefficients.shape
     sizes = f"{speeds} speeds, {temperatures} temperatures, {_places(table)} places"
-    axes = ", ".join(number(value) for value in table[2:])
     return "\n".join(
         (
-            f"/* Coefficients of {words}, over {sizes}. */",
-            array(f"{name}_COEFFICIENTS", table.coefficients),
-            f"/* Offset and inverse scale of {words}. */",
-            array(f"{name}_PLACE", table.place),
-            f"static const axes {name} = {{\n    {speeds}, {temperatures}, {_places(table)}, {axes},\n"
-            f"    {name}_COEFFICIENTS, {name}_PLACE}};\n",
+            f"/* Coefficients of {_TABLES[name]}, over {sizes}. */",
+            array(f"{name.upper()}_COEFFICIENTS", table.coefficients),
+            f"/* Offset and inverse scale of {_TABLES[name]}. */",
+            array(f"{name.upper()}_PLACE", table.place),
         )
+    )
+
+
+def _axes(name: str, table: ApproachTable) -> str:
+    """A table as a field of the law's data."""
+    speeds, temperatures, _ = table.coefficients.shape
+    axes = ", ".join(number(value) for value in table[2:])
+    return (
+        f"{{{speeds}, {temperatures}, {_places(table)}, {axes},\n"
+        f"            {name.upper()}_COEFFICIENTS, {name.upper()}_PLACE}}"
     )

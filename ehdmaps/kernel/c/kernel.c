@@ -10,14 +10,29 @@
 #define EHD_TEXT(NAME) EHD_TEXT_OF(NAME)
 
 #include "numbers.h"
+#include "status.h"
+#include "law.h"
+#include "film.h"
+#include "cylinder.h"
+#include "cylinder_films.h"
 
 /* law */
+#include "status.c"
+#include "law.c"
+EHD_SIZE_OF(ehd_law_data)
 
 /* films with memory */
+#include "cells.c"
+#include "film.c"
+EHD_SIZE_OF(ehd_film_data)
 
 /* pairs of rolling bodies */
 
 /* cylindrical rollers */
+#include "cylinder_law.c"
+#include "cylinder.c"
+#include "cylinder_films.c"
+EHD_SIZE_OF(ehd_cylinder_data)
 
 /* balls */
 

@@ -2,7 +2,7 @@
  * Films with memory: a film answers a change of load with a delay.
  *
  * The state of a film is xi, the approach at which it would be in equilibrium [m]; the load of that equilibrium is
- * p(xi), that of ehd_law at rest. With the load w of the contact
+ * p(xi), that of the law at rest. With the load w of the contact
  *
  *     approach = a(w) + y(xi),    xi' = (w^2 - p^2)/(2 w) / (dG/dxi).
  *
@@ -20,10 +20,25 @@
 #define EHD_NODES (2 * EHD_ROWS + 1)
 #define EHD_LOAD_ROWS 768
 
-/* The law with memory at one speed and temperature; made by ehd_film_at. Some 190 kB: make it static, or on the heap,
+/* The numbers of films with memory, beside their law. */
+typedef struct ehd_film_data {
+    const ehd_law_data *law;
+    double radius, modulus;               /* mean reduced radius of the contacts [m], E' [Pa] */
+    double lowest_speed;                  /* the lowest mapped one [m/s] */
+    double locked, locked_by_load;        /* closed formula of the locked film, and its part by the film's exponent */
+    double most_locked;                   /* most of the structure's compliance that it takes off */
+    double longest;                       /* longest relaxation time, in natural times */
+    int64_t speeds, temperatures, loads;  /* places of the factors of that formula, over ln u, 1/(T - coldest), ln w */
+    double log_speed_start, log_speed_step, temperature_start, temperature_step, log_load_start, log_load_step;
+    const double *factors;                /* (speeds, temperatures, loads) */
+} ehd_film_data;
+
+/* The law with memory at one speed and temperature; made by ehd_film_make. Some 190 kB: make it static, or on the heap,
  * and one for each thread. Its fields are for the functions here. */
 typedef struct ehd_film {
-    ehd_point point;
+    const ehd_law_data *law;
+    double entrainment_speed, temperature; /* what was asked for, u >= 0 */
+    int64_t status;
     double centre, inverse_scale;       /* of the cells [m], [1/m] */
     double lift_off;                    /* approach up to which nothing is carried [m] */
     double highest;                     /* load above which slices are outside the map [N/m] */
@@ -48,8 +63,8 @@ typedef struct ehd_film_rates {
 
 /* The law with memory at an entrainment speed [m/s], of either sign, and temperature [K]. Takes some 0.1 ms
  * where one of them is new; where neither is, the film is left as it is: set everything in it to zero before the first
- * call. */
-int ehd_film_at(ehd_film *film, double u, double T);
+ * call. `room` of ehd_law_point_size bytes is for the time of the call. */
+int ehd_film_make(const ehd_film_data *data, double u, double T, ehd_law_point *room, ehd_film *film);
 
 /* A film in equilibrium at an approach [m]. */
 int ehd_film_settled(const ehd_film *film, double approach, ehd_film_state *state);

@@ -1,13 +1,13 @@
 /* ---------------------------------------------------------------------------------------------------------------------
- * The bearing with films that have a memory
+ * Bearings with cylindrical rollers and films that have a memory
  * ------------------------------------------------------------------------------------------------------------------ */
 
 static const double AT_REST[6] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
 
 /* What refuses a call before it is begun. */
-static int films_status(const ehd_bearing *bearing, const ehd_film *film, const double pose[6], double cage_angle) {
+static int films_status(const ehd_cylinder *bearing, const ehd_film *film, const double pose[6], double cage_angle) {
     if (!bearing || !film || !pose) return EHD_BAD_ARGUMENT;
-    return film_status(film) | check_motion(pose, AT_REST, cage_angle);
+    return film_status(film) | check_motion(bearing->data, pose, AT_REST, cage_angle);
 }
 
 /* Add the load of a slice and its stiffness to those of its roller. */
@@ -19,12 +19,12 @@ static void add_slice(double x, double load, double stiffness, sums *sum) {
     sum->k[2] += stiffness * x * x;
 }
 
-int ehd_bearing_settled(const ehd_bearing *bearing, const ehd_film *film, const double pose[6], double cage_angle,
-                        ehd_film_state states[]) {
+int ehd_cylinder_settled(const ehd_cylinder *bearing, const ehd_film *film, const double pose[6], double cage_angle,
+                         ehd_film_state states[]) {
     if (!states) return EHD_BAD_ARGUMENT;
     const int status = films_status(bearing, film, pose, cage_angle);
-    if (EHD_REFUSES(status)) return status;
-    for (int j = 0; j < EHD_ROLLERS; j++) {
+    if (!bearing || refuses(bearing->data->law, status)) return status;
+    for (int j = 0; j < bearing->data->rollers; j++) {
         const roller r = roller_of(bearing, pose, AT_REST, cos(cage_angle), sin(cage_angle), j);
         for (int i = 0; i < bearing->slices; i++)
             ehd_film_settled(film, approach_of(bearing, &r, i), &states[j * bearing->slices + i]);
@@ -32,51 +32,54 @@ int ehd_bearing_settled(const ehd_bearing *bearing, const ehd_film *film, const 
     return status;
 }
 
-int ehd_bearing_advance(const ehd_bearing *bearing, const ehd_film *film, double step, double last_step,
-                        const double pose[6], double cage_angle, const ehd_film_state before[], ehd_film_state after[],
-                        ehd_bearing_force *result) {
+int ehd_cylinder_advance(const ehd_cylinder *bearing, const ehd_film *film, double step, double last_step,
+                         const double pose[6], double cage_angle, const ehd_film_state before[], ehd_film_state after[],
+                         ehd_bearing_force *result) {
     if (!result) return EHD_BAD_ARGUMENT;
     no_bearing_force(result);
     if (!before || !after) return EHD_BAD_ARGUMENT;
+    const ehd_law_data *D = bearing ? bearing->data->law : NULL;
     int status = films_status(bearing, film, pose, cage_angle);
-    if (EHD_REFUSES(status)) return status;
+    if (!D || refuses(D, status)) return status;
     memset(result, 0, sizeof *result);
-    for (int j = 0; j < EHD_ROLLERS; j++) {
+    for (int j = 0; j < bearing->data->rollers; j++) {
         const roller r = roller_of(bearing, pose, AT_REST, cos(cage_angle), sin(cage_angle), j);
         sums sum = NO_SUMS;
         for (int i = 0; i < bearing->slices; i++) {
             const int n = j * bearing->slices + i;
             ehd_force force;
-            status |= ehd_film_advance(film, step, last_step, approach_of(bearing, &r, i), &before[n], &after[n], &force);
-            if (!EHD_REFUSES(status)) add_slice(bearing->position[i], force.load, force.stiffness, &sum);
+            const double approach = approach_of(bearing, &r, i);
+            status |= ehd_film_advance(film, step, last_step, approach, &before[n], &after[n], &force);
+            if (!refuses(D, status)) add_slice(bearing->position[i], force.load, force.stiffness, &sum);
         }
         add_roller(&r, &sum, result);
     }
     return finish(bearing, 1.0, status, result);
 }
 
-int ehd_bearing_rates(const ehd_bearing *bearing, const ehd_film *film, const double pose[6], double cage_angle,
-                      const double states[], ehd_film_rates rates[], ehd_bearing_force *result) {
+int ehd_cylinder_rates(const ehd_cylinder *bearing, const ehd_film *film, const double pose[6], double cage_angle,
+                       const double states[], ehd_film_rates rates[], ehd_bearing_force *result) {
     if (!result) return EHD_BAD_ARGUMENT;
     no_bearing_force(result);
     if (!states || !rates) return EHD_BAD_ARGUMENT;
+    const ehd_law_data *D = bearing ? bearing->data->law : NULL;
     int status = films_status(bearing, film, pose, cage_angle);
-    if (EHD_REFUSES(status)) return status;
+    if (!D || refuses(D, status)) return status;
     memset(result, 0, sizeof *result);
-    for (int j = 0; j < EHD_ROLLERS; j++) {
+    for (int j = 0; j < bearing->data->rollers; j++) {
         const roller r = roller_of(bearing, pose, AT_REST, cos(cage_angle), sin(cage_angle), j);
         sums sum = NO_SUMS;
         for (int i = 0; i < bearing->slices; i++) {
             const int n = j * bearing->slices + i;
             status |= ehd_film_rate(film, approach_of(bearing, &r, i), states[n], &rates[n]);
-            if (!EHD_REFUSES(status)) add_slice(bearing->position[i], rates[n].load, rates[n].stiffness, &sum);
+            if (!refuses(D, status)) add_slice(bearing->position[i], rates[n].load, rates[n].stiffness, &sum);
         }
         add_roller(&r, &sum, result);
     }
     return finish(bearing, 1.0, status, result);
 }
 
-void ehd_bearing_direction(const ehd_bearing *bearing, double cage_angle, int j, int i, double column[4]) {
+void ehd_cylinder_direction(const ehd_cylinder *bearing, double cage_angle, int j, int i, double column[4]) {
     const roller r = roller_of(bearing, AT_REST, AT_REST, cos(cage_angle), sin(cage_angle), j);
     column[0] = r.cosine;
     column[1] = r.sine;

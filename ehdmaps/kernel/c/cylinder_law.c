@@ -7,36 +7,34 @@
  * films, and the law itself for each slice where no table reaches down to lift-off. */
 enum { UNPREPARED = 0, POWER, CELLS, KNOTS, BY_SLICES };
 
-/* Rows of ehd_prepared.node. */
+/* Rows of ehd_cylinder_law.node. */
 enum { Z, APPROACH, LOAD, SLOPE, DAMPING, BEND };
 
-size_t ehd_prepared_size(void) { return sizeof(ehd_prepared); }
+size_t ehd_cylinder_law_size(const ehd_law_data *data) {
+    return sizeof(ehd_cylinder_law) - sizeof(ehd_law_point) + ehd_law_point_size(data);
+}
 
 /* Approach around which a law is finest. */
-static double centre_of(const ehd_point *point) {
-#if EHD_HAS_CENTRIFUGAL
+static double centre_of(const ehd_law_point *point) {
     if (point->centrifugal_load > 0.0) {
         const double load = line_state(&point->inner, point->inner.offset).w + point->centrifugal_load;
         return point->inner.offset + line_approach(&point->outer, load);
     }
-#endif
     return point->own.offset;
 }
 
 /* States of the whole film at all nodes. Above the first node beyond the hold the law goes on straight. Returns the
  * first loaded node; fills approach and damping of the held load. */
-static int fill_nodes(ehd_prepared *law, double *held_damping) {
-    const ehd_point *point = &law->point;
+static int fill_nodes(ehd_cylinder_law *law, double *held_damping) {
+    const ehd_law_point *point = &law->point;
     double *z = law->node[Z], *delta = law->node[APPROACH];
     double *w = law->node[LOAD], *dw = law->node[SLOPE], *c = law->node[DAMPING], *dc = law->node[BEND];
     const double centre = centre_of(point), inverse = point->own.inverse_scale;
     double held = line_approach(&point->own, point->held_load);
     int first = 0, end = 0;
-#if EHD_HAS_CENTRIFUGAL
     if (point->centrifugal_load > 0.0)
         held = line_approach(&point->inner, point->held_load) +
                line_approach(&point->outer, point->held_load + point->centrifugal_load);
-#endif
     for (int i = 0; i < EHD_NODES; i++) {
         z[i] = node_place(i);
         delta[i] = centre + z[i] / inverse;
@@ -74,7 +72,7 @@ static void write_cubic(double cell[4][2], int f, double y0, double y1, double s
 }
 
 /* Cells of the whole film. Slopes are held so that the load never falls and the damping is never negative. */
-static void fill_cells(ehd_prepared *law) {
+static void fill_cells(ehd_cylinder_law *law) {
     const double inverse = law->point.own.inverse_scale;
     const double *z = law->node[Z], *w = law->node[LOAD], *c = law->node[DAMPING];
     double *dw = law->node[SLOPE], *dc = law->node[BEND];
@@ -94,7 +92,8 @@ static void fill_cells(ehd_prepared *law) {
         dc[i] = change;
     }
     for (int k = 0; k < 2 * EHD_ROWS; k++) {
-        const int above = k < EHD_ROWS, near = above ? EHD_ROWS + k : 2 * EHD_ROWS - k, far = above ? near + 1 : near - 1;
+        const int above = k < EHD_ROWS, near = above ? EHD_ROWS + k : 2 * EHD_ROWS - k;
+        const int far = above ? near + 1 : near - 1;
         const double by = 1.0 / (z[far] - z[near]);
         write_cubic(law->cell[k], 0, w[near], w[far], dw[near], dw[far], by);
         write_cubic(law->cell[k], 1, c[near], c[far], dc[near], dc[far], by);
@@ -103,15 +102,16 @@ static void fill_cells(ehd_prepared *law) {
 
 /* Cells of a part of the film. At equal load the approach is that part of the one with the whole film, and the rest of
  * that without any. So the nodes of the whole film serve all parts, as knots that move. */
-static void fill_knots(ehd_prepared *law, double held_damping, double most_load) {
-    const ehd_point *point = &law->point;
+static void fill_knots(ehd_cylinder_law *law, double held_damping, double most_load) {
+    const ehd_law_point *point = &law->point;
+    const ehd_law_data *D = point->data;
     const double part = point->film, rest = 1.0 - part, q = point->centrifugal_load;
     const double *whole = law->node[APPROACH], *w = law->node[LOAD], *c = law->node[DAMPING];
     double *dw = law->node[SLOPE], *dc = law->node[BEND], *knot = law->knot, compliance, safe = 0.0;
     const int last = 2 * EHD_ROWS - 1;
     for (int i = 0; i < last; i++) {
         const int k = i + 1; /* the outermost nodes have no knots */
-        const double dry = structural_approach(q, w[k], &compliance);
+        const double dry = structural_approach(D, q, w[k], &compliance);
         const double stretch = w[k] > 0.0 ? rest * compliance * dw[k] + part : 1.0;
         knot[i] = rest * dry + part * whole[k];
         dw[k] /= stretch;
@@ -137,35 +137,37 @@ static void fill_knots(ehd_prepared *law, double held_damping, double most_load)
     }
     memset(law->cell[last - 1], 0, 2 * sizeof law->cell[0]);
     law->safe_approach = safe;
-    law->held_approach = rest * structural_approach(q, point->held_load, &compliance) + part * law->held_approach;
+    law->held_approach = rest * structural_approach(D, q, point->held_load, &compliance) + part * law->held_approach;
     law->held_damping = part * held_damping;
 }
 
 /* Whether dry contacts in series are one power law, approach = (a_1 + a_2) w^b; fills it. */
-static int one_power(ehd_prepared *law) {
+static int one_power(ehd_cylinder_law *law) {
     double a = 0.0;
-    const double b = STRUCTURE[0].b;
-    for (int i = 0; i < EHD_CONTACTS; i++) {
-        if (STRUCTURE[i].half_space || fabs(STRUCTURE[i].b - b) >= 1e-12) return 0;
-        a += STRUCTURE[i].a;
+    const ehd_law_data *D = law->point.data;
+    const double b = D->structure[2];
+    for (int i = 0; i < D->contacts; i++) {
+        const double *contact = D->structure + 3 * i;
+        if (contact[0] != 0.0 || fabs(contact[2] - b) >= 1e-12) return 0;
+        a += contact[1];
     }
     law->coefficient = pow(a, -1.0 / b);
     law->exponent = 1.0 / b;
     return 1;
 }
 
-int ehd_prepare(ehd_prepared *law, double u, double T, double q) {
+int ehd_cylinder_prepare(const ehd_law_data *data, double u, double T, double q, ehd_cylinder_law *law) {
     double held_damping;
     if (!law) return EHD_BAD_ARGUMENT;
-    const ehd_point *point = &law->point;
-    const int status = ehd_at(&law->point, u, T, q);
+    const ehd_law_point *point = &law->point;
+    const int status = ehd_law_make(data, u, T, q, &law->point);
     law->kind = BY_SLICES;
     law->lift_off = -DBL_MAX;
     law->safe_approach = law->held_approach = DBL_MAX;
     law->highest = DBL_MAX; /* the law itself counts its loads */
     law->slope = 1.0;
     law->held_damping = 0.0;
-    if (EHD_REFUSES(status)) return status;
+    if (refuses(data, status)) return status;
     const double highest = point->highest_load * (1.0 + LOAD_TOLERANCE), most_load = least(highest, point->held_load);
     if (point->film == 0.0 && q == 0.0 && one_power(law)) {
         law->kind = POWER;
@@ -177,7 +179,7 @@ int ehd_prepare(ehd_prepared *law, double u, double T, double q) {
         return status;
     }
     const double held_approach = law->held_approach;
-    const int first = fill_nodes(law, &held_damping), faded = fabs(u) < FILM_SPEED;
+    const int first = fill_nodes(law, &held_damping), faded = fabs(u) < data->film_speed;
     if (first < (faded ? 2 : 1)) { /* the table does not reach down to lift-off */
         law->held_approach = held_approach;
         return status;

@@ -1,5 +1,5 @@
 /* ---------------------------------------------------------------------------------------------------------------------
- * The bearing
+ * Bearings with cylindrical rollers
  * ------------------------------------------------------------------------------------------------------------------ */
 
 #define MOST_TILT 0.5  /* [rad]; the largest accepted displacement is the roller diameter */
@@ -35,32 +35,29 @@ typedef struct sums {
 static const sums NO_SUMS = {{0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
 
 /* Depth of the roller's profile at a distance from its middle, on one side [m]. */
-static double roller_profile(double x) {
-#if EHD_ISO_PROFILE
+static double roller_profile(const ehd_cylinder_data *D, double x) {
+    if (!D->iso_profile) return 0.0; /* straight */
     /* ISO/TS 16281: logarithmic; rollers longer than 2.5 diameters are straight in the middle */
-    const int is_short = EHD_ROLLER_LENGTH <= 2.5 * EHD_ROLLER_DIAMETER;
-    const double crowned = is_short ? EHD_ROLLER_LENGTH : 2.5 * EHD_ROLLER_DIAMETER;
-    const double part = most(2.0 * fabs(x) - (EHD_ROLLER_LENGTH - crowned), 0.0) / crowned;
-    return -(is_short ? 0.00035 : 0.0005) * EHD_ROLLER_DIAMETER * log1p(-part * part);
-#else
-    (void)x; /* straight */
-    return 0.0;
-#endif
+    const int is_short = D->roller_length <= 2.5 * D->roller_diameter;
+    const double crowned = is_short ? D->roller_length : 2.5 * D->roller_diameter;
+    const double part = most(2.0 * fabs(x) - (D->roller_length - crowned), 0.0) / crowned;
+    return -(is_short ? 0.00035 : 0.0005) * D->roller_diameter * log1p(-part * part);
 }
 
-int ehd_bearing_make(ehd_bearing *bearing, double clearance, int count, const double *profile) {
-    const double two_pi = 6.283185307179586476925;
+int ehd_cylinder_make(const ehd_cylinder_data *D, double clearance, int count, const double *profile,
+                      ehd_cylinder *bearing) {
     if (!bearing || count < 1 || count > EHD_MOST_SLICES || !is_finite(clearance)) return EHD_BAD_ARGUMENT;
+    bearing->data = D;
     bearing->slices = count;
     bearing->clearance = clearance;
-    bearing->slice_length = EHD_ROLLER_LENGTH / count;
+    bearing->slice_length = D->roller_length / count;
     bearing->least_profile = DBL_MAX;
     bearing->most_profile = -DBL_MAX;
     bearing->position[count] = bearing->profile[count] = 0.0;
     for (int i = 0; i < count; i++) {
-        const double x = (2 * i + 1 - count) / (2.0 * count) * EHD_ROLLER_LENGTH; /* alike on both sides, to the bit */
-        const double depth = profile ? profile[i] : roller_profile(x);
-        if (!(fabs(depth) < EHD_ROLLER_DIAMETER)) return EHD_BAD_ARGUMENT;
+        const double x = (2 * i + 1 - count) / (2.0 * count) * D->roller_length; /* alike on both sides, to the bit */
+        const double depth = profile ? profile[i] : roller_profile(D, x);
+        if (!(fabs(depth) < D->roller_diameter)) return EHD_BAD_ARGUMENT;
         bearing->position[i] = x;
         bearing->profile[i] = 2.0 * depth;
         bearing->least_profile = least(bearing->least_profile, 2.0 * depth);
@@ -69,34 +66,32 @@ int ehd_bearing_make(ehd_bearing *bearing, double clearance, int count, const do
     bearing->symmetric = 1;
     for (int i = 0; i < count; i++)
         if (bearing->profile[i] != bearing->profile[count - 1 - i]) bearing->symmetric = 0;
-    for (int j = 0; j < EHD_ROLLERS; j++) {
-        bearing->cosine[j] = cos(two_pi * j / EHD_ROLLERS);
-        bearing->sine[j] = sin(two_pi * j / EHD_ROLLERS);
-    }
     return EHD_OK;
 }
 
-size_t ehd_bearing_size(void) { return sizeof(ehd_bearing); }
+size_t ehd_cylinder_size(void) { return sizeof(ehd_cylinder); }
 
-static roller roller_of(const ehd_bearing *bearing, const double pose[6], const double velocity[6], double cage_cosine,
+static roller roller_of(const ehd_cylinder *bearing, const double pose[6], const double velocity[6], double cage_cosine,
                         double cage_sine, int j) {
+    const ehd_cylinder_data *D = bearing->data;
+    const double cosine = D->cosine[j], sine = D->sine[j];
     roller r;
-    r.cosine = cage_cosine * bearing->cosine[j] - cage_sine * bearing->sine[j];
-    r.sine = cage_sine * bearing->cosine[j] + cage_cosine * bearing->sine[j];
+    r.cosine = cage_cosine * cosine - cage_sine * sine;
+    r.sine = cage_sine * cosine + cage_cosine * sine;
     r.gap = pose[1] * r.cosine + pose[2] * r.sine - 0.5 * bearing->clearance;
     r.tilt = pose[5] * r.cosine - pose[4] * r.sine;
     r.rate = velocity[1] * r.cosine + velocity[2] * r.sine;
     r.tilt_rate = velocity[5] * r.cosine - velocity[4] * r.sine;
-    r.deepest = r.gap + (0.5 * EHD_ROLLER_LENGTH * fabs(r.tilt) - bearing->least_profile);
+    r.deepest = r.gap + (0.5 * D->roller_length * fabs(r.tilt) - bearing->least_profile);
     return r;
 }
 
-static double approach_of(const ehd_bearing *bearing, const roller *r, int i) {
+static double approach_of(const ehd_cylinder *bearing, const roller *r, int i) {
     return r->gap + bearing->position[i] * r->tilt - bearing->profile[i];
 }
 
 /* Cell between knots of an approach, found from the one before. */
-static int knot_of(const ehd_prepared *law, double approach, int found) {
+static int knot_of(const ehd_cylinder_law *law, double approach, int found) {
     int low = 0, high = 2 * EHD_ROWS - 1;
     if (law->knot[found] <= approach && approach < law->knot[found + 1]) return found;
     while (high - low > 1) {
@@ -110,7 +105,7 @@ static int knot_of(const ehd_prepared *law, double approach, int found) {
 }
 
 /* States of the slices of a roller at rest, by a power law. */
-static void power_states(const ehd_bearing *bearing, const ehd_prepared *law, const roller *r, slices *s) {
+static void power_states(const ehd_cylinder *bearing, const ehd_cylinder_law *law, const roller *r, slices *s) {
     for (int i = 0; i < s->count; i++) {
         const double approach = approach_of(bearing, r, i), safe = most(approach, NO_APPROACH);
         const double slope = law->coefficient * law->exponent * pow(safe, law->exponent - 1.0);
@@ -122,10 +117,10 @@ static void power_states(const ehd_bearing *bearing, const ehd_prepared *law, co
 
 /* Where slices are in cells around a centre. The sign of z goes with 1 + |z|, so that nothing branches; two slices at a
  * time, as compilers put into vector instructions without being asked. */
-static void find_cells(const ehd_bearing *bearing, const ehd_prepared *law, const roller *r, slices *s) {
+static void find_cells(const ehd_cylinder *bearing, const ehd_cylinder_law *law, const roller *r, slices *s) {
     const double inverse = law->inverse_scale, start = (r->gap - law->centre) * inverse, tilt = r->tilt * inverse;
     const double *position = bearing->position, *profile = bearing->profile;
-    const double lowest = r->gap - 0.5 * EHD_ROLLER_LENGTH * fabs(r->tilt) - bearing->most_profile;
+    const double lowest = r->gap - 0.5 * bearing->data->roller_length * fabs(r->tilt) - bearing->most_profile;
     const double limit = cell_end(EHD_ROWS) - 2.0;
     if (!(fabs(r->deepest - law->centre) * inverse < limit && fabs(lowest - law->centre) * inverse < limit)) {
         for (int i = 0; i < s->count; i++) /* some slice may be beyond the cells */
@@ -145,7 +140,7 @@ static void find_cells(const ehd_bearing *bearing, const ehd_prepared *law, cons
 }
 
 /* The same between knots. */
-static void find_knots(const ehd_bearing *bearing, const ehd_prepared *law, const roller *r, slices *s) {
+static void find_knots(const ehd_cylinder *bearing, const ehd_cylinder_law *law, const roller *r, slices *s) {
     int found = 0;
     for (int i = 0; i < s->count; i++) {
         const double approach = approach_of(bearing, r, i);
@@ -157,7 +152,7 @@ static void find_knots(const ehd_bearing *bearing, const ehd_prepared *law, cons
 }
 
 /* States of the slices in their cells: cubics. A loop of its own: what it waits for is then at hand. */
-static void read_cells(const ehd_prepared *law, slices *s) {
+static void read_cells(const ehd_cylinder_law *law, slices *s) {
     for (int i = 0; i < s->count; i++) {
         const double(*cell)[2] = law->cell[s->row[i]], t = s->place[i];
         for (int f = 0; f < 2; f++) {
@@ -169,7 +164,7 @@ static void read_cells(const ehd_prepared *law, slices *s) {
 }
 
 /* Put slices above the held load on the tangent; returns whether any is above the mapped load. */
-static int hold(const ehd_bearing *bearing, const ehd_prepared *law, const roller *r, slices *s) {
+static int hold(const ehd_cylinder *bearing, const ehd_cylinder_law *law, const roller *r, slices *s) {
     int status = EHD_OK;
     for (int i = 0; i < s->count; i++) {
         const double above = approach_of(bearing, r, i) - law->held_approach;
@@ -186,12 +181,12 @@ static int hold(const ehd_bearing *bearing, const ehd_prepared *law, const rolle
 
 /* States by the law itself, at the rates of the slices: the rates are in the loads then, and the damping is given as it
  * acts. */
-static int law_states(const ehd_bearing *bearing, const ehd_prepared *law, roller *r, slices *s) {
+static int law_states(const ehd_cylinder *bearing, const ehd_cylinder_law *law, roller *r, slices *s) {
     int status = EHD_OK;
     for (int i = 0; i < s->count; i++) {
         ehd_force found;
         const double rate = r->rate + bearing->position[i] * r->tilt_rate;
-        status |= ehd_law_at(&law->point, approach_of(bearing, r, i), rate, &found);
+        status |= ehd_law_force(&law->point, approach_of(bearing, r, i), rate, &found);
         s->value[i][0] = found.load;
         s->slope[i][0] = found.stiffness;
         s->value[i][1] = found.damping;
@@ -202,7 +197,7 @@ static int law_states(const ehd_bearing *bearing, const ehd_prepared *law, rolle
 }
 
 /* States of the slices of a roller. Where it is level they are the same on both sides. */
-static int states_of(const ehd_bearing *bearing, const ehd_prepared *law, roller *r, slices *s) {
+static int states_of(const ehd_cylinder *bearing, const ehd_cylinder_law *law, roller *r, slices *s) {
     s->mirrored = bearing->symmetric && r->tilt == 0.0 && r->tilt_rate == 0.0;
     s->count = s->mirrored ? (bearing->slices + 1) / 2 : bearing->slices;
     if (law->kind == BY_SLICES) return law_states(bearing, law, r, s);
@@ -221,7 +216,7 @@ static int states_of(const ehd_bearing *bearing, const ehd_prepared *law, roller
 /* Sums over the slices of a roller that all have c rate >= -w/2, where the rule of the damping is linear: load
  * w + c rate, stiffness dw + dc rate, damping c. Slices at the same distance from the middle go together. Returns
  * whether all are so. */
-static int moderate_sums(const ehd_bearing *bearing, const roller *r, const slices *s, sums *sum) {
+static int moderate_sums(const ehd_cylinder *bearing, const roller *r, const slices *s, sums *sum) {
     const int half = bearing->slices / 2, last = bearing->slices - 1;
     double w0 = 0.0, w1 = 0.0, k0 = 0.0, k1 = 0.0, k2 = 0.0, c0 = 0.0, c1 = 0.0, c2 = 0.0, lowest = 0.0;
     if (bearing->slices % 2) {
@@ -263,7 +258,7 @@ static int moderate_sums(const ehd_bearing *bearing, const roller *r, const slic
 }
 
 /* The same of a mirrored roller: each slice stands for two, but for that in the middle. */
-static int mirrored_sums(const ehd_bearing *bearing, const roller *r, const slices *s, sums *sum) {
+static int mirrored_sums(const ehd_cylinder *bearing, const roller *r, const slices *s, sums *sum) {
     const double rate = r->rate;
     double w0 = 0.0, k0 = 0.0, k2 = 0.0, c0 = 0.0, c2 = 0.0, lowest = 0.0, w = 0.0, k = 0.0, c = 0.0;
     for (int i = 0; i < s->count; i++) {
@@ -289,7 +284,7 @@ static int mirrored_sums(const ehd_bearing *bearing, const roller *r, const slic
 }
 
 /* The same at any rates, by the whole rule without tension. */
-static void lifting_sums(const ehd_bearing *bearing, const roller *r, const slices *s, sums *sum) {
+static void lifting_sums(const ehd_cylinder *bearing, const roller *r, const slices *s, sums *sum) {
     *sum = NO_SUMS;
     for (int i = 0; i < bearing->slices; i++) {
         const int k = i < s->count ? i : bearing->slices - 1 - i;
@@ -350,18 +345,18 @@ static void no_bearing_force(ehd_bearing_force *result) {
 }
 
 /* What is wrong about a motion. */
-static int check_motion(const double pose[6], const double velocity[6], double cage_angle) {
+static int check_motion(const ehd_cylinder_data *D, const double pose[6], const double velocity[6], double cage_angle) {
     double total = fabs(cage_angle);
     for (int i = 0; i < 6; i++) total += fabs(pose[i]) + fabs(velocity[i]);
     if (!is_finite(total)) return EHD_NOT_FINITE;
-    if (fabs(pose[1]) <= EHD_ROLLER_DIAMETER && fabs(pose[2]) <= EHD_ROLLER_DIAMETER && fabs(pose[4]) <= MOST_TILT &&
+    if (fabs(pose[1]) <= D->roller_diameter && fabs(pose[2]) <= D->roller_diameter && fabs(pose[4]) <= MOST_TILT &&
         fabs(pose[5]) <= MOST_TILT)
         return EHD_OK;
     return EHD_TOO_FAR;
 }
 
 /* Multiply the sums by the length of a slice, and stiffness by a slope besides; refuse what is not finite after all. */
-static int finish(const ehd_bearing *bearing, double slope, int status, ehd_bearing_force *result) {
+static int finish(const ehd_cylinder *bearing, double slope, int status, ehd_bearing_force *result) {
     double force = 0.0, stiffness = 0.0, damping = 0.0;
     finish_matrix(result->stiffness, slope * bearing->slice_length);
     finish_matrix(result->damping, bearing->slice_length);
@@ -374,12 +369,12 @@ static int finish(const ehd_bearing *bearing, double slope, int status, ehd_bear
         }
     }
     if (!is_finite(force + stiffness + damping)) status |= EHD_NOT_FINITE;
-    if (EHD_REFUSES(status)) no_bearing_force(result);
+    if (refuses(bearing->data->law, status)) no_bearing_force(result);
     return status;
 }
 
-int ehd_bearing_at(const ehd_bearing *bearing, const ehd_prepared *law, const double pose[6], const double velocity[6],
-                   double cage_angle, ehd_bearing_force *result) {
+int ehd_cylinder_at(const ehd_cylinder *bearing, const ehd_cylinder_law *law, const double pose[6],
+                    const double velocity[6], double cage_angle, ehd_bearing_force *result) {
     static const double at_rest[6] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
     slices s;
     sums sum;
@@ -387,11 +382,11 @@ int ehd_bearing_at(const ehd_bearing *bearing, const ehd_prepared *law, const do
     no_bearing_force(result);
     if (!bearing || !law || !pose || law->kind == UNPREPARED) return EHD_BAD_ARGUMENT;
     if (!velocity) velocity = at_rest;
-    int status = law->point.status | check_motion(pose, velocity, cage_angle);
-    if (EHD_REFUSES(status)) return status;
+    int status = (int)law->point.status | check_motion(bearing->data, pose, velocity, cage_angle);
+    if (refuses(law->point.data, status)) return status;
     const double cage_cosine = cos(cage_angle), cage_sine = sin(cage_angle);
     memset(result, 0, sizeof *result);
-    for (int j = 0; j < EHD_ROLLERS; j++) {
+    for (int j = 0; j < bearing->data->rollers; j++) {
         roller r = roller_of(bearing, pose, velocity, cage_cosine, cage_sine, j);
         if (r.deepest <= law->lift_off) continue;
         status |= states_of(bearing, law, &r, &s);
@@ -402,12 +397,12 @@ int ehd_bearing_at(const ehd_bearing *bearing, const ehd_prepared *law, const do
     return finish(bearing, law->slope, status, result);
 }
 
-int ehd_bearing_call(const ehd_bearing *bearing, ehd_prepared *law, const double pose[6], const double velocity[6],
-                     double cage_angle, double u, double T, double q, ehd_bearing_force *result) {
-    if (!law) return EHD_BAD_ARGUMENT;
-    const ehd_point *point = &law->point;
+int ehd_cylinder_call(const ehd_cylinder *bearing, ehd_cylinder_law *law, const double pose[6], const double velocity[6],
+                      double cage_angle, double u, double T, double q, ehd_bearing_force *result) {
+    if (!law || !bearing) return EHD_BAD_ARGUMENT;
+    const ehd_law_point *point = &law->point;
     const int same = law->kind != UNPREPARED && point->entrainment_speed == fabs(u) && point->temperature == T &&
                      point->centrifugal_load == q;
-    if (!same) ehd_prepare(law, u, T, q);
-    return ehd_bearing_at(bearing, law, pose, velocity, cage_angle, result);
+    if (!same) ehd_cylinder_prepare(bearing->data->law, u, T, q, law);
+    return ehd_cylinder_at(bearing, law, pose, velocity, cage_angle, result);
 }

@@ -14,6 +14,7 @@
 #define NO_CHANGE 1e-30
 #define NOTHING 1e-60
 #define NO_LOAD_LEFT 1e-20
+#define FILM_PI 3.141592653589793
 
 /* Cubics of a cell. */
 enum { P_OF, Y_OF, G_OF };
@@ -45,52 +46,68 @@ static void rising_cubic(double y0, double y1, double s0, double s1, double h, d
     cubic[3] = (s0 + s1 - 2.0 * secant) / (h * h);
 }
 
-/* Factor of the closed formula of the locked film at a load: straight between its places in ln of the load. */
-static double locked_factor(const double factors[FACTOR_LOADS], double load) {
-    if (FACTOR_LOADS == 1) return factors[0];
-    const double place = least(most((log(load) - FACTOR_LOG_LOAD) * FACTOR_LOAD_STEP, 0.0), FACTOR_LOADS - 1.0);
-    const int cell = (int)least(place, FACTOR_LOADS - 2.0);
-    return factors[cell] + (place - cell) * (factors[cell + 1] - factors[cell]);
-}
+/* Factors of the closed formula of the locked film at one speed and temperature: rows over the load at the speeds and
+ * temperatures beside it, and the weights of the second ones. */
+typedef struct locked_factors {
+    const double *row[2][2];
+    double by_speed, by_temperature;
+} locked_factors;
 
 /* The nearest two of so many places of an axis: number of the first one, and the weight of the second. */
-static int between(double place, int places, double *weight) {
-    const double held = least(most(place, 0.0), places - 1.0);
-    const int first = (int)least(held, most(places - 2.0, 0.0));
-    *weight = held - first;
+static int64_t between(double place, int64_t places, double *weight) {
+    const double last = (double)places - 1.0, held = least(most(place, 0.0), last);
+    const int64_t first = (int64_t)least(held, most(last - 1.0, 0.0));
+    *weight = held - (double)first;
     return first;
 }
 
 /* Factors over the load at a speed and temperature within the map, straight in ln u and in 1/(T - COLDEST). */
-static void factors_at(double log_speed, double T, double factors[FACTOR_LOADS]) {
-    double a, b;
-    const int i = between((log_speed - FACTOR_LOG_SPEED) * FACTOR_SPEED_STEP, FACTOR_SPEEDS, &a);
-    const int j = between((1.0 / (T - COLDEST) - FACTOR_COLD) * FACTOR_COLD_STEP, FACTOR_TEMPERATURES, &b);
-    const int up = i + (FACTOR_SPEEDS > 1), on = j + (FACTOR_TEMPERATURES > 1);
-    for (int n = 0; n < FACTOR_LOADS; n++) {
-        const double low = FACTORS[i][j][n] + b * (FACTORS[i][on][n] - FACTORS[i][j][n]);
-        const double high = FACTORS[up][j][n] + b * (FACTORS[up][on][n] - FACTORS[up][j][n]);
-        factors[n] = low + a * (high - low);
-    }
+static locked_factors factors_at(const ehd_film_data *film, double log_speed, double T) {
+    locked_factors found;
+    const int64_t i = between((log_speed - film->log_speed_start) * film->log_speed_step, film->speeds, &found.by_speed);
+    const int64_t j = between((1.0 / (T - COLDEST) - film->temperature_start) * film->temperature_step,
+                              film->temperatures, &found.by_temperature);
+    for (int a = 0; a < 2; a++)
+        for (int b = 0; b < 2; b++)
+            found.row[a][b] = film->factors + ((i + (a && film->speeds > 1)) * film->temperatures + j +
+                                               (b && film->temperatures > 1)) * film->loads;
+    return found;
+}
+
+/* The factor at one of the loads. */
+static double factor_at(const locked_factors *of, int64_t n) {
+    const double low = of->row[0][0][n] + of->by_temperature * (of->row[0][1][n] - of->row[0][0][n]);
+    const double high = of->row[1][0][n] + of->by_temperature * (of->row[1][1][n] - of->row[1][0][n]);
+    return low + of->by_speed * (high - low);
+}
+
+/* The factor at a load: straight between its places in ln of the load. */
+static double locked_factor(const ehd_film_data *film, const locked_factors *of, double load) {
+    if (film->loads == 1) return factor_at(of, 0);
+    const double place =
+        least(most((log(load) - film->log_load_start) * film->log_load_step, 0.0), (double)film->loads - 1.0);
+    const int64_t cell = (int64_t)least(place, (double)film->loads - 2.0);
+    const double first = factor_at(of, cell);
+    return first + (place - (double)cell) * (factor_at(of, cell + 1) - first);
 }
 
 /* Stiffness of a contact whose film is locked: offset of the film, load, stiffness and damping at rest, compliance of
  * the structure, factor of the closed formula. */
-static double locked_stiffness(double speed, double offset, double load, double k, double c, double solids,
-                               double factor) {
-    const double each = most(offset, 0.0) / EHD_CONTACTS;
-    const double square = 8.0 * load * FILM_RADIUS / (FILM_PI * FILM_MODULUS);
+static double locked_stiffness(const ehd_film_data *film, double speed, double offset, double load, double k, double c,
+                               double solids, double factor) {
+    const double contacts = (double)film->law->contacts, each = most(offset, 0.0) / contacts;
+    const double square = 8.0 * load * film->radius / (FILM_PI * film->modulus);
     const double exponent = each > 0.0 ? least(most((1.0 / k - solids) * load / offset, 0.0), 1.0) : 0.0;
-    const double part = (LOCKED + LOCKED_BY_LOAD * exponent) * 4.0 / FILM_MODULUS;
-    const double locked = factor * EHD_CONTACTS * part * log1p(2.0 * each * FILM_RADIUS / square);
-    const double stiff = 1.0 / (solids - least(locked, MOST_LOCKED * solids));
-    const double per_natural = speed / sqrt(square + 2.0 * each * FILM_RADIUS);
-    return most(most(stiff, k), k + c * per_natural / LONGEST);
+    const double part = (film->locked + film->locked_by_load * exponent) * 4.0 / film->modulus;
+    const double locked = factor * contacts * part * log1p(2.0 * each * film->radius / square);
+    const double stiff = 1.0 / (solids - least(locked, film->most_locked * solids));
+    const double per_natural = speed / sqrt(square + 2.0 * each * film->radius);
+    return most(most(stiff, k), k + c * per_natural / film->longest);
 }
 
 /* Values at the nodes: p, y, G and their slopes over the approach; what a has beyond the structure. */
-static void fill_film_nodes(ehd_film *film, const double factors[FACTOR_LOADS]) {
-    const ehd_point *point = &film->point;
+static void fill_film_nodes(const ehd_film_data *data, const locked_factors *factors, const ehd_law_point *point,
+                            ehd_film *film) {
     double *p = film->node[NODE_P], *z = film->node[NODE_Z], *k = film->node[NODE_K], *y = film->node[NODE_Y];
     double *g = film->node[NODE_G], *by_y = film->node[NODE_BY_Y], *by_c = film->node[NODE_BY_C];
     double *beyond = film->node[NODE_BEYOND], *slope = film->node[NODE_SLOPE];
@@ -108,10 +125,10 @@ static void fill_film_nodes(ehd_film *film, const double factors[FACTOR_LOADS]) 
             film->lift_off = approach; /* the law lifts off within the cell that begins here */
         } else {
             double solids;
-            const double dry = structural_approach(0.0, p[i], &solids);
+            const double dry = structural_approach(data->law, 0.0, p[i], &solids);
             const double c = most(rest.w * rest.ratio, LEAST_DAMPING * k[i]);
-            const double stiff = locked_stiffness(point->entrainment_speed, dry - approach, p[i], k[i], c, solids,
-                                                  locked_factor(factors, p[i]));
+            const double stiff = locked_stiffness(data, point->entrainment_speed, dry - approach, p[i], k[i], c, solids,
+                                                  locked_factor(data, factors, p[i]));
             by_y[i] = 1.0 - k[i] / stiff;
             by_c[i] = by_y[i] > LEAST_FILM ? c / by_y[i] : 0.0; /* without film nothing is squeezed */
             slope[i] = 1.0 / stiff - solids;
@@ -150,7 +167,7 @@ static void fill_load_cells(ehd_film *film) {
     if (i == EHD_NODES - 1) i--; /* nothing is carried at all */
     for (int row = 1; row <= EHD_LOAD_ROWS; row++) {
         double solids;
-        const double load = cell_end(row) - 1.0, dry = structural_approach(0.0, load, &solids);
+        const double load = cell_end(row) - 1.0, dry = structural_approach(film->law, 0.0, load, &solids);
         while (i + 2 < EHD_NODES && p[i + 1] < load) i++;
         const double begin = p[i] > 0.0 ? slopes[i] : slopes[i + 1];
         const double t = least((load - p[i]) / (p[i + 1] - p[i]), 1.0), slope = begin + t * (slopes[i + 1] - begin);
@@ -187,32 +204,41 @@ static reading stretch(const ehd_film *film, double load) {
     return read_cubic(film->load_cell[row], above);
 }
 
-int ehd_film_at(ehd_film *film, double u, double T) {
+int ehd_film_make(const ehd_film_data *data, double u, double T, ehd_law_point *room, ehd_film *film) {
     if (!film) return EHD_BAD_ARGUMENT;
-    ehd_point *point = &film->point;
-    if (film->inverse_scale > 0.0 && point->entrainment_speed == fabs(u) && point->temperature == T)
-        return point->status;
-    double factors[FACTOR_LOADS];
-    const int status = ehd_at(point, u, T, 0.0);
+    if (film->inverse_scale > 0.0 && film->entrainment_speed == fabs(u) && film->temperature == T)
+        return (int)film->status;
+    const ehd_law_data *law = data->law;
+    const ehd_law_point *point = room;
+    const int status = ehd_law_make(law, u, T, 0.0, room);
+    film->law = law;
+    film->entrainment_speed = fabs(u);
+    film->temperature = T;
+    film->status = status;
     film->inverse_scale = 0.0;
-    if (EHD_REFUSES(status)) return status;
+    if (refuses(law, status)) return status;
     /* a faded film takes its part of the offset, and of the approach of lift-off */
     film->centre = point->film * point->own.offset;
     film->lift_off = point->film * point->lift_off;
     film->inverse_scale = point->own.inverse_scale;
     film->highest = point->highest_load * (1.0 + LOAD_TOLERANCE);
-    factors_at(log(least(most(fabs(u), most(EHD_LOWEST_SPEED, LOWEST_SPEED)), HIGHEST_SPEED)), least(most(T, EHD_LOWEST_TEMPERATURE), EHD_HIGHEST_TEMPERATURE), factors);
-    fill_film_nodes(film, factors);
+    const double speed = least(most(fabs(u), most(data->lowest_speed, law->lowest_speed)), law->highest_speed);
+    const locked_factors factors = factors_at(data, log(speed), least(most(T, law->counted_cold), law->counted_hot));
+    fill_film_nodes(data, &factors, point, film);
     fill_film_cells(film);
     fill_load_cells(film);
     film->least_damping = EHD_SHORTEST_MEMORY / stretch(film, point->highest_load).slope;
     return status;
 }
 
+/* Whether a status of a film refuses; one that was not made always does. */
+static int film_refuses(const ehd_film *film, int status) { return !film->law || refuses(film->law, status); }
+
 /* What a film refuses before it is asked anything. */
 static int film_status(const ehd_film *film) {
-    if (EHD_REFUSES(film->point.status)) return film->point.status;
-    return film->inverse_scale > 0.0 ? film->point.status : EHD_BAD_ARGUMENT;
+    if (!film->law) return EHD_BAD_ARGUMENT;
+    if (refuses(film->law, (int)film->status)) return (int)film->status;
+    return film->inverse_scale > 0.0 ? (int)film->status : EHD_BAD_ARGUMENT;
 }
 
 /* w = x + sqrt(x^2 + p^2), without cancellation, and its slope, for slopes of p and x. */
@@ -282,7 +308,7 @@ int ehd_film_settled(const ehd_film *film, double approach, ehd_film_state *stat
     if (!film || !state) return EHD_BAD_ARGUMENT;
     state->approach = state->change = state->load = NAN;
     const int status = film_status(film);
-    if (EHD_REFUSES(status)) return status;
+    if (film_refuses(film, status)) return status;
     if (!is_finite(approach)) return status | EHD_NOT_FINITE;
     state->approach = most(approach, film->lift_off);
     equilibrium(film, state->approach, at);
@@ -298,15 +324,15 @@ int ehd_film_advance(const ehd_film *film, double step, double last_step, double
     no_force(force);
     after->approach = after->change = after->load = NAN;
     int status = film_status(film);
-    if (EHD_REFUSES(status)) return status;
+    if (film_refuses(film, status)) return status;
     if (!(is_finite(approach) && is_finite(begun.approach) && is_finite(begun.change) && is_finite(last_step)))
         return status | EHD_NOT_FINITE;
     if (!(step > 0.0 && is_finite(1.0 / step))) return status | EHD_BAD_ARGUMENT;
     advance_film(film, weights_of(step, last_step), approach, &begun, after, force);
     if (force->load > film->highest) status |= EHD_ABOVE_LOAD;
     if (!is_finite(fabs(after->approach) + fabs(after->change))) status |= EHD_NOT_FINITE;
-    status = settled(status, force);
-    if (EHD_REFUSES(status)) after->approach = after->change = after->load = NAN;
+    status = settled(film->law, status, force);
+    if (film_refuses(film, status)) after->approach = after->change = after->load = NAN;
     return status;
 }
 
@@ -381,13 +407,13 @@ int ehd_film_rate(const ehd_film *film, double approach, double state, ehd_film_
     if (!film || !rates) return EHD_BAD_ARGUMENT;
     int status = film_status(film);
     if (!(is_finite(approach) && is_finite(state))) status |= EHD_NOT_FINITE;
-    if (!EHD_REFUSES(status)) {
+    if (!film_refuses(film, status)) {
         rate_film(film, approach, state, rates);
         if (rates->load > film->highest) status |= EHD_ABOVE_LOAD;
         if (!is_finite(rates->load + fabs(rates->rate) + fabs(rates->rate_by_approach) + fabs(rates->rate_by_state)))
             status |= EHD_NOT_FINITE;
     }
-    if (EHD_REFUSES(status)) rates->load = rates->stiffness = rates->by_state = NAN;
-    if (EHD_REFUSES(status & ~EHD_ABOVE_LOAD)) rates->rate = rates->rate_by_approach = rates->rate_by_state = NAN;
+    if (film_refuses(film, status)) rates->load = rates->stiffness = rates->by_state = NAN;
+    if (film_refuses(film, status & ~EHD_ABOVE_LOAD)) rates->rate = rates->rate_by_approach = rates->rate_by_state = NAN;
     return status;
 }

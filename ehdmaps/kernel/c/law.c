@@ -25,39 +25,36 @@ typedef struct node {
 
 static const contact_state NO_LOAD = {0.0, 0.0, 0.0, 0.0};
 
-static double least(double a, double b) { return a < b ? a : b; }
+#define CELL_SIZE ((int64_t)(8 * sizeof(double))) /* of a line: two cubics */
 
-static double most(double a, double b) { return a > b ? a : b; }
+/* Whether a status refuses. */
+static int refuses(const ehd_law_data *data, int status) { return (status & (int)data->refused) != 0; }
 
-static int is_finite(double x) { return fabs(x) <= DBL_MAX; }
+static int64_t cells_of(const ehd_law_table *table) { return table->places - 3; }
 
-static void no_force(ehd_force *force) { force->load = force->stiffness = force->damping = NAN; }
-
-const char *ehd_status_text(int status) {
-    if (status & EHD_BAD_ARGUMENT) return "an argument that is not allowed";
-    if (status & EHD_NOT_FINITE) return "numbers that are not finite";
-    if (status & EHD_TOO_FAR) return "a pose beyond reason: check its units";
-    if (status & EHD_BAD_CENTRIFUGAL) return "a centrifugal load that is not allowed";
-    if (status & EHD_ABOVE_LOAD) return "a load above the map";
-    if (status & EHD_ABOVE_SPEED) return "an entrainment speed above the map";
-    if (status & EHD_OUTSIDE_TEMPERATURE) return "a temperature outside the map";
-    return "no problem";
+/* Cells of a line: double [cells][2][4]. */
+static double (*line_cells(const ehd_line *line))[2][4] {
+    return (double(*)[2][4])((uintptr_t)line + (uintptr_t)line->to_cells);
 }
 
-size_t ehd_point_size(void) { return sizeof(ehd_point); }
+size_t ehd_law_point_size(const ehd_law_data *data) {
+    int64_t cells = cells_of(&data->own);
+    if (data->centrifugal) cells += cells_of(&data->inner) + cells_of(&data->outer);
+    return sizeof(ehd_law_point) + (size_t)(cells * CELL_SIZE);
+}
 
 /* Place in steps from the first node, held to so many cells; zero for NaN. */
-static double place_within(double x, int cells) {
+static double place_within(double x, int64_t cells) {
     x = x > 0.0 ? x : 0.0;
     return x < (double)cells ? x : (double)cells;
 }
 
-static int cell_of(double x, int cells) {
-    const int last = cells > 1 ? cells - 1 : 0, cell = (int)x;
+static int cell_of(double x, int64_t cells) {
+    const int last = cells > 1 ? (int)cells - 1 : 0, cell = (int)x;
     return cell < last ? cell : last;
 }
 
-static node node_of(double place, int nodes) {
+static node node_of(double place, int64_t nodes) {
     const double x = place_within(place, nodes - 3);
     const int first = (int)(x + 0.5);
     const double t = x - first, low = 0.5 - t, high = 0.5 + t;
@@ -100,15 +97,16 @@ static contact_state state_of(double g, double dg, double log_ratio, double dlog
 }
 
 /* Approach of the structure without a film, all contacts together [m], and its derivative by the load; the last contact
- * carries a centrifugal load q besides. */
-static double structural_approach(double q, double load, double *compliance) {
+ * carries a centrifugal load q besides. A row of the structure says whether a contact is one of half-spaces, then a, b:
+ * a w (b - ln(w)/2) of a half-space, else a w^b [m], w in N/m. */
+static double structural_approach(const ehd_law_data *D, double q, double load, double *compliance) {
     double approach = 0.0;
     *compliance = 0.0;
-    for (int i = 0; i < EHD_CONTACTS; i++) {
-        const double w = i == EHD_CONTACTS - 1 ? load + q : load, a = STRUCTURE[i].a, b = STRUCTURE[i].b;
+    for (int i = 0; i < D->contacts; i++) {
+        const double *law = D->structure + 3 * i, w = i == D->contacts - 1 ? load + q : load, a = law[1], b = law[2];
         double part;
         if (w <= LEAST_LOAD) continue;
-        if (STRUCTURE[i].half_space) {
+        if (law[0] != 0.0) {
             part = a * w * (b - 0.5 * log(w));
             *compliance += part / w - 0.5 * a;
         } else {
@@ -121,68 +119,72 @@ static double structural_approach(double q, double load, double *compliance) {
 }
 
 /* Mean of a row of the table by the weights of 3 x 3 speeds and temperatures: number m of `numbers` in each. */
-static double mixed(const double *values, int temperatures, int numbers, const node *i, const node *j, int m) {
+static double mixed(const double *values, int64_t temperatures, int64_t numbers, const node *i, const node *j,
+                    int64_t m) {
     double sum = 0.0;
     for (int a = 0; a < 3; a++) {
-        const double *row = values + ((size_t)(i->first + a) * temperatures + j->first) * numbers + m;
+        const double *row = values + ((i->first + a) * temperatures + j->first) * numbers + m;
         sum += i->weight[a] *
-               (j->weight[0] * row[0] + j->weight[1] * row[numbers] + j->weight[2] * row[2 * (size_t)numbers]);
+               (j->weight[0] * row[0] + j->weight[1] * row[numbers] + j->weight[2] * row[2 * numbers]);
     }
     return sum;
 }
 
-static void place_of(const axes *table, double log_speed, double T, node *i, node *j) {
+static void place_of(const ehd_law_table *table, double log_speed, double T, node *i, node *j) {
     *i = node_of((log_speed - table->log_speed_start) * table->log_speed_step, table->speeds);
     *j = node_of((1.0 / (T - COLDEST) - table->temperature_start) * table->temperature_step, table->temperatures);
 }
 
-/* Nodes beside a place of an axis, and the weight of the second one. */
-static double beside(const double *nodes, int count, double x, int *first, int *second) {
-    int i = 0;
+/* Nodes beside a place of an axis, which has one every `stride` numbers, and the weight of the second one. */
+static double beside(const double *nodes, int64_t stride, int64_t count, double x, int64_t *first, int64_t *second) {
+    int64_t i = 0;
     *first = *second = x > nodes[0] ? count - 1 : 0;
-    if (!(x > nodes[0]) || x >= nodes[count - 1]) return 0.0;
-    while (nodes[i + 1] <= x) i++;
+    if (!(x > nodes[0]) || x >= nodes[stride * (count - 1)]) return 0.0;
+    while (nodes[stride * (i + 1)] <= x) i++;
     *first = i;
     *second = i + 1;
-    return (x - nodes[i]) / (nodes[i + 1] - nodes[i]);
+    return (x - nodes[stride * i]) / (nodes[stride * (i + 1)] - nodes[stride * i]);
 }
 
 /* Highest mapped load at a speed and temperature: its logarithm is straight over ln u and T. */
-static double end_at(double log_speed, double T) {
-    int i, j, up, on;
-    const double a = beside(END_LOG_SPEEDS, END_SPEEDS, log_speed, &i, &up);
-    const double b = beside(END_KELVINS, END_TEMPERATURES, T, &j, &on);
-    const double corner = ENDS[i][j];
-    double low, high;
-    if (ENDS[i][on] == corner && ENDS[up][j] == corner && ENDS[up][on] == corner) return corner;
-    low = (1.0 - b) * log(corner) + b * log(ENDS[i][on]);
-    high = (1.0 - b) * log(ENDS[up][j]) + b * log(ENDS[up][on]);
+static double end_at(const ehd_law_data *D, double log_speed, double T) {
+    int64_t i, j, up, on;
+    const int64_t columns = D->end_columns;
+    const double a = beside(D->ends + columns, columns, D->end_rows - 1, log_speed, &i, &up);
+    const double b = beside(D->ends + 1, 1, columns - 1, T, &j, &on);
+    const double *row = D->ends + (i + 1) * columns + 1, *next = D->ends + (up + 1) * columns + 1, corner = row[j];
+    if (row[on] == corner && next[j] == corner && next[on] == corner) return corner;
+    const double low = (1.0 - b) * log(corner) + b * log(row[on]);
+    const double high = (1.0 - b) * log(next[j]) + b * log(next[on]);
     return exp((1.0 - a) * low + a * high);
 }
 
-/* A table at one speed and temperature. */
-static void collapse(const axes *table, double log_speed, double T, ehd_line *line) {
+/* A table at one speed and temperature; its cells go to a place in memory. Returns the first byte after them. */
+static uintptr_t collapse(const ehd_law_table *table, double log_speed, double T, ehd_line *line, uintptr_t at) {
     node i, j;
-    const int numbers = 2 * table->places;
-    double c[4][2];
+    const int64_t numbers = 2 * table->places;
+    double c[4][2] = {{0.0}};
     place_of(table, log_speed, T, &i, &j);
     line->offset = mixed(table->place, table->temperatures, 2, &i, &j, 0);
     line->inverse_scale = mixed(table->place, table->temperatures, 2, &i, &j, 1);
     line->start = table->start;
     line->step = table->step;
-    line->cells = table->places - 3;
-    for (int k = 0; k < table->places; k++) {
+    line->cells = cells_of(table);
+    line->to_cells = (int64_t)(at - (uintptr_t)line);
+    double(*cell)[2][4] = line_cells(line);
+    for (int64_t k = 0; k < table->places; k++) {
         for (int f = 0; f < 2; f++) {
             for (int n = 0; n < 3; n++) c[n][f] = c[n + 1][f];
             c[3][f] = mixed(table->coefficients, table->temperatures, numbers, &i, &j, 2 * k + f);
             if (k < 3) continue;
-            double *cubic = line->cell[k - 3][f];
+            double *cubic = cell[k - 3][f];
             cubic[0] = (c[0][f] + 4.0 * c[1][f] + c[2][f]) / 6.0;
             cubic[1] = 0.5 * (c[2][f] - c[0][f]);
             cubic[2] = 0.5 * (c[0][f] + c[2][f]) - c[1][f];
             cubic[3] = (c[3][f] - c[0][f]) / 6.0 + 0.5 * (c[1][f] - c[2][f]);
         }
     }
+    return at + (uintptr_t)(line->cells * CELL_SIZE);
 }
 
 /* Value of a cubic at a place t of its cell, and its slope by t. */
@@ -198,16 +200,17 @@ static contact_state line_state(const ehd_line *line, double approach) {
     const double x = place_within((s - line->start) * line->step, line->cells);
     const int cell = cell_of(x, line->cells);
     const double scale = line->step * ds * line->inverse_scale;
-    const double g = cubic_at(line->cell[cell][0], x - cell, &dg);
-    const double log_ratio = cubic_at(line->cell[cell][1], x - cell, &dlog_ratio);
+    const double(*cubics)[4] = (const double(*)[4])line_cells(line)[cell];
+    const double g = cubic_at(cubics[0], x - cell, &dg);
+    const double log_ratio = cubic_at(cubics[1], x - cell, &dlog_ratio);
     return state_of(g, dg * scale, log_ratio, dlog_ratio * scale);
 }
 
 /* State of a table at one place, without making a line of it. */
-static contact_state table_state(const axes *table, double approach, double log_speed, double T) {
+static contact_state table_state(const ehd_law_table *table, double approach, double log_speed, double T) {
     node i, j;
     double ds, value[2] = {0.0, 0.0}, slope[2] = {0.0, 0.0};
-    const int cells = table->places - 3;
+    const int64_t cells = cells_of(table);
     place_of(table, log_speed, T, &i, &j);
     const double offset = mixed(table->place, table->temperatures, 2, &i, &j, 0);
     const double inverse_scale = mixed(table->place, table->temperatures, 2, &i, &j, 1);
@@ -232,10 +235,11 @@ static contact_state table_state(const axes *table, double approach, double log_
 /* Approach at which a line carries a load [m]; for zero the highest one without. */
 static double line_approach(const ehd_line *line, double load) {
     const double wanted = pow(load, 1.0 / 3.0);
-    int low = 0, high = line->cells;
+    double(*cell)[2][4] = line_cells(line);
+    int64_t low = 0, high = line->cells;
     while (high - low > 1) {
-        const int middle = (low + high) / 2;
-        if (line->cell[middle][0][0] <= wanted)
+        const int64_t middle = (low + high) / 2;
+        if (cell[middle][0][0] <= wanted)
             low = middle;
         else
             high = middle;
@@ -244,7 +248,7 @@ static double line_approach(const ehd_line *line, double load) {
     double left = 0.0, right = 1.0, t = 0.5;
     for (int n = 0; n < MOST_STEPS; n++) {
         double slope;
-        const double g = cubic_at(line->cell[low][0], t, &slope);
+        const double g = cubic_at(cell[low][0], t, &slope);
         if (g > wanted)
             right = t;
         else
@@ -258,7 +262,6 @@ static double line_approach(const ehd_line *line, double load) {
     return line->offset + sinh(line->start + (low + t) / line->step) / line->inverse_scale;
 }
 
-#if EHD_HAS_CENTRIFUGAL
 /* Second derivative of the load of a line by the approach, where it carries load. */
 static double line_curvature(const ehd_line *line, double approach, double dw) {
     const double z = (approach - line->offset) * line->inverse_scale;
@@ -266,7 +269,7 @@ static double line_curvature(const ehd_line *line, double approach, double dw) {
     const double s = stretched(z, &ds);
     const double x = place_within((s - line->start) * line->step, line->cells);
     const int cell = cell_of(x, line->cells);
-    const double *a = line->cell[cell][0];
+    const double *a = line_cells(line)[cell][0];
     const double g = cubic_at(a, x - cell, &slope), dg = dw / (3.0 * g * g);
     const double per_s = ds * line->inverse_scale, per_cell = line->step * per_s;
     const double ddg = (2.0 * a[2] + 6.0 * (x - cell) * a[3]) * per_cell * per_cell - dg * z * ds * per_s;
@@ -277,7 +280,7 @@ static double line_curvature(const ehd_line *line, double approach, double dw) {
  *
  * The approach divides into a and approach - a so that W_inner(a) + q = W_outer(approach - a): Newton's method in the
  * logarithm of the loads, within a closing bracket. */
-static contact_state balanced_state(const ehd_point *point, double approach) {
+static contact_state balanced_state(const ehd_law_point *point, double approach) {
     const ehd_line *inner = &point->inner, *outer = &point->outer;
     const double q = point->centrifugal_load, scale = 1.0 / inner->inverse_scale;
     if (approach <= point->lift_off) return NO_LOAD;
@@ -322,32 +325,30 @@ static contact_state balanced_state(const ehd_point *point, double approach) {
                2.0 * change * (i.w * i.ratio * part_i - o.w * o.ratio * part_o);
     return found;
 }
-#endif
 
 /* State with the whole film. */
-static contact_state full_state(const ehd_point *point, double approach) {
-#if EHD_HAS_CENTRIFUGAL
+static contact_state full_state(const ehd_law_point *point, double approach) {
     if (point->centrifugal_load > 0.0) return balanced_state(point, approach);
-#endif
     return line_state(&point->own, approach);
 }
 
 /* State with a part of the film, below the lowest mapped speed: film offset and c at equal load are that part of the
  * whole ones. With the approach y of the whole film, (1 - part) E(w(y)) + part y = approach, E that of the structure. */
-static contact_state faded_state(const ehd_point *point, double approach) {
+static contact_state faded_state(const ehd_law_point *point, double approach) {
+    const ehd_law_data *D = point->data;
     const double part = point->film, q = point->centrifugal_load;
     const double offset = point->own.offset, scale = 1.0 / point->own.inverse_scale;
     double compliance, ds, slope = 1.0;
     int last = 0;
     contact_state found = NO_LOAD;
-    if (approach <= (1.0 - part) * structural_approach(q, 0.0, &compliance) + part * point->lift_off) return NO_LOAD;
+    if (approach <= (1.0 - part) * structural_approach(D, q, 0.0, &compliance) + part * point->lift_off) return NO_LOAD;
     double low = stretched((point->lift_off - offset) * point->own.inverse_scale, &ds);
     double high = most(stretched((approach - offset) * point->own.inverse_scale, &ds), low), place = high;
     for (int n = 0; n < MOST_STEPS; n++) {
         const double growth = exp(least(most(place, -700.0), 700.0));
         const double y = offset + 0.5 * scale * (growth - 1.0 / growth);
         found = full_state(point, y);
-        const double dry = structural_approach(q, found.w, &compliance);
+        const double dry = structural_approach(D, q, found.w, &compliance);
         const double excess = (1.0 - part) * dry + part * y - approach;
         slope = part;
         if (found.w > 0.0) slope += (1.0 - part) * compliance * found.dw;
@@ -372,12 +373,12 @@ static contact_state faded_state(const ehd_point *point, double approach) {
 }
 
 /* State at rest, as if the law went on above the highest load. */
-static contact_state rest_state(const ehd_point *point, double approach) {
+static contact_state rest_state(const ehd_law_point *point, double approach) {
     return point->film < 1.0 ? faded_state(point, approach) : full_state(point, approach);
 }
 
 /* State at rest: above the held load the law is its tangent. */
-static contact_state held_state(const ehd_point *point, double approach) {
+static contact_state held_state(const ehd_law_point *point, double approach) {
     contact_state found;
     if (approach <= point->held_approach) return rest_state(point, approach);
     found.w = point->held_load + point->held_stiffness * (approach - point->held_approach);
@@ -387,78 +388,79 @@ static contact_state held_state(const ehd_point *point, double approach) {
     return found;
 }
 
-/* Part of the film that is there: 0 at standstill, 1 from `FILM_SPEED` on. */
-static double film_part(double speed) {
-    const double part = speed >= FILM_SPEED ? 1.0 : speed / FILM_SPEED;
+/* Part of the film that is there: 0 at standstill, 1 from `film_speed` on. */
+static double film_part(const ehd_law_data *D, double speed) {
+    const double part = speed >= D->film_speed ? 1.0 : speed / D->film_speed;
     return part * part * part * (10.0 - part * (15.0 - 6.0 * part));
 }
 
 /* Which of speed and temperature lie outside the map. */
-static int outside_map(double speed, double T) {
+static int outside_map(const ehd_law_data *D, double speed, double T) {
     int status = EHD_OK;
-    if (speed > EHD_HIGHEST_SPEED * (1.0 + EDGE_TOLERANCE)) status |= EHD_ABOVE_SPEED;
-    if (!(EHD_LOWEST_TEMPERATURE * (1.0 - EDGE_TOLERANCE) <= T && T <= EHD_HIGHEST_TEMPERATURE * (1.0 + EDGE_TOLERANCE)))
+    if (speed > D->counted_speed * (1.0 + EDGE_TOLERANCE)) status |= EHD_ABOVE_SPEED;
+    if (!(D->counted_cold * (1.0 - EDGE_TOLERANCE) <= T && T <= D->counted_hot * (1.0 + EDGE_TOLERANCE)))
         status |= EHD_OUTSIDE_TEMPERATURE;
     return status;
 }
 
-int ehd_at(ehd_point *point, double u, double T, double q) {
+int ehd_law_make(const ehd_law_data *D, double u, double T, double q, ehd_law_point *point) {
     double compliance, held, log_speed, end;
     if (!point) return EHD_BAD_ARGUMENT;
+    point->data = D;
     point->entrainment_speed = fabs(u);
     point->temperature = T;
     point->centrifugal_load = q;
     if (!(is_finite(u) && is_finite(T) && is_finite(q)))
         point->status = EHD_NOT_FINITE;
-    else if (q < 0.0 || q >= EHD_HIGHEST_LOAD || (q > 0.0 && !EHD_HAS_CENTRIFUGAL))
+    else if (q < 0.0 || q >= D->highest_load || (q > 0.0 && !D->centrifugal))
         point->status = EHD_BAD_CENTRIFUGAL;
     else
-        point->status = outside_map(fabs(u), T);
-    if (EHD_REFUSES(point->status)) return point->status;
-    T = least(most(T, LOWEST_TEMPERATURE), HIGHEST_TEMPERATURE);
-    log_speed = log(most(least(fabs(u), HIGHEST_SPEED), LOWEST_SPEED));
-    point->film = film_part(least(fabs(u), HIGHEST_SPEED));
-    end = end_at(log_speed, T);
+        point->status = outside_map(D, fabs(u), T);
+    if (refuses(D, (int)point->status)) return (int)point->status;
+    T = least(most(T, D->lowest_temperature), D->highest_temperature);
+    log_speed = log(most(least(fabs(u), D->highest_speed), D->lowest_speed));
+    point->film = film_part(D, least(fabs(u), D->highest_speed));
+    end = end_at(D, log_speed, T);
     if (q >= end) {
         point->status |= EHD_BAD_CENTRIFUGAL;
-        return point->status;
+        return (int)point->status;
     }
     point->highest_load = end - q;
-    point->held_load = HELD_LOAD * (end / EHD_HIGHEST_LOAD) - q;
-    collapse(&OWN, log_speed, T, &point->own);
+    point->held_load = D->held_load * (end / D->highest_load) - q;
+    uintptr_t at = collapse(&D->own, log_speed, T, &point->own, (uintptr_t)(point + 1));
     point->inner_lift_off = point->outer_start = 0.0;
     point->lift_off = line_approach(&point->own, 0.0);
-#if EHD_HAS_CENTRIFUGAL
     if (q > 0.0) {
-        collapse(&INNER, log_speed, T, &point->inner);
-        collapse(&OUTER, log_speed, T, &point->outer);
+        at = collapse(&D->inner, log_speed, T, &point->inner, at);
+        collapse(&D->outer, log_speed, T, &point->outer, at);
         point->inner_lift_off = line_approach(&point->inner, 0.0);
         point->outer_start = line_approach(&point->outer, q);
         point->lift_off = point->inner_lift_off + point->outer_start;
         held = line_approach(&point->inner, point->held_load) + line_approach(&point->outer, point->held_load + q);
-    } else
-#endif
+    } else {
         held = line_approach(&point->own, point->held_load);
+    }
     point->held_approach =
-        (1.0 - point->film) * structural_approach(q, point->held_load, &compliance) + point->film * held;
+        (1.0 - point->film) * structural_approach(D, q, point->held_load, &compliance) + point->film * held;
     point->held_stiffness = 1.0 / compliance;
     point->held_damping = rest_state(point, point->held_approach).ratio * point->held_load;
-    return point->status;
+    return (int)point->status;
 }
 
 /* Finish a call: what is refused, or is not finite after all, is NaN. */
-static int settled(int status, ehd_force *force) {
+static int settled(const ehd_law_data *D, int status, ehd_force *force) {
     if (!(is_finite(force->load) && is_finite(force->stiffness) && is_finite(force->damping))) status |= EHD_NOT_FINITE;
-    if (EHD_REFUSES(status)) no_force(force);
+    if (refuses(D, status)) no_force(force);
     return status;
 }
 
-int ehd_law_at(const ehd_point *point, double approach, double rate, ehd_force *force) {
+int ehd_law_force(const ehd_law_point *point, double approach, double rate, ehd_force *force) {
     contact_state found;
     if (!point || !force) return EHD_BAD_ARGUMENT;
-    int status = point->status;
+    const ehd_law_data *D = point->data;
+    int status = (int)point->status;
     no_force(force);
-    if (EHD_REFUSES(status)) return status;
+    if (refuses(D, status)) return status;
     if (!(is_finite(approach) && is_finite(rate))) return status | EHD_NOT_FINITE;
     found = held_state(point, approach);
     if (found.w <= 0.0) {
@@ -467,24 +469,24 @@ int ehd_law_at(const ehd_point *point, double approach, double rate, ehd_force *
     }
     if (found.w > point->highest_load * (1.0 + LOAD_TOLERANCE)) status |= EHD_ABOVE_LOAD;
     unilateral(found.w, found.dw, found.w * found.ratio, found.dc, rate, force);
-    return settled(status, force);
+    return settled(D, status, force);
 }
 
-int ehd_law(double approach, double rate, double u, double T, double q, ehd_force *force) {
+int ehd_law_call(const ehd_law_data *D, double approach, double rate, double u, double T, double q,
+                 ehd_law_point *room, ehd_force *force) {
     const double speed = fabs(u);
-    ehd_point point;
     if (!force) return EHD_BAD_ARGUMENT;
     no_force(force);
     if (!(is_finite(approach) && is_finite(rate) && is_finite(u) && is_finite(T) && is_finite(q))) return EHD_NOT_FINITE;
-    if (FILM_SPEED <= speed && LOWEST_SPEED <= speed && speed <= EHD_HIGHEST_SPEED && EHD_LOWEST_TEMPERATURE <= T &&
-        T <= EHD_HIGHEST_TEMPERATURE && q == 0.0) {
-        const contact_state found = table_state(&OWN, approach, log(speed), T);
-        if (found.w <= KNOWN_LOAD) {
+    if (D->film_speed <= speed && D->lowest_speed <= speed && speed <= D->counted_speed && D->counted_cold <= T &&
+        T <= D->counted_hot && q == 0.0) {
+        const contact_state found = table_state(&D->own, approach, log(speed), T);
+        if (found.w <= D->known_load) {
             unilateral(found.w, found.dw, found.w * found.ratio, found.dc, rate, force);
-            return settled(EHD_OK, force);
+            return settled(D, EHD_OK, force);
         }
     }
-    const int status = ehd_at(&point, u, T, q);
-    if (EHD_REFUSES(status)) return status;
-    return ehd_law_at(&point, approach, rate, force);
+    const int status = ehd_law_make(D, u, T, q, room);
+    if (refuses(D, status)) return status;
+    return ehd_law_force(room, approach, rate, force);
 }
