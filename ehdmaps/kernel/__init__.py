@@ -22,6 +22,11 @@ film.[hc]            films with memory of one contact: equilibrium, steps in tim
 cylinder_law.c       the law at one speed and temperature, as a table for bearings with cylindrical rollers
 cylinder.[hc]        bearings with cylindrical rollers: force, stiffness and damping at a pose
 cylinder_films.[hc]  the same with films that have a memory
+block.h              what a kind of elements brings to runs in time: its functions, for anyone's own ones, too
+dense.c              small matrices: products, elimination, steps in Python
+gear.c               gear meshes
+matrix.c             connections by matrices
+advance.c            steps of a run in time
 kernel.c             the unit that is compiled
 ===================  ==================================================================================
 

@@ -20,7 +20,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from mbs.gears.gear_kernel import BY_RATE, FORCE, SLOPE, mesh_energy, mesh_force, mesh_powers
+from mbs.gears.gear_kernel import BY_RATE, FORCE, SLOPE, MeshData, mesh_energy, mesh_force, mesh_powers
 from mbs.gears.pair import GearPair
 from mbs.model.elements import ElementDefaults, Excitation, Forces, Operation, Port, Powers
 
@@ -80,10 +80,17 @@ class GearMesh(ElementDefaults):
 
     @cached_property
     def arrays(self) -> tuple[FloatArray, FloatArray]:
-        """Constants and series for `mbs.gears.gear_kernel.mesh_force`."""
+        """Constants and series, shapes (5,) and (4, harmonics), see `mbs.gears.gear_kernel`."""
         pair = self.pair
         constants = [pair.mean_stiffness, pair.damping, pair.backlash, pair.teeth[0] * self.spin, pair.phase]
         return np.array(constants), pair.series if self.varying else np.zeros((4, 0))
+
+    @cached_property
+    def _data(self) -> MeshData:
+        """The mesh for `mbs.gears.gear_kernel`."""
+        constants, series = self.arrays
+        series = np.ascontiguousarray(series, dtype=np.float64)
+        return MeshData(harmonics=series.shape[1], constants=constants, series=series)
 
     def flanks(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> FloatArray:
         """Force [N], stiffness [N/m] and damping [N s/m] of the driving and of the other flank, shape (2, 3).
@@ -97,9 +104,8 @@ class GearMesh(ElementDefaults):
         operation : Operation
             Speed, angle and time.
         """
-        out = np.empty((2, 3))
-        mesh_force(*self.arrays, operation.angle, operation.speed, self.rows @ displacement, self.rows @ velocity, out)
-        return out
+        motion, rate = self.rows @ displacement, self.rows @ velocity
+        return mesh_force(self._data, operation.angle, operation.speed, motion, rate)
 
     def evaluate(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> Forces:
         """Force on both gears, stiffness and damping, see `Element.evaluate`."""
@@ -116,11 +122,11 @@ class GearMesh(ElementDefaults):
     ) -> Powers:
         """Power that its flanks dissipate, and power that stiffness and error bring in, see `Element.powers`."""
         motion, rate = self.rows @ displacement, self.rows @ velocity
-        return Powers(*mesh_powers(*self.arrays, operation.angle, operation.speed, motion, rate))
+        return Powers(*mesh_powers(self._data, operation.angle, operation.speed, motion, rate))
 
     def stored(self, states: Any, displacement: FloatArray, operation: Operation) -> float:
         """Energy of its flanks [J], see `Element.stored`."""
-        return float(mesh_energy(*self.arrays, operation.angle, self.rows @ displacement))
+        return mesh_energy(self._data, operation.angle, self.rows @ displacement)
 
     @cached_property
     def _squares(self) -> tuple[FloatArray, FloatArray]:

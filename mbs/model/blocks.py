@@ -1,8 +1,9 @@
-"""Parts that a kind of elements brings to run in compiled code: a compiled function, and the arrays that it reads.
+"""Parts that a kind of elements brings to runs in compiled code: functions in C, and the data that they take.
 
-A run in time puts all elements of a kind into one block. Its compiled function writes what they answer to a motion;
-the block itself, in Python, holds their arrays and prepares what changes with the speed. `mbs.transient.kinds` lists
-the kinds; `mbs.gears.gear_block` is a short one to look at. This module knows nothing of compiled code.
+A run in time puts all elements of a kind into one block. Its function writes what they answer to a motion; the block
+itself, in Python, holds their data and prepares what changes with the speed. `mbs.transient.kinds` lists the kinds;
+`mbs.gears.gear_block` is a short one to look at, and `ehdmaps/kernel/c/block.h` has the types of the functions. This
+module knows nothing of compiled code.
 """
 
 from __future__ import annotations
@@ -16,9 +17,14 @@ import numpy as np
 from ehdmaps.arrays import BoolArray, FloatArray, IntArray
 from mbs.model.elements import Element
 
-FOUND, NO_SOLUTION, IN_PYTHON = 0, 1, 2
-"""What a compiled function returns: all is written; there is no answer to such a motion, so that the step is halved;
-compiled code has none, and the step is made in Python."""
+FOUND, NO_SOLUTION, IN_PYTHON, TOO_LARGE, STOPPED = range(5)
+"""What the function of a block returns, as `block.h` has it: all is written; there is no answer to such a motion, so
+that the step is halved; compiled code has none, and the step is made in Python. Of runs besides: the error of a step is
+above the tolerance; a Python function raised."""
+
+Function = str | int | Callable[..., Any] | None
+"""A function of a kind: the name of one in the C library; its address, or an object that has it as `address`, such as
+`numba.cfunc` makes, or a ctypes function; or a Python function, which costs some 10 us a call. None: there is none."""
 
 
 class Moment(NamedTuple):
@@ -73,12 +79,15 @@ class Member(NamedTuple):
         First of what it feels.
     alone : int
         First of what it feels of coordinates that are its alone, see `Kind.alone`.
+    among : int
+        How much all elements feel together: the m of `Answers`, for functions that cannot look there.
     """
 
     element: Any
     place: int
     first: int
     alone: int = 0
+    among: int = 0
 
 
 class Block(Protocol):
@@ -93,8 +102,9 @@ class Block(Protocol):
 
         Returns
         -------
-        arrays : NamedTuple
-            What the compiled function of the kind takes.
+        data : ehdmaps.kernel.record.Record, ctypes.Structure, array, int or None
+            What the functions of the kind take: C has the address of a struct or of the numbers of an array, or an
+            address as an integer; a Python function has it as it is, whatever it is.
         sound : array of bool, shape (prepared steps,)
             Whether compiled code has an answer at the speed of each; the others are made in Python.
         """
@@ -115,12 +125,12 @@ class StatefulBlock(Block, Protocol):
 
 @dataclass(frozen=True, eq=False)
 class SteadyBlock:
-    """A block whose arrays hold at every speed.
+    """A block whose data hold at every speed.
 
     Attributes
     ----------
-    arrays : NamedTuple
-        What the compiled function takes.
+    arrays : Record or anything
+        What the functions take, see `Block.prepare`.
     """
 
     arrays: Any
@@ -144,11 +154,10 @@ class Kind:
 
     Attributes
     ----------
-    arrays : type
-        Class of the named tuple that the compiled function takes; kinds with the same one have the same functions.
-    answer : callable
-        Compiled function (arrays, Moment, motion, Answers) -> one of `FOUND`, `NO_SOLUTION`, `IN_PYTHON`. `motion` is
-        an array (2, m): what the elements feel, and its rate.
+    answer : Function
+        Function (data, Moment, motion, Answers) -> one of `FOUND`, `NO_SOLUTION`, `IN_PYTHON`. `motion` is an array
+        (2, m): what the elements feel, and its rate. Slopes between what one element feels are written at every call;
+        all other ones are zero and stay so.
     feels : callable
         Rows (felt, ports) of what an element feels of the displacements of its ports. What it does not feel makes no
         force; fewer rows are fewer unknowns.
@@ -159,27 +168,29 @@ class Kind:
     alone : callable or None
         Rows (felt, ports) of coordinates that the element feels and nothing else touches, such as its rollers. They
         come before what all elements feel of others, so that elimination, which begins with them, costs little.
-    powers : callable or None
-        Compiled function (arrays, Moment, motion, Answers, out) that writes the numbers of
-        `mbs.model.elements.Powers` of each of its elements into the row of `out` (elements, 3) that is its place;
-        called when a step is made, after `accept`. None where the elements do not say.
-    accept : callable or None
-        Compiled function (arrays, Moment) that is called when a step is made, for elements with states of their own;
-        the last answer was then that of the step. Their block is a `StatefulBlock`.
+    powers : Function
+        Function (data, Moment, motion, Answers, out) that writes the numbers of `mbs.model.elements.Powers` of each of
+        its elements into the row of `out` (elements, 3) that is its place; called when a step is made, after `accept`.
+        None where the elements do not say.
+    accept : Function
+        Function (data, Moment) that is called when a step is made, for elements with states of their own; the last
+        answer was then that of the step. Their block is a `StatefulBlock`.
     placed : callable or None
         Gives an element as it stands in a system, from the rows (ports, coordinates) by which its ports move: one that
         feels less, where the bodies cannot do all that it could feel. What is not felt costs nothing.
+    arrays : type or None
+        Class of the named tuple that functions take which numba compiles.
     rare : bool
-        Whether compiled code is without the kind where there are none of it.
+        Whether what numba compiles is without the kind where there are none of it.
     """
 
-    arrays: type
-    answer: Callable[..., int]
+    answer: Function
     feels: Callable[[Any], FloatArray]
     gather: Callable[[Sequence[Member]], Block]
     takes: Callable[[Element], bool] = _always
     alone: Callable[[Any], FloatArray] | None = None
-    accept: Callable[..., None] | None = None
-    powers: Callable[..., None] | None = None
+    accept: Function = None
+    powers: Function = None
     placed: Callable[[Any, FloatArray], Any] | None = None
+    arrays: type | None = None
     rare: bool = False

@@ -1,112 +1,49 @@
-"""Connections by matrices in compiled runs."""
+"""Connections by matrices in compiled runs. Their functions are in `ehdmaps/kernel/c/matrix.c`."""
 
 from __future__ import annotations
 
+import ctypes
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import ClassVar
 
 import numpy as np
 
-from ehdmaps.arrays import FloatArray, IntArray
-from ehdmaps.compiled import njit
-from mbs.model.blocks import FOUND, Answers, Kind, Member, Moment, SteadyBlock
+from ehdmaps.arrays import FloatArray
+from ehdmaps.kernel.library import checked
+from ehdmaps.kernel.record import Record, integers, numbers
+from mbs.model.blocks import Kind, Member, SteadyBlock
 from mbs.model.matrices import MatrixElement
 
 
-class Matrices(NamedTuple):
-    """Connections by matrices as arrays.
+class Matrices(Record):
+    """Connections by matrices as C takes them.
 
     Attributes
     ----------
-    firsts, places, counts : array (elements,), of int
+    count, longest : int
+        How many connections, and speeds of the longest table.
+    firsts, places, counts : array (count,), of int
         First of what each feels, its place among all elements, and the number of its speeds.
-    speeds : array (elements, speeds)
+    speeds : array (count, longest)
         Speeds of the tables [rad/s].
-    tables : array (elements, speeds, 2, 6, 6)
+    tables : array (count, longest, 2, 6, 6)
         Stiffness and damping.
     """
 
-    firsts: IntArray
-    places: IntArray
-    counts: IntArray
-    speeds: FloatArray
-    tables: FloatArray
-
-
-@njit(error_model="numpy")
-def _at(matrices: Matrices, e: int, speed: float, out: FloatArray) -> bool:
-    """Write stiffness and damping of an element at a speed; whether that lies beyond its table."""
-    count, speeds, tables = matrices.counts[e], matrices.speeds[e], matrices.tables[e]
-    low = 0
-    while low + 2 < count and speeds[low + 1] < speed:
-        low += 1
-    high = min(low + 1, count - 1)
-    part = 0.0
-    if high > low:
-        part = min(max((speed - speeds[low]) / (speeds[high] - speeds[low]), 0.0), 1.0)
-    for m in range(2):
-        for i in range(6):
-            for j in range(6):
-                begin = tables[low, m, i, j]
-                out[m, i, j] = begin + part * (tables[high, m, i, j] - begin)
-    return bool(count > 1 and (speed < speeds[0] or speed > speeds[count - 1]))
-
-
-@njit(error_model="numpy")
-def matrices_answer(matrices: Matrices, moment: Moment, motion: FloatArray, answers: Answers) -> int:
-    """Forces and slopes of all connections; see `mbs.model.blocks.Kind`.
-
-    Parameters
-    ----------
-    matrices : Matrices
-        The connections.
-    moment : Moment
-        Speed and weights of the slopes.
-    motion : array (2, m)
-        Displacements and their rates, among what all elements feel.
-    answers : Answers
-        Answers of all elements, filled.
-    """
-    both = np.empty((2, 6, 6))
-    for e in range(matrices.firsts.size):
-        first = matrices.firsts[e]
-        if _at(matrices, e, moment.speed, both):
-            answers.outside[matrices.places[e]] += 1
-        for i in range(6):
-            total = 0.0
-            for j in range(6):
-                k, c = both[0, i, j], both[1, i, j]
-                total -= k * motion[0, first + j] + c * motion[1, first + j]
-                answers.slopes[first + i, first + j] = moment.by_q * k + moment.by_v * c
-            answers.force[first + i] = total
-    return FOUND
-
-
-@njit(error_model="numpy")
-def matrices_powers(matrices: Matrices, moment: Moment, motion: FloatArray, answers: Answers, out: FloatArray) -> None:
-    """Write powers that dampings take, and that skew stiffnesses bring in; see `mbs.model.blocks.Kind`.
-
-    Parameters
-    ----------
-    matrices, moment, motion, answers
-        The same as of `matrices_answer`.
-    out : array (elements, 3)
-        Powers of all elements; written.
-    """
-    both = np.empty((2, 6, 6))
-    for e in range(matrices.firsts.size):
-        first, place = matrices.firsts[e], matrices.places[e]
-        _at(matrices, e, moment.speed, both)
-        dissipated = driven = 0.0
-        for i in range(6):
-            for j in range(6):
-                dissipated += motion[1, first + i] * both[1, i, j] * motion[1, first + j]
-                driven -= motion[1, first + i] * 0.5 * (both[0, i, j] - both[0, j, i]) * motion[0, first + j]
-        out[place, 0], out[place, 1] = dissipated, driven
+    _fields_ = (
+        *((name, ctypes.c_int64) for name in ("count", "longest")),
+        *((name, integers) for name in ("firsts", "places", "counts")),
+        *((name, numbers) for name in ("speeds", "tables")),
+    )
+    shapes: ClassVar = {
+        **dict.fromkeys(("firsts", "places", "counts"), ("count",)),
+        "speeds": ("count", "longest"),
+        "tables": ("count", "longest", 72),
+    }
 
 
 def _gather(members: Sequence[Member]) -> SteadyBlock:
-    """Arrays of some connections; tables as long as the longest."""
+    """Data of some connections; tables as long as the longest."""
     elements: list[MatrixElement] = [member.element for member in members]
     longest = max((element.speeds.size for element in elements), default=1)
     speeds, tables = np.zeros((len(elements), longest)), np.zeros((len(elements), longest, 2, 6, 6))
@@ -115,8 +52,17 @@ def _gather(members: Sequence[Member]) -> SteadyBlock:
         speeds[index, :count] = element.speeds
         tables[index, :count, 0], tables[index, :count, 1] = element.stiffness, element.damping
     firsts, places = (np.array([getattr(m, key) for m in members], dtype=np.int64) for key in ("first", "place"))
-    counts = np.array([element.speeds.size for element in elements], dtype=np.int64)
-    return SteadyBlock(Matrices(firsts, places, counts, speeds, tables))
+    return SteadyBlock(
+        checked(Matrices, "ehd_matrix_block")(
+            count=len(elements),
+            longest=longest,
+            firsts=firsts,
+            places=places,
+            counts=np.array([element.speeds.size for element in elements], dtype=np.int64),
+            speeds=speeds,
+            tables=tables,
+        )
+    )
 
 
 def _all_six(element: MatrixElement) -> FloatArray:
@@ -124,7 +70,5 @@ def _all_six(element: MatrixElement) -> FloatArray:
     return np.eye(6)
 
 
-MATRICES = Kind(
-    arrays=Matrices, answer=matrices_answer, feels=_all_six, gather=_gather, powers=matrices_powers, rare=True
-)
+MATRICES = Kind(answer="ehd_matrix_block_answer", feels=_all_six, gather=_gather, powers="ehd_matrix_block_powers")
 """For `mbs.transient.kinds`."""

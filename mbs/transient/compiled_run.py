@@ -1,4 +1,4 @@
-"""A run in compiled code: what `run_kernel` needs, prepared for a batch of steps, and the steps between.
+"""A run in compiled code: what `ehd_advance` needs, prepared for a batch of steps, and the steps between.
 
 Steps that an element has no compiled answer for (such as loads above a map whose law refuses them) are made by
 `mbs.transient.stepping`, from the same state: motion, and what elements have of their own.
@@ -6,7 +6,9 @@ Steps that an element has no compiled answer for (such as loads above a map whos
 
 from __future__ import annotations
 
+import ctypes
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -19,9 +21,8 @@ from mbs.model.system import System
 from mbs.settings import Settings
 from mbs.transient.energy import Instant, Sums
 from mbs.transient.linear_part import LinearPart
-from mbs.transient.run_arrays import Course, Energies, Numbers, Records, State
+from mbs.transient.run_arrays import BlockRow, Course, Linear, Numbers, Run, functions
 from mbs.transient.run_elements import RunElements
-from mbs.transient.run_kernel import advance, advance_anew, observe
 from mbs.transient.stepping import ITERATIONS, Mark, Method, Stepper
 
 _NOTHING = 1e-15
@@ -71,7 +72,7 @@ class CompiledRun:
         self._speed, self._settings, self._stepper = speed, settings, stepper
         values, modes = scipy.linalg.eigh(system.stiffness, system.mass)
         self._modes, self._by_mass = np.ascontiguousarray(modes), np.ascontiguousarray(modes.T @ system.mass)
-        self._elements = RunElements.of(system.elements)
+        self._elements = self._elements_of(system)
         expand = self._elements.expand
         self._back = np.linalg.pinv(expand) if expand.size else expand.T
         ports = np.concatenate([np.zeros((0, system.size)), *(entry.transform for entry in system.elements)])
@@ -87,27 +88,51 @@ class CompiledRun:
         )
         self._steady, self._varying, self._profiles = _loads(system, modes)
         self._turning = system.turning
-        self._state = State(np.zeros((4, system.size)), np.zeros((3, expand.shape[0])))
-        self._records = Records(
-            rows=np.ascontiguousarray(outputs @ modes),
-            orders=orders,
-            outputs=np.zeros(((samples - 1) * stride + 1, outputs.shape[0])),
-            forces=np.zeros((samples, expand.shape[0])),
-            motions=np.zeros((samples if states else 0, 3, system.size)),
-            stride=stride,
-        )
         self._transform, self._expand = ports, expand
-        self._energies = _energies(system, modes, self._elements)
-        self._counters = np.zeros(1, dtype=np.int64)
-        self._advance = advance if self._elements.ours else advance_anew
+        self._advance, self._observe, room = functions()
+        n, m, count = system.size, expand.shape[0], len(system.elements)
+        self._motion, self._forces = np.zeros((4, n)), np.zeros((3, m))
+        self._outputs = np.zeros(((samples - 1) * stride + 1, outputs.shape[0]))
+        self._sampled = np.zeros((samples, m))
+        self._motions = np.zeros((samples if states else 0, 3, n))
+        self._load, self._felt, self._powers = np.zeros(n), np.zeros((2, m)), np.zeros((count, 3))
+        self._sums, self._works, self._exchanged = np.zeros(2), np.zeros(m), np.zeros((count, 2))
+        self._lost, self._counter = np.zeros(len(system.damping_parts)), np.zeros(1, dtype=np.int64)
+        self._run = Run(
+            n=n,
+            m=m,
+            elements=count,
+            motion=self._motion,
+            forces=self._forces,
+            outputs=outputs.shape[0],
+            stride=stride,
+            motions_kept=states,
+            seen=np.ascontiguousarray(outputs @ modes),
+            orders=orders,
+            output=self._outputs,
+            sampled_forces=self._sampled,
+            sampled_motions=self._motions,
+            load=self._load,
+            felt=self._felt,
+            powers=self._powers,
+            sums=self._sums,
+            works=self._works,
+            exchanged=self._exchanged,
+            parts=self._lost.size,
+            lost=self._lost,
+            **_damping_parts(system, modes),
+            outside=self._elements.outside,
+            counter=self._counter,
+            room=np.zeros(room(n, m, count)),
+        )
         self.compiled = 0
         self._take_over()
-        observe(self._state, self._records, 0)
+        self._record(0)
 
     @property
     def iterations(self) -> int:
         """Newton iterations so far."""
-        return self._stepper.iterations + int(self._counters[0])
+        return self._stepper.iterations + int(self._counter[0])
 
     @property
     def outside(self) -> IntArray:
@@ -136,7 +161,7 @@ class CompiledRun:
         factors = self._factors(times, speeds, angles)
         self._elements.begin(speeds)
         numbers = self._numbers(h)
-        self._state.forces[1:] = self._state.forces[0]  # the steps before may have had another length
+        self._forces[1:] = self._forces[0]  # the steps before may have had another length
         done, error = 0, 0.0
         while done < times.size:
             linear, reach = self._linear.about(h, speeds[done:])
@@ -146,6 +171,8 @@ class CompiledRun:
             if count:
                 here = slice(done, done + count)
                 course = Course(
+                    steps=count,
+                    loads=factors.shape[1],
                     times=times[here],
                     speeds=speeds[here],
                     angles=angles[here],
@@ -154,10 +181,7 @@ class CompiledRun:
                     factors=factors[here],
                     rows=rows[here],
                 )
-                made, status, error = self._advance(
-                    linear, numbers, blocks, course, self._state, self._records, self._energies,
-                    self._elements.outside, self._counters,
-                )  # fmt: skip
+                made, status, error = self._make(linear, numbers, blocks, course)
                 self.compiled += made
                 done += made
             if made == count > 0:
@@ -176,21 +200,20 @@ class CompiledRun:
 
         To be asked once, at the end: motions of the modes become those of the coordinates where they are.
         """
-        records = self._records
         # Sample by sample, whatever the size of the blocks: a second array of that size would take as much again.
-        for first in range(0, records.motions.shape[0], _AT_ONCE):
-            block = records.motions[first : first + _AT_ONCE]
+        for first in range(0, self._motions.shape[0], _AT_ONCE):
+            block = self._motions[first : first + _AT_ONCE]
             block[:] = block @ self._modes.T
-        return records.outputs, records.forces @ self._elements.expand, records.motions
+        return self._outputs, self._sampled @ self._elements.expand, self._motions
 
     @property
     def position(self) -> FloatArray:
         """Displacement of the coordinates after the last step, shape (n,)."""
-        return np.asarray(self._modes @ self._state.motion[0])
+        return np.asarray(self._modes @ self._motion[0])
 
     def ends(self) -> tuple[FloatArray, FloatArray, list[Any]]:
         """Displacement and velocity of the coordinates, and states of the elements, after the last step."""
-        p, v = self._state.motion[:2]
+        p, v = self._motion[:2]
         return self._modes @ p, self._modes @ v, self._elements.states(self._stepper.states)
 
     def mark(self, time: float) -> Mark:
@@ -201,26 +224,44 @@ class CompiledRun:
         time : float
             The time [s].
         """
-        motion = np.array([self._modes @ part for part in self._state.motion])
+        motion = np.array([self._modes @ part for part in self._motion])
         states = tuple(self._elements.states(self._stepper.states))
-        return Mark(time, motion, self._state.forces[0] @ self._expand, states)
+        return Mark(time, motion, self._forces[0] @ self._expand, states)
 
     @property
     def sums(self) -> Sums:
         """Energies of the steps so far."""
-        energies, elements = self._energies, self._elements
+        elements = self._elements
         works = np.zeros(elements.outside.size)
-        np.add.at(works, elements.owners, energies.works)
-        exchanged = np.where(elements.told[:, None], energies.exchanged, math.nan)
-        loads, taken = energies.sums.tolist()
-        return self._stepper.account.sums.plus(Sums(loads, taken, energies.lost, works, exchanged))
+        np.add.at(works, elements.owners, self._works)
+        exchanged = np.where(elements.told[:, None], self._exchanged, math.nan)
+        loads, taken = self._sums.tolist()
+        return self._stepper.account.sums.plus(Sums(loads, taken, self._lost, works, exchanged))
+
+    def _elements_of(self, system: System) -> RunElements:
+        """The elements as blocks."""
+        return RunElements.of(system.elements)
+
+    def _make(self, linear: Linear, numbers: Numbers, data: Sequence[Any], course: Course) -> tuple[int, int, float]:
+        """Make steps in compiled code: how many were made, how it ended, and the error of the last one."""
+        rows = [block.row(part) for block, part in zip(self._elements.functions, data, strict=True)]
+        error, status = ctypes.c_double(), ctypes.c_int64()
+        made = self._advance(
+            self._run.address, linear.address, numbers.address, (BlockRow * len(rows))(*rows), len(rows),
+            course.address, ctypes.byref(error), ctypes.byref(status),
+        )  # fmt: skip
+        if self._elements.raised:
+            raise self._elements.raised.pop(0)
+        return made, status.value, error.value
+
+    def _record(self, row: int) -> None:
+        """Record the state."""
+        self._observe(self._run.address, row)
 
     def _uncompiled(self, times: FloatArray, h: float, rows: IntArray) -> tuple[int, float]:
         """Make steps by the reference; as `steps`."""
         stepper = self._stepper
-        stepper.q, stepper.v, stepper.acceleration, stepper.carried = (
-            self._modes @ part for part in self._state.motion
-        )
+        stepper.q, stepper.v, stepper.acceleration, stepper.carried = (self._modes @ part for part in self._motion)
         stepper.states = self._elements.states(stepper.states)
         stepper.account.last = self._instant()
         error = 0.0
@@ -230,34 +271,34 @@ class CompiledRun:
                 return done, error
             self._take_over()
             if row >= 0:
-                observe(self._state, self._records, row)
+                self._record(row)
         return times.size, error
 
     def _take_over(self) -> None:
         """Take the state of the reference."""
         stepper = self._stepper
         given = (stepper.q, stepper.v, stepper.acceleration, stepper.carried)
-        for part, values in zip(self._state.motion, given, strict=True):
+        for part, values in zip(self._motion, given, strict=True):
             part[:] = self._by_mass @ values
-        self._state.forces[:] = stepper.forces @ self._back
+        self._forces[:] = stepper.forces @ self._back
         self._elements.resume(stepper.states)
-        last, energies = stepper.account.last, self._energies
-        energies.load[:] = self._modes.T @ last.load
-        energies.felt[0], energies.felt[1] = self._expand @ last.x, self._expand @ last.rate
-        energies.powers[:] = np.nan_to_num(last.powers)
+        last = stepper.account.last
+        self._load[:] = self._modes.T @ last.load
+        self._felt[0], self._felt[1] = self._expand @ last.x, self._expand @ last.rate
+        self._powers[:] = np.nan_to_num(last.powers)
 
     def _instant(self) -> Instant:
         """The end of the last step, for steps in Python."""
-        stepper, energies = self._stepper, self._energies
-        powers = np.where(np.isfinite(stepper.account.last.powers), energies.powers, math.nan)
+        stepper = self._stepper
+        powers = np.where(np.isfinite(stepper.account.last.powers), self._powers, math.nan)
         return Instant(
             q=stepper.q,
             v=stepper.v,
             a=stepper.acceleration,
-            load=self._by_mass.T @ energies.load,
+            load=self._by_mass.T @ self._load,
             x=self._transform @ stepper.q,
             rate=self._transform @ stepper.v,
-            force=self._state.forces[0] @ self._expand,
+            force=self._forces[0] @ self._expand,
             powers=powers,
         )
 
@@ -291,8 +332,8 @@ class CompiledRun:
         )
 
 
-def _energies(system: System, modes: FloatArray, elements: RunElements) -> Energies:
-    """Room for the energies of a run, with the damping of its parts by the modes."""
+def _damping_parts(system: System, modes: FloatArray) -> dict[str, Any]:
+    """Damping of the parts of a system by the modes, for `Run`."""
     rows, columns, values, starts = [], [], [np.zeros(0)], [0]
     for part in system.damping_parts.values():
         upper = np.triu(modes.T @ part @ modes)
@@ -302,20 +343,12 @@ def _energies(system: System, modes: FloatArray, elements: RunElements) -> Energ
         columns += j.tolist()
         values.append(upper[i, j] * np.where(i == j, 1.0, 2.0))
         starts.append(len(rows))
-    felt, count = elements.expand.shape[0], elements.outside.size
-    return Energies(
-        load=np.zeros(system.size),
-        felt=np.zeros((2, felt)),
-        powers=np.zeros((count, 3)),
-        sums=np.zeros(2),
-        works=np.zeros(felt),
-        exchanged=np.zeros((count, 2)),
-        lost=np.zeros(len(starts) - 1),
-        starts=np.array(starts, dtype=np.int64),
-        rows=np.array(rows, dtype=np.int64),
-        columns=np.array(columns, dtype=np.int64),
-        values=np.concatenate(values),
-    )
+    return {
+        "starts": np.array(starts, dtype=np.int64),
+        "rows": np.array(rows, dtype=np.int64),
+        "columns": np.array(columns, dtype=np.int64),
+        "values": np.concatenate(values),
+    }
 
 
 def _loads(system: System, modes: FloatArray) -> tuple[FloatArray, FloatArray, list[LoadProfile]]:

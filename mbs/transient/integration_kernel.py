@@ -1,45 +1,95 @@
-"""The dense algebra of a time step, compiled: for a dozen coordinates calling numpy costs more than computing."""
+"""The dense algebra of a time step, by the C library: for a dozen coordinates calling numpy costs more than computing.
+
+`ehdmaps/kernel/c/dense.c` has the equations.
+"""
 
 from __future__ import annotations
 
-import math
+import ctypes
+import functools
+from collections.abc import Callable
+from typing import Any, ClassVar
+
+import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.compiled import njit
+from ehdmaps.kernel.library import checked, function
+from ehdmaps.kernel.record import Record, address, numbers
+
+_DTYPE = np.dtype(np.float64)
 
 
-@njit(error_model="numpy", _nrt=False)
-def port_motion(transform: FloatArray, q: FloatArray, v: FloatArray, motion: FloatArray) -> None:
+class StepperData(Record):
+    """Linear part and elements of steps in Python; arrays may be overwritten.
+
+    Attributes
+    ----------
+    n, m : int
+        Coordinates and ports.
+    mass, damping, stiffness : array (n, n)
+        Matrices of the linear part.
+    linear : array (n, n)
+        Jacobian without the elements.
+    transform : array (m, n)
+        Displacements of the ports by the coordinates.
+    weight : array (n,)
+        Makes forces and moments comparable.
+    port_stiffness, port_damping : array (m, m)
+        Those of the elements.
+    room : array (n, n)
+        Work space.
+    """
+
+    _fields_ = (
+        ("n", ctypes.c_int64),
+        ("m", ctypes.c_int64),
+        *(
+            (name, numbers)
+            for name in (
+                "mass", "damping", "stiffness", "linear", "transform", "weight", "port_stiffness", "port_damping",
+                "room",
+            )
+        ),
+    )  # fmt: skip
+    shapes: ClassVar = {
+        **dict.fromkeys(("mass", "damping", "stiffness", "linear", "room"), ("n", "n")),
+        "transform": ("m", "n"),
+        "weight": ("n",),
+        "port_stiffness": ("m", "m"),
+        "port_damping": ("m", "m"),
+    }
+
+
+@functools.cache
+def _functions() -> tuple[Callable[..., Any], ...]:
+    """Functions of the library: motion of the ports, forces out of balance, Newton's change, elimination."""
+    checked(StepperData, "ehd_stepper_data")
+    pointer, number = ctypes.c_void_p, ctypes.c_double
+    return (
+        function("ehd_port_motion", pointer, pointer, pointer, pointer, result=None),
+        function("ehd_unbalanced", *[pointer] * 8, result=None),
+        function("ehd_correction", pointer, number, number, pointer),
+        function("ehd_eliminate", ctypes.c_int64, pointer, pointer),
+    )
+
+
+def port_motion(data: StepperData, q: FloatArray, v: FloatArray, motion: FloatArray) -> None:
     """Displacement and velocity of all ports, into `motion` (2, m), from those of the coordinates.
 
     Parameters
     ----------
-    transform : ndarray
-        Ports by coordinates, shape (m, n).
-    q : ndarray
-        Coordinates, shape (n,).
-    v : ndarray
-        Their rates, shape (n,).
-    motion : ndarray
-        Result, shape (2, m).
+    data : StepperData
+        The step.
+    q, v : array, shape (n,)
+        Coordinates and their rates.
+    motion : array, shape (2, m)
+        Displacements of the ports and their rates, the result.
     """
-    for i in range(transform.shape[0]):
-        x = rate = 0.0
-        for j in range(q.size):
-            t = transform[i, j]
-            x += t * q[j]
-            rate += t * v[j]
-        motion[0, i] = x
-        motion[1, i] = rate
+    _functions()[0](data.address, _at(q), _at(v), _at(motion))
 
 
-@njit(error_model="numpy", _nrt=False)
 def unbalanced(
-    mass: FloatArray,
-    damping: FloatArray,
-    stiffness: FloatArray,
-    transform: FloatArray,
-    weight: FloatArray,
+    data: StepperData,
     state: tuple[FloatArray, FloatArray, FloatArray],
     loads: FloatArray,
     port_force: FloatArray,
@@ -49,119 +99,49 @@ def unbalanced(
 
     Parameters
     ----------
-    mass, damping, stiffness : ndarray, shape (n, n)
-        Matrices of the linear part.
-    transform : ndarray, shape (m, n)
-        Motion of the ports from that of the coordinates.
-    weight : ndarray, shape (n,)
-        Makes forces and moments comparable.
-    state : tuple of ndarray
+    data : StepperData
+        The step.
+    state : tuple of array
         Displacement, velocity and acceleration, shape (n,) each.
-    loads, port_force : ndarray
+    loads, port_force : array
         Loads on the coordinates, shape (n,), and forces of the elements at the ports, shape (m,).
-    force : ndarray, shape (n,)
+    force : array, shape (n,)
         Forces out of balance, the result.
     """
-    q, v, a = state
-    size = by_load = by_contact = by_inertia = 0.0
-    for i in range(q.size):
-        inertia = linear = contact = 0.0
-        for j in range(q.size):
-            inertia += mass[i, j] * a[j]
-            linear += damping[i, j] * v[j] + stiffness[i, j] * q[j]
-        for j in range(port_force.size):
-            contact += transform[j, i] * port_force[j]
-        force[i] = inertia + linear - loads[i] - contact
-        size += (weight[i] * force[i]) ** 2
-        by_load += (weight[i] * loads[i]) ** 2
-        by_contact += (weight[i] * contact) ** 2
-        by_inertia += (weight[i] * inertia) ** 2
-    return math.sqrt(size), math.sqrt(max(by_load, by_contact, by_inertia))
+    sizes = (ctypes.c_double * 2)()
+    _functions()[1](data.address, *map(_at, (*state, loads, port_force, force)), ctypes.addressof(sizes))
+    return sizes[0], sizes[1]
 
 
-@njit(error_model="numpy", _nrt=False)
-def eliminate(matrix: FloatArray, right: FloatArray) -> bool:
-    """Gaussian elimination with partial pivoting, in place: no allocation; False if singular or not finite.
-
-    numpy's `solve` takes seconds to compile.
+def correction(data: StepperData, by_q: float, by_v: float, force: FloatArray) -> FloatArray | None:
+    """Newton's change of the acceleration, shape (n,); None if there is none.
 
     Parameters
     ----------
-    matrix : ndarray
-        Shape (n, n), overwritten.
-    right : ndarray
-        Right-hand side, shape (n,); the solution afterwards.
-    """
-    n = right.size
-    for k in range(n):
-        pivot = k
-        for i in range(k + 1, n):
-            if abs(matrix[i, k]) > abs(matrix[pivot, k]):
-                pivot = i
-        if not 0.0 < abs(matrix[pivot, k]) < math.inf:
-            return False
-        if pivot != k:
-            for j in range(k, n):
-                matrix[k, j], matrix[pivot, j] = matrix[pivot, j], matrix[k, j]
-            right[k], right[pivot] = right[pivot], right[k]
-        inverse = 1.0 / matrix[k, k]
-        upper = matrix[k]
-        for i in range(k + 1, n):
-            factor = matrix[i, k] * inverse
-            if factor != 0.0:
-                row = matrix[i]
-                for j in range(k + 1, n):
-                    row[j] -= factor * upper[j]
-                right[i] -= factor * right[k]
-    for k in range(n - 1, -1, -1):
-        total = right[k]
-        for j in range(k + 1, n):
-            total -= matrix[k, j] * right[j]
-        right[k] = total / matrix[k, k]
-    return True
-
-
-@njit(error_model="numpy")
-def correction(
-    linear: FloatArray,
-    transform: FloatArray,
-    port_stiffness: FloatArray,
-    port_damping: FloatArray,
-    by_q: float,
-    by_v: float,
-    force: FloatArray,
-    change: FloatArray,
-) -> bool:
-    """Newton's change of the acceleration, into `change` (n,); False if there is none.
-
-    The Jacobian is `linear` and what the elements add to it: T^T (by_q K + by_v C) T.
-
-    Parameters
-    ----------
-    linear : ndarray, shape (n, n)
-        Jacobian without the elements.
-    transform : ndarray, shape (m, n)
-        Displacements of the ports by the coordinates, T.
-    port_stiffness, port_damping : ndarray, shape (m, m)
-        K and C of the ports.
+    data : StepperData
+        The step.
     by_q, by_v : float
         Derivatives of displacement and rate by the acceleration [s2], [s].
-    force : ndarray, shape (n,)
+    force : array, shape (n,)
         Forces that are out of balance.
-    change : ndarray, shape (n,)
-        Change of the acceleration; written.
     """
-    matrix = linear.copy()
-    m, n = transform.shape
-    for i in range(m):
-        for k in range(m):
-            slope = by_q * port_stiffness[i, k] + by_v * port_damping[i, k]
-            if slope != 0.0:
-                for a in range(n):
-                    part = slope * transform[i, a]
-                    for b in range(n):
-                        matrix[a, b] += part * transform[k, b]
-    for a in range(n):
-        change[a] = force[a]
-    solvable: bool = eliminate(matrix, change)
-    return solvable
+    change = force.copy()
+    return change if _functions()[2](data.address, by_q, by_v, _at(change)) else None
+
+
+def eliminate(matrix: FloatArray, right: FloatArray) -> bool:
+    """Gaussian elimination with partial pivoting, in place; False if singular or not finite.
+
+    Parameters
+    ----------
+    matrix : array, shape (n, n)
+        The matrix, overwritten.
+    right : array, shape (n,)
+        Right-hand side; the solution afterwards.
+    """
+    return bool(_functions()[3](right.size, _at(matrix), _at(right)))
+
+
+def _at(array: FloatArray) -> int:
+    """Address of the numbers of an array."""
+    return address(array, _DTYPE, "time step")

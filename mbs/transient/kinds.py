@@ -1,10 +1,11 @@
 """The kinds of elements that runs in time have in compiled code.
 
 An element whose class is not here, or which its kind does not take, is called from Python at every step; the run says
-so. A new kind is a row here, and a `mbs.model.blocks.Kind` in the folder of its element.
+so. A new kind is a row here, and a `mbs.model.blocks.Kind` in the folder of its element, with functions in C.
 
-Of kinds of this package compiled code is kept on disk. A kind from elsewhere is compiled anew in each process: numba
-would not see a change of its function, and would fail where its module cannot be imported.
+A kind from elsewhere brings functions of its own: addresses of compiled ones, from C or by `numba.cfunc`, of the types
+in `ehdmaps/kernel/c/block.h`; or Python functions, which are called in every iteration of a step and hold Python's
+lock, but leave the rest of the step to compiled code.
 """
 
 from __future__ import annotations
@@ -18,10 +19,12 @@ from mbs.bearings.tapered.tapered_block import TAPERED
 from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.gears.gear import GearMesh
 from mbs.gears.gear_block import GEAR_MESHES
+from mbs.gears.numba_gear_block import GEAR_MESHES as NUMBA_GEAR_MESHES
 from mbs.model.blocks import Kind
 from mbs.model.elements import Element
 from mbs.model.matrices import MatrixElement
 from mbs.model.matrix_block import MATRICES
+from mbs.model.numba_matrix_block import MATRICES as NUMBA_MATRICES
 
 KINDS: dict[type, Kind] = {
     BearingElement: BEARINGS,
@@ -35,6 +38,13 @@ KINDS: dict[type, Kind] = {
 }
 """Kind by the class of its elements. ``KINDS[Coupling] = COUPLINGS`` adds one."""
 
+NUMBA_KINDS: dict[type, Kind] = {
+    **{element: kind for element, kind in KINDS.items() if kind.arrays is not None},
+    GearMesh: NUMBA_GEAR_MESHES,
+    MatrixElement: NUMBA_MATRICES,
+}
+"""Kinds by functions that numba compiles, for systems in which some kind has no functions in C yet."""
+
 
 def kind_of(element: Element) -> Kind | None:
     """Kind of an element in compiled code; None if it has none. A class that inherits from a known one is another."""
@@ -42,6 +52,6 @@ def kind_of(element: Element) -> Kind | None:
     return kind if kind is not None and kind.takes(element) else None
 
 
-def is_ours(kind: Kind) -> bool:
-    """Tell whether a kind is part of this package."""
-    return kind.arrays.__module__.partition(".")[0] == __name__.partition(".")[0]
+def is_numba(kind: Kind) -> bool:
+    """Tell whether numba compiles the functions of a kind of this package."""
+    return kind.arrays is not None and kind.arrays.__module__.partition(".")[0] == __name__.partition(".")[0]

@@ -1,4 +1,4 @@
-"""The linear part of a system for `run_kernel`: inverses for steps of some sizes, about the speeds of a run."""
+"""The linear part of a system for compiled runs: inverses for steps of some sizes, about the speeds of a run."""
 
 from __future__ import annotations
 
@@ -79,6 +79,12 @@ class LinearPart:
         receptance = np.ascontiguousarray(self._ports @ np.swapaxes(reach, 1, 2))
         size = float(np.linalg.norm(change))
         linear = Linear(
+            n=self._eigenvalues.size,
+            m=self._ports.shape[0],
+            coordinates=self._physical.shape[0],
+            alone=self._alone,
+            turning=self._turning,
+            reference=reference,
             eigenvalues=self._eigenvalues,
             damping=damping,
             gyroscopic=self._gyroscopic,
@@ -88,9 +94,6 @@ class LinearPart:
             receptance=receptance,
             size=self._ports @ self._ports.T,
             physical=self._physical,
-            reference=reference,
-            alone=self._alone,
-            turning=self._turning,
         )
         return linear, math.inf if size == 0.0 else THIRD_ORDER ** (1.0 / 3.0) / size
 

@@ -1,9 +1,9 @@
-"""The elements of a run as blocks for `mbs.transient.run_kernel`, one of each kind."""
+"""The elements of a run as blocks for `mbs.transient.compiled_run`, one of each kind."""
 
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, cast
 
@@ -13,12 +13,8 @@ import scipy.linalg
 from ehdmaps.arrays import BoolArray, FloatArray, IntArray
 from mbs.model.blocks import Block, Kind, Member, StatefulBlock
 from mbs.model.system import Connected
-from mbs.transient.kinds import KINDS, is_ours, kind_of
-
-
-def _is_common(kind: Kind) -> bool:
-    """True for kinds that compiled code has even where there are none: neither states nor coordinates of their own."""
-    return kind.accept is None and kind.alone is None and not kind.rare
+from mbs.transient.block_functions import BlockFunctions
+from mbs.transient.kinds import KINDS, kind_of
 
 
 def in_python(connected: Sequence[Connected]) -> list[str]:
@@ -44,9 +40,12 @@ class RunElements:
 
     Attributes
     ----------
+    kinds : tuple of Kind
+        The kinds that are needed.
     blocks : tuple of Block
-        The kinds that are needed; where all of them are of this package, also its other common ones, so that compiled
-        code is the same for most systems.
+        The block of each.
+    functions : tuple of BlockFunctions
+        The functions of each.
     expand : array, shape (felt, ports)
         What elements feel of their ports, and, on the other side, forces in the ports by those that the elements make.
     alone : int
@@ -57,52 +56,72 @@ class RunElements:
         Place of the element of each row of `expand`.
     told : array of bool, shape (elements,)
         Whether compiled code has the powers of each element.
-    ours : bool
-        Whether all kinds that are needed are of this package.
+    raised : list of BaseException
+        What Python functions of blocks raised.
     stateful : tuple of (StatefulBlock, tuple of int)
         Blocks of elements with states of their own, each with the places of its members among all elements.
     """
 
+    kinds: tuple[Kind, ...]
     blocks: tuple[Block, ...]
+    functions: tuple[BlockFunctions, ...]
     expand: FloatArray
     alone: int
     outside: IntArray
     owners: IntArray
     told: BoolArray
-    ours: bool
+    raised: list[BaseException]
     stateful: tuple[tuple[StatefulBlock, tuple[int, ...]], ...]
 
     @classmethod
-    def of(cls, connected: Sequence[Connected]) -> RunElements:
-        """Elements that all have a kind, each as it stands between its bodies."""
+    def of(
+        cls,
+        connected: Sequence[Connected],
+        kinds: Mapping[type, Kind] = KINDS,
+        common: Callable[[Kind], bool] | None = None,
+    ) -> RunElements:
+        """Elements that all have a kind, each as it stands between its bodies.
+
+        Parameters
+        ----------
+        connected : sequence of Connected
+            The elements.
+        kinds : mapping of type to Kind
+            Kind by the class of its elements.
+        common : callable, optional
+            Tells kinds that have a block even where there are none of them.
+        """
         connected = [_placed(entry) for entry in connected]
-        members: dict[Kind, list[Member]] = {kind: [] for kind in KINDS.values()}
-        of_connected = [kind_of(entry.element) for entry in connected]
+        members: dict[Kind, list[Member]] = {kind: [] for kind in kinds.values()}
+        of_connected = [kinds.get(type(entry.element)) for entry in connected]
         alone, felt = [], []
         for kind, entry in zip(of_connected, connected, strict=True):
             assert kind is not None
             none = np.zeros((0, entry.transform.shape[0]))
             alone.append(none if kind.alone is None else kind.alone(entry.element))
             felt.append(kind.feels(entry.element))
+        among = sum(rows.shape[0] for rows in (*alone, *felt))
         own, first = 0, sum(rows.shape[0] for rows in alone)
         count = first
         for place, (kind, entry) in enumerate(zip(of_connected, connected, strict=True)):
             assert kind is not None
-            members[kind].append(Member(entry.element, place, first, own))
+            members[kind].append(Member(entry.element, place, first, own, among))
             own, first = own + alone[place].shape[0], first + felt[place].shape[0]
         owners = [place for rows in (alone, felt) for place, part in enumerate(rows) for _ in range(part.shape[0])]
-        ours = all(is_ours(kind) for kind, of_kind in members.items() if of_kind)
-        used = [kind for kind, of_kind in members.items() if of_kind or (ours and is_ours(kind) and _is_common(kind))]
+        used = [kind for kind, of_kind in members.items() if of_kind or (common and common(kind))]
+        raised: list[BaseException] = []
         parts = [scipy.linalg.block_diag(*rows) if rows else np.zeros((0, 0)) for rows in (alone, felt)]
         blocks = tuple(kind.gather(members[kind]) for kind in used)
         return cls(
+            kinds=tuple(used),
             blocks=blocks,
+            functions=tuple(BlockFunctions(kind, len(connected), raised) for kind in used),
             expand=np.asarray(np.concatenate(parts), dtype=np.float64),
             alone=count,
             outside=np.zeros(len(connected), dtype=np.int64),
             owners=np.array(owners, dtype=np.int64),
             told=np.array([kind is not None and kind.powers is not None for kind in of_connected], dtype=np.bool_),
-            ours=ours,
+            raised=raised,
             stateful=tuple(
                 (cast(StatefulBlock, block), tuple(member.place for member in members[kind]))
                 for kind, block in zip(used, blocks, strict=True)
@@ -116,7 +135,7 @@ class RunElements:
             block.begin(speeds)
 
     def prepare(self, first: int, last: int) -> tuple[tuple[Any, ...], BoolArray]:
-        """Arrays of all blocks, and which of the steps from `first` on compiled code has, as far as all are prepared.
+        """Data of all blocks, and which of the steps from `first` on compiled code has, as far as all are prepared.
 
         Parameters
         ----------
@@ -128,7 +147,7 @@ class RunElements:
         sound = np.ones(count, dtype=np.bool_)
         for _, marks in parts:
             sound &= marks[:count]
-        return tuple(arrays for arrays, _ in parts), sound
+        return tuple(data for data, _ in parts), sound
 
     def states(self, given: Sequence[Any]) -> list[Any]:
         """States of all elements as Python has them: those given, but for elements whose states are in compiled code.

@@ -37,7 +37,7 @@ from mbs.model.profiles import Speed
 from mbs.model.system import System
 from mbs.settings import Settings
 from mbs.transient.energy import Account, Instant
-from mbs.transient.integration_kernel import correction, port_motion, unbalanced
+from mbs.transient.integration_kernel import StepperData, correction, port_motion, unbalanced
 
 ITERATIONS = 12
 """Newton iterations of a step at most."""
@@ -161,10 +161,22 @@ class Stepper:
         ports = ends[-1]
         self._motion, self._port_force, self._unbalanced = np.zeros((2, ports)), np.zeros(ports), np.zeros(system.size)
         self._port_stiffness, self._port_damping = np.zeros((ports, ports)), np.zeros((ports, ports))
-        self._damping, self._damped_at = system.damping, math.nan
-        self._linear, self._linear_steps = system.mass, (math.nan, math.nan)
+        self._damping, self._damped_at = np.array(system.damping, order="C"), math.nan
+        self._linear, self._linear_steps = np.array(system.mass, order="C"), (math.nan, math.nan)
         self._method = Method(settings.spectral_radius)
-        self._weight = 1.0 / np.sqrt(np.diag(system.mass))
+        self._data = StepperData(
+            n=system.size,
+            m=ports,
+            mass=np.ascontiguousarray(system.mass),
+            damping=self._damping,
+            stiffness=np.ascontiguousarray(system.stiffness),
+            linear=self._linear,
+            transform=self._transform,
+            weight=1.0 / np.sqrt(np.diag(system.mass)),
+            port_stiffness=self._port_stiffness,
+            port_damping=self._port_damping,
+            room=np.empty_like(self._linear),
+        )
         self.q, self.v = displacement.copy(), velocity.copy()
         self.iterations = 0
         self.outside = np.zeros(len(self._elements), dtype=np.int64)
@@ -249,9 +261,9 @@ class Stepper:
         speed, angle = self._speed.at(time)
         operation = Operation(speed, angle, time)
         if speed != self._damped_at:
-            self._damping, self._damped_at = system.damping + speed * system.gyroscopic, speed
+            self._damping[:], self._damped_at = system.damping + speed * system.gyroscopic, speed
             self._linear_steps = (math.nan, math.nan)
-        port_motion(self._transform, q, v, self._motion)
+        port_motion(self._data, q, v, self._motion)
         x, rate = self._motion
         for index, (element, rows) in enumerate(self._elements):
             answer, self._trial[index] = element.advance(self.states[index], x[rows], rate[rows], operation)
@@ -261,10 +273,7 @@ class Stepper:
             self._port_damping[rows, rows] = c
             if outside:
                 self.outside[index] += 1
-        matrices = (system.mass, self._damping, system.stiffness, self._transform, self._weight)
-        state = (q, v, acceleration)
-        sizes: tuple[float, float] = unbalanced(*matrices, state, self._load(time), self._port_force, self._unbalanced)
-        return sizes
+        return unbalanced(self._data, (q, v, acceleration), self._load(time), self._port_force, self._unbalanced)
 
     def _load(self, time: float) -> FloatArray:
         """All loads at a time."""
@@ -277,12 +286,9 @@ class Stepper:
         """Newton's change of the acceleration at the end of the step, for the last residual; None if there is none."""
         if self._linear_steps != (by_q, by_v):
             system = self._system
-            self._linear = system.mass + by_v * self._damping + by_q * system.stiffness
+            self._linear[:] = system.mass + by_v * self._damping + by_q * system.stiffness
             self._linear_steps = (by_q, by_v)
-        ports = (self._transform, self._port_stiffness, self._port_damping)
-        change = np.empty_like(self._unbalanced)
-        solvable: bool = correction(self._linear, *ports, by_q, by_v, self._unbalanced, change)
-        return change if solvable else None
+        return correction(self._data, by_q, by_v, self._unbalanced)
 
     @property
     def forces(self) -> FloatArray:

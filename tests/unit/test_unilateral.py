@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from ehdmaps.maps.kernels import lines
 from ehdmaps.physics.contact import unilateral_force
 from mbs.bearings.laws import unilateral_forces
-from mbs.gears import gear_kernel
+from mbs.gears.gear_kernel import TOUCH, flank_force
 
 RATES = np.array([-1e3, -3.0, -1.001, -0.999, -0.5, 0.0, 2.0])
 """Both sides of x = -1/2, which is at the rate -1 of the state below [m/s]."""
@@ -55,9 +55,12 @@ def test_no_tension_and_passive(w: float, c: float, rate: float) -> None:
 def test_compiled_as_in_python() -> None:
     """The kernels of maps, bearings and gears, and the loop over arrays; to round-off of rearranged sums."""
     wanted = np.array([unilateral_force(W, DW, C, DC, rate) for rate in RATES])
-    for compiled in (lines.unilateral_force, gear_kernel._unilateral_force):
-        got = np.array([compiled(W, DW, C, DC, rate) for rate in RATES])
-        np.testing.assert_allclose(got, wanted, rtol=1e-14)
+    got = np.array([lines.unilateral_force(W, DW, C, DC, rate) for rate in RATES])
+    np.testing.assert_allclose(got, wanted, rtol=1e-14)
+    # A flank half in touch: s = 1/2, stiffness and damping that make it the state above.
+    state = W, 4.0 * W / TOUCH, 0.5 * C, 1.5 * C / TOUCH
+    got = np.array([flank_force(0.5 * TOUCH, rate, 8.0 * W / TOUCH, C) for rate in RATES])
+    np.testing.assert_allclose(got, [unilateral_force(*state, rate) for rate in RATES], rtol=1e-14)
     state = tuple(np.full((1, RATES.size), number) for number in (W, DW, C, DC))
     got = np.array(unilateral_forces(*state, RATES[None]))
     assert got.shape == (3, 1, RATES.size)

@@ -39,6 +39,11 @@ EHD_SIZE_OF(ehd_cylinder_data)
 /* tapered rollers */
 
 /* runs in time: elements, gears, matrices */
+#include "block.h"
+#include "dense.c"
+#include "gear.c"
+#include "matrix.c"
+#include "advance.c"
 
 /* State of the C files that this library was made of, as `ehdmaps.kernel.building` looks for it in the file. */
 const char *ehd_interface(void);

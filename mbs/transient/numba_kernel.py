@@ -30,10 +30,9 @@ from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.compiled import in_python, njit
 from ehdmaps.copies import put
 from ehdmaps.maps.kernels.lines import FAST
-from mbs.model.blocks import FOUND, NO_SOLUTION, Answers, Kind, Moment
-from mbs.transient.integration_kernel import eliminate
-from mbs.transient.kinds import KINDS
-from mbs.transient.run_arrays import Course, Energies, Linear, Numbers, Records, State
+from mbs.model.blocks import FOUND, NO_SOLUTION, Answers, Moment
+from mbs.transient.kinds import NUMBA_KINDS
+from mbs.transient.numba_arrays import Course, Energies, Linear, Numbers, Records, State
 
 DONE, TOO_LARGE = FOUND, 3
 """How `advance` ended, besides `NO_SOLUTION` and `IN_PYTHON`: all steps made; error above the tolerance."""
@@ -99,9 +98,41 @@ def _norm(x: FloatArray) -> float:
     return math.sqrt(total)
 
 
-def _kind(arrays: type) -> Kind:
+@njit(error_model="numpy", _nrt=False)
+def eliminate(matrix: FloatArray, right: FloatArray) -> bool:
+    """Gaussian elimination with partial pivoting, in place; False if singular or not finite."""
+    n = right.size
+    for k in range(n):
+        pivot = k
+        for i in range(k + 1, n):
+            if abs(matrix[i, k]) > abs(matrix[pivot, k]):
+                pivot = i
+        if not 0.0 < abs(matrix[pivot, k]) < math.inf:
+            return False
+        if pivot != k:
+            for j in range(k, n):
+                matrix[k, j], matrix[pivot, j] = matrix[pivot, j], matrix[k, j]
+            right[k], right[pivot] = right[pivot], right[k]
+        inverse = 1.0 / matrix[k, k]
+        upper = matrix[k]
+        for i in range(k + 1, n):
+            factor = matrix[i, k] * inverse
+            if factor != 0.0:
+                row = matrix[i]
+                for j in range(k + 1, n):
+                    row[j] -= factor * upper[j]
+                right[i] -= factor * right[k]
+    for k in range(n - 1, -1, -1):
+        total = right[k]
+        for j in range(k + 1, n):
+            total -= matrix[k, j] * right[j]
+        right[k] = total / matrix[k, k]
+    return True
+
+
+def _kind(arrays: type) -> Any:
     """Kind of a block by the class of its arrays."""
-    return {kind.arrays: kind for kind in KINDS.values()}[arrays]
+    return {kind.arrays: kind for kind in NUMBA_KINDS.values()}[arrays]
 
 
 def _counted(function: _F) -> _F:
@@ -127,7 +158,7 @@ def all_answer(blocks: tuple[Any, ...], moment: Moment, motion: FloatArray, answ
         Answers of all elements, filled.
     """
     for block in blocks:
-        status = _kind(type(block)).answer(block, moment, motion, answers)
+        status: int = _kind(type(block)).answer(block, moment, motion, answers)
         if status != FOUND:
             return status
     return FOUND
@@ -145,7 +176,7 @@ def _all_answer(blocks: Any, moment: Any, motion: Any, answers: Any) -> Callable
     answer = _counted(_kind(blocks[0].instance_class).answer)
 
     def first_and_rest(blocks: Any, moment: Any, motion: Any, answers: Any) -> int:
-        status = answer(blocks[0], moment, motion, answers)
+        status: int = answer(blocks[0], moment, motion, answers)
         if status != FOUND:
             return status
         return all_answer(blocks[1:], moment, motion, answers)
