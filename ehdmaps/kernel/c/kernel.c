@@ -27,6 +27,10 @@ EHD_SIZE_OF(ehd_law_data)
 EHD_SIZE_OF(ehd_film_data)
 
 /* pairs of rolling bodies */
+#include "pair_law.h"
+#include "pair_law.c"
+#include "pair_speeds.c"
+#include "pair_memory.c"
 
 /* cylindrical rollers */
 #include "cylinder_law.c"
@@ -35,6 +39,10 @@ EHD_SIZE_OF(ehd_film_data)
 EHD_SIZE_OF(ehd_cylinder_data)
 
 /* balls */
+#include "ball.h"
+#include "ball_balance.c"
+#include "ball_bearing.c"
+#include "ball_films.c"
 
 /* tapered rollers */
 

@@ -26,77 +26,58 @@ int ehd_bearing_make(ehd_bearing *bearing, double clearance, int mirrored) {
     return EHD_OK;
 }
 
-/* What is wrong about a pose, a velocity, which may be a null pointer, and an angle of the cage. */
-static int problem_of(const ehd_bearing *bearing, const double *pose, const double *velocity, double cage_angle) {
-    int near = 1;
-    if (!is_finite(cage_angle) || !finite_motion(pose, velocity)) return EHD_NOT_FINITE;
-    for (int i = 0; i < 3; i++) near = near && fabs(pose[i]) <= bearing->most_travel;
-    for (int i = 4; i < 6; i++) near = near && fabs(pose[i]) <= bearing->most_tilt;
-    return near && bearing->axial * (bearing->axial + pose[0]) >= 0.0 ? EHD_OK : EHD_TOO_FAR;
-}
-
-/* Add row^T matrix column of a ball to a matrix of the bearing. way: of each displacement of the ring, the axial and the
- * radial one of the inner groove's centre. */
-static void add_matrix(double sum[6][6], const double m[4], const double way[6][2]) {
-    for (int i = 0; i < 6; i++)
-        for (int k = 0; k < 6; k++)
-            sum[i][k] += way[i][0] * (m[0] * way[k][0] + m[1] * way[k][1]) +
-                         way[i][1] * (m[2] * way[k][0] + m[3] * way[k][1]);
+/* What callers may read of a ball. */
+static void tell(const ehd_ball_found *found, const ehd_ball_start *start, ehd_ball *ball) {
+    memcpy(ball->centre, start->centre, sizeof ball->centre);
+    memcpy(ball->force, found->force, sizeof ball->force);
+    memcpy(ball->stiffness, found->stiffness, sizeof ball->stiffness);
+    memcpy(ball->damping, found->damping, sizeof ball->damping);
+    ball->inner_load = found->load[0];
+    ball->outer_load = found->load[1];
+    ball->inner_angle = found->angle[0];
+    ball->outer_angle = found->angle[1];
+    ball->inner_approach = found->approach[0];
+    ball->outer_approach = found->approach[1];
+    ball->speed = found->speed;
 }
 
 /* The force at speeds of the rings; cage: speed of a cage that holds the balls, or null; held: what the films of the inner
  * and the outer contact of each ball hold over a step, or null. */
 static int bearing_at(const ehd_bearing *bearing, const ehd_law *law, ehd_balls *balls, const double pose[6],
                       const double velocity[6], double cage_angle, double inner_speed, double outer_speed,
-                      const double *cage, const double (*held)[2][3], ehd_bearing_force *result) {
+                      const double *cage, const double *held, ehd_bearing_force *result) {
     if (!result) return EHD_BAD_ARGUMENT;
     if (!bearing || !law || !law->made || !balls || !pose || !(fabs(inner_speed) <= FASTEST) ||
         !(fabs(outer_speed) <= FASTEST) || (cage && !(fabs(*cage) <= FASTEST)))
         return no_force(result, EHD_BAD_ARGUMENT);
-    const int problem = problem_of(bearing, pose, velocity, cage_angle);
-    if (problem) return no_force(result, problem);
-    given of = {{0.0, 0.0}, inner_speed, outer_speed, 0.0, cage, &law->inner, &law->outer, NULL, NULL};
+    if (!is_finite(cage_angle) || !finite_motion(pose, velocity)) return no_force(result, EHD_NOT_FINITE);
+    if (!(bearing->axial * (bearing->axial + pose[0]) >= 0.0)) return no_force(result, EHD_TOO_FAR);
     const double nominal = cage ? *cage : ehd_cage(inner_speed, outer_speed);
-    of.rest = balls->rest = approach_of(&law->outer, CENTRIFUGAL * nominal * nominal, balls->rest);
-    if (DRY && of.rest < NEGLIGIBLE) {
-        of.inner_speed = of.outer_speed = 0.0;
-        of.cage = NULL;
+    const ehd_pair_law inner = pair_of(&law->inner), outer = pair_of(&law->outer);
+    const double rest = balls->rest = ehd_pair_approach(&outer, CENTRIFUGAL * nominal * nominal, balls->rest);
+    const int still = DRY && rest < NEGLIGIBLE;
+    const ehd_ball_data data = {
+        {bearing->axial, bearing->radial, bearing->arm, INNER_ARM, OUTER_ARM, bearing->most_travel, bearing->most_tilt},
+        {still ? 0.0 : inner_speed, still ? 0.0 : outer_speed, still || !cage ? NAN : *cage,
+         EHD_BALL_DIAMETER / EHD_PITCH_DIAMETER, CENTRIFUGAL, GYROSCOPIC},
+        cage_angle, rest, EHD_BALLS, bearing->cosine, bearing->sine, held, inner, outer};
+    ehd_ball_start *start = (ehd_ball_start *)balls->start;
+    ehd_ball_found found[EHD_BALLS];
+    const int loaded =
+        ehd_ball_force_surely(&data, pose, start, found, result->force, result->stiffness[0], result->damping[0]);
+    if (loaded < 0) {
+        if (loaded == EHD_BALL_NO_BALANCE) memset(balls, 0, sizeof *balls);
+        return no_force(result, loaded == EHD_BALL_NO_BALANCE ? EHD_NO_BALANCE : EHD_TOO_FAR);
     }
-    const double turn_c = cos(cage_angle), turn_s = sin(cage_angle);
-    double largest = 0.0, load = 0.0, speed = 0.0;
-    memset(result, 0, sizeof *result);
+    double largest = 0.0;
+    ehd_ball_angles(EHD_BALLS, found);
     for (int j = 0; j < EHD_BALLS; j++) {
-        ehd_ball *ball = &balls->ball[j];
-        const double c = turn_c * bearing->cosine[j] - turn_s * bearing->sine[j];
-        const double s = turn_s * bearing->cosine[j] + turn_c * bearing->sine[j];
-        const double way[6][2] = {{1.0, 0.0}, {0.0, c}, {0.0, s}, {0.0, 0.0}, {bearing->arm * s, 0.0},
-                                  {-bearing->arm * c, 0.0}};
-        of.d[0] = bearing->axial + pose[0] + bearing->arm * (pose[4] * s - pose[5] * c);
-        of.d[1] = bearing->radial + pose[1] * c + pose[2] * s;
-        if (held) {
-            of.held_inner = held[j][0];
-            of.held_outer = held[j][1];
-        }
-        int found = place_ball(&of, ball);
-        if (!found) { /* once more, from nothing */
-            memset(ball, 0, sizeof *ball);
-            found = place_ball(&of, ball);
-        }
-        if (!found) {
-            memset(balls, 0, sizeof *balls);
-            return no_force(result, EHD_NO_BALANCE);
-        }
-        largest = most(largest, most(ball->inner_load, ball->outer_load));
-        if (ball->inner_load <= 0.0) continue;
-        load += ball->inner_load;
-        speed += ball->inner_load * ball->speed;
-        for (int i = 0; i < 6; i++) result->force[i] -= way[i][0] * ball->force[0] + way[i][1] * ball->force[1];
-        add_matrix(result->stiffness, ball->stiffness, way);
-        add_matrix(result->damping, ball->damping, way);
+        tell(&found[j], &start[j], &balls->ball[j]);
+        largest = most(largest, most(found[j].load[0], found[j].load[1]));
     }
     for (int i = 0; velocity && i < 6; i++)
         for (int k = 0; k < 6; k++) result->force[i] -= result->damping[i][k] * velocity[k];
-    result->cage_speed = load > 0.0 ? speed / load : nominal;
+    result->cage_speed = ehd_ball_mean_speed(EHD_BALLS, found, nominal);
     return law->status | (largest > law->highest ? EHD_ABOVE_LOAD : EHD_OK);
 }
 

@@ -35,7 +35,7 @@ typedef struct ehd_bearing {
 
 /* A ball in balance. */
 typedef struct ehd_ball {
-    double centre[2];                      /* from the outer groove's centre: axial, radial [m]; start of the next call */
+    double centre[2];                      /* from the outer groove's centre: axial, radial [m] */
     double force[2];                       /* on the ball, of the inner ring: axial, radial [N] */
     double stiffness[4], damping[4];       /* of the inner groove's centre, by rows [N/m], [N s/m] */
     double inner_load, outer_load;         /* [N] */
@@ -45,10 +45,11 @@ typedef struct ehd_ball {
 } ehd_ball;
 
 /* The balls of a bearing. All zero before the first call: they start from nothing. Answers hang on where they started
- * by what Newton's method leaves, 1e-13 of the load. */
+ * by what Newton's method leaves: 1e-13 of the load, 1e-11 of stiffness and damping. */
 typedef struct ehd_balls {
     double rest; /* approach at the outer raceway under the centrifugal load alone [m] */
     ehd_ball ball[EHD_BALLS];
+    double start[EHD_BALLS][8]; /* where they start at the next call */
 } ehd_balls;
 
 /* Make a bearing.

@@ -1,4 +1,4 @@
-"""A ball bearing in C: templates, in which its mathematics is, and the numbers of one bearing; what others share."""
+"""A ball bearing in C: the kernel that Python calls, numbers of one bearing, what callers see; what others share."""
 
 from __future__ import annotations
 
@@ -18,9 +18,8 @@ from mbs.exports.balls.speed_laws import SpeedLaws
 SOURCE = Kind("a bearing in C made by ehdmaps", (".c",), has_mark)
 HEADER = Kind("the header of a bearing in C made by ehdmaps", (".h",), has_mark)
 
-_BODIES = ("ball_balance", "ball_bearing")
-_FILMS, _LAW = "ball_films", "contact_law"
-_INCLUDES = ("float.h", "math.h", "stddef.h", "string.h")
+_BODIES, _FILMS, _LAW = "ball_bearing", "ball_films", "bearing_law"
+_KERNEL = ("ball.h", "ball_balance.c", "ball_bearing.c")
 
 _WORDS = re.compile(r"[^a-z0-9_]+")
 
@@ -122,15 +121,28 @@ def source_texts(
             "export of a ball bearing, contact angle: got one below zero; allowed: >= 0; the source mirrors it"
         )
     memory = [_FILMS] if laws.memory else []
-    headers = [_template(f"{name}.h") for name in ("ball_bearing", *memory)]
-    bodies = [_template(f"{name}.c") for name in (*_BODIES, *memory)]
+    kernel = (*pair_files(laws), *_KERNEL, *(f"{name}.c" for name in memory))
+    headers, bodies = ([_template(f"{name}.{end}") for name in (_BODIES, *memory)] for end in "hc")
     numbers = _public_numbers(force, laws), _private_numbers(force, laws)
-    return joined(header, numbers, headers, bodies, prefix, include)
+    return joined(header, numbers, kernel, headers, bodies, prefix, include)
+
+
+def pair_files(laws: SpeedLaws) -> tuple[str, ...]:
+    """Files of the kernel with the laws of contacts.
+
+    Parameters
+    ----------
+    laws : SpeedLaws
+        Laws of the contacts.
+    """
+    speeds, memory = () if laws.dry else ("pair_speeds.c",), ("pair_memory.c",) if laws.memory else ()
+    return ("numbers.h", "pair_law.h", "pair_law.c", *speeds, *memory)
 
 
 def joined(
     header: Sequence[str],
     numbers: tuple[str, str],
+    kernel: Sequence[str],
     headers: Sequence[str],
     bodies: Sequence[str],
     prefix: str,
@@ -144,6 +156,8 @@ def joined(
         Lines that say where it comes from, put first.
     numbers : (str, str)
         Constants that callers may read, and those that only the functions read.
+    kernel : sequence of str
+        Files of the kernel, `.h` and `.c`.
     headers, bodies : sequence of str
         Declarations and functions of the bearing.
     prefix : str
@@ -160,8 +174,10 @@ def joined(
         f"#ifdef __cplusplus\n}}\n#endif\n\n#endif /* {guard} */\n",
     ]  # fmt: skip
     source = [
-        banner, "".join(f"#include <{name}>\n" for name in _INCLUDES) + "\n#include \"@HEADER@\"\n",
+        banner, '#include "@HEADER@"\n',
+        *(_kernel(name) for name in kernel if name.endswith(".h")),
         numbers[1],
+        *(_kernel(name) for name in kernel if name.endswith(".c")),
         _template(f"{_LAW}.c"), *bodies,
     ]  # fmt: skip
     texts = {"h": "\n".join(top), "c": "\n".join(source)}
@@ -171,6 +187,11 @@ def joined(
 def _template(name: str) -> str:
     """Text of a file of this package."""
     return template("mbs.exports.balls", name)
+
+
+def _kernel(name: str) -> str:
+    """Text of a file of the kernel."""
+    return template("ehdmaps.kernel", f"c/{name}")
 
 
 def _public_numbers(force: BallForce, laws: SpeedLaws) -> str:
@@ -235,35 +256,44 @@ def private_law(laws: SpeedLaws) -> str:
         Laws of the contacts.
     """
     parts = [_contact("INNER", laws.inner) + _contact("OUTER", laws.outer)]
-    if not laws.dry:
-        parts.append(
-            define("MOST_LOAD", laws.highest, "load up to which films were made [N]")
-            + define("FIRST_LOG_SPEED", math.log(laws.speeds[0]), "ln of the first speed")
-            + define("SPEEDS_PER_LOG", laws.per_log, "speeds in a unit of ln u")
-        )
+    if laws.dry:
+        return "\n".join(parts)
+    times = ", ".join(map(number, laws.shorter))
+    if laws.memory:
+        words = "/* Of the springs of a film, over the longest. */"
+        parts.append(f"{words}\nstatic const double TIMES[EHD_SPRINGS] = {{{times}}};\n")
+    for side, name in enumerate(("INNER", "OUTER")):
+        places, tables = laws.places[:, side], laws.tables[:, side]
+        parts += [
+            f"/* Centre and scale at each speed. */\nstatic const double {name}_PLACE[EHD_SPEEDS][2] = {{\n"
+            + "".join(f"    {{{number(c)}, {number(s)}}},\n" for c, s in places.tolist())
+            + "};\n",
+            f"/* By speed and node: ln g and its slope, ln c and its slope. */\n"
+            f"static const double {name}_TABLE[EHD_SPEEDS][EHD_ROWS][4] = {{\n"
+            + "".join(_table(table) for table in tables)
+            + "};\n",
+        ]
         if laws.memory:
-            times = ", ".join(map(number, laws.shorter))
-            words = "/* Of the springs of a film, over the longest. */"
-            parts.append(f"{words}\nstatic const double TIMES[EHD_SPRINGS] = {{{times}}};\n")
-        for side, name in enumerate(("INNER", "OUTER")):
-            places, tables = laws.places[:, side], laws.tables[:, side]
-            parts += [
-                f"/* Centre and scale at each speed. */\nstatic const double {name}_PLACE[EHD_SPEEDS][2] = {{\n"
-                + "".join(f"    {{{number(c)}, {number(s)}}},\n" for c, s in places.tolist())
-                + "};\n",
-                f"/* By speed and node: ln g and its slope, ln c and its slope. */\n"
-                f"static const double {name}_TABLE[EHD_SPEEDS][EHD_ROWS][4] = {{\n"
-                + "".join(_table(table) for table in tables)
-                + "};\n",
-            ]
-            if laws.memory:
-                parts.append(
-                    f"/* By speed and node: parts of the damping that the springs have, ln of the longest time. */\n"
-                    f"static const double {name}_SPRINGS[EHD_SPEEDS][EHD_ROWS][EHD_SPRINGS + 1] = {{\n"
-                    + "".join(_table(table) for table in laws.springs[:, side])
-                    + "};\n"
-                )
-    return "\n".join(parts)
+            parts.append(
+                f"/* By speed and node: parts of the damping that the springs have, ln of the longest time. */\n"
+                f"static const double {name}_SPRINGS[EHD_SPEEDS][EHD_ROWS][EHD_SPRINGS + 1] = {{\n"
+                + "".join(_table(table) for table in laws.springs[:, side])
+                + "};\n"
+            )
+    return "\n".join((*parts, _speeds(laws)))
+
+
+def _speeds(laws: SpeedLaws) -> str:
+    """Laws of both contacts over the speed, as the kernel reads them."""
+    ends = ", ".join(map(number, (math.log(laws.speeds[0]), laws.per_log, laws.highest)))
+    places, tables = "{&INNER_PLACE[0][0], &OUTER_PLACE[0][0]}", "{&INNER_TABLE[0][0][0], &OUTER_TABLE[0][0][0]}"
+    shares = "{&INNER_SPRINGS[0][0][0], &OUTER_SPRINGS[0][0][0]}" if laws.memory else "{NULL, NULL}"
+    return (
+        "static const ehd_pair_speeds SPEEDS = {\n"
+        "    EHD_SPEEDS, EHD_ROWS, EHD_SPRINGS, EHD_LOWEST_SPEED, EHD_HIGHEST_SPEED,\n"
+        f"    {ends}, /* ln of the first speed; speeds in a unit of ln u; load up to which films were made [N] */\n"
+        f"    {'TIMES' if laws.memory else 'NULL'},\n    {places},\n    {tables},\n    {shares}}};\n"
+    )
 
 
 def _table(table: FloatArray) -> str:

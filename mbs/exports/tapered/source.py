@@ -13,7 +13,7 @@ from ehdmaps.physics.rollers.ribbed_geometry import RibbedGeometry
 from mbs.bearings.balls.film_tables import PairLaw
 from mbs.bearings.balls.normal_law import NormalLaw, empty_table
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
-from mbs.exports.balls.source import header_of, joined, prefix_of, private_law, public_law, write_texts
+from mbs.exports.balls.source import header_of, joined, pair_files, prefix_of, private_law, public_law, write_texts
 from mbs.exports.balls.speed_laws import SpeedLaws, dry_speed_laws, film_speed_laws
 
 STEP = 0.1
@@ -123,7 +123,7 @@ def source_texts(
             (*_BODIES, *(f"{name}.c" for name in memory)),
         )
     )
-    return joined(header, numbers, headers, bodies, prefix, include)
+    return joined(header, numbers, pair_files(laws), headers, bodies, prefix, include)
 
 
 def exported_play(force: TaperedForce) -> float:

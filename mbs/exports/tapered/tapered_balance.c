@@ -20,6 +20,20 @@
 #define LIGHT 1e-6    /* load on a roller that is left out of dry contacts [N]: approaches by it would be rounding */
 #define SOFT 1e-13    /* stiffness over that of a contact that holds rollers which nothing holds */
 
+typedef ehd_pair_state contact_state;
+
+/* A dry contact of the law F = coefficient g^(3/2), with its damper. */
+static inline contact_state point_of(double coefficient, double damping, double time, double approach) {
+    const ehd_pair_load of = pair_point(coefficient, approach);
+    const contact_state found = {of.load, of.stiffness, of.stiffness > 0.0 ? damping + time * of.stiffness : 0.0};
+    return found;
+}
+
+static inline contact_state contact_of(const ehd_contact *law, double approach, const double *held) {
+    const ehd_pair_law pair = pair_of(law);
+    return pair_at(&pair, approach, held);
+}
+
 /* Sums of a contact: load, load b; stiffness k, k b, k b b; the same of damping. */
 typedef struct sums {
     double q, qb, k[3], c[3];

@@ -1,0 +1,122 @@
+/* ---------------------------------------------------------------------------------------------------------------------
+ * The sums over the balls of a bearing
+ *
+ * Frame O sits in the middle of the outer groove, x along its axis. A pose is x y z theta_x theta_y theta_z of the inner
+ * ring in O [m], [rad], tilts theta_y = -n_z, theta_z = n_y by the axis n of the ring; theta_x has no force.
+ * ------------------------------------------------------------------------------------------------------------------ */
+
+EHD_SIZE_OF(ehd_ball_data)
+
+/* Add what a ball has by d to a matrix (6, 6); d by pose: axial (1, 0, 0, 0, y, z), radial (0, c, s, 0, 0, 0). */
+PAIR_INLINE void ball_add(const double m[4], double c, double s, double y, double z, double *out) {
+    const double xx = m[0], xr = m[1], rx = m[2], rr = m[3];
+    out[0] += xx;
+    out[1] += xr * c;
+    out[2] += xr * s;
+    out[4] += xx * y;
+    out[5] += xx * z;
+    out[6] += rx * c;
+    out[7] += rr * c * c;
+    out[8] += rr * c * s;
+    out[10] += rx * c * y;
+    out[11] += rx * c * z;
+    out[12] += rx * s;
+    out[13] += rr * s * c;
+    out[14] += rr * s * s;
+    out[16] += rx * s * y;
+    out[17] += rx * s * z;
+    out[24] += xx * y;
+    out[25] += xr * y * c;
+    out[26] += xr * y * s;
+    out[28] += xx * y * y;
+    out[29] += xx * y * z;
+    out[30] += xx * z;
+    out[31] += xr * z * c;
+    out[32] += xr * z * s;
+    out[34] += xx * z * y;
+    out[35] += xx * z * z;
+}
+
+/* What is wrong about a pose: 0, EHD_BALL_NOT_FINITE or EHD_BALL_TOO_FAR. */
+static int ball_problem(const ehd_ball_data *of, const double *pose) {
+    const double far = of->shape.most_travel, tilt = of->shape.most_tilt;
+    double total = fabs(of->cage_angle) + fabs(of->drive.inner) + fabs(of->drive.outer);
+    for (int i = 0; i < 6; i++) total += fabs(pose[i]);
+    if (!(total <= DBL_MAX)) return EHD_BALL_NOT_FINITE;
+    if (!(fabs(pose[0]) <= far && fabs(pose[1]) <= far && fabs(pose[2]) <= far)) return EHD_BALL_TOO_FAR;
+    return fabs(pose[4]) <= tilt && fabs(pose[5]) <= tilt ? 0 : EHD_BALL_TOO_FAR;
+}
+
+/* Force on the inner ring at rest [N], [N m], and -df/dpose, -df/dvelocity by rows (6, 6); starts and found (balls,) of
+ * all balls. Returns the number of loaded balls, or what is wrong, EHD_BALL_... */
+int ehd_ball_force(const ehd_ball_data *of, const double *pose, ehd_ball_start *start, ehd_ball_found *found,
+                   double *force, double *stiffness, double *damping) {
+    const int problem = ball_problem(of, pose);
+    if (problem) return problem;
+    const double turn_c = cos(of->cage_angle), turn_s = sin(of->cage_angle), arm = of->shape.arm;
+    const int dry = of->inner.rows == 0 && of->outer.rows == 0;
+    const int still = of->drive.inner == 0.0 && of->drive.outer == 0.0 && !(fabs(of->drive.cage) > 0.0);
+    const double share = dry && still ? ball_share(&of->inner, &of->outer) : -1.0;
+    ball_given on = {0.0, 0.0, of->shape.inner_arm, of->shape.outer_arm, of->rest, of->drive, &of->inner, &of->outer,
+                     NULL, NULL};
+    int loaded = 0;
+    memset(force, 0, 6 * sizeof *force);
+    memset(stiffness, 0, 36 * sizeof *stiffness);
+    memset(damping, 0, 36 * sizeof *damping);
+    for (int64_t j = 0; j < of->balls; j++) {
+        const double c = turn_c * of->cosine[j] - turn_s * of->sine[j];
+        const double s = turn_s * of->cosine[j] + turn_c * of->sine[j];
+        ehd_ball_found *ball = &found[j];
+        on.dx = of->shape.axial + pose[0] + arm * (pose[4] * s - pose[5] * c);
+        on.dr = of->shape.radial + pose[1] * c + pose[2] * s;
+        if (of->held) {
+            on.held_inner = of->held + 6 * j;
+            on.held_outer = of->held + 6 * j + 3;
+        }
+        if (!ball_place(&on, share, &start[j], ball)) return EHD_BALL_NO_BALANCE;
+        if (ball->load[0] <= 0.0) continue;
+        const double y = arm * s, z = -arm * c;
+        loaded++;
+        force[0] -= ball->force[0];
+        force[1] -= c * ball->force[1];
+        force[2] -= s * ball->force[1];
+        force[4] -= y * ball->force[0];
+        force[5] -= z * ball->force[0];
+        ball_add(ball->stiffness, c, s, y, z, stiffness);
+        ball_add(ball->damping, c, s, y, z, damping);
+    }
+    return loaded;
+}
+
+/* The same, once more from nothing where no balance was found; balls start from nothing after a failure. */
+int ehd_ball_force_surely(const ehd_ball_data *of, const double *pose, ehd_ball_start *start, ehd_ball_found *found,
+                          double *force, double *stiffness, double *damping) {
+    int loaded = ehd_ball_force(of, pose, start, found, force, stiffness, damping);
+    if (loaded == EHD_BALL_NO_BALANCE) {
+        memset(start, 0, (size_t)of->balls * sizeof *start);
+        loaded = ehd_ball_force(of, pose, start, found, force, stiffness, damping);
+    }
+    if (loaded < 0) memset(start, 0, (size_t)of->balls * sizeof *start);
+    return loaded;
+}
+
+/* Write the contact angles, by the directions of the contacts. */
+void ehd_ball_angles(int64_t balls, ehd_ball_found *found) {
+    for (int64_t j = 0; j < balls; j++) {
+        found[j].angle[0] = atan2(found[j].inner[0], found[j].inner[1]);
+        found[j].angle[1] = atan2(found[j].outer[0], found[j].outer[1]);
+    }
+}
+
+/* Speed of the cage [rad/s]: that of the balls by their loads at the inner raceway; idle: of a bearing without load. */
+double ehd_ball_mean_speed(int64_t balls, const ehd_ball_found *found, double idle) {
+    double load = 0.0, total = 0.0;
+    for (int64_t j = 0; j < balls; j++) {
+        load += found[j].load[0];
+        total += found[j].load[0] * found[j].speed;
+    }
+    return load > 0.0 ? total / load : idle;
+}
+
+/* F_c and t of a ball at a speed around the axis [N], and their derivatives by it [N s]; out (4,). */
+void ehd_ball_loads(const ehd_ball_drive *drive, double speed, double *out) { ball_loads(drive, speed, out); }

@@ -1,0 +1,46 @@
+/* ---------------------------------------------------------------------------------------------------------------------
+ * Law of a contact of a bearing over its approach, of balls and of lines that follow tables of their own: structures
+ *
+ *     F = C g^(3/2),    g = approach where it is dry, else g(approach) of a table,
+ *     c = damping + damping_time k of a dry contact with load, else c(approach) of the table.
+ *
+ * A table has rows at even places of z = asinh((approach - centre)/scale); beyond its ends it goes on straight in the
+ * logarithms. All in SI units: approach [m], load [N], stiffness [N/m], damping [N s/m].
+ * ------------------------------------------------------------------------------------------------------------------ */
+
+/* What a call found; as statuses of bearings that are exported. */
+enum {
+    EHD_PAIR_OUTSIDE_SPEED = 2 /* slower or faster than films were made for: those at the end of the speeds are held */
+};
+
+/* Law of a contact at one speed. */
+typedef struct ehd_pair_law {
+    double coefficient;                /* C [N/m^1.5] */
+    double damping, damping_time;      /* constant part of c [N s/m], and part in proportion to the stiffness [s] */
+    double centre, scale, first, step; /* grid of the table: z of the first row, distance of the rows */
+    int64_t rows;                      /* 0 for a dry contact */
+    const double *table;               /* (rows, 4): ln g and its slope by row, ln c and its slope */
+} ehd_pair_law;
+
+/* Load, stiffness and damping of a contact. */
+typedef struct ehd_pair_state {
+    double load, stiffness, damping;
+} ehd_pair_state;
+
+/* Load and stiffness of a contact, and its place on the table. */
+typedef struct ehd_pair_load {
+    double load, stiffness, place;
+} ehd_pair_load;
+
+/* Laws of both contacts of a bearing over the entrainment speed, at speeds that are even in its logarithm. Index 0 is the
+ * inner contact, 1 the outer one. */
+typedef struct ehd_pair_speeds {
+    int64_t speeds, rows, springs; /* springs: of a contact whose film has a memory, else 0 */
+    double lowest, highest;        /* first and last speed [m/s] */
+    double first_log, per_log;     /* ln of the first speed; speeds in a unit of the logarithm */
+    double most_load;              /* load up to which films were made [N] */
+    const double *times;           /* (springs,): times of the springs over the longest one */
+    const double *places[2];       /* (speeds, 2): centre and scale [m] */
+    const double *tables[2];       /* (speeds, rows, 4) */
+    const double *shares[2];       /* (speeds, rows, springs + 1): parts of the damping, and ln of the longest time */
+} ehd_pair_speeds;
