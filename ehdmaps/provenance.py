@@ -50,7 +50,7 @@ def source_state(root: Path) -> str:
     -------
     str
         State of the sources. In a clone it is the commit: "g19eceb2715", with ".dirty" and a hash of the packages'
-        Python files where a file that git tracks was changed: "g19eceb2715.dirty.5d41402abc". Elsewhere, and where git
+        files where a file that git tracks was changed: "g19eceb2715.dirty.5d41402abc". Elsewhere, and where git
         is missing or refuses, the hash alone: "src.5d41402abc". Empty where there is neither. Found once a process, in
         some 20 ms.
     """
@@ -62,7 +62,7 @@ def source_state(root: Path) -> str:
 
 
 def sources_hash(root: Path = ROOT) -> str:
-    """Return a hash over names and contents of the packages' Python files.
+    """Return a hash over names and contents of the packages' Python files and of the C files of `ehdmaps.kernel`.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def kernel_files(sources: Mapping[str, bytes]) -> list[str]:
     sources : mapping of str to bytes
         Contents of Python files by their names, such as "mbs/gears/pair.py".
     """
-    found = {name for name, content in sources.items() if b"njit" in content}
+    found = {name for name, content in sources.items() if b"njit" in content and name.endswith(".py")}
     left = sorted(found)
     while left:
         for name in _imported(sources[left.pop()].decode("utf-8", "replace")):
@@ -125,10 +125,9 @@ def _imported(text: str) -> Iterator[str]:
 
 
 def _sources(root: Path) -> dict[str, bytes]:
-    """Contents of the packages' Python files by their names, in order; none where one cannot be read."""
-    names = sorted(
-        path.relative_to(root).as_posix() for package in PACKAGES for path in root.glob(f"{package}/**/*.py")
-    )
+    """Contents of the packages' Python and C files by their names, in order; none where one cannot be read."""
+    patterns = (*(f"{package}/**/*.py" for package in PACKAGES), "ehdmaps/kernel/c/**/*.[ch]")
+    names = sorted(path.relative_to(root).as_posix() for pattern in patterns for path in root.glob(pattern))
     try:
         return {name: (root / name).read_bytes() for name in names}
     except OSError:
@@ -150,7 +149,7 @@ def code_hash() -> str:
     Returns
     -------
     str
-        16 hexadecimal digits, over the Python files of this distribution and the versions of Python, numba, LLVM's
+        16 hexadecimal digits, over Python and C files of this distribution and the versions of Python, numba, LLVM's
         binding, numpy and scipy. The processor is not in it: points that the nodes of a cluster solve belong together.
     """
     return _with_versions(sources_hash())

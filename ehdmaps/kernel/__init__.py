@@ -25,7 +25,8 @@ cylinder_films.[hc]  the same with films that have a memory
 pair_law.[hc]        law of a contact of balls, or of lines with tables of their own, over its approach
 pair_speeds.c        such laws over the entrainment speed
 pair_memory.c        a spring in series with a damper over a step
-ball.h, _balance.c   the balance of a ball
+ball.h               structures of a ball bearing
+ball_balance.c       the balance of a ball
 ball_bearing.c       force, stiffness and damping of a ball bearing at a pose
 ball_films.c         films of balls with a memory
 block.h              what a kind of elements brings to runs in time: its functions, for anyone's own ones, too

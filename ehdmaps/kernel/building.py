@@ -150,7 +150,7 @@ def compilers(environment: Mapping[str, str]) -> Iterator[list[str]]:
 
 
 def usable_compiler(environment: Mapping[str, str]) -> list[str]:
-    """Return the first compiler that compiles a small file which needs the headers of the C library.
+    """Return the first compiler that compiles a small file which needs the headers of the C library; ziglang has them.
 
     Parameters
     ----------
@@ -164,6 +164,8 @@ def usable_compiler(environment: Mapping[str, str]) -> list[str]:
     """
     said = []
     for compiler in compilers(environment):
+        if "ziglang" in compiler:
+            return compiler
         with tempfile.TemporaryDirectory() as folder:
             (Path(folder) / "trial.c").write_text(_TRIAL, encoding="ascii")
             said.append(_failure([*compiler, "-shared", *_position(), "trial.c", "-o", "trial.bin", "-lm"], folder))
@@ -199,6 +201,7 @@ def build(target: Path, environment: Mapping[str, str], kind: str = "", folder: 
     OSError
         If the file cannot be written.
     """
+    target, folder = target.absolute(), folder.absolute()
     with tempfile.TemporaryDirectory(prefix=".ehd-", dir=target.parent) as aside, _alone(target.parent):
         wanted = state(folder)
         if state_of(target) == wanted:  # another process was faster
@@ -213,6 +216,14 @@ def build(target: Path, environment: Mapping[str, str], kind: str = "", folder: 
             wanted = now  # a file was changed meanwhile
         made.replace(target)
         return wanted
+
+
+def say_compiler() -> None:
+    """Print the compiler that a build here takes; nothing where it would have to be installed."""
+    try:
+        print(usable_compiler(os.environ)[0])  # noqa: T201
+    except NoCompilerError:
+        return
 
 
 def _arguments(kind: str, number: str, folder: Path) -> list[str]:
@@ -249,3 +260,7 @@ def _alone(folder: Path) -> Iterator[None]:
         yield
     finally:
         os.close(descriptor)
+
+
+if __name__ == "__main__":
+    say_compiler()

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import importlib.util
 import os
+import re
 import shlex
 import shutil
 import subprocess
@@ -14,12 +16,13 @@ from pathlib import Path
 
 import pytest
 
+from ehdmaps.kernel import building
 from tests.cases.programs import needed
 
 ROOT = Path(__file__).parents[2]
 FOLDERS = ("ehdmaps", "mbs", "openfoam_cases")
-FILES = ("pyproject.toml", "setup.py", "MANIFEST.in", "README.md", "LICENSE")
-LEFT_OUT = shutil.ignore_patterns("__pycache__", "*.egg-info", "polyMesh", "*.pyc")
+FILES = ("pyproject.toml", "setup.py", "build_backend.py", "MANIFEST.in", "README.md", "LICENSE")
+LEFT_OUT = shutil.ignore_patterns("__pycache__", "libehd*", "*.egg-info", "polyMesh", "*.pyc")
 GPL = "ehdmaps/openfoam_cases/"
 
 PACKAGES = ("ehdmaps", "mbs")
@@ -27,8 +30,12 @@ STALE = ("ehdmaps/of_an_older_commit.py", "mbs/gone/__init__.py", "openfoam/__in
 
 BUILD = """
 import sys
-from setuptools import build_meta
-print(getattr(build_meta, f"build_{sys.argv[1]}")(sys.argv[2]))
+import tomllib
+with open("pyproject.toml", "rb") as file:
+    build = tomllib.load(file)["build-system"]
+sys.path[:0] = build["backend-path"]
+backend = __import__(build["build-backend"])
+print(backend.compiler(), getattr(backend, f"build_{sys.argv[1]}")(sys.argv[2]), sep="\\n")
 """
 
 
@@ -91,6 +98,12 @@ def test_what_source_distribution_and_wheel_hold(distributions):
     balls = {f"mbs/exports/balls/{name}" for name in ("contact_law.c", "ball_bearing.h", "unit_files/component.c")}
     balls |= {f"mbs/exports/tapered/tapered_{name}" for name in ("balance.c", "bearing.c", "bearing.h")}
     assert balls <= set(names)
+    kernel = {path.relative_to(ROOT).as_posix() for path in (ROOT / "ehdmaps" / "kernel").rglob("*.[ch]")}
+    assert {"ehdmaps/kernel/c/kernel.c", f"ehdmaps/kernel/{building.file_name()}"} <= set(names) and kernel <= set(
+        names
+    )
+    assert {"build_backend.py", *kernel} <= held and not [name for name in held if "libehd" in name]
+    assert re.fullmatch(r"ehdmaps-[\d.]+-py3-none-(manylinux_2_17|linux)_\w+\.whl", wheel.name)
     assert not [name for name in names if name.endswith((".png", ".pyc")) or "/tests/" in name]
     cases = {name.partition(GPL)[2]: name for name in names if GPL in name}
     assert {"COPYING", "build", "ehlFoam/ehlFoam.C", "ehlFoam/Make/options", "lineContact/system/fvSchemes"} <= set(
@@ -105,6 +118,35 @@ def test_what_source_distribution_and_wheel_hold(distributions):
     assert told["Author"] == "The ehdmaps developers"
     assert told["Description-Content-Type"] == "text/markdown"
     assert "](docs/" not in told.get_payload()
+
+
+@pytest.mark.slow
+def test_a_build_without_a_compiler_takes_one_from_pypi(distributions, tmp_path):
+    """It asks for ziglang, which is lent by the environment of the tests, and builds for old systems."""
+    found = importlib.util.find_spec("ziglang")
+    if found is None:
+        pytest.skip("needs the package ziglang, of the extra test")
+    source = distributions[0]
+    with tarfile.open(source) as archive:
+        archive.extractall(tmp_path, filter="data")
+    unpacked = tmp_path / source.name.removesuffix(".tar.gz")
+    (tmp_path / "lent").mkdir()
+    python = source.parent / "tools/bin/python"
+    code = BUILD.replace("print(", "sys.path.remove(sys.argv[3])\nasked = backend.compiler()\nprint(asked, ")
+    code = code.replace("backend.compiler(), getattr", "sys.path.append(sys.argv[3]), getattr")
+    (tmp_path / "lent" / "ziglang").symlink_to(Path(found.origin).parent)
+    lent, nothing = str(tmp_path / "lent"), str(tmp_path / "nothing")
+    told = done([python, "-c", code, "wheel", tmp_path, lent], unpacked, PATH=nothing, PYTHONPATH=lent, CC="")
+    lines = told.splitlines()
+    assert "['ziglang>=0.13,<1']" in lines
+    wheel = tmp_path / lines[-1]
+    assert "-py3-none-manylinux_2_17_" in wheel.name
+    with zipfile.ZipFile(wheel) as archive:
+        archive.extractall(tmp_path / "installed")
+    # where there is no compiler either, it is taken as it is
+    code = "from ehdmaps.kernel import library; print(library.library()._name)"
+    told = done([sys.executable, "-c", code], tmp_path / "installed", PATH=nothing)
+    assert told.strip() == str(tmp_path / "installed" / "ehdmaps" / "kernel" / building.file_name())
 
 
 @pytest.fixture(scope="module")

@@ -18,6 +18,7 @@ echo "pip $*" >>"$RECORD"
 PYTHON = f"""#!/bin/bash
 case $1 in
   --version) echo Python 3.12.0 ;;
+  ehdmaps/kernel/building.py) echo "${{COMPILER-/usr/bin/cc}}" ;;
   -m) mkdir -p .venv/bin; cat >.venv/bin/pip <<'END'
 {PIP}END
     chmod +x .venv/bin/pip ;;
@@ -54,8 +55,14 @@ def test_the_environment_says_what_it_makes_and_how_long_it_takes(folder, monkey
         ".ci/environment: making .venv with Python 3.12.0 (some seconds)",
         ".ci/environment: installing ehdmaps and what it needs with pip (about two minutes, more on a slow line; up to "
         "1 GB in .venv)",
+        ".ci/environment: the C library is compiled by /usr/bin/cc",
         ".ci/environment: done: .venv/bin/ehdmaps, .venv/bin/mbs",
     ]
+    monkeypatch.setenv("COMPILER", "")
+    assert (
+        ".ci/environment: no C compiler is found: pip fetches one for the build, the package ziglang (100 MB, some "
+        in (run(folder, "environment").stderr)
+    )
     monkeypatch.setenv("SHOWN", "0")
     again = run(folder, "environment", "--editable", ".[test]")
     assert again.returncode == 0
@@ -64,7 +71,7 @@ def test_the_environment_says_what_it_makes_and_how_long_it_takes(folder, monkey
         "is new)"
     )
     record = (folder / "record").read_text().splitlines()
-    assert [line.split()[-1] for line in record if "install" in line] == [".", ".[test]"]
+    assert [line.split()[-1] for line in record if "install" in line] == [".", ".", ".[test]"]
 
 
 def test_a_failed_installation_is_none(folder):

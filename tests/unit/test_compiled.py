@@ -104,6 +104,8 @@ def test_files_of_compiled_code():
     assert {"ehdmaps/physics/isotherm.py", "ehdmaps/arrays.py", "mbs/transient/integration_kernel.py"} <= set(files)
     assert not {"mbs/cli.py", "ehdmaps/jobs/cli.py", "mbs/output/run_plot.py"} & set(files)
     assert len(files) < 0.4 * len(sources)
+    assert "ehdmaps/kernel/c/kernel.c" in sources and not [name for name in files if not name.endswith(".py")]
+    assert provenance.kernel_files({"ehdmaps/kernel/c/a.c": b"/* not njit */"}) == []
     for name in files:
         tree = ast.parse(sources[name])
         hidden = [node for node in tree.body if isinstance(node, (ast.If, ast.Try, ast.With, ast.For))]

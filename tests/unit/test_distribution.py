@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import importlib.util
+import os
 import re
+import shutil
+import sys
 import tomllib
+import types
 from importlib import metadata
 from pathlib import Path
 
@@ -131,3 +135,49 @@ def test_readme_on_an_index_has_nothing_that_is_relative(on_an_index):
 )
 def test_links_and_pictures_on_an_index(on_an_index, given, wanted):
     assert on_an_index(given).startswith(f"{wanted}\n\nFiles that are named here")
+
+
+@pytest.mark.parametrize(
+    ("plain", "needed", "wanted"),
+    [
+        ("linux_x86_64", b"\0GLIBC_2.2.5\0GLIBC_2.14\0", "manylinux_2_17_x86_64"),
+        ("linux_aarch64", b"\0GLIBC_2.17\0", "manylinux_2_17_aarch64"),
+        ("linux_x86_64", b"\0GLIBC_2.2.5\0GLIBC_2.29\0", "linux_x86_64"),
+        ("linux_x86_64", b"of another C library", "linux_x86_64"),
+        ("macosx_14_0_arm64", b"", "macosx_14_0_arm64"),
+    ],
+)
+def test_the_platform_of_a_wheel(setup, plain, needed, wanted):
+    assert setup.platform_tag(plain, needed) == wanted
+
+
+def test_a_build_asks_for_a_compiler_only_where_there_is_none(monkeypatch, tmp_path):
+    if shutil.which("cc") is None:
+        pytest.skip("needs gcc: apt-get install gcc libc6-dev")
+    standard = types.ModuleType("setuptools.build_meta")
+    for name in ("build_editable", "build_sdist", "build_wheel", "get_requires_for_build_sdist"):
+        setattr(standard, name, None)
+    for kind in ("wheel", "editable"):
+        setattr(standard, f"get_requires_for_build_{kind}", lambda settings: ["setuptools' own"])
+        setattr(standard, f"prepare_metadata_for_build_{kind}", None)
+    whole = types.ModuleType("setuptools")
+    whole.build_meta = standard
+    monkeypatch.setitem(sys.modules, "setuptools", whole)
+    monkeypatch.setitem(sys.modules, "setuptools.build_meta", standard)
+    backend = TOLD["build-system"]["build-backend"]
+    specification = importlib.util.spec_from_file_location(backend, ROOT / f"{backend}.py")
+    module = importlib.util.module_from_spec(specification)
+    specification.loader.exec_module(module)
+    assert TOLD["build-system"]["backend-path"] == ["."]
+    asks = (module.get_requires_for_build_wheel, module.get_requires_for_build_editable)
+    assert [ask() for ask in asks] == [["setuptools' own"]] * 2
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.delenv("CC", raising=False)
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    assert [ask() for ask in asks] == [["setuptools' own", "ziglang>=0.13,<1"]] * 2
+
+
+def test_the_library_is_built_into_a_folder(setup, tmp_path):
+    (tmp_path / "ehdmaps" / "kernel").mkdir(parents=True)
+    path = setup.build_library(tmp_path)
+    assert path.parent == tmp_path / "ehdmaps" / "kernel" and os.access(path, os.R_OK)

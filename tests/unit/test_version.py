@@ -129,6 +129,14 @@ def test_without_git_the_sources_are_hashed(clone, monkeypatch):
     source_state.cache_clear()
     (clone / "mbs" / "a.py").write_text("x = 3\n")
     assert version() != first
+    source_state.cache_clear()
+    second = version()
+    for text in ("int x;\n", "int y;\n"):
+        (clone / "ehdmaps" / "kernel" / "c" / "part").mkdir(parents=True, exist_ok=True)
+        (clone / "ehdmaps" / "kernel" / "c" / "part" / "a.h").write_text(text)
+        source_state.cache_clear()
+        assert version() not in (first, second)
+        second = version()
 
 
 def test_a_git_that_hangs_or_refuses_counts_as_none(clone, monkeypatch):
