@@ -29,6 +29,10 @@ ball.h               structures of a ball bearing
 ball_balance.c       the balance of a ball
 ball_bearing.c       force, stiffness and damping of a ball bearing at a pose
 ball_films.c         films of balls with a memory
+taper.h, _lines.c    sums over the slices of a line of a tapered roller, or of a cylindrical one between ribs
+taper_balance.c      the balance of such a roller
+taper_bearing.c      force, stiffness and damping of its bearing at a pose
+taper_films.c        films of such rollers with a memory
 block.h              what a kind of elements brings to runs in time: its functions, for anyone's own ones, too
 dense.c              small matrices: products, elimination, steps in Python
 gear.c               gear meshes

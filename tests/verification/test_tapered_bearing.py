@@ -10,6 +10,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq, root
 
+from ehdmaps.compiled import in_python
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.rollers.tapered_catalogue import tapered_boundary, tapered_estimate
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
@@ -17,6 +18,7 @@ from mbs.bearings import laws
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
+from mbs.bearings.tapered.tapered_kernel import COLUMNS, roller_work, tapered_force
 
 GEOMETRY = tapered_estimate("32208")
 FORCE = TaperedForce(GEOMETRY)
@@ -238,8 +240,12 @@ def test_a_mirrored_bearing_carries_the_other_way() -> None:
     assert np.max(np.abs(one.centre - other.centre)) < 1e-12 and np.max(np.abs(one.load - other.load)) < 1e-6
 
 
-def test_python_and_compiled_code_agree() -> None:
-    plain = TaperedForce(GEOMETRY, 10.0, 1e-5, slices=5, compiled=False)
-    fast = TaperedForce(GEOMETRY, 10.0, 1e-5, slices=5)
-    for one, other in zip(plain(POSE, inner_speed=700.0), fast(POSE, inner_speed=700.0), strict=True):
-        assert np.max(np.abs(one - other)) < 1e-9 * float(np.max(np.abs(other)))  # ways of the balance
+def test_it_is_what_runs_call() -> None:
+    """The kernel of runs, as Python; both find the balance in ways of their own."""
+    force = TaperedForce(GEOMETRY, 10.0, 1e-5, slices=5)
+    count, loads = GEOMETRY.rollers, np.array([0.0, *force.speed_loads(700.0)])
+    out, places = (np.zeros(6), np.zeros((6, 6)), np.zeros((6, 6))), np.full((count, 3), np.nan)
+    written = *out, places, np.zeros((count, COLUMNS)), roller_work(1, 5)
+    assert in_python(tapered_force)(POSE, 0.0, loads, force.shape, force.laws, np.zeros((1, 2, 3, 0)), *written) > 0
+    for one, other in zip(out, force(POSE, inner_speed=700.0), strict=True):
+        assert np.max(np.abs(one - other)) < 1e-9 * float(np.max(np.abs(other)))

@@ -45,6 +45,15 @@ EHD_SIZE_OF(ehd_cylinder_data)
 #include "ball_films.c"
 
 /* tapered rollers */
+#include "taper.h"
+#include "taper_lines.c"
+#include "taper_balance.c"
+#include "taper_bearing.c"
+#include "taper_films.c"
+EHD_SIZE_OF(ehd_taper_data)
+EHD_SIZE_OF(ehd_taper_roller)
+EHD_SIZE_OF(ehd_taper_answer)
+EHD_SIZE_OF(ehd_taper_springs)
 
 /* runs in time: elements, gears, matrices */
 #include "block.h"

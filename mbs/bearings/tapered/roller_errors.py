@@ -12,8 +12,8 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from mbs.bearings.balls.contact_slopes import STEP, contact_slopes, contacts_at
 from mbs.bearings.roller_contacts import natural_times, relaxation_times
+from mbs.bearings.tapered.kernel_structs import FIRST_RIB
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
-from mbs.bearings.tapered.tapered_kernel import FIRST_RIB
 from mbs.bearings.tapered.tapered_relaxing import SOFT, by_pose
 from mbs.model.condensed import DIRECTIONS, Condensed, Contacts, none_moved
 

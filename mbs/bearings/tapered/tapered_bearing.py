@@ -19,6 +19,7 @@ ISO/TS 16281:2008. J. M. de Mul, J. M. Vree, D. A. Maas, Journal of Tribology 11
 from __future__ import annotations
 
 import copy
+import ctypes
 import functools
 import math
 from collections.abc import Callable
@@ -29,25 +30,27 @@ import numpy as np
 import numpy.typing as npt
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.compiled import in_python
 from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.kernel.record import address
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.physics.surface import iso_profile
-from mbs.bearings.balls.normal_law import contact
+from mbs.bearings.balls.contact_slopes import contacts_at
 from mbs.bearings.laws import roller_coefficient
-from mbs.bearings.tapered.line_film import DRY_LINES, LineFilms
-from mbs.bearings.tapered.tapered_kernel import (
+from mbs.bearings.tapered.kernel_structs import (
+    ANSWER,
     COLUMNS,
     FIRST_RIB,
-    NOT_FINITE,
-    TOO_FAR,
-    Ribs,
-    RollerLaws,
-    TaperedShape,
-    roller_work,
-    tapered_force,
+    MEMORY,
+    PLACE,
+    RING,
+    LineSprings,
+    both_lines,
+    data_of,
+    functions,
 )
+from mbs.bearings.tapered.line_film import DRY_LINES, LineFilms
+from mbs.bearings.tapered.tapered_kernel import NOT_FINITE, TOO_FAR, Ribs, RollerLaws, TaperedShape
 
 FASTEST = 2e4
 """Largest accepted speed of a ring [rad/s]."""
@@ -56,10 +59,6 @@ SLICES, MOST_SLICES = 21, 1000
 
 FARTHEST = 0.1
 """Largest accepted displacement over the roller's diameter: bodies are linear."""
-
-
-_NONE = np.zeros((1, 2, 3, 0))
-"""Memory of films without one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,8 +105,6 @@ class TaperedForce:
         Slices of a roller.
     material : Material
         Material of rollers and rings; its density gives them mass.
-    compiled : bool
-        Whether the compiled kernel is called, or the same in Python.
 
     Attributes
     ----------
@@ -141,7 +138,6 @@ class TaperedForce:
         profile: str | Callable[[FloatArray], FloatArray] = "iso",
         slices: int = SLICES,
         material: Material = STEEL,
-        compiled: bool = True,
     ) -> None:
         problems = [
             f"{geometry.kind}, {name}: got {value!r:.60} {unit}; allowed: finite and >= 0"
@@ -189,15 +185,20 @@ class TaperedForce:
         self.films = films
         self.laws = RollerLaws(single, single, self.damping, self.damping_time, films.outer, films.inner, False)
         self.angles, self._way = places, way
-        self._kernel = tapered_force if compiled else in_python(tapered_force)
+        self._data, self._kernel = data_of(self.shape, self.laws), functions().force
         self._begin()
 
     def _begin(self) -> None:
-        """Make the arrays that the kernel writes."""
-        self._places = np.full((self.geometry.rollers, 3), np.nan)
+        """Make what the kernel reads of the laws, and the arrays that it writes."""
+        self._lines, self._kept = both_lines(self.laws)
+        self._given, self._answer = np.zeros((2, 6)), np.zeros(ANSWER)
         self._rollers = np.zeros((self.geometry.rollers, COLUMNS))
-        self._out = np.zeros(6), np.zeros((6, 6)), np.zeros((6, 6))
-        self._work = roller_work(len(self.ribs), self.positions.size)
+        self._out = self._answer[:6], self._answer[6:42].reshape(6, 6), self._answer[42:].reshape(6, 6)
+        self._places = (
+            (self._data.address, ctypes.addressof(self._lines), self._given[0].ctypes.data),
+            self._given[1].ctypes.data,
+            (self._rollers.ctypes.data, self._answer.ctypes.data),
+        )
         self.held: FloatArray | None = None
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -208,7 +209,6 @@ class TaperedForce:
             profile=self.profile,
             slices=self.positions.size,
             material=self.material,
-            compiled=self._kernel is tapered_force,
         )
         return made, (self.geometry, self.damping, self.damping_time)
 
@@ -323,7 +323,7 @@ class TaperedForce:
         self._evaluated(pose, cage_angle, inner_speed, outer_speed, cage_speed)
         rows, shape = self._rollers.T.copy(), self.shape
         angle = np.angle(np.exp(1j * (self.angles + cage_angle)))
-        place, ring = rows[9:12], rows[12:15]
+        place, ring = rows[PLACE], rows[RING]
         slices = np.zeros((2, angle.size, self.positions.size))
         for side, (normal, moved) in enumerate(((shape.cone, ring - place), (shape.cup, place))):
             approach = normal[0] * moved[0] + normal[1] * moved[1]
@@ -332,8 +332,7 @@ class TaperedForce:
             slices[side] = each * np.maximum(depth, 0.0) ** (10.0 / 9.0)
             if not self.films.dry:
                 law = (self.films.inner, self.films.outer)[side]
-                loads = [contact(law, g)[0] for g in depth.ravel().tolist()]
-                slices[side] = np.reshape(loads, depth.shape) / self.geometry.roller_length
+                slices[side] = contacts_at(law, depth)[0] / self.geometry.roller_length
         half, diameter = self.geometry.half_cone_angle, self.geometry.roller_diameter
         centre = (self._way * rows[6:8] + 0.5 * diameter * math.sin(half)) * math.cos(half)
         ribs = rows[FIRST_RIB : FIRST_RIB + len(self.ribs)]
@@ -341,8 +340,28 @@ class TaperedForce:
 
     @property
     def last_rollers(self) -> FloatArray:
-        """Numbers that the kernel wrote of the rollers at the last call, (Z, 28), see `place_roller`."""
+        """Numbers of the rollers at the last call, (Z, `COLUMNS`), see `mbs.bearings.tapered.kernel_structs`."""
         return self._rollers
+
+    def go_on(self, springs: LineSprings, memory: FloatArray) -> None:
+        """Bring films with memory to the end of a step, at which the last call was.
+
+        Parameters
+        ----------
+        springs : LineSprings
+            Springs of the films there.
+        memory : array (Z, 2, MEMORY, n)
+            What slices of cone and cup held over the step, see `mbs.bearings.tapered.tapered_memory`; written.
+        """
+        kept = self._room(memory)
+        functions().go_on(*self._places[0][:2], springs.address, self._places[2][0], kept)
+
+    def _room(self, memory: FloatArray) -> int:
+        """Address of the memory of all slices."""
+        wanted = (self.geometry.rollers, 2, MEMORY, self.positions.size)
+        if memory.shape != wanted:
+            raise InputError(f"{self.geometry.kind}, memory: got an array of shape {memory.shape}; allowed: {wanted}")
+        return address(memory, self._rollers.dtype, "memory of rollers")
 
     def _evaluated(
         self, pose: npt.ArrayLike, cage_angle: float, inner_speed: float, outer_speed: float, cage_speed: float | None
@@ -350,12 +369,11 @@ class TaperedForce:
         """Call the kernel, which writes into the arrays of this object."""
         place = _six(pose, "pose")
         centrifugal, moment = self.speed_loads(inner_speed, outer_speed, cage_speed)
-        loads = np.array([0.0, centrifugal, moment])
-        laws, memory = (self.laws, _NONE) if self.held is None else (self.laws._replace(relaxes=True), self.held)
-        written: tuple[Any, ...] = (*self._out, self._places, self._rollers, self._work)
-        found = self._kernel(place, float(cage_angle), loads, self.shape, laws, memory, *written)
+        memory, (first, loads, last) = None if self.held is None else self._room(self.held), self._places
+        self._given[0], self._given[1, 1], self._given[1, 2] = place, centrifugal, moment
+        found = self._kernel(*first, float(cage_angle), loads, memory, *last)
         if found < 0:
-            self._places[:] = np.nan
+            self._rollers[:] = 0.0
             self._refuse(found, place, cage_angle)
 
     def _refuse(self, found: int, pose: FloatArray, cage_angle: float) -> None:

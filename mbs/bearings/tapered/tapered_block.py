@@ -34,7 +34,7 @@ from mbs.bearings.tapered.tapered_kernel import (
 from mbs.bearings.tapered.tapered_memory import (
     MEMORY,
     FilmsOfRollers,
-    LineSprings,
+    SpringTables,
     go_on_rollers,
     hold_rollers,
     no_memory,
@@ -149,12 +149,12 @@ def _laws_of(tapered: Tapered, b: int) -> RollerLaws:
 
 
 @njit(error_model="numpy", _nrt=False, forceinline=True)
-def _springs_of(films: FilmTables, film: int) -> LineSprings:
+def _springs_of(films: FilmTables, film: int) -> SpringTables:
     """Springs of films with memory at the speed of the step."""
     node, weight = int(films.in_use[film, 0]), films.in_use[film, 1]
     other = (node + 1) % films.numbers.shape[1] if weight > 0.0 else node
     slow, fast = films.springs[film, node], films.springs[film, other]
-    return LineSprings(slow[0], fast[0], slow[1], fast[1], weight)
+    return SpringTables(slow[0], fast[0], slow[1], fast[1], weight)
 
 
 @njit(error_model="numpy", _nrt=False)

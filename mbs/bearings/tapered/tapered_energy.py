@@ -16,7 +16,8 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.compiled import njit
-from mbs.bearings.tapered.tapered_kernel import FIRST_RIB, RollerLaws, TaperedShape
+from mbs.bearings.tapered.kernel_structs import FIRST_RIB
+from mbs.bearings.tapered.tapered_kernel import RollerLaws, TaperedShape
 
 if TYPE_CHECKING:
     from mbs.bearings.tapered.tapered_memory import FilmsOfRollers

@@ -23,19 +23,18 @@ from ehdmaps.compiled import njit
 from ehdmaps.maps.kernels.lines import FAST
 from mbs.bearings.balls.normal_law import NormalLaw
 from mbs.bearings.balls.spring_damper import gone_on, over_step
+from mbs.bearings.tapered.kernel_structs import MEMORY, LineSprings, functions
 from mbs.bearings.tapered.line_kernel import AT, PULL, SPRING, cell_of_place, find_places
 from mbs.bearings.tapered.tapered_kernel import RollerLaws, TaperedShape
 
 if TYPE_CHECKING:
     from mbs.bearings.tapered.tapered_bearing import TaperedForce
 
-LEFT, FORCE, STIFFNESS, TIME = range(3, 7)
-MEMORY = 7
-"""Rows of the memory of the slices of a line: what they hold over a step, see `mbs.bearings.tapered.line_kernel`, and
-the part of f that is left after it; f [N], K [N/m] and theta [s] of a whole roller at its beginning."""
+LEFT, FORCE, STIFFNESS, TIME = range(3, MEMORY)
+"""Rows of the memory of the slices of a line beside those of `mbs.bearings.tapered.line_kernel`."""
 
 
-class LineSprings(NamedTuple):
+class SpringTables(NamedTuple):
     """K and theta of both lines over the rows of their tables, at two speeds.
 
     Attributes
@@ -125,7 +124,7 @@ _SHORTEST = 1e-30
 
 @njit(error_model="numpy", _nrt=False)
 def go_on_rollers(
-    rollers: FloatArray, shape: TaperedShape, laws: RollerLaws, springs: LineSprings, memory: FloatArray
+    rollers: FloatArray, shape: TaperedShape, laws: RollerLaws, springs: SpringTables, memory: FloatArray
 ) -> None:
     """Bring the memory of all slices to the end of a step, and to K and theta there.
 
@@ -135,7 +134,7 @@ def go_on_rollers(
         What `place_roller` wrote of each roller at the end of the step.
     shape, laws : TaperedShape, RollerLaws
         Lengths, and laws of the contacts.
-    springs : LineSprings
+    springs : SpringTables
         K and theta.
     memory : array (Z, 2, MEMORY, n)
         Memory of the slices of cone and cup, with what they held; written.
@@ -187,7 +186,8 @@ class FilmsOfRollers:
     def held(self, step: float) -> FloatArray:
         """Memory with what the slices hold over a step [s]."""
         memory = self.memory.copy()
-        hold_rollers(step, memory.shape[0], memory)
+        count, _, _, slices = memory.shape
+        functions().hold(count, slices, step, memory.ctypes.data)
         return memory
 
     def after(self, step: float, force: TaperedForce) -> FilmsOfRollers:
@@ -205,6 +205,6 @@ class FilmsOfRollers:
     def _gone_on(self, force: TaperedForce) -> FilmsOfRollers:
         """Bring the memory, which is its own, to the end of a step."""
         cone, cup = force.films.springs
-        springs = LineSprings(cone, cone, cup, cup, 0.0)
-        go_on_rollers(force.last_rollers, force.shape, force.laws, springs, self.memory)
+        springs = LineSprings(cone=cone, cup=cup, cone_other=cone, cup_other=cup)
+        force.go_on(springs, self.memory)
         return self

@@ -19,10 +19,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from mbs.bearings.balls.normal_law import contact
+from mbs.bearings.balls.contact_slopes import contacts_at
 from mbs.bearings.roller_contacts import natural_times, relaxation_times, relaxing
+from mbs.bearings.tapered.kernel_structs import FIRST_RIB, FIRST_SHARE
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
-from mbs.bearings.tapered.tapered_kernel import FIRST_RIB, FIRST_SHARE
 from mbs.model.relaxation import Relaxation
 
 SOFT = 2e-14
@@ -71,10 +71,10 @@ def line_slices(force: TaperedForce) -> LineSlices:
     ):
         normals = np.stack([np.full_like(shape.levers, e) for e in normal] + [shape.levers], axis=1)
         approach = moved @ normals.T - shape.profile
-        values = np.array([contact(law, g) for g in approach.ravel().tolist()]) / shape.levers.size
+        _, stiffness, damping = contacts_at(law, approach) / shape.levers.size
         motion = share if way > 0.0 else np.eye(3) - share
         found = (
-            way * normals, normals @ motion, values[:, 1].reshape(approach.shape), values[:, 2].reshape(approach.shape),
+            way * normals, normals @ motion, stiffness, damping,
             relaxation_times(point, approach), natural_times(point, approach),
         )  # fmt: skip
         for part, one in zip(parts, found, strict=True):

@@ -1,4 +1,4 @@
-"""A bearing of tapered rollers, or of cylindrical ones between ribs, in C: templates and the numbers of one bearing."""
+"""A bearing of tapered rollers, or of cylindrical ones between ribs, in C: the kernel that Python calls, numbers."""
 
 from __future__ import annotations
 
@@ -6,21 +6,25 @@ import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+import numpy as np
+
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.exports.c.text import define, number, template
+from ehdmaps.exports.c.text import array, define, number, template
 from ehdmaps.physics.rollers.ribbed_geometry import RibbedGeometry
 from mbs.bearings.balls.film_tables import PairLaw
 from mbs.bearings.balls.normal_law import NormalLaw, empty_table
+from mbs.bearings.tapered.kernel_structs import RIB_NUMBERS, rib_rows
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
+from mbs.bearings.tapered.tapered_kernel import RollerLaws
 from mbs.exports.balls.source import header_of, joined, pair_files, prefix_of, private_law, public_law, write_texts
 from mbs.exports.balls.speed_laws import SpeedLaws, dry_speed_laws, film_speed_laws
 
 STEP = 0.1
 """Largest distance of two speeds in ln u: half that of balls, as damping of lines bends sharply over the load."""
 
-_BODIES = ("tapered_balance.c", "tapered_bearing.c")
-_FILMS = "tapered_films"
+_BODY, _FILMS = "tapered_bearing", "tapered_films"
+_KERNEL = ("taper.h", "taper_lines.c", "taper_balance.c", "taper_bearing.c")
 _SHORTER = (1.0,)
 """Times of the springs of a film over the longest one: there is one."""
 
@@ -116,14 +120,9 @@ def source_texts(
         )
     numbers = _public_numbers(force, laws), _private_numbers(force, laws)
     memory = [_FILMS] if laws.memory else []
-    headers, bodies = (
-        [template("mbs.exports.tapered", name) for name in names]
-        for names in (
-            ("tapered_bearing.h", *(f"{name}.h" for name in memory)),
-            (*_BODIES, *(f"{name}.c" for name in memory)),
-        )
-    )
-    return joined(header, numbers, pair_files(laws), headers, bodies, prefix, include)
+    kernel = (*pair_files(laws), *_KERNEL, *(["taper_films.c"] if laws.memory else []))
+    headers, bodies = ([template("mbs.exports.tapered", f"{name}.{end}") for name in (_BODY, *memory)] for end in "hc")
+    return joined(header, numbers, kernel, headers, bodies, prefix, include)
 
 
 def exported_play(force: TaperedForce) -> float:
@@ -161,31 +160,36 @@ def _public_numbers(force: TaperedForce, laws: SpeedLaws) -> str:
 
 def _private_numbers(force: TaperedForce, laws: SpeedLaws) -> str:
     """Constants that only the functions read."""
-    geometry, shape, dry = force.geometry, force.shape, force.laws
+    geometry, dry = force.geometry, force.laws
     along, across = geometry.roller_inertia(force.material)
-    ribs = [((*rib.normal, rib.lever, rib.play, rib.contact.coefficient), rib.outer) for rib in force.ribs]
-    rows = [f"    {{{', '.join(map(number, row))}, {int(outer)}}},\n" for row, outer in (*ribs, (5 * (0.0,), False))]
     return "\n".join(
         [
             define("TAPERED", int(geometry.contact_angle > 0.0), "0: cylindrical rollers")
-            + define("MOST_TRAVEL", shape.most_travel, "largest accepted displacement [m]")
-            + define("MOST_TILT", shape.most_tilt, "and tilt [rad]")
-            + define("ARM", float(abs(shape.levers[-1])), "about half of a roller's length [m]")
-            + define("HARD", dry.cup + dry.cone, "C of both lines [N/m^(10/9)]")
-            + define("DAMPING", dry.damping, "of a rib that carries load [N s/m]")
-            + define("DAMPING_TIME", dry.damping_time, "the same over its stiffness [s]")
             + define("CENTRIFUGAL", force.speed_loads(0.0, cage_speed=1.0)[0], "load at 1 rad/s of the cage [kg m]")
             + define("ROLLER_SPEED", geometry.roller_speed(1.0), "about its axis against the cage, by the rings'"),
             _row("INERTIA", (along, across), "along and across a roller [kg m2]")
-            + _row("AXIS", (math.cos(geometry.axis_angle), math.sin(geometry.axis_angle)), "of a roller")
-            + _row("CUP", shape.cup, "normal of the line: axial, radial")
-            + _row("CONE", shape.cone, "the same"),
-            _row("LEVER", shape.levers, "of the normals in slices [m]")
-            + _row("PROFILE", shape.profile - geometry.raceway_play, "depth of slices at either raceway [m]"),
-            "typedef struct rib {\n    double x, r, lever, play, coefficient;\n    int outer;\n} rib;\n\n"
-            f"/* The last one is none. */\nstatic const rib RIB[EHD_RIBS + 1] = {{\n{''.join(rows)}}};\n",
+            + _row("AXIS", (math.cos(geometry.axis_angle), math.sin(geometry.axis_angle)), "of a roller"),
+            _data(force, dry),
             private_law(laws),
         ]
+    )
+
+
+def _data(force: TaperedForce, dry: RollerLaws) -> str:
+    """The bearing as the kernel reads it, but for what `ehd_bearing_make` writes."""
+    shape = force.shape
+    ribs = rib_rows(shape.ribs) if force.ribs else np.zeros((1, RIB_NUMBERS))
+    pairs = "}, {".join(", ".join(map(number, pair)) for pair in (shape.cup, shape.cone))
+    play = force.geometry.raceway_play
+    sizes = f"EHD_ROLLERS, EHD_SLICES, EHD_RIBS, {number(shape.pitch_radius)}"
+    numbers = map(number, (play, shape.most_travel, shape.most_tilt, dry.cup + dry.cone, dry.damping, dry.damping_time))
+    return (
+        _row("LEVER", shape.levers, "of the normals in slices [m]")
+        + _row("PROFILE", shape.profile - play, "depth of slices at either raceway [m]")
+        + "/* Of each rib normal, lever, play, coefficient, and 1 on the outer ring. */\n"
+        + array("RIB", ribs)
+        + f"static const ehd_taper_data DATA = {{\n    {sizes},\n    {{{pairs}}},\n    {', '.join(numbers)},\n"
+        + "    RIB, LEVER, PROFILE, NULL, NULL};\n"
     )
 
 

@@ -30,9 +30,9 @@ typedef struct ehd_bearing {
     double cosine[EHD_ROLLERS], sine[EHD_ROLLERS]; /* directions of the rollers in the cage */
 } ehd_bearing;
 
-/* A roller in balance. Of a mirrored bearing all is that of the bearing in its mirror, x and turns the other way. */
+/* A roller in balance, to be read. Of a mirrored bearing all is that of the bearing in its mirror, x and turns the other way. */
 typedef struct ehd_roller {
-    int made;                              /* whether the next call starts here */
+    int made;                              /* whether it was found */
     double play;                           /* of each raceway, of the bearing [m] */
     double place[3], ring[3];              /* of roller and ring in its plane: axial, radial [m], turn [rad] */
     double share[3][3];                    /* derivative of the one by the other */
@@ -46,6 +46,10 @@ typedef struct ehd_roller {
  * by what Newton's method leaves, 1e-13 of the load. */
 typedef struct ehd_rollers {
     ehd_roller roller[EHD_ROLLERS];
+    double own[EHD_ROLLERS][49]; /* what the next call starts from */
+#if EHD_MEMORY
+    double held[EHD_ROLLERS][2][7][EHD_SLICES]; /* what the films of the slices of cone and cup hold over a step */
+#endif
 } ehd_rollers;
 
 /* Make a bearing.

@@ -1,9 +1,6 @@
 /* Films with memory of all slices: what they have kept of the steps before; begun by ehd_films_begin. */
 typedef struct ehd_films {
-    double force[EHD_ROLLERS][2][EHD_SLICES];    /* of their springs, cone and cup, of a whole roller [N] */
-    double spring[EHD_ROLLERS][2][EHD_SLICES];   /* stiffness [N/m] */
-    double time[EHD_ROLLERS][2][EHD_SLICES];     /* [s] */
-    double approach[EHD_ROLLERS][2][EHD_SLICES]; /* at the last step [m] */
+    double memory[EHD_ROLLERS][2][7][EHD_SLICES]; /* of cone and cup, rows as of EHD_TAPER_MEMORY in the source */
 } ehd_films;
 
 /* Films at rest, with the rollers of a call of ehd_bearing_call. */

@@ -1,0 +1,209 @@
+"""Structs and functions of tapered roller bearings in C, see `ehdmaps.kernel`: taper.h, pair_law.h."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from ctypes import Array, c_double, c_int64, c_void_p
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+
+import numpy as np
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.kernel.library import checked, function
+from ehdmaps.kernel.record import Record, numbers
+from mbs.bearings.balls.normal_law import NormalLaw
+
+if TYPE_CHECKING:
+    from mbs.bearings.tapered.tapered_kernel import Ribs, RollerLaws, TaperedShape
+
+RIB_NUMBERS, MOST_RIBS = 6, 4
+"""Numbers of a rib, see `rib_rows`, and most ribs that a roller may lean on."""
+
+INNER_LOAD, OUTER_LOAD, PLACE, RING = 3, 4, slice(9, 12), slice(12, 15)
+FIRST_RIB, FIRST_SHARE, CARRIED, COLUMNS = 15, 19, 28, 49
+"""Places of numbers that are kept of a roller, and how many there are: `ehd_taper_roller` in taper.h."""
+
+MEMORY = 7
+"""Rows of the memory of the slices of a line, see taper.h: what they hold over a step, and the part of f that is left
+after it; f [N], K [N/m] and theta [s] of a whole roller at its beginning."""
+
+ANSWER = 78
+"""Numbers of an answer: force (6,), stiffness and damping (6, 6) each."""
+
+
+class LineLaw(Record):
+    """Law of a line of a whole roller, ``ehd_pair_law``; without rows C is that of a dry line [N/m^(10/9)]."""
+
+    _fields_: ClassVar = [
+        ("coefficient", c_double),
+        ("damping", c_double),
+        ("damping_time", c_double),
+        ("centre", c_double),
+        ("scale", c_double),
+        ("first", c_double),
+        ("step", c_double),
+        ("rows", c_int64),
+        ("table", numbers),
+    ]
+    shapes: ClassVar = {"table": ("rows", 4)}
+
+
+class TaperedData(Record):
+    """What does not change of a bearing, ``ehd_taper_data``."""
+
+    _fields_: ClassVar = [
+        ("rollers", c_int64),
+        ("slices", c_int64),
+        ("ribs", c_int64),
+        ("pitch_radius", c_double),
+        ("cup", c_double * 2),
+        ("cone", c_double * 2),
+        ("play", c_double),
+        ("most_travel", c_double),
+        ("most_tilt", c_double),
+        ("hard", c_double),
+        ("damping", c_double),
+        ("damping_time", c_double),
+        ("rib", numbers),
+        ("lever", numbers),
+        ("profile", numbers),
+        ("cosine", numbers),
+        ("sine", numbers),
+    ]
+    shapes: ClassVar = {
+        "rib": ("ribs", RIB_NUMBERS),
+        "lever": ("slices",),
+        "profile": ("slices",),
+        "cosine": ("rollers",),
+        "sine": ("rollers",),
+    }
+
+
+class LineSprings(Record):
+    """Springs of films with memory of cone and cup, (rows, 2) each, ``ehd_taper_springs``.
+
+    They are K [N/m] and theta [s] of a whole roller; and those at another speed, with their weight.
+    """
+
+    _fields_: ClassVar = [
+        ("cone", numbers),
+        ("cup", numbers),
+        ("cone_other", numbers),
+        ("cup_other", numbers),
+        ("weight", c_double),
+    ]
+
+
+class Functions(NamedTuple):
+    """Functions of the library, which take addresses; what they write and return is said in taper_bearing.c.
+
+    Attributes
+    ----------
+    force : callable
+        Data, laws, pose, cage angle, loads, memory, rollers and answer; how many rollers carry, or what is wrong.
+    hold : callable
+        Rollers, slices, a step, memory.
+    go_on : callable
+        Data, laws, springs, rollers, memory.
+    """
+
+    force: Callable[..., int]
+    hold: Callable[..., None]
+    go_on: Callable[..., None]
+
+
+@functools.cache
+def functions() -> Functions:
+    """Return the functions, after structs were compared."""
+    checked(LineLaw, "ehd_pair_law")
+    checked(TaperedData, "ehd_taper_data")
+    checked(LineSprings, "ehd_taper_springs")
+    for name, size in (("roller", COLUMNS), ("answer", ANSWER)):
+        checked(c_double * size, f"ehd_taper_{name}")
+    place = c_void_p
+    return Functions(
+        function("ehd_taper_force", place, place, place, c_double, place, place, place, place),
+        function("ehd_taper_hold", c_int64, c_int64, c_double, place, result=None),
+        function("ehd_taper_go_on", place, place, place, place, place, result=None),
+    )
+
+
+def rib_rows(ribs: Ribs) -> FloatArray:
+    """Ribs as C reads them, (m, 6): normal, lever, play, coefficient, and 1 on the outer ring.
+
+    Parameters
+    ----------
+    ribs : Ribs
+        The ribs.
+    """
+    rows = [ribs.normals, ribs.levers, ribs.plays, ribs.laws, ribs.outer.astype(np.float64)]
+    return np.ascontiguousarray(np.column_stack(rows))
+
+
+def data_of(shape: TaperedShape, laws: RollerLaws) -> TaperedData:
+    """The numbers of a bearing.
+
+    Parameters
+    ----------
+    shape : TaperedShape
+        Lengths, with the play of the raceways in its profile.
+    laws : RollerLaws
+        Laws of the contacts.
+    """
+    return TaperedData(
+        rollers=shape.cos.size,
+        slices=shape.levers.size,
+        ribs=shape.ribs.levers.size,
+        pitch_radius=shape.pitch_radius,
+        cup=np.array(shape.cup),
+        cone=np.array(shape.cone),
+        most_travel=shape.most_travel,
+        most_tilt=shape.most_tilt,
+        hard=laws.cup + laws.cone,
+        damping=laws.damping,
+        damping_time=laws.damping_time,
+        rib=rib_rows(shape.ribs),
+        lever=shape.levers,
+        profile=shape.profile,
+        cosine=shape.cos,
+        sine=shape.sin,
+    )
+
+
+def line_law(film: NormalLaw, coefficient: float, laws: RollerLaws) -> LineLaw:
+    """The law of a line.
+
+    Parameters
+    ----------
+    film : NormalLaw
+        Table of a whole roller with a film; without a table for a dry line.
+    coefficient : float
+        C of a dry line [N/m^(10/9)].
+    laws : RollerLaws
+        Dampers of dry contacts.
+    """
+    rows = film.table.shape[0]
+    return LineLaw(
+        coefficient=film.coefficient if rows else coefficient,
+        damping=laws.damping,
+        damping_time=laws.damping_time,
+        centre=film.centre,
+        scale=film.scale,
+        first=film.first,
+        step=film.step,
+        rows=rows,
+        table=np.ascontiguousarray(film.table),
+    )
+
+
+def both_lines(laws: RollerLaws) -> tuple[Array[Any], tuple[LineLaw, LineLaw]]:
+    """Laws of cone and cup as C reads them, and what they must be kept with.
+
+    Parameters
+    ----------
+    laws : RollerLaws
+        Laws of the contacts.
+    """
+    kept = line_law(laws.cone_film, laws.cone, laws), line_law(laws.cup_film, laws.cup, laws)
+    return (LineLaw * 2)(*kept), kept
