@@ -9,6 +9,14 @@
 #define TAPER_CHUNK 32 /* slices at once */
 #define TAPER_LANES 4  /* slices that are added up side by side */
 
+/* In the library, not in what exports write: compiled for newer processors, too, of which the right one is taken. */
+#if defined(EHD_NUMBER) && defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) &&    \
+    !defined(__SANITIZE_ADDRESS__) && defined(__OPTIMIZE__)
+#define TAPER_CLONES __attribute__((target_clones("default", "arch=x86-64-v3")))
+#else
+#define TAPER_CLONES
+#endif
+
 /* Sums of a contact: load, load b; stiffness k, k b, k b b; the same of damping. b is the lever of a slice. */
 typedef struct taper_sums {
     double q, qb, k[3], c[3];
@@ -80,7 +88,7 @@ PAIR_INLINE double taper_exp(double x) {
 }
 
 /* Load and stiffness of slices of a dry line, times n. */
-static void taper_dry(const ehd_pair_law *law, int count, const double *g, double *load, double *stiffness) {
+PAIR_INLINE void taper_dry(const ehd_pair_law *law, int count, const double *g, double *load, double *stiffness) {
     for (int i = 0; i < count; i++) {
         const double pressed = taper_positive(g[i]), root = law->coefficient * taper_ninth_root(pressed + 1e-290);
         load[i] = root * pressed;
@@ -95,7 +103,7 @@ typedef struct taper_places {
     double within[TAPER_CHUNK], beyond[TAPER_CHUNK], root[TAPER_CHUNK];
 } taper_places;
 
-static void taper_places_of(const ehd_pair_law *law, int count, const double *g, taper_places *of) {
+PAIR_INLINE void taper_places_of(const ehd_pair_law *law, int count, const double *g, taper_places *of) {
     const double per_scale = 1.0 / law->scale, per_step = 1.0 / law->step, last = (double)law->rows - 2.0;
     double place[TAPER_CHUNK];
     for (int i = 0; i < count; i++) {
@@ -108,14 +116,14 @@ static void taper_places_of(const ehd_pair_law *law, int count, const double *g,
         of->row[i] = (int)row;
     }
     for (int i = 0; i < count; i++) {
-        const double t = place[i] - of->row[i], pressed = taper_positive(t), s = pressed - taper_positive(pressed - 1.0);
+        const double t = place[i] - of->row[i], behind = taper_positive(t), s = behind - taper_positive(behind - 1.0);
         of->within[i] = s;
         of->beyond[i] = t - s;
     }
 }
 
 /* Cubics between rows of a column of the table and its slope; straight beyond the ends. */
-static void taper_cubics(const double *table, int count, const taper_places *of, double *value, double *slope) {
+PAIR_INLINE void taper_cubics(const double *table, int count, const taper_places *of, double *value, double *slope) {
     double low[TAPER_CHUNK], high[TAPER_CHUNK], low_rise[TAPER_CHUNK], high_rise[TAPER_CHUNK];
     for (int i = 0; i < count; i++) {
         const double *row = table + 4 * (int64_t)of->row[i];
@@ -133,7 +141,7 @@ static void taper_cubics(const double *table, int count, const taper_places *of,
 }
 
 /* Load and stiffness at rest of slices with a film, times n. */
-static void taper_film(const ehd_pair_law *law, int count, const double *g, double *load, double *stiffness) {
+PAIR_INLINE void taper_film(const ehd_pair_law *law, int count, const double *g, double *load, double *stiffness) {
     const double factor = 1.5 / (law->scale * law->step);
     taper_places places;
     taper_places_of(law, count, g, &places);
@@ -146,8 +154,8 @@ static void taper_film(const ehd_pair_law *law, int count, const double *g, doub
 
 /* The same at the end of a step with memory: with p the load at rest and m the force that is held p + m, or
  * m + sqrt(m^2 + p^2) where it pulls. */
-static void taper_with_held(int count, const double *g, const double *pull, const double *spring, const double *at,
-                            double *load, double *stiffness) {
+PAIR_INLINE void taper_with_held(int count, const double *g, const double *pull, const double *spring,
+                                 const double *at, double *load, double *stiffness) {
     for (int i = 0; i < count; i++) {
         const double more = pull[i] + spring[i] * (g[i] - at[i]), pressed = taper_positive(more), p = load[i];
         const double pulled = more - pressed, size = sqrt(pulled * pulled + p * p), total = p * (p / (size - pulled));
@@ -162,13 +170,14 @@ PAIR_INLINE int taper_carries(const taper_line *line, int64_t i) {
 }
 
 /* Approaches of some slices of a line. */
-static void taper_approaches(const taper_line *line, int64_t first, int count, double *g) {
+PAIR_INLINE void taper_approaches(const taper_line *line, int64_t first, int count, double *g) {
     const double *b = line->lever + first, *depth = line->profile + first;
     for (int i = 0; i < count; i++) g[i] = line->approach + line->turn * b[i] - depth[i];
 }
 
 /* Add up load and stiffness of slices with their levers, each in as many sums as there are lanes. */
-static void taper_sum(int count, const double *load, const double *stiffness, const double *lever, double sum[5][TAPER_LANES]) {
+PAIR_INLINE void taper_sum(int count, const double *load, const double *stiffness, const double *lever,
+                           double sum[5][TAPER_LANES]) {
     int i = 0;
     for (; i + TAPER_LANES <= count; i += TAPER_LANES)
         for (int lane = 0; lane < TAPER_LANES; lane++) {
@@ -190,7 +199,7 @@ static void taper_sum(int count, const double *load, const double *stiffness, co
 }
 
 /* Sums of load and stiffness of a line. */
-static void taper_line_sums(const taper_line *line, taper_sums *of) {
+TAPER_CLONES static void taper_line_sums(const taper_line *line, taper_sums *of) {
     const ehd_pair_law *law = line->law;
     const double part = 1.0 / (double)line->slices;
     double g[TAPER_CHUNK], load[TAPER_CHUNK], stiffness[TAPER_CHUNK], sum[5][TAPER_LANES] = {{0.0}}, total[5];
@@ -220,7 +229,7 @@ static void taper_line_sums(const taper_line *line, taper_sums *of) {
 }
 
 /* Sums of the damping of a line whose other sums are known; slices with a spring have none of their own. */
-static void taper_line_dampers(const taper_line *line, taper_sums *of) {
+TAPER_CLONES static void taper_line_dampers(const taper_line *line, taper_sums *of) {
     const ehd_pair_law *law = line->law;
     const double *spring = line->memory ? line->memory + EHD_TAPER_SPRING * line->slices : NULL;
     const double part = 1.0 / (double)line->slices;

@@ -50,7 +50,7 @@ class LineLaw(Record):
 
 
 class TaperedData(Record):
-    """What does not change of a bearing, ``ehd_taper_data``."""
+    """Numbers of a bearing that do not change, ``ehd_taper_data``."""
 
     _fields_: ClassVar = [
         ("rollers", c_int64),
