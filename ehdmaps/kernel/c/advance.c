@@ -122,16 +122,6 @@ static step_room room_of(const ehd_run *run) {
     return r;
 }
 
-/* (M0 + by M1 + by^2 M2) times vector. */
-static void expanded_times(int64_t n, const double *matrices, double by, const double *x, double *out) {
-    for (int64_t i = 0; i < n; i++) {
-        const double *row = matrices + i * n;
-        const double t0 = dense_dot(n, row, x), t1 = dense_dot(n, row + n * n, x);
-        const double t2 = dense_dot(n, row + 2 * n * n, x);
-        out[i] = t0 + by * (t1 + by * t2);
-    }
-}
-
 /* M0 + by M1 + by^2 M2, of so many numbers each. */
 static void expanded(int64_t size, const double *matrices, double by, double *restrict out) {
     for (int64_t i = 0; i < size; i++)
@@ -219,7 +209,7 @@ static void begin_step(const ehd_run *run, const ehd_linear *linear, const ehd_n
     if (linear->turning && by != 0.0) {
         dense_times(n, n, linear->gyroscopic, r->v0, r->free);
         for (int64_t i = 0; i < n; i++) r->right[i] -= by * r->free[i];
-        expanded_times(n, linear->inverse, by, r->right, r->free);
+        dense_expanded_times(n, linear->inverse, by, r->right, r->free);
     } else {
         dense_times(n, n, linear->inverse, r->right, r->free);
     }
