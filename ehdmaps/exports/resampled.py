@@ -22,8 +22,7 @@ import numpy as np
 from scipy.interpolate import RegularGridInterpolator
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.maps.kernels.kernel import EDGE_TOLERANCE, LOAD_TOLERANCE
-from ehdmaps.maps.kernels.tables import COLDEST
+from ehdmaps.maps.kernels.tables import COLDEST, EDGE_TOLERANCE, LOAD_TOLERANCE
 from ehdmaps.maps.law import ContactLaw
 
 Quantity = Literal["load", "stiffness", "damping"]

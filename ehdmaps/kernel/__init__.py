@@ -18,6 +18,9 @@ numbers.h            what every part needs: the lesser and the greater of two nu
 status.[hc]          what calls find, and how it is called
 law.[hc]             contact law over approach, rate, speed and temperature: tables, points, ends
 cells.c              cells of tables that are the binary digits of a number
+law_many.[hc]        the law at many places, in blocks for vector instructions
+film_lines.[hc]      films of a table, read at many points
+rough.[hc]           load sharing of film and asperities
 film.[hc]            films with memory of one contact: equilibrium, steps in time, rates
 cylinder_law.c       the law at one speed and temperature, as a table for bearings with cylindrical rollers
 cylinder.[hc]        bearings with cylindrical rollers: force, stiffness and damping at a pose

@@ -9,6 +9,7 @@ reading        a map file as datasets: whether it is a map, and whether it was c
 edges          where the points of a map are known; films beyond its speeds and temperatures
 emap           `EHDMap`, `open_map`: a map file as a value; its curves over load, dense, for charts and tables
 usable         whether a law can be made from a map
+ends           loads at which the films of a map end, over speed and temperature
 film_field     `FilmField`: film of each contact at any load, speed and temperature; down to which load it is known
 grid_field     the film field of the map's own grid, and of lines that its contacts share or have alone
 backbone_plan  which lines are solved for a contact law besides the map
@@ -23,6 +24,7 @@ kernels        the room of these tables and the compiled code that reads them, a
 outside_calls  arguments of a law, and its points outside the map
 law_errors     bounds of the errors of a law, from what the map states
 law_films      below which load the films of a law are a guess, and how they lock
+law_in_c       the law in C, as Python calls it
 law            `ContactLaw`, `LawAtPoint`
 =============  =======================================================================================
 

@@ -19,15 +19,15 @@ from ehdmaps.maps.compilation import (
     highest_structural_load,
     structural_parameters,
 )
+from ehdmaps.maps.ends import ends_of
 from ehdmaps.maps.film_field import DryField, FilmField, LowLoads
-from ehdmaps.maps.kernels import bulk, kernel
 from ehdmaps.maps.kernels.film_response import FilmResponse
-from ehdmaps.maps.kernels.lines import ends_at
 from ehdmaps.maps.kernels.locked_film import LockedFactors
 from ehdmaps.maps.kernels.memory import FilmMemory, FilmState
-from ehdmaps.maps.kernels.tables import LOAD, ApproachTable, LawTable, Point
+from ehdmaps.maps.kernels.tables import LOAD, LOAD_TOLERANCE, ApproachTable, LawTable, Point
 from ehdmaps.maps.law_errors import LawBounds, LawChange, LawErrors, changed_table
 from ehdmaps.maps.law_films import LawFilms
+from ehdmaps.maps.law_in_c import LawInC, PointInC
 from ehdmaps.maps.outside_calls import Axis, Excursion, OutsideCalls, Range, broadcast, check_finite, floats
 from ehdmaps.maps.rolling_film import RollingFilm
 from ehdmaps.maps.rough_layer import GONE_BELOW
@@ -182,6 +182,31 @@ class ContactLaw:
         """`table` without the single contacts of a series: all that is needed without a centrifugal load."""
         return self._plain
 
+    @cached_property
+    def _plain_in_c(self) -> LawInC:
+        """The law in C without centrifugal loads."""
+        return LawInC(self._plain, centrifugal=False)
+
+    @cached_property
+    def _thrown_in_c(self) -> LawInC:
+        """The law in C with centrifugal loads."""
+        return LawInC(self.table, centrifugal=True)
+
+    def _in_c(self, centrifugal: bool) -> LawInC:
+        """The law in C, with or without centrifugal loads."""
+        return self._thrown_in_c if centrifugal else self._plain_in_c
+
+    @cached_property
+    def _told_below(self) -> float:
+        """Speed below which calls are noted as excursions [m/s]; 0 where none are."""
+        return 0.0 if self.continued is None else self.speed_range[0]
+
+    @cached_property
+    def _guessed_somewhere(self) -> float:
+        """Load from which on the film is no guess at any speed and temperature [N/m]; 0 where it is none."""
+        low = self._films.low_loads
+        return low.begins[1] if low is not None and low.guessed else 0.0
+
     def workspace(self) -> FloatArray:
         """Scratch for `kernel.collapse` and `kernel.evaluate`, one for each thread and each `Point` kept."""
         return _workspace(self.table)
@@ -209,7 +234,8 @@ class ContactLaw:
         """
         other = self.again()
         # Of the copy nothing is kept that follows from the table.
-        other.__dict__.pop("table", None)
+        for name in ("table", "_plain_in_c", "_thrown_in_c"):
+            other.__dict__.pop(name, None)
         own = changed_table(self._plain.own, change)
         other._plain = self._plain._replace(own=own, inner=own, outer=own)
         if self.kind == "series":
@@ -240,7 +266,7 @@ class ContactLaw:
         """Loads [N/m] up to which the films are known, (n,)."""
         table = self._plain
         held = np.clip(np.abs(speeds), table.lowest_speed, table.highest_speed)
-        return np.array([ends_at(table.ends, held[i : i + 1], temperatures[i : i + 1])[0, 0] for i in range(held.size)])
+        return ends_of(table.ends, held, temperatures)
 
     def guessed_below(self, entrainment_speed: float, temperature: float) -> float:
         """Load [N/m] below which the film is a guess, see `low_loads`; 0 where it is none.
@@ -321,6 +347,18 @@ class ContactLaw:
         OutsideMapError
             Outside the map, with the policy `error`.
         """
+        if (
+            isinstance(delta, float)
+            and isinstance(rate, float)
+            and isinstance(entrainment_speed, float)
+            and isinstance(temperature, float)
+            and isinstance(centrifugal_load, float)
+            and centrifugal_load == 0.0
+            and abs(entrainment_speed) >= self._told_below
+        ):
+            force = self._plain_in_c.force(delta, rate, entrainment_speed, temperature, 0.0)
+            if force is not None and not 0.0 < force[0] < self._guessed_somewhere:
+                return np.float64(force[0]), np.float64(force[1]), np.float64(force[2])
         named = floats(
             delta=delta,
             rate=rate,
@@ -330,10 +368,7 @@ class ContactLaw:
         )
         self._check_centrifugal(named["centrifugal_load"])
         shape, flat = broadcast(named)
-        table = self.table if np.any(named["centrifugal_load"]) else self._plain
-        forces = np.empty((3, flat[0].size))
-        counts = np.zeros(4, dtype=np.int64)
-        _evaluate_many(table, flat, forces, counts)
+        forces, counts = self._in_c(bool(np.any(named["centrifugal_load"]))).forces(flat)
         self._settle(counts, named, flat)
         self._outside.keep(self._films.guesses(forces[0], flat[2], flat[3]))
         self._note_slow(flat[2])
@@ -369,12 +404,10 @@ class ContactLaw:
         # One that lies outside the map is made again, to be counted again.
         if latest is not None and not latest.outside and latest.conditions == (u, T, q):
             return latest
-        table = self.table if centrifugal_load else self._plain
-        counts = np.zeros(4, dtype=np.int64)
-        point = kernel.collapse(table, _workspace(table), u, T, q, counts)
-        self._settle(counts, named, [])
+        made = self._in_c(q > 0.0).point(u, T, q)
+        self._settle(made.counts, named, [])
         self._note_slow(np.array([u]))
-        self._latest = LawAtPoint(u, T, q, point, self, bool(counts.any()))
+        self._latest = LawAtPoint(u, T, q, made, self, bool(made.counts.any()))
         return self._latest
 
     def advance(
@@ -469,7 +502,7 @@ class ContactLaw:
         highest = self.load_range[1]
         low, high = self.speed_range if self.speed_range[0] > 0.0 else (1.0, 1.0)
         # The policy `error` lets the error of the table pass without a kink.
-        held = highest if self.outside == "clamp" else highest * (1.0 + kernel.LOAD_TOLERANCE)
+        held = highest if self.outside == "clamp" else highest * (1.0 + LOAD_TOLERANCE)
         if self.outside == "asymptote":
             high = SPEED_REACH**share * high if high > low else high
             most = min(highest_structural_load(contact) for contact in self.contacts)
@@ -551,9 +584,7 @@ class ContactLaw:
 
     def _loads_at_rest(self, flat: Sequence[FloatArray]) -> FloatArray:
         """Loads on the inner contact of flat arguments, as if nothing moved [N/m]."""
-        forces, counts = np.empty((3, flat[0].size)), np.zeros(4, dtype=np.int64)
-        table = self.table if np.any(flat[4]) else self._plain
-        _evaluate_many(table, (flat[0], np.zeros_like(flat[0]), *flat[2:]), forces, counts)
+        forces, _ = self._in_c(bool(np.any(flat[4]))).forces((flat[0], np.zeros_like(flat[0]), *flat[2:]))
         loads: FloatArray = forces[0]
         return loads
 
@@ -566,8 +597,6 @@ class LawAtPoint:
     ----------
     entrainment_speed, temperature, centrifugal_load : float
         u [m/s], T [K], q [N/m].
-    point : Point
-        Arrays for `kernel.evaluate_at`.
     law : ContactLaw
         Where it comes from; it keeps the counts.
     outside : bool
@@ -577,7 +606,7 @@ class LawAtPoint:
     entrainment_speed: float
     temperature: float
     centrifugal_load: float
-    point: Point
+    _made: PointInC
     law: ContactLaw
     outside: bool
 
@@ -586,6 +615,11 @@ class LawAtPoint:
         thrown = f", {self.centrifugal_load:.4g} N/m centrifugal" if self.centrifugal_load else ""
         at = f"{self.entrainment_speed:.4g} m/s, {TEMPERATURE.text(self.temperature)}{thrown}"
         return f"<LawAtPoint {at}, of {self.law!r}>"
+
+    @property
+    def point(self) -> Point:
+        """Numbers and lines at this speed, temperature and centrifugal load, as compiled code reads them."""
+        return self._made.point
 
     @property
     def conditions(self) -> tuple[float, float, float]:
@@ -670,7 +704,7 @@ class LawAtPoint:
 
     def _check_loads(self, loads: FloatArray) -> None:
         """Count loads above the map, and raise where the law does."""
-        above = int(np.count_nonzero(loads > self.point.highest_load * (1.0 + kernel.LOAD_TOLERANCE)))
+        above = int(np.count_nonzero(loads > self.point.highest_load * (1.0 + LOAD_TOLERANCE)))
         if not above:
             return
         self.law.counts[LOAD] += above
@@ -689,11 +723,13 @@ class LawAtPoint:
 
     def evaluate(self, delta: npt.ArrayLike, rate: npt.ArrayLike) -> tuple[Any, Any, Any, bool]:
         """As a call, and whether any of it lies outside the map."""
+        if isinstance(delta, float) and isinstance(rate, float):
+            force = self._made.force(delta, rate)
+            if force is not None and not 0.0 < force[0] < self._guessed_below:
+                return *map(np.float64, force), self.outside
         named = floats(delta=delta, rate=rate)
         shape, flat = broadcast(named)
-        forces = np.empty((3, flat[0].size))
-        counts = np.zeros(4, dtype=np.int64)
-        bulk.evaluate_many_at(self.point, flat[0], flat[1], forces, counts)
+        forces, counts = self._made.forces(*flat)
         if np.any(counts):
             fixed = (self.entrainment_speed, self.temperature, self.centrifugal_load)
             flat += [np.full(flat[0].size, value) for value in fixed]
@@ -703,12 +739,6 @@ class LawAtPoint:
             self.law._outside.keep(Range("load", self._guessed_below, np.inf).excursions(low))
         w, dw_ddelta, dw_drate = (force.reshape(shape)[()] for force in forces)
         return w, dw_ddelta, dw_drate, self.outside or bool(counts.any())
-
-
-def _evaluate_many(table: LawTable, flat: Sequence[FloatArray], forces: FloatArray, counts: IntArray) -> None:
-    """Evaluate flat arrays of approach, rate, speed, temperature and centrifugal load."""
-    delta, rate, speed, temperature, centrifugal_load = flat
-    bulk.evaluate_many(table, _workspace(table), delta, rate, speed, temperature, centrifugal_load, forces, counts)
 
 
 def _workspace(table: LawTable) -> FloatArray:

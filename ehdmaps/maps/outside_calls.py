@@ -11,8 +11,7 @@ import numpy.typing as npt
 
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import InputError, OutsideMapError
-from ehdmaps.maps.kernels.kernel import EDGE_TOLERANCE, LOAD_TOLERANCE
-from ehdmaps.maps.kernels.tables import LOAD, NOT_FINITE, SPEED, TEMPERATURE
+from ehdmaps.maps.kernels.tables import EDGE_TOLERANCE, LOAD, LOAD_TOLERANCE, NOT_FINITE, SPEED, TEMPERATURE
 
 Axis = Literal["load", "entrainment_speed", "temperature"]
 Side = Literal["above", "below"]

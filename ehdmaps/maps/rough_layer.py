@@ -38,11 +38,13 @@ Wear 19, 1972, 91. Moes' film formula: `ehdmaps.physics.films`.
 
 from __future__ import annotations
 
+import ctypes
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
-from functools import lru_cache
-from typing import TYPE_CHECKING, NamedTuple
+from functools import cache, lru_cache
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -50,7 +52,8 @@ from scipy.interpolate import CubicSpline
 from scipy.special import erfcx, gamma, ndtr, pbdv
 
 from ehdmaps.arrays import BoolArray, FloatArray
-from ehdmaps.compiled import njit
+from ehdmaps.kernel import library
+from ehdmaps.kernel.record import Record, at, numbers
 from ehdmaps.maps.contact_curve import FilmSamples, dry_slope
 from ehdmaps.maps.schema import DIMS
 from ehdmaps.physics.contact import LineContact
@@ -161,8 +164,6 @@ TEMPERATURE_REACH = 40.0
 _FARTHEST, _DEEPEST = 14.0, -35.0
 _STEP = 0.02
 _THICK = 8.0
-_STEPS = 60
-_CLOSE = 1e-6
 _LEAST_OIL_NUMBER = 1e-6
 _LEAST_SHARE = 1e-3
 
@@ -214,142 +215,42 @@ def asperities_of(surface: Surface, reduced_modulus: float) -> Asperities:
     return Asperities(float(even[0]), distance, slope, np.log(gap), by_gap / gap * slope)
 
 
-@njit(error_model="numpy")
-def _along(start: float, values: FloatArray, slopes: FloatArray, place: float) -> tuple[float, float]:
-    """Value and slope of the cubics; straight beyond their ends."""
-    t = (place - start) / _STEP
-    last = float(values.size - 1)
-    inside = min(max(t, 0.0), last)
-    cell = min(int(inside), values.size - 2)
-    r = inside - cell
-    y0, y1, s0, s1 = values[cell], values[cell + 1], slopes[cell] * _STEP, slopes[cell + 1] * _STEP
-    bend = 3.0 * (y1 - y0) - 2.0 * s0 - s1
-    high = s0 + s1 - 2.0 * (y1 - y0)
-    value = y0 + r * (s0 + r * (bend + r * high))
-    slope = (s0 + r * (2.0 * bend + 3.0 * r * high)) / _STEP
-    return value + (t - inside) * _STEP * slope, slope
+class RoughRecord(Record):
+    """`ehd_rough_data` in C: asperities, the roughness, and how films share the load."""
+
+    _fields_: ClassVar = [
+        ("nodes", ctypes.c_int64),
+        ("start", ctypes.c_double),
+        ("step", ctypes.c_double),
+        *((name, numbers) for name in ("distance", "distance_slope", "log_gap", "log_gap_slope")),
+        *((name, ctypes.c_double) for name in ("sigma", "thick", "oil_exponent", "full_from")),
+    ]
+    shapes: ClassVar = dict.fromkeys(("distance", "distance_slope", "log_gap", "log_gap_slope"), ("nodes",))
+
+    @classmethod
+    def of(cls, asperities: Asperities, sigma: float) -> RoughRecord:
+        """Make it of the asperities of a surface.
+
+        Parameters
+        ----------
+        asperities : Asperities
+            Asperities of the surface.
+        sigma : float
+            Roughness of the surface [m].
+        """
+        arrays = {name: np.ascontiguousarray(value) for name, value in asperities._asdict().items() if name != "start"}
+        return cls(
+            nodes=asperities.distance.size, start=asperities.start, step=_STEP, **arrays,
+            sigma=sigma, thick=_THICK, oil_exponent=OIL_EXPONENT, full_from=FULL_FROM,
+        )  # fmt: skip
 
 
-@njit(error_model="numpy")
-def _moes(log_load: float, log_oil: float) -> tuple[float, float, float]:
-    """ln H of `ehdmaps.physics.films.moes_central`, and its derivatives by ln M and ln L."""
-    rigid, elastic = math.log(3.0) - log_load, math.log(2.621) - 0.2 * log_load
-    rigid_oil = math.log(1.287) + 2.0 / 3.0 * log_oil
-    elastic_oil = math.log(1.311) - 0.125 * log_load + 0.75 * log_oil
-    ratio = math.exp(elastic - rigid)
-    power = ratio ** (7.0 / 3.0)
-    log_q = rigid + 3.0 / 7.0 * math.log1p(power)
-    slope_q = -1.0 + 0.8 * power / (1.0 + power)
-    bend = math.exp(3.5 * (elastic_oil - rigid_oil))
-    part = bend / (1.0 + bend)
-    log_p = elastic_oil - 2.0 / 7.0 * math.log1p(bend)
-    slope_p, oil_slope_p = -0.125 * (1.0 - part), 0.75 - part / 12.0
-    blend = math.exp(-2.0 * ratio)
-    s, slope_s = (7.0 + 8.0 * blend) / 5.0, -(16.0 / 5.0) * 0.8 * ratio * blend
-    log_quotient = log_p - log_q
-    size = s * log_quotient
-    log_sum = size + math.log1p(math.exp(-size)) if size > 0.0 else math.log1p(math.exp(size))
-    weight = math.exp(size - log_sum)
-    slope = slope_q + weight * (slope_p - slope_q) + slope_s * (weight * log_quotient / s - log_sum / s**2)
-    return log_q + log_sum / s, slope, weight * oil_slope_p
-
-
-@njit(error_model="numpy")
-def _scaled(
-    log_load: float, log_oil: float, whole: float, whole_slope: float, log_share: float
-) -> tuple[float, float, float]:
-    """ln of h_f(g)/h_f(1), and its derivatives by ln g and by ln M, from ln H of the whole load and its slope.
-
-    `log_load`, `log_oil`: ln of Moes' M and L of the whole load; `log_share`: that of the share g of the film, <= 0.
-    """
-    shared, slope, oil_slope = _moes(log_load + 0.5 * log_share, log_oil + 0.75 * log_share)
-    square, half = math.exp(min(2.0 * log_load, 600.0)), FULL_FROM**2
-    exponent = OIL_EXPONENT * square / (square + half)
-    by_load = 2.0 * exponent * half / (square + half)
-    return (
-        shared - whole - (0.5 + exponent) * log_share,
-        0.5 * slope + 0.75 * oil_slope - 0.5 - exponent,
-        slope - whole_slope - by_load * log_share,
-    )
-
-
-@njit(error_model="numpy")
-def _softplus(s: float) -> float:
-    """ln(1 + e^s)."""
-    return s + math.log1p(math.exp(-s)) if s > 0.0 else math.log1p(math.exp(s))
-
-
-@njit(error_model="numpy")
-def _balance(
-    asperities: Asperities, log_film: float, log_pressure: float, log_load: float, log_oil: float, first: float
-) -> tuple[float, float, float]:
-    """Balance of film and asperities: s = ln(g/(1 - g)), and its derivatives by ln p along w ~ p^2, and by ln h.
-
-    At s, ln of the gap is above that of the scaled film by an excess, which rises with s: Newton's method within a
-    bracket.
-    """
-    whole, whole_slope, _ = _moes(log_load, log_oil)
-    left, right, s = -math.inf, math.inf, first
-    by_s = by_p = 1.0
-    reach = 1.0
-    for _ in range(_STEPS):
-        log_share, log_rest = -_softplus(-s), -_softplus(s)
-        share = math.exp(log_share)
-        gap, by_p = _along(asperities.start, asperities.log_gap, asperities.log_gap_slope, log_pressure + log_rest)
-        film, by_share, by_load = _scaled(log_load, log_oil, whole, whole_slope, log_share)
-        excess, by_s = gap - log_film - film, -by_p * share - by_share * (1.0 - share)
-        by_p -= 2.0 * by_load
-        if excess > 0.0:
-            right = s
-        else:
-            left = s
-        following = s - excess / by_s
-        if not left <= following <= right:
-            if left > -math.inf and right < math.inf:
-                following = 0.5 * (left + right)
-            else:
-                following = s - reach if excess > 0.0 else s + reach
-                reach *= 2.0
-        moved = abs(following - s)
-        s = following
-        if moved <= _CLOSE * (1.0 + abs(s)):  # the step after it would be its square
-            break
-    return s, -by_p / by_s, 1.0 / by_s
-
-
-@njit(error_model="numpy")
-def _shared(
-    asperities: Asperities, sigma: float, roots: FloatArray, pressures: FloatArray, pressure_slopes: FloatArray,
-    unit_loads: FloatArray, oils: FloatArray, film: FloatArray, slope: FloatArray, out: FloatArray,
-) -> None:  # fmt: skip
-    """Rough offset, its slope and the share g of all samples, into `out` (3, n, n_u, n_T).
-
-    `pressures` and `pressure_slopes` are ln of (pi/4) p_H and its slope by the root; ln M is `unit_loads` + 2 ln of the
-    pressure; `oils` is ln L.
-    """
-    n, n_u, n_t = film.shape
-    # where the sample before found the balance, and how it changes with the root
-    last, change = np.zeros((n_u, n_t)), np.zeros((n_u, n_t))
-    for i in range(n):
-        for j in range(n_u):
-            for k in range(n_t):
-                h = film[i, j, k]
-                out[0, i, j, k], out[1, i, j, k], out[2, i, j, k] = h, slope[i, j, k], 1.0
-                if h > _THICK * sigma:
-                    continue
-                log_p, by_root = pressures[i, j, k], pressure_slopes[i, j, k]
-                s_slope = share = log_rest = 0.0
-                if h > 0.0:  # without a film asperities carry everything
-                    first = last[j, k] + (change[j, k] * (roots[i, j, k] - roots[i - 1, j, k]) if i > 0 else 0.0)
-                    log_load = unit_loads[j, k] + 2.0 * log_p
-                    s, by_p, by_h = _balance(asperities, math.log(h / sigma), log_p, log_load, oils[j, k], first)
-                    s_slope = by_p * by_root + by_h * slope[i, j, k] / h
-                    share, log_rest = 1.0 / (1.0 + math.exp(-s)), -_softplus(s)
-                    last[j, k], change[j, k] = s, s_slope
-                x, by_log = _along(asperities.start, asperities.distance, asperities.distance_slope, log_p + log_rest)
-                out[0, i, j, k] = sigma * x
-                out[1, i, j, k] = sigma * by_log * (by_root - share * s_slope)
-                out[2, i, j, k] = share
+@cache
+def _share() -> Callable[..., None]:
+    """The function of the C library that shares the load."""
+    pointer, count = ctypes.c_void_p, ctypes.c_int64
+    library.checked(RoughRecord, "ehd_rough_data")
+    return library.function("ehd_rough_share", pointer, count, count, *[pointer] * 9, result=None)
 
 
 def _part_left(speed: FloatArray) -> FloatArray:
@@ -473,9 +374,10 @@ class RoughLayer:
                     load, oil = moes_groups(1.0, float(speed), state.viscosity, alpha, contact.radius, modulus)
                     loads[j, k], oils[j, k] = math.log(load * per_square), math.log(max(oil, _LEAST_OIL_NUMBER))
         out = np.empty((3, *film.shape))
-        roots, logs, by_root = (np.broadcast_to(values, film.shape).copy() for values in (root, logs, by_root))
-        films = np.ascontiguousarray(film), np.ascontiguousarray(slope)
-        _shared(asperities_of(self.surface, modulus), sigma, roots, logs, by_root, loads, oils, *films, out)
+        samples = [np.broadcast_to(values, film.shape).copy() for values in (root, logs, by_root)]
+        samples += [loads, oils, np.ascontiguousarray(film), np.ascontiguousarray(slope), np.empty((2, loads.size))]
+        data = RoughRecord.of(asperities_of(self.surface, modulus), sigma)
+        _share()(data.address, film.shape[0], loads.size, *map(at, samples), at(out))
         return SharedFilm(out[0], out[1], out[2])
 
 

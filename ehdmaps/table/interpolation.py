@@ -7,15 +7,17 @@ rest. Below the lowest L or P all are linear in it, as an oil of hardly any piez
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import ctypes
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 from scipy.interpolate import BSpline
 
 from ehdmaps.arrays import FloatArray, IndexArray
-from ehdmaps.compiled import njit
+from ehdmaps.kernel import library
+from ehdmaps.kernel.record import at
 from ehdmaps.table.fields import Field
 
 DEGREE = 3
@@ -162,41 +164,28 @@ def read(place: Place, coefficients: FloatArray, fields: Sequence[Field]) -> Flo
     return values
 
 
+@cache
+def _sums() -> Callable[..., None]:
+    """The function of the C library that sums coefficients up."""
+    pointer, count = ctypes.c_void_p, ctypes.c_int64
+    return library.function("ehd_table_sums", pointer, *[count] * 4, *[pointer] * 6, result=None)
+
+
 def _read(
     place: Place, part: slice | IndexArray, coefficients: FloatArray, zeta: bool = False, size: bool = False
 ) -> FloatArray:
     """Values of some points, or their derivatives along zeta or the size, shape (n, fields)."""
     by_zeta = (place.zeta_slope if zeta else place.zeta)[part]
     by_size = (place.size_slope if size else place.size)[part]
-    values = np.zeros((by_zeta.shape[0], coefficients.shape[-1]))
-    flat = coefficients.reshape(*coefficients.shape[:2], -1)
-    _sum_up(place.first[part], by_zeta, by_size, place.oil[part], flat, values)
+    sizes, oils, fields = coefficients.shape[1:]
+    values = np.empty((by_zeta.shape[0], fields))
+    numbers = [np.ascontiguousarray(part, np.float64) for part in (coefficients, by_zeta, by_size, place.oil[part])]
+    first = np.ascontiguousarray(place.first[part], np.int64)
+    room = np.empty(oils * fields)
+    _sums()(
+        at(numbers[0]), sizes, oils, fields, by_zeta.shape[0], at(first), *map(at, numbers[1:]), at(room), at(values)
+    )
     return values
-
-
-@njit(error_model="numpy")
-def _sum_up(
-    first: IndexArray,
-    by_zeta: FloatArray,
-    by_size: FloatArray,
-    by_oil: FloatArray,
-    coefficients: FloatArray,
-    sums: FloatArray,
-) -> None:
-    """Add to zeros (n, fields) the coefficients (n_zeta, n_size, oils fields) around each point times their weights."""
-    fields = sums.shape[1]
-    by_oils = np.empty(coefficients.shape[2])
-    for i in range(sums.shape[0]):
-        for k in range(by_oils.size):
-            by_oils[k] = 0.0
-        for p in range(by_zeta.shape[1]):
-            for q in range(by_size.shape[1]):
-                near, weight = coefficients[first[i, 0] + p, first[i, 1] + q], by_zeta[i, p] * by_size[i, q]
-                for k in range(by_oils.size):  # long enough for vector instructions
-                    by_oils[k] += weight * near[k]
-        for oil in range(by_oil.shape[1]):
-            for field in range(fields):
-                sums[i, field] += by_oil[i, oil] * by_oils[oil * fields + field]
 
 
 def _go_on(place: Place, coefficients: FloatArray, fields: Sequence[Field], values: FloatArray) -> None:

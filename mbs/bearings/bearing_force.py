@@ -26,7 +26,7 @@ import numpy.typing as npt
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.maps.kernels.kernel import LOAD_TOLERANCE
+from ehdmaps.maps.kernels.tables import LOAD_TOLERANCE
 from mbs.bearings.bearing import Bearing, RingForces, RingState, ring_forces
 from mbs.bearings.bearing_kernel import assemble_arrays
 from mbs.bearings.force_at_point import (

@@ -34,7 +34,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
-from ehdmaps.maps.kernels.kernel import LOAD_TOLERANCE
+from ehdmaps.maps.kernels.tables import LOAD_TOLERANCE
 from ehdmaps.physics.heat import inlet_shear_heating_factor, thermal_loading, viscosity_slope
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.solution import tip_words

@@ -15,8 +15,8 @@ import numpy.typing as npt
 from ehdmaps.arrays import FloatArray
 from ehdmaps.compiled import in_python
 from ehdmaps.errors import AnalysisError, InputError, MapError, OutsideMapError
-from ehdmaps.maps.kernels.kernel import LOAD_TOLERANCE, film_part
-from ehdmaps.maps.kernels.tables import POWER_LAW, Point
+from ehdmaps.maps.kernels.kernel import film_part
+from ehdmaps.maps.kernels.tables import LOAD_TOLERANCE, POWER_LAW, Point
 from mbs.bearings import slice_table as table
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_kernel import force_of_arrays, force_of_point_arrays

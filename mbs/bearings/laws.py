@@ -28,8 +28,8 @@ import numpy.typing as npt
 from ehdmaps.arrays import ByteArray, FloatArray, IntArray
 from ehdmaps.compiled import njit
 from ehdmaps.errors import InputError, SolverError
-from ehdmaps.maps.kernels.kernel import LOAD_TOLERANCE, collapse
-from ehdmaps.maps.kernels.tables import ApproachTable, LawTable, Point, nodes_of
+from ehdmaps.maps.kernels.kernel import collapse
+from ehdmaps.maps.kernels.tables import LOAD_TOLERANCE, ApproachTable, LawTable, Point, nodes_of
 from ehdmaps.physics.approach import ISO_LINE_CONSTANT, STEEL_REDUCED_MODULUS, StructuralLaw
 from ehdmaps.physics.contact import LineContact, unilateral_force
 from ehdmaps.physics.lubricant import Lubricant

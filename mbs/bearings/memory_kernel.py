@@ -26,7 +26,6 @@ from ehdmaps.arrays import BoolArray, FloatArray, IntArray
 from ehdmaps.compiled import njit
 from ehdmaps.copies import put
 from ehdmaps.errors import EhdmapsError
-from ehdmaps.maps.kernels.kernel import LOAD_TOLERANCE
 from ehdmaps.maps.kernels.lines import FAST
 from ehdmaps.maps.kernels.memory import FilmState, spent_by
 from ehdmaps.maps.kernels.memory_table import (
@@ -42,6 +41,7 @@ from ehdmaps.maps.kernels.memory_table import (
     rate_of,
     state_cell,
 )
+from ehdmaps.maps.kernels.tables import LOAD_TOLERANCE
 from ehdmaps.maps.law import ContactLaw
 from mbs.bearings.speed_tables import Course, Made, SpeedWindow
 from mbs.model.blocks import Moment

@@ -73,6 +73,7 @@ ALLOWED = {
         "ehdmaps.arrays",
         "ehdmaps.compiled",
         "ehdmaps.errors",
+        "ehdmaps.kernel",
         "ehdmaps.netcdf_structure",
         "ehdmaps.outputs",
         "ehdmaps.physics",

@@ -5,6 +5,8 @@ from __future__ import annotations
 import dataclasses
 import functools
 import math
+import pickle
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -12,9 +14,10 @@ from numba import njit
 from scipy.optimize import brentq
 
 from ehdmaps.errors import InputError, OutsideMapError
-from ehdmaps.maps.kernels import bulk, kernel
+from ehdmaps.maps.kernels import kernel
 from ehdmaps.maps.kernels.tables import LOAD, NOT_FINITE, SPEED, TEMPERATURE
 from ehdmaps.maps.law import LOAD_REACH, ContactLaw
+from ehdmaps.maps.law_in_c import LawInC
 from tests.cases.laws import CONTACTS, LINE, OIL, SMALL_FIELD, ValleyField, exact_law
 
 FULL_FIELD = ValleyField()
@@ -277,26 +280,56 @@ def test_compiled_code_can_call_the_law():
         assert not np.any(counts)
 
 
-def test_kernel_counts_what_is_outside():
+def test_what_is_outside_is_counted_by_cause():
     series = law(outside="clamp")
-    counts = np.zeros(4, dtype=np.int64)
-    workspace = series.workspace()
-    forces = np.empty((3, 6))
+    in_c = LawInC(series.table, centrifugal=True)
     delta = np.array([1e-3, 1e-6, 1e-6, np.nan, 1e-6, 1e-6])
     speed = np.array([1.0, 4.0, 1.0, 1.0, 1.0, -3.0])
     temperature = np.array([330.0, 330.0, 300.0, 330.0, 360.0, 330.0])
-    bulk.evaluate_many(series.table, workspace, delta, np.zeros(6), speed, temperature, np.zeros(6), forces, counts)
+    forces, counts = in_c.forces((delta, np.zeros(6), speed, temperature, np.zeros(6)))
     assert (counts[LOAD], counts[SPEED], counts[TEMPERATURE], counts[NOT_FINITE]) == (1, 1, 2, 1)
-    counts[:] = 0
+    workspace, counts = series.workspace(), np.zeros(4, dtype=np.int64)
     for i in range(6):
+        one = in_c.force(delta[i], 0.0, speed[i], temperature[i], 0.0)
+        assert one is None or i == 5
         got = kernel.evaluate(series.table, workspace, delta[i], 0.0, speed[i], temperature[i], 0.0, counts)
         assert np.array(got) == pytest.approx(forces[:, i], rel=1e-11, nan_ok=True)
     assert (counts[LOAD], counts[SPEED], counts[TEMPERATURE], counts[NOT_FINITE]) == (1, 1, 2, 1)
-    kernel.collapse(series.table, workspace, 1.0, 330.0, 2e6, counts)
-    assert counts[LOAD] == 2
-    point = kernel.collapse(series.table, workspace, 1.0, 330.0, 0.0, counts)
-    assert np.all(np.isnan(kernel.evaluate_at(point, np.inf, 0.0, counts)))
-    assert counts[NOT_FINITE] == 2
+    assert in_c.point(1.0, 330.0, 2e6).counts.tolist() == [1, 0, 0, 0]
+    point = in_c.point(1.0, 330.0, 0.0)
+    assert point.force(np.inf, 0.0) is None
+    forces, counts = point.forces(np.array([np.inf, 1e-6, 1e-3]), np.zeros(3))
+    assert np.all(np.isnan(forces[:, 0])) and counts.tolist() == [1, 0, 0, 1]
+    assert point.force(1e-6, 0.0) == pytest.approx(forces[:, 1], rel=1e-12)
+
+
+def test_a_law_is_pickled_with_its_points():
+    series = law(outside="clamp")
+    at = series.at(1.0, 330.0, 200.0)
+    again, point = pickle.loads(pickle.dumps((series, at)))
+    assert again(1e-6, 1e-4, 1.0, 330.0, 200.0) == series(1e-6, 1e-4, 1.0, 330.0, 200.0) == point(1e-6, 1e-4)
+    assert point.law.outside_counts == again.outside_counts
+
+
+def test_numbers_and_arrays_have_the_same_law():
+    series = law()
+    for q in (0.0, 200.0):
+        one = series(1e-6, 1e-4, 1.0, 330.0, q)
+        assert [type(value) for value in one] == [np.float64] * 3
+        assert one == pytest.approx([float(v[0]) for v in series(np.array([1e-6]), 1e-4, 1.0, 330.0, q)], rel=1e-11)
+        assert series.at(1.0, 330.0, q)(1e-6, 1e-4) == pytest.approx(one, rel=1e-11)
+
+
+def test_threads_call_one_law():
+    series = law()
+    delta = np.linspace(1e-6, 1e-5, 50)
+    wanted = [series(float(d), 1e-4, 0.05, 330.0) for d in delta]
+
+    def all_of_them(_):
+        return [series(float(d), 1e-4, 0.05, 330.0) for d in delta]
+
+    with ThreadPoolExecutor(4) as pool:
+        assert all(found == wanted for found in pool.map(all_of_them, range(8)))
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import functools
 import math
 from dataclasses import replace
@@ -13,9 +14,10 @@ from scipy.optimize import brentq
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import SolverError
 from ehdmaps.jobs.instruments.contact_ways import solved_sharing
+from ehdmaps.kernel import library
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.law import ContactLaw
-from ehdmaps.maps.rough_layer import RoughLayer, _moes, _scaled, asperity_pressure
+from ehdmaps.maps.rough_layer import RoughLayer, RoughRecord, asperities_of, asperity_pressure
 from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.films import moes_central_and_slope
 from ehdmaps.physics.hertz import max_pressure
@@ -29,6 +31,25 @@ ROUGH = Surface(2e-7)
 ELASTIC = Surface(2e-7, hardness=1e11)
 CELSIUS_60 = 333.15
 SOLVER = ReynoldsSolver()
+
+
+def _moes(log_load: float, log_oil: float) -> list[float]:
+    """ln H of the film formula in C, and its derivatives by ln M and ln L."""
+    found = (ctypes.c_double * 3)()
+    library.function("ehd_rough_moes", ctypes.c_double, ctypes.c_double, ctypes.c_void_p, result=None)(
+        log_load, log_oil, ctypes.addressof(found)
+    )
+    return list(found)
+
+
+def _scaled(log_load: float, log_oil: float, whole: float, whole_slope: float, log_share: float) -> list[float]:
+    """ln of the scaled film in C, and its derivatives by ln g and ln M."""
+    found = (ctypes.c_double * 3)()
+    data = RoughRecord.of(asperities_of(ROUGH, INNER.reduced_modulus), ROUGH.roughness)
+    library.function("ehd_rough_scaled", ctypes.c_void_p, *[ctypes.c_double] * 5, ctypes.c_void_p, result=None)(
+        data.address, log_load, log_oil, whole, whole_slope, log_share, ctypes.addressof(found)
+    )
+    return list(found)
 
 
 @functools.cache

@@ -12,6 +12,9 @@
 #include "numbers.h"
 #include "status.h"
 #include "law.h"
+#include "law_many.h"
+#include "film_lines.h"
+#include "rough.h"
 #include "film.h"
 #include "cylinder.h"
 #include "cylinder_films.h"
@@ -19,10 +22,19 @@
 /* law */
 #include "status.c"
 #include "law.c"
+#include "cells.c"
+#include "law_many.c"
 EHD_SIZE_OF(ehd_law_data)
 
+size_t ehd_law_point_head_size(void);
+size_t ehd_law_point_head_size(void) { return sizeof(ehd_law_point); }
+
+/* films that tables of laws are made from */
+#include "film_lines.c"
+#include "rough.c"
+EHD_SIZE_OF(ehd_rough_data)
+
 /* films with memory */
-#include "cells.c"
 #include "film.c"
 EHD_SIZE_OF(ehd_film_data)
 

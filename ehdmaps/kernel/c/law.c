@@ -232,6 +232,17 @@ static contact_state table_state(const ehd_law_table *table, double approach, do
     return state_of(value[0], slope[0] * scale, value[1], slope[1] * scale);
 }
 
+/* Load of a line at an approach, and its slope: all that an equilibrium of contacts asks for. */
+static double line_load(const ehd_line *line, double approach, double *slope) {
+    double ds, dg;
+    const double s = stretched((approach - line->offset) * line->inverse_scale, &ds);
+    const double x = place_within((s - line->start) * line->step, line->cells);
+    const int cell = cell_of(x, line->cells);
+    const double g = most(cubic_at(line_cells(line)[cell][0], x - cell, &dg), 0.0);
+    *slope = 3.0 * g * g * (dg * (line->step * ds * line->inverse_scale));
+    return g * g * g;
+}
+
 /* Approach at which a line carries a load [m]; for zero the highest one without. */
 static double line_approach(const ehd_line *line, double load) {
     const double wanted = pow(load, 1.0 / 3.0);
@@ -284,34 +295,36 @@ static contact_state balanced_state(const ehd_law_point *point, double approach)
     const ehd_line *inner = &point->inner, *outer = &point->outer;
     const double q = point->centrifugal_load, scale = 1.0 / inner->inverse_scale;
     if (approach <= point->lift_off) return NO_LOAD;
-    double low = line_approach(inner, 0.0), high = approach - line_approach(outer, q), a;
-    contact_state i = line_state(inner, high), o = line_state(outer, point->outer_start);
+    double low = point->inner_lift_off, high = approach - point->outer_start, a, di, dwo;
+    double wi = line_load(inner, high, &di), wo;
     int last = 0;
-    if (i.w < 0.3 * q) { /* the outer contact hardly moves */
-        a = high - i.w / (i.dw + o.dw);
+    if (wi < 0.3 * q) { /* the outer contact hardly moves */
+        line_load(outer, point->outer_start, &dwo);
+        a = high - wi / (di + dwo);
     } else { /* both alike, as their scales are */
         const double share = outer->inverse_scale / (inner->inverse_scale + outer->inverse_scale);
         a = inner->offset + (approach - inner->offset - outer->offset) * share;
     }
     for (int n = 0; n < MOST_STEPS; n++) {
         if (!(low <= a && a <= high)) a = 0.5 * (low + high);
-        i = line_state(inner, a);
-        o = line_state(outer, approach - a);
         if (last) break;
-        if (o.w <= 0.0) {
+        wi = line_load(inner, a, &di);
+        wo = line_load(outer, approach - a, &dwo);
+        if (wo <= 0.0) {
             high = a;
             a = 0.5 * (low + high);
             continue;
         }
-        const double excess = log((i.w + q) / o.w);
+        const double excess = log((wi + q) / wo);
         if (excess > 0.0)
             high = a;
         else
             low = a;
-        const double step = excess / (i.dw / (i.w + q) + o.dw / o.w);
+        const double step = excess / (di / (wi + q) + dwo / wo);
         a -= step;
         last = fabs(step) <= 1e-9 * (fabs(a) + scale);
     }
+    const contact_state i = line_state(inner, a), o = line_state(outer, approach - a);
     if (i.w < LEAST_LOAD || o.w < LEAST_LOAD) return NO_LOAD;
     const double sum = i.dw + o.dw, part_i = o.dw / sum, part_o = i.dw / sum;
     const double bend_i = line_curvature(inner, a, i.dw) * part_i;
@@ -404,7 +417,7 @@ static int outside_map(const ehd_law_data *D, double speed, double T) {
 }
 
 int ehd_law_make(const ehd_law_data *D, double u, double T, double q, ehd_law_point *point) {
-    double compliance, held, log_speed, end;
+    double compliance, held, log_speed, end, held_load;
     if (!point) return EHD_BAD_ARGUMENT;
     point->data = D;
     point->entrainment_speed = fabs(u);
@@ -421,12 +434,14 @@ int ehd_law_make(const ehd_law_data *D, double u, double T, double q, ehd_law_po
     log_speed = log(most(least(fabs(u), D->highest_speed), D->lowest_speed));
     point->film = film_part(D, least(fabs(u), D->highest_speed));
     end = end_at(D, log_speed, T);
-    if (q >= end) {
+    held_load = D->held_load * (end / D->highest_load);
+    if (q >= (refuses(D, EHD_BAD_CENTRIFUGAL) ? end : held_load)) { /* as where points of the map are missing */
         point->status |= EHD_BAD_CENTRIFUGAL;
-        return (int)point->status;
+        if (refuses(D, (int)point->status)) return (int)point->status;
+        point->centrifugal_load = q = 0.5 * held_load;
     }
     point->highest_load = end - q;
-    point->held_load = D->held_load * (end / D->highest_load) - q;
+    point->held_load = held_load - q;
     uintptr_t at = collapse(&D->own, log_speed, T, &point->own, (uintptr_t)(point + 1));
     point->inner_lift_off = point->outer_start = 0.0;
     point->lift_off = line_approach(&point->own, 0.0);
@@ -454,22 +469,23 @@ static int settled(const ehd_law_data *D, int status, ehd_force *force) {
     return status;
 }
 
+/* Force at a point, of finite numbers; whether the load is above the map. */
+static int point_force(const ehd_law_point *point, double approach, double rate, ehd_force *force) {
+    const contact_state found = held_state(point, approach);
+    force->load = force->stiffness = force->damping = 0.0;
+    if (found.w <= 0.0) return EHD_OK;
+    unilateral(found.w, found.dw, found.w * found.ratio, found.dc, rate, force);
+    return found.w > point->highest_load * (1.0 + LOAD_TOLERANCE) ? EHD_ABOVE_LOAD : EHD_OK;
+}
+
 int ehd_law_force(const ehd_law_point *point, double approach, double rate, ehd_force *force) {
-    contact_state found;
     if (!point || !force) return EHD_BAD_ARGUMENT;
     const ehd_law_data *D = point->data;
-    int status = (int)point->status;
+    const int status = (int)point->status;
     no_force(force);
     if (refuses(D, status)) return status;
     if (!(is_finite(approach) && is_finite(rate))) return status | EHD_NOT_FINITE;
-    found = held_state(point, approach);
-    if (found.w <= 0.0) {
-        force->load = force->stiffness = force->damping = 0.0;
-        return status;
-    }
-    if (found.w > point->highest_load * (1.0 + LOAD_TOLERANCE)) status |= EHD_ABOVE_LOAD;
-    unilateral(found.w, found.dw, found.w * found.ratio, found.dc, rate, force);
-    return settled(D, status, force);
+    return settled(D, status | point_force(point, approach, rate, force), force);
 }
 
 int ehd_law_call(const ehd_law_data *D, double approach, double rate, double u, double T, double q,

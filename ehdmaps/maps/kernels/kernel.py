@@ -12,7 +12,7 @@ A bearing calls `collapse` once a time step and `evaluate_at` once a slice::
     for j in range(slices):
         w, dw_ddelta, dw_drate = evaluate_at(point, delta[j], rate[j], counts)
 
-or `ehdmaps.maps.kernels.bulk.evaluate_many_at` for all slices together, which is faster still.
+Python calls the law in C, see `ehdmaps.maps.law_in_c`; this text of it is for kernels that numba compiles.
 
 `counts` (int64, 4) is counted up at `LOAD`, `SPEED` or `TEMPERATURE` for arguments outside the map, whatever the
 policy of the law, and at `NOT_FINITE`; speed and temperature are then held at the edge, and above the held load
@@ -42,8 +42,10 @@ from ehdmaps.maps.kernels.lines import (
 )
 from ehdmaps.maps.kernels.roller_balance import LEAST_LOAD, balanced_state
 from ehdmaps.maps.kernels.tables import (
+    EDGE_TOLERANCE,
     HALF_SPACE,
     LOAD,
+    LOAD_TOLERANCE,
     NOT_FINITE,
     SPEED,
     TEMPERATURE,
@@ -51,12 +53,6 @@ from ehdmaps.maps.kernels.tables import (
     Point,
 )
 from ehdmaps.physics.contact import Force
-
-LOAD_TOLERANCE = 1e-3
-"""Part of the highest load by which a load may pass it: the error of a table, not of a caller."""
-
-EDGE_TOLERANCE = 1e-6
-"""Part of the highest speed, and of the temperatures, by which they may be passed: single precision."""
 
 _STEPS = 100
 

@@ -6,8 +6,7 @@ exp and log are own ones that the compiler can put into vector instructions, wit
 reductions with Taylor series long enough for double precision, exp to 4e-16 relative for |x| < 700, log to 3e-16
 absolute or relative for positive normal numbers.
 
-An array (1 + n_u, 1 + n_T) holds the loads at which films end [N/m], with ln u of their speeds in the first column and
-their temperatures [K] in the first row. Between these ln of the load is straight over ln u and T, outside it is held.
+Loads at which films end are arrays as of `ehdmaps.maps.ends`.
 """
 
 from __future__ import annotations
@@ -388,17 +387,6 @@ def line_approach(line: Line, load: float) -> float:
     return approach
 
 
-def one_end(load: float) -> FloatArray:
-    """Ends that are the same load at all speeds and temperatures.
-
-    Parameters
-    ----------
-    load : float
-        [N/m].
-    """
-    return np.array([[0.0, 0.0], [0.0, load]])
-
-
 @njit(error_model="numpy", fastmath=FAST)
 def _between(nodes: FloatArray, place: float) -> tuple[int, int, float]:
     """Nodes beside a place, and the weight of the second one."""
@@ -432,27 +420,4 @@ def end_at(ends: FloatArray, log_speed: float, temperature: float) -> float:
     low = (1.0 - b) * log(corner) + b * log(ends[1 + i, 1 + on])
     high = (1.0 - b) * log(ends[1 + up, 1 + j]) + b * log(ends[1 + up, 1 + on])
     found: float = exp((1.0 - a) * low + a * high)
-    return found
-
-
-@njit(error_model="numpy")
-def _fill(ends: FloatArray, log_speeds: FloatArray, temperatures: FloatArray, found: FloatArray) -> None:
-    """Loads at which films end, into `found` (n_u, n_T)."""
-    for i in range(log_speeds.size):
-        for j in range(temperatures.size):
-            found[i, j] = end_at(ends, log_speeds[i], temperatures[j])
-
-
-def ends_at(ends: FloatArray, speeds: FloatArray, temperatures: FloatArray) -> FloatArray:
-    """Loads at which films end [N/m], (n_u, n_T).
-
-    Parameters
-    ----------
-    ends : array
-        Ends of the loads.
-    speeds, temperatures : array (n_u,), (n_T,)
-        u [m/s], > 0, and T [K].
-    """
-    found = np.empty((len(speeds), len(temperatures)))
-    _fill(ends, np.log(np.asarray(speeds, np.float64)), np.asarray(temperatures, np.float64), found)
     return found

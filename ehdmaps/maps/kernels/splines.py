@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import ctypes
+import functools
 import math
+from collections.abc import Callable
 
 import numpy as np
 from scipy.interpolate import make_interp_spline
 from scipy.linalg.lapack import dgtsv
 
 from ehdmaps.arrays import FloatArray, IntArray
-from ehdmaps.compiled import njit
+from ehdmaps.kernel import library
+from ehdmaps.kernel.record import at
 
 
 def spline_coefficients(values: FloatArray, axis: int, degree: int) -> FloatArray:
@@ -127,7 +131,15 @@ def hermite(
     return value, slope
 
 
-@njit(error_model="numpy")
+@functools.cache
+def _lines() -> Callable[..., None]:
+    """The function of the C library that mixes lines."""
+    pointer, count, number = ctypes.c_void_p, ctypes.c_int64, ctypes.c_double
+    return library.function(
+        "ehd_table_lines", pointer, count, number, number, count, pointer, pointer, count, pointer, pointer, result=None
+    )
+
+
 def mix_lines(
     lattice: FloatArray,
     first: float,
@@ -152,21 +164,9 @@ def mix_lines(
     out : ndarray, shape (3, n)
         Filled with ln(film number), its slope, scaled loss.
     """
-    last = lattice.shape[1] - 2
-    for i in range(zeta.size):
-        place = (zeta[i] - first) / spacing
-        cell = min(max(int(np.floor(place)), 0), last)
-        t = min(max(place - cell, 0.0), 1.0)
-        beyond = (place - cell - t) * spacing
-        s = 1.0 - t
-        value_0, value_1 = s * s * (1.0 + 2.0 * t), t * t * (3.0 - 2.0 * t)
-        slope_0, slope_1 = t * s * s * spacing, -t * t * s * spacing
-        film, rate, loss = 0.0, 0.0, 0.0
-        for m in range(lines.size):
-            a, b = lattice[lines[m], cell], lattice[lines[m], cell + 1]
-            here = value_0 * a[1] + value_1 * b[1] + slope_0 * a[2] + slope_1 * b[2]
-            film += weights[m] * (value_0 * a[0] + value_1 * b[0] + slope_0 * a[1] + slope_1 * b[1] + here * beyond)
-            rate += weights[m] * here
-            end = (b[4] if t == 1.0 else a[4]) * beyond
-            loss += weights[m] * (value_0 * a[3] + value_1 * b[3] + slope_0 * a[4] + slope_1 * b[4] + end)
-        out[0, i], out[1, i], out[2, i] = film, rate, loss
+    lattice, weights, zeta = (np.ascontiguousarray(part, np.float64) for part in (lattice, weights, zeta))
+    lines, into = np.ascontiguousarray(lines, np.int64), np.empty(out.shape)
+    _lines()(
+        at(lattice), lattice.shape[1], first, spacing, lines.size, at(lines), at(weights), zeta.size, at(zeta), at(into)
+    )
+    out[...] = into

@@ -44,6 +44,12 @@ def last_of(nodes: FloatArray) -> float:
 LOAD, SPEED, TEMPERATURE, NOT_FINITE = 0, 1, 2, 3
 """Places in an array of counts: calls outside by cause, and values that are no finite numbers."""
 
+LOAD_TOLERANCE = 1e-3
+"""Part of the highest load by which a load may pass it: the error of a table, not of a caller."""
+
+EDGE_TOLERANCE = 1e-6
+"""Part of the highest speed, and of the temperatures, by which they may be passed: single precision."""
+
 POWER_LAW, HALF_SPACE = 0.0, 1.0
 """Kinds of structural law in `LawTable.structure`."""
 
@@ -96,7 +102,7 @@ class LawTable(NamedTuple):
     structure : array (n, 3)
         Structural law of each contact: kind, and two parameters.
     ends : array (1 + n_u, 1 + n_T)
-        Mapped loads, see `ehdmaps.maps.kernels.lines`; those above are counted.
+        Mapped loads, see `ehdmaps.maps.ends`; those above are counted.
     film_speed : float
         Speed below which the film is faded [m/s]; inf for a map without films, 0 where it goes over into asperities.
     lowest_speed, highest_speed : float

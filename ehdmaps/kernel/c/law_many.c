@@ -1,0 +1,275 @@
+/* ---------------------------------------------------------------------------------------------------------------------
+ * The contact law at many places
+ *
+ * Logarithm and exponential are own ones without a branch or a call: the textbook reductions with Taylor series long
+ * enough for double precision, exp to 4e-16 relative for |x| < 700, log to 3e-16 absolute or relative for positive
+ * normal numbers. Nothing is contracted to fused operations: all processors give the same numbers.
+ * ------------------------------------------------------------------------------------------------------------------ */
+
+/* Versions of a function for several processors, of which the fastest is taken when the program is loaded. */
+#if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) &&                           \
+    !defined(__SANITIZE_ADDRESS__) && defined(__OPTIMIZE__)
+#define EHD_CLONES __attribute__((target_clones("default", "arch=x86-64-v3")))
+#else
+#define EHD_CLONES
+#endif
+
+#define MANY 128 /* places in a block */
+
+/* Causes in counts. */
+enum { COUNT_LOAD, COUNT_SPEED, COUNT_TEMPERATURE, COUNT_NOT_FINITE };
+
+/* Splines of a block and what they are made from. */
+typedef struct law_block {
+    double place[MANY], scale[MANY], g[MANY], dg[MANY], q[MANY], dq[MANY];
+} law_block;
+
+/* Nearest nodes of a block along an axis, and the weights of the quadratic B-splines there. */
+typedef struct block_nodes {
+    double low[MANY], middle[MANY], high[MANY];
+    int32_t first[MANY];
+} block_nodes;
+
+/* One of two numbers: compilers make no branch of it. */
+static inline double chosen(int first, double yes, double no) {
+    const uint64_t mask = UINT64_C(0) - (uint64_t)first;
+    return number_of_bits((bits_of(yes) & mask) | (bits_of(no) & ~mask));
+}
+
+static inline double plain_log(double x) {
+    const uint64_t one = UINT64_C(0x3FF0000000000000), root_half = UINT64_C(0x3FE6A09E667F3BCD), bits = bits_of(x);
+    const uint64_t exponent = (bits + (one - root_half)) >> 52;
+    const double e = number_of_bits(exponent | UINT64_C(0x4330000000000000)) - (4503599627370496.0 + 1023.0);
+    const double m = number_of_bits(bits + one - (exponent << 52));
+    const double f = (m - 1.0) / (m + 1.0), z = f * f, z2 = z * z, z4 = z2 * z2;
+    const double low = (2.0 / 3.0 + z * (2.0 / 5.0)) + z2 * (2.0 / 7.0 + z * (2.0 / 9.0));
+    const double high = (2.0 / 11.0 + z * (2.0 / 13.0)) + z2 * (2.0 / 15.0 + z * (2.0 / 17.0));
+    const double series = low + z4 * (high + z4 * (2.0 / 19.0 + z * (2.0 / 21.0)));
+    return e * 6.93147180369123816490e-01 + (e * 1.90821492927058770002e-10 + f * (2.0 + z * series));
+}
+
+/* Held beyond |x| = 700. */
+static inline double plain_exp(double x) {
+    x = chosen(x > -700.0, x, -700.0);
+    x = chosen(x < 700.0, x, 700.0);
+    const double shifted = x * 1.4426950408889634 + 6755399441055744.0, n = shifted - 6755399441055744.0;
+    const double r = (x - n * 6.93147180369123816490e-01) - n * 1.90821492927058770002e-10, r2 = r * r, r4 = r2 * r2;
+    const double low = (1.0 + r) + r2 * (0.5 + r * (1.0 / 6.0));
+    const double middle = (1.0 / 24.0 + r * (1.0 / 120.0)) + r2 * (1.0 / 720.0 + r * (1.0 / 5040.0));
+    const double high = (1.0 / 40320.0 + r * (1.0 / 362880.0)) + r2 * (1.0 / 3628800.0 + r * (1.0 / 39916800.0));
+    const double last = 1.0 / 479001600.0 + r * (1.0 / 6227020800.0);
+    const double series = low + r4 * (middle + r4 * (high + r4 * last));
+    return series * number_of_bits((bits_of(shifted) + 1023) << 52);
+}
+
+/* Places on the stretched axis, and their derivatives by the approach. */
+static inline void block_places(int n, const double *restrict approach, const double *restrict offset,
+                                const double *restrict inverse_scale, double start, double step, double cells,
+                                double *restrict place, double *restrict scale) {
+    for (int i = 0; i < n; i++) {
+        const double z = (approach[i] - offset[i]) * inverse_scale[i], root = sqrt(1.0 + z * z);
+        const double size = plain_log(fabs(z) + root), s = z >= 0.0 ? size : -size, x = (s - start) * step;
+        const double above = x > 0.0 ? x : 0.0;
+        scale[i] = step * inverse_scale[i] / root;
+        place[i] = above < cells ? above : cells;
+    }
+}
+
+/* Forces from splines and their slopes, as state_of and unilateral have them. */
+static inline void block_forces(int n, const law_block *restrict of, const double *restrict rate, double *restrict w,
+                                double *restrict k, double *restrict c) {
+    for (int i = 0; i < n; i++) {
+        const double g = chosen(of->g[i] > 0.0, of->g[i], 0.0), load = g * g * g;
+        const double slope = 3.0 * g * g * (of->dg[i] * of->scale[i]);
+        const double ratio = plain_exp(of->q[i]), bend = ratio * (slope + load * (of->dq[i] * of->scale[i]));
+        const double damping = load * ratio, part = damping * rate[i];
+        const int parting = part < -0.5 * load;
+        const double by = load / chosen(parting, part, 1.0);
+        const double near_load = load + part, far_load = -0.25 * load * by;
+        const double near_slope = slope + bend * rate[i], far_slope = 0.25 * by * (by * bend * rate[i] - 2.0 * slope);
+        const double far_damping = 0.25 * by * by * damping;
+        w[i] = chosen(parting, far_load, near_load);
+        k[i] = chosen(parting, far_slope, near_slope);
+        c[i] = chosen(parting, far_damping, damping);
+    }
+}
+
+/* Splines of a line and their slopes. */
+static inline void line_splines(const ehd_line *line, int n, law_block *of) {
+    double(*cells)[2][4] = line_cells(line);
+    const double last = (double)(line->cells > 1 ? line->cells - 1 : 0);
+    for (int i = 0; i < n; i++) {
+        const double place = of->place[i];
+        const int cell = (int)(place < last ? place : last);
+        const double t = place - cell, *a = cells[cell][0], *b = cells[cell][1];
+        of->g[i] = a[0] + t * (a[1] + t * (a[2] + t * a[3]));
+        of->dg[i] = a[1] + t * (2.0 * a[2] + 3.0 * t * a[3]);
+        of->q[i] = b[0] + t * (b[1] + t * (b[2] + t * b[3]));
+        of->dq[i] = b[1] + t * (2.0 * b[2] + 3.0 * t * b[3]);
+    }
+}
+
+/* Force at one place of a point, counted. */
+static void count_force(const ehd_law_point *point, double approach, double rate, ehd_force *force, int64_t *counts) {
+    no_force(force);
+    if (!(is_finite(approach) && is_finite(rate)))
+        counts[COUNT_NOT_FINITE]++;
+    else if (point_force(point, approach, rate, force))
+        counts[COUNT_LOAD]++;
+}
+
+EHD_CLONES static void line_block(const ehd_law_point *point, const double *offset, const double *inverse_scale, int n,
+                                  const double *approach, const double *rate, law_block *of, double *w, double *k,
+                                  double *c) {
+    const ehd_line *line = &point->own;
+    block_places(n, approach, offset, inverse_scale, line->start, line->step, (double)line->cells, of->place, of->scale);
+    line_splines(line, n, of);
+    block_forces(n, of, rate, w, k, c);
+}
+
+void ehd_law_force_many(const ehd_law_point *point, int64_t count, const double *approach, const double *rate,
+                        double *forces, int64_t *counts) {
+    double *w = forces, *k = forces + count, *c = forces + 2 * count, offset[MANY], inverse_scale[MANY];
+    const int plain = point->film == 1.0 && point->centrifugal_load == 0.0;
+    const double limit = point->highest_load * (1.0 + LOAD_TOLERANCE);
+    law_block of;
+    ehd_force force;
+    for (int i = 0; i < MANY; i++) {
+        offset[i] = point->own.offset;
+        inverse_scale[i] = point->own.inverse_scale;
+    }
+    for (int64_t first = 0; first < count; first += MANY) {
+        const int n = count - first < MANY ? (int)(count - first) : MANY;
+        if (plain)
+            line_block(point, offset, inverse_scale, n, approach + first, rate + first, &of, w + first, k + first, c + first);
+        for (int i = 0; i < n; i++) {
+            const int64_t at = first + i;
+            if (plain && is_finite(rate[at]) && -DBL_MAX <= approach[at] && approach[at] <= point->held_approach) {
+                if (of.g[i] > 0.0 && of.g[i] * of.g[i] * of.g[i] > limit) counts[COUNT_LOAD]++;
+                continue;
+            }
+            count_force(point, approach[at], rate[at], &force, counts);
+            w[at] = force.load;
+            k[at] = force.stiffness;
+            c[at] = force.damping;
+        }
+    }
+}
+
+/* Nearest nodes of places along an axis with so many coefficients. */
+static inline void block_axis(int n, const double *restrict x, double start, double step, int64_t coefficients,
+                              block_nodes *restrict found) {
+    const double last = (double)(coefficients - 3);
+    for (int i = 0; i < n; i++) {
+        const double place = (x[i] - start) * step, above = place > 0.0 ? place : 0.0;
+        const double held = above < last ? above : last;
+        const int32_t first = (int32_t)(held + 0.5);
+        const double t = held - (double)first, low = 0.5 - t, high = 0.5 + t;
+        found->first[i] = first;
+        found->low[i] = 0.5 * low * low;
+        found->middle[i] = 0.75 - t * t;
+        found->high[i] = 0.5 * high * high;
+    }
+}
+
+/* Means of `count` neighbouring numbers of a table from number m on, by the weights of 3 x 3 speeds and temperatures. */
+static inline void block_means(const double *values, int64_t temperatures, int64_t numbers, const block_nodes *speed,
+                               const block_nodes *heat, int i, int64_t m, int count, double *restrict sums) {
+    const double *row = values + ((int64_t)speed->first[i] * temperatures + heat->first[i]) * numbers + m;
+    const double *next = row + temperatures * numbers, *last = next + temperatures * numbers;
+    const double u0 = speed->low[i], u1 = speed->middle[i], u2 = speed->high[i];
+    const double t0 = heat->low[i], t1 = heat->middle[i], t2 = heat->high[i];
+    for (int n = 0; n < count; n++)
+        sums[n] = u0 * (t0 * row[n] + t1 * row[numbers + n] + t2 * row[2 * numbers + n]) +
+                  u1 * (t0 * next[n] + t1 * next[numbers + n] + t2 * next[2 * numbers + n]) +
+                  u2 * (t0 * last[n] + t1 * last[numbers + n] + t2 * last[2 * numbers + n]);
+}
+
+EHD_CLONES static void table_block(const ehd_law_data *D, int n, const double *approach, const double *rate,
+                                   const double *u, const double *T, law_block *of, double *w, double *k, double *c) {
+    const ehd_law_table *table = &D->own;
+    const int64_t numbers = 2 * table->places, temperatures = table->temperatures;
+    const double last = (double)(table->places > 4 ? table->places - 4 : 0);
+    double axis[MANY], offset[MANY], inverse_scale[MANY];
+    block_nodes speed, heat;
+    for (int i = 0; i < n; i++) {
+        const double size = fabs(u[i]);
+        axis[i] = plain_log(size > D->lowest_speed ? size : D->lowest_speed);
+    }
+    block_axis(n, axis, table->log_speed_start, table->log_speed_step, table->speeds, &speed);
+    for (int i = 0; i < n; i++) axis[i] = 1.0 / (T[i] - COLDEST);
+    block_axis(n, axis, table->temperature_start, table->temperature_step, temperatures, &heat);
+    for (int i = 0; i < n; i++) {
+        double sums[2];
+        block_means(table->place, temperatures, 2, &speed, &heat, i, 0, 2, sums);
+        offset[i] = sums[0];
+        inverse_scale[i] = sums[1];
+    }
+    block_places(n, approach, offset, inverse_scale, table->start, table->step, (double)(table->places - 3), of->place,
+                 of->scale);
+    for (int i = 0; i < n; i++) {
+        double sums[8];
+        const double place = of->place[i];
+        const int cell = (int)(place < last ? place : last);
+        const double t = place - cell, r = 1.0 - t, tt = t * t, rr = r * r;
+        const double b0 = rr * r / 6.0, b1 = 2.0 / 3.0 - tt * (1.0 - 0.5 * t), b2 = 2.0 / 3.0 - rr * (1.0 - 0.5 * r);
+        const double b3 = tt * t / 6.0;
+        const double d0 = -0.5 * rr, d1 = t * (1.5 * t - 2.0), d2 = -r * (1.5 * r - 2.0), d3 = 0.5 * tt;
+        block_means(table->coefficients, temperatures, numbers, &speed, &heat, i, 2 * cell, 8, sums);
+        of->g[i] = b0 * sums[0] + b1 * sums[2] + b2 * sums[4] + b3 * sums[6];
+        of->dg[i] = d0 * sums[0] + d1 * sums[2] + d2 * sums[4] + d3 * sums[6];
+        of->q[i] = b0 * sums[1] + b1 * sums[3] + b2 * sums[5] + b3 * sums[7];
+        of->dq[i] = d0 * sums[1] + d1 * sums[3] + d2 * sums[5] + d3 * sums[7];
+    }
+    block_forces(n, of, rate, w, k, c);
+}
+
+/* Whether the table alone answers a place. */
+static int answered(const ehd_law_data *D, double approach, double rate, double u, double T, double q, double g) {
+    const double speed = fabs(u);
+    return D->film_speed <= speed && D->lowest_speed <= speed && speed <= D->counted_speed && D->counted_cold <= T &&
+           T <= D->counted_hot && q == 0.0 && is_finite(approach) && is_finite(rate) &&
+           (g <= 0.0 || g * g * g <= D->known_load);
+}
+
+/* Make a point where it is not that of the last place; its status is counted. */
+static void count_point(const ehd_law_data *D, double u, double T, double q, ehd_law_point *room, int *made,
+                        double asked[3], int64_t *counts) {
+    if (!(*made && asked[0] == u && asked[1] == T && asked[2] == q)) {
+        ehd_law_make(D, u, T, q, room);
+        asked[0] = u;
+        asked[1] = T;
+        asked[2] = q;
+        *made = 1;
+    }
+    counts[COUNT_LOAD] += (room->status & EHD_BAD_CENTRIFUGAL) != 0;
+    counts[COUNT_SPEED] += (room->status & EHD_ABOVE_SPEED) != 0;
+    counts[COUNT_TEMPERATURE] += (room->status & EHD_OUTSIDE_TEMPERATURE) != 0;
+}
+
+void ehd_law_call_many(const ehd_law_data *D, int64_t count, const double *approach, const double *rate, const double *u,
+                       const double *T, const double *q, ehd_law_point *room, double *forces, int64_t *counts) {
+    double *w = forces, *k = forces + count, *c = forces + 2 * count, asked[3] = {0.0, 0.0, 0.0};
+    law_block of;
+    int made = 0;
+    for (int64_t first = 0; first < count; first += MANY) {
+        const int n = count - first < MANY ? (int)(count - first) : MANY;
+        table_block(D, n, approach + first, rate + first, u + first, T + first, &of, w + first, k + first, c + first);
+        for (int i = 0; i < n; i++) {
+            const int64_t at = first + i;
+            ehd_force force;
+            if (answered(D, approach[at], rate[at], u[at], T[at], q[at], of.g[i])) continue;
+            no_force(&force);
+            if (is_finite(approach[at]) && is_finite(rate[at]) && is_finite(u[at]) && is_finite(T[at]) &&
+                is_finite(q[at])) {
+                count_point(D, u[at], T[at], q[at], room, &made, asked, counts);
+                count_force(room, approach[at], rate[at], &force, counts);
+            } else {
+                counts[COUNT_NOT_FINITE]++;
+            }
+            w[at] = force.load;
+            k[at] = force.stiffness;
+            c[at] = force.damping;
+        }
+    }
+}
