@@ -19,12 +19,10 @@ from mbs.bearings.tapered.tapered_block import TAPERED
 from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.gears.gear import GearMesh
 from mbs.gears.gear_block import GEAR_MESHES
-from mbs.gears.numba_gear_block import GEAR_MESHES as NUMBA_GEAR_MESHES
 from mbs.model.blocks import Kind
 from mbs.model.elements import Element
 from mbs.model.matrices import MatrixElement
 from mbs.model.matrix_block import MATRICES
-from mbs.model.numba_matrix_block import MATRICES as NUMBA_MATRICES
 
 KINDS: dict[type, Kind] = {
     BearingElement: BEARINGS,
@@ -37,13 +35,6 @@ KINDS: dict[type, Kind] = {
     MatrixElement: MATRICES,
 }
 """Kind by the class of its elements. ``KINDS[Coupling] = COUPLINGS`` adds one."""
-
-NUMBA_KINDS: dict[type, Kind] = {
-    **{element: kind for element, kind in KINDS.items() if kind.arrays is not None},
-    GearMesh: NUMBA_GEAR_MESHES,
-    MatrixElement: NUMBA_MATRICES,
-}
-"""Kinds by functions that numba compiles, for systems in which some kind has no functions in C yet."""
 
 
 def kind_of(element: Element) -> Kind | None:

@@ -21,17 +21,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
-from numba.extending import overload
+from llvmlite import ir
+from numba import types
+from numba.extending import intrinsic, overload
 
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.compiled import in_python, njit
 from ehdmaps.copies import put
 from ehdmaps.maps.kernels.lines import FAST
-from mbs.model.blocks import FOUND, NO_SOLUTION, Answers, Moment
-from mbs.transient.kinds import NUMBA_KINDS
+from mbs.model.blocks import FOUND, NO_SOLUTION, Answers, Kind, Moment
+from mbs.transient.kinds import KINDS
 from mbs.transient.numba_arrays import Course, Energies, Linear, Numbers, Records, State
 
 DONE, TOO_LARGE = FOUND, 3
@@ -130,9 +132,98 @@ def eliminate(matrix: FloatArray, right: FloatArray) -> bool:
     return True
 
 
+class Native(NamedTuple):
+    """Blocks with functions in C, which steps by numba call by their addresses.
+
+    Attributes
+    ----------
+    blocks : array (blocks, 4), of int
+        Structs ``ehd_block``.
+    at, step : array (6,), array (1,) of int
+        A struct ``ehd_moment``, and its first number.
+    answers : array (4,), of int
+        A struct ``ehd_answers``.
+    """
+
+    blocks: IntArray
+    at: FloatArray
+    step: IntArray
+    answers: IntArray
+
+
+@intrinsic
+def _address(context: Any, array: Any) -> Any:
+    """Address of the numbers of an array."""
+
+    def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        data = context.make_array(signature.args[0])(context, builder, arguments[0]).data
+        return builder.ptrtoint(data, context.get_value_type(types.intp))
+
+    return types.intp(array), code
+
+
+@intrinsic
+def _call(context: Any, function: Any, data: Any, at: Any, motion: Any, answers: Any, out: Any) -> Any:
+    """Call a C function by its address; functions that take fewer arguments do not see the last ones."""
+
+    def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        word = context.get_value_type(types.intp)
+        kind = ir.FunctionType(ir.IntType(32), [word] * 5)
+        return builder.call(builder.inttoptr(arguments[0], kind.as_pointer()), arguments[1:])
+
+    return types.int32(*[types.intp] * 6), code
+
+
+@njit(error_model="numpy", _nrt=False)
+def _tell(native: Native, moment: Moment, answers: Answers) -> None:
+    """Fill the structs of C."""
+    native.at[1], native.at[2], native.at[3] = moment.time, moment.speed, moment.angle
+    native.at[4], native.at[5], native.step[0] = moment.by_q, moment.by_v, moment.step
+    native.answers[0], native.answers[1] = _address(answers.force), _address(answers.slopes)
+    native.answers[2], native.answers[3] = _address(answers.outside), answers.force.size
+
+
+@njit(error_model="numpy", _nrt=False)
+def _native_answer(native: Native, moment: Moment, motion: FloatArray, answers: Answers) -> int:
+    """Answers of blocks with functions in C; see `mbs.model.blocks.Kind`."""
+    _tell(native, moment, answers)
+    for row in native.blocks:
+        found = _call(row[0], row[3], _address(native.at), _address(motion), _address(native.answers), 0)
+        if found != FOUND:
+            return int(found)
+    return FOUND
+
+
+@njit(error_model="numpy", _nrt=False)
+def _native_accept(native: Native, moment: Moment) -> None:
+    """Tell blocks with functions in C that the step is made; their structs are those of the last answer."""
+    for row in native.blocks:
+        if row[1] != 0:
+            _call(row[1], row[3], _address(native.at), 0, 0, 0)
+
+
+@njit(error_model="numpy", _nrt=False)
+def _native_powers(native: Native, moment: Moment, motion: FloatArray, answers: Answers, out: FloatArray) -> None:
+    """Powers of elements of blocks with functions in C."""
+    for row in native.blocks:
+        if row[2] != 0:
+            _call(row[2], row[3], _address(native.at), _address(motion), _address(native.answers), _address(out))
+
+
+def _none(*_: Any) -> Any:
+    """Stand for what is not asked of this kind."""
+    raise NotImplementedError
+
+
+NATIVE = Kind(
+    arrays=Native, answer=_native_answer, feels=_none, gather=_none, accept=_native_accept, powers=_native_powers
+)
+"""All blocks with functions in C, as one more block of a run by numba."""
+
+
 def _kind(arrays: type) -> Any:
     """Kind of a block by the class of its arrays."""
-    return {kind.arrays: kind for kind in NUMBA_KINDS.values()}[arrays]
+    return {kind.arrays: kind for kind in (*KINDS.values(), NATIVE)}[arrays]
 
 
 def _counted(function: _F) -> _F:

@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
 from mbs.model.blocks import Kind
 from mbs.model.system import System
 from mbs.transient.compiled_run import CompiledRun
-from mbs.transient.kinds import NUMBA_KINDS, is_numba, kind_of
+from mbs.transient.kinds import is_numba, kind_of
 from mbs.transient.numba_arrays import Course, Energies, Linear, Numbers, Records, State
-from mbs.transient.numba_kernel import advance
+from mbs.transient.numba_kernel import Native, advance
 from mbs.transient.run_elements import RunElements
 
 
@@ -32,29 +34,37 @@ class NumbaRun(CompiledRun):
 
     def _elements_of(self, system: System) -> RunElements:
         """The elements, with the common kinds besides, so that compiled code is the same for most systems."""
-        return RunElements.of(system.elements, NUMBA_KINDS, _is_common)
+        return RunElements.of(system.elements, _is_common)
 
     def _make(self, linear: Any, numbers: Any, data: Sequence[Any], course: Any) -> tuple[int, int, float]:
         """Make steps."""
-        run = self._run
-        return advance(
+        run, elements, at = self._run, self._elements, np.zeros(6)
+        given = list(zip(elements.kinds, elements.functions, data, strict=True))
+        rows = [functions.row(part) for kind, functions, part in given if not is_numba(kind)]
+        addresses = [[row.answer, row.accept or 0, row.powers or 0, row.data or 0] for row in rows]
+        blocks = np.array(addresses, dtype=np.int64).reshape(-1, 4)
+        native = Native(blocks, at, at[:1].view(np.int64), np.zeros(4, dtype=np.int64))
+        made, status, error = advance(
             Linear(*(_field(linear, name) for name in Linear._fields))._replace(turning=bool(linear.turning)),
             Numbers(*(getattr(numbers, name) for name in Numbers._fields)),
-            tuple(data),
+            (*(part for kind, _, part in given if is_numba(kind)), native),
             Course(*(_field(course, name) for name in Course._fields)),
             State(self._motion, self._forces),
             Records(
                 run.given("seen"), run.given("orders"), self._outputs, self._sampled, self._motions, int(run.stride)
             ),
             Energies(*(run.given(name) for name in Energies._fields)),
-            self._elements.outside,
+            elements.outside,
             self._counter,
         )
+        if elements.raised:
+            raise elements.raised.pop(0)
+        return made, status, error
 
 
 def _is_common(kind: Kind) -> bool:
     """True for kinds that compiled code has even where there are none: neither states nor coordinates of their own."""
-    return kind.accept is None and kind.alone is None and not kind.rare
+    return is_numba(kind) and kind.accept is None and kind.alone is None and not kind.rare
 
 
 def _field(record: Any, name: str) -> Any:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, cast
 
@@ -77,7 +77,6 @@ class RunElements:
     def of(
         cls,
         connected: Sequence[Connected],
-        kinds: Mapping[type, Kind] = KINDS,
         common: Callable[[Kind], bool] | None = None,
     ) -> RunElements:
         """Elements that all have a kind, each as it stands between its bodies.
@@ -86,14 +85,12 @@ class RunElements:
         ----------
         connected : sequence of Connected
             The elements.
-        kinds : mapping of type to Kind
-            Kind by the class of its elements.
         common : callable, optional
             Tells kinds that have a block even where there are none of them.
         """
         connected = [_placed(entry) for entry in connected]
-        members: dict[Kind, list[Member]] = {kind: [] for kind in kinds.values()}
-        of_connected = [kinds.get(type(entry.element)) for entry in connected]
+        members: dict[Kind, list[Member]] = {kind: [] for kind in KINDS.values()}
+        of_connected = [kind_of(entry.element) for entry in connected]
         alone, felt = [], []
         for kind, entry in zip(of_connected, connected, strict=True):
             assert kind is not None
