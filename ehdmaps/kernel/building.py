@@ -38,7 +38,8 @@ OPTIONS = {
     "sanitized": ("-O1", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-fno-omit-frame-pointer"),
     "coverage": ("-O0", "-g", "--coverage"),
 }
-"""Kinds of the library, by the word that asks for them, with their options; "" is the one for users."""
+"""Kinds of the library, by the word that asks for them, with their options; "" is the one for users. What `coverage`
+counts, with gcc, stands beside the library when a process ends: `gcov -o ehdmaps/kernel ehdmaps/kernel/*.gcda`."""
 
 LINES = ("-Wall", "-Wextra")
 """Warnings, which are shown where the compiler fails."""
@@ -209,7 +210,9 @@ def build(target: Path, environment: Mapping[str, str], kind: str = "", folder: 
         compiler = usable_compiler(environment)
         made = Path(aside) / target.name
         while True:
-            if failure := _failure([*compiler, *_arguments(kind, wanted, folder), "-o", str(made), "-lm"], aside):
+            if failure := _failure(
+                [*compiler, *_arguments(kind, wanted, folder, target.parent), "-o", str(made), "-lm"], aside
+            ):
                 raise BuildError(failure)
             if (now := state(folder)) == wanted:
                 break
@@ -226,9 +229,11 @@ def say_compiler() -> None:
         return
 
 
-def _arguments(kind: str, number: str, folder: Path) -> list[str]:
+def _arguments(kind: str, number: str, folder: Path, home: Path) -> list[str]:
     """Arguments of the compiler but for the file that it makes and libraries."""
-    return [*ALWAYS, *OPTIONS[kind], *LINES, f"-DEHD_NUMBER={number}", "-shared", *_position(), str(folder / UNIT)]
+    counts = ["-dumpdir", f"{home}/libehd-coverage-"] if kind == "coverage" else []
+    number = f"-DEHD_NUMBER={number}"
+    return [*ALWAYS, *OPTIONS[kind], *LINES, *counts, number, "-shared", *_position(), str(folder / UNIT)]
 
 
 def _position() -> tuple[str, ...]:

@@ -18,6 +18,7 @@ import pytest
 
 from ehdmaps.errors import KernelError
 from ehdmaps.kernel import building, library, record
+from tests.cases.programs import needed
 
 ROOT = Path(__file__).parents[2]
 HOME = ROOT / "ehdmaps" / "kernel"
@@ -212,6 +213,16 @@ def test_kinds(home, monkeypatch):
         library.library.__wrapped__()
 
 
+@pytest.mark.slow
+def test_lines_that_ran_are_counted(home, monkeypatch):
+    monkeypatch.setenv("CC", needed("gcc"))
+    code = "import sys, pathlib, ehdmaps.kernel.library as k; k.found(pathlib.Path(sys.argv[1]), 'coverage')"
+    subprocess.run([sys.executable, "-c", code, str(home)], check=True, cwd=ROOT)
+    (counts,) = home.glob("*.gcda")
+    told = subprocess.run(["gcov", "-n", counts], capture_output=True, text=True, check=True, cwd=home).stdout
+    assert re.search(r"kernel\.c'\nLines executed:100\.00% of 1", told)  # the interface
+
+
 def test_the_c_files_compile_without_warnings(tmp_path):
     compiler = building.usable_compiler(os.environ)
     command = [*compiler, *building.ALWAYS, "-O1", *building.LINES, "-Werror", "-pedantic", "-fPIC", "-c"]
@@ -241,8 +252,14 @@ def test_the_unit_includes_every_file_and_the_package_lists_it():
     included = re.findall(r'^#include "(.+)"$', (building.SOURCES / building.UNIT).read_text(), re.MULTILINE)
     assert len(included) == len(set(included))
     assert {*included, building.UNIT} == names
-    listed = re.findall(r"^([\w/]+\.)(?:\[([ch]+)\]|([ch])) +\S", (HOME / "__init__.py").read_text(), re.MULTILINE)
-    assert sorted(f"{stem}{end}" for stem, many, one in listed for end in many or one) == sorted(names)
+    listed = []
+    for cell in re.findall(
+        r"^([\w/]+\.[][ch]+(?:, \w+\.[ch])*)  +\S", (HOME / "__init__.py").read_text(), re.MULTILINE
+    ):
+        stem, endings, *more = re.split(r"\.|, ", cell)
+        listed += [f"{stem}.{ending}" for ending in endings.strip("[]")]
+        listed += [f"{stem}{part}.{ending}" for part, ending in zip(more[::2], more[1::2], strict=True)]
+    assert sorted(listed) == sorted(names)
 
 
 def test_building_needs_the_standard_library_alone():

@@ -1,0 +1,215 @@
+/* Calls the library with tables of many sizes, each in memory of exactly its size, and with numbers of any kind, as many
+ * times as the first argument says: whatever is refused must be NaN, whatever is not must be finite, and no load may be
+ * negative. Returns the number of a check that fails. */
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "kernel.c"
+
+static uint64_t seed = 88172645463325252u;
+
+static uint64_t any(void) {
+    seed ^= seed << 13;
+    seed ^= seed >> 7;
+    seed ^= seed << 17;
+    return seed;
+}
+
+static int64_t up_to(int64_t most_of) { return 1 + (int64_t)(any() % (uint64_t)most_of); }
+
+static double part(void) { return (double)(any() >> 11) / 9007199254740992.0; }
+
+/* NaN, infinities, zeros, denormals, huge and tiny numbers, and numbers around a size. */
+static double number(double size) {
+    static const double odd[] = {0.0, -0.0, 1e-310, -4.9e-324, 1e-30, 1e30, -1e300, 1.7e308};
+    const unsigned kind = (unsigned)(any() % 64);
+    if (kind == 0) return NAN;
+    if (kind == 1) return INFINITY;
+    if (kind == 2) return -INFINITY;
+    if (kind < 8) return odd[any() % 8];
+    if (kind < 16) return (part() - 0.5) * size * pow(10.0, (double)(any() % 13) - 4.0);
+    return (part() - 0.5) * 2.0 * size;
+}
+
+static double *room(int64_t count) { return malloc((size_t)count * sizeof(double)); }
+
+/* A table whose loads rise with the approach from nothing; free its arrays. */
+static ehd_law_table table_of(double scale) {
+    ehd_law_table table = {2 + up_to(5), 2 + up_to(5), 4 + up_to(40), log(0.1), 0.0, 1.0 / 170.0, 0.0, -4.0, 0.0, 0, 0};
+    const int64_t rows = table.speeds * table.temperatures;
+    double *coefficients = room(2 * rows * table.places), *place = room(2 * rows);
+    table.log_speed_step = (double)(table.speeds - 2) / log(100.0);
+    table.temperature_step = -(double)(table.temperatures - 2) / (1.0 / 170.0 - 1.0 / 230.0);
+    table.temperature_start = 1.0 / (300.0 + 40.0 - 170.0);
+    table.step = (double)(table.places - 3) / 12.0;
+    for (int64_t row = 0; row < rows; row++) {
+        place[2 * row] = scale * (part() - 0.5);
+        place[2 * row + 1] = 10.0 / scale;
+        double g = -1.0 - part();
+        for (int64_t k = 0; k < table.places; k++) {
+            g += 200.0 / (double)table.places * part() + 1e-3;
+            coefficients[2 * (row * table.places + k)] = g;
+            coefficients[2 * (row * table.places + k) + 1] = -8.0 - 2.0 * part();
+        }
+    }
+    table.coefficients = coefficients;
+    table.place = place;
+    return table;
+}
+
+static void free_table(const ehd_law_table *table) {
+    free((void *)(uintptr_t)table->coefficients);
+    free((void *)(uintptr_t)table->place);
+}
+
+static ehd_law_data law_of(void) {
+    static const int64_t refused[] = {EHD_NOT_FINITE | EHD_BAD_CENTRIFUGAL | EHD_TOO_FAR | EHD_BAD_ARGUMENT, 127};
+    ehd_law_data law = {0};
+    const int64_t contacts = up_to(2);
+    double *structure = room(3 * contacts), *ends;
+    law.refused = refused[any() % 2];
+    law.contacts = contacts;
+    law.centrifugal = (int64_t)(any() % 2);
+    law.film_speed = any() % 2 ? 0.0 : 0.2;
+    law.lowest_speed = 0.1;
+    law.highest_speed = law.counted_speed = 10.0;
+    law.lowest_temperature = law.counted_cold = 310.0;
+    law.highest_temperature = law.counted_hot = 390.0;
+    law.highest_load = 1e6;
+    law.known_load = 1e5;
+    law.held_load = 2e6;
+    for (int64_t i = 0; i < contacts; i++) {
+        structure[3 * i] = (double)(any() % 2);
+        structure[3 * i + 1] = 1e-11;
+        structure[3 * i + 2] = structure[3 * i] != 0.0 ? 20.0 : 0.9;
+    }
+    law.structure = structure;
+    law.end_rows = 1 + up_to(4);
+    law.end_columns = 1 + up_to(4);
+    ends = room(law.end_rows * law.end_columns);
+    for (int64_t i = 0; i < law.end_rows * law.end_columns; i++) ends[i] = law.highest_load * (0.5 + 0.5 * part());
+    for (int64_t j = 0; j < law.end_columns; j++) ends[j] = 300.0 + 20.0 * (double)j;
+    for (int64_t i = 1; i < law.end_rows; i++) ends[i * law.end_columns] = log(0.1) + (double)i;
+    law.ends = ends;
+    law.own = table_of(1e-6);
+    law.inner = table_of(1e-6);
+    law.outer = table_of(1e-6);
+    return law;
+}
+
+static void free_law(const ehd_law_data *law) {
+    free((void *)(uintptr_t)law->structure);
+    free((void *)(uintptr_t)law->ends);
+    free_table(&law->own);
+    free_table(&law->inner);
+    free_table(&law->outer);
+}
+
+static int sound(const ehd_law_data *law, int status, const double *values, int count) {
+    for (int i = 0; i < count; i++)
+        if (refuses(law, status) ? !isnan(values[i]) : !isfinite(values[i])) return 0;
+    return 1;
+}
+
+/* Laws and bearings with cylindrical rollers. */
+static int laws(void) {
+    const ehd_law_data law = law_of();
+    ehd_law_point *point = malloc(ehd_law_point_size(&law)), *made = malloc(ehd_law_point_size(&law));
+    ehd_cylinder_law *prepared = calloc(1, ehd_cylinder_law_size(&law));
+    ehd_cylinder *bearing = malloc(ehd_cylinder_size());
+    const int64_t rollers = 2 + up_to(20);
+    double *cosine = room(rollers), *sine = room(rollers);
+    const ehd_cylinder_data data = {&law, rollers, 0.01, 0.01, (int64_t)(any() % 2), cosine, sine};
+    int failed = 0;
+    for (int64_t j = 0; j < rollers; j++) {
+        cosine[j] = cos(2.0 * FILM_PI * (double)j / (double)rollers);
+        sine[j] = sin(2.0 * FILM_PI * (double)j / (double)rollers);
+    }
+    while (refuses(&law, ehd_cylinder_make(&data, number(1e-5), (int)(any() % (EHD_MOST_SLICES + 2)) - 1, NULL, bearing))) {}
+    for (int n = 0; n < 40 && !failed; n++) {
+        ehd_force force;
+        ehd_bearing_force result;
+        double pose[6], velocity[6];
+        const double u = number(5.0), T = 350.0 + number(60.0), q = any() % 4 ? 0.0 : number(1e4);
+        for (int i = 0; i < 6; i++) {
+            pose[i] = number(i < 3 ? 1e-5 : 1e-3);
+            velocity[i] = number(1e-3);
+        }
+        int status = ehd_law_call(&law, number(1e-5), number(1e-3), u, T, q, point, &force);
+        if (!sound(&law, status, &force.load, 3) || force.load < 0.0) failed = 1;
+        ehd_law_make(&law, u, T, q, made);
+        status = ehd_law_force(made, number(1e-5), number(1e-3), &force);
+        if (!sound(&law, status, &force.load, 3) || force.load < 0.0) failed = 2;
+        if (n % 4) continue;
+        status = ehd_cylinder_call(bearing, prepared, pose, any() % 4 ? velocity : NULL, number(10.0), u, T, q, &result);
+        if (!sound(&law, status, result.force, 6) || !sound(&law, status, result.stiffness[0], 36)) failed = 3;
+    }
+    free(cosine);
+    free(sine);
+    free(bearing);
+    free(prepared);
+    free(made);
+    free(point);
+    free_law(&law);
+    return failed;
+}
+
+/* Gear meshes and connections by matrices in a run: where all that is given is finite, so are forces. */
+static int elements(void) {
+    const int64_t count = up_to(4), harmonics = up_to(6) - 1, longest = up_to(5), m = 8 * count;
+    int64_t *firsts = malloc((size_t)count * sizeof *firsts), *places = malloc((size_t)count * sizeof *places);
+    int64_t *counts = malloc((size_t)count * sizeof *counts), *outside = calloc((size_t)count, sizeof *outside);
+    double *constants = room(5 * count), *series = room(4 * harmonics * count + 1), *speeds = room(count * longest);
+    double *tables = room(72 * count * longest), *motion = room(2 * m), *force = room(m), *slopes = room(m * m);
+    double *powers = room(3 * count);
+    int failed = 0, finite = 1;
+    for (int64_t i = 0; i < count; i++) {
+        firsts[i] = 8 * i;
+        places[i] = i;
+        counts[i] = up_to(longest);
+        for (int j = 0; j < 5; j++) constants[5 * i + j] = (j == 0 ? 1e8 : j == 1 ? 1e3 : j == 2 ? 1e-4 : 1.0) * part();
+    }
+    for (int64_t i = 0; i < 4 * harmonics * count; i++) series[i] = 1e-3 * part();
+    for (int64_t i = 0; i < count * longest; i++) speeds[i] = 10.0 * (double)(i % longest) + 5.0 * part();
+    for (int64_t i = 0; i < 72 * count * longest; i++) tables[i] = 1e6 * (part() - 0.3);
+    for (int64_t i = 0; i < 2 * m; i++) finite &= fabs(motion[i] = number(1e-4)) < 1e100;
+    ehd_moment at = {0, 0.0, number(30.0), number(100.0), 1e-10, 1e-5};
+    finite &= fabs(at.speed) < 1e100 && fabs(at.angle) < 1e100;
+    ehd_answers answers = {force, slopes, outside, m};
+    ehd_gear_block gears = {count, harmonics, firsts, places, constants, series};
+    ehd_matrix_block matrices = {count, longest, firsts, places, counts, speeds, tables};
+    if (ehd_gear_block_answer(&gears, &at, motion, &answers) != EHD_FOUND) failed = 4;
+    for (int64_t i = 0; i < count; i++)
+        if (finite && (!isfinite(force[8 * i]) || force[8 * i] > 0.0 || force[8 * i + 1] > 0.0)) failed = 5;
+    ehd_gear_block_powers(&gears, &at, motion, &answers, powers);
+    if (ehd_matrix_block_answer(&matrices, &at, motion, &answers) != EHD_FOUND) failed = 6;
+    for (int64_t i = 0; i < 6 * count; i++)
+        if (finite && !isfinite(force[8 * (i / 6) + i % 6])) failed = 7;
+    ehd_matrix_block_powers(&matrices, &at, motion, &answers, powers);
+    free(firsts);
+    free(places);
+    free(counts);
+    free(outside);
+    free(constants);
+    free(series);
+    free(speeds);
+    free(tables);
+    free(motion);
+    free(force);
+    free(slopes);
+    free(powers);
+    return failed;
+}
+
+int main(int count, char **arguments) {
+    const long calls = count > 1 ? atol(arguments[1]) : 100;
+    for (long n = 0; n < calls; n++) {
+        int failed = laws();
+        if (!failed) failed = elements();
+        if (failed) {
+            printf("check %d, round %ld\n", failed, n);
+            return failed;
+        }
+    }
+    return 0;
+}
