@@ -117,9 +117,17 @@ FAULTS = (
     Fault("friction torque, unit left out", "mbs/bearings/contact_report.py", "1e-3 * 1e-7 * f0", "1e-7 * f0", True),
     Fault("time of a film, factor left out", "mbs/bearings/roller_contacts.py", "dg * (1.0 - dy) / k", "dg / k"),
     Fault(
-        "step of integration, factor two", "mbs/transient/run_kernel.py", "(0.5 - numbers.beta)", "(1.0 - numbers.beta)"
+        "step of integration, factor two",
+        "ehdmaps/kernel/c/advance.c",
+        "(0.5 - numbers->beta)",
+        "(1.0 - numbers->beta)",
     ),
-    Fault("energy over a step, factor two", "mbs/transient/run_kernel.py", "0.5 * h * (energies", "h * (energies"),
+    Fault(
+        "energy over a step, factor two",
+        "ehdmaps/kernel/c/advance.c",
+        "0.5 * numbers->h * (run->powers",
+        "numbers->h * (run->powers",
+    ),
     Fault("highest order, unit left out", "mbs/spectral/orders.py", "signal.highest * _TURN /", "signal.highest /"),
     Fault("ROSS, hertz for rad/s", "mbs/exports/ross.py", "2.0 * math.pi * bearing.frequencies", "bearing.frequencies"),
     Fault("CalculiX, stiffness across, factor two", "mbs/exports/calculix.py", "part = 0.5 * (", "part = ("),

@@ -14,9 +14,3 @@ def cell(request, record_property):
         words = [getattr(value, "name", getattr(value, "__name__", value)) for value in given.values()]
         record_property("machine", machine.name)
         record_property("claim", " ".join(map(str, words)) or request.node.originalname.removeprefix("test_"))
-
-
-@pytest.fixture(autouse=True)
-def one_compilation(monkeypatch):
-    """Compiled runs have all kinds, also those of which a machine has none: they are compiled once for all machines."""
-    monkeypatch.setattr("mbs.transient.run_elements._is_common", lambda kind: True)

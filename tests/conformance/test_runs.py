@@ -25,16 +25,14 @@ parabolas in place of the cubics of their tables, 1e-5."""
 def runs(request):
     """The machine of all kinds, pushed by 8 um so that contacts part, in compiled code and in Python."""
     law, within = LAWS[request.param]
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("mbs.transient.run_elements._is_common", lambda kind: True)
-        model = assemble(parse_scene(ALL.text(), "machine", "machine.toml"), law)
-        start = equilibrium(model.system, model.operation).displacement.copy()
-        start[[model.system.coordinates.index(f"rotor.{way}") for way in "xy"]] += 8e-6
-        course, settings = SpeedProfile.ramp(150.0, 160.0, STEPS * STEP), Settings(step=STEP, sample=STEP)
-        return within, [
-            run(model.system, course, STEPS * STEP, settings, displacement=start, options=Options(compiled=compiled))
-            for compiled in (True, False)
-        ]
+    model = assemble(parse_scene(ALL.text(), "machine", "machine.toml"), law)
+    start = equilibrium(model.system, model.operation).displacement.copy()
+    start[[model.system.coordinates.index(f"rotor.{way}") for way in "xy"]] += 8e-6
+    course, settings = SpeedProfile.ramp(150.0, 160.0, STEPS * STEP), Settings(step=STEP, sample=STEP)
+    return within, [
+        run(model.system, course, STEPS * STEP, settings, displacement=start, options=Options(compiled=compiled))
+        for compiled in (True, False)
+    ]
 
 
 @pytest.mark.slow

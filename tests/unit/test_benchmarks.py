@@ -1,22 +1,33 @@
 """Scripts of tests/benchmarks that change texts: what they replace must stand there."""
 
+import os
+import shutil
+import subprocess
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import mbs
+from ehdmaps.kernel import building
 from tests.benchmarks import manifest, mutations
 
 SYSTEMS = Path(mbs.__file__).parent / "systems"
 
 
 @pytest.mark.parametrize("fault", mutations.FAULTS, ids=lambda fault: fault.name)
-def test_faults_can_be_planted(fault):
+def test_faults_can_be_planted(fault, tmp_path):
     text = (mutations.ROOT / fault.file).read_text(encoding="utf-8")
     assert text.count(fault.right) == 1
     assert fault.wrong != fault.right
-    compile(text.replace(fault.right, fault.wrong), fault.file, "exec")
+    wrong = text.replace(fault.right, fault.wrong)
+    if fault.file.endswith(".py"):
+        compile(wrong, fault.file, "exec")
+        return
+    sources = shutil.copytree(building.SOURCES, tmp_path / "c")
+    (sources / Path(fault.file).name).write_text(wrong, encoding="utf-8")
+    compiler = building.usable_compiler(os.environ)
+    subprocess.run([*compiler, "-std=c99", "-fsyntax-only", str(sources / building.UNIT)], check=True)
 
 
 def test_there_are_twenty_faults():
