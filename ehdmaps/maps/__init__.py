@@ -20,6 +20,7 @@ contact_curve  approach and damping of one contact over load, with the film belo
 oil_layer      the film of a contact on an oil layer, from that of the flooded one
 rough_layer    asperities, and the load that they share with the film
 compilation    curves -> table over approach, speed and temperature
+kept_tables    tables of laws that were made before
 kernels        the room of these tables and the compiled code that reads them, at one point or many; films with memory
 outside_calls  arguments of a law, and its points outside the map
 law_errors     bounds of the errors of a law, from what the map states

@@ -21,13 +21,14 @@ from ehdmaps.maps.compilation import (
 )
 from ehdmaps.maps.ends import ends_of
 from ehdmaps.maps.film_field import DryField, FilmField, LowLoads
+from ehdmaps.maps.kept_tables import keeping, kept_table, key_of
 from ehdmaps.maps.kernels.film_response import FilmResponse
 from ehdmaps.maps.kernels.locked_film import LockedFactors
 from ehdmaps.maps.kernels.memory import FilmMemory, FilmState
 from ehdmaps.maps.kernels.tables import LOAD, LOAD_TOLERANCE, ApproachTable, LawTable, Point
 from ehdmaps.maps.law_errors import LawBounds, LawChange, LawErrors, changed_table
 from ehdmaps.maps.law_films import LawFilms
-from ehdmaps.maps.law_in_c import LawInC, PointInC
+from ehdmaps.maps.law_in_c import LawAddress, LawInC, PointInC
 from ehdmaps.maps.outside_calls import Axis, Excursion, OutsideCalls, Range, broadcast, check_finite, floats
 from ehdmaps.maps.rolling_film import RollingFilm
 from ehdmaps.maps.rough_layer import GONE_BELOW
@@ -60,9 +61,8 @@ class ContactLaw:
     approach at rest, never a tension, passive, with exact derivatives. Make one by `EHDMap.law`.
 
     Calls are for arrays of any shape that broadcast, and cost about 0.1 us a point; `at` gives the law of one
-    speed and temperature, five times faster. Other compiled code uses `table`, `workspace`, `counts` and the
-    functions of `ehdmaps.maps.kernels.kernel` without any Python. The first call after an installation compiles for
-    about 15 s; the result is kept on disk.
+    speed and temperature, five times faster. One place costs 2 us. Other programs call it in C by `address`, without
+    any Python.
 
     Parameters
     ----------
@@ -206,6 +206,25 @@ class ContactLaw:
         """Load from which on the film is no guess at any speed and temperature [N/m]; 0 where it is none."""
         low = self._films.low_loads
         return low.begins[1] if low is not None and low.guessed else 0.0
+
+    @property
+    def address(self) -> LawAddress:
+        """The law for programs that call C: a function, its data, and the bytes of memory that a thread needs.
+
+        Centrifugal loads are taken where the law takes them. Addresses are good as long as the law is.
+
+        Examples
+        --------
+        >>> import ctypes, numpy as np
+        >>> from ehdmaps.maps.law_in_c import LawAddress
+        >>> def load(law, approach):  # at rest, at 1 m/s and 40 degC; any language that calls C does it likewise
+        ...     at, force = law.address, np.empty(3)
+        ...     room = np.empty(at.room // 8)
+        ...     call = LawAddress.PROTOTYPE(at.function)
+        ...     status = call(at.data, approach, 0.0, 1.0, 313.15, 0.0, room.ctypes.data, force.ctypes.data)
+        ...     return force[0]
+        """
+        return self._in_c(self.kind == "series").door
 
     def workspace(self) -> FloatArray:
         """Scratch for `kernel.collapse` and `kernel.evaluate`, one for each thread and each `Point` kept."""
@@ -393,6 +412,17 @@ class ContactLaw:
         InputError, OutsideMapError
             As calling the law does.
         """
+        # One that lies outside the map is made again, to be counted again.
+        latest = self._latest
+        if (
+            latest is not None
+            and not latest.outside
+            and isinstance(entrainment_speed, float)
+            and isinstance(temperature, float)
+            and isinstance(centrifugal_load, float)
+            and latest.conditions == (entrainment_speed, temperature, centrifugal_load)
+        ):
+            return latest
         named = floats(entrainment_speed=entrainment_speed, temperature=temperature, centrifugal_load=centrifugal_load)
         for name, value in named.items():
             if value.ndim:
@@ -400,8 +430,6 @@ class ContactLaw:
         check_finite(named)
         self._check_centrifugal(named["centrifugal_load"])
         u, T, q = (float(value) for value in named.values())
-        latest = self._latest
-        # One that lies outside the map is made again, to be counted again.
         if latest is not None and not latest.outside and latest.conditions == (u, T, q):
             return latest
         made = self._in_c(q > 0.0).point(u, T, q)
@@ -542,7 +570,7 @@ class ContactLaw:
 
     def _approach_table(self, contacts: Sequence[LineContact]) -> ApproachTable:
         """Table of some contacts in series."""
-        return compile_table(
+        made_from = (
             self._films.field,
             contacts,
             self._films.lubricant,
@@ -555,6 +583,8 @@ class ContactLaw:
             self._slowest,
             self._temperatures,
         )
+        key = key_of(*made_from) if keeping() else ""
+        return kept_table(key, lambda: compile_table(*made_from))
 
     def _check_centrifugal(self, values: FloatArray) -> None:
         """Refuse centrifugal loads that this law does not take."""

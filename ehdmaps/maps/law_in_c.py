@@ -9,6 +9,7 @@ from __future__ import annotations
 import ctypes
 import functools
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -174,6 +175,33 @@ class _Scratch:
         self.room_address = at(self.room)
 
 
+@dataclass(frozen=True)
+class LawAddress:
+    """A law in C, for programs that call it themselves.
+
+    `PROTOTYPE` is the type of the function for `ctypes`, which numba's compiled code calls as well:
+    ``int ehd_law_call(const void *data, double approach, double rate, double entrainment_speed, double temperature,
+    double centrifugal_load, void *room, double force[3])``, in SI units, see `ehdmaps/kernel/c/law.h`. It fills load,
+    stiffness and damping, and returns 0, or a sum of `ABOVE_LOAD`, `ABOVE_SPEED` and so on: the law is held there, and
+    NaN for numbers that are not finite. Each thread has memory of its own.
+
+    Attributes
+    ----------
+    function, data : int
+        Addresses of the function and of the numbers of the law.
+    room : int
+        Bytes of memory for `room`.
+    """
+
+    function: int
+    data: int
+    room: int
+
+    PROTOTYPE: ClassVar = ctypes.CFUNCTYPE(
+        ctypes.c_int, ctypes.c_void_p, *[ctypes.c_double] * 5, ctypes.c_void_p, ctypes.c_void_p
+    )
+
+
 class LawInC:
     """A law in C.
 
@@ -201,6 +229,12 @@ class LawInC:
 
     def __reduce__(self) -> tuple[Any, ...]:
         return LawInC, (self._table, self._centrifugal)
+
+    @property
+    def door(self) -> LawAddress:
+        """Addresses for other programs."""
+        function = ctypes.cast(self._call, ctypes.c_void_p).value  # type: ignore[arg-type]
+        return LawAddress(function or 0, self._address, self.point_size)
 
     def _scratch(self) -> _Scratch:
         """Memory that no other call has; whoever has done with it puts it back."""
