@@ -22,9 +22,11 @@ law_many.[hc]        the law at many places, in blocks for vector instructions
 film_lines.[hc]      films of a table, read at many points
 rough.[hc]           load sharing of film and asperities
 film.[hc]            films with memory of one contact: equilibrium, steps in time, rates
-cylinder_law.c       the law at one speed and temperature, as a table for bearings with cylindrical rollers
+cylinder_law.[hc]    the law at one speed and temperature, as a table for bearings with cylindrical rollers
 cylinder.[hc]        bearings with cylindrical rollers: force, stiffness and damping at a pose
 cylinder_films.[hc]  the same with films that have a memory
+cylinder_coupled.c   the same with slices that know of their neighbours
+cylinder_call.c      bearings with cylindrical rollers as Python calls them
 pair_law.[hc]        law of a contact of balls, or of lines with tables of their own, over its approach
 pair_speeds.c        such laws over the entrainment speed
 pair_memory.c        a spring in series with a damper over a step

@@ -53,7 +53,7 @@ class Bearing:
     material : Material
         Material of the bearing; its density gives the rollers their centrifugal load.
     coupled : bool
-        Whether the slices of a roller know of their neighbours, see `mbs.bearings.special_kernels`; else each bears
+        Whether the slices of a roller know of their neighbours, see `ehdmaps.kernel`; else each bears
         its load alone.
     pocket_clearance : float, optional
         Clearance of a roller in its pocket of the cage [m], > 0: rolling torques are those of rollers that films and

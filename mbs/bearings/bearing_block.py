@@ -39,8 +39,18 @@ from mbs.bearings.rings import (
     shape_of,
     strict,
 )
-from mbs.bearings.slice_table import CELLS, KNOTS, LawNumbers, PreparedLaw, fade, law_numbers, store_numbers
-from mbs.bearings.slices import RingMotion, Shape, Work, roller_of, sizes_of
+from mbs.bearings.slice_table import CELLS, KNOTS, LawNumbers
+from mbs.bearings.slices import (
+    PreparedLaw,
+    RingMotion,
+    Shape,
+    Work,
+    fade,
+    law_numbers,
+    roller_of,
+    sizes_of,
+    store_numbers,
+)
 from mbs.bearings.speed_tables import NODES, Course, CourseOfFilms, FilmBlock, SpeedTables, course_of
 from mbs.model.blocks import FOUND, IN_PYTHON, NO_SOLUTION, Answers, Kind, Member, Moment
 from mbs.model.elements import Element

@@ -20,9 +20,9 @@ from ehdmaps.errors import InputError
 from ehdmaps.physics.hertz import LINE_LIMIT, max_pressure
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import NO_COUPLED_MEMORY, BearingForce, brought_by_speed, cage_moment, energy_at_rest
-from mbs.bearings.force_at_point import Arrays, RollerLoads
+from mbs.bearings.cylinder import Arrays
+from mbs.bearings.force_at_point import RollerLoads
 from mbs.bearings.laws import DryLaw, FlatLaw
-from mbs.bearings.slices import approaches_of_arrays
 from mbs.model.body import Body
 from mbs.model.elements import Excitation, Forces, OnRings, Operation, Port, Powers
 from mbs.model.findings import Gauge
@@ -347,13 +347,12 @@ class BearingElement(RingElement):
 
             return brought_by_speed(self.force.law, self.force.bearing, conditions, own)
 
-        work, state = Arrays(self.force.bearing), np.zeros(13)
-        shape = np.array(work.sizes), work.slices, work.angles
+        arrays, state = Arrays(self.force.bearing), np.zeros(13)
 
         def approaches(sample: int) -> FloatArray:
-            approach = np.empty(work.rows.shape)
+            approach = np.empty((arrays.shape.rollers, arrays.shape.slices))
             state[:6], state[12] = displacements[sample], self.cage_angle(operations[sample])
-            approaches_of_arrays(state, *shape, approach)
+            arrays.approaches(state, approach)
             return approach
 
         return brought_by_speed(self.force.law, self.force.bearing, conditions, approaches)

@@ -7,8 +7,9 @@ are held fixed in the derivatives.
 
 Each slice of each roller carries w(delta, rate) times its length, w the law of the roller between both raceways. By
 default no slice knows of its neighbours; those of a `Bearing` with `coupled` do, see `ehdmaps.solids.slices` and
-`mbs.bearings.special_kernels`. Slip and traction, contacts with the cage and with the ribs are left out too. An EHD law
-takes the contacts as fully flooded all round: without clearance the films of the unloaded side preload the bearing.
+`cylinder_coupled.c` of `ehdmaps.kernel`. Slip and traction, contacts with the cage and with the ribs are left out too.
+An EHD law takes the contacts as fully flooded all round: without clearance the films of the unloaded side preload the
+bearing.
 
 `ForceInTime` is the same with films that need time to follow: each slice has a state. The energy of the contacts at
 rest, and the moment that a bearing asks of its cage, follow from the same laws.
@@ -28,9 +29,8 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.maps.kernels.tables import LOAD_TOLERANCE
 from mbs.bearings.bearing import Bearing, RingForces, RingState, ring_forces
-from mbs.bearings.bearing_kernel import assemble_arrays
+from mbs.bearings.cylinder import NOT_FINITE, Arrays
 from mbs.bearings.force_at_point import (
-    Arrays,
     ForceAtPoint,
     RollerLoads,
     Triple,
@@ -40,7 +40,6 @@ from mbs.bearings.force_at_point import (
     six_numbers,
 )
 from mbs.bearings.laws import DryLaw, FlatLaw, Law
-from mbs.bearings.slices import NOT_FINITE, approaches_of_arrays
 from mbs.model.elements import Forces
 
 if TYPE_CHECKING:
@@ -212,8 +211,7 @@ class ForceInTime:
 
     def __init__(self, law: LawAtPoint, arrays: Arrays) -> None:
         self.law = law
-        self._state, self._states = np.zeros(13), np.zeros_like(arrays.states)
-        self._sizes, self._shape = arrays.sizes, (np.array(arrays.sizes), arrays.slices, arrays.angles)
+        self._state, self._arrays = np.zeros(13), arrays
 
     def settled(self, pose: npt.ArrayLike, cage_angle: float = 0.0) -> FilmState:
         """Films in equilibrium at a pose, shape (Z, n).
@@ -245,19 +243,18 @@ class ForceInTime:
         """
         memory, approaches = self.law.memory, self._approaches(pose, cage_angle)
         before = memory.settled(approaches) if state is None else state
-        self._states[0], self._states[1], after = memory.advance(before, approaches, dt)
-        out = np.empty((13, 6))
-        assemble_arrays(self._state, *self._shape, self._states, out)
-        above = float(np.max(self._states[0])) > self.law.point.highest_load * (1.0 + LOAD_TOLERANCE)
+        loads, slopes, after = memory.advance(before, approaches, dt)
+        out = self._arrays.of_loads(self._state, loads, slopes)
+        above = float(np.max(loads)) > self.law.point.highest_load * (1.0 + LOAD_TOLERANCE)
         return Forces(out[0], out[1:7], out[7:], self.law.outside or above), after
 
     def _approaches(self, pose: npt.ArrayLike, cage_angle: float) -> FloatArray:
         """Approach of all slices (Z, n) [m]."""
         self._state[:6], self._state[12] = six_numbers("pose", pose), cage_angle
-        approaches = np.empty(self._states.shape[1:])
-        wrong = approaches_of_arrays(self._state, *self._shape, approaches)
+        approaches = np.empty((self._arrays.shape.rollers, self._arrays.shape.slices))
+        wrong = self._arrays.approaches(self._state, approaches)
         if wrong != 0:
-            raise_state(self._state, self._sizes, wrong == NOT_FINITE)
+            raise_state(self._state, self._arrays.shape, wrong == NOT_FINITE)
         return approaches
 
 

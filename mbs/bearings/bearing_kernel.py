@@ -1,9 +1,8 @@
-"""Force, stiffness and damping of a bearing in compiled code, without allocation.
+"""Force, stiffness and damping of a bearing in compiled runs, without allocation.
 
-`bearing_force` is what other compiled code calls, with named tuples. Python calls `force_of_arrays` with the same as
-plain arrays, because numba takes some ten microseconds longer to take tuples; they are the arrays of a `ForceAtPoint`
-of `mbs.bearings.force_at_point`. Rollers are the first axis of the work arrays, slices the last. The steps are loops
-of their own over few arrays, so that all but the reading of the table run in vector instructions.
+Rollers are the first axis of the work arrays, slices the last. The steps are loops of their own over few arrays, so
+that all but the reading of the table run in vector instructions. Python calls a bearing in C, see
+`mbs.bearings.cylinder`.
 
 Between rings that do not tilt against each other all slices of a roller have the approach of its middle less their own
 depth. Slices of one depth are one, with their number as its weight; moments, and what tilts would change, are not
@@ -16,24 +15,20 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.arrays import FloatArray
 from ehdmaps.compiled import njit
-from ehdmaps.maps.kernels.kernel import evaluate_at
 from ehdmaps.maps.kernels.lines import FAST, unilateral_force
-from ehdmaps.maps.kernels.tables import LOAD, Point
-from mbs.bearings.slice_table import LawNumbers, PreparedLaw, law_numbers, unbounded
+from mbs.bearings.slice_table import LawNumbers
 from mbs.bearings.slices import (
-    NOT_FINITE,
+    PreparedLaw,
     RingMotion,
     Roller,
     Shape,
     Work,
-    all_finite,
     check_motion,
     rest_states,
-    ring_motion,
     roller_of,
-    sizes_of,
+    unbounded,
 )
 
 
@@ -321,144 +316,6 @@ def bearing_force(motion: RingMotion, shape: Shape, law: PreparedLaw, work: Work
     rest_states(motion, shape, law, work)
     above = assemble(motion, shape, law.numbers, work.states, out)
     return 1 if above > 0 else 0
-
-
-@njit(error_model="numpy", fastmath=FAST)
-def bearing_force_of_point(
-    point: Point,
-    motion: RingMotion,
-    shape: Shape,
-    numbers: LawNumbers,
-    states: FloatArray,
-    counts: IntArray,
-    out: FloatArray,
-) -> int:
-    """`bearing_force` straight from a `Point`, for laws that no table fits; some ten times slower.
-
-    Parameters
-    ----------
-    point : Point
-        The law.
-    motion, shape
-        The same as for `bearing_force`.
-    numbers : LawNumbers
-        Numbers with a slope of 1, and without lift-off.
-    states : array (4, Z, n)
-        Work space, overwritten by the slices at their rates.
-    counts : array (4,), of int
-        Numbers of calls outside the map, counted up.
-    out : array (13, 6)
-        Result, see `bearing_force`.
-    """
-    wrong = check_motion(motion, shape.sizes)
-    if wrong != 0:
-        return wrong
-    before = counts[LOAD]
-    for j in range(shape.cos.size):
-        roller = roller_of(motion, shape, j)
-        for i in range(shape.positions.size):
-            delta = roller.gap + shape.positions[i] * roller.tilt - shape.profile[i]
-            rate = roller.rate + shape.positions[i] * roller.tilt_rate
-            state = evaluate_at(point, delta, rate, counts)
-            states[0, j, i], states[1, j, i], states[2, j, i], states[3, j, i] = state[0], state[1], state[2], 0.0
-    # The rates are in the loads.
-    still = RingMotion(
-        y=motion.y, z=motion.z, theta_y=motion.theta_y, theta_z=motion.theta_z, y_rate=0.0, z_rate=0.0,
-        theta_y_rate=0.0, theta_z_rate=0.0, cage_cos=motion.cage_cos, cage_sin=motion.cage_sin,
-    )  # fmt: skip
-    assemble(still, shape, numbers, states, out)
-    return 1 if counts[LOAD] > before else 0
-
-
-@njit(error_model="numpy")
-def force_of_arrays(
-    state: FloatArray,
-    sizes: FloatArray,
-    slices: FloatArray,
-    angles: FloatArray,
-    numbers: FloatArray,
-    cells: FloatArray,
-    knots: FloatArray,
-    rows: IntArray,
-    states: FloatArray,
-    out: FloatArray,
-) -> int:
-    """`bearing_force` for callers in Python.
-
-    Parameters
-    ----------
-    state : array (13,)
-        Pose (6), velocity (6), cage angle: [m], [rad], [m/s], [rad/s].
-    sizes : array (6,)
-        The numbers of `Sizes` in their order.
-    slices, angles : array (2, n), (2, Z)
-        Positions and profile, cosine and sine of `Shape`.
-    numbers : array (NUMBERS,)
-        The numbers of `LawNumbers` in their order.
-    cells, knots : array (2 ROWS, 8), (2 ROWS,)
-        Table of `PreparedLaw`.
-    rows, states : array (Z, n), (4, Z, n)
-        Arrays of `Work`.
-    out : array (13, 6)
-        Result, see `bearing_force`.
-    """
-    if not all_finite(state):
-        return NOT_FINITE
-    shape = Shape(sizes_of(sizes), slices[0], slices[1], angles[0], angles[1])
-    law = PreparedLaw(law_numbers(numbers), cells, knots)
-    status: int = bearing_force(ring_motion(state), shape, law, Work(rows, states), out)
-    return status
-
-
-@njit(error_model="numpy")
-def force_of_point_arrays(
-    point: Point,
-    state: FloatArray,
-    sizes: FloatArray,
-    slices: FloatArray,
-    angles: FloatArray,
-    numbers: FloatArray,
-    states: FloatArray,
-    counts: IntArray,
-    out: FloatArray,
-) -> int:
-    """`bearing_force_of_point` for callers in Python.
-
-    Parameters
-    ----------
-    point : Point
-        The law.
-    state, sizes, slices, angles, numbers, states
-        The same arrays as for `force_of_arrays`.
-    counts : array (4,), of int
-        Numbers of calls outside the map, counted up.
-    out : array (13, 6)
-        Result, see `bearing_force`.
-    """
-    if not all_finite(state):
-        return NOT_FINITE
-    shape = Shape(sizes_of(sizes), slices[0], slices[1], angles[0], angles[1])
-    status: int = bearing_force_of_point(point, ring_motion(state), shape, law_numbers(numbers), states, counts, out)
-    return status
-
-
-@njit(error_model="numpy")
-def assemble_arrays(
-    state: FloatArray, sizes: FloatArray, slices: FloatArray, angles: FloatArray, states: FloatArray, out: FloatArray
-) -> None:
-    """`assemble_slices` for callers in Python.
-
-    Parameters
-    ----------
-    state, sizes, slices, angles
-        The same arrays as for `force_of_arrays`.
-    states : array (4, Z, n)
-        Loads and their slopes; zeros where the damping would be.
-    out : array (13, 6)
-        Result, see `bearing_force`.
-    """
-    shape = Shape(sizes_of(sizes), slices[0], slices[1], angles[0], angles[1])
-    assemble_slices(ring_motion(state), shape, states, out)
 
 
 @njit(error_model="numpy", fastmath=FAST, forceinline=True)

@@ -20,27 +20,27 @@ import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
-from ehdmaps.arrays import ByteArray, FloatArray, IntArray
-from ehdmaps.compiled import njit
+from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, SolverError
-from ehdmaps.maps.kernels.kernel import collapse
-from ehdmaps.maps.kernels.tables import LOAD_TOLERANCE, ApproachTable, LawTable, Point, nodes_of
+from ehdmaps.maps.kernels.tables import LOAD_TOLERANCE, nodes_of
 from ehdmaps.physics.approach import ISO_LINE_CONSTANT, STEEL_REDUCED_MODULUS, StructuralLaw
-from ehdmaps.physics.contact import LineContact, unilateral_force
+from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.solids import Material, reduced_modulus
 from ehdmaps.physics.surface import SMOOTH, Surface
 from mbs.bearings.bearing import Bearing
-from mbs.bearings.slice_table import CELLS, POWER, ROWS, LawNumbers, fixed_tuple, tabulate, write_film
+from mbs.bearings.cylinder import functions
+from mbs.bearings.slice_table import CELLS, POWER, ROWS, LawNumbers
 
 if TYPE_CHECKING:
     from ehdmaps.maps.law import ContactLaw, LawKind, OutsidePolicy
+    from ehdmaps.maps.law_in_c import LawRecord
     from ehdmaps.physics.closed_form import FilmFormula, FormulaSolver
 
 
@@ -82,7 +82,10 @@ class DryLaw(ABC):
 
     @abstractmethod
     def prepared(self, length: float) -> tuple[LawNumbers, FloatArray | None]:
-        """Numbers and cells per unit length for compiled code, for a roller of a length [m]; None without cells."""
+        """Numbers and cells per unit length for compiled code, for a roller of a length [m]; None without cells.
+
+        Cells are those of ``ehd_cylinder_law`` in `cylinder_law.h` of `ehdmaps.kernel`, shape (2 ROWS, 4, 2).
+        """
 
     def is_above(self, delta: FloatArray) -> bool:
         """Tell whether an approach [m] lies above the highest load of the law."""
@@ -183,8 +186,6 @@ class PowerLaw(DryLaw):
 Law: TypeAlias = "DryLaw | ContactLaw"
 """What is no `DryLaw` is the law of a map or of the film formula, whose module is loaded with the first of them."""
 
-_unilateral_force = njit(error_model="numpy")(unilateral_force)
-
 
 def unilateral_forces(
     w: FloatArray, dw: FloatArray, c: FloatArray, dc: FloatArray, rate: FloatArray
@@ -201,19 +202,13 @@ def unilateral_forces(
     load, stiffness, damping : array
         The same quantities as there, of the same shape.
     """
-    forces = np.empty((3, w.size))
-    _fill_forces(w.ravel(), dw.ravel(), c.ravel(), dc.ravel(), rate.ravel(), forces)
+    states, forces = (
+        np.stack([np.ravel(part) for part in (w, dw, c, dc, rate)], dtype=np.float64),
+        np.empty((3, w.size)),
+    )
+    functions().forces(w.size, states.ctypes.data, forces.ctypes.data)
     load, stiffness, damping = forces.reshape(3, *w.shape)
     return load, stiffness, damping
-
-
-@njit(error_model="numpy")
-def _fill_forces(
-    w: FloatArray, dw: FloatArray, c: FloatArray, dc: FloatArray, rate: FloatArray, forces: FloatArray
-) -> None:
-    """Loads, stiffness and damping of contacts in motion, into `forces` (3, n)."""
-    for i in range(w.size):
-        forces[0, i], forces[1, i], forces[2, i] = _unilateral_force(w[i], dw[i], c[i], dc[i], rate[i])
 
 
 def hertz(bearing: Bearing, damping: float = 0.0, damping_time: float = 0.0) -> PowerLaw:
@@ -463,12 +458,12 @@ class TableLaw(DryLaw):
         rise = 3.0 * np.diff(w) / h
         dw[:-1], dw[1:] = np.minimum(dw[:-1], rise), np.minimum(dw[1:], rise)
         dc[:-1], dc[1:] = np.maximum(dc[:-1], -3.0 * c[:-1] / h), np.minimum(dc[1:], 3.0 * c[1:] / h)
-        cells = np.zeros((2 * ROWS, 8))
-        for column, value, slope in ((0, w, dw), (4, c, dc)):
+        cells = np.zeros((2 * ROWS, 4, 2))
+        for f, value, slope in ((0, w, dw), (1, c, dc)):
             secant = np.diff(value) / h
-            cells[:ROWS, column], cells[:ROWS, column + 1] = value[:-1], slope[:-1]
-            cells[:ROWS, column + 2] = (3.0 * secant - 2.0 * slope[:-1] - slope[1:]) / h
-            cells[:ROWS, column + 3] = (slope[:-1] + slope[1:] - 2.0 * secant) / h**2
+            cells[:ROWS, 0, f], cells[:ROWS, 1, f] = value[:-1], slope[:-1]
+            cells[:ROWS, 2, f] = (3.0 * secant - 2.0 * slope[:-1] - slope[1:]) / h
+            cells[:ROWS, 3, f] = (slope[:-1] + slope[1:] - 2.0 * secant) / h**2
         numbers = LawNumbers(
             kind=CELLS, coefficient=0.0, exponent=0.0, damping=0.0, damping_time=0.0, centre=first,
             inverse_scale=inverse, highest=float(w[_LAST_NODE]) * (1.0 + LOAD_TOLERANCE), safe_approach=last,
@@ -490,9 +485,9 @@ class TableLaw(DryLaw):
         row = np.clip(np.searchsorted(_A, a, side="right") - 1, 0, _LAST_NODE - 1)
         t, cell = a - _A[row], cells[row]
         states = []
-        for k in (0, 4):
-            value = cell[..., k] + t * (cell[..., k + 1] + t * (cell[..., k + 2] + t * cell[..., k + 3]))
-            slope = cell[..., k + 1] + t * (2.0 * cell[..., k + 2] + 3.0 * t * cell[..., k + 3])
+        for f in (0, 1):
+            a0, a1, a2, a3 = (cell[..., k, f] for k in range(4))
+            value, slope = a0 + t * (a1 + t * (a2 + t * a3)), a1 + t * (2.0 * a2 + 3.0 * t * a3)
             states += [np.where(loaded, value, 0.0), np.where(loaded, slope * numbers.inverse_scale, 0.0)]
         w, dw, c, dc = states
         held = above > 0.0
@@ -516,7 +511,7 @@ class TableLaw(DryLaw):
         """Energy of the roller at rest [J]: the exact integral of the cells over the approach."""
         numbers, cells = self._prepared
         h = np.diff(_A)[:_LAST_NODE]
-        cell = cells[:_LAST_NODE]
+        cell = cells[:_LAST_NODE, :, 0]
 
         def inside(part: FloatArray, t: FloatArray) -> FloatArray:
             terms = part[..., 0] + t * (part[..., 1] / 2.0 + t * (part[..., 2] / 3.0 + t * part[..., 3] / 4.0))
@@ -555,56 +550,8 @@ def curve_problems(approach: FloatArray, load: FloatArray, damping: FloatArray) 
     return problems
 
 
-class FlatTable(NamedTuple):
-    """A `LawTable` in arrays: compiled code takes few of them from Python much faster than nested tuples.
-
-    Attributes
-    ----------
-    own, inner, outer : array
-        `ApproachTable.coefficients` of each.
-    own_place, inner_place, outer_place : array
-        `ApproachTable.place` of each.
-    axes : array (3, 6)
-        The numbers of each, in their order.
-    structure : array (n, 3)
-        The array of the `LawTable`.
-    ends : array (1 + n_u, 1 + n_T)
-        The array of the `LawTable`.
-    numbers : array (12,)
-        The numbers of the `LawTable`, in their order.
-    """
-
-    own: FloatArray
-    inner: FloatArray
-    outer: FloatArray
-    own_place: FloatArray
-    inner_place: FloatArray
-    outer_place: FloatArray
-    axes: FloatArray
-    structure: FloatArray
-    ends: FloatArray
-    numbers: FloatArray
-
-
-def flat_table(table: LawTable) -> FlatTable:
-    """Flatten a `LawTable`."""
-    parts = (table.own, table.inner, table.outer)
-    return FlatTable(
-        own=table.own.coefficients,
-        inner=table.inner.coefficients,
-        outer=table.outer.coefficients,
-        own_place=table.own.place,
-        inner_place=table.inner.place,
-        outer_place=table.outer.place,
-        axes=np.array([part[2:] for part in parts]),
-        structure=table.structure,
-        ends=table.ends,
-        numbers=np.array(table[5:]),
-    )
-
-
 class FlatLaw:
-    """A law, and its table flat for compiled code; with the single contacts only where they are needed.
+    """A law, and its data for C.
 
     Parameters
     ----------
@@ -614,72 +561,28 @@ class FlatLaw:
 
     def __init__(self, law: Law) -> None:
         self.law = law
-        self._made: dict[bool, tuple[FlatTable, FloatArray]] = {}
+        self._data: dict[bool, LawRecord] = {}
 
-    def arrays(self, law: ContactLaw, centrifugal: bool) -> tuple[FlatTable, FloatArray]:
-        """Flat table of `law`, and work space for it."""
-        if centrifugal not in self._made:
-            whole = law.table if centrifugal else law.plain_table
-            width = max(part.coefficients.shape[2] for part in (whole.own, whole.inner, whole.outer))
-            self._made[centrifugal] = flat_table(whole), np.empty((4, width // 2, 8))
-        return self._made[centrifugal]
+    def __reduce__(self) -> tuple[Any, ...]:
+        """For other processes: the law alone."""
+        return FlatLaw, (self.law,)
 
+    def data(self, law: ContactLaw, centrifugal: bool) -> LawRecord:
+        """Data of `law` for C, with the single contacts where they are needed.
 
-@njit(error_model="numpy")
-def law_table(flat: FlatTable) -> LawTable:
-    """The `LawTable` of a flat one again."""
-    return LawTable(
-        ApproachTable(flat.own, flat.own_place, *fixed_tuple(flat.axes[0], 6)),
-        ApproachTable(flat.inner, flat.inner_place, *fixed_tuple(flat.axes[1], 6)),
-        ApproachTable(flat.outer, flat.outer_place, *fixed_tuple(flat.axes[2], 6)),
-        flat.structure,
-        flat.ends,
-        *fixed_tuple(flat.numbers, 12),
-    )
+        Parameters
+        ----------
+        law : ContactLaw
+            The law, of a map.
+        centrifugal : bool
+            Whether there are centrifugal loads.
+        """
+        if centrifugal not in self._data:
+            from ehdmaps.maps.law_in_c import LawRecord  # it is loaded already, with the law
 
+            self._data[centrifugal] = LawRecord.of(law.table if centrifugal else law.plain_table, centrifugal)
+        return self._data[centrifugal]
 
-@njit(error_model="numpy")
-def counted_load(point: Point) -> float:
-    """Load above which slices are outside the map [N/m]."""
-    load: float = point.highest_load * (1.0 + LOAD_TOLERANCE)
-    return load
-
-
-@njit(error_model="numpy")
-def tabulate_law(
-    law: FlatTable,
-    workspace: FloatArray,
-    conditions: FloatArray,
-    nodes: FloatArray,
-    marks: ByteArray,
-    cells: FloatArray,
-    numbers: FloatArray,
-    counts: IntArray,
-) -> bool:
-    """Collapse a law at its conditions, and fill a table with it; below the lowest speed nodes of a faded film.
-
-    Parameters
-    ----------
-    law : FlatTable
-        The law.
-    workspace : array (4, n, 8)
-        Workspace of the law.
-    conditions : array (3,)
-        u [m/s], T [K], q [N/m].
-    nodes, marks, cells, numbers
-        The same as for `tabulate`; with a faded film cells are filled with the nodes that `fade` takes, which are the
-        same at all speeds.
-    counts : array (4,)
-        int64, counted up outside the map.
-
-    Returns
-    -------
-    bool
-        False if the law does not fit into a table.
-    """
-    table = law_table(law)
-    point = collapse(table, workspace, conditions[0], conditions[1], conditions[2], counts)
-    highest = counted_load(point)
-    if abs(conditions[0]) < table.film_speed:
-        return write_film(point, nodes, cells, highest, numbers)
-    return tabulate(point, nodes, marks, cells, highest, numbers)
+    def film_part(self, law: ContactLaw, entrainment_speed: float) -> float:
+        """Part of the film of `law` that is there at a speed [m/s]."""
+        return functions().film_part(self.data(law, False).address, entrainment_speed)

@@ -25,9 +25,9 @@ from ehdmaps.arrays import BoolArray, FloatArray, IntArray
 from ehdmaps.compiled import njit
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement, RollerElement
-from mbs.bearings.force_at_point import Arrays
+from mbs.bearings.cylinder import Cylinder, cylinder_of
 from mbs.bearings.laws import FlatLaw
-from mbs.bearings.slices import RingMotion, Shape, sizes_of
+from mbs.bearings.slices import RingMotion, Shape, Sizes, sizes_of
 from mbs.bearings.speed_tables import shared
 from mbs.model.blocks import Answers, Member, Moment
 
@@ -306,26 +306,31 @@ def strict(members: Sequence[Member]) -> BoolArray:
 def gather_rings(members: Sequence[Member], films_of: IntArray) -> Rings:
     """The arrays of some bearings, and which film each of their contacts has."""
     plains: list[BearingElement] = [plain(member.element) for member in members]
-    works = [Arrays(element.bearing) for element in plains]
+    shapes = [cylinder_of(element.bearing) for element in plains]
     folds = [folding_of(element) for element in plains]
     return Rings(
         firsts=_whole(member.first for member in members),
         places=_whole(member.place for member in members),
         films_of=films_of,
-        rollers=_whole(work.angles.shape[1] for work in works),
+        rollers=_whole(shape.rollers for shape in shapes),
         slices=_whole(fold.firsts.size for fold in folds),
         start_angles=np.array([element.start_angle for element in plains], dtype=np.float64),
         cage_rates=np.array([element.rates[0] for element in plains], dtype=np.float64),
-        sizes=np.array([work.sizes for work in works], dtype=np.float64).reshape(len(works), 6),
-        positions=_padded([work.slices[0][fold.firsts] for work, fold in zip(works, folds, strict=True)]),
-        profiles=_padded([work.slices[1][fold.firsts] for work, fold in zip(works, folds, strict=True)]),
-        cos=_padded([work.angles[0] for work in works]),
-        sin=_padded([work.angles[1] for work in works]),
+        sizes=np.array([_sizes(shape) for shape in shapes], dtype=np.float64).reshape(len(shapes), 6),
+        positions=_padded([one.given("position")[fold.firsts] for one, fold in zip(shapes, folds, strict=True)]),
+        profiles=_padded([one.given("profile")[fold.firsts] for one, fold in zip(shapes, folds, strict=True)]),
+        cos=_padded([shape.given("cosine") for shape in shapes]),
+        sin=_padded([shape.given("sine") for shape in shapes]),
         felt=_whole(_felt(member.element) for member in members),
         weights=_padded([fold.weights for fold in folds]),
         alone=_whole(member.alone for member in members),
         outward=np.array([plain.rates[2] * plain.bearing.geometry.roller_length for plain in plains], dtype=np.float64),
     )
+
+
+def _sizes(shape: Cylinder) -> Sizes:
+    """Sizes of a bearing for compiled code."""
+    return Sizes(*(getattr(shape, name) for name in Sizes._fields))
 
 
 def _padded(rows: Sequence[FloatArray]) -> FloatArray:

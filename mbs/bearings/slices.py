@@ -7,15 +7,19 @@ the law is held at, all go on along its tangent.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numba.np.unsafe.ndarray import to_fixed_tuple
 
 from ehdmaps.arrays import FloatArray, IntArray
-from ehdmaps.compiled import njit
+from ehdmaps.compiled import COMPILES, njit
 from ehdmaps.maps.kernels.lines import FAST, log
 from ehdmaps.maps.kernels.tables import FIRST, SHIFT
-from mbs.bearings.slice_table import CELLS, LAST, POWER, ROWS, LawNumbers, PreparedLaw, fixed_tuple, read_cells
+from mbs.bearings.slice_table import CELLS, KNOTS, LAST, POWER, ROWS, LawNumbers
+
+fixed_tuple: Any = to_fixed_tuple if COMPILES else lambda values, size: tuple(values[:size])
+"""The first numbers of an array as a tuple."""
 
 _LOG2_E = 1.4426950408889634
 _LN2_HIGH, _LN2_LOW = 6.93147180369123816490e-01, 1.90821492927058770002e-10
@@ -41,6 +45,124 @@ def power(x: float, b: float) -> float:
     bits = np.uint64(np.uint64(np.float64(shifted).view(np.uint64) + _BIAS) << _MANTISSA)
     value: float = series * bits.view(np.float64)
     return value
+
+
+class PreparedLaw(NamedTuple):
+    """A law at one speed, temperature and centrifugal load.
+
+    Attributes
+    ----------
+    numbers : LawNumbers
+        Numbers of the law.
+    cells : array (2 ROWS, 8)
+        Table of the law, coefficients of load and damping in turns; anything for POWER.
+    knots : array (2 ROWS,)
+        Approaches at which the cells begin [m], the last one infinite; anything but for KNOTS.
+    """
+
+    numbers: LawNumbers
+    cells: FloatArray
+    knots: FloatArray
+
+
+@njit(error_model="numpy")
+def law_numbers(numbers: FloatArray) -> LawNumbers:
+    """The numbers of a law from an array (NUMBERS,) in their order."""
+    return LawNumbers(*fixed_tuple(numbers, 15))
+
+
+@njit(error_model="numpy")
+def store_numbers(law: LawNumbers, numbers: FloatArray) -> None:
+    """Write the numbers of a law into an array (NUMBERS,)."""
+    for i in range(len(law)):
+        numbers[i] = law[i]
+
+
+@njit(error_model="numpy")
+def unbounded() -> LawNumbers:
+    """Numbers for states that are there already: whole slopes, loads of any size."""
+    inf = math.inf
+    return LawNumbers(POWER, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, inf, inf, -inf, 1.0, inf, inf, 0.0, 0.0)
+
+
+@njit(error_model="numpy", fastmath=FAST)
+def read_cells(cells: FloatArray, rows: IntArray, states: FloatArray) -> None:
+    """Load, slope, damping and its slope, into `states` (4, n), from rows (n,) and places in the cells, states[0]."""
+    w, dw, c, dc = states[0], states[1], states[2], states[3]
+    for i in range(rows.size):
+        m, t = np.uint64(rows[i]), w[i]
+        high = cells[m, np.uint64(6)]
+        bend = cells[m, np.uint64(4)] + t * high
+        mean = cells[m, np.uint64(2)] + t * bend
+        w[i], dw[i] = cells[m, np.uint64(0)] + t * mean, mean + t * (bend + t * high)
+        high = cells[m, np.uint64(7)]
+        bend = cells[m, np.uint64(5)] + t * high
+        mean = cells[m, np.uint64(3)] + t * bend
+        c[i], dc[i] = cells[m, np.uint64(1)] + t * mean, mean + t * (bend + t * high)
+
+
+WHOLE, DRY, RISE, LOADS, SLOPES, DAMPINGS, BENDS = range(7)
+"""Columns of the nodes of a faded film: approach with the whole film and without [m], growth of the latter by the
+former; load [N/m] and damping [N s/m2], each with its slope by the approach with the whole film."""
+
+
+@njit(error_model="numpy", fastmath=FAST)
+def fade(
+    film: FloatArray, given: FloatArray, part: float, cells: FloatArray, knots: FloatArray, numbers: FloatArray
+) -> None:
+    """The table of a part of a film, from the nodes of the film.
+
+    Parameters
+    ----------
+    film, given : array (2 ROWS, 8), (NUMBERS,)
+        What `ehd_cylinder_prepare` makes of a film alone.
+    part : float
+        Part of the film that is there, 0 to 1.
+    cells, knots : array (2 ROWS, 8), (2 ROWS,)
+        Filled: coefficients of load and damping in turns, over the distance from the lower end of a cell [m]; where
+        cells begin [m].
+    numbers : array (NUMBERS,)
+        Filled with `LawNumbers`.
+    """
+    last, rest = film.shape[0] - 1, 1.0 - part
+    slopes, bends = np.empty(last), np.empty(last)
+    for i in range(last):
+        knots[i] = rest * film[i, DRY] + part * film[i, WHOLE]
+        stretch = rest * film[i, RISE] + part
+        loaded = film[i, LOADS] > 0.0
+        slopes[i] = film[i, SLOPES] / (stretch if loaded else 1.0)
+        bends[i] = part * film[i, BENDS] / (stretch if loaded else 1.0)
+    knots[last] = math.inf
+    for i in range(last - 1):
+        h = knots[i + 1] - knots[i]
+        # Without film all nodes without load are one.
+        rise = 3.0 * (film[i + 1, LOADS] - film[i, LOADS]) / h if h > 0.0 else 0.0
+        slopes[i], slopes[i + 1] = min(slopes[i], rise), min(slopes[i + 1], rise)
+        if h > 0.0:
+            bends[i] = max(bends[i], -3.0 * part * film[i, DAMPINGS] / h)
+            bends[i + 1] = min(bends[i + 1], 3.0 * part * film[i + 1, DAMPINGS] / h)
+    for i in range(last - 1):
+        h, cell = knots[i + 1] - knots[i], cells[i]
+        by = 1.0 / h if h > 0.0 else 0.0
+        secant = (film[i + 1, LOADS] - film[i, LOADS]) * by
+        cell[0], cell[2] = film[i, LOADS], slopes[i]
+        cell[4] = (3.0 * secant - 2.0 * slopes[i] - slopes[i + 1]) * by
+        cell[6] = (slopes[i] + slopes[i + 1] - 2.0 * secant) * by * by
+        secant = part * (film[i + 1, DAMPINGS] - film[i, DAMPINGS]) * by
+        cell[1], cell[3] = part * film[i, DAMPINGS], bends[i]
+        cell[5] = (3.0 * secant - 2.0 * bends[i] - bends[i + 1]) * by
+        cell[7] = (bends[i] + bends[i + 1] - 2.0 * secant) * by * by
+    for k in range(8):
+        for i in range(last - 1, last + 1):
+            cells[i, k] = 0.0
+    whole = law_numbers(given)
+    faded = LawNumbers(
+        kind=KNOTS, coefficient=0.0, exponent=0.0, damping=0.0, damping_time=0.0, centre=0.0, inverse_scale=0.0,
+        highest=whole.highest, safe_approach=knots[int(whole.safe_approach)], lift_off=knots[int(whole.lift_off)],
+        slope=1.0, held_approach=rest * film[last, DRY] + part * film[last, WHOLE], held_load=whole.held_load,
+        held_stiffness=whole.held_stiffness, held_damping=part * film[last, DAMPINGS],
+    )  # fmt: skip
+    store_numbers(faded, numbers)
 
 
 NOT_FINITE, TOO_FAR = -1, -2
@@ -221,63 +343,6 @@ def check_motion(motion: RingMotion, sizes: Sizes) -> int:
 def sizes_of(numbers: FloatArray) -> Sizes:
     """Sizes from an array (6,) in their order."""
     return Sizes(*fixed_tuple(numbers, 6))
-
-
-@njit(error_model="numpy")
-def ring_motion(state: FloatArray) -> RingMotion:
-    """Motion that rollers feel, from pose (6,), velocity (6,) and cage angle in a row."""
-    c, s = math.cos(state[12]), math.sin(state[12])
-    return RingMotion(state[1], state[2], state[4], state[5], state[7], state[8], state[10], state[11], c, s)
-
-
-@njit(error_model="numpy")
-def all_finite(state: FloatArray) -> bool:
-    """Tell whether all numbers are finite, and their sum is."""
-    total = 0.0
-    for value in state:
-        total += abs(value)
-    return total < math.inf
-
-
-@njit(error_model="numpy")
-def rollers_of_arrays(state: FloatArray, sizes: FloatArray, slices: FloatArray, angles: FloatArray) -> FloatArray:
-    """Gap, tilt and their rates of all rollers, shape (4, Z), for callers in Python.
-
-    Parameters
-    ----------
-    state, sizes, slices, angles
-        The same arrays as for `force_of_arrays`.
-    """
-    shape = Shape(sizes_of(sizes), slices[0], slices[1], angles[0], angles[1])
-    motion = ring_motion(state)
-    rollers = np.empty((4, shape.cos.size))
-    for j in range(shape.cos.size):
-        roller = roller_of(motion, shape, j)
-        rollers[0, j], rollers[1, j] = roller.gap, roller.tilt
-        rollers[2, j], rollers[3, j] = roller.rate, roller.tilt_rate
-    return rollers
-
-
-@njit(error_model="numpy")
-def approaches_of_arrays(
-    state: FloatArray, sizes: FloatArray, slices: FloatArray, angles: FloatArray, out: FloatArray
-) -> int:
-    """Approaches of all slices into `out` (Z, n) [m], for callers in Python; zero, or what is wrong about the pose.
-
-    Parameters
-    ----------
-    state, sizes, slices, angles
-        The same arrays as for `force_of_arrays`.
-    out : array (Z, n)
-        Approaches, written [m].
-    """
-    if not all_finite(state):
-        return NOT_FINITE
-    shape = Shape(sizes_of(sizes), slices[0], slices[1], angles[0], angles[1])
-    motion = ring_motion(state)
-    slice_approaches(motion, shape, out.reshape(-1))
-    wrong: int = check_motion(motion, shape.sizes)
-    return wrong
 
 
 _NO_APPROACH = 1e-30

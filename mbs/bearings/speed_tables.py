@@ -22,11 +22,11 @@ from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 import numpy as np
 
 from ehdmaps.arrays import BoolArray, FloatArray, IntArray
-from ehdmaps.errors import EhdmapsError
 from mbs.bearings import slice_table as table
 from mbs.bearings.bearing import Bearing
-from mbs.bearings.force_at_point import ForceAtPoint, is_faded, is_one_power, part_of_film
-from mbs.bearings.laws import DryLaw, FlatLaw, tabulate_law
+from mbs.bearings.cylinder import FILM_ALONE, WHOLE, LawRoom
+from mbs.bearings.force_at_point import is_one_power
+from mbs.bearings.laws import DryLaw, FlatLaw
 
 if TYPE_CHECKING:
     from ehdmaps.maps.law import ContactLaw
@@ -195,7 +195,7 @@ class SpeedTables:
         if not isinstance(law.law, DryLaw):
             lowest, self._faded_below = _limits(law.law, abs(rates[0]))
         self._window = SpeedWindow(STEP, NODES, lowest, self.varies)
-        self._nodes, self._marks = np.empty((4, table.NODES)), np.zeros((2, table.NODES), dtype=np.uint8)
+        self._room = LawRoom()
         self._film = Made(sound=False)
         self._has_film = False
 
@@ -206,7 +206,7 @@ class SpeedTables:
         # Dry contacts that are one power law need no table.
         if not isinstance(law, DryLaw) and faded.any() and (np.any(speeds) or not is_one_power(law)):
             nodes[faded] = _FADED
-            weights[faded] = [part_of_film(law, self._rates[0] * speed) for speed in speeds[faded].tolist()]
+            weights[faded] = [self._law.film_part(law, self._rates[0] * speed) for speed in speeds[faded].tolist()]
         return nodes, weights
 
     def prepare(
@@ -230,9 +230,7 @@ class SpeedTables:
         speeds, nodes, weights = speeds[:count], nodes[:count], weights[:count]
 
         def make(slot: int, speed: float, alone: bool) -> Made:
-            if alone:
-                return self._copied(self._force_at(self._conditions(speed)), cells[slot], numbers[slot])
-            return self._made(speed, cells[slot], numbers[slot])
+            return self._made(speed, alone, cells[slot], numbers[slot])
 
         return self._window.prepare(speeds, nodes, weights, make)
 
@@ -243,50 +241,46 @@ class SpeedTables:
         one = self._rates[1] == 0.0
         count = speeds.size if one else 1
         if not (one and self._has_film):
-            self._film = self._tabulated(self._conditions(abs(float(speeds[0]))), cells[NODES], numbers[NODES])
+            conditions = self._conditions(abs(float(speeds[0])))
+            self._film = self._prepared(conditions, FILM_ALONE, table.KNOTS, cells[NODES], numbers[NODES])
             self._has_film = True
         slots, sound = np.full(count, NODES, dtype=np.int64), np.full(count, self._film.sound)
         return slots, sound, np.full(count, int(self._film.outside), dtype=np.int64)
 
-    def _force_at(self, conditions: tuple[float, float, float]) -> ForceAtPoint | None:
-        """The force there, or none where it refuses: the step that asks for it will be told why."""
-        try:
-            return ForceAtPoint(self._bearing, self._law, conditions)
-        except EhdmapsError:
-            return None
-
-    def _copied(self, point: ForceAtPoint | None, cells: FloatArray, numbers: FloatArray) -> Made:
-        """Take over a table or a power law."""
-        if point is None:
-            return Made(sound=False)
-        numbers[:] = point.arrays[4]
-        if numbers[_KIND] == table.CELLS:
-            cells[:] = point.arrays[5]
-        return _told(point.tabulated and numbers[_KIND] != table.KNOTS, point.outside, numbers)
-
-    def _made(self, speed: float, cells: FloatArray, numbers: FloatArray) -> Made:
+    def _made(self, speed: float, alone: bool, cells: FloatArray, numbers: FloatArray) -> Made:
         """Make the table of a speed, or take over its power law."""
         law, (u, temperature, centrifugal) = self._law.law, self._conditions(speed)
-        assert not isinstance(law, DryLaw)
-        if speed >= self._faded_below > 0.0:
+        if isinstance(law, DryLaw):
+            numbers[:], given = law.prepared(self._bearing.geometry.roller_length)
+            if given is not None:
+                cells[:] = given.reshape(-1, 8)
+            return _told(True, False, numbers)
+        if not alone and speed >= self._faded_below > 0.0:
             # The node at the lowest speed has its whole film, whatever the rounding.
             u = max(abs(u), law.plain_table.lowest_speed)
-        made = Made(sound=False)
-        if not is_faded(law, u):
-            made = self._tabulated((u, temperature, centrifugal), cells, numbers)
-        return made if made.sound else self._copied(self._force_at((u, temperature, centrifugal)), cells, numbers)
+        return self._prepared((u, temperature, centrifugal), WHOLE, table.CELLS, cells, numbers)
 
-    def _tabulated(self, given: tuple[float, float, float], cells: FloatArray, numbers: FloatArray) -> Made:
-        """Make a table at some conditions."""
-        law, centrifugal = self._law.law, given[2]
+    def _prepared(
+        self,
+        conditions: tuple[float, float, float],
+        asked: int,
+        wanted: float,
+        cells: FloatArray,
+        numbers: FloatArray,
+    ) -> Made:
+        """Make the law ready at some conditions: a table of the kind that is wanted, or a power law, is sound."""
+        law, room, centrifugal = self._law.law, self._room, conditions[2]
         assert not isinstance(law, DryLaw)
         if not 0.0 <= centrifugal < law.load_range[1]:
             return Made(sound=False)
-        arrays, workspace = self._law.arrays(law, centrifugal > 0.0)
-        conditions, counts = np.array(given), np.zeros(4, dtype=np.int64)
-        fits = tabulate_law(arrays, workspace, conditions, self._nodes, self._marks, cells, numbers, counts)
-        outside = bool(counts.any())
-        return _told(fits and not (outside and law.outside == "error"), outside, numbers)
+        outside = room.prepare(self._law.data(law, centrifugal > 0.0), conditions, asked) != 0
+        numbers[:] = room.numbers
+        if numbers[_KIND] == table.CELLS:
+            cells[:] = room.array("cells").reshape(-1, 8)
+        elif numbers[_KIND] == table.KNOTS and wanted == table.KNOTS:
+            cells[:] = room.array("film")
+        sound = numbers[_KIND] in (wanted, table.POWER) and not (outside and law.outside == "error")
+        return _told(bool(sound), outside, numbers)
 
     def _conditions(self, speed: float) -> tuple[float, float, float]:
         """Entrainment speed, temperature, centrifugal load."""

@@ -10,6 +10,7 @@ the stiffness, and at one fixed pose for the force. Without a map file the law i
 
 from __future__ import annotations
 
+import ctypes
 import math
 import sys
 import time
@@ -19,11 +20,11 @@ import numpy as np
 from numba import njit
 
 import ehdmaps
+from ehdmaps.kernel.library import function
 from ehdmaps.physics.lubricant import Lubricant
 from mbs.bearings import laws
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
-from mbs.bearings.bearing_kernel import force_of_arrays
 from mbs.bearings.force_at_point import ForceAtPoint
 
 SLICES = (11, 21, 41, 81, 161)
@@ -33,11 +34,14 @@ VELOCITY = np.array([0.0, 1e-5, 2e-5, 0.0, 1e-5, 2e-5])
 LOAD = 2e3 * np.array([1.0, 1.0]) / math.sqrt(2.0)
 
 
+FORCE = function("ehd_cylinder_force", ctypes.c_void_p)
+
+
 @njit
-def many(times, state, sizes, slices, angles, numbers, cells, knots, rows, states, out):
+def many(times, address):
     """Call the kernel many times from compiled code."""
     for _ in range(times):
-        force_of_arrays(state, sizes, slices, angles, numbers, cells, knots, rows, states, out)
+        FORCE(address)
 
 
 def best_of(call: Callable[[], object], times: int, repeats: int = 15) -> float:
@@ -69,7 +73,6 @@ def main() -> None:
         law = ehdmaps.open_map(sys.argv[1]).law("series", "clamp")
     else:
         law = laws.formula(bearing, Lubricant.named("FVA3"), outside="clamp")
-    out = np.empty((13, 6))
     print(f"{'law':8} {'slices':>7} {'compiled us':>12} {'Python us':>10} {'force error':>12} {'stiffness error':>16}")
     for name, each in (("map", law), ("hertz", laws.hertz(bearing, 100.0))):
         exact = BearingForce(bearing, each, CONVERGED).at(1.0, 330.0)
@@ -77,7 +80,7 @@ def main() -> None:
         for slices in SLICES:
             point = BearingForce(bearing, each, slices).at(1.0, 330.0)
             point(POSE, VELOCITY)
-            compiled = best_of(lambda point=point: many(1000, *point.arrays, out), 2) / 1000
+            compiled = best_of(lambda point=point: many(1000, point.address), 2) / 1000
             called = best_of(lambda point=point: point(POSE, VELOCITY), 2000)
             error = np.linalg.norm(point(POSE)[0][1:3] - force[1:3]) / np.linalg.norm(force[1:3])
             softer = abs(stiffness(point) / k - 1.0)

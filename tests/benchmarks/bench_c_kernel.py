@@ -8,6 +8,7 @@
 from __future__ import annotations
 
 import argparse
+import ctypes
 import subprocess
 import tempfile
 import time
@@ -17,9 +18,9 @@ import numpy as np
 from numba import njit
 
 from ehdmaps.exports.c.kernel import KernelOptions, kernel_files
+from ehdmaps.kernel.library import function
 from ehdmaps.maps.emap import open_map
 from mbs import Bearing, BearingForce
-from mbs.bearings.bearing_kernel import force_of_arrays
 
 TIMING = Path(__file__).parents[1] / "data" / "c" / "timing.c"
 LOOSE = "-O3 -march=native -fno-math-errno -fno-trapping-math -fassociative-math -fno-signed-zeros"
@@ -27,25 +28,28 @@ FLAGS = ("-O2", "-O3", "-O3 -march=native", "-O3 -march=native -ffp-contract=fas
 U, T = 1.0, 313.15
 
 
+FORCE = function("ehd_cylinder_force", ctypes.c_void_p)
+
+
 @njit
-def called(state, sizes, slices, angles, numbers, cells, knots, rows, states, out, count):
+def called(address, state, answer, count):
     total = 0.0
     for i in range(count):
         state[2] = 1e-6 + 1e-12 * i
-        force_of_arrays(state, sizes, slices, angles, numbers, cells, knots, rows, states, out)
-        total += out[0, 1]
+        FORCE(address)
+        total += answer[0, 1]
     return total
 
 
 def python_time(force, tilt, calls=20000):
-    """Microseconds of a call of the compiled Python, from compiled code."""
+    """Microseconds of a call of the library that Python calls, from compiled code."""
     at = force.at(U, T)
     at([0.0, 3e-6, 1e-6, 0.0, tilt, 2.0 * tilt], [0.0, 1e-4, 0.0, 0.0, 10.0 * tilt, 0.0], 0.1)
-    out, best = np.empty((13, 6)), np.inf
-    called(*at.arrays, out, 10)
+    best, given = np.inf, (at.address, at.state, at.answer)
+    called(*given, 10)
     for _ in range(15):
         begin = time.process_time()
-        called(*at.arrays, out, calls)
+        called(*given, calls)
         best = min(best, (time.process_time() - begin) / calls)
     return 1e6 * best
 

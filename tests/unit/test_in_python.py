@@ -14,7 +14,6 @@ import ehdmaps
 from ehdmaps.compiled import in_python
 from ehdmaps.maps.kernels.lines import log
 from mbs import cli
-from mbs.bearings.slice_table import all_made
 
 # Off the symmetry, where a displacement is rounding, and with clearance: of a roller just where contact begins the
 # stiffness hangs on the last digit.
@@ -86,14 +85,6 @@ def test_commands_and_a_law_in_python_give_what_compiled_code_gives(small_map, t
             # round-off of other orders of summation, after Newton iterations that end within 1e-10
             scale = np.nanmax(np.abs(value), initial=0.0) + 1e-6  # moments by symmetry are 1e-17 N m; films 1e-7 m
             np.testing.assert_allclose(after[key], value, rtol=1e-8, atol=1e-9 * scale, err_msg=f"{name}: {key}")
-
-
-def test_bytes_are_counted_beyond_256():
-    """A sum of bytes is a byte in Python, and 256 missing cells were none."""
-    marks = np.zeros((2, 256), dtype=np.uint8)
-    assert not in_python(all_made)(np.arange(256), marks)
-    marks[1] = 1
-    assert in_python(all_made)(np.arange(256), marks)
 
 
 @pytest.mark.parametrize("x", [2.3e-308, 1e-9, 0.7, math.sqrt(0.5), 1.0, 1.5, 6e7, 1.7e308])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import dataclasses
 import math
 import subprocess
@@ -12,12 +13,13 @@ import pytest
 from numba import njit
 
 from ehdmaps.errors import InputError, MapError
+from ehdmaps.kernel.library import checked, function
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.physics.oil_supply import FLOODED
 from mbs.bearings import laws
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
-from mbs.bearings.bearing_kernel import force_of_arrays
+from mbs.bearings.cylinder import Cylinder, CylinderCall, CylinderLaw, CylinderWork
 from mbs.bearings.roller_contacts import RollerContacts
 from mbs.scene import contact_laws
 from mbs.scene.contact_laws import ContactLaws
@@ -187,17 +189,27 @@ def test_results_do_not_depend_on_what_was_called_before():
 def test_other_compiled_code_calls_the_kernel():
     point = force().at(1.0, 330.0)
     expected = point(POSE, VELOCITY, 0.3)
+    called = function("ehd_cylinder_force", ctypes.c_void_p)
 
     @njit
-    def twice(state, sizes, slices, angles, numbers, cells, knots, rows, states, out):
+    def twice(address, state, angle):
         status = 0
         for _ in range(2):
-            status += force_of_arrays(state, sizes, slices, angles, numbers, cells, knots, rows, states, out)
+            state[12] = angle
+            status += called(address)
         return status
 
-    out = np.empty((13, 6))
-    assert twice(*point.arrays, out) == 0
-    np.testing.assert_array_equal(out, np.vstack([expected[0], expected[1], expected[2]]))
+    point(POSE, VELOCITY, 0.1)
+    assert not np.array_equal(point.answer[0], expected[0])
+    assert twice(point.address, point.state, 0.3) == 0
+    np.testing.assert_array_equal(point.answer, np.vstack([expected[0], expected[1], expected[2]]))
+
+
+def test_the_struct_of_a_bearing_is_that_of_c():
+    """Each is as long as in C, and so is the table that Python makes room for."""
+    for record in (CylinderLaw, Cylinder, CylinderWork, CylinderCall):
+        name = {"CylinderLaw": "law", "CylinderWork": "work", "CylinderCall": "call"}.get(record.__name__)
+        assert checked(record, f"ehd_cylinder_{name}" if name else "ehd_cylinder") is record
 
 
 def near_edges(element, random):

@@ -11,6 +11,7 @@ from ehdmaps.errors import InputError, OutsideMapError
 from ehdmaps.maps.kernels.roller_balance import balanced_approach, balanced_state, balanced_states
 from mbs.bearings import slice_table as table
 from mbs.bearings.bearing_force import BearingForce
+from mbs.bearings.cylinder import GROWING, WHOLE, Arrays, LawRoom, functions
 from tests.cases.bearings import bearing, map_law
 
 POSE = np.array([0.0, 7e-6, 9e-6, 0.0, 1e-4, -2e-4])
@@ -49,30 +50,45 @@ def test_through_the_lowest_speed_and_back():
         assert_alike(found, force.at(u, 330.0)(POSE, VELOCITY), 0.0)
 
 
-def placed(q):
-    law = map_law()
-    point = law.at(1.0, 330.0, q).point
-    numbers = table.place_numbers(point, law.load_range[1])
-    return point, numbers, np.full((4, table.NODES), np.nan), np.zeros((2, table.NODES), dtype=np.uint8)
+@pytest.mark.parametrize("q", CENTRIFUGAL)
+def test_cells_are_the_same_in_any_order(q):
+    """Those that slices of random poses need are made one by one; the others are not."""
+    force, at = element(), (1.0, 330.0, q)
+    whole, parts = LawRoom(), Arrays(force.bearing)
+    data = force.flat_law.data(force.law, q > 0.0)
+    assert whole.prepare(data, at, WHOLE) == 0 and parts.prepare(data, at, GROWING) == 0
+    np.testing.assert_array_equal(parts.numbers, whole.numbers)
+    cells = parts.array("cells")
+    cells[:] = np.nan
+    random, made = np.random.default_rng(5), 0
+    for n in range(40):
+        parts.state[1:3], parts.state[4:6] = random.normal(0.0, 2e-5, 2), random.normal(0.0, 2e-3, 2)
+        functions().force(parts.call.address)
+        before, made = made, np.sum(np.isfinite(cells[:, 0, 0]))
+        assert made > 0 and made >= before and (n > 0 or made < 400)
+    known = np.isfinite(cells[:, 0, 0])
+    assert 0.1 < np.mean(known) < 0.9
+    np.testing.assert_array_equal(cells[known], whole.array("cells")[known])
+    assert np.all(np.isnan(cells[~known]))
 
 
 @pytest.mark.parametrize("q", CENTRIFUGAL)
-def test_cells_are_the_same_in_any_order(q):
-    point, numbers, nodes, marks = placed(q)
-    whole, parts = np.full((2 * table.ROWS, 8), np.nan), np.full((2 * table.ROWS, 8), np.nan)
-    assert table.tabulate(point, nodes, marks, whole, numbers.highest, np.empty(table.NUMBERS))
-    assert np.all(np.isfinite(whole)) and marks[:, : 2 * table.ROWS].all()
-    nodes[:], marks[:] = np.nan, 0
-    random = np.random.default_rng(5)
-    for _ in range(40):
-        table.fill(point, numbers, random.integers(0, 2 * table.ROWS, 30), nodes, marks, parts)
-    made = marks[1, :-1] == 1
-    assert 0.5 < np.mean(made) < 0.9 and np.all(np.isnan(parts[~made]))
-    # values and slopes of the cells; the other numbers are differences of these
-    size = np.maximum(np.max(np.abs(whole[made]), axis=1, keepdims=True), 1e-300)  # none carries below lift-off
-    assert np.max(np.abs(parts[made] - whole[made]) / size) <= (1e-9 if q else 0.0)
-    for k in (0, 4):  # load, damping
-        np.testing.assert_allclose(parts[made, k], whole[made, k], rtol=ITERATION if q else 0.0)
+def test_cells_are_those_of_the_law(q):
+    """Values and slopes at the ends of cells are those of the law at rest, up to the load at which it is held."""
+    force, at = element(), (1.0, 330.0, q)
+    room, point = LawRoom(), force.law.at(*at)
+    assert room.prepare(force.flat_law.data(force.law, q > 0.0), at, WHOLE) == 0
+    numbers, cells = table.LawNumbers(*room.numbers), room.array("cells")
+    # the ends of cells above the centre, each 1/32 of its doubling wide
+    ends = np.concatenate([2.0**k * (1.0 + np.arange(32) / 32.0) for k in range(14)]) - 1.0
+    approach = numbers.centre + ends / numbers.inverse_scale
+    below = approach < numbers.held_approach
+    load, slope, damping = (part[below] for part in point(approach, np.zeros_like(approach)))
+    found = cells[: table.ROWS][below]
+    assert load.max() > 0.5 * numbers.held_load
+    np.testing.assert_allclose(found[:, 0, 0], load, rtol=1e-9)
+    np.testing.assert_allclose(found[:, 1, 0] * numbers.inverse_scale, slope, rtol=1e-9)
+    np.testing.assert_allclose(found[:, 0, 1], damping, rtol=1e-9)
 
 
 @pytest.mark.parametrize("q", [1e-3, 50.0, 3e3])

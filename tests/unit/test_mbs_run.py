@@ -13,7 +13,8 @@ from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.laws import FlatLaw, hertz
-from mbs.bearings.slice_table import LawNumbers, fade
+from mbs.bearings.slice_table import LawNumbers
+from mbs.bearings.slices import fade
 from mbs.bearings.speed_tables import NODES, STEP, SpeedTables, SpeedWindow
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import ElementDefaults, Forces, Load, Operation, Port, Sensor, Spring
@@ -264,9 +265,11 @@ class TestSpeedTables:
         for speed, weight in zip(speeds[1:4], weights[1:4], strict=True):
             cells, knots, numbers = np.zeros((rows, 8)), np.zeros(rows), np.zeros(room[1].shape[1])
             fade(room[0][NODES], room[1][NODES], weight, cells, knots, numbers)
-            own = element.at(speed, TEMPERATURE).arrays
-            for got, wanted in zip((numbers, cells, knots), own[4:7], strict=True):
-                np.testing.assert_array_equal(got, wanted)
+            own = element.at(speed, TEMPERATURE)
+            # of another compiler: round-off
+            for got, wanted in ((numbers, own.numbers), (cells.reshape(-1, 4, 2), own.cells), (knots, own.knots)):
+                scale = np.max(np.abs(np.where(np.isfinite(wanted), wanted, 0.0)), axis=0)
+                assert np.all((np.abs(got - wanted) <= 1e-11 * scale) | (got == wanted))
         slots, sound, _ = tables.prepare(speeds[4:], nodes[4:], weights[4:], *room)
         assert slots.size == 1
         assert sound.all()

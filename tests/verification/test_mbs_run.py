@@ -13,7 +13,6 @@ from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_block import Films, blend
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
-from mbs.bearings.bearing_kernel import force_of_arrays
 from mbs.bearings.laws import hertz
 from mbs.bearings.speed_tables import NODES, SpeedTables
 from mbs.gears.gear import GearPair, gear_mesh
@@ -285,14 +284,12 @@ class TestFilmsOverSpeed:
         worst = np.zeros(3)
         for u in rng.uniform(0.31, 2.9, count):
             point = force.at(u, TEMPERATURE)
-            state = point.arrays[0]
-            state[:] = 0.0
-            state[1:3], state[4:6], state[7:9] = rng.uniform(12e-6, 30e-6, 2), rng.uniform(-1e-4, 1e-4, 2), 1e-3
-            fresh, mixed = np.empty((13, 6)), np.empty((13, 6))
-            force_of_arrays(*point.arrays, fresh)
-            arrays = list(point.arrays)
-            arrays[4:6] = self.blended(force, np.array([u, 1.0001 * u]))
-            force_of_arrays(*arrays, mixed)
+            pose, velocity = np.zeros(6), np.array([0.0, 1e-3, 1e-3, 0.0, 0.0, 0.0])
+            pose[1:3], pose[4:6] = rng.uniform(12e-6, 30e-6, 2), rng.uniform(-1e-4, 1e-4, 2)
+            fresh = np.vstack(point(pose, velocity))
+            numbers, cells = self.blended(force, np.array([u, 1.0001 * u]))
+            point.numbers[:], point.cells[:] = numbers, cells.reshape(-1, 4, 2)
+            mixed = np.vstack(point(pose, velocity))
             for i, rows in enumerate((slice(0, 1), slice(1, 7), slice(7, 13))):
                 error = np.abs(mixed[rows] - fresh[rows]).max() / np.abs(fresh[rows]).max()
                 worst[i] = max(worst[i], error)

@@ -6,14 +6,28 @@
  * EHD_ROLLERS rollers.
  * ------------------------------------------------------------------------------------------------------------------ */
 
+/* Room for slices of a roller. */
+#define EHD_MOST_SLICES 201
+
 /* What does not change of a bearing; made by ehd_bearing_make. */
-typedef ehd_cylinder ehd_bearing;
+typedef struct ehd_bearing {
+    int slices;
+    int symmetric;                                               /* whether the profile is */
+    double clearance, slice_length, least_profile, most_profile; /* [m] */
+    double position[EHD_MOST_SLICES + 1];                        /* middles of the slices along the roller [m] */
+    double profile[EHD_MOST_SLICES + 1];                         /* twice the depth of the roller's profile there [m] */
+} ehd_bearing;
 
 /* The law at one speed, temperature and centrifugal load, as a table that a bearing reads in nanoseconds; made by
  * ehd_prepare. Some 150 kB: make it static, or on the heap, and one for each thread. */
 typedef struct ehd_prepared {
-    ehd_cylinder_law law;
-    double cell[(EHD_HAS_CENTRIFUGAL ? 3 : 1) * EHD_MOST_CELLS][2][4];
+    int64_t prepared;                /* whether it is */
+    ehd_cylinder_numbers numbers;
+    double cell[2 * EHD_ROWS][4][2]; /* cubics of load and damping, in turns */
+    double knot[2 * EHD_ROWS];       /* where cells begin [m], below the lowest mapped speed */
+    double node[2 * EHD_ROWS][8];    /* work space */
+    int64_t mark[EHD_NODES / 4 + 1]; /* the same */
+    ehd_point point;
 } ehd_prepared;
 
 /* Cut a bearing into slices.

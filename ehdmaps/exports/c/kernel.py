@@ -110,7 +110,7 @@ def kernel_files(emap: EHDMap, options: KernelOptions, header: Sequence[str]) ->
     banner = comment(header)
     heads, bodies, facades = ["status", "law", "film"], ["status", "law", "cells", "film"], ["law_facade"]
     if bearing is not None:
-        heads += ["cylinder", "cylinder_films"]
+        heads += ["cylinder_law", "cylinder", "cylinder_films"]
         bodies += ["cylinder_law", "cylinder", "cylinder_films"]
         facades += ["bearing_facade"]
     guard = "EHD_H"
@@ -128,7 +128,7 @@ def kernel_files(emap: EHDMap, options: KernelOptions, header: Sequence[str]) ->
         *(template("ehdmaps.kernel", f"c/{part}.c") for part in bodies),
         _law_data(law, options.centrifugal),
         _film_data(law),
-        "" if bearing is None else _bearing_data(bearing, options),
+        "" if bearing is None else _bearing_data(bearing),
         *(_template(f"{part}.c") for part in facades),
     ]  # fmt: skip
     texts = {"ehd.h": "\n".join(top), "ehd.c": "\n".join(source)}
@@ -233,24 +233,14 @@ def _film_data(law: ContactLaw) -> str:
     )
 
 
-def _bearing_data(bearing: BearingGeometry, options: KernelOptions) -> str:
-    """Numbers of the bearing."""
+def _bearing_data(bearing: BearingGeometry) -> str:
+    """Directions of the rollers."""
     angles = 2.0 * math.pi * np.arange(bearing.rollers) / bearing.rollers
-    fields = {
-        "law": "&LAW",
-        "rollers": "EHD_ROLLERS",
-        "roller_length": "EHD_ROLLER_LENGTH",
-        "roller_diameter": "EHD_ROLLER_DIAMETER",
-        "iso_profile": "EHD_ISO_PROFILE",
-        "cosine": "COSINES",
-        "sine": "SINES",
-    }
     return "\n".join(
         (
             "/* Directions of the rollers in the cage. */",
             array("COSINES", np.cos(angles)),
             array("SINES", np.sin(angles)),
-            _data("ehd_cylinder_data", "CYLINDER", fields),
         )
     )
 

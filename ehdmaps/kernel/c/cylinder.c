@@ -1,9 +1,18 @@
 /* ---------------------------------------------------------------------------------------------------------------------
- * Bearings with cylindrical rollers
+ * A cylindrical roller bearing; see cylinder.h
+ *
+ * Steps are loops of their own over the slices of a roller, which compilers put into vector instructions.
  * ------------------------------------------------------------------------------------------------------------------ */
 
-#define MOST_TILT 0.5  /* [rad]; the largest accepted displacement is the roller diameter */
 #define NO_APPROACH 1e-30
+
+/* In the library, not in what exports write: compiled for newer processors, too, of which the right one is taken. */
+#if defined(EHD_NUMBER) && defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) &&    \
+    !defined(__SANITIZE_ADDRESS__) && defined(__OPTIMIZE__)
+#define CYLINDER_CLONES __attribute__((target_clones("default", "arch=x86-64-v3")))
+#else
+#define CYLINDER_CLONES
+#endif
 
 /* First digits of a = 1 and -1, less the rows of their cells. */
 #define FIRST_ABOVE (UINT64_C(0x3ff) << CELL_BITS)
@@ -18,13 +27,11 @@ typedef struct roller {
     double cosine, sine, gap, tilt, rate, tilt_rate, deepest;
 } roller;
 
-/* States of the slices of a roller at rest: load and damping in turns, as in the cells, and the slopes of both; and
- * where they are in the cells. A mirrored roller has the same on both sides: only the first half is filled, with the
- * middle. */
+/* Slices of a roller: so many of them are computed, those of a mirrored one for both sides. */
 typedef struct slices {
-    double value[EHD_MOST_SLICES][2], slope[EHD_MOST_SLICES][2], place[EHD_MOST_SLICES + 1];
-    uint64_t row[EHD_MOST_SLICES + 1];
-    int count, mirrored;
+    double (*value)[2], (*slope)[2], *place;
+    uint64_t *row;
+    int64_t count, mirrored;
 } slices;
 
 /* Sums over the slices of a roller: loads and loads times place; stiffness and damping times 1, x and x^2. */
@@ -34,69 +41,88 @@ typedef struct sums {
 
 static const sums NO_SUMS = {{0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
 
-/* Depth of the roller's profile at a distance from its middle, on one side [m]. */
-static double roller_profile(const ehd_cylinder_data *D, double x) {
-    if (!D->iso_profile) return 0.0; /* straight */
-    /* ISO/TS 16281: logarithmic; rollers longer than 2.5 diameters are straight in the middle */
-    const int is_short = D->roller_length <= 2.5 * D->roller_diameter;
-    const double crowned = is_short ? D->roller_length : 2.5 * D->roller_diameter;
-    const double part = most(2.0 * fabs(x) - (D->roller_length - crowned), 0.0) / crowned;
-    return -(is_short ? 0.00035 : 0.0005) * D->roller_diameter * log1p(-part * part);
+/* x^b for a positive normal x, and a result between 1e-300 and 1e300; to some 1e-15 relative. Compilers put it into vector
+ * instructions, as it has no branch and no call. */
+static inline double slice_power(double x, double b) {
+    const uint64_t one = UINT64_C(0x3ff0000000000000), root_half = UINT64_C(0x3fe6a09e667f3bcd), bits = bits_of(x);
+    const double ln2 = 6.93147180369123816490e-01, ln2_rest = 1.90821492927058770002e-10;
+    /* the logarithm, of a mantissa m between the roots of 1/2 and 2 by that of (1 + f)/(1 - f) */
+    const uint64_t exponent = (bits + (one - root_half)) >> 52;
+    const double e = number_of_bits(exponent | UINT64_C(0x4330000000000000)) - (4503599627370496.0 + 1023.0);
+    const double m = number_of_bits(bits + one - (exponent << 52)), f = (m - 1.0) / (m + 1.0);
+    const double z = f * f, z2 = z * z, z4 = z2 * z2;
+    const double odd = (2.0 / 3.0 + z * (2.0 / 5.0)) + z2 * (2.0 / 7.0 + z * (2.0 / 9.0));
+    const double odd_on = (2.0 / 11.0 + z * (2.0 / 13.0)) + z2 * (2.0 / 15.0 + z * (2.0 / 17.0));
+    const double odd_sum = odd + z4 * (odd_on + z4 * (2.0 / 19.0 + z * (2.0 / 21.0)));
+    const double y = b * (e * ln2 + (e * ln2_rest + f * (2.0 + z * odd_sum)));
+    /* the exponential; adding 3 2^51 leaves the nearest whole number in the last bits */
+    const double shifted = y * 1.4426950408889634 + 6755399441055744.0, n = shifted - 6755399441055744.0;
+    const double r = (y - n * ln2) - n * ln2_rest, r2 = r * r, r4 = r2 * r2;
+    const double low = (1.0 + r) + r2 * (0.5 + r * (1.0 / 6.0));
+    const double middle = (1.0 / 24.0 + r * (1.0 / 120.0)) + r2 * (1.0 / 720.0 + r * (1.0 / 5040.0));
+    const double high = (1.0 / 40320.0 + r * (1.0 / 362880.0)) + r2 * (1.0 / 3628800.0 + r * (1.0 / 39916800.0));
+    const double series = low + r4 * (middle + r4 * (high + r4 * (1.0 / 479001600.0)));
+    return series * number_of_bits((bits_of(shifted) + 1023) << 52);
 }
 
-int ehd_cylinder_make(const ehd_cylinder_data *D, double clearance, int count, const double *profile,
-                      ehd_cylinder *bearing) {
-    if (!bearing || count < 1 || count > EHD_MOST_SLICES || !is_finite(clearance)) return EHD_BAD_ARGUMENT;
-    bearing->data = D;
-    bearing->slices = count;
-    bearing->clearance = clearance;
-    bearing->slice_length = D->roller_length / count;
-    bearing->least_profile = DBL_MAX;
-    bearing->most_profile = -DBL_MAX;
-    bearing->position[count] = bearing->profile[count] = 0.0;
-    for (int i = 0; i < count; i++) {
-        const double x = (2 * i + 1 - count) / (2.0 * count) * D->roller_length; /* alike on both sides, to the bit */
-        const double depth = profile ? profile[i] : roller_profile(D, x);
-        if (!(fabs(depth) < D->roller_diameter)) return EHD_BAD_ARGUMENT;
-        bearing->position[i] = x;
-        bearing->profile[i] = 2.0 * depth;
-        bearing->least_profile = least(bearing->least_profile, 2.0 * depth);
-        bearing->most_profile = most(bearing->most_profile, 2.0 * depth);
-    }
-    bearing->symmetric = 1;
-    for (int i = 0; i < count; i++)
-        if (bearing->profile[i] != bearing->profile[count - 1 - i]) bearing->symmetric = 0;
-    return EHD_OK;
+static ehd_ring_motion ring_motion_of(const double pose[6], const double velocity[6], double cage_angle) {
+    const ehd_ring_motion motion = {pose[1],     pose[2],     pose[4],     pose[5],         velocity[1],
+                                    velocity[2], velocity[4], velocity[5], cos(cage_angle), sin(cage_angle)};
+    return motion;
 }
 
-size_t ehd_cylinder_size(void) { return sizeof(ehd_cylinder); }
+/* What is wrong about a motion. */
+static int check_motion(const ehd_cylinder *bearing, const ehd_ring_motion *m) {
+    const double total = fabs(m->y) + fabs(m->z) + fabs(m->theta_y) + fabs(m->theta_z) + fabs(m->y_rate) +
+                         fabs(m->z_rate) + fabs(m->theta_y_rate) + fabs(m->theta_z_rate) + fabs(m->cage_cosine);
+    if (!is_finite(total)) return EHD_NOT_FINITE;
+    const double far = bearing->most_travel, tilted = bearing->most_tilt;
+    if (fabs(m->y) <= far && fabs(m->z) <= far && fabs(m->theta_y) <= tilted && fabs(m->theta_z) <= tilted)
+        return EHD_OK;
+    return EHD_TOO_FAR;
+}
 
-static roller roller_of(const ehd_cylinder *bearing, const double pose[6], const double velocity[6], double cage_cosine,
-                        double cage_sine, int j) {
-    const ehd_cylinder_data *D = bearing->data;
-    const double cosine = D->cosine[j], sine = D->sine[j];
+/* Motion that rollers feel, of six numbers of pose and velocity each, and what is wrong about it. */
+static int given_motion(const ehd_cylinder *bearing, const double pose[6], const double velocity[6], double cage_angle,
+                        ehd_ring_motion *motion) {
+    double total = fabs(cage_angle);
+    for (int i = 0; i < 6; i++) total += fabs(pose[i]) + fabs(velocity[i]);
+    if (!is_finite(total)) return EHD_NOT_FINITE;
+    *motion = ring_motion_of(pose, velocity, cage_angle);
+    return check_motion(bearing, motion);
+}
+
+static roller roller_of(const ehd_cylinder *bearing, const ehd_ring_motion *m, int64_t j) {
     roller r;
-    r.cosine = cage_cosine * cosine - cage_sine * sine;
-    r.sine = cage_sine * cosine + cage_cosine * sine;
-    r.gap = pose[1] * r.cosine + pose[2] * r.sine - 0.5 * bearing->clearance;
-    r.tilt = pose[5] * r.cosine - pose[4] * r.sine;
-    r.rate = velocity[1] * r.cosine + velocity[2] * r.sine;
-    r.tilt_rate = velocity[5] * r.cosine - velocity[4] * r.sine;
-    r.deepest = r.gap + (0.5 * D->roller_length * fabs(r.tilt) - bearing->least_profile);
+    r.cosine = m->cage_cosine * bearing->cosine[j] - m->cage_sine * bearing->sine[j];
+    r.sine = m->cage_sine * bearing->cosine[j] + m->cage_cosine * bearing->sine[j];
+    r.gap = m->y * r.cosine + m->z * r.sine - bearing->half_clearance;
+    r.tilt = m->theta_z * r.cosine - m->theta_y * r.sine;
+    r.rate = m->y_rate * r.cosine + m->z_rate * r.sine;
+    r.tilt_rate = m->theta_z_rate * r.cosine - m->theta_y_rate * r.sine;
+    r.deepest = r.gap + (bearing->half_length * fabs(r.tilt) - bearing->least_profile);
     return r;
 }
 
-static double approach_of(const ehd_cylinder *bearing, const roller *r, int i) {
+static double approach_of(const ehd_cylinder *bearing, const roller *r, int64_t i) {
     return r->gap + bearing->position[i] * r->tilt - bearing->profile[i];
 }
 
+/* Where the states of a roller are. */
+static slices slices_of(const ehd_cylinder *bearing, const ehd_cylinder_work *work, int64_t j) {
+    double *states = work->states + work->stride * j;
+    slices s = {(double(*)[2])states, (double(*)[2])(states + 2 * bearing->slices), work->place, work->row,
+                bearing->slices, 0};
+    return s;
+}
+
 /* Cell between knots of an approach, found from the one before. */
-static int knot_of(const ehd_cylinder_law *law, double approach, int found) {
-    int low = 0, high = 2 * EHD_ROWS - 1;
-    if (law->knot[found] <= approach && approach < law->knot[found + 1]) return found;
+static int64_t knot_of(const double *knot, double approach, int64_t found) {
+    int64_t low = 0, high = 2 * EHD_ROWS - 1;
+    if (knot[found] <= approach && approach < knot[found + 1]) return found;
     while (high - low > 1) {
-        const int middle = (low + high) / 2;
-        if (law->knot[middle] <= approach)
+        const int64_t middle = (low + high) / 2;
+        if (knot[middle] <= approach)
             low = middle;
         else
             high = middle;
@@ -104,73 +130,96 @@ static int knot_of(const ehd_cylinder_law *law, double approach, int found) {
     return low;
 }
 
-/* States of the slices of a roller at rest, by a power law. */
-static void power_states(const ehd_cylinder *bearing, const ehd_cylinder_law *law, const roller *r, slices *s) {
-    for (int i = 0; i < s->count; i++) {
-        const double approach = approach_of(bearing, r, i), safe = most(approach, NO_APPROACH);
-        const double slope = law->coefficient * law->exponent * pow(safe, law->exponent - 1.0);
-        s->value[i][0] = approach > 0.0 ? slope * safe / law->exponent : 0.0;
-        s->slope[i][0] = approach > 0.0 ? slope : 0.0;
-        s->value[i][1] = s->slope[i][1] = 0.0;
+/* Powers of the approaches of slices that are pressed, factor approach^b, into place; the other ones are those of the
+ * smallest approach. All that loops take is given, so that they have no branches. */
+CYLINDER_CLONES static void power_slices(int64_t count, double gap, double tilt, const double *restrict position,
+                                         const double *restrict profile, double smallest, double factor, double b,
+                                         double *restrict place) {
+    for (int64_t i = 0; i < count; i++)
+        place[i] = factor * slice_power(most(gap + position[i] * tilt - profile[i], smallest), b);
+}
+
+/* States of w = a approach^b with c = damping + damping_time dw/dapproach. */
+static void power_states(const ehd_cylinder *bearing, const ehd_cylinder_numbers *law, const roller *r, const slices *s) {
+    const double b = law->exponent, damping = law->damping, time = law->damping_time, bend = time * (b - 1.0) / b;
+    const double *restrict position = bearing->position, *restrict profile = bearing->profile;
+    double *restrict place = s->place, *restrict value = s->value[0], *restrict slope = s->slope[0];
+    const double gap = r->gap, tilt = r->tilt, by_b = 1.0 / b;
+    const int64_t count = s->count;
+    power_slices(count, gap, tilt, position, profile, NO_APPROACH, law->coefficient * b, b - 1.0, place);
+    for (int64_t i = 0; i < count; i++) {
+        const double approach = gap + position[i] * tilt - profile[i], loaded = approach > 0.0 ? 1.0 : 0.0;
+        const double dw = loaded * place[i], w = dw * most(approach, NO_APPROACH) * by_b;
+        value[2 * i] = w;
+        value[2 * i + 1] = loaded * damping + time * dw;
+        slope[2 * i] = dw;
+        slope[2 * i + 1] = bend * dw * dw / (w + (1.0 - loaded)); /* the second derivative of the power */
     }
 }
 
 /* Where slices are in cells around a centre. The sign of z goes with 1 + |z|, so that nothing branches; two slices at a
  * time, as compilers put into vector instructions without being asked. */
-static void find_cells(const ehd_cylinder *bearing, const ehd_cylinder_law *law, const roller *r, slices *s) {
+static void find_cells(const ehd_cylinder *bearing, const ehd_cylinder_numbers *law, const roller *r, const slices *s) {
     const double inverse = law->inverse_scale, start = (r->gap - law->centre) * inverse, tilt = r->tilt * inverse;
-    const double *position = bearing->position, *profile = bearing->profile;
-    const double lowest = r->gap - 0.5 * bearing->data->roller_length * fabs(r->tilt) - bearing->most_profile;
+    const double *restrict position = bearing->position, *restrict profile = bearing->profile;
+    double *restrict place = s->place;
+    uint64_t *restrict row = s->row;
+    const int64_t count = s->count;
+    const double lowest = r->gap - bearing->half_length * fabs(r->tilt) - bearing->most_profile;
     const double limit = cell_end(EHD_ROWS) - 2.0;
     if (!(fabs(r->deepest - law->centre) * inverse < limit && fabs(lowest - law->centre) * inverse < limit)) {
-        for (int i = 0; i < s->count; i++) /* some slice may be beyond the cells */
-            s->row[i] = (uint64_t)row_of(start + position[i] * tilt - profile[i] * inverse, &s->place[i]);
+        for (int64_t i = 0; i < count; i++) /* some slice may be beyond the cells */
+            row[i] = (uint64_t)row_of(start + position[i] * tilt - profile[i] * inverse, &place[i]);
         return;
     }
-    for (int i = 0; i < s->count; i += 2) {
-        for (int k = i; k < i + 2; k++) {
+    for (int64_t i = 0; i < count; i += 2) {
+        for (int64_t k = i; k < i + 2; k++) {
             const double z = start + position[k] * tilt - profile[k] * inverse;
             const uint64_t sign = bits_of(z) & UINT64_C(1) << 63;
             const double a = z + number_of_bits(bits_of(1.0) | sign);
             const uint64_t cell = bits_of(a) >> (52 - CELL_BITS);
-            s->place[k] = a - number_of_bits(cell << (52 - CELL_BITS));
-            s->row[k] = cell - (a < 0.0 ? FIRST_BELOW : FIRST_ABOVE);
+            place[k] = a - number_of_bits(cell << (52 - CELL_BITS));
+            row[k] = cell - (a < 0.0 ? FIRST_BELOW : FIRST_ABOVE);
         }
     }
 }
 
 /* The same between knots. */
-static void find_knots(const ehd_cylinder *bearing, const ehd_cylinder_law *law, const roller *r, slices *s) {
-    int found = 0;
-    for (int i = 0; i < s->count; i++) {
+static void find_knots(const ehd_cylinder *bearing, const double *knot, const roller *r, const slices *s) {
+    int64_t found = 0;
+    for (int64_t i = 0; i < s->count; i++) {
         const double approach = approach_of(bearing, r, i);
-        const int loaded = approach > law->knot[0];
-        if (loaded) found = knot_of(law, approach, found);
+        const int loaded = approach > knot[0];
+        if (loaded) found = knot_of(knot, approach, found);
         s->row[i] = loaded ? (uint64_t)found : 0;
-        s->place[i] = loaded ? approach - law->knot[found] : 0.0;
+        s->place[i] = loaded ? approach - knot[found] : 0.0;
     }
 }
 
 /* States of the slices in their cells: cubics. A loop of its own: what it waits for is then at hand. */
-static void read_cells(const ehd_cylinder_law *law, slices *s) {
-    for (int i = 0; i < s->count; i++) {
-        const double(*cell)[2] = law->cell[s->row[i]], t = s->place[i];
+static void read_cells(const double *cells, const slices *s) {
+    const double *restrict place = s->place;
+    const uint64_t *restrict row = s->row;
+    double *restrict value = s->value[0], *restrict slope = s->slope[0];
+    const int64_t count = s->count;
+    for (int64_t i = 0; i < count; i++) {
+        const double *restrict cell = cells + 8 * row[i], t = place[i];
         for (int f = 0; f < 2; f++) {
-            const double bend = cell[2][f] + t * cell[3][f], mean = cell[1][f] + t * bend;
-            s->value[i][f] = cell[0][f] + t * mean;
-            s->slope[i][f] = mean + t * (bend + t * cell[3][f]);
+            const double bend = cell[4 + f] + t * cell[6 + f], mean = cell[2 + f] + t * bend;
+            value[2 * i + f] = cell[f] + t * mean;
+            slope[2 * i + f] = mean + t * (bend + t * cell[6 + f]);
         }
     }
 }
 
 /* Put slices above the held load on the tangent; returns whether any is above the mapped load. */
-static int hold(const ehd_cylinder *bearing, const ehd_cylinder_law *law, const roller *r, slices *s) {
+static int hold(const ehd_cylinder *bearing, const ehd_cylinder_numbers *law, const roller *r, const slices *s) {
     int status = EHD_OK;
-    for (int i = 0; i < s->count; i++) {
+    for (int64_t i = 0; i < s->count; i++) {
         const double above = approach_of(bearing, r, i) - law->held_approach;
         if (above > 0.0) {
-            s->value[i][0] = law->point.held_load + law->point.held_stiffness * above;
-            s->slope[i][0] = law->point.held_stiffness / law->slope;
+            s->value[i][0] = law->held_load + law->held_stiffness * above;
+            s->slope[i][0] = law->held_stiffness / law->slope;
             s->value[i][1] = law->held_damping;
             s->slope[i][1] = 0.0;
         }
@@ -181,12 +230,12 @@ static int hold(const ehd_cylinder *bearing, const ehd_cylinder_law *law, const 
 
 /* States by the law itself, at the rates of the slices: the rates are in the loads then, and the damping is given as it
  * acts. */
-static int law_states(const ehd_cylinder *bearing, const ehd_cylinder_law *law, roller *r, slices *s) {
+static int law_states(const ehd_cylinder *bearing, const ehd_law_point *point, roller *r, const slices *s) {
     int status = EHD_OK;
-    for (int i = 0; i < s->count; i++) {
+    for (int64_t i = 0; i < s->count; i++) {
         ehd_force found;
         const double rate = r->rate + bearing->position[i] * r->tilt_rate;
-        status |= ehd_law_force(&law->point, approach_of(bearing, r, i), rate, &found);
+        status |= ehd_law_force(point, approach_of(bearing, r, i), rate, &found) & EHD_ABOVE_LOAD;
         s->value[i][0] = found.load;
         s->slope[i][0] = found.stiffness;
         s->value[i][1] = found.damping;
@@ -198,26 +247,31 @@ static int law_states(const ehd_cylinder *bearing, const ehd_cylinder_law *law, 
 
 /* States of the slices of a roller. Where it is level they are the same on both sides. */
 static int states_of(const ehd_cylinder *bearing, const ehd_cylinder_law *law, roller *r, slices *s) {
-    s->mirrored = bearing->symmetric && r->tilt == 0.0 && r->tilt_rate == 0.0;
-    s->count = s->mirrored ? (bearing->slices + 1) / 2 : bearing->slices;
-    if (law->kind == BY_SLICES) return law_states(bearing, law, r, s);
-    if (law->kind == POWER) {
-        power_states(bearing, law, r, s);
-    } else {
-        if (law->kind == CELLS)
-            find_cells(bearing, law, r, s);
-        else
-            find_knots(bearing, law, r, s);
-        read_cells(law, s);
+    const int kind = (int)law->numbers->kind;
+    if (bearing->symmetric && r->tilt == 0.0 && r->tilt_rate == 0.0) {
+        s->mirrored = 1;
+        s->count = (bearing->slices + 1) / 2;
     }
-    return r->deepest > law->safe_approach ? hold(bearing, law, r, s) : EHD_OK;
+    if (kind == EHD_BY_SLICES) return law_states(bearing, law->point, r, s);
+    if (kind == EHD_POWER) {
+        power_states(bearing, law->numbers, r, s);
+    } else {
+        if (kind == EHD_CELLS)
+            find_cells(bearing, law->numbers, r, s);
+        else
+            find_knots(bearing, law->knots, r, s);
+        if (law->grows)
+            for (int64_t i = 0; i < s->count; i++) make_cell(law, s->row[i]);
+        read_cells(law->cells, s);
+    }
+    return r->deepest > law->numbers->safe_approach ? hold(bearing, law->numbers, r, s) : EHD_OK;
 }
 
 /* Sums over the slices of a roller that all have c rate >= -w/2, where the rule of the damping is linear: load
  * w + c rate, stiffness dw + dc rate, damping c. Slices at the same distance from the middle go together. Returns
  * whether all are so. */
 static int moderate_sums(const ehd_cylinder *bearing, const roller *r, const slices *s, sums *sum) {
-    const int half = bearing->slices / 2, last = bearing->slices - 1;
+    const int64_t half = bearing->slices / 2, last = bearing->slices - 1;
     double w0 = 0.0, w1 = 0.0, k0 = 0.0, k1 = 0.0, k2 = 0.0, c0 = 0.0, c1 = 0.0, c2 = 0.0, lowest = 0.0;
     if (bearing->slices % 2) {
         const double *value = s->value[half], *slope = s->slope[half], part = value[1] * r->rate;
@@ -226,7 +280,7 @@ static int moderate_sums(const ehd_cylinder *bearing, const roller *r, const sli
         c0 = value[1];
         lowest = least(w0 + part, lowest);
     }
-    for (int i = 0; i < half; i++) {
+    for (int64_t i = 0; i < half; i++) {
         const double *value = s->value[i], *right_value = s->value[last - i];
         const double *slope = s->slope[i], *right_slope = s->slope[last - i];
         const double x = bearing->position[i], xx = x * x, change = x * r->tilt_rate;
@@ -261,7 +315,7 @@ static int moderate_sums(const ehd_cylinder *bearing, const roller *r, const sli
 static int mirrored_sums(const ehd_cylinder *bearing, const roller *r, const slices *s, sums *sum) {
     const double rate = r->rate;
     double w0 = 0.0, k0 = 0.0, k2 = 0.0, c0 = 0.0, c2 = 0.0, lowest = 0.0, w = 0.0, k = 0.0, c = 0.0;
-    for (int i = 0; i < s->count; i++) {
+    for (int64_t i = 0; i < s->count; i++) {
         const double x = bearing->position[i], xx = x * x, part = s->value[i][1] * rate;
         c = s->value[i][1];
         w = s->value[i][0] + part;
@@ -283,23 +337,50 @@ static int mirrored_sums(const ehd_cylinder *bearing, const roller *r, const sli
     return lowest >= 0.0;
 }
 
+/* The same of a level roller whose slices have weights. */
+static int weighted_sums(const ehd_cylinder *bearing, const roller *r, const slices *s, sums *sum) {
+    const double rate = r->rate, *weight = bearing->weight;
+    double w0 = 0.0, k0 = 0.0, c0 = 0.0, lowest = 0.0;
+    for (int64_t i = 0; i < s->count; i++) {
+        const double c = s->value[i][1], part = c * rate, w = s->value[i][0] + part;
+        lowest = least(w + part, lowest);
+        w0 += weight[i] * w;
+        k0 += weight[i] * (s->slope[i][0] + s->slope[i][1] * rate);
+        c0 += weight[i] * c;
+    }
+    *sum = NO_SUMS;
+    sum->w[0] = w0;
+    sum->k[0] = k0;
+    sum->c[0] = c0;
+    return lowest >= 0.0;
+}
+
 /* The same at any rates, by the whole rule without tension. */
 static void lifting_sums(const ehd_cylinder *bearing, const roller *r, const slices *s, sums *sum) {
     *sum = NO_SUMS;
-    for (int i = 0; i < bearing->slices; i++) {
-        const int k = i < s->count ? i : bearing->slices - 1 - i;
-        const double x = bearing->position[i], *value = s->value[k], *slope = s->slope[k];
+    for (int64_t i = 0; i < bearing->slices; i++) {
+        const int64_t k = i < s->count ? i : bearing->slices - 1 - i;
+        const double weight = bearing->weight ? bearing->weight[i] : 1.0, x = bearing->weight ? 0.0 : bearing->position[i];
+        const double *value = s->value[k], *slope = s->slope[k];
         ehd_force found;
         unilateral(value[0], slope[0], value[1], slope[1], r->rate + x * r->tilt_rate, &found);
-        sum->w[0] += found.load;
+        sum->w[0] += weight * found.load;
         sum->w[1] += found.load * x;
-        sum->k[0] += found.stiffness;
+        sum->k[0] += weight * found.stiffness;
         sum->k[1] += found.stiffness * x;
         sum->k[2] += found.stiffness * x * x;
-        sum->c[0] += found.damping;
+        sum->c[0] += weight * found.damping;
         sum->c[1] += found.damping * x;
         sum->c[2] += found.damping * x * x;
     }
+}
+
+/* Sums over the slices of a roller whose states are there. */
+static void sums_of(const ehd_cylinder *bearing, const roller *r, const slices *s, sums *sum) {
+    const int moderate = bearing->weight ? weighted_sums(bearing, r, s, sum)
+                         : s->mirrored   ? mirrored_sums(bearing, r, s, sum)
+                                         : moderate_sums(bearing, r, s, sum);
+    if (!moderate) lifting_sums(bearing, r, s, sum);
 }
 
 /* Add s B B^T of a roller to a matrix of the bearing, B its direction in y, z, theta_y and theta_z; for the sums of s
@@ -328,81 +409,73 @@ static void finish_matrix(double matrix[6][6], double factor) {
 }
 
 /* Add a roller to the force on the ring and its derivatives. */
-static void add_roller(const roller *r, const sums *sum, ehd_bearing_force *result) {
-    result->force[1] -= r->cosine * sum->w[0];
-    result->force[2] -= r->sine * sum->w[0];
-    result->force[4] += r->sine * sum->w[1];
-    result->force[5] -= r->cosine * sum->w[1];
-    add_matrix(result->stiffness, r, sum->k);
-    add_matrix(result->damping, r, sum->c);
+static void add_roller(const roller *r, const sums *sum, ehd_bearing_force *answer) {
+    answer->force[1] -= r->cosine * sum->w[0];
+    answer->force[2] -= r->sine * sum->w[0];
+    answer->force[4] += r->sine * sum->w[1];
+    answer->force[5] -= r->cosine * sum->w[1];
+    add_matrix(answer->stiffness, r, sum->k);
+    add_matrix(answer->damping, r, sum->c);
 }
 
-static void no_bearing_force(ehd_bearing_force *result) {
+static void no_bearing_force(ehd_bearing_force *answer) {
     for (int i = 0; i < 6; i++) {
-        result->force[i] = NAN;
-        for (int k = 0; k < 6; k++) result->stiffness[i][k] = result->damping[i][k] = NAN;
+        answer->force[i] = NAN;
+        for (int k = 0; k < 6; k++) answer->stiffness[i][k] = answer->damping[i][k] = NAN;
     }
 }
 
-/* What is wrong about a motion. */
-static int check_motion(const ehd_cylinder_data *D, const double pose[6], const double velocity[6], double cage_angle) {
-    double total = fabs(cage_angle);
-    for (int i = 0; i < 6; i++) total += fabs(pose[i]) + fabs(velocity[i]);
-    if (!is_finite(total)) return EHD_NOT_FINITE;
-    if (fabs(pose[1]) <= D->roller_diameter && fabs(pose[2]) <= D->roller_diameter && fabs(pose[4]) <= MOST_TILT &&
-        fabs(pose[5]) <= MOST_TILT)
-        return EHD_OK;
-    return EHD_TOO_FAR;
-}
-
-/* Multiply the sums by the length of a slice, and stiffness by a slope besides; refuse what is not finite after all. */
-static int finish(const ehd_cylinder *bearing, double slope, int status, ehd_bearing_force *result) {
+/* Finish a call whose results are exported: what is refused, or is not finite after all, is NaN. */
+static int settled_force(const ehd_law_data *data, int status, ehd_bearing_force *answer) {
     double force = 0.0, stiffness = 0.0, damping = 0.0;
-    finish_matrix(result->stiffness, slope * bearing->slice_length);
-    finish_matrix(result->damping, bearing->slice_length);
     for (int i = 0; i < 4; i++) {
-        result->force[LOADED[i]] *= bearing->slice_length;
-        force += fabs(result->force[LOADED[i]]);
+        force += fabs(answer->force[LOADED[i]]);
         for (int k = i; k < 4; k++) {
-            stiffness += fabs(result->stiffness[LOADED[i]][LOADED[k]]);
-            damping += fabs(result->damping[LOADED[i]][LOADED[k]]);
+            stiffness += fabs(answer->stiffness[LOADED[i]][LOADED[k]]);
+            damping += fabs(answer->damping[LOADED[i]][LOADED[k]]);
         }
     }
     if (!is_finite(force + stiffness + damping)) status |= EHD_NOT_FINITE;
-    if (refuses(bearing->data->law, status)) no_bearing_force(result);
+    if (refuses(data, status)) no_bearing_force(answer);
     return status;
 }
 
-int ehd_cylinder_at(const ehd_cylinder *bearing, const ehd_cylinder_law *law, const double pose[6],
-                    const double velocity[6], double cage_angle, ehd_bearing_force *result) {
-    static const double at_rest[6] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
-    slices s;
-    sums sum;
-    if (!result) return EHD_BAD_ARGUMENT;
-    no_bearing_force(result);
-    if (!bearing || !law || !pose || law->kind == UNPREPARED) return EHD_BAD_ARGUMENT;
-    if (!velocity) velocity = at_rest;
-    int status = (int)law->point.status | check_motion(bearing->data, pose, velocity, cage_angle);
-    if (refuses(law->point.data, status)) return status;
-    const double cage_cosine = cos(cage_angle), cage_sine = sin(cage_angle);
-    memset(result, 0, sizeof *result);
-    for (int j = 0; j < bearing->data->rollers; j++) {
-        roller r = roller_of(bearing, pose, velocity, cage_cosine, cage_sine, j);
-        if (r.deepest <= law->lift_off) continue;
-        status |= states_of(bearing, law, &r, &s);
-        if (!(s.mirrored ? mirrored_sums(bearing, &r, &s, &sum) : moderate_sums(bearing, &r, &s, &sum)))
-            lifting_sums(bearing, &r, &s, &sum);
-        add_roller(&r, &sum, result);
-    }
-    return finish(bearing, law->slope, status, result);
+/* Multiply the sums by the length of a slice, and stiffness by a slope besides. */
+static void finish_answer(const ehd_cylinder *bearing, double slope, ehd_bearing_force *answer) {
+    for (int i = 0; i < 4; i++) answer->force[LOADED[i]] *= bearing->slice_length;
+    finish_matrix(answer->stiffness, slope * bearing->slice_length);
+    finish_matrix(answer->damping, bearing->slice_length);
 }
 
-int ehd_cylinder_call(const ehd_cylinder *bearing, ehd_cylinder_law *law, const double pose[6], const double velocity[6],
-                      double cage_angle, double u, double T, double q, ehd_bearing_force *result) {
-    if (!law || !bearing) return EHD_BAD_ARGUMENT;
-    const ehd_law_point *point = &law->point;
-    const int same = law->kind != UNPREPARED && point->entrainment_speed == fabs(u) && point->temperature == T &&
-                     point->centrifugal_load == q;
-    if (!same) ehd_cylinder_prepare(bearing->data->law, u, T, q, law);
-    return ehd_cylinder_at(bearing, law, pose, velocity, cage_angle, result);
+/* The states of all slices of a roller, where they are wanted: of one that is mirrored on both sides, none without load. */
+static void fill_states(const ehd_cylinder *bearing, const slices *s, int loaded) {
+    for (int64_t i = loaded ? s->count : 0; i < bearing->slices; i++) {
+        for (int f = 0; f < 2; f++) {
+            s->value[i][f] = loaded ? s->value[bearing->slices - 1 - i][f] : 0.0;
+            s->slope[i][f] = loaded ? s->slope[bearing->slices - 1 - i][f] : 0.0;
+        }
+    }
+}
+
+/* Force, stiffness and damping of a bearing at a motion that is not wrong. Returns EHD_OK or EHD_ABOVE_LOAD. */
+static int cylinder_force(const ehd_cylinder *bearing, const ehd_cylinder_law *law, const ehd_ring_motion *motion,
+                          const ehd_cylinder_work *work, ehd_bearing_force *answer) {
+    const double lift_off = law->numbers->lift_off;
+    int status = EHD_OK;
+    memset(answer, 0, sizeof *answer);
+    for (int64_t j = 0; j < bearing->rollers; j++) {
+        roller r = roller_of(bearing, motion, j);
+        slices s = slices_of(bearing, work, j);
+        sums sum;
+        if (r.deepest <= lift_off) {
+            if (work->whole) fill_states(bearing, &s, 0);
+            continue;
+        }
+        status |= states_of(bearing, law, &r, &s);
+        sums_of(bearing, &r, &s, &sum);
+        add_roller(&r, &sum, answer);
+        if (work->whole) fill_states(bearing, &s, 1);
+    }
+    finish_answer(bearing, law->numbers->slope, answer);
+    return status;
 }

@@ -1,85 +1,77 @@
 /* ---------------------------------------------------------------------------------------------------------------------
- * Bearings with cylindrical rollers: from the pose and velocity of the inner ring to force, stiffness and damping.
+ * A cylindrical roller bearing: from the pose and velocity of the inner ring to force, stiffness and damping.
  *
  * Frame O is the one of the outer ring, x is the axis of the bearing; it does not spin. A pose is x y z theta_x theta_y
  * theta_z of the inner ring in O [m], [rad]; a velocity is its rate; a force is what acts on the inner ring [N], [N m],
- * about its centre. Neither x nor theta_x has a stiffness: what holds a ring axially is another element. The outer
- * ring gets the opposite.
+ * about its centre. Neither x nor theta_x has a stiffness.
  *
- * Roller j stands at cage_angle + 2 pi j/rollers, from y towards z.
+ * Each slice of each roller carries the load of the law, of a roller between both raceways, times its length:
  *
- * Each slice of each roller carries the load of the law times its length; no slice knows of its neighbours. Slip,
- * traction, ribs and contacts with the cage are left out.
+ *     approach = y cos + z sin - clearance/2 + x (theta_z cos - theta_y sin) - profile(x)
+ *
+ * Between rings that do not tilt against each other slices of the same depth carry the same. So of a symmetric bearing
+ * only one half is computed there, and of one whose slices have weights one of each depth, without moments.
  * ------------------------------------------------------------------------------------------------------------------ */
 
-/* The numbers of a bearing. */
-typedef struct ehd_cylinder_data {
-    const ehd_law_data *law;
-    int64_t rollers;
-    double roller_length, roller_diameter; /* [m] */
-    int64_t iso_profile;                   /* 1: profile of ISO/TS 16281, 0: straight */
-    const double *cosine, *sine;           /* (rollers): directions 2 pi j/rollers of the rollers in the cage */
-} ehd_cylinder_data;
-
-/* Room for slices of a roller. */
-#define EHD_MOST_SLICES 201
-
-/* What does not change of a bearing; made by ehd_cylinder_make. */
+/* What does not change of a bearing. Arrays of slices have a last number more, which is read and has no effect. */
 typedef struct ehd_cylinder {
-    const ehd_cylinder_data *data;
-    int slices;
-    int symmetric;                                               /* whether the profile is */
-    double clearance, slice_length, least_profile, most_profile; /* [m] */
-    double position[EHD_MOST_SLICES + 1];                        /* middles of the slices along the roller [m] */
-    double profile[EHD_MOST_SLICES + 1];                         /* twice the depth of the roller's profile there [m] */
+    int64_t rollers, slices;
+    int64_t symmetric;                          /* whether slices left and right of the middle are alike */
+    double half_clearance, slice_length;        /* [m] */
+    double most_travel, most_tilt;              /* largest accepted displacement [m] and tilt [rad] */
+    double half_length;                         /* half the length of a roller [m] */
+    double least_profile, most_profile;         /* [m] */
+    const double *position, *profile;           /* (slices + 1): places along the roller; twice the profile there [m] */
+    const double *cosine, *sine;                /* (rollers): directions of the rollers in the cage */
+    const double *weight;                       /* (slices): how many each stands for; null where rings tilt */
 } ehd_cylinder;
 
-/* The law at one speed, temperature and centrifugal load, as a table that a bearing reads in nanoseconds; made by
- * ehd_cylinder_prepare. The cells of its point follow it in memory: it takes ehd_cylinder_law_size bytes, some 150 kB.
- * Its own cells are the binary digits of 1 + |z|, z = (approach - centre) inverse_scale: no logarithm is needed to find
- * one. */
-typedef struct ehd_cylinder_law {
-    double cell[2 * EHD_ROWS][4][2];    /* cubics of load and damping, in turns */
-    int64_t kind;
-    double centre, inverse_scale;       /* of the cells [m], [1/m] */
-    double coefficient, exponent;       /* of dry contacts, w = coefficient approach^exponent */
-    double highest;                     /* load above which slices are outside the map [N/m] */
-    double safe_approach;               /* up to it no slice is, nor above the held load [m] */
-    double lift_off;                    /* up to it there is no load [m] */
-    double slope;                       /* what slopes are multiplied by */
-    double held_approach, held_damping; /* of the tangent above the held load */
-    double knot[2 * EHD_ROWS];          /* where cells begin [m], below the lowest mapped speed */
-    double node[6][EHD_NODES];          /* work space */
-    ehd_law_point point;
-} ehd_cylinder_law;
+/* Motion of the inner ring against the outer one, as far as rollers feel it, and where the cage stands. */
+typedef struct ehd_ring_motion {
+    double y, z, theta_y, theta_z;                         /* [m], [rad] */
+    double y_rate, z_rate, theta_y_rate, theta_z_rate;
+    double cage_cosine, cage_sine;                         /* direction of the first roller */
+} ehd_ring_motion;
+
+/* Work space. States of the slices of a roller at rest: first load [N/m] and damping [N s/m2] of each, in turns, then
+ * the slopes of both, to be multiplied by that of the law; from roller to roller so many numbers on, or 0 where they are
+ * of no use after a call. Rollers without load, and the second half of those that are symmetric and level, are written
+ * only where all is wanted. */
+typedef struct ehd_cylinder_work {
+    double *states;    /* (rollers or 1, 2, slices, 2) */
+    double *place;     /* (slices + 1) */
+    uint64_t *row;     /* (slices + 1) */
+    int64_t stride, whole;
+} ehd_cylinder_work;
 
 /* Force on the inner ring, and its derivatives: stiffness = -dforce/dpose, damping = -dforce/dvelocity, by rows. */
 typedef struct ehd_bearing_force {
     double force[6], stiffness[6][6], damping[6][6];
 } ehd_bearing_force;
 
-/* Cut a bearing into slices.
- *
- * clearance: diametral clearance in force [m], < 0 for a preloaded bearing. slices: 1 to EHD_MOST_SLICES; statics want
- * 30 or more. profile: depth of the roller's profile at the middles of the slices, on one side [m]; a null pointer takes
- * the one of the data. */
-int ehd_cylinder_make(const ehd_cylinder_data *data, double clearance, int slices, const double *profile,
-                      ehd_cylinder *bearing);
+/* A bearing at one speed, temperature and centrifugal load, as Python calls it. */
+typedef struct ehd_cylinder_call {
+    const ehd_cylinder *bearing;
+    ehd_cylinder_law *law;
+    ehd_cylinder_work *work;
+    double *state;     /* (13): pose, velocity, angle of the cage [rad] */
+    double *answer;    /* (13, 6): an ehd_bearing_force */
+    /* of slices that are coupled, else null: */
+    const double *coupling; /* (slices, slices): compliances between slices [m2/N] */
+    double *own;       /* (rollers, slices): approaches that the law takes, written [m] */
+    double *scratch;   /* (slices, slices + 9) */
+} ehd_cylinder_call;
 
-/* Make a law ready for a bearing, at an entrainment speed [m/s], temperature [K] and centrifugal load [N/m], see
- * ehd_law_make. Takes some tens of microseconds. */
-int ehd_cylinder_prepare(const ehd_law_data *data, double u, double T, double q, ehd_cylinder_law *law);
+/* Force, stiffness and damping, into `answer`, which is left alone where the motion is wrong. Returns a status: EHD_OK,
+ * EHD_ABOVE_LOAD, EHD_NOT_FINITE, EHD_TOO_FAR, EHD_NO_LOADS. */
+int ehd_cylinder_force(const ehd_cylinder_call *call);
 
-/* Force, stiffness and damping of a bearing at the speed and temperature of a prepared law, which are held fixed in the
- * derivatives. velocity may be a null pointer: at rest. */
-int ehd_cylinder_at(const ehd_cylinder *bearing, const ehd_cylinder_law *law, const double pose[6],
-                    const double velocity[6], double cage_angle, ehd_bearing_force *result);
+/* Approaches of all slices (rollers, slices) [m], of a row of 13 numbers as of ehd_cylinder_call. */
+int ehd_cylinder_approaches(const ehd_cylinder *bearing, const double *state, double *approaches);
 
-/* The same at any speed and temperature: prepares the law again where these are not those of the last call. Set
- * everything in `law` to zero before the first one. */
-int ehd_cylinder_call(const ehd_cylinder *bearing, ehd_cylinder_law *law, const double pose[6], const double velocity[6],
-                      double cage_angle, double u, double T, double q, ehd_bearing_force *result);
+/* Gap and tilt of all rollers, and their rates, (4, rollers). */
+int ehd_cylinder_rollers(const ehd_cylinder *bearing, const double *state, double *out);
 
-/* Size of a bearing, and of a prepared law with all that follows it, in bytes. */
-size_t ehd_cylinder_size(void);
-size_t ehd_cylinder_law_size(const ehd_law_data *data);
+/* Force and stiffness of slices whose loads, and their slopes by the approach, are there, each (rollers, slices). */
+int ehd_cylinder_of_loads(const ehd_cylinder *bearing, const double *state, const double *loads, const double *slopes,
+                          double *answer);

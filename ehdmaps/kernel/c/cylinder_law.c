@@ -1,68 +1,102 @@
 /* ---------------------------------------------------------------------------------------------------------------------
- * The law made ready for bearings: a table of load and damping over the approach, at one speed, temperature and
- * centrifugal load
+ * The law of a roller made ready for a bearing; see cylinder_law.h
  * ------------------------------------------------------------------------------------------------------------------ */
 
-/* Kinds of prepared laws: none yet, a formula, cells at even places around a centre, cells between knots for faded
- * films, and the law itself for each slice where no table reaches down to lift-off. */
-enum { UNPREPARED = 0, POWER, CELLS, KNOTS, BY_SLICES };
+/* Bytes of ehd_cylinder_law.marks that hold the cells, behind those of the nodes. */
+#define CELL_MARKS(law) ((unsigned char *)(law)->marks + EHD_NODES)
+#define NODE_MARKS(law) ((unsigned char *)(law)->marks)
 
-/* Rows of ehd_cylinder_law.node. */
-enum { Z, APPROACH, LOAD, SLOPE, DAMPING, BEND };
+/* Columns of a node of a whole film, and of one of a faded film: approach with the whole film and without [m], growth of
+ * the latter by the former; load [N/m] and damping [N s/m2], each with its slope by the approach with the whole film. */
+enum { CELL_LOAD, CELL_SLOPE, CELL_DAMPING, CELL_BEND };
+enum { FADED_WHOLE, FADED_DRY, FADED_RISE, FADED_LOAD, FADED_SLOPE, FADED_DAMPING, FADED_BEND };
 
-size_t ehd_cylinder_law_size(const ehd_law_data *data) {
-    return sizeof(ehd_cylinder_law) - sizeof(ehd_law_point) + ehd_law_point_size(data);
-}
+/* Load above which slices are outside the map. */
+static double counted_load(const ehd_law_point *point) { return point->highest_load * (1.0 + LOAD_TOLERANCE); }
 
 /* Approach around which a law is finest. */
 static double centre_of(const ehd_law_point *point) {
-    if (point->centrifugal_load > 0.0) {
-        const double load = line_state(&point->inner, point->inner.offset).w + point->centrifugal_load;
-        return point->inner.offset + line_approach(&point->outer, load);
-    }
-    return point->own.offset;
+    if (point->centrifugal_load == 0.0) return point->own.offset;
+    const double load = line_state(&point->inner, point->inner.offset).w + point->centrifugal_load;
+    return point->inner.offset + line_approach(&point->outer, load);
 }
 
-/* States of the whole film at all nodes. Above the first node beyond the hold the law goes on straight. Returns the
- * first loaded node; fills approach and damping of the held load. */
-static int fill_nodes(ehd_cylinder_law *law, double *held_damping) {
-    const ehd_law_point *point = &law->point;
-    double *z = law->node[Z], *delta = law->node[APPROACH];
-    double *w = law->node[LOAD], *dw = law->node[SLOPE], *c = law->node[DAMPING], *dc = law->node[BEND];
-    const double centre = centre_of(point), inverse = point->own.inverse_scale;
-    double held = line_approach(&point->own, point->held_load);
-    int first = 0, end = 0;
-    if (point->centrifugal_load > 0.0)
-        held = line_approach(&point->inner, point->held_load) +
-               line_approach(&point->outer, point->held_load + point->centrifugal_load);
-    for (int i = 0; i < EHD_NODES; i++) {
-        z[i] = node_place(i);
-        delta[i] = centre + z[i] / inverse;
-        if (delta[i] <= point->lift_off) {
-            first = i + 1;
-            w[i] = dw[i] = c[i] = dc[i] = 0.0;
-        }
-        if (i > 0 && delta[i - 1] <= held) end = i + 1;
-    }
-    for (int i = first; i < end; i++) {
-        const contact_state found = full_state(point, delta[i]);
-        w[i] = found.w;
-        dw[i] = found.dw;
-        c[i] = found.w * found.ratio;
-        dc[i] = found.dc;
-    }
-    for (int i = end; i > 0 && i < EHD_NODES; i++) {
-        w[i] = w[end - 1] + dw[end - 1] * (delta[i] - delta[end - 1]);
-        dw[i] = dw[end - 1];
-        c[i] = c[end - 1];
-        dc[i] = 0.0;
-    }
-    *held_damping = full_state(point, held).ratio * point->held_load;
-    law->held_approach = held;
-    return first;
+/* Approach at which a point with its whole film carries a load. */
+static double whole_approach(const ehd_law_point *point, double load) {
+    if (point->centrifugal_load == 0.0) return line_approach(&point->own, load);
+    return line_approach(&point->inner, load) + line_approach(&point->outer, load + point->centrifugal_load);
 }
 
-/* Cubic through values and slopes at both ends of a cell that is h wide, number f of it. */
+/* Number of the nodes that lie at or below an approach. */
+static int nodes_up_to(const ehd_cylinder_numbers *numbers, double approach) {
+    const double scale = 1.0 / numbers->inverse_scale;
+    int low = 0, high = EHD_NODES;
+    while (low < high) {
+        const int middle = (low + high) / 2;
+        if (numbers->centre + node_place(middle) * scale <= approach)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* Find where the cells of a point with its whole film lie, and the limits of its law. Returns the number of nodes up to
+ * lift-off: 0 where the nodes do not reach down to it. */
+static int place_cells(const ehd_law_point *point, ehd_cylinder_numbers *numbers) {
+    const double inverse = point->own.inverse_scale, scale = 1.0 / inverse, highest = counted_load(point);
+    memset(numbers, 0, sizeof *numbers);
+    numbers->kind = EHD_CELLS;
+    numbers->centre = centre_of(point);
+    numbers->inverse_scale = numbers->slope = inverse;
+    numbers->highest = highest;
+    numbers->held_approach = point->held_approach;
+    numbers->held_damping = point->held_damping;
+    numbers->held_load = point->held_load;
+    numbers->held_stiffness = point->held_stiffness;
+    if (point->film < 1.0) {
+        numbers->held_approach = whole_approach(point, point->held_load);
+        numbers->held_damping = full_state(point, numbers->held_approach).ratio * point->held_load;
+    }
+    const int below = nodes_up_to(numbers, point->lift_off);
+    const double up_to = point->held_load <= highest ? numbers->held_approach : whole_approach(point, highest);
+    const int safe = nodes_up_to(numbers, up_to);
+    numbers->safe_approach = numbers->centre + node_place(safe > 0 ? safe - 1 : 0) * scale;
+    numbers->lift_off = below > 0 ? numbers->centre + node_place(below - 1) * scale : INFINITY;
+    return below;
+}
+
+/* State of the whole film at a node, as if there were no hold; nothing below the first one that may carry a load. */
+static void node_state(const ehd_law_point *point, const ehd_cylinder_numbers *numbers, int64_t first, int64_t i,
+                       double values[4]) {
+    memset(values, 0, 4 * sizeof values[0]);
+    if (i < first) return;
+    const contact_state found = full_state(point, numbers->centre + node_place((int)i) / numbers->inverse_scale);
+    values[CELL_LOAD] = found.w;
+    values[CELL_SLOPE] = found.dw;
+    values[CELL_DAMPING] = found.w * found.ratio;
+    values[CELL_BEND] = found.dc;
+}
+
+/* State at a node beyond the hold: the law goes on straight from the first one there, number end - 1, whose state is
+ * given. */
+static void straight_node(const ehd_cylinder_numbers *numbers, int64_t end, const double last[4], int64_t i,
+                          double values[4]) {
+    const double ahead = (node_place((int)i) - node_place((int)end - 1)) / numbers->inverse_scale;
+    values[CELL_LOAD] = last[CELL_LOAD] + last[CELL_SLOPE] * ahead;
+    values[CELL_SLOPE] = last[CELL_SLOPE];
+    values[CELL_DAMPING] = last[CELL_DAMPING];
+    values[CELL_BEND] = 0.0;
+}
+
+/* First node that may carry a load, and the one behind the first node beyond the hold. */
+static void loaded_nodes(const ehd_law_point *point, const ehd_cylinder_numbers *numbers, int64_t *first, int64_t *end) {
+    *first = nodes_up_to(numbers, point->lift_off);
+    *end = nodes_up_to(numbers, numbers->held_approach) + 1;
+    if (*end > EHD_NODES) *end = EHD_NODES;
+}
+
+/* Cubic through values and slopes at both ends of a cell, number f of it; by is the inverse of its width. */
 static void write_cubic(double cell[4][2], int f, double y0, double y1, double s0, double s1, double by) {
     const double secant = (y1 - y0) * by;
     cell[0][f] = y0;
@@ -71,133 +105,224 @@ static void write_cubic(double cell[4][2], int f, double y0, double y1, double s
     cell[3][f] = (s0 + s1 - 2.0 * secant) * by * by;
 }
 
-/* Cells of the whole film. Slopes are held so that the load never falls and the damping is never negative. */
-static void fill_cells(ehd_cylinder_law *law) {
-    const double inverse = law->point.own.inverse_scale;
-    const double *z = law->node[Z], *w = law->node[LOAD], *c = law->node[DAMPING];
-    double *dw = law->node[SLOPE], *dc = law->node[BEND];
-    for (int i = 0; i < EHD_NODES; i++) {
-        double slope = most(dw[i] / inverse, 0.0), change = dc[i] / inverse;
-        if (i > 0) {
-            const double h = z[i] - z[i - 1];
-            slope = least(slope, 3.0 * (w[i] - w[i - 1]) / h);
-            change = least(change, 3.0 * c[i] / h);
-        }
-        if (i < EHD_NODES - 1) {
-            const double h = z[i + 1] - z[i];
-            slope = least(slope, 3.0 * (w[i + 1] - w[i]) / h);
-            change = most(change, -3.0 * c[i] / h);
-        }
-        dw[i] = most(slope, 0.0);
-        dc[i] = change;
+/* Slopes of load and damping by z at a node, held so that neither falls below where it must not. */
+static void held_slopes(const double (*values)[4], double scale, int i, double *slope, double *bend) {
+    const int last = EHD_NODES - 1;
+    const double w = values[i][CELL_LOAD], c = values[i][CELL_DAMPING];
+    *slope = values[i][CELL_SLOPE] * scale;
+    *bend = values[i][CELL_BEND] * scale;
+    if (i > 0) {
+        const double before = 3.0 / (node_place(i) - node_place(i - 1));
+        *slope = least(*slope, (w - values[i - 1][CELL_LOAD]) * before);
+        *bend = least(*bend, c * before);
     }
-    for (int k = 0; k < 2 * EHD_ROWS; k++) {
-        const int above = k < EHD_ROWS, near = above ? EHD_ROWS + k : 2 * EHD_ROWS - k;
-        const int far = above ? near + 1 : near - 1;
-        const double by = 1.0 / (z[far] - z[near]);
-        write_cubic(law->cell[k], 0, w[near], w[far], dw[near], dw[far], by);
-        write_cubic(law->cell[k], 1, c[near], c[far], dc[near], dc[far], by);
+    if (i < last) {
+        const double after = 3.0 / (node_place(i + 1) - node_place(i));
+        *slope = least(*slope, (values[i + 1][CELL_LOAD] - w) * after);
+        *bend = most(*bend, -c * after);
+    }
+    *slope = most(*slope, 0.0);
+}
+
+/* Cubics of a cell, over the distance from the end that is nearer to the centre, in scales. */
+static void write_cell(const ehd_cylinder_law *law, int row) {
+    const double(*values)[4] = (const double(*)[4])law->nodes, scale = 1.0 / law->numbers->inverse_scale;
+    double(*cell)[2] = (double(*)[2])(law->cells + 8 * (size_t)row), slope, bend, far_slope, far_bend;
+    const int above = row < EHD_ROWS;
+    const int near = above ? EHD_ROWS + row : 2 * EHD_ROWS - row, far = above ? near + 1 : near - 1;
+    const double by = 1.0 / (node_place(far) - node_place(near));
+    held_slopes(values, scale, near, &slope, &bend);
+    held_slopes(values, scale, far, &far_slope, &far_bend);
+    write_cubic(cell, 0, values[near][CELL_LOAD], values[far][CELL_LOAD], slope, far_slope, by);
+    write_cubic(cell, 1, values[near][CELL_DAMPING], values[far][CELL_DAMPING], bend, far_bend, by);
+}
+
+/* State at a node of a table, unless it is known. */
+static void know_node(const ehd_cylinder_law *law, int64_t i) {
+    unsigned char *known = NODE_MARKS(law);
+    double *values = law->nodes + 4 * (size_t)i;
+    if (known[i]) return;
+    known[i] = 1;
+    if (i < law->end) {
+        node_state(law->point, law->numbers, law->first, i, values);
+    } else {
+        know_node(law, law->end - 1);
+        straight_node(law->numbers, law->end, law->nodes + 4 * (size_t)(law->end - 1), i, values);
     }
 }
 
-/* Cells of a part of the film. At equal load the approach is that part of the one with the whole film, and the rest of
- * that without any. So the nodes of the whole film serve all parts, as knots that move. */
-static void fill_knots(ehd_cylinder_law *law, double held_damping, double most_load) {
-    const ehd_law_point *point = &law->point;
-    const ehd_law_data *D = point->data;
-    const double part = point->film, rest = 1.0 - part, q = point->centrifugal_load;
-    const double *whole = law->node[APPROACH], *w = law->node[LOAD], *c = law->node[DAMPING];
-    double *dw = law->node[SLOPE], *dc = law->node[BEND], *knot = law->knot, compliance, safe = 0.0;
-    const int last = 2 * EHD_ROWS - 1;
-    for (int i = 0; i < last; i++) {
-        const int k = i + 1; /* the outermost nodes have no knots */
-        const double dry = structural_approach(D, q, w[k], &compliance);
-        const double stretch = w[k] > 0.0 ? rest * compliance * dw[k] + part : 1.0;
-        knot[i] = rest * dry + part * whole[k];
-        dw[k] /= stretch;
-        dc[k] *= part / stretch;
-        if (w[k] <= most_load) safe = knot[i];
-    }
-    knot[last] = INFINITY;
-    for (int i = 0; i < last - 1; i++) {
-        const double h = knot[i + 1] - knot[i];
-        /* without film all nodes without load are one */
-        const double rise = h > 0.0 ? 3.0 * (w[i + 2] - w[i + 1]) / h : 0.0;
-        dw[i + 1] = least(dw[i + 1], rise);
-        dw[i + 2] = least(dw[i + 2], rise);
-        if (h > 0.0) {
-            dc[i + 1] = most(dc[i + 1], -3.0 * part * c[i + 1] / h);
-            dc[i + 2] = least(dc[i + 2], 3.0 * part * c[i + 2] / h);
-        }
-    }
-    for (int i = 0; i < last - 1; i++) {
-        const double h = knot[i + 1] - knot[i], by = h > 0.0 ? 1.0 / h : 0.0;
-        write_cubic(law->cell[i], 0, w[i + 1], w[i + 2], dw[i + 1], dw[i + 2], by);
-        write_cubic(law->cell[i], 1, part * c[i + 1], part * c[i + 2], dc[i + 1], dc[i + 2], by);
-    }
-    memset(law->cell[last - 1], 0, 2 * sizeof law->cell[0]);
-    law->safe_approach = safe;
-    law->held_approach = rest * structural_approach(D, q, point->held_load, &compliance) + part * law->held_approach;
-    law->held_damping = part * held_damping;
+/* Make a cell that is not made yet. */
+static void make_cell(const ehd_cylinder_law *law, uint64_t row) {
+    unsigned char *made = CELL_MARKS(law);
+    const int64_t low = row < EHD_ROWS ? EHD_ROWS + (int64_t)row : 2 * EHD_ROWS - 1 - (int64_t)row;
+    if (made[row]) return;
+    made[row] = 1;
+    for (int64_t i = low > 0 ? low - 1 : 0; i < low + 3 && i < EHD_NODES; i++) know_node(law, i);
+    write_cell(law, (int)row);
 }
 
-/* Whether dry contacts in series are one power law, approach = (a_1 + a_2) w^b; fills it. */
-static int one_power(ehd_cylinder_law *law) {
-    double a = 0.0;
-    const ehd_law_data *D = law->point.data;
-    const double b = D->structure[2];
-    for (int i = 0; i < D->contacts; i++) {
-        const double *contact = D->structure + 3 * i;
-        if (contact[0] != 0.0 || fabs(contact[2] - b) >= 1e-12) return 0;
-        a += contact[1];
-    }
-    law->coefficient = pow(a, -1.0 / b);
-    law->exponent = 1.0 / b;
+/* Begin a table of the point whose cells are made as slices need them; returns 0 where it does not reach lift-off. */
+static int begin_cells(ehd_cylinder_law *law) {
+    if (place_cells(law->point, law->numbers) == 0) return 0;
+    loaded_nodes(law->point, law->numbers, &law->first, &law->end);
+    memset(law->marks, 0, 2 * EHD_NODES);
     return 1;
 }
 
-int ehd_cylinder_prepare(const ehd_law_data *data, double u, double T, double q, ehd_cylinder_law *law) {
-    double held_damping;
-    if (!law) return EHD_BAD_ARGUMENT;
-    const ehd_law_point *point = &law->point;
-    const int status = ehd_law_make(data, u, T, q, &law->point);
-    law->kind = BY_SLICES;
-    law->lift_off = -DBL_MAX;
-    law->safe_approach = law->held_approach = DBL_MAX;
-    law->highest = DBL_MAX; /* the law itself counts its loads */
-    law->slope = 1.0;
-    law->held_damping = 0.0;
+/* Make all cells of a table that is begun. */
+static void make_cells(const ehd_cylinder_law *law) {
+    for (int64_t i = 0; i < EHD_NODES; i++) know_node(law, i);
+    for (int row = 0; row < 2 * EHD_ROWS; row++) write_cell(law, row);
+    memset(CELL_MARKS(law), 1, 2 * EHD_ROWS);
+}
+
+/* Nodes of a film of which only a part is there, into film (2 EHD_ROWS, 8): what holds for every part of it.
+ *
+ * At equal load the approach is that part of the one with the whole film, and the rest of that without any. So the nodes
+ * of a whole film serve all parts, as knots that move. Columns are FADED_WHOLE to FADED_BEND of all nodes but the
+ * outermost; the held load is in the last row. `lift_off` and `safe_approach` are the numbers of their nodes. Returns 0
+ * where the nodes do not reach down to lift-off. */
+static int write_film(const ehd_law_point *point, double *film, ehd_cylinder_numbers *numbers) {
+    const int last = 2 * EHD_ROWS - 1;
+    int64_t first, end;
+    int safe = 0;
+    double values[4], last_node[4] = {0.0, 0.0, 0.0, 0.0}, compliance;
+    ehd_cylinder_numbers whole;
+    place_cells(point, &whole);
+    loaded_nodes(point, &whole, &first, &end);
+    if (first < 2) return 0;
+    const double highest = whole.highest, up_to = least(highest, point->held_load), q = point->centrifugal_load;
+    for (int i = 0; i < last; i++) {
+        double *row = film + 8 * (size_t)i;
+        if (i + 1 < end)
+            node_state(point, &whole, first, i + 1, values);
+        else
+            straight_node(&whole, end, last_node, i + 1, values);
+        if (i + 2 == end) memcpy(last_node, values, sizeof values);
+        row[FADED_WHOLE] = whole.centre + node_place(i + 1) / whole.inverse_scale;
+        row[FADED_DRY] = structural_approach(point->data, q, values[CELL_LOAD], &compliance);
+        row[FADED_RISE] = compliance * values[CELL_SLOPE];
+        memcpy(row + FADED_LOAD, values, sizeof values);
+        if (values[CELL_LOAD] <= up_to) safe = i;
+    }
+    double *held = film + 8 * (size_t)last;
+    held[FADED_WHOLE] = whole.held_approach;
+    held[FADED_DRY] = structural_approach(point->data, q, point->held_load, &compliance);
+    held[FADED_LOAD] = point->held_load;
+    held[FADED_DAMPING] = whole.held_damping;
+    memset(numbers, 0, sizeof *numbers);
+    numbers->kind = EHD_KNOTS;
+    numbers->highest = highest;
+    numbers->safe_approach = safe;
+    numbers->lift_off = (double)(first - 2);
+    numbers->slope = 1.0;
+    numbers->held_load = point->held_load;
+    numbers->held_stiffness = point->held_stiffness;
+    return 1;
+}
+
+/* The table of a part of a film, 0 to 1, from what write_film wrote: film and given. */
+static void fade(const double *film, const ehd_cylinder_numbers *given, double part, double *cells, double *knots,
+                 ehd_cylinder_numbers *numbers) {
+    const double(*values)[8] = (const double(*)[8])film, rest = 1.0 - part;
+    double(*cell)[4][2] = (double(*)[4][2])cells;
+    const int last = 2 * EHD_ROWS - 1;
+    /* slopes of the load are in cell[i][1][0], those of the damping in cell[i][1][1], where cubics have them */
+    for (int i = 0; i < last; i++) {
+        const double stretch = values[i][FADED_LOAD] > 0.0 ? rest * values[i][FADED_RISE] + part : 1.0;
+        knots[i] = rest * values[i][FADED_DRY] + part * values[i][FADED_WHOLE];
+        cell[i][1][0] = values[i][FADED_SLOPE] / stretch;
+        cell[i][1][1] = part * values[i][FADED_BEND] / stretch;
+    }
+    knots[last] = INFINITY;
+    for (int i = 0; i < last - 1; i++) {
+        const double h = knots[i + 1] - knots[i];
+        /* without film all nodes without load are one */
+        const double rise = h > 0.0 ? 3.0 * (values[i + 1][FADED_LOAD] - values[i][FADED_LOAD]) / h : 0.0;
+        cell[i][1][0] = least(cell[i][1][0], rise);
+        cell[i + 1][1][0] = least(cell[i + 1][1][0], rise);
+        if (h > 0.0) {
+            cell[i][1][1] = most(cell[i][1][1], -3.0 * part * values[i][FADED_DAMPING] / h);
+            cell[i + 1][1][1] = least(cell[i + 1][1][1], 3.0 * part * values[i + 1][FADED_DAMPING] / h);
+        }
+    }
+    for (int i = 0; i < last - 1; i++) {
+        const double h = knots[i + 1] - knots[i], by = h > 0.0 ? 1.0 / h : 0.0;
+        write_cubic(cell[i], 0, values[i][FADED_LOAD], values[i + 1][FADED_LOAD], cell[i][1][0], cell[i + 1][1][0], by);
+        write_cubic(cell[i], 1, part * values[i][FADED_DAMPING], part * values[i + 1][FADED_DAMPING], cell[i][1][1],
+                    cell[i + 1][1][1], by);
+    }
+    memset(cell[last - 1], 0, 2 * sizeof cell[0]);
+    const int safe = (int)given->safe_approach, lift_off = (int)given->lift_off;
+    *numbers = *given;
+    numbers->safe_approach = knots[safe];
+    numbers->lift_off = knots[lift_off];
+    numbers->held_approach = rest * values[last][FADED_DRY] + part * values[last][FADED_WHOLE];
+    numbers->held_damping = part * values[last][FADED_DAMPING];
+}
+
+/* Whether dry contacts in series are one power law, approach = (a_1 + a_2) w^b; its coefficient and exponent. */
+static int one_power(const ehd_law_data *data, double *coefficient, double *exponent) {
+    double a = 0.0;
+    const double b = data->structure[2];
+    for (int64_t i = 0; i < data->contacts; i++) {
+        const double *contact = data->structure + 3 * i;
+        if (contact[0] != 0.0 || fabs(contact[2] - b) >= 1e-12) return 0;
+        a += contact[1];
+    }
+    *coefficient = pow(a, -1.0 / b);
+    *exponent = 1.0 / b;
+    return 1;
+}
+
+/* Numbers of a law that is asked for each slice: loads are counted there. */
+static void by_slices(ehd_cylinder_numbers *numbers) {
+    memset(numbers, 0, sizeof *numbers);
+    numbers->kind = EHD_BY_SLICES;
+    numbers->lift_off = -DBL_MAX;
+    numbers->safe_approach = numbers->held_approach = numbers->held_load = numbers->highest = DBL_MAX;
+    numbers->slope = 1.0;
+}
+
+/* Numbers of dry contacts that are one power law, held where the point is. */
+static void by_power(const ehd_law_point *point, double coefficient, double exponent, ehd_cylinder_numbers *numbers) {
+    const double highest = counted_load(point);
+    memset(numbers, 0, sizeof *numbers);
+    numbers->kind = EHD_POWER;
+    numbers->coefficient = coefficient;
+    numbers->exponent = exponent;
+    numbers->highest = highest;
+    numbers->slope = 1.0;
+    numbers->safe_approach = least(pow(highest / coefficient, 1.0 / exponent), point->held_approach);
+    numbers->held_approach = point->held_approach;
+    numbers->held_load = point->held_load;
+    numbers->held_stiffness = point->held_stiffness;
+    numbers->held_damping = point->held_damping;
+}
+
+int ehd_cylinder_prepare(const ehd_law_data *data, double u, double T, double q, int64_t asked, ehd_cylinder_law *law) {
+    ehd_cylinder_numbers given;
+    double coefficient, exponent;
+    if (!data || !law || !law->point || !law->numbers) return EHD_BAD_ARGUMENT;
+    const ehd_law_point *point = law->point;
+    const int status = ehd_law_make(data, u, T, q, law->point);
+    law->grows = 0;
+    by_slices(law->numbers);
     if (refuses(data, status)) return status;
-    const double highest = point->highest_load * (1.0 + LOAD_TOLERANCE), most_load = least(highest, point->held_load);
-    if (point->film == 0.0 && q == 0.0 && one_power(law)) {
-        law->kind = POWER;
-        law->lift_off = 0.0;
-        law->highest = highest;
-        law->held_approach = point->held_approach;
-        law->held_damping = point->held_damping;
-        law->safe_approach = least(pow(highest / law->coefficient, 1.0 / law->exponent), point->held_approach);
-        return status;
+    if (!(asked & EHD_FILM_ALONE) && point->film == 0.0 && q == 0.0 && one_power(data, &coefficient, &exponent)) {
+        by_power(point, coefficient, exponent, law->numbers);
+    } else if (fabs(u) < data->film_speed) {
+        if ((asked & EHD_WITHOUT_KNOTS) || !write_film(point, law->film, &given)) return status;
+        if (asked & EHD_FILM_ALONE)
+            *law->numbers = given;
+        else
+            fade(law->film, &given, point->film, law->cells, law->knots, law->numbers);
+    } else if (!begin_cells(law)) {
+        by_slices(law->numbers);
+    } else if (asked & EHD_GROWING) {
+        law->grows = 1;
+    } else {
+        make_cells(law);
     }
-    const double held_approach = law->held_approach;
-    const int first = fill_nodes(law, &held_damping), faded = fabs(u) < data->film_speed;
-    if (first < (faded ? 2 : 1)) { /* the table does not reach down to lift-off */
-        law->held_approach = held_approach;
-        return status;
-    }
-    law->highest = highest;
-    if (faded) {
-        law->kind = KNOTS;
-        fill_knots(law, held_damping, most_load);
-        law->lift_off = law->knot[first - 2];
-        return status;
-    }
-    law->kind = CELLS;
-    law->centre = centre_of(point);
-    law->inverse_scale = law->slope = point->own.inverse_scale;
-    law->lift_off = law->node[APPROACH][first - 1];
-    law->held_damping = held_damping;
-    for (int i = 0; i < EHD_NODES; i++)
-        if (i == 0 || law->node[LOAD][i] <= most_load) law->safe_approach = law->node[APPROACH][i];
-    fill_cells(law);
     return status;
 }

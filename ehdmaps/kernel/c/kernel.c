@@ -16,6 +16,7 @@
 #include "film_lines.h"
 #include "rough.h"
 #include "film.h"
+#include "cylinder_law.h"
 #include "cylinder.h"
 #include "cylinder_films.h"
 
@@ -48,7 +49,8 @@ EHD_SIZE_OF(ehd_film_data)
 #include "cylinder_law.c"
 #include "cylinder.c"
 #include "cylinder_films.c"
-EHD_SIZE_OF(ehd_cylinder_data)
+#include "cylinder_coupled.c"
+#include "cylinder_call.c"
 
 /* balls */
 #include "ball.h"

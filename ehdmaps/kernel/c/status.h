@@ -12,7 +12,8 @@ enum {
     EHD_NOT_FINITE = 8,          /* an argument, or what follows from it, is NaN or infinite */
     EHD_BAD_CENTRIFUGAL = 16,    /* a centrifugal load that is negative, too high, or not in the data */
     EHD_TOO_FAR = 32,            /* a pose beyond reason */
-    EHD_BAD_ARGUMENT = 64        /* a null pointer, a number of slices or a step that is not allowed */
+    EHD_BAD_ARGUMENT = 64,       /* a null pointer, a number of slices or a step that is not allowed */
+    EHD_NO_LOADS = 128           /* slices that are coupled, and are found no loads */
 };
 
 /* Load of a contact and its derivatives by approach and rate: w [N/m], k [N/m2], c [N s/m2]. */
