@@ -15,7 +15,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.kernel.library import checked, function
-from ehdmaps.kernel.record import Record, integers, numbers
+from ehdmaps.kernel.record import Record, at, integers, numbers
 from mbs.bearings import slice_table as table
 from mbs.bearings.bearing import Bearing
 
@@ -299,7 +299,7 @@ class Arrays(LawRoom):
     def rollers(self) -> FloatArray:
         """Gap [m], tilt and their rates of all rollers at the motion of `state`, shape (4, rollers)."""
         out = np.empty((4, self.shape.rollers))
-        functions().rollers(self.shape.address, self.state.ctypes.data, out.ctypes.data)
+        functions().rollers(self.shape.address, at(self.state), at(out))
         return out
 
     def approaches(self, state: FloatArray, out: FloatArray) -> int:
@@ -312,7 +312,7 @@ class Arrays(LawRoom):
         out : array (rollers, slices)
             Approaches, written [m].
         """
-        return functions().approaches(self.shape.address, state.ctypes.data, out.ctypes.data)
+        return functions().approaches(self.shape.address, at(state), at(out))
 
     def of_loads(self, state: FloatArray, loads: FloatArray, slopes: FloatArray) -> FloatArray:
         """Force, stiffness and damping, which is zero, in rows (13, 6), of slices whose loads are there.
@@ -325,6 +325,6 @@ class Arrays(LawRoom):
             Loads [N/m], and their slopes by the approach [N/m2].
         """
         out: FloatArray = np.empty((13, 6))
-        given = (state, loads, slopes, out)
-        functions().of_loads(self.shape.address, *(array.ctypes.data for array in given))
+        given = (state, np.ascontiguousarray(loads), np.ascontiguousarray(slopes), out)
+        functions().of_loads(self.shape.address, *(at(array) for array in given))
         return out

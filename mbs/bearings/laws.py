@@ -27,6 +27,7 @@ import numpy.typing as npt
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, SolverError
+from ehdmaps.kernel.record import at
 from ehdmaps.maps.kernels.tables import LOAD_TOLERANCE, nodes_of
 from ehdmaps.physics.approach import ISO_LINE_CONSTANT, STEEL_REDUCED_MODULUS, StructuralLaw
 from ehdmaps.physics.contact import LineContact
@@ -206,7 +207,7 @@ def unilateral_forces(
         np.stack([np.ravel(part) for part in (w, dw, c, dc, rate)], dtype=np.float64),
         np.empty((3, w.size)),
     )
-    functions().forces(w.size, states.ctypes.data, forces.ctypes.data)
+    functions().forces(w.size, at(states), at(forces))
     load, stiffness, damping = forces.reshape(3, *w.shape)
     return load, stiffness, damping
 

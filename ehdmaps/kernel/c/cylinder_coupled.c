@@ -186,7 +186,7 @@ static void coupled_sums(const ehd_cylinder *bearing, const roller *r, const cou
     }
 }
 
-/* Arrays of a roller within the work space of a call, (slices, slices + 10). */
+/* Arrays of a roller within the work space of a call, (slices, slices + 9). */
 static coupled_roller coupled_of(const ehd_cylinder_call *call) {
     coupled_roller c;
     const int64_t n = call->bearing->slices;
