@@ -181,7 +181,7 @@ def memory_text(law: LawAtPoint, words: dict[str, str]) -> str:
     above, below = min(above, memory_table.ROWS), min(below, memory_table.ROWS)
     loads = min(_cells(1.0 + highest / memory_table.LIGHTEST), memory_table.LOAD_ROWS)
     cells = np.concatenate([table.cells[:above], table.cells[memory_table.ROWS : memory_table.ROWS + below]])
-    _, slope = memory_table.cubic_at(table.load_cells[loads - 1], 0, 0.0)
+    slope = table.load_cells[loads - 1, 1]
     return _BODY.format(
         above=above,
         below=below,

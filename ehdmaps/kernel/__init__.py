@@ -22,6 +22,10 @@ law_many.[hc]        the law at many places, in blocks for vector instructions
 film_lines.[hc]      films of a table, read at many points
 rough.[hc]           load sharing of film and asperities
 film.[hc]            films with memory of one contact: equilibrium, steps in time, rates
+film_energy.c        what such films store and take up
+film_fit.c           how far a film locks, from the response of the film solver
+film_arrays.c        many films at once, for Python
+film_slices.c        slices with such films: one step of all slices of a bearing
 cylinder_law.[hc]    the law at one speed and temperature, as a table for bearings with cylindrical rollers
 cylinder.[hc]        bearings with cylindrical rollers: force, stiffness and damping at a pose
 cylinder_films.[hc]  the same with films that have a memory
@@ -38,6 +42,8 @@ taper.h, _lines.c    sums over the slices of a line of a tapered roller, or of a
 taper_balance.c      the balance of such a roller
 taper_bearing.c      force, stiffness and damping of its bearing at a pose
 taper_films.c        films of such rollers with a memory
+rings.[hc]           bearings with cylindrical rollers in runs: how rings and rollers move
+film_block.c         such bearings with films that have a memory, as a kind of elements
 block.h              what a kind of elements brings to runs in time: its functions, for anyone's own ones, too
 dense.c              small matrices: products, elimination, steps in Python
 gear.c               gear meshes

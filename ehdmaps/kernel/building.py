@@ -29,7 +29,7 @@ SOURCES = Path(__file__).with_name("c")
 UNIT = "kernel.c"
 """File that includes all others."""
 
-ALWAYS = ("-std=c99", "-fno-math-errno", "-ffp-contract=off", "-fno-semantic-interposition")
+ALWAYS = ("-std=c99", "-fno-math-errno", "-fno-trapping-math", "-ffp-contract=off", "-fno-semantic-interposition")
 """Options without which numbers or times are others: never `-ffast-math`, which takes finite numbers for granted."""
 
 OPTIONS = {

@@ -136,6 +136,30 @@ class _PointRecord(ctypes.Structure):
     ]  # fmt: skip
 
 
+def with_point(point: Point, entrainment_speed: float, call: Callable[[int], None]) -> None:
+    """Call a function with the address of an `ehd_law_point` that has the cells of a point.
+
+    Parameters
+    ----------
+    point : Point
+        The point, without centrifugal load.
+    entrainment_speed : float
+        u [m/s], of either sign.
+    call : callable
+        Takes the address, which holds during the call.
+    """
+    cells, structure = np.ascontiguousarray(point.own.coefficients), np.ascontiguousarray(point.structure)
+    law = LawRecord(contacts=structure.shape[0], structure=structure)
+    same = [name for name in Point._fields if name not in ("own", "inner", "outer", "structure")]
+    record = _PointRecord(
+        data=law.address, entrainment_speed=abs(entrainment_speed), **{name: getattr(point, name) for name in same}
+    )
+    for name in ("offset", "inverse_scale", "start", "step"):
+        setattr(record.own, name, getattr(point.own, name))
+    record.own.cells, record.own.to_cells = cells.shape[0], at(cells) - ctypes.addressof(record.own)
+    call(ctypes.addressof(record))
+
+
 class _Functions(NamedTuple):
     """Functions of the library."""
 

@@ -18,8 +18,8 @@
 `speed_tables`         tables of a law over the speed of a run
 `rings`                bearings of a run as arrays: rings, rollers, and contacts with one side or two
 `bearing_block`        compiled runs with slow films or dry contacts
-`memory_kernel`        slices whose films have a memory: one step in time
-`memory_block`         compiled runs with such films
+`memory_block`         compiled runs with films that have a memory
+`ring_records`         bearings of a run as C takes them
 `tapered`              tapered roller bearings: five freedoms, rollers between cup, cone and rib
 `balls`                ball bearings: five freedoms, two contact angles a ball, the speed of the balls
 =====================  ================================================================================================

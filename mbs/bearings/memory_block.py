@@ -1,286 +1,171 @@
 """Bearings whose films have a memory, in compiled runs: each slice has a state, which goes on when a step is made.
 
-Rollers are massless, with one contact that stands for both in series, or bodies with two contacts each. Steps begin
-and go on as in `mbs.bearings.memory_kernel`.
+Rollers are massless, with one contact that stands for both in series, or bodies with two contacts each. The law is that
+of `ehdmaps.maps.kernels.memory_table`. Each slice carries parabolas of p, y and G around a state and of a around a
+load; they stand for the cubics of its cells, from which they differ in third order, and are read anew where the slice
+leaves their reach, and every few steps, as the law follows the speed (`mbs.bearings.speed_tables`). Tables over the
+speed are mixed as often as slices read them, see `Course.kept`.
+
+The equations are in `ehdmaps/kernel/c/film_slices.c` and `ehdmaps/kernel/c/film_block.c`.
 """
 
 from __future__ import annotations
 
+import contextlib
+import ctypes
 import dataclasses
+import math
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import ClassVar
 
 import numpy as np
 
 from ehdmaps.arrays import BoolArray, FloatArray, IntArray
-from ehdmaps.compiled import in_python, njit
+from ehdmaps.errors import EhdmapsError
+from ehdmaps.kernel.library import checked
+from ehdmaps.kernel.record import Record, integers, numbers
 from ehdmaps.maps.kernels.memory import FilmState
-from ehdmaps.maps.kernels.memory_table import step_of
+from ehdmaps.maps.kernels.memory_table import NUMBERS
+from ehdmaps.maps.law import ContactLaw
 from mbs.bearings.bearing_element import FilmStates
-from mbs.bearings.bearing_kernel import assemble_level_slices, assemble_slices
 from mbs.bearings.laws import DryLaw
-from mbs.bearings.memory_kernel import (
-    ACCEPTED,
-    HIGHEST,
-    LAST,
-    MEMORY,
-    STEPS,
-    TRIED,
-    MemoryFilms,
-    MemoryTables,
-    begin,
-    begin_step,
-    commit,
-    films_of_rows,
-    loads,
-    make_step,
-    new_clock,
-    resume_rows,
-    room,
-    spent,
-    table_in_use,
-)
-from mbs.bearings.rings import (
-    LEVEL,
-    Contact,
-    Place,
-    Rings,
-    add_contact,
-    alike_contacts,
-    alone,
-    answer_ring,
-    begin_answer,
-    cage_of,
-    feels,
-    folding_of,
-    gather_rings,
-    motion_of,
-    outward_power,
-    place_of,
-    placed,
-    plain,
-    shape_of,
-    strict,
-    turned_by,
-)
-from mbs.bearings.slices import TOO_FAR, Sizes, check_motion, sizes_of, slice_approaches
-from mbs.bearings.speed_tables import Course, CourseOfFilms, FilmBlock, course_of
-from mbs.model.blocks import FOUND, IN_PYTHON, NO_SOLUTION, Answers, Kind, Member, Moment
+from mbs.bearings.ring_records import CourseRecord, RingsRecord, course_record, rings_record
+from mbs.bearings.rings import Rings, alike_contacts, alone, feels, folding_of, gather_rings, placed, plain, strict
+from mbs.bearings.speed_tables import CourseOfFilms, Made, SpeedWindow, course_of
+from mbs.model.blocks import Kind, Member
+
+STEP = 4e-3
+"""Distance of the nodes in ln of the speed: the straight blend between two is right to some 1e-6 of the load."""
+
+NODES = 8
+"""How many tables are held."""
+
+_ROUND_OFF = 1e-12
 
 
-class MemoryBearings(NamedTuple):
-    """Bearings with memory as arrays, one row a bearing.
+class MemoryTables:
+    """Tables of one law at one temperature, for a window of speeds.
+
+    Parameters
+    ----------
+    law : ContactLaw
+        The law of a roller between both raceways; all bearings with the same one, the same temperature and rate share
+        the tables.
+    temperature : float
+        [K].
+    rate : float
+        Entrainment speed for each speed of the system [m/rad].
+    """
+
+    def __init__(self, law: ContactLaw, temperature: float, rate: float) -> None:
+        self._law, self._temperature, self._rate = law, temperature, rate
+        self._window = SpeedWindow(STEP, NODES, law.plain_table.lowest_speed / abs(rate) if rate else 1.0)
+
+    def places(self, speeds: FloatArray) -> tuple[IntArray, FloatArray]:
+        """Nodes and weights of speeds [rad/s], see `SpeedWindow.places`."""
+        return self._window.places(speeds)
+
+    def prepare(
+        self, speeds: FloatArray, nodes: IntArray, weights: FloatArray, tables: FloatArray
+    ) -> tuple[IntArray, BoolArray, IntArray]:
+        """Make the tables for the first of some speeds, see `SpeedWindow.prepare`.
+
+        Parameters
+        ----------
+        speeds : array (n,)
+            Speeds [rad/s].
+        nodes, weights : array (n,)
+            Nodes and weights from `places`.
+        tables : array (NODES, NUMBERS)
+            Room for the tables of this law.
+        """
+
+        def make(slot: int, speed: float, _: bool) -> Made:
+            return self._made(speed, tables[slot])
+
+        return self._window.prepare(speeds, nodes, weights, make, self._ahead)
+
+    def _ahead(self, speeds: FloatArray) -> None:
+        """Have what costs most made for many speeds [rad/s] at once."""
+        with contextlib.suppress(EhdmapsError):  # the step that asks for it will be told why
+            at = np.array([self._entrainment(speed) for speed in speeds.tolist()])
+            self._law.make_locked_factors(at, self._temperature)
+
+    def _entrainment(self, speed: float) -> float:
+        """Entrainment speed of a node [m/s]: the one at the lowest speed has its whole film, whatever the rounding."""
+        lowest, u = self._law.plain_table.lowest_speed, abs(self._rate * speed)
+        return lowest if abs(u - lowest) < _ROUND_OFF * lowest else u
+
+    def _made(self, speed: float, table: FloatArray) -> Made:
+        """Make the table of a speed."""
+        before = dict(self._law.outside_counts)
+        try:
+            table[:] = self._law.at(self._entrainment(speed), self._temperature).memory.table.numbers
+        except EhdmapsError:
+            return Made(sound=False)  # the step that asks for it will be told why
+        return Made(sound=True, outside=self._law.outside_counts != before)
+
+
+LATEST, CHANGE, FADE, LOAD, TRIAL, AROUND = 0, 2, 3, 4, 5, 6
+MEMORY = 22
+"""Rows of the memory of the slices, see `ehdmaps/kernel/c/film_slices.c`, and how many there are."""
+
+_BEFORE, _NO_CHANGE = 1, 1e-30
+ACCEPTED, LAST, TRIED, _STEPS = range(4)
+"""Times of a run, as in `ehdmaps/kernel/c/film_block.c`."""
+
+
+def resume(films: FilmState, memory: FloatArray) -> None:
+    """Go on from states.
+
+    Parameters
+    ----------
+    films : FilmState
+        Films of n slices.
+    memory : array (MEMORY, n)
+        Memory of the slices; written. Parabolas are read at the next step.
+    """
+    memory[:] = 0.0
+    memory[[LATEST, _BEFORE, TRIAL]] = films.approach.reshape(-1)
+    memory[CHANGE], memory[LOAD], memory[AROUND] = films.change.reshape(-1), films.load.reshape(-1), math.inf
+    memory[FADE] = 1.5 / (np.abs(memory[CHANGE]) + _NO_CHANGE)
+
+
+class MemoryBearings(Record):
+    """Bearings with memory of a run as C takes them.
 
     Attributes
     ----------
-    rings : Rings
-        What does not change.
-    strict : array (bearings,), of bool
+    rings, course : RingsRecord, CourseRecord
+        What does not change; places of the steps on the tables.
+    nodes, most : int
+        Tables of each film; slices of all rollers together, of the bearing that has most.
+    strict : array (bearings,), of int
         Whether a law refuses loads above its map.
-    memory : array (bearings, sides, MEMORY Z n)
-        Memory of all slices, see `mbs.bearings.memory_kernel`.
-    approaches : array (Z n,)
-        Work space for one side of the contacts of a bearing after the other [m].
-    states : array (bearings, sides, 4 Z n)
-        Loads and tangents of the last answer; the other rows are zero.
+    memory, states : array (bearings, sides, MEMORY most), (bearings, sides, 2 most)
+        Memory of all slices; loads and slopes of the last answer.
+    approaches, work : array (most,), (2 most,)
+        Work space.
     spent : array (bearings,)
         What the films of each took up over the last step [J].
     clock : array (4,)
         Times of the run.
-    films : MemoryFilms
-        Tables of the laws.
-    course : Course
-        Places of the steps on them.
+    tables, mixed, in_use : array (films, NODES, NUMBERS), (films, NUMBERS), (films, 2)
+        Tables over the speed, those in use, and node and weight of these.
     """
 
-    rings: Rings
-    strict: BoolArray
-    memory: FloatArray
-    approaches: FloatArray
-    states: FloatArray
-    spent: FloatArray
-    clock: FloatArray
-    films: MemoryFilms
-    course: Course
+    _fields_ = (
+        ("rings", RingsRecord),
+        ("course", CourseRecord),
+        *((name, ctypes.c_int64) for name in ("nodes", "most")),
+        ("strict", integers),
+        *((name, numbers) for name in ("memory", "states", "approaches", "work", "spent", "clock")),
+        *((name, numbers) for name in ("tables", "mixed", "in_use")),
+    )
+    shapes: ClassVar = {"approaches": ("most",), "work": ("most", 2), "clock": (4,)}
 
 
-@njit(error_model="numpy")
-def memory_of(bearings: MemoryBearings, b: int, side: int) -> FloatArray:
-    """Memory of the slices of one side, shape (MEMORY, Z n), contiguous.
-
-    Parameters
-    ----------
-    bearings : MemoryBearings
-        All bearings.
-    b, side : int
-        Which bearing, and which side of its contacts.
-    """
-    size = bearings.rings.rollers[b] * bearings.rings.slices[b]
-    memory: FloatArray = bearings.memory[b, side][: MEMORY * size].reshape(MEMORY, size)
-    return memory
-
-
-@njit(error_model="numpy")
-def _begin(bearings: MemoryBearings, moment: Moment) -> None:
-    """Begin a step: tables, and what slices start from."""
-    films, films_of, steps = bearings.films, bearings.rings.films_of, int(bearings.clock[STEPS])
-    growth, kept = begin_step(bearings.clock, films, bearings.course, moment), bearings.course.kept[moment.step]
-    for b in range(films_of.shape[0]):
-        for side in range(films_of.shape[1]):
-            begin(table_in_use(films, films_of[b, side]), growth, steps, kept, memory_of(bearings, b, side))
-
-
-@njit(error_model="numpy")
-def _settled(bearings: MemoryBearings, b: int, side: int, moment: Moment) -> tuple[FloatArray, bool]:
-    """Loads and tangents of the slices of a side at their approaches, (4, Z n), and whether a load is above the map."""
-    size, film = bearings.rings.rollers[b] * bearings.rings.slices[b], bearings.rings.films_of[b, side]
-    states = bearings.states[b, side][: 4 * size].reshape(4, size)
-    step = step_of(moment.time - bearings.clock[ACCEPTED], bearings.clock[LAST])
-    table, memory = table_in_use(bearings.films, film), memory_of(bearings, b, side)
-    loads(table, step, memory, bearings.approaches[:size], states[0], states[1])
-    return states, np.max(states[0]) > bearings.films.mixed[film, HIGHEST]
-
-
-@njit(error_model="numpy")
-def _on_rings(bearings: MemoryBearings, b: int, moment: Moment, motion: FloatArray, answers: Answers) -> int:
-    """Write the answer of a bearing with massless rollers; 1 with a load above the map, negative without an answer."""
-    rings, out = bearings.rings, np.empty((13, 6))
-    z, n = rings.rollers[b], rings.slices[b]
-    ring, shape = motion_of(rings, b, moment, motion), shape_of(rings, b)
-    wrong = check_motion(ring, shape.sizes)
-    if wrong != 0:
-        return wrong
-    slice_approaches(ring, shape, bearings.approaches[: z * n])
-    states, above = _settled(bearings, b, 0, moment)
-    if rings.felt[b] == LEVEL:
-        assemble_level_slices(ring, shape, rings.weights[b][:n], states.reshape(4, z, n), out)
-    else:
-        assemble_slices(ring, shape, states.reshape(4, z, n), out)
-    answer_ring(rings.firsts[b], rings.felt[b], moment, out, answers)
-    return 1 if above else 0
-
-
-@njit(error_model="numpy")
-def _moves_within(place: Place, sizes: Sizes) -> bool:
-    """Tell whether approaches are finite and within reason."""
-    far, tilt = sizes.most_travel, sizes.most_tilt
-    return abs(place.approach[0]) <= far and abs(place.approach[1]) <= far and abs(place.tilt) <= tilt
-
-
-@njit(error_model="numpy")
-def _on_rollers(bearings: MemoryBearings, b: int, moment: Moment, motion: FloatArray, answers: Answers) -> int:
-    """`_on_rings` of a bearing whose rollers are bodies, side by side."""
-    rings, deltas, beyond = bearings.rings, bearings.approaches, 0
-    z, n = rings.rollers[b], rings.slices[b]
-    x, profile, sizes = rings.positions[b][:n], rings.profiles[b][:n], sizes_of(rings.sizes[b])
-    cage, length = cage_of(rings, b, moment), sizes.slice_length
-    slope = moment.by_q * length
-    begin_answer(rings, b, moment, answers)
-    for side in range(2):
-        for j in range(z):
-            place = place_of(rings, b, j, cage, motion)
-            if not _moves_within(place, sizes):
-                return TOO_FAR
-            row = deltas[j * n : (j + 1) * n]
-            for i in range(n):
-                row[i] = place.approach[side] + x[i] * place.tilt - 0.5 * profile[i]
-        states, above = _settled(bearings, b, side, moment)
-        for j in range(z):
-            w, dw = states[0, j * n : (j + 1) * n], states[1, j * n : (j + 1) * n]
-            w0 = w1 = k0 = k1 = k2 = 0.0
-            for i in range(n):
-                w0 += w[i]
-                w1 += w[i] * x[i]
-                k0 += dw[i]
-                k1 += dw[i] * x[i]
-                k2 += dw[i] * x[i] * x[i]
-            contact = Contact(w0 * length, w1 * length, k0 * slope, k1 * slope, k2 * slope)
-            add_contact(rings, b, j, side, place_of(rings, b, j, cage, motion), contact, answers)
-        beyond = 1 if above else beyond
-    return beyond
-
-
-@njit(error_model="numpy")
-def memory_answer(bearings: MemoryBearings, moment: Moment, motion: FloatArray, answers: Answers) -> int:
-    """Forces and tangents of all bearings at the end of a step; see `mbs.model.blocks.Kind`.
-
-    Parameters
-    ----------
-    bearings : MemoryBearings
-        The bearings, with their states and the tables of their laws.
-    moment : Moment
-        Step, its end, angle, speed, weights of the slopes.
-    motion : array (2, m)
-        Displacements and their rates, among what all elements feel.
-    answers : Answers
-        Answers of all elements, filled.
-    """
-    if bearings.clock[TRIED] != moment.time:
-        _begin(bearings, moment)
-    course, rings = bearings.course, bearings.rings
-    count, sides = rings.films_of.shape
-    for b in range(count):
-        status = 0
-        if sides == 1:
-            status = _on_rings(bearings, b, moment, motion, answers)
-        else:
-            status = _on_rollers(bearings, b, moment, motion, answers)
-        if status < 0:
-            return NO_SOLUTION
-        if status > 0 and bearings.strict[b]:
-            return IN_PYTHON
-        for side in range(sides):
-            status = max(status, course.outside[moment.step, rings.films_of[b, side]])
-        answers.outside[rings.places[b]] += status
-    return FOUND
-
-
-@njit(error_model="numpy")
-def memory_accept(bearings: MemoryBearings, moment: Moment) -> None:
-    """Make the step: states go on; see `mbs.model.blocks.Kind`.
-
-    Parameters
-    ----------
-    bearings : MemoryBearings
-        The bearings.
-    moment : Moment
-        The step that was answered last.
-    """
-    rings = bearings.rings
-    count, sides = rings.films_of.shape
-    for b in range(count):
-        size, weights = rings.rollers[b] * rings.slices[b], rings.weights[b][: rings.slices[b]]
-        length = sizes_of(rings.sizes[b]).slice_length
-        bearings.spent[b] = 0.0
-        for side in range(sides):
-            table, memory = table_in_use(bearings.films, rings.films_of[b, side]), memory_of(bearings, b, side)
-            loads_now = bearings.states[b, side][:size]
-            bearings.spent[b] += spent(table, memory, loads_now, weights) * length
-            commit(table, memory, loads_now)
-    make_step(bearings.clock, moment)
-
-
-@njit(error_model="numpy")
-def memory_powers(
-    bearings: MemoryBearings, moment: Moment, motion: FloatArray, answers: Answers, out: FloatArray
-) -> None:
-    """Write what films take up, and what cage and centrifugal forces bring in; see `mbs.model.blocks.Kind`.
-
-    Parameters
-    ----------
-    bearings, moment, motion, answers
-        The same as of `memory_answer`.
-    out : array (elements, 3)
-        Powers of all elements; written.
-    """
-    rings = bearings.rings
-    for b in range(rings.firsts.size):
-        place, torque = rings.places[b], turned_by(rings.firsts[b], rings.felt[b] // 2, motion, answers)
-        out[place, 0], out[place, 2] = 0.0, bearings.spent[b]
-        out[place, 1] = torque * rings.cage_rates[b] * moment.speed + outward_power(rings, b, moment, motion)
-
-
-class MemoryBlock(FilmBlock[MemoryBearings]):
+class MemoryBlock:
     """The bearings with memory of a run; contacts with the same law at the same conditions share their tables.
 
     Parameters
@@ -291,37 +176,67 @@ class MemoryBlock(FilmBlock[MemoryBearings]):
 
     def __init__(self, members: Sequence[Member]) -> None:
         films_of, alike = alike_contacts(members)
-        tables = []
+        laws = []
         for one in alike:
             assert not isinstance(one.law.law, DryLaw)  # an element with memory refuses it
-            tables.append(MemoryTables(one.law.law, one.temperature, one.rates[0]))
-        rings, films = gather_rings(members, films_of), room(len(tables))
-        course = CourseOfFilms(
-            [table.places for table in tables],
-            lambda film, *places: tables[film].prepare(*places, films, film),
+            laws.append(MemoryTables(one.law.law, one.temperature, one.rates[0]))
+        self._rings: Rings = gather_rings(members, films_of)
+        self._tables = np.zeros((len(laws), NODES, NUMBERS))
+        self._in_use = np.full((len(laws), 2), -1.0)
+        self._course = CourseOfFilms(
+            [law.places for law in laws],
+            lambda film, *places: laws[film].prepare(*places, self._tables[film]),
             in_turns=True,
         )
-        arrays = MemoryBearings(
-            rings=rings,
-            strict=strict(members),
-            memory=np.zeros((*films_of.shape, MEMORY * rings.most_slices)),
-            approaches=np.zeros(rings.most_slices),
-            states=np.zeros((*films_of.shape, 4 * rings.most_slices)),
+        most = self._rings.most_slices
+        self._memory = np.zeros((*films_of.shape, MEMORY * most))
+        self._clock = np.array([math.nan, 0.0, math.nan, 0.0])
+        self._data = checked(MemoryBearings, "ehd_film_block")(
+            rings=rings_record(self._rings),
+            course=course_record(course_of(0, len(laws))),
+            nodes=NODES,
+            most=most,
+            strict=strict(members).astype(np.int64),
+            memory=self._memory,
+            states=np.zeros((*films_of.shape, 2 * most)),
+            approaches=np.zeros(most),
+            work=np.zeros(2 * most),
             spent=np.zeros(len(members)),
-            clock=new_clock(),
-            films=films,
-            course=course_of(0, len(tables)),
+            clock=self._clock,
+            tables=self._tables,
+            mixed=np.zeros((len(laws), NUMBERS)),
+            in_use=self._in_use,
         )
-        super().__init__(course, arrays)
         self._folds = [folding_of(plain(member.element)) for member in members]
+
+    def begin(self, speeds: FloatArray) -> None:
+        """Find the places of the speeds [rad/s] on the tables."""
+        self._course.begin(speeds)
+
+    def prepare(self, first: int, last: int) -> tuple[MemoryBearings, BoolArray]:
+        """Make the tables of the next steps, as many as are held at once.
+
+        Parameters
+        ----------
+        first, last : int
+            Steps of those that `begin` was told.
+        """
+        course, sound = self._course.prepare(first, last)
+        # To be mixed anew at its next turn: a turn of its own would be a kick.
+        self._in_use[:, 1] = math.nan
+        self._data.put(course=course_record(course))
+        return self._data, sound
 
     def states(self) -> list[FilmStates]:
         """Films of each bearing after the last step that was made."""
-        rings, last, time = self._arrays.rings, float(self._arrays.clock[LAST]), float(self._arrays.clock[ACCEPTED])
+        last, time = float(self._clock[LAST]), float(self._clock[ACCEPTED])
         states = []
         for b, fold in enumerate(self._folds):
-            shape = int(rings.rollers[b]), int(rings.slices[b])
-            films = [_slices(films_of_rows(rows, shape, last), fold.groups) for rows in self._rows(b)]
+            shape = int(self._rings.rollers[b]), int(self._rings.slices[b])
+            films = []
+            for memory in self._memories(b):
+                approach, change, load = (memory[row].reshape(shape)[:, fold.groups] for row in (LATEST, CHANGE, LOAD))
+                films.append(FilmState(approach, change, load, last))
             states.append(FilmStates(tuple(films), time))
         return states
 
@@ -334,13 +249,14 @@ class MemoryBlock(FilmBlock[MemoryBearings]):
             One a bearing, all after the same step.
         """
         for b, (state, fold) in enumerate(zip(states, self._folds, strict=True)):
-            for films, rows in zip(state.films, self._rows(b), strict=True):
-                resume_rows(_slices(films, fold.firsts), state.time, rows, self._arrays.clock)
+            for films, memory in zip(state.films, self._memories(b), strict=True):
+                resume(_slices(films, fold.firsts), memory)
+                self._clock[: TRIED + 1] = state.time, films.step, math.nan
 
-    def _rows(self, b: int) -> list[FloatArray]:
-        """Memory of the slices of a bearing, side by side."""
-        sides = self._arrays.rings.films_of.shape[1]
-        return [in_python(memory_of)(self._arrays, b, side) for side in range(sides)]
+    def _memories(self, b: int) -> list[FloatArray]:
+        """Memory of the slices of a bearing, side by side, (MEMORY, Z n) each."""
+        size = int(self._rings.rollers[b] * self._rings.slices[b])
+        return [side[: MEMORY * size].reshape(MEMORY, size) for side in self._memory[b]]
 
 
 def _slices(films: FilmState, which: IntArray) -> FilmState:
@@ -351,12 +267,11 @@ def _slices(films: FilmState, which: IntArray) -> FilmState:
 
 
 MEMORY_BEARINGS = Kind(
-    arrays=MemoryBearings,
-    answer=memory_answer,
+    answer="ehd_film_block_answer",
     feels=feels,
     gather=MemoryBlock,
-    accept=memory_accept,
-    powers=memory_powers,
+    accept="ehd_film_block_accept",
+    powers="ehd_film_block_powers",
     placed=placed,
 )
 """For `mbs.transient.kinds`."""

@@ -23,7 +23,6 @@ import numpy as np
 import numpy.typing as npt
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.compiled import njit
 from ehdmaps.errors import InputError, OutsideMapError, SolverError
 from ehdmaps.maps.kernels.memory_table import equilibrium_at
 from ehdmaps.physics.hertz import half_width
@@ -36,17 +35,7 @@ from mbs.model.relaxation import Relaxation
 if TYPE_CHECKING:
     from ehdmaps.maps.kernels.film_response import FilmResponse
     from ehdmaps.maps.kernels.memory import FilmMemory, FilmState
-    from ehdmaps.maps.kernels.memory_table import MemoryTable
     from ehdmaps.maps.law import ContactLaw, LawAtPoint
-
-
-@njit(error_model="numpy")
-def _fill_times(table: MemoryTable, approaches: FloatArray, times: FloatArray) -> None:
-    """Relaxation times of contacts at rest; 0 without load."""
-    for i in range(approaches.size):
-        _, k, _, dy, _, dg = equilibrium_at(table, approaches[i])
-        # k_s = k/(1 - dy) and G' = c k_s/(k_s - k) make theta = c/(k_s - k) = G'/k_s.
-        times[i] = dg * (1.0 - dy) / k if k > 0.0 else 0.0
 
 
 def relaxation_times(law: LawAtPoint, approach: FloatArray) -> FloatArray:
@@ -59,17 +48,9 @@ def relaxation_times(law: LawAtPoint, approach: FloatArray) -> FloatArray:
     approach : array
         Approaches [m].
     """
-    times = np.zeros(approach.size)
-    _fill_times(law.memory.table, np.ascontiguousarray(approach, dtype=np.float64).reshape(-1), times)
-    return times.reshape(approach.shape)
-
-
-@njit(error_model="numpy")
-def _fill_rest(table: MemoryTable, approaches: FloatArray, loads: FloatArray, films: FloatArray) -> None:
-    """Loads of contacts at rest, and their films: what the approach is less than that of the structure."""
-    for i in range(approaches.size):
-        loads[i], _, y, _, _, _ = equilibrium_at(table, approaches[i])
-        films[i] = max(-y, 0.0)
+    _, k, _, dy, _, dg = (np.asarray(read) for read in equilibrium_at(law.memory.table, approach))
+    # k_s = k/(1 - dy) and G' = c k_s/(k_s - k) make theta = c/(k_s - k) = G'/k_s.
+    return np.divide(dg * (1.0 - dy), k, out=np.zeros_like(k), where=k > 0.0)
 
 
 def natural_times(law: LawAtPoint, approach: FloatArray) -> FloatArray:
@@ -84,14 +65,14 @@ def natural_times(law: LawAtPoint, approach: FloatArray) -> FloatArray:
     approach : array
         Approaches [m].
     """
-    loads, films = np.zeros(approach.size), np.zeros(approach.size)
-    _fill_rest(law.memory.table, np.ascontiguousarray(approach, dtype=np.float64).reshape(-1), loads, films)
+    loads, _, y, _, _, _ = equilibrium_at(law.memory.table, approach)
+    films = np.maximum(-y, 0.0)
     contacts = law.law.contacts
     radius = sum(contact.radius for contact in contacts) / len(contacts)
     half = half_width(np.maximum(loads, 0.0), radius, contacts[0].reduced_modulus)
     size = np.sqrt(half**2 + 2.0 * films / len(contacts) * radius)
     with np.errstate(divide="ignore", invalid="ignore"):
-        return np.asarray(size / abs(law.entrainment_speed)).reshape(approach.shape)
+        return np.asarray(size / abs(law.entrainment_speed))
 
 
 def relaxing(rows: FloatArray, damping: FloatArray, times: FloatArray) -> Relaxation:

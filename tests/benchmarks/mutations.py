@@ -86,9 +86,9 @@ FAULTS = (
     Fault("damping of a faded film, factor", "ehdmaps/maps/kernels/kernel.py", "part * dc / slope", "dc / slope"),
     Fault(
         "film memory, tangent",
-        "ehdmaps/maps/kernels/memory_table.py",
-        "tangent = slope / rise if",
-        "tangent = 2.0 * slope / rise if",
+        "ehdmaps/kernel/c/film.c",
+        "? load.slope / rise : 0.0",
+        "? 2.0 * load.slope / rise : 0.0",
     ),
     Fault(
         "bend of a viscosity law, turned over",

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import ctypes
 import dataclasses
 import functools
 import math
 
 import numpy as np
 import pytest
-from numba import njit
 
 from ehdmaps.errors import InputError, OutsideMapError
-from ehdmaps.maps.kernels.memory_table import advanced, equilibrium_at, step_of
+from ehdmaps.kernel.library import function
+from ehdmaps.maps.kernels.memory import FilmState
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.physics.oil_supply import OilSupply
 from mbs import assemble, read_scene
@@ -19,7 +20,7 @@ from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import MemoryBearing
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.laws import hertz
-from mbs.bearings.memory_kernel import MEMORY, STEP, begin, commit, loads, resume
+from mbs.bearings.memory_block import MEMORY, STEP, resume
 from mbs.bearings.speed_tables import MOST_KEPT, CourseOfFilms
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import Load, Operation
@@ -44,70 +45,77 @@ def bearing(outside="clamp", **changes):
     return MemoryBearing("b", "shaft", "housing", shape, force, 330.0, **changes)
 
 
-@njit
-def by_kernel(table, h, deltas):
+@functools.cache
+def kernel():
+    """The three parts of a step of slices in C."""
+    table, number, whole, array = ctypes.c_void_p, ctypes.c_double, ctypes.c_int64, ctypes.c_void_p
+    return (
+        function("ehd_film_slices_begin", table, number, whole, whole, whole, array, result=None),
+        function("ehd_film_slices_loads", table, number, number, whole, *(array,) * 5, result=None),
+        function("ehd_film_slices_commit", table, whole, array, array, result=None),
+    )
+
+
+def by_kernel(at, h, deltas):
     """Loads of slices over a course, by parabolas."""
+    begin, loads, commit = kernel()
     count, slices = deltas.shape
-    memory, out, tangent = np.zeros((MEMORY, slices)), np.empty((count, slices)), np.empty(slices)
-    for i in range(slices):
-        out[0, i] = equilibrium_at(table, deltas[0, i])[0]
-    resume(deltas[0], np.zeros(slices), out[0], memory)
+    table, state = at.memory.table.address, at.memory.settled(deltas[0])
+    memory, out, (tangent, *work) = np.zeros((MEMORY, slices)), np.empty((count, slices)), np.empty((3, slices))
+    work, out[0] = np.concatenate(work), state.load
+    resume(FilmState(deltas[0], state.change, state.load), memory)
     for k in range(1, count):
-        begin(table, 0.0 if k == 1 else 1.0, k, MOST_KEPT, memory)
-        loads(table, step_of(h, 0.0 if k == 1 else h), memory, deltas[k], out[k], tangent)
-        commit(table, memory, out[k])
+        last = 0.0 if k == 1 else h
+        begin(table, last / h, k, MOST_KEPT, slices, memory.ctypes.data)
+        places = [row.ctypes.data for row in (memory, deltas[k], out[k], tangent, work)]
+        loads(table, h, last, slices, *places)
+        commit(table, slices, memory.ctypes.data, out[k].ctypes.data)
     return out
 
 
-@njit
-def by_table(table, h, deltas):
-    """The same slice by slice, from the table itself."""
-    count, slices = deltas.shape
-    out, xi, change = np.empty((count, slices)), deltas[0].copy(), np.zeros(slices)
-    for i in range(slices):
-        out[0, i] = equilibrium_at(table, xi[i])[0]
-    for k in range(1, count):
-        step = step_of(h, 0.0 if k == 1 else h)
-        for i in range(slices):
-            before = equilibrium_at(table, xi[i])[4]
-            out[k, i], _, xi[i] = advanced(table, step, deltas[k, i], before, change[i], xi[i])
-            change[i] = equilibrium_at(table, xi[i])[4] - before
-    return out
+def by_table(at, h, deltas):
+    """The same from the table itself."""
+    state = dataclasses.replace(at.memory.settled(deltas[0]), approach=deltas[0])
+    out = [state.load]
+    for delta in deltas[1:]:
+        w, _, state = at.memory.advance(state, delta, h)
+        out.append(w)
+    return np.array(out)
 
 
 @pytest.mark.parametrize(("frequency", "amplitude"), [(300.0, 2e-6), (3000.0, 1e-7), (1000.0, 1e-5)])
 def test_slices_by_parabolas_are_those_of_the_table(frequency, amplitude):
-    table = law().at(1.2, 330.0).memory.table
+    at = law().at(1.2, 330.0)
     random = np.random.default_rng(5)
     times = 1e-5 * np.arange(300)
     swing = np.sin(2.0 * math.pi * frequency * times)[:, None] * random.uniform(-1.0, 1.0, 100)
     deltas = random.uniform(-2e-5, 1e-5, 100) + amplitude * swing
-    exact = by_table(table, 1e-5, deltas)
+    exact = by_table(at, 1e-5, deltas)
     # What parabolas leave out in third order; of light slices, whose load matters little, a few 1e-4.
-    assert by_kernel(table, 1e-5, deltas) == pytest.approx(exact, rel=1e-3, abs=1e-6 * np.max(exact))
+    assert by_kernel(at, 1e-5, deltas) == pytest.approx(exact, rel=1e-3, abs=1e-6 * np.max(exact))
 
 
 @pytest.mark.parametrize("layer", [0.7e-6, 2e-6])
 def test_slices_on_an_oil_layer_lift_off_and_touch_as_those_of_the_table(layer):
     """Films end within a micrometre there: steps of parabolas that do not settle, and slices out of contact."""
     supplied = ContactLaw("series", CONTACTS, OIL, SMALL_FIELD, "clamp", supply=OilSupply(layer))
-    table = supplied.at(1.2, 330.0).memory.table
+    at = supplied.at(1.2, 330.0)
     random = np.random.default_rng(6)
     swing = np.sin(2.0 * math.pi * 1500.0 * 1e-5 * np.arange(200))[:, None] * random.uniform(-2e-6, 2e-6, 100)
-    deltas = table.lift_off + random.uniform(-2e-6, 3e-6, 100) + swing
-    exact = by_table(table, 1e-5, deltas)
+    deltas = at.memory.table.lift_off + random.uniform(-2e-6, 3e-6, 100) + swing
+    exact = by_table(at, 1e-5, deltas)
     assert np.any(exact < 1e-6) and np.max(exact) > 1e3
-    assert by_kernel(table, 1e-5, deltas) == pytest.approx(exact, rel=1e-3, abs=1e-3 * np.max(exact))
+    assert by_kernel(at, 1e-5, deltas) == pytest.approx(exact, rel=1e-3, abs=1e-3 * np.max(exact))
 
 
 def test_a_slice_out_of_contact_has_no_stiffness():
     """A tangent without a load that changes would keep Newton's steps of a machine from settling."""
-    table = (
-        ContactLaw("series", CONTACTS, OIL, SMALL_FIELD, "clamp", supply=OilSupply(1e-6)).at(1.2, 330.0).memory.table
-    )
+    supplied = ContactLaw("series", CONTACTS, OIL, SMALL_FIELD, "clamp", supply=OilSupply(1e-6))
+    memory = supplied.at(1.2, 330.0).memory
+    low = memory.table.lift_off
     for h in (1e-5, 1e-8):
-        w, tangent, xi = advanced(table, step_of(h, 0.0), table.lift_off - 1e-6, 0.0, 0.0, table.lift_off)
-        assert (w, tangent, xi) == (pytest.approx(0.0, abs=1e-20), 0.0, table.lift_off)
+        w, tangent, end = memory.advance(memory.settled(low), low - 1e-6, h)
+        assert (w, tangent, end.approach) == (pytest.approx(0.0, abs=1e-20), 0.0, low)
 
 
 @functools.cache

@@ -209,13 +209,8 @@ def _film_data(law: ContactLaw) -> str:
     table, film = locked_table(law), locked_film.film_of(law.contacts, 0.0)
     fields = {
         "law": "&LAW",
-        "radius": number(film.radius),
-        "modulus": number(film.modulus),
+        "contacts": f"{{{film.contacts}, {number(film.radius)}, {number(film.modulus)}}}",
         "lowest_speed": "EHD_LOWEST_SPEED",
-        "locked": number(locked_film.LOCKED),
-        "locked_by_load": number(locked_film.LOCKED_BY_LOAD),
-        "most_locked": number(locked_film.MOST_LOCKED),
-        "longest": number(locked_film.LONGEST),
     }
     for axis, places, name in (
         ("speeds", table.speeds, "log_speed"),

@@ -16,10 +16,20 @@
 #define NO_LOAD_LEFT 1e-20
 #define FILM_PI 3.141592653589793
 
+/* Compliance that locked oil takes off a contact, in 4/E' for each ln(1 + 2 h R/b^2): the first number, and the second one
+ * times -d(ln h)/d(ln w), which is 1 for a rigid film of constant viscosity, and falls where its inlet is piezoviscous or
+ * it is elastic. Fitted with FVA 3, as the longest relaxation time c/(k_s - k) is, in natural times
+ * sqrt(b^2 + 2 h R)/u: the complex stiffness is right within 7 % up to ten natural frequencies, and with other oils within
+ * 6 % up to L = 40 and 9 % above. A factor from the map makes that 5 % and 7 %. */
+#define LOCKED 0.02
+#define LOCKED_BY_LOAD 0.087
+#define LONGEST_MEMORY 1.4
+#define MOST_LOCKED 0.6 /* part of the structure's compliance that locked oil takes off at most */
+
 /* Cubics of a cell. */
 enum { P_OF, Y_OF, G_OF };
 
-/* Rows of ehd_film.node: place z, load p, stiffness k, y and G at the nodes; slopes of y and G by the approach; what a
+/* Rows of ehd_film_nodes: place z, load p, stiffness k, y and G at the nodes; slopes of y and G by the approach; what a
  * has beyond the structure, and its slope by the load. */
 enum { NODE_Z, NODE_P, NODE_K, NODE_Y, NODE_G, NODE_BY_Y, NODE_BY_C, NODE_BEYOND, NODE_SLOPE };
 
@@ -91,26 +101,33 @@ static double locked_factor(const ehd_film_data *film, const locked_factors *of,
     return first + (place - (double)cell) * (factor_at(of, cell + 1) - first);
 }
 
+/* Compliance that locked oil takes off contacts by the closed formula [m2/N]: film offset [m], load > 0 [N/m] and film
+ * compliance [m2/N] of all together. */
+static double locked_compliance(const ehd_film_contacts *contacts, double offset, double load, double compliance) {
+    const double each = most(offset, 0.0) / contacts->count;
+    const double square = 8.0 * load * contacts->radius / (FILM_PI * contacts->modulus);
+    const double exponent = each > 0.0 ? least(most(compliance * load / offset, 0.0), 1.0) : 0.0;
+    const double part = (LOCKED + LOCKED_BY_LOAD * exponent) * 4.0 / contacts->modulus;
+    return contacts->count * part * log1p(2.0 * each * contacts->radius / square);
+}
+
 /* Stiffness of a contact whose film is locked: offset of the film, load, stiffness and damping at rest, compliance of
  * the structure, factor of the closed formula. */
-static double locked_stiffness(const ehd_film_data *film, double speed, double offset, double load, double k, double c,
-                               double solids, double factor) {
-    const double contacts = (double)film->law->contacts, each = most(offset, 0.0) / contacts;
-    const double square = 8.0 * load * film->radius / (FILM_PI * film->modulus);
-    const double exponent = each > 0.0 ? least(most((1.0 / k - solids) * load / offset, 0.0), 1.0) : 0.0;
-    const double part = (film->locked + film->locked_by_load * exponent) * 4.0 / film->modulus;
-    const double locked = factor * contacts * part * log1p(2.0 * each * film->radius / square);
-    const double stiff = 1.0 / (solids - least(locked, film->most_locked * solids));
-    const double per_natural = speed / sqrt(square + 2.0 * each * film->radius);
-    return most(most(stiff, k), k + c * per_natural / film->longest);
+static double locked_stiffness(const ehd_film_contacts *contacts, double speed, double offset, double load, double k,
+                               double c, double solids, double factor) {
+    const double locked = factor * locked_compliance(contacts, offset, load, 1.0 / k - solids);
+    const double stiff = 1.0 / (solids - least(locked, MOST_LOCKED * solids));
+    const double square = 8.0 * load * contacts->radius / (FILM_PI * contacts->modulus);
+    const double per_natural = speed / sqrt(square + 2.0 * most(offset, 0.0) / contacts->count * contacts->radius);
+    return most(most(stiff, k), k + c * per_natural / LONGEST_MEMORY);
 }
 
 /* Values at the nodes: p, y, G and their slopes over the approach; what a has beyond the structure. */
 static void fill_film_nodes(const ehd_film_data *data, const locked_factors *factors, const ehd_law_point *point,
-                            ehd_film *film) {
-    double *p = film->node[NODE_P], *z = film->node[NODE_Z], *k = film->node[NODE_K], *y = film->node[NODE_Y];
-    double *g = film->node[NODE_G], *by_y = film->node[NODE_BY_Y], *by_c = film->node[NODE_BY_C];
-    double *beyond = film->node[NODE_BEYOND], *slope = film->node[NODE_SLOPE];
+                            ehd_film_nodes node, ehd_film_table *film) {
+    double *p = node[NODE_P], *z = node[NODE_Z], *k = node[NODE_K], *y = node[NODE_Y];
+    double *g = node[NODE_G], *by_y = node[NODE_BY_Y], *by_c = node[NODE_BY_C];
+    double *beyond = node[NODE_BEYOND], *slope = node[NODE_SLOPE];
     double last_approach = 0.0;
     for (int i = 0; i < EHD_NODES; i++) {
         z[i] = node_place(i);
@@ -125,9 +142,9 @@ static void fill_film_nodes(const ehd_film_data *data, const locked_factors *fac
             film->lift_off = approach; /* the law lifts off within the cell that begins here */
         } else {
             double solids;
-            const double dry = structural_approach(data->law, 0.0, p[i], &solids);
+            const double dry = structural_approach(point->data, 0.0, p[i], &solids);
             const double c = most(rest.w * rest.ratio, LEAST_DAMPING * k[i]);
-            const double stiff = locked_stiffness(data, point->entrainment_speed, dry - approach, p[i], k[i], c, solids,
+            const double stiff = locked_stiffness(&data->contacts, point->entrainment_speed, dry - approach, p[i], k[i], c, solids,
                                                   locked_factor(data, factors, p[i]));
             by_y[i] = 1.0 - k[i] / stiff;
             by_c[i] = by_y[i] > LEAST_FILM ? c / by_y[i] : 0.0; /* without film nothing is squeezed */
@@ -145,8 +162,7 @@ static void fill_film_nodes(const ehd_film_data *data, const locked_factors *fac
 }
 
 /* Cells of p, y and G. */
-static void fill_film_cells(ehd_film *film) {
-    double(*n)[EHD_NODES] = film->node;
+static void fill_film_cells(ehd_film_nodes n, ehd_film_table *film) {
     const double per = 1.0 / film->inverse_scale;
     for (int row = 0; row < 2 * EHD_ROWS; row++) {
         const int above = row < EHD_ROWS, i = above ? EHD_ROWS + row : 2 * EHD_ROWS - row, j = above ? i + 1 : i - 1;
@@ -159,15 +175,15 @@ static void fill_film_cells(ehd_film *film) {
 }
 
 /* Cells of a: the structure and what is beyond it, which is straight in its slope between the nodes of p. */
-static void fill_load_cells(ehd_film *film) {
-    const double *p = film->node[NODE_P], *beyond = film->node[NODE_BEYOND], *slopes = film->node[NODE_SLOPE];
+static void fill_load_cells(const ehd_law_data *law, ehd_film_nodes node, ehd_film_table *film) {
+    const double *p = node[NODE_P], *beyond = node[NODE_BEYOND], *slopes = node[NODE_SLOPE];
     double before = 0.0, slope_before = INFINITY;
     int i = 0;
     while (i < EHD_NODES - 1 && p[i + 1] <= 0.0) i++;
     if (i == EHD_NODES - 1) i--; /* nothing is carried at all */
     for (int row = 1; row <= EHD_LOAD_ROWS; row++) {
         double solids;
-        const double load = cell_end(row) - 1.0, dry = structural_approach(film->law, 0.0, load, &solids);
+        const double load = cell_end(row) - 1.0, dry = structural_approach(law, 0.0, load, &solids);
         while (i + 2 < EHD_NODES && p[i + 1] < load) i++;
         const double begin = p[i] > 0.0 ? slopes[i] : slopes[i + 1];
         const double t = least((load - p[i]) / (p[i + 1] - p[i]), 1.0), slope = begin + t * (slopes[i + 1] - begin);
@@ -188,7 +204,7 @@ static reading read_cubic(const double cubic[4], double t) {
 }
 
 /* p, y and G of a film that is in equilibrium at an approach, with their slopes by it. */
-static void equilibrium(const ehd_film *film, double approach, reading found[3]) {
+static void equilibrium(const ehd_film_table *film, double approach, reading found[3]) {
     double t;
     const int row = row_of((approach - film->centre) * film->inverse_scale, &t);
     for (int n = 0; n < 3; n++) {
@@ -198,36 +214,41 @@ static void equilibrium(const ehd_film *film, double approach, reading found[3])
 }
 
 /* a of a load, and its slope. */
-static reading stretch(const ehd_film *film, double load) {
+static reading stretch(const ehd_film_table *film, double load) {
     double above;
     const int row = cell_from(1.0 + load, EHD_LOAD_ROWS, &above);
     return read_cubic(film->load_cell[row], above);
 }
 
-int ehd_film_make(const ehd_film_data *data, double u, double T, ehd_law_point *room, ehd_film *film) {
-    if (!film) return EHD_BAD_ARGUMENT;
-    if (film->inverse_scale > 0.0 && film->entrainment_speed == fabs(u) && film->temperature == T)
-        return (int)film->status;
-    const ehd_law_data *law = data->law;
-    const ehd_law_point *point = room;
-    const int status = ehd_law_make(law, u, T, 0.0, room);
-    film->law = law;
-    film->entrainment_speed = fabs(u);
-    film->temperature = T;
-    film->status = status;
-    film->inverse_scale = 0.0;
-    if (refuses(law, status)) return status;
+/* Fill a table with the law of a point without centrifugal load. */
+static void fill_film(const ehd_film_data *data, const locked_factors *factors, const ehd_law_point *point,
+                      ehd_film_nodes node, ehd_film_table *film) {
     /* a faded film takes its part of the offset, and of the approach of lift-off */
     film->centre = point->film * point->own.offset;
     film->lift_off = point->film * point->lift_off;
     film->inverse_scale = point->own.inverse_scale;
     film->highest = point->highest_load * (1.0 + LOAD_TOLERANCE);
+    fill_film_nodes(data, factors, point, node, film);
+    fill_film_cells(node, film);
+    fill_load_cells(point->data, node, film);
+    film->least_damping = EHD_SHORTEST_MEMORY / stretch(film, point->highest_load).slope;
+}
+
+int ehd_film_make(const ehd_film_data *data, double u, double T, ehd_law_point *room, ehd_film *film) {
+    if (!film) return EHD_BAD_ARGUMENT;
+    if (film->table.inverse_scale > 0.0 && film->entrainment_speed == fabs(u) && film->temperature == T)
+        return (int)film->status;
+    const ehd_law_data *law = data->law;
+    const int status = ehd_law_make(law, u, T, 0.0, room);
+    film->law = law;
+    film->entrainment_speed = fabs(u);
+    film->temperature = T;
+    film->status = status;
+    film->table.inverse_scale = 0.0;
+    if (refuses(law, status)) return status;
     const double speed = least(most(fabs(u), most(data->lowest_speed, law->lowest_speed)), law->highest_speed);
     const locked_factors factors = factors_at(data, log(speed), least(most(T, law->counted_cold), law->counted_hot));
-    fill_film_nodes(data, &factors, point, film);
-    fill_film_cells(film);
-    fill_load_cells(film);
-    film->least_damping = EHD_SHORTEST_MEMORY / stretch(film, point->highest_load).slope;
+    fill_film(data, &factors, room, film->node, &film->table);
     return status;
 }
 
@@ -238,7 +259,7 @@ static int film_refuses(const ehd_film *film, int status) { return !film->law ||
 static int film_status(const ehd_film *film) {
     if (!film->law) return EHD_BAD_ARGUMENT;
     if (refuses(film->law, (int)film->status)) return (int)film->status;
-    return film->inverse_scale > 0.0 ? (int)film->status : EHD_BAD_ARGUMENT;
+    return film->table.inverse_scale > 0.0 ? (int)film->status : EHD_BAD_ARGUMENT;
 }
 
 /* w = x + sqrt(x^2 + p^2), without cancellation, and its slope, for slopes of p and x. */
@@ -256,28 +277,36 @@ static weights weights_of(double step, double last_step) {
     return last_step <= 0.0 || step > MOST_GROWTH * last_step ? first : second;
 }
 
+/* 1.5 by the size of the last change of G: what squeeze fades with. */
+static double fading_of(double last) { return 1.5 / (fabs(last) + NO_CHANGE); }
+
 /* x = G' at the end of a step, and its slope by G. Where the change falls below two thirds of the last one, the share of
  * the last one fades with it: so x has the sign of the change, and rises with it, whatever the step. */
-static reading squeeze(weights step, double change, double last) {
-    const double t = least(fabs(change) * (1.5 / (fabs(last) + NO_CHANGE)), 1.0), turn = 9.0 * t * (1.0 - t);
+static reading squeeze(weights step, double change, double last, double fading) {
+    const double t = least(fabs(change) * fading, 1.0), turn = 9.0 * t * (1.0 - t);
     const reading found = {step.rate * (step.ahead * change - step.back * last * t * t * (3.0 - 2.0 * t)),
                            step.rate * (step.ahead - step.back * (change * last >= 0.0 ? turn : -turn))};
     return found;
 }
 
-/* Load and state at the end of a step; see ehd_film_advance. Newton's method for the approach of equilibrium, in a
- * bracket: a film that is squeezed lags behind the approach, one that is relieved behind its last state. */
-static void advance_film(const ehd_film *film, weights step, double approach, const ehd_film_state *before,
-                         ehd_film_state *after, ehd_force *force) {
+/* End of a step: load, its slope by the approach, and the state. */
+typedef struct film_end {
+    double load, tangent, approach;
+} film_end;
+
+/* End of a step for a film with its G at the beginning, the change of G over the step before, and its state there.
+ * Newton's method for the approach of equilibrium, in a bracket: a film that is squeezed lags behind the approach, one
+ * that is relieved behind its last state. */
+static film_end end_of_step(const ehd_film_table *film, weights step, double approach, double begun, double last,
+                            double start) {
     reading at[3];
-    equilibrium(film, before->approach, at);
-    const double begun = at[G_OF].value, last = before->change, scale = film->inverse_scale;
-    double left = film->lift_off, xi = most(before->approach, left), right = most(approach, xi);
+    const double scale = film->inverse_scale, fading = fading_of(last);
+    double left = film->lift_off, xi = most(start, left), right = most(approach, xi);
     double before_last = INFINITY, moved = INFINITY, w = 0.0, tangent = 0.0;
     right += right - left;
     for (int n = 0; n < FILM_STEPS; n++) {
         equilibrium(film, xi, at);
-        reading x = squeeze(step, at[G_OF].value - begun, last);
+        reading x = squeeze(step, at[G_OF].value - begun, last, fading);
         x.slope *= at[G_OF].slope;
         const reading load = load_of(at[P_OF], x), a = stretch(film, load.value);
         const double rise = a.slope * load.slope + at[Y_OF].slope, gap = approach - a.value - at[Y_OF].value;
@@ -295,25 +324,45 @@ static void advance_film(const ehd_film *film, weights step, double approach, co
         if (moved * scale <= FILM_EXACT * (1.0 + fabs(xi - film->centre) * scale)) break;
         xi = following;
     }
-    equilibrium(film, xi, at);
-    after->approach = xi;
-    after->change = at[G_OF].value - begun;
-    after->load = force->load = w > NO_LOAD_LEFT ? w : 0.0;
-    force->stiffness = w > NO_LOAD_LEFT ? tangent : 0.0;
+    const film_end found = {w, tangent, xi};
+    return found;
+}
+
+/* G of a film that is in equilibrium at an approach. */
+static double squeezing(const ehd_film_table *film, double approach) {
+    reading at[3];
+    equilibrium(film, approach, at);
+    return at[G_OF].value;
+}
+
+/* Load and state at the end of a step; see ehd_film_advance. */
+static void advance_film(const ehd_film_table *film, weights step, double approach, const ehd_film_state *before,
+                         ehd_film_state *after, ehd_force *force) {
+    const double begun = squeezing(film, before->approach);
+    const film_end end = end_of_step(film, step, approach, begun, before->change, before->approach);
+    after->approach = end.approach;
+    after->change = squeezing(film, end.approach) - begun;
+    after->load = force->load = end.load > NO_LOAD_LEFT ? end.load : 0.0;
+    force->stiffness = end.load > NO_LOAD_LEFT ? end.tangent : 0.0;
     force->damping = 0.0;
 }
 
-int ehd_film_settled(const ehd_film *film, double approach, ehd_film_state *state) {
+/* A film in equilibrium at an approach. */
+static void settle_film(const ehd_film_table *film, double approach, ehd_film_state *state) {
     reading at[3];
+    state->approach = most(approach, film->lift_off);
+    equilibrium(film, state->approach, at);
+    state->change = 0.0;
+    state->load = at[P_OF].value > NO_LOAD_LEFT ? at[P_OF].value : 0.0;
+}
+
+int ehd_film_settled(const ehd_film *film, double approach, ehd_film_state *state) {
     if (!film || !state) return EHD_BAD_ARGUMENT;
     state->approach = state->change = state->load = NAN;
     const int status = film_status(film);
     if (film_refuses(film, status)) return status;
     if (!is_finite(approach)) return status | EHD_NOT_FINITE;
-    state->approach = most(approach, film->lift_off);
-    equilibrium(film, state->approach, at);
-    state->change = 0.0;
-    state->load = at[P_OF].value > NO_LOAD_LEFT ? at[P_OF].value : 0.0;
+    settle_film(&film->table, approach, state);
     return status;
 }
 
@@ -328,8 +377,8 @@ int ehd_film_advance(const ehd_film *film, double step, double last_step, double
     if (!(is_finite(approach) && is_finite(begun.approach) && is_finite(begun.change) && is_finite(last_step)))
         return status | EHD_NOT_FINITE;
     if (!(step > 0.0 && is_finite(1.0 / step))) return status | EHD_BAD_ARGUMENT;
-    advance_film(film, weights_of(step, last_step), approach, &begun, after, force);
-    if (force->load > film->highest) status |= EHD_ABOVE_LOAD;
+    advance_film(&film->table, weights_of(step, last_step), approach, &begun, after, force);
+    if (force->load > film->table.highest) status |= EHD_ABOVE_LOAD;
     if (!is_finite(fabs(after->approach) + fabs(after->change))) status |= EHD_NOT_FINITE;
     status = settled(film->law, status, force);
     if (film_refuses(film, status)) after->approach = after->change = after->load = NAN;
@@ -355,7 +404,7 @@ static double place_in(const double cubic[4], double width, double value) {
 }
 
 /* Load whose a is an approach, and its slope by it; none for an approach below zero, held at the end of the table. */
-static reading load_at(const ehd_film *film, double approach) {
+static reading load_at(const ehd_film_table *film, double approach) {
     int low = 0, high = EHD_LOAD_ROWS;
     const double end = cell_end(high) - cell_end(high - 1);
     reading found = {0.0, 0.0};
@@ -380,7 +429,7 @@ static reading load_at(const ehd_film *film, double approach) {
 
 /* Load and rate; see ehd_film_rate. x = (w^2 - p^2)/(2 m), xi' = x/(dG/dxi), with m = w, but for an opening contact,
  * below w = 2 e p with e = EHD_OPENING: m = e p + w^2/(4 e p), which goes on smoothly to e p. */
-static void rate_film(const ehd_film *film, double approach, double state, ehd_film_rates *rates) {
+static void rate_film(const ehd_film_table *film, double approach, double state, ehd_film_rates *rates) {
     double t;
     const double scale = film->inverse_scale, xi = most(state, film->lift_off);
     const int row = row_of((xi - film->centre) * scale, &t), held = state < film->lift_off;
@@ -408,8 +457,8 @@ int ehd_film_rate(const ehd_film *film, double approach, double state, ehd_film_
     int status = film_status(film);
     if (!(is_finite(approach) && is_finite(state))) status |= EHD_NOT_FINITE;
     if (!film_refuses(film, status)) {
-        rate_film(film, approach, state, rates);
-        if (rates->load > film->highest) status |= EHD_ABOVE_LOAD;
+        rate_film(&film->table, approach, state, rates);
+        if (rates->load > film->table.highest) status |= EHD_ABOVE_LOAD;
         if (!is_finite(rates->load + fabs(rates->rate) + fabs(rates->rate_by_approach) + fabs(rates->rate_by_state)))
             status |= EHD_NOT_FINITE;
     }

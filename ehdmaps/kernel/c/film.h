@@ -20,18 +20,35 @@
 #define EHD_NODES (2 * EHD_ROWS + 1)
 #define EHD_LOAD_ROWS 768
 
+/* Contacts in series, as the closed formula of the locked film sees them. */
+typedef struct ehd_film_contacts {
+    double count, radius, modulus; /* how many; mean reduced radius [m], E' [Pa] */
+} ehd_film_contacts;
+
 /* The numbers of films with memory, beside their law. */
 typedef struct ehd_film_data {
     const ehd_law_data *law;
-    double radius, modulus;               /* mean reduced radius of the contacts [m], E' [Pa] */
+    ehd_film_contacts contacts;
     double lowest_speed;                  /* the lowest mapped one [m/s] */
-    double locked, locked_by_load;        /* closed formula of the locked film, and its part by the film's exponent */
-    double most_locked;                   /* most of the structure's compliance that it takes off */
-    double longest;                       /* longest relaxation time, in natural times */
     int64_t speeds, temperatures, loads;  /* places of the factors of that formula, over ln u, 1/(T - coldest), ln w */
     double log_speed_start, log_speed_step, temperature_start, temperature_step, log_load_start, log_load_step;
     const double *factors;                /* (speeds, temperatures, loads) */
 } ehd_film_data;
+
+/* A contact whose film has a memory, at one speed and temperature: numbers alone, so that two may be blended number by
+ * number. Cells are cubics over the distance from the end that is nearer to the centre, in 1/inverse_scale, or from the
+ * lower end, in N/m. */
+typedef struct ehd_film_table {
+    double centre, inverse_scale;       /* of the cells [m], [1/m] */
+    double lift_off;                    /* approach up to which nothing is carried [m] */
+    double highest;                     /* load above which slices are outside the map [N/m] */
+    double least_damping;               /* what is added to dG/dxi for rates [N s/m2] */
+    double cell[2 * EHD_ROWS][3][4];    /* cubics of p [N/m], y [m] and G [N s/m2] */
+    double load_cell[EHD_LOAD_ROWS][4]; /* cubics of a [m] */
+} ehd_film_table;
+
+/* Values at the nodes of a table while it is made. */
+typedef double ehd_film_nodes[9][EHD_NODES];
 
 /* The law with memory at one speed and temperature; made by ehd_film_make. Some 190 kB: make it static, or on the heap,
  * and one for each thread. Its fields are for the functions here. */
@@ -39,13 +56,8 @@ typedef struct ehd_film {
     const ehd_law_data *law;
     double entrainment_speed, temperature; /* what was asked for, u >= 0 */
     int64_t status;
-    double centre, inverse_scale;       /* of the cells [m], [1/m] */
-    double lift_off;                    /* approach up to which nothing is carried [m] */
-    double highest;                     /* load above which slices are outside the map [N/m] */
-    double least_damping;               /* what is added to dG/dxi for rates [N s/m2] */
-    double cell[2 * EHD_ROWS][3][4];    /* cubics of p [N/m], y [m] and G [N s/m2] */
-    double load_cell[EHD_LOAD_ROWS][4]; /* cubics of a [m] */
-    double node[9][EHD_NODES];          /* work space */
+    ehd_film_table table;
+    ehd_film_nodes node; /* work space */
 } ehd_film;
 
 /* A film between two discrete steps: the approach at which it would be in equilibrium [m], what the last step changed

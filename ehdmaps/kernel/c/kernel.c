@@ -19,6 +19,8 @@
 #include "cylinder_law.h"
 #include "cylinder.h"
 #include "cylinder_films.h"
+#include "block.h"
+#include "rings.h"
 
 /* law */
 #include "status.c"
@@ -37,6 +39,10 @@ EHD_SIZE_OF(ehd_rough_data)
 
 /* films with memory */
 #include "film.c"
+#include "film_energy.c"
+#include "film_fit.c"
+#include "film_arrays.c"
+#include "film_slices.c"
 EHD_SIZE_OF(ehd_film_data)
 
 /* pairs of rolling bodies */
@@ -70,7 +76,8 @@ EHD_SIZE_OF(ehd_taper_answer)
 EHD_SIZE_OF(ehd_taper_springs)
 
 /* runs in time: elements, gears, matrices */
-#include "block.h"
+#include "rings.c"
+#include "film_block.c"
 #include "dense.c"
 #include "gear.c"
 #include "matrix.c"
