@@ -360,7 +360,7 @@ class PointInC:
     @functools.cached_property
     def point(self) -> Point:
         """Its numbers and lines; arrays are views of the memory in C."""
-        record = _PointRecord.from_buffer(self._memory)
+        record = _PointRecord.from_buffer(self._memory)  # type: ignore[arg-type]
         lines = {
             name: self._line(getattr(record, name))
             for name in ("own", "inner", "outer")[: 3 if record.centrifugal_load > 0.0 else 1]

@@ -79,11 +79,13 @@ FAULTS = (
     ),
     Fault(
         "compliance of the solids, factor",
-        "ehdmaps/maps/kernels/kernel.py",
-        "compliance += b * part / w",
-        "compliance += part / w",
+        "ehdmaps/kernel/c/law.c",
+        "*compliance += b * part / w;",
+        "*compliance += part / w;",
     ),
-    Fault("damping of a faded film, factor", "ehdmaps/maps/kernels/kernel.py", "part * dc / slope", "dc / slope"),
+    Fault(
+        "damping of a faded film, factor", "ehdmaps/kernel/c/law.c", "found.dc *= part / slope;", "found.dc /= slope;"
+    ),
     Fault(
         "film memory, tangent",
         "ehdmaps/kernel/c/film.c",
