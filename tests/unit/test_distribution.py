@@ -5,7 +5,6 @@ from __future__ import annotations
 import importlib.util
 import os
 import re
-import shutil
 import sys
 import tomllib
 import types
@@ -13,6 +12,8 @@ from importlib import metadata
 from pathlib import Path
 
 import pytest
+
+from tests.cases.programs import needed
 
 ROOT = Path(__file__).parents[2]
 TOLD = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
@@ -152,8 +153,7 @@ def test_the_platform_of_a_wheel(setup, plain, needed, wanted):
 
 
 def test_a_build_asks_for_a_compiler_only_where_there_is_none(monkeypatch, tmp_path):
-    if shutil.which("cc") is None:
-        pytest.skip("needs gcc: apt-get install gcc libc6-dev")
+    needed("gcc", "clang")
     standard = types.ModuleType("setuptools.build_meta")
     for name in ("build_editable", "build_sdist", "build_wheel", "get_requires_for_build_sdist"):
         setattr(standard, name, None)
