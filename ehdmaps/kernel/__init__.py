@@ -45,6 +45,9 @@ taper_films.c        films of such rollers with a memory
 rings.[hc]           bearings with cylindrical rollers in runs: how rings and rollers move
 film_block.c         such bearings with films that have a memory, as a kind of elements
 block.h              what a kind of elements brings to runs in time: its functions, for anyone's own ones, too
+pair_films.c         laws of pairs at nodes over the speed of a run, and those in use
+pair_port.c          what bearings of five freedoms answer in runs
+ball_block.c         ball bearings in runs
 dense.c              small matrices: products, elimination, steps in Python
 gear.c               gear meshes
 matrix.c             connections by matrices

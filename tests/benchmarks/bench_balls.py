@@ -3,7 +3,7 @@
 Run: python -m tests.benchmarks.bench_balls [--runs]
 
 A 6208 of 9 balls under combined displacements: dry with a damper, and with films of ISO VG 32 at 80 degC, slow and with
-a memory over a step. Compiled is what a compiled integrator pays a call, processor time; the ring stands, or moves by
+a memory over a step. Compiled is what an integrator in C pays a call, processor time; the ring stands, or moves by
 up to 10 nm a call. The error is that of the stiffness against central differences of 2 nm.
 
 --runs: a stiff rotor on two 6208, two NU208 and two 32208 of 21 slices whose rings tilt, and springs alone, at one
@@ -12,17 +12,21 @@ speed in steps of 20 us: processor time of a step, without what a run takes to b
 
 from __future__ import annotations
 
+import ctypes
 import math
+import subprocess
 import sys
+import tempfile
 import time
+from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
-from numba import njit
 
+from ehdmaps.kernel.library import library
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from mbs.bearings.balls.ball_bearing import BallForce
-from mbs.bearings.balls.ball_kernel import ball_force
 from mbs.bearings.balls.ball_memory import FilmsOfBalls
 from mbs.bearings.balls.films import ball_films
 from mbs.bearings.balls.laws import dry_law
@@ -85,14 +89,30 @@ TAPERED = 'bearing = "32208"\naxial_offset = "10 um"\n'
 """The right one is turned round."""
 
 
-@njit
-def many(times, step, pose, numbers, cos, sin, shape, inner, outer, force, stiffness, damping, centres, balls, held):
-    """Call the kernel many times from compiled code, at poses around one."""
-    place = pose.copy()
-    for i in range(times):
-        for m in range(6):
-            place[m] = pose[m] + step[m] * math.sin(0.01 * i)
-        ball_force(place, numbers, cos, sin, shape, inner, outer, force, stiffness, damping, centres, balls, held)
+DRIVER = """
+#include <math.h>
+#include <stdint.h>
+int ehd_ball_force_surely(const void *, const double *, void *, void *, double *, double *, double *);
+void many(int64_t times, const double *step, const double *pose, const void *data, void *start, void *found, double *f,
+          double *k, double *c) {
+    double place[6];
+    for (int64_t i = 0; i < times; i++) {
+        for (int m = 0; m < 6; m++) place[m] = pose[m] + step[m] * sin(0.01 * (double)i);
+        ehd_ball_force_surely(data, place, start, found, f, k, c);
+    }
+}
+"""
+
+
+def driver(folder: str) -> Callable[..., None]:
+    """Function in C that calls the kernel many times, at poses around one."""
+    source, made = Path(folder) / "many.c", Path(folder) / "many.so"
+    source.write_text(DRIVER)
+    options = ["-std=c99", "-O2", "-shared", "-fPIC", str(source), library()._name, "-lm", "-o", str(made)]
+    subprocess.run(["gcc", *options], check=True)
+    found = ctypes.CDLL(str(made)).many
+    found.argtypes, found.restype = [ctypes.c_int64, *8 * [ctypes.c_void_p]], None
+    return found
 
 
 def stiffness_error(force: BallForce, speed: float) -> float:
@@ -161,18 +181,20 @@ def main() -> None:
         return
     print("6208, 9 balls, f + K + C, us a call; error of K against differences")
     print(f"{'rpm':>8s} {'films':>8s} {'stands':>8s} {'moves':>8s} {'error':>9s}")
+    with tempfile.TemporaryDirectory() as folder:
+        many = driver(folder)
     for kind, rpm in (("dry", 0.0), ("dry", 3e3), ("dry", 15e3), ("slow", 3e3), ("memory", 3e3)):
         speed = rpm * RPM
         force = force_of(kind, speed)
         force(POSE, inner_speed=speed)
-        numbers, arrays = force.kernel_arguments(inner_speed=speed)
         found = []
         for step in (np.zeros(6), STEP):
-            many(10, step, POSE, numbers, *arrays)
+            arguments = step.ctypes.data, POSE.ctypes.data, force._arguments[0], *force._arguments[2:]
+            many(10, *arguments)
             best = math.inf
             for _ in range(5):
                 start = time.process_time()
-                many(TIMES, step, POSE, numbers, *arrays)
+                many(TIMES, *arguments)
                 best = min(best, (time.process_time() - start) / TIMES)
             found.append(1e6 * best)
         print(f"{rpm:8.0f} {kind:>8s} {found[0]:8.2f} {found[1]:8.2f} {stiffness_error(force, speed):9.1e}")

@@ -7,9 +7,10 @@ import math
 import numpy as np
 
 from mbs.bearings.balls.answers import FELT
-from mbs.bearings.balls.ball_block import BallBlock, balls_accept, balls_answer
-from mbs.model.blocks import FOUND, Answers, Member, Moment
+from mbs.bearings.balls.ball_block import BALLS, BallBlock
+from mbs.model.blocks import FOUND, Member, Moment
 from mbs.model.elements import Operation
+from tests.cases.c_blocks import AskedBlock
 
 
 def driven(element, speed, path, step):
@@ -18,13 +19,14 @@ def driven(element, speed, path, step):
     block = BallBlock([Member(element, 0, 0)])
     block.begin(np.array([speed]))
     block.resume([states])
-    arrays, sound = block.prepare(0, 1)
+    data, sound = block.prepare(0, 1)
     assert sound[0]
+    asked, rows = AskedBlock(BALLS, data, 5), data.given("rows")[0, : element.force.geometry.balls]
     forces, least = np.empty((len(path), 5)), math.inf
     for i, place in enumerate(path):
-        found = Answers(forces[i], np.zeros((5, 5)), np.zeros(1, dtype=np.int64))
         moment = Moment(0, step * i, speed, 0.0, 1.0, 0.0)
-        assert balls_answer(arrays, moment, np.array([place[FELT], np.zeros(5)]), found) == FOUND
-        balls_accept(arrays, moment)
-        least = min(least, float(arrays.rows[0, : arrays.counts[0], 10].min()))
+        assert asked.answer(moment, [place[FELT], np.zeros(5)]) == FOUND
+        asked.accept(moment)
+        forces[i] = asked.found.force
+        least = min(least, float(rows[:, 10].min()))
     return forces, least

@@ -1,10 +1,13 @@
-"""The ball bearing as a force element: derivatives, symmetry, passivity, extremes, refusals, its twin in Python."""
+"""The ball bearing as a force element: derivatives, symmetry, passivity, extremes, refusals, copies."""
 
 from __future__ import annotations
 
+import copy
 import dataclasses
 import itertools
 import math
+import pickle
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -20,9 +23,9 @@ RPM = math.pi / 30.0
 DAMPED = {"damping_time": 1.25e-5, "damping": 20.0}
 
 
-def force_of(name, **keywords):
+def force_of(name):
     geometry = BEARINGS[name]
-    return BallForce(geometry, dry_law(geometry, **DAMPED), **keywords)
+    return BallForce(geometry, dry_law(geometry, **DAMPED))
 
 
 def poses(force, count=6):
@@ -134,13 +137,16 @@ def test_velocity_brings_the_damping() -> None:
 
 
 @pytest.mark.parametrize("name", ["loose", "angular"])
-@pytest.mark.parametrize("rpm", [0.0, 1e4])
-def test_twin_in_python(name, rpm) -> None:
-    """The same code without the compiler: round-off of another order of operations."""
-    compiled, twin = force_of(name), force_of(name, compiled=False)
-    for pose in poses(compiled, 3):
-        for one, other in zip(compiled(pose, inner_speed=rpm * RPM), twin(pose, inner_speed=rpm * RPM), strict=True):
-            np.testing.assert_allclose(one, other, rtol=1e-9, atol=1e-9 * np.max(np.abs(other)))
+def test_copies_do_not_share_their_balls(name) -> None:
+    """Pickled and copied: the same forces, each from nothing, and so in threads of their own."""
+    force = force_of(name)
+    poses_of, speed = list(poses(force, 40)), 1e4 * RPM
+    wanted = [force_of(name)(pose, inner_speed=speed)[0] for pose in poses_of]
+    copies = [pickle.loads(pickle.dumps(force)), copy.deepcopy(force), force, force_of(name)]
+    with ThreadPoolExecutor(len(copies)) as pool:
+        found = list(pool.map(lambda one: [one(pose, inner_speed=speed)[0] for pose in poses_of], copies))
+    for one in found:
+        np.testing.assert_allclose(one, wanted, rtol=1e-9, atol=1e-9 * np.max(np.abs(wanted)))
 
 
 def test_order_of_calls_does_not_matter() -> None:

@@ -7,7 +7,6 @@ import math
 import numpy as np
 import pytest
 
-from ehdmaps.compiled import in_python
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from ehdmaps.table.points.file import shipped_point_table
@@ -56,7 +55,7 @@ def by_hand(force, balls, speed, s):
         parts = []
         for side, arm in enumerate((shape.inner_arm, shape.outer_arm)):
             e = np.array([math.sin(row[12 + side]), math.cos(row[12 + side])])
-            _, k, c = in_python(contact)(law.inner if side == 0 else law.outer, row[14 + side])
+            _, k, c = contact(law.inner if side == 0 else law.outer, row[14 + side])
             z = k + np.sum(s * c * springs[side].shares[j] / (1.0 + s * springs[side].times[j]))
             turns = row[10 + side] / (arm + row[14 + side])
             parts.append((z - turns) * np.outer(e, e) + turns * np.eye(2))

@@ -8,21 +8,21 @@ import math
 import numpy as np
 import pytest
 
-from ehdmaps.compiled import in_python
 from ehdmaps.errors import AnalysisError
 from mbs import assemble, parse_scene, read_scene, statics
 from mbs.bearings.balls.answers import FELT
 from mbs.bearings.balls.ball_bearing import BallForce
-from mbs.bearings.balls.ball_block import BallBlock, balls_accept, balls_answer
+from mbs.bearings.balls.ball_block import BALLS, BallBlock
 from mbs.bearings.balls.ball_element import BallStates
 from mbs.bearings.balls.normal_law import contact
-from mbs.model.blocks import FOUND, Answers, Member, Moment
+from mbs.model.blocks import FOUND, Member, Moment
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import SpeedProfile
 from mbs.settings import Settings
 from mbs.transient.run import Options, run
 from tests.cases import commands
+from tests.cases.c_blocks import AskedBlock
 from tests.unit.test_ball_scenes import LAW, text
 
 RPM = math.pi / 30.0
@@ -41,13 +41,12 @@ def states_of(element):
 
 def answers(block, speeds, step, angle, place=PLACE, rate=RATE):
     """Force, by_q K + by_v C and whether outside, of the only bearing of a block at a step of some speeds."""
-    arrays, sound = block.prepare(step, step + 1)
+    data, sound = block.prepare(step, step + 1)
     assert sound[0]
-    found = Answers(np.zeros(5), np.zeros((5, 5)), np.zeros(1, dtype=np.int64))
-    moment = Moment(0, 0.0, float(speeds[step]), angle, 1.0, 1e3)
-    assert balls_answer(arrays, moment, np.array([place[FELT], rate[FELT]]), found) == FOUND
-    balls_accept(arrays, moment)
-    return found
+    asked, moment = AskedBlock(BALLS, data, 5), Moment(0, 0.0, float(speeds[step]), angle, 1.0, 1e3)
+    assert asked.answer(moment, [place[FELT], rate[FELT]]) == FOUND
+    asked.accept(moment)
+    return asked.found
 
 
 @pytest.mark.parametrize(("law", "rpm"), [(LAW, 0.0), (LAW, 12e3), (LAW, -12e3), ("table", 6e3)])
@@ -147,10 +146,10 @@ def test_films_fade_below_the_slowest_of_their_table():
     slowest = bearing.films.slowest / rate
     below, at, still = (bearing.law_at(slowest * part) for part in (1.0 - 1e-6, 1.0, 1e-3))
     for approach in (-0.1e-6, 0.5e-6, 4e-6):
-        one, other = (in_python(contact)(law.inner, approach) for law in (below, at))
+        one, other = (contact(law.inner, approach) for law in (below, at))
         assert one == pytest.approx(other, rel=1e-9, abs=1e-9)
-    load, stiffness, damping = in_python(contact)(still.inner, 4e-6)
-    dry = in_python(contact)(bearing.law_at(0.0).inner, 4e-6)
+    load, stiffness, damping = contact(still.inner, 4e-6)
+    dry = contact(bearing.law_at(0.0).inner, 4e-6)
     assert (load, stiffness) == pytest.approx(dry[:2], rel=1e-6) and 0.0 < damping < 1e-4
 
 

@@ -8,7 +8,6 @@ import math
 import numpy as np
 import pytest
 
-from ehdmaps.compiled import in_python
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from ehdmaps.physics.solids import STEEL
 from mbs.bearings.balls.ball_bearing import BallForce
@@ -50,7 +49,7 @@ def test_no_slip_at_both_raceways_and_no_spin_at_the_outer_one() -> None:
         )
         drive = Drive(inner, outer, math.nan, ratio, 1.0, 0.4)
         speed, spin = in_vectors(ratio, ai, ao, inner, outer)
-        found, by_i, by_o = in_python(orbit)(drive, *directions(ai, ao))
+        found, by_i, by_o = orbit(drive, *directions(ai, ao))
         assert abs(found - speed) < 1e-12
         step = 1e-6
         for slope, way in ((by_i, (1.0, 0.0)), (by_o, (0.0, 1.0))):
@@ -59,7 +58,7 @@ def test_no_slip_at_both_raceways_and_no_spin_at_the_outer_one() -> None:
             )
             assert slope == pytest.approx((ahead - behind) / (2.0 * step), abs=1e-9)
         # M_g = w_c x J spin, about the direction x times r;  J = m Dw^2/10, the drive's m d_m/2 = 1
-        _, traction, _, _ = in_python(ball_loads)(drive, found)
+        _, traction, _, _ = ball_loads(drive, found)
         if traction > -0.499 * found**2:  # see ball_loads
             moment = np.cross([speed, 0.0, 0.0], spin) * 0.1 * 2.0 * ratio**2
             assert 0.5 * ratio * traction * math.sin(ao) == pytest.approx(moment[2], abs=1e-13)
@@ -72,9 +71,9 @@ def test_hypotheses_agree_at_equal_angles() -> None:
             drive = Drive(inner, outer, math.nan, 0.2, 1.0, 0.4)
             part = 0.2 * math.cos(angle)
             nominal = 0.5 * (inner * (1.0 - part) + outer * (1.0 + part))
-            assert in_python(orbit)(drive, *directions(angle, angle))[0] == pytest.approx(nominal, abs=1e-15)
+            assert orbit(drive, *directions(angle, angle))[0] == pytest.approx(nominal, abs=1e-15)
     for ai, ao in ((0.9, 0.5), (0.2, -0.1)):
-        assert in_python(orbit)(Drive(0.6, 0.6, math.nan, 0.2, 1.0, 0.4), *directions(ai, ao))[0] == 0.6
+        assert orbit(Drive(0.6, 0.6, math.nan, 0.2, 1.0, 0.4), *directions(ai, ao))[0] == 0.6
 
 
 CASES = [

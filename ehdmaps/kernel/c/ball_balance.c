@@ -37,6 +37,7 @@ typedef struct ball_given {
     double inner_arm, outer_arm, rest;         /* as of ehd_ball_data */
     ehd_ball_drive drive;
     const ehd_pair_law *inner, *outer;
+    double inner_scale, inner_step, outer_scale, outer_step; /* one over those of the laws */
     const double *held_inner, *held_outer;     /* three numbers each of contacts with memory, or null */
 } ball_given;
 
@@ -85,8 +86,10 @@ PAIR_INLINE ball_state ball_state_at(const ball_given *of, double x, double r) {
     ball_state s;
     double ix = of->dx - x, ir = of->dr - r, by_i, by_o, load[4];
     const double reach = sqrt(x * x + r * r), distance = most(sqrt(ix * ix + ir * ir), 1e-300);
-    const ehd_pair_load outer = pair_carried(of->outer, reach - of->outer_arm, of->held_outer);
-    const ehd_pair_load inner = pair_carried(of->inner, distance - of->inner_arm, of->held_inner);
+    const ehd_pair_load outer =
+        pair_carried_by(of->outer, of->outer_scale, of->outer_step, reach - of->outer_arm, of->held_outer);
+    const ehd_pair_load inner =
+        pair_carried_by(of->inner, of->inner_scale, of->inner_step, distance - of->inner_arm, of->held_inner);
     const double qo = outer.load, ko = outer.stiffness, qi = inner.load, ki = inner.stiffness;
     const double one_o = 1.0 / reach, one_i = 1.0 / distance, ox = x * one_o, orr = r * one_o;
     ix *= one_i;

@@ -58,6 +58,7 @@ int ehd_ball_force(const ehd_ball_data *of, const double *pose, ehd_ball_start *
     const int still = of->drive.inner == 0.0 && of->drive.outer == 0.0 && !(fabs(of->drive.cage) > 0.0);
     const double share = dry && still ? ball_share(&of->inner, &of->outer) : -1.0;
     ball_given on = {0.0, 0.0, of->shape.inner_arm, of->shape.outer_arm, of->rest, of->drive, &of->inner, &of->outer,
+                     1.0 / of->inner.scale, 1.0 / of->inner.step, 1.0 / of->outer.scale, 1.0 / of->outer.step,
                      NULL, NULL};
     int loaded = 0;
     memset(force, 0, 6 * sizeof *force);

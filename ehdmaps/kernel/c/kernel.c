@@ -78,6 +78,9 @@ EHD_SIZE_OF(ehd_taper_springs)
 /* runs in time: elements, gears, matrices */
 #include "rings.c"
 #include "film_block.c"
+#include "pair_films.c"
+#include "pair_port.c"
+#include "ball_block.c"
 #include "dense.c"
 #include "gear.c"
 #include "matrix.c"

@@ -53,17 +53,19 @@ PAIR_INLINE void pair_with_held(ehd_pair_load *of, double held, double spring) {
 
 /* Place of an approach on the table. */
 PAIR_INLINE double pair_place(const ehd_pair_law *law, double approach) {
-    const double x = (approach - law->centre) / law->scale, size = log(fabs(x) + sqrt(1.0 + x * x));
-    return ((x >= 0.0 ? size : -size) - law->first) / law->step;
+    const double x = (approach - law->centre) * (1.0 / law->scale), size = log(fabs(x) + sqrt(1.0 + x * x));
+    return ((x >= 0.0 ? size : -size) - law->first) * (1.0 / law->step);
 }
 
-/* Load and stiffness at an approach; held: three numbers of a contact with memory, or null. */
-PAIR_INLINE ehd_pair_load pair_carried(const ehd_pair_law *law, double approach, const double *held) {
+/* Load and stiffness at an approach, by one over scale and step of the table; held: three numbers of a contact with memory,
+ * or null. */
+PAIR_INLINE ehd_pair_load pair_carried_by(const ehd_pair_law *law, double one_scale, double one_step, double approach,
+                                          const double *held) {
     if (law->rows == 0) return pair_point(law->coefficient, approach);
     ehd_pair_load found;
-    const double x = (approach - law->centre) / law->scale, root = sqrt(1.0 + x * x);
+    const double x = (approach - law->centre) * one_scale, root = sqrt(1.0 + x * x);
     const double size = log(fabs(x) + root), z = x >= 0.0 ? size : -size;
-    found.place = (z - law->first) / law->step;
+    found.place = (z - law->first) * one_step;
     const int64_t cell = pair_cell(law, found.place);
     const double t = found.place - (double)cell, *low = law->table + 4 * cell, *high = low + 4;
     double slope;
@@ -81,6 +83,11 @@ PAIR_INLINE ehd_pair_load pair_carried(const ehd_pair_law *law, double approach,
     return found;
 }
 
+/* The same. */
+PAIR_INLINE ehd_pair_load pair_carried(const ehd_pair_law *law, double approach, const double *held) {
+    return pair_carried_by(law, 1.0 / law->scale, 1.0 / law->step, approach, held);
+}
+
 /* Damping by stiffness and place of pair_carried; none of a contact with memory, which has it in its stiffness. */
 PAIR_INLINE double pair_slowed(const ehd_pair_law *law, double stiffness, double place, const double *held) {
     if (law->rows == 0) return stiffness > 0.0 ? law->damping + law->damping_time * stiffness : 0.0;
@@ -96,10 +103,10 @@ PAIR_INLINE ehd_pair_state pair_at(const ehd_pair_law *law, double approach, con
     return found;
 }
 
-/* Load, stiffness and damping at rest of n approaches, out (n, 3). */
-void ehd_pair_contacts(const ehd_pair_law *law, int64_t n, const double *approach, double *out) {
+/* Load, stiffness and damping at n approaches, out (n, 3); held as of pair_carried, of all of them. */
+void ehd_pair_contacts(const ehd_pair_law *law, int64_t n, const double *approach, const double *held, double *out) {
     for (int64_t i = 0; i < n; i++) {
-        const ehd_pair_state found = pair_at(law, approach[i], NULL);
+        const ehd_pair_state found = pair_at(law, approach[i], held);
         out[3 * i] = found.load;
         out[3 * i + 1] = found.stiffness;
         out[3 * i + 2] = found.damping;

@@ -1,8 +1,11 @@
 """Ball bearings, deep groove and angular contact: five freedoms, quasi-static, with the speed of their balls.
 
+The balance of the balls, the sums over them and films with memory are in C: `ehdmaps/kernel/c/ball*`, `pair*`.
+
 =====================  ================================================================================================
 `laws`                 contact laws of both raceways: Hertz, with a damper, or a film over it
-`ball_kernel`          the balance of each ball, and the sums over balls: force, stiffness, damping
+`normal_law`           the law of a contact for C, its load by approach and its approach by load
+`ball_data`            a bearing and its balls as C has them
 `ball_bearing`         the force element; loads and contact angles of the balls
 `ball_element`         a bearing in a machine: films of its speed, the cage that its balls ask for
 `ball_speed`           speed of the cage by contact angles, loads of the balls by that, their work

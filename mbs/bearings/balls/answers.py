@@ -13,6 +13,8 @@ from mbs.bearings.balls.film_tables import FilmLaws, WithFilms
 from mbs.bearings.speed_tables import ArraysOfFilms, CourseOfFilms, FilmBlock, Prepared, shared
 from mbs.model.blocks import Answers, Moment
 
+_turned_by = njit(error_model="numpy", _nrt=False)(turned_by)
+
 FELT = np.array([0, 1, 2, 4, 5])
 """Displacements of its port that a bearing feels."""
 
@@ -93,7 +95,7 @@ def answer_port(
             slope = moment.by_q * stiffness[row, column] + moment.by_v * damping[row, column]
             answers.slopes[first + p, first + q] = slope
         answers.force[first + p] = total
-    powers[0], powers[1] = dissipated, turned_by(pose, force) * turn * moment.speed
+    powers[0], powers[1] = dissipated, _turned_by(pose, force) * turn * moment.speed
 
 
 class LawBlock(FilmBlock[ArraysOfFilms]):

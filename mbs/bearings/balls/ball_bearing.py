@@ -20,8 +20,10 @@ D. A. Maas, Journal of Tribology 111 (1989) 142. ISO/TS 16281.
 
 from __future__ import annotations
 
+import ctypes
 import functools
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
@@ -30,23 +32,23 @@ import numpy as np
 import numpy.typing as npt
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.compiled import in_python
 from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.kernel.library import checked, function
 from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.physics.solids import STEEL, Material
-from mbs.bearings.balls.ball_kernel import (
+from mbs.bearings.balls.ball_data import (
     COLUMNS,
-    NO_BALANCE,
     NOT_FINITE,
     START,
     TOO_FAR,
+    BallData,
     BallShape,
-    ball_force,
-    write_angles,
+    DriveData,
+    ShapeData,
 )
 from mbs.bearings.balls.ball_speed import Drive, ball_loads, mean_speed
 from mbs.bearings.balls.laws import BallLaw
-from mbs.bearings.balls.normal_law import load_approach, nothing_held
+from mbs.bearings.balls.normal_law import law_data, load_approach, nothing_held
 from mbs.model.elements import Excitation, Forces, OnRings, Operation, Port
 from mbs.model.findings import CARRIES
 
@@ -123,32 +125,23 @@ class BallForce:
         Laws of the contacts, see `mbs.bearings.balls.laws`.
     material : Material
         Material of the balls; its density gives them mass.
-    compiled : bool
-        Whether the compiled kernel is called, or the same in Python.
 
     Attributes
     ----------
-    shape : BallShape
-        Lengths for compiled code.
     drive : Drive
         Masses and sizes of the balls for `mbs.bearings.balls.ball_speed`, at rest.
     directions : (array (Z,), array (Z,))
         Directions of the balls in the cage, y and z.
-    held : array (Z, 2, HELD), or none (0, 2, HELD)
-        What the films of both contacts of each ball hold over a step, see `mbs.bearings.balls.ball_memory`; none where
-        they have no memory.
 
     Notes
     -----
     An object is for one thread: it keeps the places of the balls as a start for the next call.
     """
 
-    def __init__(
-        self, geometry: BallGeometry, law: BallLaw, material: Material = STEEL, *, compiled: bool = True
-    ) -> None:
+    def __init__(self, geometry: BallGeometry, law: BallLaw, material: Material = STEEL) -> None:
         self.geometry, self.law, self.material = geometry, law, material
         distance, angle = geometry.groove_distance, geometry.contact_angle
-        self.shape = BallShape(
+        self._shape = BallShape(
             axial=distance * math.sin(angle),
             radial=geometry.radial_distance,
             arm=geometry.inner_groove_radius,
@@ -161,17 +154,51 @@ class BallForce:
         self.drive = Drive(0.0, 0.0, math.nan, diameter / pitch, 0.5 * mass * pitch, 0.2 * mass * pitch)
         self._places = 2.0 * math.pi * np.arange(geometry.balls) / geometry.balls
         self.directions = np.cos(self._places), np.sin(self._places)
-        self._kernel = ball_force if compiled else in_python(ball_force)
-        self._centres = np.full((geometry.balls, START), np.nan)
-        self._balls = np.zeros((geometry.balls, COLUMNS))
+        self._turns = geometry.cage_speed(1.0, 0.0), geometry.cage_speed(0.0, 1.0)
+        balls = geometry.balls
+        self._pose, self._starts, self._balls = np.zeros(6), np.zeros((balls, START)), np.zeros((balls, COLUMNS))
         self._out = np.zeros(6), np.zeros((6, 6)), np.zeros((6, 6))
         self._rest = (0.0, 0.0)
-        self.held = nothing_held()
+        self._data = checked(BallData, "ehd_ball_data")(
+            shape=ShapeData(**self._shape._asdict()),
+            drive=DriveData(**self.drive._asdict()),
+            balls=balls,
+            cosine=self.directions[0],
+            sine=self.directions[1],
+            inner=law_data(law.inner),
+            outer=law_data(law.outer),
+        )
+        self._held = nothing_held()
+        rooms = self._pose, self._starts, self._balls, *self._out
+        self._arguments = self._data.address, *(room.ctypes.data for room in rooms)
+        self._force, self._angles = _functions()
 
     def __reduce__(self) -> tuple[Any, ...]:
         """For other processes: as it was made, without what calls left behind."""
-        made = functools.partial(BallForce, compiled=self._kernel is ball_force)
-        return made, (self.geometry, self.law, self.material)
+        return BallForce, (self.geometry, self.law, self.material)
+
+    @property
+    def shape(self) -> BallShape:
+        """Lengths of the bearing."""
+        return self._shape
+
+    @shape.setter
+    def shape(self, shape: BallShape) -> None:
+        self._shape = shape
+        self._data.put(shape=ShapeData(**shape._asdict()))
+
+    @property
+    def held(self) -> FloatArray:
+        """What the films of both contacts of each ball hold over a step, see `mbs.bearings.balls.ball_memory`.
+
+        Shape (Z, 2, HELD); none, (0, 2, HELD), where they have no memory.
+        """
+        return self._held
+
+    @held.setter
+    def held(self, held: FloatArray) -> None:
+        self._held = np.ascontiguousarray(held, dtype=np.float64)
+        self._data.put(held=self._held if held.shape[0] > 0 else None)
 
     def speed_loads(
         self, inner_speed: float, outer_speed: float, cage_speed: float | None = None
@@ -190,18 +217,23 @@ class BallForce:
         InputError
             For speeds that are no finite numbers, or beyond `FASTEST`.
         """
-        geometry = self.geometry
-        if not all(abs(speed) <= FASTEST for speed in (inner_speed, outer_speed)):
+        centrifugal, traction, _, _ = ball_loads(
+            self.drive_at(inner_speed=inner_speed, outer_speed=outer_speed),
+            self._cage_of(inner_speed, outer_speed, cage_speed),
+        )
+        return float(centrifugal), 0.5 * float(traction) * self.geometry.ball_diameter
+
+    def _cage_of(self, inner_speed: float, outer_speed: float, cage_speed: float | None) -> float:
+        """Speed of the cage that is given, or of the nominal contact angle [rad/s]."""
+        if not (abs(inner_speed) <= FASTEST and abs(outer_speed) <= FASTEST):
             raise InputError(
                 f"ball bearing, speeds: got {inner_speed!r} and {outer_speed!r} rad/s; allowed: finite numbers, at "
                 f"most {FASTEST:g} rad/s either way"
             )
-        cage = geometry.cage_speed(inner_speed, outer_speed) if cage_speed is None else cage_speed
+        cage = inner_speed * self._turns[0] + outer_speed * self._turns[1] if cage_speed is None else cage_speed
         if not abs(cage) <= FASTEST:
             raise InputError(f"ball bearing, cage_speed: got {cage!r} rad/s; allowed: at most {FASTEST:g} rad/s")
-        drive = self.drive_at(inner_speed=inner_speed, outer_speed=outer_speed)
-        centrifugal, traction, _, _ = ball_loads(drive, float(cage))
-        return float(centrifugal), 0.5 * float(traction) * geometry.ball_diameter
+        return float(cage)
 
     def __call__(
         self,
@@ -268,6 +300,7 @@ class BallForce:
             Angle of the cage [rad] and speeds [rad/s], see `BallForce.__call__`.
         """
         self._evaluated(pose, cage_angle, inner_speed, outer_speed, cage_speed)
+        self._angles(self.geometry.balls, self._balls.ctypes.data)
         angle = np.angle(np.exp(1j * (self._places + cage_angle)))
         rows = self._balls.T.copy()
         idle = self.geometry.cage_speed(inner_speed, outer_speed) if cage_speed is None else cage_speed
@@ -277,7 +310,10 @@ class BallForce:
 
     @property
     def last_balls(self) -> FloatArray:
-        """Rows that `place_ball` wrote of each ball at the last call, shape (Z, COLUMNS)."""
+        """Rows of the balls after the last call, shape (Z, COLUMNS), see `mbs.bearings.balls.ball_data`.
+
+        Contact angles are there after `balls` alone.
+        """
         return self._balls
 
     def drive_at(
@@ -298,47 +334,22 @@ class BallForce:
         cage = math.nan if cage_speed is None else float(cage_speed)
         return self.drive._replace(inner=float(inner_speed), outer=float(outer_speed), cage=cage)
 
-    def kernel_arguments(
-        self,
-        *,
-        cage_angle: float = 0.0,
-        inner_speed: float = 0.0,
-        outer_speed: float = 0.0,
-        cage_speed: float | None = None,
-    ) -> tuple[FloatArray, tuple[Any, ...]]:
-        """Numbers and arrays that `ball_force` takes after the pose, for compiled code.
-
-        Parameters
-        ----------
-        cage_angle, inner_speed, outer_speed, cage_speed : float
-            Angle of the cage [rad] and speeds [rad/s], see `BallForce.__call__`.
-        """
-        centrifugal, _ = self.speed_loads(inner_speed, outer_speed, cage_speed)
-        if self._rest[0] != centrifugal:
-            self._rest = centrifugal, load_approach(self.law.outer, centrifugal) if centrifugal > 0.0 else 0.0
-        drive = self.drive_at(inner_speed=inner_speed, outer_speed=outer_speed, cage_speed=cage_speed)
-        if self.law.dry and self._rest[1] < NEGLIGIBLE:
-            drive = self.drive
-        numbers = np.array([cage_angle, self._rest[1], *drive], dtype=np.float64)
-        laws = self.law.inner, self.law.outer
-        return numbers, (*self.directions, self.shape, *laws, *self._out, self._centres, self._balls, self.held)
-
     def _evaluated(
         self, pose: npt.ArrayLike, cage_angle: float, inner_speed: float, outer_speed: float, cage_speed: float | None
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Call the kernel; its arrays are overwritten by the next call."""
-        place = _six(pose, "pose")
-        numbers, arrays = self.kernel_arguments(
-            cage_angle=cage_angle, inner_speed=inner_speed, outer_speed=outer_speed, cage_speed=cage_speed
-        )
-        found = self._kernel(place, numbers, *arrays)
-        if found == NO_BALANCE:  # once more, from nothing
-            self._centres[:] = np.nan
-            found = self._kernel(place, numbers, *arrays)
+        self._pose[:] = _six(pose, "pose")
+        centrifugal = self.drive.centrifugal * self._cage_of(inner_speed, outer_speed, cage_speed) ** 2
+        if self._rest[0] != centrifugal:
+            self._rest = centrifugal, load_approach(self.law.outer, centrifugal) if centrifugal > 0.0 else 0.0
+        data, drive, rest = self._data, self._data.drive, self._rest[1]
+        still = rest < NEGLIGIBLE and self.law.dry
+        drive.inner, drive.outer = (0.0, 0.0) if still else (inner_speed, outer_speed)
+        drive.cage = math.nan if still or cage_speed is None else cage_speed
+        data.cage_angle, data.rest = cage_angle, rest
+        found = self._force(*self._arguments)
         if found < 0:
-            self._centres[:] = np.nan
-            self._refuse(found, place, cage_angle)
-        write_angles(self._balls)
+            self._refuse(found, self._pose, cage_angle)
         return self._out
 
     def _refuse(self, found: int, pose: FloatArray, cage_angle: float) -> None:
@@ -354,6 +365,14 @@ class BallForce:
                 f"the groove centres) and {self.shape.most_tilt:.6g} rad; check units and the step of the solver"
             )
         raise AnalysisError(f"ball bearing {self.geometry.name}: no balance of a ball was found at {pose.tolist()}")
+
+
+@functools.cache
+def _functions() -> tuple[Callable[..., int], Callable[..., None]]:
+    """Functions in C: force, stiffness and damping; contact angles."""
+    place = ctypes.c_void_p
+    force = function("ehd_ball_force_surely", *7 * (place,))
+    return force, function("ehd_ball_angles", ctypes.c_int64, place, result=None)
 
 
 def _six(values: npt.ArrayLike, name: str) -> FloatArray:

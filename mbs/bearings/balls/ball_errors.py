@@ -15,7 +15,8 @@ import numpy as np
 from ehdmaps.arrays import ComplexArray, FloatArray
 from mbs.bearings.balls.ball_bearing import BallForce, BallLoads
 from mbs.bearings.balls.ball_speed import Drive, speed_slopes
-from mbs.bearings.balls.contact_slopes import contact_slopes, contacts_at
+from mbs.bearings.balls.contact_slopes import contact_slopes
+from mbs.bearings.balls.normal_law import contacts_at
 from mbs.model.condensed import DIRECTIONS, Condensed, Contacts, none_moved
 
 _SMALL = 1e-20

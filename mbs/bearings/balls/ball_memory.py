@@ -8,73 +8,41 @@ K_r = c_r/theta_r each, whose forces f_r are its states:
 
 So a load is never a tension, and rises with the approach. Small oscillations see k and c over frequency as linear
 analyses have them. Over a step in which the approach goes evenly the solution is exact, see
-`mbs.bearings.balls.spring_damper`: p gets a constant force and a spring, no more.
+`ehdmaps/kernel/c/pair_memory.c`: p gets a constant force and a spring, no more.
 """
 
 from __future__ import annotations
 
+import ctypes
+import functools
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.compiled import in_python, njit
-from ehdmaps.copies import put
+from ehdmaps.kernel.library import function
 from mbs.bearings.balls.laws import BallLaw
-from mbs.bearings.balls.normal_law import HELD, contact
+from mbs.bearings.balls.normal_law import HELD, contacts_at
 from mbs.bearings.balls.response import SHORTER
-from mbs.bearings.balls.spring_damper import gone_on, over_step
 
 SPRINGS = len(SHORTER)
 """Springs of a contact."""
 
-
-@njit(error_model="numpy", _nrt=False, forceinline=True)
-def hold(
-    step: float, approach: float, springs: FloatArray, forces: FloatArray, passed: FloatArray, held: FloatArray
-) -> None:
-    """Write what a contact holds against an approach over a step.
-
-    Parameters
-    ----------
-    step : float
-        Length of the step [s], >= 0.
-    approach : float
-        Approach at its beginning [m].
-    springs : array (SPRINGS + 1,)
-        K_r [N/m], and the longest of their times [s].
-    forces : array (SPRINGS,)
-        f_r at its beginning [N].
-    passed : array (SPRINGS, 2)
-        Part of f_r that is left, and its spring of the end of the step [N/m]; written.
-    held : array (3,)
-        Force [N] at the approach held[2] [m], and spring held[1] [N/m] of the end of the step; written.
-    """
-    held[0], held[1], held[2] = 0.0, 0.0, approach
-    for r in range(SPRINGS):
-        passed[r, 0], passed[r, 1] = over_step(step, springs[r], springs[SPRINGS] * SHORTER[r])
-        held[0] += passed[r, 0] * forces[r]
-        held[1] += passed[r, 1]
+_SHORTER = np.array(SHORTER)
 
 
-@njit(error_model="numpy", _nrt=False, forceinline=True)
-def go_on(moved: float, springs: FloatArray, after: FloatArray, passed: FloatArray, forces: FloatArray) -> None:
-    """Bring the forces to the end of a step, and to the springs there.
+@functools.cache
+def _hold() -> Callable[..., None]:
+    """What contacts hold over a step, in C."""
+    place = ctypes.c_void_p
+    return function("ehd_ball_hold", ctypes.c_int64, place, ctypes.c_double, *5 * (place,), result=None)
 
-    Parameters
-    ----------
-    moved : float
-        Change of the approach [m].
-    springs, after : array (SPRINGS + 1,)
-        The same as of `hold`, at the beginning and at the end; the first gets the numbers of the second.
-    passed : array (SPRINGS, 2)
-        What `hold` wrote.
-    forces : array (SPRINGS,)
-        f_r [N]; written.
-    """
-    for r in range(SPRINGS):
-        forces[r] = gone_on(forces[r], passed[r, 0], passed[r, 1] * moved, springs[r], after[r])
-    put(after, springs)
+
+@functools.cache
+def _go_on() -> Callable[..., None]:
+    """Contacts at the end of a step, in C."""
+    return function("ehd_ball_go_on", ctypes.c_int64, *5 * (ctypes.c_void_p,), result=None)
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +54,7 @@ class FilmsOfBalls:
     forces : array (Z, 2, SPRINGS)
         Forces f_r of the inner and the outer contact of each ball [N].
     springs : array (Z, 2, SPRINGS + 1)
-        Springs, see `hold`.
+        K_r [N/m] of each contact, and the longest of their times [s].
     approaches : array (Z, 2)
         Approaches [m].
     """
@@ -109,15 +77,15 @@ class FilmsOfBalls:
         return cls(np.zeros((*approaches.shape, SPRINGS)), _springs(law, approaches), approaches.copy())
 
     def held(self, step: float) -> FloatArray:
-        """Numbers that contacts hold over a step [s], (Z, 2, HELD), see `hold`."""
+        """Force [N], spring [N/m] and approach [m] that contacts hold over a step [s], (Z, 2, HELD)."""
         return self._over(step)[1]
 
     def _over(self, step: float) -> tuple[FloatArray, FloatArray]:
-        """Numbers that `hold` writes of all contacts."""
+        """Parts of the forces that are left over a step, with the springs of its end; and what contacts hold."""
         shape = self.approaches.shape
         passed, held = np.zeros((*shape, SPRINGS, 2)), np.zeros((*shape, HELD))
-        for at in np.ndindex(shape):
-            in_python(hold)(step, self.approaches[at], self.springs[at], self.forces[at], passed[at], held[at])
+        arrays = self.approaches, self.springs, self.forces, passed, held
+        _hold()(self.approaches.size, _SHORTER.ctypes.data, step, *(one.ctypes.data for one in arrays))
         return passed, held
 
     def after(self, step: float, law: BallLaw, approaches: FloatArray) -> FilmsOfBalls:
@@ -133,9 +101,8 @@ class FilmsOfBalls:
             Approaches there [m].
         """
         forces, springs, after = self.forces.copy(), self.springs.copy(), _springs(law, approaches)
-        moved, passed = approaches - self.approaches, self._over(step)[0]
-        for at in np.ndindex(approaches.shape):
-            in_python(go_on)(moved[at], springs[at], after[at], passed[at], forces[at])
+        moved, passed = np.ascontiguousarray(approaches - self.approaches), self._over(step)[0]
+        _go_on()(moved.size, *(one.ctypes.data for one in (moved, springs, after, passed, forces)))
         return FilmsOfBalls(forces, springs, approaches.copy())
 
 
@@ -144,6 +111,6 @@ def _springs(law: BallLaw, approaches: FloatArray) -> FloatArray:
     found = np.zeros((*approaches.shape, SPRINGS + 1))
     found[..., -1] = 1.0
     for side, (one, response) in enumerate(zip((law.inner, law.outer), law.responses, strict=False)):
-        values = np.array([in_python(contact)(one, approach) for approach in approaches[:, side].tolist()])
-        found[:, side] = response.in_time(values[:, 0], values[:, 2])
+        load, _, damping = contacts_at(one, approaches[:, side])
+        found[:, side] = response.in_time(load, damping)
     return found

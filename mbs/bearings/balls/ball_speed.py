@@ -1,4 +1,4 @@
-"""Speed of the balls around the axis by their contact angles, loads that it gives them, and their work, compiled.
+"""Speed of the balls around the axis by their contact angles, loads that it gives them, and their work.
 
 Rings turn at w_i and w_o, g = Dw/d_m. A ball rolls at both raceways without slip in the middle of the contacts, and
 does not drill at the outer one (outer race control, Jones 1959): it turns about an axis in the plane of a_i and a_o,
@@ -6,7 +6,8 @@ whose angle b from that of the bearing has tan b = sin a_o/(cos a_o + g), and go
 
     w_c = (w_i (1 - g cos a_i) + w_o (c + g cos a_i))/(1 + c),        c = cos(a_i - a_o).
 
-This is the one home of the rule; `tests.cases.balls` has it by vectors in space. Each ball has a speed of its own, as
+Forces have it from `ehdmaps/kernel/c/ball_balance.c`; here it is for arrays that may be complex, by which linear
+analyses differentiate it, and `tests.cases.balls` has it by vectors in space. Each ball has a speed of its own, as
 pockets let it: slow motion of the ring changes w_c, and with it the loads. A cage that holds the balls gives them its
 speed: of motion too fast for the ball to follow.
 
@@ -24,12 +25,15 @@ Technology, CRC, 2007, chapter 3.
 
 from __future__ import annotations
 
+import ctypes
+import functools
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.compiled import in_python, njit
+from ehdmaps.kernel.library import function
 
 
 class Drive(NamedTuple):
@@ -55,7 +59,6 @@ class Drive(NamedTuple):
     gyroscopic: float
 
 
-@njit(error_model="numpy", _nrt=False, forceinline=True)
 def orbit(drive: Drive, ix: Any, ir: Any, ox: Any, orr: Any) -> tuple[Any, Any, Any]:
     """Speed of a ball around the axis [rad/s], and its derivatives by both contact angles.
 
@@ -79,7 +82,6 @@ def orbit(drive: Drive, ix: Any, ir: Any, ox: Any, orr: Any) -> tuple[Any, Any, 
     return speed, -by_c - slow * drive.ratio * ix * one, by_c
 
 
-@njit(error_model="numpy", _nrt=False, forceinline=True)
 def ball_loads(drive: Drive, speed: Any) -> tuple[Any, Any, Any, Any]:
     """Centrifugal load F_c of a ball and t of its traction t sin(a_o) [N], and their derivatives by the speed [N s].
 
@@ -107,48 +109,42 @@ def ball_loads(drive: Drive, speed: Any) -> tuple[Any, Any, Any, Any]:
     return load, traction, by_load, by_traction
 
 
-@njit(error_model="numpy", _nrt=False)
 def mean_speed(balls: FloatArray, idle: float) -> float:
     """Speed of the cage: that of the balls, by their loads at the inner raceway [rad/s].
 
     Parameters
     ----------
     balls : array (Z, COLUMNS)
-        What `place_ball` writes of each ball.
+        Rows of all balls.
     idle : float
         That of a bearing without load [rad/s].
     """
-    load = total = 0.0
-    for j in range(balls.shape[0]):
-        load += balls[j, 10]
-        total += balls[j, 10] * balls[j, 22]
-    return total / load if load > 0.0 else idle
+    load = float(balls[:, 10].sum())
+    return float(balls[:, 10] @ balls[:, 22]) / load if load > 0.0 else idle
 
 
-@njit(error_model="numpy", _nrt=False)
+@functools.cache
+def _work() -> Callable[..., float]:
+    """Work of the loads by speed, in C."""
+    place, number = ctypes.c_void_p, ctypes.c_double
+    return function("ehd_ball_speed_work", ctypes.c_int64, place, number, place, result=number)
+
+
 def speed_work(balls: FloatArray, arm: float, last: FloatArray) -> float:
     """Work of the centrifugal loads and tractions on the balls since the last call [J], by the trapezoidal rule.
 
     Parameters
     ----------
     balls : array (Z, COLUMNS)
-        What `place_ball` writes of each ball.
+        Rows of all balls.
     arm : float
         Distance of the outer groove's centre and the centre of a ball that touches it [m].
     last : array (Z, 4)
         Centres [m] and forces [N] of the last call, axial and radial; written.
     """
-    work = 0.0
-    for j in range(balls.shape[0]):
-        reach, sin, cos = arm + balls[j, 15], balls[j, 18], balls[j, 19]
-        x, r = reach * sin, reach * cos
-        along, outward = -balls[j, 24] * sin * cos, balls[j, 23] + balls[j, 24] * sin * sin
-        work += 0.5 * ((along + last[j, 2]) * (x - last[j, 0]) + (outward + last[j, 3]) * (r - last[j, 1]))
-        last[j, 0], last[j, 1], last[j, 2], last[j, 3] = x, r, along, outward
-    return work
+    return _work()(balls.shape[0], balls.ctypes.data, arm, last.ctypes.data)
 
 
-@njit(error_model="numpy", _nrt=False)
 def turned_by(pose: FloatArray, force: FloatArray) -> float:
     """Moment that the bearing asks of its cage [N m], by pose and force at rest of its inner ring, (6,) each."""
     radial: float = pose[1] * force[2] - pose[2] * force[1]
@@ -169,8 +165,8 @@ def speed_slopes(along: Any, length: Any, drive: Drive) -> tuple[Any, Any]:
         Speeds and masses.
     """
     (ix, ir), (ox, orr) = (np.moveaxis(along[..., side, :], -1, 0) for side in (0, 1))
-    speed, by_i, by_o = (part + 0.0 * ix for part in in_python(orbit)(drive, ix, ir, ox, orr))
-    _, traction, by_load, by_traction = in_python(ball_loads)(drive, speed)
+    speed, by_i, by_o = (part + 0.0 * ix for part in orbit(drive, ix, ir, ox, orr))
+    _, traction, by_load, by_traction = ball_loads(drive, speed)
     faster = np.stack([-by_traction * ox * orr, by_load + by_traction * ox * ox], axis=-1)
     turned = traction[..., None] * np.stack([ox * ox - orr * orr, 2.0 * ox * orr], axis=-1)
     at_inner = np.stack([ir, -ix], axis=-1) / length[..., 0, None]
@@ -185,6 +181,6 @@ def dry_energy(balls: FloatArray) -> float:
     Parameters
     ----------
     balls : array (Z, COLUMNS)
-        What `place_ball` writes of each ball.
+        Rows of all balls.
     """
     return 0.4 * float((balls[:, 10:12] * balls[:, 14:16].clip(min=0.0)).sum())

@@ -6,17 +6,20 @@ in its grooves, and of lines in slices.
 
 from __future__ import annotations
 
+import ctypes
 import math
 from collections.abc import Sequence
-from typing import NamedTuple, Protocol
+from typing import ClassVar, NamedTuple, Protocol
 
 import numpy as np
 
-from ehdmaps.arrays import FloatArray, IntArray
+from ehdmaps.arrays import BoolArray, FloatArray, IntArray
 from ehdmaps.compiled import njit
 from ehdmaps.errors import EhdmapsError
-from mbs.bearings.balls.normal_law import NormalLaw, contact
-from mbs.bearings.speed_tables import Made, Prepared, SpeedWindow
+from ehdmaps.kernel.library import checked
+from ehdmaps.kernel.record import Record, integers, numbers
+from mbs.bearings.balls.normal_law import NormalLaw, contacts_at
+from mbs.bearings.speed_tables import CourseOfFilms, Made, Prepared, SpeedWindow, shared
 
 STEP = 0.04
 """Distance of the nodes in ln of the speed: blends are wrong by less than 1e-4 of the load, see the tests."""
@@ -61,6 +64,53 @@ class FilmTables(NamedTuple):
     length: IntArray
     in_use: FloatArray
     springs: FloatArray
+
+
+class FilmData(Record):
+    """The same in C, with the places of the steps: `ehd_pair_films`.
+
+    Attributes
+    ----------
+    films, slots, rows, columns, steps : int
+        Lengths of the arrays.
+    nodes, weights : array (steps, films)
+        Node below the speed of each step, and part of the way to the next one.
+    """
+
+    _fields_ = (
+        *((name, ctypes.c_int64) for name in ("films", "slots", "rows", "columns")),
+        *((name, numbers) for name in ("tables", "numbers", "most")),
+        ("lengths", integers),
+        *((name, numbers) for name in ("table", "current", "highest")),
+        ("length", integers),
+        *((name, numbers) for name in ("in_use", "springs")),
+        ("steps", ctypes.c_int64),
+        ("nodes", integers),
+        ("weights", numbers),
+    )
+    shapes: ClassVar = {
+        "tables": ("films", "slots", 2, "rows", 4),
+        "numbers": ("films", "slots", 2, 10),
+        **dict.fromkeys(("most", "lengths"), ("films", "slots")),
+        "table": ("films", 2, "rows", 4),
+        "current": ("films", 2, 10),
+        **dict.fromkeys(("highest", "length"), ("films",)),
+        "in_use": ("films", 2),
+        "springs": ("films", "slots", 2, "rows", "columns"),
+        **dict.fromkeys(("nodes", "weights"), ("steps", "films")),
+    }
+
+
+def film_data(films: FilmTables) -> FilmData:
+    """Laws as C has them.
+
+    Parameters
+    ----------
+    films : FilmTables
+        The laws, which must be kept; without steps.
+    """
+    count, slots, _, rows, columns = films.springs.shape
+    return checked(FilmData, "ehd_pair_films")(films=count, slots=slots, rows=rows, columns=columns, **films._asdict())
 
 
 class PairLaw(Protocol):
@@ -162,7 +212,6 @@ def law_of(films: FilmTables, film: int, side: int) -> NormalLaw:
     return NormalLaw(n[0], n[1], n[2], n[3], n[4], n[5], n[6], 0.0, 0.0, 0.0, table)
 
 
-@njit(error_model="numpy", _nrt=False)
 def on_grid(law: NormalLaw, grid: NormalLaw, out: FloatArray) -> None:
     """Write the table of a law on another grid of approaches.
 
@@ -175,16 +224,13 @@ def on_grid(law: NormalLaw, grid: NormalLaw, out: FloatArray) -> None:
     out : array (nodes, 4)
         Table, written.
     """
-    rows = out.shape[0]
-    for i in range(rows):
-        z = grid.first + grid.step * i
-        load, k, c = contact(law, grid.centre + grid.scale * math.sinh(z))
-        out[i, 0] = 2.0 / 3.0 * math.log(load / law.coefficient)
-        out[i, 1] = 2.0 / 3.0 * k / load * grid.scale * math.cosh(z) * grid.step
-        out[i, 2] = math.log(c)
-    for i in range(rows):
-        low, high = max(i - 1, 0), min(i + 1, rows - 1)
-        out[i, 3] = (out[high, 2] - out[low, 2]) / (high - low)
+    z = grid.first + grid.step * np.arange(out.shape[0])
+    load, k, c = contacts_at(law, grid.centre + grid.scale * np.sinh(z))
+    out[:, 0] = 2.0 / 3.0 * np.log(load / law.coefficient)
+    out[:, 1] = 2.0 / 3.0 * k / load * grid.scale * np.cosh(z) * grid.step
+    out[:, 2] = np.log(c)
+    out[1:-1, 3] = 0.5 * (out[2:, 2] - out[:-2, 2])
+    out[0, 3], out[-1, 3] = out[1, 2] - out[0, 2], out[-1, 2] - out[-2, 2]
 
 
 def _sides(law: PairLaw) -> tuple[NormalLaw, NormalLaw]:
@@ -312,3 +358,52 @@ def film_tables(laws: Sequence[FilmLaws], rows: int, columns: int) -> FilmTables
         in_use=np.full((count, 2), -1.0),
         springs=np.zeros((count, slots, 2, rows, columns)),
     )
+
+
+class FilmCourse:
+    """Laws of the bearings of a run, made as it comes to their speeds.
+
+    Parameters
+    ----------
+    elements : sequence of WithFilms
+        The bearings.
+    rows, columns : int
+        See `film_tables`.
+
+    Attributes
+    ----------
+    films_of : list of int
+        Film of each bearing.
+    data : FilmData
+        Laws as C has them.
+    """
+
+    def __init__(self, elements: Sequence[WithFilms], rows: int, columns: int) -> None:
+        self.films_of, firsts = shared(one.film_key for one in elements)
+        self._laws = [FilmLaws(elements[first], rows) for first in firsts]
+        self._tables = film_tables(self._laws, rows, columns)
+        self.data = film_data(self._tables)
+        self._course = CourseOfFilms([one.places for one in self._laws], self._made)
+
+    def begin(self, speeds: FloatArray) -> None:
+        """Find the places of the speeds [rad/s] on the tables, and the grids of these."""
+        for one in self._laws:
+            one.begin(speeds)
+        self._course.begin(speeds)
+
+    def prepare(self, first: int, last: int) -> BoolArray:
+        """Make the laws of the next steps, as many as are held at once; which steps have one.
+
+        Parameters
+        ----------
+        first, last : int
+            Steps of those that `begin` was told.
+        """
+        course, sound = self._course.prepare(first, last)
+        self._tables.in_use[:, 1] = math.nan  # to be mixed anew
+        self.data.put(steps=sound.size, nodes=course.nodes, weights=course.weights)
+        return sound
+
+    def _made(self, film: int, speeds: FloatArray, nodes: IntArray, weights: FloatArray) -> Prepared:
+        """Make the laws of a film."""
+        return self._laws[film].prepare(self._tables, film, speeds, nodes, weights)

@@ -1,17 +1,22 @@
-"""Compiled law of a ball's contact over its approach: load, stiffness, damping.
+"""Law of a ball's contact over its approach: load, stiffness, damping, by `ehdmaps/kernel/c/pair_law.c`.
 
 Each law is F = C g^(3/2), with the dry overlap g = approach, or with g(approach) from a table for films.
 """
 
 from __future__ import annotations
 
+import ctypes
+import functools
 import math
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.compiled import njit
+from ehdmaps.kernel.library import checked, function
+from ehdmaps.kernel.record import Record, numbers
 
 HELD = 3
 """Numbers that a contact with memory holds over a step."""
@@ -49,33 +54,6 @@ class NormalLaw(NamedTuple):
 
 
 @njit(error_model="numpy", _nrt=False, forceinline=True)
-def holding(law: NormalLaw, held: FloatArray, j: int, side: int) -> NormalLaw:
-    """A law with what its film holds over a step.
-
-    Parameters
-    ----------
-    law : NormalLaw
-        The law at rest.
-    held : array (Z, 2, HELD)
-        What the contacts hold.
-    j, side : int
-        Which contact.
-    """
-    return NormalLaw(
-        law.coefficient, law.damping, law.damping_time, law.centre, law.scale, law.first, law.step,
-        held[j, side, 0], held[j, side, 1], held[j, side, 2], law.table,
-    )  # fmt: skip
-
-
-@njit(error_model="numpy", _nrt=False, forceinline=True)
-def _asinh(x: float) -> tuple[float, float]:
-    """Its value, to the round-off of 1, and one over its slope."""
-    root = math.sqrt(1.0 + x * x)
-    size = math.log(abs(x) + root)
-    return (size if x >= 0.0 else -size), root
-
-
-@njit(error_model="numpy", _nrt=False, forceinline=True)
 def with_held(load: float, stiffness: float, held: float, spring: float) -> tuple[float, float]:
     """Load [N] and stiffness [N/m] of a film with memory at the end of a step; never a tension.
 
@@ -93,74 +71,65 @@ def with_held(load: float, stiffness: float, held: float, spring: float) -> tupl
     return total, (spring * total + stiffness * load) / size
 
 
-@njit(error_model="numpy", _nrt=False, forceinline=True)
-def carried(law: NormalLaw, approach: float) -> tuple[float, float, float]:
-    """Load [N] and stiffness [N/m] at rest, or at the end of a step with memory; place on the table, 0 without one.
+class LawData(Record):
+    """Law of a contact as C has it: `ehd_pair_law`, see `NormalLaw`."""
+
+    _fields_ = (
+        *((name, ctypes.c_double) for name in NormalLaw._fields[:7]),
+        ("rows", ctypes.c_int64),
+        ("table", numbers),
+    )
+    shapes: ClassVar = {"table": ("rows", 4)}
+
+
+def law_data(law: NormalLaw) -> LawData:
+    """Law of a contact as C has it.
 
     Parameters
     ----------
     law : NormalLaw
         Law of the contact.
-    approach : float
-        Approach [m].
     """
-    if law.table.shape[0] == 0:
-        if approach <= 0.0:
-            return 0.0, 0.0, 0.0
-        root = law.coefficient * math.sqrt(approach)
-        return root * approach, 1.5 * root, 0.0
-    z, root = _asinh((approach - law.centre) * (1.0 / law.scale))
-    place = (z - law.first) * (1.0 / law.step)
-    cell = min(max(int(place), 0), law.table.shape[0] - 2)
-    t = place - cell
-    low, rise = law.table[cell, 0], law.table[cell, 1]
-    high, rise_high = law.table[cell + 1, 0], law.table[cell + 1, 1]
-    if t < 0.0:  # straight beyond the ends
-        value, slope = low + rise * t, rise
-    elif t > 1.0:
-        value, slope = high + rise_high * (t - 1.0), rise_high
-    else:
-        r = 1.0 - t
-        value = low + t * t * (3.0 - 2.0 * t) * (high - low) + t * r * (rise * r - rise_high * t)
-        slope = 6.0 * t * r * (high - low) + rise * r * (r - 2.0 * t) + rise_high * t * (t - 2.0 * r)
-    load = law.coefficient * math.exp(1.5 * value)
-    k = 1.5 * load * slope / (law.scale * law.step * root)
-    if law.spring <= 0.0:
-        return load, k, place
-    total, k = with_held(load, k, law.held + law.spring * (approach - law.at), law.spring)
-    return total, k, place
+    rows = law.table.shape[0]
+    table = np.ascontiguousarray(law.table, dtype=np.float64) if rows else None
+    return LawData(**dict(zip(NormalLaw._fields[:7], law[:7], strict=True)), rows=rows, table=table)
 
 
-@njit(error_model="numpy", _nrt=False, forceinline=True)
-def slowed(law: NormalLaw, stiffness: float, place: float) -> float:
-    """Damping of a contact at rest [N s/m]; none of one with memory, which is in its stiffness.
+@functools.cache
+def _contacts() -> Callable[..., None]:
+    """Load, stiffness and damping of contacts, in C."""
+    checked(LawData, "ehd_pair_law")
+    place = ctypes.c_void_p
+    return function("ehd_pair_contacts", place, ctypes.c_int64, place, place, place, result=None)
+
+
+@functools.cache
+def _approach() -> Callable[..., float]:
+    """Approach by load, in C."""
+    checked(LawData, "ehd_pair_law")
+    number = ctypes.c_double
+    return function("ehd_pair_approach", ctypes.c_void_p, number, number, result=number)
+
+
+def contacts_at(law: NormalLaw, approach: FloatArray) -> FloatArray:
+    """Load [N], stiffness [N/m] and damping [N s/m] of contacts, shape (3, ...); of the end of a step with memory.
 
     Parameters
     ----------
     law : NormalLaw
-        Law of the contact.
-    stiffness, place : float
-        Stiffness [N/m] and place on the table, of `carried`.
+        Their law.
+    approach : array (...)
+        Approaches [m].
     """
-    if law.table.shape[0] == 0:
-        return law.damping + law.damping_time * stiffness if stiffness > 0.0 else 0.0
-    if law.spring > 0.0:
-        return 0.0
-    cell = min(max(int(place), 0), law.table.shape[0] - 2)
-    t = place - cell
-    low, rise = law.table[cell, 2], law.table[cell, 3]
-    high, rise_high = law.table[cell + 1, 2], law.table[cell + 1, 3]
-    if t < 0.0:
-        return math.exp(low + rise * t)
-    if t > 1.0:
-        return math.exp(high + rise_high * (t - 1.0))
-    r = 1.0 - t
-    return math.exp(low + t * t * (3.0 - 2.0 * t) * (high - low) + t * r * (rise * r - rise_high * t))
+    data, found = law_data(law), np.empty((approach.size, 3))
+    places = np.ascontiguousarray(approach, dtype=np.float64)
+    held = np.array([law.held, law.spring, law.at])
+    _contacts()(data.address, places.size, places.ctypes.data, held.ctypes.data, found.ctypes.data)
+    return np.ascontiguousarray(found.T).reshape(3, *approach.shape)
 
 
-@njit(error_model="numpy", _nrt=False)
 def contact(law: NormalLaw, approach: float) -> tuple[float, float, float]:
-    """Load [N], stiffness [N/m] and damping [N s/m] of a contact at rest, or at the end of a step with memory.
+    """Load [N], stiffness [N/m] and damping [N s/m] of a contact; of the end of a step with memory.
 
     Parameters
     ----------
@@ -169,11 +138,10 @@ def contact(law: NormalLaw, approach: float) -> tuple[float, float, float]:
     approach : float
         Approach [m].
     """
-    load, k, place = carried(law, approach)
-    return load, k, slowed(law, k, place)
+    load, stiffness, damping = contacts_at(law, np.array([approach])).ravel().tolist()
+    return load, stiffness, damping
 
 
-@njit(error_model="numpy", _nrt=False)
 def load_approach(law: NormalLaw, load: float) -> float:
     """Approach at which a contact carries a load > 0 [m].
 
@@ -184,19 +152,8 @@ def load_approach(law: NormalLaw, load: float) -> float:
     load : float
         Load [N].
     """
-    g: float = (load / law.coefficient) ** (2.0 / 3.0)
-    if law.table.shape[0] == 0:
-        return g
-    low, high = float(law.centre - 1e3 * law.scale), float(g + 1e3 * law.scale)
-    for _ in range(200):
-        middle = 0.5 * (low + high)
-        if contact(law, middle)[0] < load:
-            low = middle
-        else:
-            high = middle
-        if high - low <= 1e-15 * law.scale:
-            break
-    return 0.5 * (low + high)
+    data = law_data(law)
+    return _approach()(data.address, load, math.nan)
 
 
 def on_rows(law: NormalLaw, table: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -1,6 +1,6 @@
 """Films of a ball bearing that relax: what both contacts of each ball add to K and C of slow motion at a frequency.
 
-A ball is at d and v as in `mbs.bearings.balls.ball_kernel`, without mass against small motions. Its contacts have
+A ball is at d and v as in `ehdmaps/kernel/c/ball_balance.c`, without mass against small motions. Its contacts have
 springs k, dampers c_r in series with springs c_r/theta_r along their directions, and the stiffness Q/l by which loads
 turn. With the ends xi of the dampers, their places at rest by d, Xi, the matrix D of the c_r and A of the stiffness
 that the xi feel where the ball is in balance, small motions of d see
@@ -18,8 +18,7 @@ from __future__ import annotations
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.compiled import in_python
-from mbs.bearings.balls.ball_kernel import BallShape
+from mbs.bearings.balls.ball_data import BallShape
 from mbs.bearings.balls.ball_speed import Drive, speed_slopes
 from mbs.bearings.balls.laws import BallLaw
 from mbs.bearings.balls.normal_law import contact
@@ -42,7 +41,7 @@ def ball_relaxation(law: BallLaw, shape: BallShape, balls: FloatArray, drive: Dr
     shape : BallShape
         Lengths of the bearing.
     balls : array (Z, COLUMNS)
-        What `place_ball` writes of each ball.
+        Rows of all balls.
     drive : Drive
         Speeds and masses.
     angles : array (Z,)
@@ -78,7 +77,7 @@ def _of_ball(
     at_rest, values, felt = [], [], []
     for side, of_side in enumerate((law.inner, law.outer)):
         e = directions[side]
-        _, k, c = in_python(contact)(of_side, float(ball[14 + side]))
+        _, k, c = contact(of_side, float(ball[14 + side]))
         turns = ball[10 + side] / lengths[side]
         at_rest.append((k - turns) * np.outer(e, e) + turns * np.eye(2))
         values.append(dampers[side][0] * c)

@@ -10,7 +10,8 @@ from __future__ import annotations
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from mbs.bearings.balls.contact_slopes import STEP, contact_slopes, contacts_at
+from mbs.bearings.balls.contact_slopes import STEP, contact_slopes
+from mbs.bearings.balls.normal_law import contacts_at
 from mbs.bearings.roller_contacts import natural_times, relaxation_times
 from mbs.bearings.tapered.kernel_structs import FIRST_RIB
 from mbs.bearings.tapered.tapered_bearing import TaperedForce

@@ -35,7 +35,7 @@ from ehdmaps.kernel.record import address
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.physics.surface import iso_profile
-from mbs.bearings.balls.contact_slopes import contacts_at
+from mbs.bearings.balls.normal_law import contacts_at
 from mbs.bearings.laws import roller_coefficient
 from mbs.bearings.tapered.kernel_structs import (
     ANSWER,

@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from mbs.bearings.balls.contact_slopes import contacts_at
+from mbs.bearings.balls.normal_law import contacts_at
 from mbs.bearings.roller_contacts import natural_times, relaxation_times, relaxing
 from mbs.bearings.tapered.kernel_structs import FIRST_RIB, FIRST_SHARE
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
