@@ -43,6 +43,7 @@ taper_balance.c      the balance of such a roller
 taper_bearing.c      force, stiffness and damping of its bearing at a pose
 taper_films.c        films of such rollers with a memory
 rings.[hc]           bearings with cylindrical rollers in runs: how rings and rollers move
+cylinder_block.[hc]  such bearings whose films follow at once, or which are dry, as a kind of elements
 film_block.c         such bearings with films that have a memory, as a kind of elements
 block.h              what a kind of elements brings to runs in time: its functions, for anyone's own ones, too
 pair_films.c         laws of pairs at nodes over the speed of a run, and those in use

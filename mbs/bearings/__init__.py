@@ -5,11 +5,9 @@
 `thermal`              fits and the clearance that they leave, the state in operation, the balance of heat
 `laws`                 contact laws: Hertz, constant, points, film formula; their data for C
 `films`                pressure, films and rolling force at a load: dry, by formula, by map
-`law_record`           the table of a law as C reads it
 `slice_table`          a law at one speed as a table that slices read: its kinds and numbers
 `cylinder`             structs and functions of a bearing in C
-`slices`               compiled runs: where rollers stand, how they move, and what their slices carry
-`bearing_kernel`       compiled runs: the sums over slices and rollers, force, stiffness, damping
+`slices`               powers in compiled code, for tapered rollers
 `force_at_point`       the force at one speed, temperature and centrifugal load; loads of the rollers
 `bearing_force`        the force element, with films at once or in time, its energy and the moment on its cage
 `roller_contacts`      contacts one by one: films that relax, rollers as bodies between two contacts

@@ -3,8 +3,8 @@
 One class of arrays holds massless rollers, whose contacts have one side, and rollers as bodies, whose contacts have
 two. Blocks with and without memory of the films share it; `mbs.bearings.bearing_block` and `mbs.bearings.memory_block`
 add what each slice needs. Rings that cannot tilt against each other press slices of the same depth alike: each depth is
-looked at once, with the number of such slices as its weight, and neither tilts nor moments are computed
-(`mbs.bearings.bearing_kernel`). With memory it is both of a pair left and right of the middle, whatever the profile:
+looked at once, with the number of such slices as its weight, and neither tilts nor moments are computed (`cylinder.c`
+of `ehdmaps.kernel`). With memory it is both of a pair left and right of the middle, whatever the profile:
 slices take the parabolas of their films anew in turn, and with one slice a roller all of them would have the same turn.
 
 A bearing whose rollers are bodies feels the displacements y, z of both rings, the tilts of the inner ring against the
@@ -15,21 +15,18 @@ Approaches are those of `mbs.bearings.roller_contacts`.
 from __future__ import annotations
 
 import dataclasses
-import math
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from ehdmaps.arrays import BoolArray, FloatArray, IntArray
-from ehdmaps.compiled import njit
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement, RollerElement
 from mbs.bearings.cylinder import Cylinder, cylinder_of
 from mbs.bearings.laws import FlatLaw
-from mbs.bearings.slices import RingMotion, Shape, Sizes, sizes_of
 from mbs.bearings.speed_tables import shared
-from mbs.model.blocks import Answers, Member, Moment
+from mbs.model.blocks import Member
 
 FELT = np.array([1, 2, 4, 5])
 """Displacements of its port that a bearing feels: y, z, theta_y, theta_z."""
@@ -41,6 +38,9 @@ _TILTS = FELT[LEVEL:]
 
 _FELT, _TILT_PLACE = 6, 4
 """How many displacements of both rings a bearing feels whose rollers are bodies, and where the tilts are among them."""
+
+_SIZES = "half_clearance", "slice_length", "most_travel", "most_tilt", "half_length", "least_profile"
+"""Numbers of `mbs.bearings.cylinder.Cylinder` in `Rings.sizes`."""
 
 _SAME = 12
 """Digits of the deepest profile to which depths are the same."""
@@ -65,15 +65,16 @@ class Rings(NamedTuple):
     start_angles, cage_rates : array (bearings,)
         Angle of the first roller [rad], and cage angle by that of the system.
     sizes : array (bearings, 6)
-        `Sizes` in their order; clearance and profiles are those of both contacts of a roller together.
+        Half the clearance, length of a slice, most travel [m], most tilt [rad], half the length of a roller, least
+        profile [m]; clearance and profiles are those of both contacts of a roller together.
     positions, profiles : array (bearings, n)
-        Slices, see `Shape` [m].
+        Places of the slices along the roller, and twice the profile there [m]; the last one is no slice.
     cos, sin : array (bearings, Z)
-        Directions of the rollers, see `Shape`.
+        Directions of the rollers in the cage.
     felt : array (bearings,), of int
         How many displacements of rings each feels: 4, 2 of rings that do not tilt, 6 with rollers as bodies.
     weights : array (bearings, n)
-        How many slices each slice stands for; 1 where rings tilt.
+        How many slices each slice stands for; 1 where rings tilt, and the last one is no slice.
     alone : array (bearings,), of int
         Place of the first roller among what all elements feel, where rollers are bodies.
     outward : array (bearings,)
@@ -101,88 +102,6 @@ class Rings(NamedTuple):
     def most_slices(self) -> int:
         """Slices of all rollers together, of the bearing that has most."""
         return int(np.max(self.rollers * self.slices, initial=0))
-
-
-@njit(error_model="numpy", forceinline=True)
-def cage_of(rings: Rings, b: int, moment: Moment) -> tuple[float, float]:
-    """Cosine and sine of the angle of the first roller of a bearing, with the arguments as for `motion_of`."""
-    angle = rings.start_angles[b] + rings.cage_rates[b] * moment.angle
-    return math.cos(angle), math.sin(angle)
-
-
-@njit(error_model="numpy", forceinline=True)
-def motion_of(rings: Rings, b: int, moment: Moment, motion: FloatArray) -> RingMotion:
-    """Motion of the inner ring of a bearing against the outer one.
-
-    Parameters
-    ----------
-    rings : Rings
-        All bearings.
-    b : int
-        Which one.
-    moment : Moment
-        The moment, for the angle of the cage.
-    motion : array (2, m)
-        Displacements and their rates, among what all elements feel.
-    """
-    i, x, y = rings.firsts[b], motion[0], motion[1]
-    c, s = cage_of(rings, b, moment)
-    if rings.felt[b] == LEVEL:
-        return RingMotion(x[i], x[i + 1], 0.0, 0.0, y[i], y[i + 1], 0.0, 0.0, c, s)
-    return RingMotion(x[i], x[i + 1], x[i + 2], x[i + 3], y[i], y[i + 1], y[i + 2], y[i + 3], c, s)
-
-
-@njit(error_model="numpy", forceinline=True)
-def shape_of(rings: Rings, b: int) -> Shape:
-    """Return the data of a bearing that do not change."""
-    z, n = rings.rollers[b], rings.slices[b]
-    return Shape(
-        sizes_of(rings.sizes[b]), rings.positions[b][:n], rings.profiles[b][:n], rings.cos[b][:z], rings.sin[b][:z]
-    )
-
-
-@njit(error_model="numpy", forceinline=True)
-def answer_ring(first: int, felt: int, moment: Moment, out: FloatArray, answers: Answers) -> None:
-    """Put force, stiffness and damping of a bearing among the answers of all elements.
-
-    Parameters
-    ----------
-    first, felt : int
-        First of what the bearing feels, and how many.
-    moment : Moment
-        Weights of the slopes.
-    out : array (13, 6)
-        Force, six rows of stiffness, six rows of damping.
-    answers : Answers
-        Answers of all elements, filled.
-    """
-    for i in range(felt):
-        k = FELT[i]
-        answers.force[first + i] = out[0, k]
-        for j in range(felt):
-            slope = moment.by_q * out[1 + k, FELT[j]] + moment.by_v * out[7 + k, FELT[j]]
-            answers.slopes[first + i, first + j] = slope
-
-
-@njit(error_model="numpy", forceinline=True)
-def turned_by(first: int, pairs: int, motion: FloatArray, answers: Answers) -> float:
-    """Moment that a bearing asks of its cage [N m]: sum of y f_z - z f_y over pairs of what it feels, tilts likewise.
-
-    Turning cage and rings together does no work, so that what the cage needs is what the rings give.
-
-    Parameters
-    ----------
-    first, pairs : int
-        First of what the bearing feels, and how many pairs it feels.
-    motion : array (2, m)
-        Displacements and their rates, among what all elements feel.
-    answers : Answers
-        Answers of all elements.
-    """
-    total = 0.0
-    for i in range(first, first + 2 * pairs, 2):
-        total += motion[0, i] * answers.force[i + 1] - motion[0, i + 1] * answers.force[i]
-    return total
 
 
 def feels(element: BearingElement | RollerElement) -> FloatArray:
@@ -317,20 +236,25 @@ def gather_rings(members: Sequence[Member], films_of: IntArray) -> Rings:
         start_angles=np.array([element.start_angle for element in plains], dtype=np.float64),
         cage_rates=np.array([element.rates[0] for element in plains], dtype=np.float64),
         sizes=np.array([_sizes(shape) for shape in shapes], dtype=np.float64).reshape(len(shapes), 6),
-        positions=_padded([one.given("position")[fold.firsts] for one, fold in zip(shapes, folds, strict=True)]),
-        profiles=_padded([one.given("profile")[fold.firsts] for one, fold in zip(shapes, folds, strict=True)]),
+        positions=_slices_of([one.given("position")[fold.firsts] for one, fold in zip(shapes, folds, strict=True)]),
+        profiles=_slices_of([one.given("profile")[fold.firsts] for one, fold in zip(shapes, folds, strict=True)]),
         cos=_padded([shape.given("cosine") for shape in shapes]),
         sin=_padded([shape.given("sine") for shape in shapes]),
         felt=_whole(_felt(member.element) for member in members),
-        weights=_padded([fold.weights for fold in folds]),
+        weights=_slices_of([fold.weights for fold in folds]),
         alone=_whole(member.alone for member in members),
         outward=np.array([plain.rates[2] * plain.bearing.geometry.roller_length for plain in plains], dtype=np.float64),
     )
 
 
-def _sizes(shape: Cylinder) -> Sizes:
+def _sizes(shape: Cylinder) -> list[float]:
     """Sizes of a bearing for compiled code."""
-    return Sizes(*(getattr(shape, name) for name in Sizes._fields))
+    return [getattr(shape, name) for name in _SIZES]
+
+
+def _slices_of(rows: Sequence[FloatArray]) -> FloatArray:
+    """Numbers of slices as one array; each row has one more, which C reads without effect."""
+    return _padded([np.append(row, 0.0) for row in rows])
 
 
 def _padded(rows: Sequence[FloatArray]) -> FloatArray:
@@ -344,149 +268,3 @@ def _padded(rows: Sequence[FloatArray]) -> FloatArray:
 def _whole(numbers: Iterable[int]) -> IntArray:
     """Whole numbers as an array."""
     return np.array(list(numbers), dtype=np.int64)
-
-
-class Place(NamedTuple):
-    """Place of a roller, and its motion.
-
-    Attributes
-    ----------
-    cos, sin : float
-        Direction of the roller.
-    approach, rate : (float, float)
-        Approach in the middle of the inner and of the outer contact [m], without the profile, and its rate [m/s].
-    tilt, tilt_rate : float
-        How both grow along the roller.
-    """
-
-    cos: float
-    sin: float
-    approach: tuple[float, float]
-    rate: tuple[float, float]
-    tilt: float
-    tilt_rate: float
-
-
-class Contact(NamedTuple):
-    """Answer of a contact of a roller: sums over its slices.
-
-    Attributes
-    ----------
-    load, moment : float
-        Sum of the loads [N], and of the loads times the places of the slices [N m].
-    flat, mixed, tilted : float
-        Sum of the slopes by_q k + by_v c, and of these times the places, once and twice.
-    """
-
-    load: float
-    moment: float
-    flat: float
-    mixed: float
-    tilted: float
-
-
-@njit(error_model="numpy")
-def place_of(rings: Rings, b: int, j: int, cage: tuple[float, float], motion: FloatArray) -> Place:
-    """Find where a roller stands.
-
-    Parameters
-    ----------
-    rings : Rings
-        All bearings.
-    b, j : int
-        Which bearing, and which of its rollers.
-    cage : (float, float)
-        Cosine and sine of the angle of its first roller.
-    motion : array (2, m)
-        Displacements and their rates, among what all elements feel.
-    """
-    i, own = rings.firsts[b], rings.alone[b] + j
-    c = cage[0] * rings.cos[b, j] - cage[1] * rings.sin[b, j]
-    s = cage[1] * rings.cos[b, j] + cage[0] * rings.sin[b, j]
-    x, v = motion[0], motion[1]
-    # Half the clearance of the bearing, which is that of both contacts.
-    half_clearance = 0.5 * rings.sizes[b, 0]
-    return Place(
-        c,
-        s,
-        (x[i] * c + x[i + 1] * s - x[own] - half_clearance, x[own] - x[i + 2] * c - x[i + 3] * s - half_clearance),
-        (v[i] * c + v[i + 1] * s - v[own], v[own] - v[i + 2] * c - v[i + 3] * s),
-        0.5 * (x[i + 5] * c - x[i + 4] * s),
-        0.5 * (v[i + 5] * c - v[i + 4] * s),
-    )
-
-
-@njit(error_model="numpy")
-def begin_answer(rings: Rings, b: int, moment: Moment, answers: Answers) -> None:
-    """Begin the answer of a bearing: centrifugal forces of its rollers, and nothing else yet.
-
-    Parameters
-    ----------
-    rings : Rings
-        All bearings.
-    b : int
-        Which one.
-    moment : Moment
-        The moment, for the speed.
-    answers : Answers
-        Answers of all elements, filled.
-    """
-    first, own, count = rings.firsts[b], rings.alone[b], rings.rollers[b]
-    force, slopes = answers.force, answers.slopes
-    force[first : first + _FELT] = 0.0
-    slopes[first : first + _FELT, first : first + _FELT] = 0.0
-    outward = rings.outward[b] * moment.speed * moment.speed
-    for r in range(own, own + count):
-        force[r] = outward
-        slopes[r, r] = 0.0
-        slopes[r, first : first + _FELT] = 0.0
-        slopes[first : first + _FELT, r] = 0.0
-
-
-@njit(error_model="numpy")
-def add_contact(rings: Rings, b: int, j: int, side: int, place: Place, contact: Contact, answers: Answers) -> None:
-    """Add what a contact of a roller does to the ring and to the roller.
-
-    Parameters
-    ----------
-    rings : Rings
-        All bearings.
-    b, j, side : int
-        Which bearing, which of its rollers, and which contact.
-    place : Place
-        Place of the roller.
-    contact : Contact
-        Sums over the slices.
-    answers : Answers
-        Answers of all elements.
-    """
-    first, own = rings.firsts[b], rings.alone[b] + j
-    sign = 1.0 - 2.0 * side
-    ring = first + 2 * side
-    at = (ring, ring + 1, first + _TILT_PLACE, first + _TILT_PLACE + 1, own)
-    flat = (sign * place.cos, sign * place.sin, 0.0, 0.0, -sign)
-    tilted = (0.0, 0.0, -0.5 * place.sin, 0.5 * place.cos, 0.0)
-    for p in range(5):
-        answers.force[at[p]] -= flat[p] * contact.load + tilted[p] * contact.moment
-        by_flat = flat[p] * contact.flat + tilted[p] * contact.mixed
-        by_tilt = flat[p] * contact.mixed + tilted[p] * contact.tilted
-        for q in range(5):
-            answers.slopes[at[p], at[q]] += by_flat * flat[q] + by_tilt * tilted[q]
-
-
-@njit(error_model="numpy")
-def outward_power(rings: Rings, b: int, moment: Moment, motion: FloatArray) -> float:
-    """Power of the centrifugal forces on the rollers of a bearing [W]; none on massless ones.
-
-    Parameters
-    ----------
-    rings, b, moment, motion
-        What `place_of` and `begin_answer` take.
-    """
-    if rings.films_of.shape[1] == 1:
-        return 0.0
-    own, total = rings.alone[b], 0.0
-    for r in range(own, own + rings.rollers[b]):
-        total += motion[1, r]
-    power: float = total * rings.outward[b] * moment.speed * moment.speed
-    return power

@@ -24,6 +24,7 @@ from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import SpeedProfile
 from mbs.transient.run import Options, run
+from tests.cases import blocks
 from tests.cases.laws import CONTACTS, OIL, SMALL_FIELD
 
 SPEED = 100.0
@@ -69,9 +70,9 @@ class Compiled:
     def __call__(self, step, q, v, operation, by_v=0.0, accept=True):
         """Status, force and slope in the ports."""
         moment = Moment(step, operation.time, operation.speed, operation.angle, 1.0, by_v)
-        status = self.kind.answer(self.arrays, moment, np.stack((self.rows @ q, self.rows @ v)), self.answers)
+        status = blocks.answer(self.kind, self.arrays, moment, np.stack((self.rows @ q, self.rows @ v)), self.answers)
         if accept and self.kind.accept is not None:
-            self.kind.accept(self.arrays, moment)
+            blocks.accept(self.kind, self.arrays, moment)
         slopes, rollers = self.answers.slopes.copy(), BEARING.geometry.rollers
         # Never written, as rollers do not touch each other: a run has zeros there from its beginning.
         slopes[:rollers, :rollers] *= np.eye(rollers)

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from ehdmaps.errors import OutsideMapError
-from mbs.bearings import slice_table, speed_tables
+from mbs.bearings import speed_tables
 from mbs.bearings.bearing import Bearing
-from mbs.bearings.bearing_block import Films, blend
+from mbs.bearings.bearing_block import Films
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.laws import hertz
-from mbs.bearings.speed_tables import NODES, SpeedTables
+from mbs.bearings.speed_tables import SpeedTables
 from mbs.gears.gear import GearPair, gear_mesh
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import Load, Operation, Sensor, Spring
@@ -266,16 +266,11 @@ class TestFilmsOverSpeed:
     def blended(force, speeds):
         """Numbers and cells at the first of some speeds, and whether there are tables."""
         tables = SpeedTables(force.bearing, force.flat_law, TEMPERATURE, (1.0, 0.0))
-        rows, numbers = 2 * slice_table.ROWS, len(slice_table.LawNumbers._fields)
-        films = Films(
-            np.zeros((1, NODES, rows, 8)), np.zeros((1, NODES, numbers)), np.zeros((1, rows, 8)),
-            np.zeros((1, rows)), np.zeros((1, numbers)), np.full((1, 2), -1.0),
-        )  # fmt: skip
+        films = Films([tables])
         nodes, weights = tables.places(speeds)
         slots, sound, _ = tables.prepare(speeds, nodes, weights, films.tables[0], films.numbers[0])
         assert sound.all()
-        blend(films, 0, slots[0], weights[0])
-        return films.current[0], films.cells[0]
+        return films.blend(0, int(slots[0]), float(weights[0]))
 
     def errors(self, count):
         """Largest errors of force, stiffness and damping at random poses and speeds."""
@@ -288,7 +283,7 @@ class TestFilmsOverSpeed:
             pose[1:3], pose[4:6] = rng.uniform(12e-6, 30e-6, 2), rng.uniform(-1e-4, 1e-4, 2)
             fresh = np.vstack(point(pose, velocity))
             numbers, cells = self.blended(force, np.array([u, 1.0001 * u]))
-            point.numbers[:], point.cells[:] = numbers, cells.reshape(-1, 4, 2)
+            point.numbers[:], point.cells[:] = numbers, cells
             mixed = np.vstack(point(pose, velocity))
             for i, rows in enumerate((slice(0, 1), slice(1, 7), slice(7, 13))):
                 error = np.abs(mixed[rows] - fresh[rows]).max() / np.abs(fresh[rows]).max()

@@ -109,7 +109,7 @@ static double approach_of(const ehd_cylinder *bearing, const roller *r, int64_t 
 }
 
 /* Where the states of a roller are. */
-static slices slices_of(const ehd_cylinder *bearing, const ehd_cylinder_work *work, int64_t j) {
+static slices roller_slices(const ehd_cylinder *bearing, const ehd_cylinder_work *work, int64_t j) {
     double *states = work->states + work->stride * j;
     slices s = {(double(*)[2])states, (double(*)[2])(states + 2 * bearing->slices), work->place, work->row,
                 bearing->slices, 0};
@@ -465,7 +465,7 @@ static int cylinder_force(const ehd_cylinder *bearing, const ehd_cylinder_law *l
     memset(answer, 0, sizeof *answer);
     for (int64_t j = 0; j < bearing->rollers; j++) {
         roller r = roller_of(bearing, motion, j);
-        slices s = slices_of(bearing, work, j);
+        slices s = roller_slices(bearing, work, j);
         sums sum;
         if (r.deepest <= lift_off) {
             if (work->whole) fill_states(bearing, &s, 0);

@@ -210,7 +210,7 @@ static int coupled_force(const ehd_cylinder_call *call, const ehd_ring_motion *m
         const roller r = roller_of(bearing, motion, j);
         sums sum;
         c.own = call->own + j * c.size;
-        c.states = slices_of(bearing, call->work, j);
+        c.states = roller_slices(bearing, call->work, j);
         for (int64_t i = 0; i < c.size; i++) c.overlap[i] = approach_of(bearing, &r, i);
         if (r.deepest <= call->law->numbers->lift_off) {
             memcpy(c.own, c.overlap, (size_t)c.size * sizeof(double));

@@ -21,6 +21,7 @@
 #include "cylinder_films.h"
 #include "block.h"
 #include "rings.h"
+#include "cylinder_block.h"
 
 /* law */
 #include "status.c"
@@ -77,6 +78,7 @@ EHD_SIZE_OF(ehd_taper_springs)
 
 /* runs in time: elements, gears, matrices */
 #include "rings.c"
+#include "cylinder_block.c"
 #include "film_block.c"
 #include "pair_films.c"
 #include "pair_port.c"

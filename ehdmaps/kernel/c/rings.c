@@ -60,17 +60,27 @@ static ring_roller massless_roller(const ehd_rings *rings, int64_t b, int64_t j,
     return found;
 }
 
+/* Where a roller that is a body moves its contacts: approaches without the clearance, and how they grow along it. It is
+ * linear in the displacements of all elements, so that their rates give those of the approaches. */
+static ring_roller body_motion(const ehd_rings *rings, int64_t b, int64_t j, const double cage[2],
+                               const double *motion) {
+    const double *felt = motion + rings->firsts[b], own = motion[rings->alone[b] + j];
+    ring_roller found = ring_direction(rings, b, j, cage);
+    const double c = found.cosine, s = found.sine;
+    found.approach[0] = felt[0] * c + felt[1] * s - own;
+    found.approach[1] = own - felt[2] * c - felt[3] * s;
+    found.tilt = 0.5 * (felt[5] * c - felt[4] * s);
+    return found;
+}
+
 /* A roller that is a body; motion: displacements of all elements. */
 static ring_roller body_roller(const ehd_rings *rings, int64_t b, int64_t j, const double cage[2],
                                const double *motion) {
-    const double *felt = motion + rings->firsts[b], own = motion[rings->alone[b] + j];
     /* half the clearance of the bearing, which is that of both contacts */
     const double half_clearance = 0.5 * ring_sizes(rings, b)[RING_HALF_CLEARANCE];
-    ring_roller found = ring_direction(rings, b, j, cage);
-    const double c = found.cosine, s = found.sine;
-    found.approach[0] = felt[0] * c + felt[1] * s - own - half_clearance;
-    found.approach[1] = own - felt[2] * c - felt[3] * s - half_clearance;
-    found.tilt = 0.5 * (felt[5] * c - felt[4] * s);
+    ring_roller found = body_motion(rings, b, j, cage, motion);
+    found.approach[0] -= half_clearance;
+    found.approach[1] -= half_clearance;
     return found;
 }
 
