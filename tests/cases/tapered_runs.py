@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from mbs.bearings.balls.answers import FELT
-from mbs.bearings.tapered.tapered_block import TaperedBlock, tapered_accept, tapered_answer
-from mbs.model.blocks import FOUND, Answers, Member, Moment
+from mbs.bearings.tapered.tapered_block import TAPERED, TaperedBlock
+from mbs.model.blocks import FOUND, Member, Moment
 from mbs.model.elements import Operation
+from tests.cases.c_blocks import AskedBlock
 
 
 def driven(element, speed, path, step):
@@ -17,13 +18,13 @@ def driven(element, speed, path, step):
     block = TaperedBlock([Member(element, 0, 0)])
     block.begin(np.array([speed]))
     block.resume([states])
-    arrays, sound = block.prepare(0, 1)
+    data, sound = block.prepare(0, 1)
     assert sound[0]
-    forces, loads = np.empty((len(path), 5)), np.empty((len(path), arrays.counts[0]))
+    asked, rows = AskedBlock(TAPERED, data, 5), data.given("rollers")[0]
+    forces, loads = np.empty((len(path), 5)), np.empty((len(path), rows.shape[0]))
     for i, place in enumerate(path):
-        found = Answers(forces[i], np.zeros((5, 5)), np.zeros(1, dtype=np.int64))
         moment = Moment(0, step * i, speed, 0.0, 1.0, 0.0)
-        assert tapered_answer(arrays, moment, np.array([place[FELT], np.zeros(5)]), found) == FOUND
-        tapered_accept(arrays, moment)
-        loads[i] = arrays.rows[0, : arrays.counts[0], 3]
+        assert asked.answer(moment, [place[FELT], np.zeros(5)]) == FOUND
+        asked.accept(moment)
+        forces[i], loads[i] = asked.found.force, rows[:, 3]
     return forces, loads, block.states()[0]

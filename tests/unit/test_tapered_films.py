@@ -26,18 +26,19 @@ from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.roller_contacts import RollerContacts, relaxation_times
 from mbs.bearings.tapered.line_film import LOADS, LineFilms, line_films
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
-from mbs.bearings.tapered.tapered_block import TaperedBlock, tapered_answer
+from mbs.bearings.tapered.tapered_block import TAPERED, TaperedBlock
 from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.bearings.tapered.tapered_relaxing import line_relaxation
 from mbs.linearised.linear import frequency_response, state_space
 from mbs.linearised.modes import modes
-from mbs.model.blocks import FOUND, Answers, Member, Moment
+from mbs.model.blocks import FOUND, Member, Moment
 from mbs.model.elements import Input, Operation, Sensor
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import SpeedProfile
 from mbs.settings import Settings
 from mbs.transient.run import run
 from tests.cases import commands
+from tests.cases.c_blocks import AskedBlock
 from tests.unit.test_tapered_runs import PLACE, RATE
 from tests.unit.test_tapered_scenes import GEOMETRY, O_PAIR, text
 
@@ -155,12 +156,11 @@ def test_what_has_no_films_is_said():
 
 def answers(block, speeds, step):
     """Force and by_q K + by_v C of the only bearing of a block at a step of some speeds."""
-    arrays, sound = block.prepare(step, step + 1)
+    data, sound = block.prepare(step, step + 1)
     assert sound[0]
-    found = Answers(np.zeros(5), np.zeros((5, 5)), np.zeros(1, dtype=np.int64))
-    moment = Moment(0, 0.0, float(speeds[step]), 0.3, 1.0, 1e3)
-    assert tapered_answer(arrays, moment, np.array([PLACE[FELT], RATE[FELT]]), found) == FOUND
-    return found
+    asked = AskedBlock(TAPERED, data, 5)
+    assert asked.answer(Moment(0, 0.0, float(speeds[step]), 0.3, 1.0, 1e3), [PLACE[FELT], RATE[FELT]]) == FOUND
+    return asked.found
 
 
 def test_compiled_block_is_the_element_with_films():

@@ -10,14 +10,15 @@ import pytest
 from ehdmaps.physics.rollers.tapered_catalogue import mirrored
 from mbs.bearings.balls.answers import FELT
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
-from mbs.bearings.tapered.tapered_block import TaperedBlock, tapered_accept, tapered_answer, tapered_powers
+from mbs.bearings.tapered.tapered_block import TAPERED, TaperedBlock
 from mbs.bearings.tapered.tapered_element import TaperedElement
-from mbs.model.blocks import FOUND, IN_PYTHON, Answers, Member, Moment
+from mbs.model.blocks import FOUND, IN_PYTHON, Member, Moment
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import SpeedProfile
 from mbs.settings import Settings
 from mbs.transient.run import Options, run
+from tests.cases.c_blocks import AskedBlock
 from tests.unit.test_tapered_scenes import GEOMETRY, O_PAIR, X_PAIR, model
 
 PLACE = np.array([12e-6, -6e-6, 3e-6, 0.0, 5e-5, -8e-5])
@@ -37,15 +38,15 @@ def test_compiled_block_is_the_element(speed):
     states = [one.advance(None, 0.9 * PLACE, 0.0 * RATE, Operation(speed))[1] for one in ELEMENTS]
     block.begin(np.array([speed]))
     block.resume(states)
-    arrays, sound = block.prepare(0, 1)
+    data, sound = block.prepare(0, 1)
     assert np.all(sound)
-    found = Answers(np.zeros(15), np.zeros((15, 15)), np.zeros(3, dtype=np.int64))
+    asked = AskedBlock(TAPERED, data, 15, 3)
+    found = asked.found
     moment = Moment(0, 1e-5, speed, 0.3, 1.0, 1e3)
     motion = np.array([np.tile(PLACE[FELT], 3), np.tile(RATE[FELT], 3)])
-    assert tapered_answer(arrays, moment, motion, found) == FOUND
-    tapered_accept(arrays, moment)
-    powers = np.zeros((3, 3))
-    tapered_powers(arrays, moment, motion, found, powers)
+    assert asked.answer(moment, motion) == FOUND
+    asked.accept(moment)
+    powers = asked.powers(moment, motion)
     for place, one in enumerate(ELEMENTS):
         theirs, after = one.advance(states[place], PLACE, RATE, Operation(speed, 0.3, 1e-5))
         part = slice(5 * place, 5 * place + 5)
@@ -62,8 +63,8 @@ def test_compiled_block_is_the_element(speed):
     assert 2 < np.count_nonzero(loads) < loads.size
     far = motion.copy()
     far[0, 0] = -2e-3
-    assert tapered_answer(arrays, moment, far, found) == IN_PYTHON
-    assert tapered_answer(arrays, moment._replace(speed=3e4), motion, found) == IN_PYTHON
+    assert asked.answer(moment, far) == IN_PYTHON
+    assert asked.answer(moment._replace(speed=3e4), motion) == IN_PYTHON
 
 
 def test_no_closed_path_gives_energy():

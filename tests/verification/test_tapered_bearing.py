@@ -17,8 +17,8 @@ from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from mbs.bearings import laws
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
+from mbs.bearings.tapered.numba_tapered_kernel import COLUMNS, roller_work, tapered_force
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
-from mbs.bearings.tapered.tapered_kernel import COLUMNS, roller_work, tapered_force
 
 GEOMETRY = tapered_estimate("32208")
 FORCE = TaperedForce(GEOMETRY)

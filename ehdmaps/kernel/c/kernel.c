@@ -83,6 +83,7 @@ EHD_SIZE_OF(ehd_taper_springs)
 #include "pair_films.c"
 #include "pair_port.c"
 #include "ball_block.c"
+#include "taper_block.c"
 #include "dense.c"
 #include "gear.c"
 #include "matrix.c"

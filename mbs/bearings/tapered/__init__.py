@@ -1,10 +1,10 @@
 """Tapered roller bearings: five freedoms, quasi-static, rollers between cup, cone and rib in slices.
 
 =====================  ================================================================================================
-`tapered_kernel`       the balance of each roller, and the sums over rollers: force, stiffness, damping
+`tapered_shape`        numbers of a bearing: lengths, laws of contacts
+`kernel_structs`       the same for the kernel in C, and its functions: `ehdmaps.kernel`, taper.h and those after it
 `tapered_bearing`      the force; loads of the rollers
 `tapered_element`      a bearing in a machine: films of its speed
-`line_kernel`          sums over the slices of a line
 `tapered_memory`       films with memory in time
 `tapered_relaxing`     films with memory in linear analyses
 `tapered_energy`       energy of dry contacts, and the work of speed

@@ -12,16 +12,18 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.kernel.library import checked, function
 from ehdmaps.kernel.record import Record, numbers
-from mbs.bearings.balls.normal_law import NormalLaw
+from mbs.bearings.balls.normal_law import LawData, NormalLaw, law_data
 
 if TYPE_CHECKING:
-    from mbs.bearings.tapered.tapered_kernel import Ribs, RollerLaws, TaperedShape
+    from mbs.bearings.tapered.tapered_shape import Ribs, RollerLaws, TaperedShape
 
-RIB_NUMBERS, MOST_RIBS = 6, 4
-"""Numbers of a rib, see `rib_rows`, and most ribs that a roller may lean on."""
+NOT_FINITE, TOO_FAR, NO_BALANCE = -1, -2, -3
+"""What ``ehd_taper_force`` finds instead of an answer."""
 
-INNER_LOAD, OUTER_LOAD, PLACE, RING = 3, 4, slice(9, 12), slice(12, 15)
-FIRST_RIB, FIRST_SHARE, CARRIED, COLUMNS = 15, 19, 28, 49
+RIB_NUMBERS = 6
+"""Numbers of a rib, see `rib_rows`."""
+
+PLACE, RING, FIRST_RIB, FIRST_SHARE, COLUMNS = slice(9, 12), slice(12, 15), 15, 19, 49
 """Places of numbers that are kept of a roller, and how many there are: `ehd_taper_roller` in taper.h."""
 
 MEMORY = 7
@@ -30,23 +32,6 @@ after it; f [N], K [N/m] and theta [s] of a whole roller at its beginning."""
 
 ANSWER = 78
 """Numbers of an answer: force (6,), stiffness and damping (6, 6) each."""
-
-
-class LineLaw(Record):
-    """Law of a line of a whole roller, ``ehd_pair_law``; without rows C is that of a dry line [N/m^(10/9)]."""
-
-    _fields_: ClassVar = [
-        ("coefficient", c_double),
-        ("damping", c_double),
-        ("damping_time", c_double),
-        ("centre", c_double),
-        ("scale", c_double),
-        ("first", c_double),
-        ("step", c_double),
-        ("rows", c_int64),
-        ("table", numbers),
-    ]
-    shapes: ClassVar = {"table": ("rows", 4)}
 
 
 class TaperedData(Record):
@@ -106,17 +91,20 @@ class Functions(NamedTuple):
         Rollers, slices, a step, memory.
     go_on : callable
         Data, laws, springs, rollers, memory.
+    speed_work : callable
+        How many rollers, rollers, loads and places of the last call; the work [J].
     """
 
     force: Callable[..., int]
     hold: Callable[..., None]
     go_on: Callable[..., None]
+    speed_work: Callable[..., float]
 
 
 @functools.cache
 def functions() -> Functions:
     """Return the functions, after structs were compared."""
-    checked(LineLaw, "ehd_pair_law")
+    checked(LawData, "ehd_pair_law")
     checked(TaperedData, "ehd_taper_data")
     checked(LineSprings, "ehd_taper_springs")
     for name, size in (("roller", COLUMNS), ("answer", ANSWER)):
@@ -126,6 +114,7 @@ def functions() -> Functions:
         function("ehd_taper_force", place, place, place, c_double, place, place, place, place),
         function("ehd_taper_hold", c_int64, c_int64, c_double, place, result=None),
         function("ehd_taper_go_on", place, place, place, place, place, result=None),
+        function("ehd_taper_speed_work", c_int64, place, place, place, result=c_double),
     )
 
 
@@ -171,7 +160,7 @@ def data_of(shape: TaperedShape, laws: RollerLaws) -> TaperedData:
     )
 
 
-def line_law(film: NormalLaw, coefficient: float, laws: RollerLaws) -> LineLaw:
+def line_law(film: NormalLaw, coefficient: float, laws: RollerLaws) -> LawData:
     """The law of a line.
 
     Parameters
@@ -183,21 +172,11 @@ def line_law(film: NormalLaw, coefficient: float, laws: RollerLaws) -> LineLaw:
     laws : RollerLaws
         Dampers of dry contacts.
     """
-    rows = film.table.shape[0]
-    return LineLaw(
-        coefficient=film.coefficient if rows else coefficient,
-        damping=laws.damping,
-        damping_time=laws.damping_time,
-        centre=film.centre,
-        scale=film.scale,
-        first=film.first,
-        step=film.step,
-        rows=rows,
-        table=np.ascontiguousarray(film.table),
-    )
+    dry = film._replace(coefficient=coefficient, damping=laws.damping, damping_time=laws.damping_time)
+    return law_data(film if film.table.size else dry)
 
 
-def both_lines(laws: RollerLaws) -> tuple[Array[Any], tuple[LineLaw, LineLaw]]:
+def both_lines(laws: RollerLaws) -> tuple[Array[Any], tuple[LawData, LawData]]:
     """Laws of cone and cup as C reads them, and what they must be kept with.
 
     Parameters
@@ -206,4 +185,4 @@ def both_lines(laws: RollerLaws) -> tuple[Array[Any], tuple[LineLaw, LineLaw]]:
         Laws of the contacts.
     """
     kept = line_law(laws.cone_film, laws.cone, laws), line_law(laws.cup_film, laws.cup, laws)
-    return (LineLaw * 2)(*kept), kept
+    return (LawData * 2)(*kept), kept

@@ -42,15 +42,17 @@ from mbs.bearings.tapered.kernel_structs import (
     COLUMNS,
     FIRST_RIB,
     MEMORY,
+    NOT_FINITE,
     PLACE,
     RING,
+    TOO_FAR,
     LineSprings,
     both_lines,
     data_of,
     functions,
 )
 from mbs.bearings.tapered.line_film import DRY_LINES, LineFilms
-from mbs.bearings.tapered.tapered_kernel import NOT_FINITE, TOO_FAR, Ribs, RollerLaws, TaperedShape
+from mbs.bearings.tapered.tapered_shape import Ribs, RollerLaws, TaperedShape
 
 FASTEST = 2e4
 """Largest accepted speed of a ring [rad/s]."""

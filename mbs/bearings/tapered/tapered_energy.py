@@ -4,7 +4,7 @@ Contacts at rest store U, the sum of the integrals of their loads over the appro
 
     dU/dt = f . dD/dt + F . dV/dt,
 
-V and D of `mbs.bearings.tapered.tapered_kernel`, f the forces of the ring on its rollers: the first part is the work of
+V and D of `ehdmaps/kernel/c/taper_balance.c`, f the forces of the ring on its rollers: the first part is the work of
 the ring and of the turning cage, the second one that of speed.
 """
 
@@ -15,9 +15,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.compiled import njit
-from mbs.bearings.tapered.kernel_structs import FIRST_RIB
-from mbs.bearings.tapered.tapered_kernel import RollerLaws, TaperedShape
+from mbs.bearings.tapered.kernel_structs import FIRST_RIB, functions
+from mbs.bearings.tapered.tapered_shape import RollerLaws, TaperedShape
 
 if TYPE_CHECKING:
     from mbs.bearings.tapered.tapered_memory import FilmsOfRollers
@@ -48,26 +47,20 @@ class TaperedStates(NamedTuple):
     films: FilmsOfRollers | None = None
 
 
-@njit(error_model="numpy", _nrt=False)
 def place_work(rollers: FloatArray, loads: tuple[float, float], last: FloatArray) -> float:
     """Work of the centrifugal loads and gyroscopic moments since the last call [J], by the trapezoidal rule.
 
     Parameters
     ----------
-    rollers : array (Z, 28)
-        What `place_roller` writes of each roller.
+    rollers : array (Z, COLUMNS)
+        Numbers of the rollers, see `mbs.bearings.tapered.kernel_structs`.
     loads : (float, float)
         Centrifugal load [N], and moment [N m].
     last : array (Z, 4)
         Places of the last call, radial [m] and turned [rad], and its loads; written.
     """
-    work = 0.0
-    for j in range(rollers.shape[0]):
-        for i in range(2):
-            place = rollers[j, 10 + i]
-            work += 0.5 * (loads[i] + last[j, 2 + i]) * (place - last[j, i])
-            last[j, i], last[j, 2 + i] = place, loads[i]
-    return work
+    given = np.array(loads)
+    return functions().speed_work(rollers.shape[0], rollers.ctypes.data, given.ctypes.data, last.ctypes.data)
 
 
 def dry_energy(laws: RollerLaws, shape: TaperedShape, rollers: FloatArray) -> float:
@@ -77,8 +70,8 @@ def dry_energy(laws: RollerLaws, shape: TaperedShape, rollers: FloatArray) -> fl
     ----------
     laws, shape : RollerLaws, TaperedShape
         Laws of the contacts, lengths of the bearing.
-    rollers : array (Z, 28)
-        What `place_roller` writes of each roller.
+    rollers : array (Z, COLUMNS)
+        Numbers of the rollers, see `mbs.bearings.tapered.kernel_structs`.
     """
     place, ring = rollers[:, 9:12], rollers[:, 12:15]
     count = shape.ribs.laws.size

@@ -16,7 +16,7 @@ from mbs.bearings.balls.film_tables import PairLaw
 from mbs.bearings.balls.normal_law import NormalLaw, empty_table
 from mbs.bearings.tapered.kernel_structs import RIB_NUMBERS, rib_rows
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
-from mbs.bearings.tapered.tapered_kernel import RollerLaws
+from mbs.bearings.tapered.tapered_shape import RollerLaws
 from mbs.exports.balls.source import header_of, joined, pair_files, prefix_of, private_law, public_law, write_texts
 from mbs.exports.balls.speed_laws import SpeedLaws, dry_speed_laws, film_speed_laws
 
