@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-from types import SimpleNamespace
 from unittest import mock
 
 import numpy as np
@@ -16,7 +15,7 @@ from ehdmaps.errors import InputError
 from ehdmaps.exports.fmu.binaries import platforms
 from ehdmaps.physics.rollers.ribbed_geometry import mirrored_ribs, ribbed_estimate
 from ehdmaps.physics.rollers.tapered_catalogue import tapered_estimate
-from mbs.bearings.tapered.line_film import LineFilms, line_film
+from mbs.bearings.tapered.line_film import LineFilms
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
 from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.cli import main
@@ -25,6 +24,7 @@ from mbs.exports.tapered.source import exported_play, line_speed_laws, source_te
 from mbs.model.elements import Operation
 from tests.cases.c_balls import BallKernel, compiled_balls
 from tests.cases.fmu import Unit
+from tests.cases.line_films import made_up_films
 
 RPM = np.pi / 30.0
 EXACT = 1e-11
@@ -55,27 +55,6 @@ def turned(geometry):
     return mirrored_ribs(geometry)
 
 
-def films_of(geometry):
-    """Lines with films of some shape by the entrainment speed: offset, soft begin and damping."""
-    length = geometry.roller_length
-    stiff = TaperedForce(geometry).laws.cone / length
-
-    def made_up(u, temperature):
-        def evaluate(delta, rate):
-            x, bend = delta + 0.5e-6 * u**0.7, 0.2e-6 * u**0.5
-            root = np.sqrt(x * x + bend * bend)
-            g = 0.5 * (x + root)
-            return stiff * g ** (10.0 / 9.0), stiff * 10.0 / 9.0 * g ** (10.0 / 9.0) / root, 2e5 + 4e9 * g / u + rate
-
-        return SimpleNamespace(evaluate=evaluate)
-
-    def films(u):
-        made = line_film(SimpleNamespace(at=made_up), length, u, 313.15)
-        return LineFilms(made, made, (1e2 * length, 2e6 * length))
-
-    return films
-
-
 @pytest.fixture(scope="module")
 def exported(tmp_path_factory):
     """Bearing, laws over the speed and compiled kernel: tapered, with films, between ribs both ways and one way."""
@@ -84,7 +63,7 @@ def exported(tmp_path_factory):
         geometry = geometry_of(name)
         # a constant damper jumps where a line begins to carry: rollers between ribs are at that edge by themselves
         force = TaperedForce(geometry, 0.0 if filmed or name.startswith("N") else 50.0, 0.0 if filmed else DAMPER)
-        laws = line_speed_laws(force, films_of(geometry), (1.0, 8.0)) if filmed else line_speed_laws(force)
+        laws = line_speed_laws(force, made_up_films(geometry), (1.0, 8.0)) if filmed else line_speed_laws(force)
         source = folder / f"{name}.c"
         write_source(source, force, laws, ("made by ehdmaps",))
         prefix = name.lower() if name.startswith("N") else f"roller_{name}"
@@ -164,7 +143,7 @@ def test_films_between_the_speeds(exported):
     """The polynomial of four speeds in ln u; stiffness at the ends of the tables, where it goes on straight."""
     force, laws, _ = exported["30205"]
     assert laws.speeds.size > 20
-    load, stiffness, damping = error_between(laws, films_of(force.geometry), of_largest=True)
+    load, stiffness, damping = error_between(laws, made_up_films(force.geometry), of_largest=True)
     assert 0.0 < load < 5e-5
     assert stiffness < 2e-3
     assert damping < 2e-4

@@ -4,21 +4,26 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Callable
 
 import numpy as np
 import pytest
 from scipy.integrate import quad
+from scipy.interpolate import CubicHermiteSpline
 from scipy.optimize import brentq, root
 
 from ehdmaps.compiled import in_python
+from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.rollers.tapered_catalogue import tapered_boundary, tapered_estimate
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from mbs.bearings import laws
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
+from mbs.bearings.tapered.kernel_structs import MEMORY
 from mbs.bearings.tapered.numba_tapered_kernel import COLUMNS, roller_work, tapered_force
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
+from tests.cases.line_films import made_up_films
 
 GEOMETRY = tapered_estimate("32208")
 FORCE = TaperedForce(GEOMETRY)
@@ -26,7 +31,13 @@ POSE = np.array([15e-6, 8e-6, -4e-6, 0.0, 2e-4, -3e-4])
 FREE = (0, 1, 2, 4, 5)
 
 
-def in_space(force: TaperedForce, pose: np.ndarray, centrifugal: float, moment: float) -> np.ndarray:
+Line = Callable[[int, int, np.ndarray], np.ndarray]
+"""Loads of the slices of a line by its side, 0 the cone, its roller and the approaches."""
+
+
+def in_space(
+    force: TaperedForce, pose: np.ndarray, centrifugal: float, moment: float, line: Line | None = None
+) -> np.ndarray:
     """Force and moments on the inner ring, all contacts by points and normals in space, rollers balanced by scipy."""
     geometry, total = force.geometry, np.zeros(6)
     theta, beta, half = geometry.axis_angle, geometry.half_cone_angle, 0.5 * geometry.roller_diameter
@@ -56,7 +67,10 @@ def in_space(force: TaperedForce, pose: np.ndarray, centrifugal: float, moment: 
             ring = pose[:3] + np.cross(tilt, cone) - moved(cone, v)  # noqa: B023
             at_rib = pose[:3] + np.cross(tilt, rib) - moved(rib, v)  # noqa: B023
             gaps = moved(cup, v) @ to_cup - force.shape.profile, ring @ from_cone - force.shape.profile  # noqa: B023
-            lines = [single * np.maximum(gap, 0.0) ** (10.0 / 9.0) for gap in gaps]
+            if line is None:
+                lines = [single * np.maximum(gap, 0.0) ** (10.0 / 9.0) for gap in gaps]
+            else:
+                lines = [line(1 - place, j, gap) for place, gap in enumerate(gaps)]  # noqa: B023
             return lines[0], lines[1], force.shape.ribs.laws[0] * max(float(at_rib @ rib_normal), 0.0) ** 1.5  # noqa: B023
 
         def left(v: np.ndarray) -> np.ndarray:
@@ -87,6 +101,58 @@ def test_contacts_in_space_give_the_same_force(speed) -> None:
     expected = in_space(FORCE, POSE, *loads)
     scale = np.array([1.0, 1.0, 1.0, 1.0, 0.03, 0.03]) * float(np.linalg.norm(expected[:3]))
     assert np.max(np.abs(found - expected) / scale) < 1e-7  # the balance of rollers by scipy
+
+
+def film_in_space(force: TaperedForce, memory: np.ndarray | None) -> Line:
+    """Slices of a line by a spline of scipy through the table of their film, and by what they hold over a step."""
+    slices, splines = force.positions.size, []
+    for law in (force.films.inner, force.films.outer):
+        places = law.first + law.step * np.arange(law.table.shape[0])
+        splines.append(CubicHermiteSpline(places, law.table[:, 0], law.table[:, 1] / law.step))
+
+    def line(side: int, roller: int, gap: np.ndarray) -> np.ndarray:
+        law, spline = (force.films.inner, force.films.outer)[side], splines[side]
+        place = np.arcsinh((gap - law.centre) / law.scale)
+        within = np.clip(place, spline.x[0], spline.x[-1])
+        rest = law.coefficient * np.exp(1.5 * (spline(within) + spline(within, 1) * (place - within)))
+        if memory is not None:
+            pull, spring, at = memory[roller, side, :3]
+            more = pull + spring * (gap - at)
+            rest = np.where(more > 0.0, rest + more, more + np.hypot(more, rest))
+        return np.asarray(rest / slices)
+
+    return line
+
+
+@pytest.mark.parametrize("held", [False, True], ids=["at rest", "over a step"])
+def test_films_in_space_give_the_same_force(held) -> None:
+    """The same with films: another spline and the sum of memory as it stands, with slices that pull and that press; the
+    stiffness is the derivative, by quotients of differences over 4 nm, to their second order."""
+    force, size = TaperedForce(GEOMETRY, slices=7), np.array([1.0, 1.0, 1.0, 1.0, 0.03, 0.03])
+    force = force.with_films(made_up_films(GEOMETRY)(3.0))
+    rng, memory = np.random.default_rng(5), None
+    if held:
+        memory = np.zeros((GEOMETRY.rollers, 2, MEMORY, 7))
+        memory[:, :, 0] = rng.uniform(-300.0, 300.0, memory[:, :, 0].shape)
+        memory[:, :, 1] = rng.uniform(0.0, 1e8, memory[:, :, 1].shape)
+        memory[:, :, 2] = rng.uniform(-2e-6, 5e-6, memory[:, :, 2].shape)
+    force.held = memory
+    found, stiffness, _ = force(POSE, inner_speed=500.0)
+    expected = in_space(force, POSE, *force.speed_loads(500.0), film_in_space(force, memory))
+    assert np.max(np.abs(found - expected) * np.where(size < 1.0, 1.0 / size, 1.0)) < 1e-6 * np.linalg.norm(found[:3])
+    for i in FREE:
+        step = np.zeros(6)
+        step[i] = 2e-9 / size[i]
+        ahead, behind = (force(POSE + sign * step, inner_speed=500.0)[0] for sign in (1.0, -1.0))
+        quotient = (behind - ahead) / (2.0 * step[i])
+        assert np.max(np.abs(quotient - stiffness[:, i]) / size) < 1e-5 * np.max(np.abs(stiffness[:, i]) / size)
+
+
+def test_memory_of_another_bearing_is_refused() -> None:
+    force = TaperedForce(GEOMETRY, slices=7)
+    force.held = np.zeros((GEOMETRY.rollers, 2, MEMORY, 5))
+    with pytest.raises(InputError, match=r"memory: got an array of shape \(17, 2, 7, 5\); allowed: \(17, 2, 7, 7\)"):
+        force(POSE)
 
 
 def test_without_an_angle_it_is_the_cylindrical_element() -> None:
