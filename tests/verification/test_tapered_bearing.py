@@ -12,17 +12,17 @@ from scipy.integrate import quad
 from scipy.interpolate import CubicHermiteSpline
 from scipy.optimize import brentq, root
 
-from ehdmaps.compiled import in_python
 from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.rollers.ribbed_geometry import ribbed_estimate
 from ehdmaps.physics.rollers.tapered_catalogue import tapered_boundary, tapered_estimate
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from mbs.bearings import laws
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.tapered.kernel_structs import MEMORY
-from mbs.bearings.tapered.numba_tapered_kernel import COLUMNS, roller_work, tapered_force
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
+from mbs.bearings.tapered.tapered_relaxing import by_pose
 from tests.cases.line_films import made_up_films
 
 GEOMETRY = tapered_estimate("32208")
@@ -306,12 +306,33 @@ def test_a_mirrored_bearing_carries_the_other_way() -> None:
     assert np.max(np.abs(one.centre - other.centre)) < 1e-12 and np.max(np.abs(one.load - other.load)) < 1e-6
 
 
-def test_it_is_what_runs_call() -> None:
-    """The kernel of runs, as Python; both find the balance in ways of their own."""
-    force = TaperedForce(GEOMETRY, 10.0, 1e-5, slices=5)
-    count, loads = GEOMETRY.rollers, np.array([0.0, *force.speed_loads(700.0)])
-    out, places = (np.zeros(6), np.zeros((6, 6)), np.zeros((6, 6))), np.full((count, 3), np.nan)
-    written = *out, places, np.zeros((count, COLUMNS)), roller_work(1, 5)
-    assert in_python(tapered_force)(POSE, 0.0, loads, force.shape, force.laws, np.zeros((1, 2, 3, 0)), *written) > 0
-    for one, other in zip(out, force(POSE, inner_speed=700.0), strict=True):
-        assert np.max(np.abs(one - other)) < 1e-9 * float(np.max(np.abs(other)))
+@pytest.mark.parametrize("geometry", [GEOMETRY, ribbed_estimate("NUP308", 20e-6, 30e-6)], ids=["32208", "NUP308"])
+def test_slow_motion_is_that_of_all_contacts(geometry) -> None:
+    """Springs and dampers of all contacts as matrices, and rollers without mass that numpy eliminates; what holds
+    rollers that nothing holds is 2e-14 of the stiffness of contacts."""
+    force = TaperedForce(geometry, 10.0, 1e-5, slices=5)
+    pose = POSE + np.array([force.ribs[0].play, 0.0, 0.0, 0.0, 0.0, 0.0])
+    _, stiffness, damping = force(pose, cage_angle=0.3, inner_speed=700.0)
+    shape, rows, slow = force.shape, force.last_rollers, np.zeros((2, 6, 6))
+    lines = [np.column_stack([np.tile(e, (5, 1)), shape.levers]) for e in (shape.cone, shape.cup)]
+    ribs, soft = np.column_stack([shape.ribs.normals, shape.ribs.levers]), 2e-14 * (force.laws.cup + force.laws.cone)
+    for row, moves in zip(rows, by_pose(force, 0.3), strict=True):
+        place, ring = row[9:12], row[12:15]
+        both = np.zeros((2, 6, 6))  # springs and dampers by ring and roller, the first and the last three
+        parts = [(lines[0], 0, shape.profile, force.laws.cone / 5, 10.0 / 9.0, 2.0)]
+        parts += [(lines[1], 1, shape.profile, force.laws.cup / 5, 10.0 / 9.0, 2.0)]
+        parts += [(ribs[m : m + 1], int(shape.ribs.outer[m]), shape.ribs.plays[m], shape.ribs.laws[m], 1.5, 10.0)
+                  for m in range(len(force.ribs))]  # fmt: skip
+        for normals, outer, depth, law, power, constant in parts:
+            feel = np.hstack([0.0 * normals, normals] if outer else [normals, -normals])
+            gap = np.maximum(feel @ np.concatenate([ring, place]) - depth, 0.0)
+            k = law * power * gap ** (power - 1.0)
+            both[0] += feel.T * k @ feel
+            both[1] += feel.T * np.where(gap > 0.0, constant + 1e-5 * k, 0.0) @ feel
+        if not np.any(both[0, :3, :3]):
+            continue
+        held = both[0, 3:, 3:] + soft * np.diag([1.0, 1.0, shape.levers[-1] ** 2])
+        way = np.vstack([np.eye(3), -np.linalg.solve(held, both[0, 3:, :3])]) @ moves
+        slow += way.T @ both @ way
+    for found, expected in zip((stiffness, damping), slow, strict=True):
+        assert np.max(np.abs(found - expected)) < 1e-9 * np.max(np.abs(expected))

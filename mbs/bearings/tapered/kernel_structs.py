@@ -80,6 +80,18 @@ class LineSprings(Record):
     ]
 
 
+class _Roller(Record):
+    """A roller, ``ehd_taper_roller``; Python has it as a row of numbers."""
+
+    _fields_: ClassVar = [("numbers", c_double * COLUMNS)]
+
+
+class _Answer(Record):
+    """An answer, ``ehd_taper_answer``; the same."""
+
+    _fields_: ClassVar = [("numbers", c_double * ANSWER)]
+
+
 class Functions(NamedTuple):
     """Functions of the library, which take addresses; what they write and return is said in taper_bearing.c.
 
@@ -107,8 +119,8 @@ def functions() -> Functions:
     checked(LawData, "ehd_pair_law")
     checked(TaperedData, "ehd_taper_data")
     checked(LineSprings, "ehd_taper_springs")
-    for name, size in (("roller", COLUMNS), ("answer", ANSWER)):
-        checked(c_double * size, f"ehd_taper_{name}")
+    checked(_Roller, "ehd_taper_roller")
+    checked(_Answer, "ehd_taper_answer")
     place = c_void_p
     return Functions(
         function("ehd_taper_force", place, place, place, c_double, place, place, place, place),
