@@ -11,7 +11,6 @@ The balance of the balls, the sums over them and films with memory are in C: `eh
 `ball_speed`           speed of the cage by contact angles, loads of the balls by that, their work
 `ball_block`           ball bearings in compiled runs
 `ball_memory`          films with memory in time
-`spring_damper`        a spring in series with a damper over a step
 `answers`              what bearings of five freedoms share in compiled runs
 `film_tables`          laws over the speed for compiled runs
 `films`                films of both contacts at one speed, solved at some loads, and the law that they make

@@ -14,7 +14,6 @@ from typing import ClassVar, NamedTuple, Protocol
 import numpy as np
 
 from ehdmaps.arrays import BoolArray, FloatArray, IntArray
-from ehdmaps.compiled import njit
 from ehdmaps.errors import EhdmapsError
 from ehdmaps.kernel.library import checked
 from ehdmaps.kernel.record import Record, integers, numbers
@@ -163,53 +162,6 @@ class WithFilms(Protocol):
 
     def law_at(self, speed: float) -> PairLaw:
         """Law at a speed of the system [rad/s]."""
-
-
-@njit(error_model="numpy", _nrt=False, forceinline=True)
-def blend(films: FilmTables, film: int, node: int, weight: float) -> None:
-    """Bring the laws in use to a place between two nodes.
-
-    Parameters
-    ----------
-    films : FilmTables
-        The laws; those in use are written.
-    film, node : int
-        Which film, and the slot of the node below the speed.
-    weight : float
-        Part of the way to the next node.
-    """
-    if films.in_use[film, 0] == node and films.in_use[film, 1] == weight:
-        return
-    films.in_use[film, 0], films.in_use[film, 1] = node, weight
-    other = (node + 1) % films.numbers.shape[1] if weight > 0.0 else node
-    low, high = films.numbers[film, node].reshape(-1), films.numbers[film, other].reshape(-1)
-    current = films.current[film].reshape(-1)
-    for i in range(current.size):
-        current[i] = low[i] + weight * (high[i] - low[i])
-    films.highest[film] = min(films.most[film, node], films.most[film, other])
-    films.length[film] = films.lengths[film, node]
-    if films.length[film] == 0:
-        return
-    low, high = films.tables[film, node].reshape(-1), films.tables[film, other].reshape(-1)
-    table = films.table[film].reshape(-1)
-    for i in range(table.size):
-        table[i] = low[i] + weight * (high[i] - low[i])
-
-
-@njit(error_model="numpy", _nrt=False, forceinline=True)
-def law_of(films: FilmTables, film: int, side: int) -> NormalLaw:
-    """The law in use of a side, inner or outer.
-
-    Parameters
-    ----------
-    films : FilmTables
-        The laws.
-    film, side : int
-        Which film, and which contact.
-    """
-    n = films.current[film, side]
-    table = films.table[film, side, : films.length[film]]
-    return NormalLaw(n[0], n[1], n[2], n[3], n[4], n[5], n[6], 0.0, 0.0, 0.0, table)
 
 
 def on_grid(law: NormalLaw, grid: NormalLaw, out: FloatArray) -> None:

@@ -14,7 +14,6 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.compiled import njit
 from ehdmaps.kernel.library import checked, function
 from ehdmaps.kernel.record import Record, numbers
 
@@ -51,24 +50,6 @@ class NormalLaw(NamedTuple):
     spring: float
     at: float
     table: FloatArray
-
-
-@njit(error_model="numpy", _nrt=False, forceinline=True)
-def with_held(load: float, stiffness: float, held: float, spring: float) -> tuple[float, float]:
-    """Load [N] and stiffness [N/m] of a film with memory at the end of a step; never a tension.
-
-    Parameters
-    ----------
-    load, stiffness : float
-        Load > 0 [N] and stiffness [N/m] at rest.
-    held, spring : float
-        Force beside it [N], and its spring [N/m].
-    """
-    if held >= 0.0:
-        return load + held, stiffness + spring
-    size = math.sqrt(held * held + load * load)
-    total = load * load / (size - held)
-    return total, (spring * total + stiffness * load) / size
 
 
 class LawData(Record):
