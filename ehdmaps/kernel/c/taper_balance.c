@@ -269,7 +269,7 @@ static int taper_place(const taper_given *of, ehd_taper_roller *roller) {
         if (roller->made != 0.0 && error <= taper_left(&s, of->arm) / (s.size + TAPER_NOTHING))
             taper_state_at(of, place, &s);
     }
-    const int found = taper_newton(of, &s);
+    const int found = taper_newton(of, &s) && s.size <= DBL_MAX;
     taper_tell(of, &s, roller);
     return found;
 }

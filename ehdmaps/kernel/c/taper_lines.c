@@ -112,8 +112,8 @@ PAIR_INLINE void taper_places_of(const ehd_pair_law *law, int count, const doubl
         place[i] = (copysign(taper_log(fabs(x) + root), x) - law->first) * per_step;
     }
     for (int i = 0; i < count; i++) {
-        const double held = taper_positive(place[i]), row = held - taper_positive(held - last);
-        of->row[i] = (int)row;
+        const double held = place[i] > 0.0 ? place[i] : 0.0; /* also where it is no number */
+        of->row[i] = (int)(held < last ? held : last);
     }
     for (int i = 0; i < count; i++) {
         const double t = place[i] - of->row[i], behind = taper_positive(t), s = behind - taper_positive(behind - 1.0);

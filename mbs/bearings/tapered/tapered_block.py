@@ -53,7 +53,7 @@ class Tapered(Record):
         What `mbs.bearings.tapered.tapered_energy.place_work` keeps of the last step, its time [s], and its work by that
         time [W].
     memories : array (count,), of int
-        Where the memory of a bearing begins; below zero for films without one.
+        First number of the memory of a bearing; below zero for films without one.
     memory : array
         Memory of the slices, (Z, 2, MEMORY, n) of each bearing, see `mbs.bearings.tapered.tapered_memory`.
     clock : array (2,)
