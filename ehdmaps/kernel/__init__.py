@@ -49,6 +49,7 @@ block.h              what a kind of elements brings to runs in time: its functio
 pair_films.c         laws of pairs at nodes over the speed of a run, and those in use
 pair_port.c          what bearings of five freedoms answer in runs
 ball_block.c         ball bearings in runs
+taper_block.c        bearings of tapered rollers, or of such between ribs, in runs
 dense.c              small matrices: products, elimination, steps in Python
 gear.c               gear meshes
 matrix.c             connections by matrices

@@ -201,11 +201,71 @@ static int elements(void) {
     return failed;
 }
 
+/* Rollers between ribs with lines of any number of slices, dry, with films, with memory: what is found is finite. */
+static int tapered(void) {
+    const int64_t rollers = up_to(6), slices = 1 + up_to(70), ribs = up_to(EHD_TAPER_RIBS + 1) - 1;
+    const int64_t rows = any() % 3 ? 1 + up_to(40) : 0, size = 2 * EHD_TAPER_MEMORY * slices;
+    double *lever = room(slices), *profile = room(slices), *cosine = room(rollers), *sine = room(rollers);
+    double *rib = room(6 * ribs + 1), *table = room(4 * rows + 1), *springs = room(2 * rows + 1);
+    double *memory = any() % 2 ? calloc((size_t)(rollers * size), sizeof(double)) : NULL, g = -8.0;
+    ehd_taper_roller *found = calloc((size_t)rollers, sizeof *found);
+    int failed = 0;
+    for (int64_t i = 0; i < slices; i++) {
+        lever[i] = 1.5e-2 * (((double)i + 0.5) / (double)slices - 0.5);
+        profile[i] = 1e-6 * part();
+    }
+    for (int64_t j = 0; j < rollers; j++) {
+        cosine[j] = cos(2.0 * FILM_PI * (double)j / (double)rollers);
+        sine[j] = sin(2.0 * FILM_PI * (double)j / (double)rollers);
+    }
+    for (int64_t m = 0; m < ribs; m++) {
+        const double angle = 6.3 * part(), own[6] = {cos(angle), sin(angle), 5e-3 * part(), 1e-5 * part(), 1e9,
+                                                     (double)(any() % 2)};
+        memcpy(rib + 6 * m, own, sizeof own);
+    }
+    for (int64_t i = 0; i < rows; i++) {
+        const double rise = 20.0 / (double)rows * part() + 1e-3, own[4] = {g += rise, rise, 8.0 + part(), 0.1 * part()};
+        memcpy(table + 4 * i, own, sizeof own);
+        springs[2 * i] = 1e8 * part();
+        springs[2 * i + 1] = 1e-4 * part();
+    }
+    for (int64_t n = 0; memory && n < 2 * rollers; n++)
+        for (int64_t i = 0; i < slices; i++) memory[(n * EHD_TAPER_MEMORY + EHD_TAPER_TIME) * slices + i] = 1.0;
+    const ehd_taper_data data = {rollers, slices, ribs, 0.03, {0.24, 0.97}, {0.18, 0.98}, 1e-6 * part(), 1e-3, 3e-2,
+                                 1e9, any() % 2 ? 10.0 : 0.0, 1e-5, rib, lever, profile, cosine, sine};
+    const double step = 10.0 / (double)(rows + 1);
+    const ehd_pair_law line = {rows ? 1.0 : 5e8, data.damping, 1e-5, 0.0, 3e-7, -3.0, step, rows, table};
+    const ehd_pair_law law[2] = {line, line};
+    const ehd_taper_springs both = {{springs, springs}, {springs, springs}, part()};
+    for (int n = 0; n < 6 && !failed; n++) {
+        const double loads[3] = {0.0, number(100.0), number(1.0)};
+        ehd_taper_answer answer;
+        double pose[6];
+        for (int i = 0; i < 6; i++) pose[i] = number(i < 3 ? 3e-5 : 1e-3);
+        if (memory) ehd_taper_hold(rollers, slices, 1e-4 * part(), memory);
+        if (ehd_taper_force(&data, law, pose, number(3.0), loads, memory, found, &answer) < 0) continue;
+        if (memory) ehd_taper_go_on(&data, law, &both, found, memory);
+        for (int i = 0; i < 6; i++)
+            if (!isfinite(answer.force[i])) failed = 8;
+    }
+    free(lever);
+    free(profile);
+    free(cosine);
+    free(sine);
+    free(rib);
+    free(table);
+    free(springs);
+    free(memory);
+    free(found);
+    return failed;
+}
+
 int main(int count, char **arguments) {
     const long calls = count > 1 ? atol(arguments[1]) : 100;
     for (long n = 0; n < calls; n++) {
         int failed = laws();
         if (!failed) failed = elements();
+        if (!failed) failed = tapered();
         if (failed) {
             printf("check %d, round %ld\n", failed, n);
             return failed;
