@@ -6,6 +6,7 @@ import os
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
+from unittest import mock
 
 import pytest
 from hypothesis import settings
@@ -26,6 +27,13 @@ def own_reductions() -> Iterator[None]:
         patch.setenv("EHDMAPS_REDUCED", folder)
         patch.setenv("EHDMAPS_CHOICES", folder)
         patch.setenv("EHDMAPS_LAW_TABLES", "off")  # laws are made anew, whatever a test has changed of how
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def own_binaries() -> Iterator[None]:
+    """Compile units for this system alone: for all of them it takes ten seconds of processor time each."""
+    with mock.patch("ehdmaps.exports.fmu.binaries.zig", return_value=()):
         yield
 
 

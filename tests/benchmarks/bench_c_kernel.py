@@ -2,7 +2,7 @@
 
     python -m tests.benchmarks.bench_c_kernel MAP.nc [--wine]
 
-`--wine` builds by mingw-w64 and runs by wine, which Debian has as `gcc-mingw-w64-x86-64` and `wine64`.
+`--wine` builds by the package ziglang and runs by wine, which Debian has as `wine64`.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import ctypes
 import subprocess
+import sys
 import tempfile
 import time
 from pathlib import Path
@@ -81,7 +82,8 @@ def main():
                 f"times compiled Python: {ratios[0]:.2f}, {ratios[1]:.2f}"
             )
         if arguments.wine:
-            command = ["x86_64-w64-mingw32-gcc", "-std=c99", "-D__USE_MINGW_ANSI_STDIO=1", "-O2", *source]
+            zig = [sys.executable, "-m", "ziglang", "cc", "-target", "x86_64-windows-gnu"]
+            command = [*zig, "-std=c99", "-D__USE_MINGW_ANSI_STDIO=1", "-O2", *source]
             subprocess.run([*command, "-o", "run.exe", "-lm"], cwd=folder, check=True)
             wine = next(path for path in ("/usr/lib/wine/wine64", "wine") if path == "wine" or Path(path).exists())
             found = subprocess.run(

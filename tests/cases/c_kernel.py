@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import subprocess
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -32,11 +33,18 @@ _ARGUMENTS = {
 }
 
 
-def compiled(folder: Path, *more: str, compiler: str = "gcc", name: str = "libehd.so", link: bool = True) -> Path:
+def compiled(
+    folder: Path,
+    *more: str,
+    compiler: str | Sequence[str] = "gcc",
+    name: str = "libehd.so",
+    link: bool = True,
+) -> Path:
     """Compile a source of an export, with what else there is, into a file of the folder."""
     output = folder / name
+    start = [needed(compiler)] if isinstance(compiler, str) else compiler
     result = subprocess.run(
-        [needed(compiler), *STRICT, *more, str(folder / "ehd.c"), "-o", str(output), *(["-lm"] if link else [])],
+        [*start, *STRICT, *more, str(folder / "ehd.c"), "-o", str(output), *(["-lm"] if link else [])],
         capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert result.returncode == 0, result.stderr

@@ -14,7 +14,6 @@ PACKAGES = {
     "clang": "clang",
     "g++": "g++",
     "gfortran": "gfortran",
-    "x86_64-w64-mingw32-gcc": "gcc-mingw-w64-x86-64-win32",
     "octave-cli": "octave octave-netcdf",
     "ccx": "calculix-ccx",
     "chromium": "chromium",

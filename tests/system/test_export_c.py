@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -249,11 +250,14 @@ def test_fortran(refusing, strict, tmp_path):
     np.testing.assert_allclose(numbers, [0.0, *law, 0.0, *force.reshape(-1), *film], rtol=1e-15)
 
 
+@pytest.mark.slow
 def test_windows(strict, tmp_path):
     """The same source is clean for the compiler of 64-bit Windows."""
+    pytest.importorskip("ziglang")
     folder = shutil.copytree(strict, tmp_path / "c")
     shutil.copy(DATA / "hostile.c", folder)
-    program = compiled(folder, str(folder / "hostile.c"), compiler="x86_64-w64-mingw32-gcc", name="run.exe")
+    zig = (sys.executable, "-m", "ziglang", "cc", "-target", "x86_64-windows-gnu")
+    program = compiled(folder, str(folder / "hostile.c"), compiler=zig, name="run.exe")
     assert program.read_bytes()[:2] == b"MZ"
 
 

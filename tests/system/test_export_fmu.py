@@ -7,8 +7,11 @@ import dataclasses
 import errno
 import gc
 import os
+import re
 import resource
+import struct
 import subprocess
+import sys
 import tempfile
 import zipfile
 from pathlib import Path
@@ -23,6 +26,7 @@ from fmpy.fmi1 import FMICallException
 from fmpy.validation import validate_fmu
 from scipy.linalg import expm
 
+from ehdmaps.exports.fmu import binaries
 from ehdmaps.jobs.cli import main
 from ehdmaps.maps.emap import open_map
 from mbs import Bearing, BearingForce
@@ -79,6 +83,53 @@ def test_valid(files, fmi):
         assert b"pi f h" in archive.read("documentation/index.html")
         names = archive.namelist()
     assert any(name.startswith("binaries/") for name in names) == (fmi == "3")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("fmi", ["2", "3"])
+def test_binaries_for_all_systems(small_map, tmp_path, capsys, fmi):
+    """Formats and processors of what ziglang compiles; of macOS FMI 2.0 has one folder for both processors."""
+    pytest.importorskip("ziglang")
+    unit = tmp_path / "b.fmu"
+    command = (sys.executable, "-m", "ziglang", "cc", "-s")
+    with (
+        mock.patch("ehdmaps.exports.fmu.binaries.zig", return_value=command),
+        mock.patch("shutil.which", return_value=None),
+    ):
+        platforms = binaries.platforms()
+    assert [platform.compiler[: len(command)] for platform in platforms] == [command] * 5
+    with mock.patch("ehdmaps.exports.fmu.unit.platforms", return_value=platforms):
+        assert main(["export", small_map, "--to", "fmu", "--fmi", fmi, "-o", str(unit), "--clearance", "10 um"]) == 0
+    told = capsys.readouterr()
+    assert "compiling for x86_64-windows, the first time a minute or two" in told.err
+    assert "x86_64-darwin, aarch64-darwin)" in told.out and "none for" not in told.out
+    assert validate_fmu(str(unit)) == []
+    with zipfile.ZipFile(unit) as archive:
+        found = {name.split("/")[1]: archive.read(name) for name in archive.namelist() if name.startswith("binaries/")}
+    formats = {
+        "x86_64-linux": (b"\x7fELF", 18, 62),
+        "aarch64-linux": (b"\x7fELF", 18, 183),
+        "x86_64-windows": (b"MZ", 0, 0x5A4D),
+        "x86_64-darwin": (b"\xcf\xfa\xed\xfe", 4, 7),
+        "aarch64-darwin": (b"\xcf\xfa\xed\xfe", 4, 12),
+    }
+    if fmi == "2":
+        whole = found["darwin64"]
+        (count,) = struct.unpack_from(">I", whole, 4)
+        parts = [struct.unpack_from(">5I", whole, 8 + 20 * number) for number in range(count)]
+        assert [part[0] for part in parts] == [0x01000007, 0x0100000C] and all(part[2] % 2**14 == 0 for part in parts)
+        found = {"x86_64-linux": found["linux64"], "x86_64-windows": found["win64"]} | {
+            name: whole[begin : begin + size]
+            for name, (_, _, begin, size, _) in zip(("x86_64-darwin", "aarch64-darwin"), parts, strict=True)
+        }
+    assert set(found) == set(formats) - ({"aarch64-linux"} if fmi == "2" else set())
+    for name, library in found.items():
+        begin, place, processor = formats[name]
+        assert library.startswith(begin)
+        assert struct.unpack_from("<H", library, place)[0] == processor
+        assert f"fmi{fmi}Instantiate".encode() in library
+    versions = [int(version) for version in re.findall(rb"GLIBC_2\.(\d+)", found["x86_64-linux"])]
+    assert max(versions) <= 17
 
 
 @pytest.mark.parametrize("fmi", ["2", "3"])

@@ -4,7 +4,7 @@
 |---|---|
 | `variables` | inputs, parameters and outputs of the unit, and what it says of itself |
 | `description` | the model description of FMI 2.0 and of FMI 3.0 |
-| `binaries` | compiling the sources for the platforms for which a compiler is there |
+| `binaries` | compiling the sources for this machine, and for other systems by ziglang |
 | `unit` | the sources, binaries and texts in one file |
 | `target` | the unit of a map |
 

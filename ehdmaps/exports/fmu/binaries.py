@@ -1,17 +1,24 @@
-"""Compiling the sources of a unit, for each platform for which a compiler is there."""
+"""Compiling the sources of a unit: for this machine, and for other systems where the package ziglang is installed.
+
+ziglang has the headers and libraries of all systems, and compiles for any processor of a kind; on Linux for the C
+library of 2012 and later ones.
+"""
 
 from __future__ import annotations
 
+import importlib.util
 import platform
 import shutil
+import struct
 import subprocess
 import sys
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from ehdmaps.errors import InputError
 
-_OPTIONS = ("-std=c99", "-O2", "-shared", "-fvisibility=hidden")
+_OPTIONS = ("-std=c99", "-O2", "-ffp-contract=off", "-shared", "-fvisibility=hidden")
 
 
 @dataclass(frozen=True)
@@ -21,36 +28,50 @@ class Platform:
     Attributes
     ----------
     name : str
-        Name for people, which is also the folder of FMI 2.0.
+        Folder of FMI 2.0; "" where that has none.
     folder : str
-        Folder of FMI 3.0.
+        Folder of FMI 3.0, which is also the name for people.
     ending : str
         Ending of the binary.
-    compiler : str
-        The compiler; "" where this machine has none for it.
-    options : tuple of str
-        Options that only it needs.
+    compiler : tuple of str
+        Command that compiles for it; empty where this machine has none.
     """
 
     name: str
     folder: str
     ending: str
-    compiler: str
-    options: tuple[str, ...]
+    compiler: tuple[str, ...]
 
 
-def platforms() -> tuple[Platform, Platform]:
-    """Return the platforms, with the compilers that this machine has."""
-    native = sys.platform == "linux" and platform.machine() == "x86_64"
-    linux = (shutil.which("gcc") or shutil.which("clang") or "") if native else ""
-    windows = shutil.which("x86_64-w64-mingw32-gcc") or ""
-    return (
-        Platform("linux64", "x86_64-linux", ".so", linux, ("-fPIC",)),
-        Platform("win64", "x86_64-windows", ".dll", windows, ("-static-libgcc",)),
-    )
+_SYSTEMS = (
+    ("linux64", "x86_64-linux", ".so", "x86_64-linux-gnu.2.17"),
+    ("", "aarch64-linux", ".so", "aarch64-linux-gnu.2.17"),
+    ("win64", "x86_64-windows", ".dll", "x86_64-windows-gnu"),
+    ("darwin64", "x86_64-darwin", ".dylib", "x86_64-macos"),
+    ("darwin64", "aarch64-darwin", ".dylib", "aarch64-macos"),
+)
+"""Folders of FMI 2.0 and 3.0, ending, and how ziglang calls the system."""
 
 
-def compiled(target: Platform, folder: Path, sources: tuple[str, ...], name: str) -> bytes:
+def platforms() -> tuple[Platform, ...]:
+    """Return the platforms, with the compilers that this machine has; its own system comes first."""
+    machine = platform.machine().lower()
+    machine = {"arm64": "aarch64", "amd64": "x86_64"}.get(machine, machine)
+    own = f"{machine}-{'windows' if sys.platform == 'win32' else sys.platform}"
+    native = shutil.which("gcc") or shutil.which("clang")
+    others, found = zig(), []
+    for name, folder, ending, target in _SYSTEMS:
+        compiler = (native,) if native and folder == own else (*others, "-target", target) if others else ()
+        found.append(Platform(name, folder, ending, compiler))
+    return tuple(sorted(found, key=lambda target: target.folder != own))
+
+
+def zig() -> tuple[str, ...]:
+    """Return the command of the compiler for any system; empty where its package is not installed."""
+    return (sys.executable, "-m", "ziglang", "cc", "-s") if importlib.util.find_spec("ziglang") else ()
+
+
+def compiled(target: Platform, folder: Path, sources: Sequence[str], name: str) -> bytes:
     """Compile sources into a library.
 
     Parameters
@@ -59,7 +80,7 @@ def compiled(target: Platform, folder: Path, sources: tuple[str, ...], name: str
         Platform with a compiler.
     folder : Path
         Folder of the sources.
-    sources : tuple of str
+    sources : sequence of str
         Files to be compiled.
     name : str
         Name of the library without its ending.
@@ -69,12 +90,34 @@ def compiled(target: Platform, folder: Path, sources: tuple[str, ...], name: str
     InputError
         If the compiler fails.
     """
-    library = folder / f"{name}.{target.name}{target.ending}"
-    command = [target.compiler, *_OPTIONS, *target.options, *sources, "-o", str(library), "-lm"]
+    library = folder / f"{name}.{target.folder}{target.ending}"
+    position = () if target.ending == ".dll" else ("-fPIC",)
+    command = [*target.compiler, *_OPTIONS, *position, *sources, "-o", str(library), "-lm"]
     result = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
     if result.returncode != 0:
         raise InputError(
-            f"export fmu: {target.compiler} failed for {target.name}: {result.stderr.strip()[-600:]}\n"
+            f"export fmu: {target.compiler[0]} failed for {target.folder}: {result.stderr.strip()[-600:]}\n"
             "take --sources-only, and let the importing program compile the unit"
         )
     return library.read_bytes()
+
+
+_ALIGNED = 14
+"""Power of two at which the parts of a universal binary begin: a page of Apple's processors."""
+
+
+def universal(parts: Sequence[bytes]) -> bytes:
+    """Join libraries of macOS for several processors into one file, from which the system takes its own part.
+
+    Parameters
+    ----------
+    parts : sequence of bytes
+        Libraries in the format Mach-O, of 64 bits.
+    """
+    page = 1 << _ALIGNED
+    head, body = struct.pack(">2I", 0xCAFEBABE, len(parts)), b""
+    for part in parts:
+        processor, model = struct.unpack_from("<2I", part, 4)
+        head += struct.pack(">5I", processor, model, page + len(body), len(part), _ALIGNED)
+        body += part.ljust(-(-len(part) // page) * page, b"\0")
+    return head.ljust(page, b"\0") + body

@@ -15,10 +15,11 @@ from importlib.resources import files
 from pathlib import Path
 
 from ehdmaps.errors import InputError
-from ehdmaps.exports.fmu.binaries import compiled, platforms
+from ehdmaps.exports.fmu.binaries import compiled, platforms, universal
 from ehdmaps.exports.fmu.description import KIND, Identity, build_description, model_description
 from ehdmaps.exports.fmu.variables import Variable
 from ehdmaps.outputs import MARK, Kind, written_aside
+from ehdmaps.program import tell
 from ehdmaps.version import version
 
 _BEGINNING = (1980, 1, 1, 0, 0, 0)
@@ -146,14 +147,19 @@ def _compiled(
         with tempfile.TemporaryDirectory() as folder:
             for name, text in sources.items():
                 (Path(folder) / name).write_text(text, encoding="utf-8")
+            places: dict[str, list[bytes]] = {}
             for target in platforms():
-                if not target.compiler:
-                    inside.append(f"no {target.name}, for which no compiler is found")
-                    continue
                 place = target.name if fmi == "2" else target.folder
+                if not place or not target.compiler:
+                    continue
+                if "ziglang" in target.compiler:
+                    tell(f"ehdmaps: compiling for {target.folder}, the first time a minute or two")
                 library = compiled(target, Path(folder), _to_compile(sources), identity.name)
-                entries[f"binaries/{place}/{identity.name}{target.ending}"] = library
-                inside.append(target.name)
+                places.setdefault(f"binaries/{place}/{identity.name}{target.ending}", []).append(library)
+                inside.append(target.folder)
+            entries |= {name: parts[0] if len(parts) == 1 else universal(parts) for name, parts in places.items()}
+            if not all(target.compiler for target in platforms()):
+                inside.append("none for other systems, for which the package ziglang compiles: pip install ziglang")
     except OSError as error:
         raise InputError(
             f"export fmu: cannot compile in the folder for temporary files ({error.strerror or error}); it takes some "
