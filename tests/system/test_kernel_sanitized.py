@@ -15,15 +15,16 @@ from tests.cases.programs import needed
 ROOT = Path(__file__).parents[2]
 DATA = ROOT / "tests" / "data" / "c"
 
-FROM_PYTHON = ("tests/unit/test_mbs_gear.py",)
+FROM_PYTHON = ("tests/unit/test_mbs_gear.py", "tests/unit/test_ball_force.py")
 """Tests that call the library from Python, and where numba compiles nothing, or little."""
 
 pytestmark = pytest.mark.slow
 
 
-def test_tables_of_all_sizes_and_numbers_of_any_kind(tmp_path):
+@pytest.mark.parametrize("source", ["hostile_kernel.c", "hostile_balls.c"])
+def test_tables_of_all_sizes_and_numbers_of_any_kind(tmp_path, source):
     options = [*building.ALWAYS, *building.OPTIONS["sanitized"], *building.LINES, "-Werror", "-I", building.SOURCES]
-    command = [needed("gcc"), *options, DATA / "hostile_kernel.c", "-o", tmp_path / "run", "-lm"]
+    command = [needed("gcc"), *options, DATA / source, "-o", tmp_path / "run", "-lm"]
     subprocess.run(list(map(str, command)), check=True)
     result = subprocess.run([tmp_path / "run", "2000"], capture_output=True, text=True, check=False)
     assert result.returncode == 0, result.stdout + result.stderr
