@@ -19,7 +19,6 @@ from ehdmaps.errors import InputError
 from ehdmaps.exports.modelica_memory import memory_text
 from ehdmaps.exports.target import Target, origin
 from ehdmaps.maps.emap import EHDMap
-from ehdmaps.maps.kernels.lines import line_approach
 from ehdmaps.maps.law import LawAtPoint, LawKind
 from ehdmaps.outputs import Kind, Output, check_outputs, has_mark, write_text
 from ehdmaps.program import plain
@@ -231,9 +230,9 @@ def package(law: LawAtPoint, name: str, lines: Iterable[str], memory: bool = Fal
     if point.film < 1.0 or point.centrifugal_load > 0.0:
         raise InputError("--speed: below the lowest speed of the map the film fades; allowed: speeds of the map")
     line = point.own
-    highest = float(line_approach(line, point.highest_load))
+    highest = law.approach(point.highest_load)
     load = point.highest_load * 0.1
-    begin = float(line_approach(line, load))
+    begin = law.approach(load)
     _, stiffness, damping = law(begin, 0.0)
     # The mass oscillates at 1 kHz, and begins 1 % of its approach off its place.
     mass = float(stiffness) / (2.0e3 * math.pi) ** 2

@@ -13,7 +13,6 @@ import math
 import numpy as np
 
 from ehdmaps.maps.kernels import memory_table
-from ehdmaps.maps.kernels.lines import line_approach
 from ehdmaps.maps.law import LawAtPoint
 
 SHORTEST_MEMORY, OPENING = 1e-12, 0.003
@@ -176,7 +175,7 @@ def memory_text(law: LawAtPoint, words: dict[str, str]) -> str:
         Numbers of the package: nominal, nominal_load, mass, begin.
     """
     table, highest = law.memory.table, law.point.highest_load
-    reach = [float(line_approach(law.point.own, highest)), table.lift_off]
+    reach = [law.approach(highest), table.lift_off]
     above, below = (_cells(1.0 + abs(place - table.centre) * table.inverse_scale) for place in reach)
     above, below = min(above, memory_table.ROWS), min(below, memory_table.ROWS)
     loads = min(_cells(1.0 + highest / memory_table.LIGHTEST), memory_table.LOAD_ROWS)

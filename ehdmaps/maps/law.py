@@ -168,7 +168,7 @@ class ContactLaw:
 
     @cached_property
     def table(self) -> LawTable:
-        """Arrays for `ehdmaps.maps.kernels.kernel`, ready for a centrifugal load where the law takes one."""
+        """Arrays of the law, ready for a centrifugal load where it takes one."""
         if self.kind != "series":
             return self._plain
         if not self._parts:
@@ -225,10 +225,6 @@ class ContactLaw:
         ...     return force[0]
         """
         return self._in_c(self.kind == "series").door
-
-    def workspace(self) -> FloatArray:
-        """Scratch for `kernel.collapse` and `kernel.evaluate`, one for each thread and each `Point` kept."""
-        return _workspace(self.table)
 
     def again(self, errors: LawErrors | None = None) -> ContactLaw:
         """The same law with counts of its own, all zero; films that were read, and its tables, are shared.
@@ -651,6 +647,16 @@ class LawAtPoint:
         """Numbers and lines at this speed, temperature and centrifugal load, as compiled code reads them."""
         return self._made.point
 
+    def approach(self, load: float) -> float:
+        """Approach [m] at which the contacts carry a load at rest, with the whole film; for zero the highest without.
+
+        Parameters
+        ----------
+        load : float
+            w >= 0 on the inner contact [N/m].
+        """
+        return self._made.approach(load)
+
     @property
     def conditions(self) -> tuple[float, float, float]:
         """Entrainment speed, temperature and centrifugal load."""
@@ -769,9 +775,3 @@ class LawAtPoint:
             self.law._outside.keep(Range("load", self._guessed_below, np.inf).excursions(low))
         w, dw_ddelta, dw_drate = (force.reshape(shape)[()] for force in forces)
         return w, dw_ddelta, dw_drate, self.outside or bool(counts.any())
-
-
-def _workspace(table: LawTable) -> FloatArray:
-    """Scratch for the largest of the tables."""
-    width = max(entry.coefficients.shape[2] for entry in (table.own, table.inner, table.outer))
-    return np.empty((4, width // 2, 8))

@@ -167,6 +167,7 @@ class _Functions(NamedTuple):
     make: Callable[..., int]
     force: Callable[..., int]
     call: Callable[..., int]
+    approach: Callable[..., float]
     force_many: Callable[..., None]
     call_many: Callable[..., None]
 
@@ -182,6 +183,7 @@ def _functions() -> _Functions:
         library.function("ehd_law_make", pointer, number, number, number, pointer),
         library.function("ehd_law_force", pointer, number, number, pointer),
         library.function("ehd_law_call", pointer, *[number] * 5, pointer, pointer),
+        library.function("ehd_law_approach", pointer, number, result=number),
         library.function("ehd_law_force_many", pointer, count, *[pointer] * 4, result=None),
         library.function("ehd_law_call_many", pointer, count, *[pointer] * 8, result=None),
     )
@@ -400,6 +402,16 @@ class PointInC:
         found = force.load, force.stiffness, force.damping
         self._free.append(force)
         return found if status == self._status else None
+
+    def approach(self, load: float) -> float:
+        """Approach [m] at which the contacts carry a load at rest, with the whole film; for zero the highest without.
+
+        Parameters
+        ----------
+        load : float
+            w >= 0 on the inner contact [N/m].
+        """
+        return self._functions.approach(self.address, load)
 
     def forces(self, delta: FloatArray, rate: FloatArray) -> tuple[FloatArray, IntArray]:
         """Loads and derivatives at many places.

@@ -19,8 +19,8 @@ import xarray as xr
 from scipy.interpolate import RegularGridInterpolator
 
 from ehdmaps.maps.grid_field import GridField
-from ehdmaps.maps.kernels import kernel
 from ehdmaps.maps.law import ContactLaw
+from ehdmaps.maps.law_in_c import LawInC
 from tests.cases.laws import CONTACTS, OIL, ValleyField, exact_law
 
 POINTS = 200_000
@@ -162,7 +162,7 @@ def main() -> None:
     print(f"{'':26} {'us a point':>11} {'ratio':>9}   {head}")
     for name, cost, error in rows:
         print(f"{name:26} {cost:11.4f} {cost / first:9.1f}   {error:>17}")
-    print(f"collapse for one speed and temperature, in compiled code: {collapse_cost(law):.2f} us")
+    print(f"law at one speed and temperature, made: {collapse_cost(law):.2f} us")
 
 
 def table_size(law: ContactLaw) -> float:
@@ -171,19 +171,14 @@ def table_size(law: ContactLaw) -> float:
 
 
 def collapse_cost(law: ContactLaw) -> float:
-    """Time of `kernel.collapse` in a compiled loop [us]."""
-    from numba import njit
+    """Time of the law at a new speed [us]."""
+    in_c = LawInC(law.table, centrifugal=False)
 
-    @njit
-    def many(table, workspace, counts, times):
-        total = 0.0
-        for i in range(times):
-            point = kernel.collapse(table, workspace, 0.5 + 1e-4 * i, 330.0, 0.0, counts)
-            total += point.own.offset
-        return total
+    def many() -> None:
+        for i in range(1000):
+            in_c.point(0.5 + 1e-4 * i, 330.0, 0.0)
 
-    counts = np.zeros(4, dtype=np.int64)
-    return best_of(lambda: many(law.table, law.workspace(), counts, 1000), 1000)
+    return best_of(many, 1000)
 
 
 if __name__ == "__main__":

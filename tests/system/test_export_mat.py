@@ -15,7 +15,6 @@ from ehdmaps.exports.resampled import READING
 from ehdmaps.jobs.cli import main
 from ehdmaps.jobs.make.generate import generate
 from ehdmaps.jobs.reader import parse_job
-from ehdmaps.maps.kernels.lines import line_approach
 from ehdmaps.physics.closed_form import FormulaSolver
 from tests.cases.jobs import DRY, LINE, SMALL, map_job
 from tests.cases.programs import needed
@@ -123,10 +122,10 @@ def test_octave_reads_the_law(path, tmp_path, capsys):
     law, random = ehdmaps.open_map(path).law("series"), np.random.default_rng(7)
     (slow, fast), (cold, hot), (low, high) = law.speed_range, law.temperature_range, law.load_range
     speed, temperature = np.exp(random.uniform(np.log(slow), np.log(fast), 400)), random.uniform(cold, hot, 400)
-    points = [law.at(*place).point for place in zip(speed, temperature, strict=True)]
+    points = [law.at(*place) for place in zip(speed, temperature, strict=True)]
     loads = np.exp(random.uniform(np.log(low), np.log(high), 400))
-    approach = np.array([line_approach(point.own, load) for point, load in zip(points, loads, strict=True)])
-    below = np.array([line_approach(point.own, 0.3 * low) for point in points[:5]])
+    approach = np.array([point.approach(load) for point, load in zip(points, loads, strict=True)])
+    below = np.array([point.approach(0.3 * low) for point in points[:5]])
     parting = np.array([-1.0])
     inside = (
         np.concatenate([approach, below, parting]),

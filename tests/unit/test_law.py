@@ -10,11 +10,9 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
-from numba import njit
 from scipy.optimize import brentq
 
 from ehdmaps.errors import InputError, OutsideMapError
-from ehdmaps.maps.kernels import kernel
 from ehdmaps.maps.kernels.tables import LOAD, NOT_FINITE, SPEED, TEMPERATURE
 from ehdmaps.maps.law import LOAD_REACH, ContactLaw
 from ehdmaps.maps.law_in_c import LawInC
@@ -32,10 +30,9 @@ def law(kind="series", outside="error", full=False):
 
 def approach_of(at_point, load):
     """Approach at which a law carries a load."""
-    counts = np.zeros(4, dtype=np.int64)
 
     def excess(delta):
-        return kernel.evaluate_at(at_point.point, delta, 0.0, counts)[0] - load
+        return at_point._made.forces(np.array([delta]), np.zeros(1))[0][0, 0] - load
 
     return brentq(excess, -0.1, 0.1, xtol=1e-18, rtol=1e-15)
 
@@ -255,31 +252,6 @@ def test_points_of_every_kind_in_one_call():
     assert counted["temperature"] == np.count_nonzero(temperature == 300.0)
 
 
-def test_compiled_code_can_call_the_law():
-    series = law()
-
-    @njit
-    def bearing(table, workspace, deltas, rate, speed, temperature, q, counts):
-        point = kernel.collapse(table, workspace, speed, temperature, q, counts)
-        total = 0.0
-        direct = 0.0
-        for delta in deltas:
-            w, _, _ = kernel.evaluate_at(point, delta, rate, counts)
-            total += w
-        for delta in deltas:
-            w, _, _ = kernel.evaluate(table, workspace, delta, rate, speed, temperature, q, counts)
-            direct += w
-        return total, direct
-
-    deltas = np.linspace(-1e-5, 2e-5, 41)
-    for speed, q in ((1.0, 0.0), (1.0, 200.0), (0.1, 0.0), (-1.0, 0.0)):
-        counts = np.zeros(4, dtype=np.int64)
-        total, direct = bearing(series.table, series.workspace(), deltas, 1e-4, speed, 330.0, q, counts)
-        wanted = float(np.sum(series(deltas, 1e-4, speed, 330.0, q)[0]))
-        assert (total, direct) == pytest.approx((wanted, wanted), rel=1e-11)
-        assert not np.any(counts)
-
-
 def test_what_is_outside_is_counted_by_cause():
     series = law(outside="clamp")
     in_c = LawInC(series.table, centrifugal=True)
@@ -288,13 +260,10 @@ def test_what_is_outside_is_counted_by_cause():
     temperature = np.array([330.0, 330.0, 300.0, 330.0, 360.0, 330.0])
     forces, counts = in_c.forces((delta, np.zeros(6), speed, temperature, np.zeros(6)))
     assert (counts[LOAD], counts[SPEED], counts[TEMPERATURE], counts[NOT_FINITE]) == (1, 1, 2, 1)
-    workspace, counts = series.workspace(), np.zeros(4, dtype=np.int64)
     for i in range(6):
-        one = in_c.force(delta[i], 0.0, speed[i], temperature[i], 0.0)
-        assert one is None or i == 5
-        got = kernel.evaluate(series.table, workspace, delta[i], 0.0, speed[i], temperature[i], 0.0, counts)
-        assert np.array(got) == pytest.approx(forces[:, i], rel=1e-11, nan_ok=True)
-    assert (counts[LOAD], counts[SPEED], counts[TEMPERATURE], counts[NOT_FINITE]) == (1, 1, 2, 1)
+        assert (in_c.force(delta[i], 0.0, speed[i], temperature[i], 0.0) is None) == (i < 5)
+        one, _ = in_c.forces([np.array([part[i]]) for part in (delta, np.zeros(6), speed, temperature, np.zeros(6))])
+        assert one[:, 0] == pytest.approx(forces[:, i], rel=1e-11, nan_ok=True)
     assert in_c.point(1.0, 330.0, 2e6).counts.tolist() == [1, 0, 0, 0]
     point = in_c.point(1.0, 330.0, 0.0)
     assert point.force(np.inf, 0.0) is None

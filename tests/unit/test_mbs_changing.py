@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from ehdmaps.errors import InputError, OutsideMapError
-from ehdmaps.maps.kernels.roller_balance import balanced_approach, balanced_state, balanced_states
 from mbs.bearings import slice_table as table
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.cylinder import GROWING, WHOLE, Arrays, LawRoom, functions
@@ -93,27 +92,19 @@ def test_cells_are_those_of_the_law(q):
 
 @pytest.mark.parametrize("q", [1e-3, 50.0, 3e3])
 def test_rollers_between_their_contacts_carry_what_both_contacts_do(q):
-    point = map_law().at(1.0, 330.0, q).point
+    at = map_law().at(1.0, 330.0, q)
     loads = np.geomspace(1e-2, 0.9e6, 120)
-    delta = np.array([balanced_approach(point, load) for load in loads])
-    low = point.lift_off - np.array([1e-6, 0.0])
-    delta = np.concatenate((low, delta))
-    states = np.empty((4, delta.size))
-    balanced_states(point, delta, states)
-    assert not np.any(states[:, :2])
-    np.testing.assert_allclose(states[0, 2:], loads, rtol=ITERATION)  # of both iterations
-    alone = np.array([balanced_state(point, at) for at in delta[2:]]).T
-    alone[2] *= alone[0]
-    np.testing.assert_allclose(states[:, 2:], alone, rtol=ITERATION, atol=1e-9 * np.max(np.abs(alone[3])) * (q < 1.0))
-    # slopes of load and damping against central differences; their error is of the second order in the step
-    step = 1e-5 / point.inner.inverse_scale
-    sides = [np.empty((4, loads.size)) for _ in range(2)]
-    for side, sign in zip(sides, (-1.0, 1.0), strict=True):
-        balanced_states(point, delta[2:] + sign * step, side)
-    for k in (0, 2):
-        slope = (sides[1][k] - sides[0][k]) / (2.0 * step)
-        scale = np.max(np.abs(states[k + 1, 2:]))
-        np.testing.assert_allclose(states[k + 1, 2:], slope, rtol=1e-5, atol=1e-6 * scale)
+    delta = np.array([at.approach(load) for load in loads])
+    assert not np.any(at(at.point.lift_off - np.array([1e-6, 0.0]), 0.0)[:2])
+    states = np.array(at(delta, 0.0))
+    np.testing.assert_allclose(states[0], loads, rtol=ITERATION)  # of both iterations
+    # the slope of the load, and that of the damping by a rate, against central differences of the second order
+    step, rate = 1e-5 / at.point.inner.inverse_scale, 1e-5
+    low, high = (np.array(at(delta + sign * step, 0.0)) for sign in (-1.0, 1.0))
+    by_rate = (np.array(at(delta, rate))[1] - np.array(at(delta, -rate))[1]) / (2.0 * rate)
+    for slope, k in ((states[1], 0), (by_rate, 2)):
+        wanted = (high[k] - low[k]) / (2.0 * step)
+        np.testing.assert_allclose(slope, wanted, rtol=1e-5, atol=1e-6 * np.max(np.abs(slope)))
 
 
 def test_what_is_wrong_is_said_and_leaves_no_trace():

@@ -12,8 +12,6 @@ from ehdmaps.jobs import cli
 from ehdmaps.jobs.make.report import reach_lines
 from ehdmaps.maps.edges.reach import known_runs, reach_of
 from ehdmaps.maps.emap import EHDMap, film_between
-from ehdmaps.maps.kernels.kernel import evaluate
-from ehdmaps.maps.kernels.lines import line_approach
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.records import DERIVED
 from ehdmaps.physics.oil_supply import OilSupply
@@ -150,7 +148,7 @@ def test_loads_end_between_points_as_films_do(corner):
 
 def approach_at(law: ContactLaw, load: float, speed: float, temperature: float) -> float:
     """Approach at a load, by the table of the law."""
-    return float(line_approach(law.at(speed, temperature).point.own, load))
+    return law.at(speed, temperature).approach(load)
 
 
 def test_a_load_is_refused_only_where_it_is_not_known(corner):
@@ -184,11 +182,10 @@ def test_blocks_and_points_agree_on_both_sides_of_the_end(corner, outside):
     assert 20 < counts[0] < 180
     each = np.array([law.at(*at)(d, 1e-4) for at, d in zip(zip(u, T, strict=True), delta, strict=True)]).T
     assert block == pytest.approx(each, rel=1e-11)
-    room, again = law.workspace(), np.zeros(4, np.int64)
-    table = law.table
-    one = [evaluate(table, room, d, 1e-4, v, t, 0.0, again) for d, v, t in zip(delta, u, T, strict=True)]
+    law.reset_counts()
+    one = [law(d, 1e-4, v, t) for d, v, t in zip(delta, u, T, strict=True)]
     assert pytest.approx(block, rel=1e-11) == np.array(one).T
-    assert again.tolist() == counts.tolist()
+    assert law.counts.tolist() == counts.tolist()
 
 
 def test_above_its_end_a_clamped_law_is_the_dry_tangent_and_is_continuous(corner):

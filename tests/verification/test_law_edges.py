@@ -243,9 +243,7 @@ def law_at(law, u, T):
 
 
 def point_load(point, delta):
-    from ehdmaps.maps.kernels import kernel
-
-    return kernel.evaluate_at(point.point, float(delta), 0.0, np.zeros(4, dtype=np.int64))[0]
+    return point._made.forces(np.array([float(delta)]), np.zeros(1))[0][0, 0]
 
 
 class Ending:

@@ -506,3 +506,9 @@ int ehd_law_call(const ehd_law_data *D, double approach, double rate, double u, 
     if (refuses(D, status)) return status;
     return ehd_law_force(room, approach, rate, force);
 }
+
+double ehd_law_approach(const ehd_law_point *point, double load) {
+    const double q = point->centrifugal_load;
+    if (q > 0.0) return line_approach(&point->inner, load) + line_approach(&point->outer, load + q);
+    return line_approach(&point->own, load);
+}

@@ -80,3 +80,7 @@ int ehd_law_force(const ehd_law_point *point, double approach, double rate, ehd_
  * ehd_law_point_size bytes. */
 int ehd_law_call(const ehd_law_data *data, double approach, double rate, double u, double T, double q,
                  ehd_law_point *room, ehd_force *force);
+
+/* Approach [m] at which the contacts of a point carry a load [N/m] at rest, with the whole film; for zero the highest
+ * one without. */
+double ehd_law_approach(const ehd_law_point *point, double load);

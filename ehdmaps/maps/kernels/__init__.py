@@ -7,10 +7,7 @@ them:
 ==============  ======================================================================================
 splines         cubic splines on uniform axes: the coefficients of a table, weights, mixed lines
 tables          the arrays of a compiled law
-lines           splines and states in compiled code, with exp and log for it; where films end
-roller_balance  a roller between its two contacts
-kernel          the law at run time, one point at a time, for compiled code
-bulk            the law at run time, many points
+lines           exponential, logarithm and the rule without tension, for kernels that numba compiles
 locked_film     the stiffness of a contact whose film cannot give way
 memory_table    a contact whose film has a memory, as arrays at one speed and temperature
 memory          the same for other programs, step by step, with its energy

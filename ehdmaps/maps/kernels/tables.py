@@ -50,6 +50,19 @@ LOAD_TOLERANCE = 1e-3
 EDGE_TOLERANCE = 1e-6
 """Part of the highest speed, and of the temperatures, by which they may be passed: single precision."""
 
+
+def film_part(speed: float, film_speed: float) -> float:
+    """Part of the film that is there at a speed: 0 at standstill, 1 from `film_speed` on, smooth between.
+
+    Parameters
+    ----------
+    speed, film_speed : float
+        Speeds >= 0 [m/s].
+    """
+    part = 1.0 if speed >= film_speed else speed / film_speed
+    return part * part * part * (10.0 - part * (15.0 - 6.0 * part))
+
+
 POWER_LAW, HALF_SPACE = 0.0, 1.0
 """Kinds of structural law in `LawTable.structure`."""
 

@@ -20,8 +20,8 @@ import numpy as np
 from scipy.interpolate import CubicSpline, PPoly
 
 from ehdmaps.arrays import FloatArray, IntArray
-from ehdmaps.compiled import in_python
 from ehdmaps.errors import SolverError
+from ehdmaps.maps.kernels.tables import film_part
 from ehdmaps.physics.hertz import POINT_LIMIT
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.ball_geometry import BallGeometry
@@ -165,9 +165,7 @@ class BallFilms:
         material : Material
             Material of balls and rings.
         """
-        from ehdmaps.maps.kernels.kernel import film_part  # as those of maps fade
-
-        part = max(float(in_python(film_part)(speed, 1.0)), 1e-30)
+        part = max(film_part(speed, 1.0), 1e-30)  # as those of maps fade
         low, high = self.law.loads
         laws = []
         for contact, side in zip(geometry.contacts(material), self.sides, strict=True):
