@@ -189,7 +189,7 @@ class BallForce:
 
     @property
     def held(self) -> FloatArray:
-        """What the films of both contacts of each ball hold over a step, see `mbs.bearings.balls.ball_memory`.
+        """Numbers that the films of both contacts of each ball hold over a step, see `mbs.bearings.balls.ball_memory`.
 
         Shape (Z, 2, HELD); none, (0, 2, HELD), where they have no memory.
         """

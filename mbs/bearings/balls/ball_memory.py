@@ -34,14 +34,14 @@ _SHORTER = np.array(SHORTER)
 
 @functools.cache
 def _hold() -> Callable[..., None]:
-    """What contacts hold over a step, in C."""
+    """Numbers that contacts hold over a step, by C."""
     place = ctypes.c_void_p
     return function("ehd_ball_hold", ctypes.c_int64, place, ctypes.c_double, *5 * (place,), result=None)
 
 
 @functools.cache
 def _go_on() -> Callable[..., None]:
-    """Contacts at the end of a step, in C."""
+    """States of contacts at the end of a step, by C."""
     return function("ehd_ball_go_on", ctypes.c_int64, *5 * (ctypes.c_void_p,), result=None)
 
 
