@@ -16,11 +16,11 @@
 #define NO_LOAD_LEFT 1e-20
 #define FILM_PI 3.141592653589793
 
-/* Compliance that locked oil takes off a contact, in 4/E' for each ln(1 + 2 h R/b^2): the first number, and the second one
- * times -d(ln h)/d(ln w), which is 1 for a rigid film of constant viscosity, and falls where its inlet is piezoviscous or
- * it is elastic. Fitted with FVA 3, as the longest relaxation time c/(k_s - k) is, in natural times
- * sqrt(b^2 + 2 h R)/u: the complex stiffness is right within 7 % up to ten natural frequencies, and with other oils within
- * 6 % up to L = 40 and 9 % above. A factor from the map makes that 5 % and 7 %. */
+/* Compliance that locked oil takes off a contact, in 4/E' for each ln(1 + 2 h R/b^2): the first number, and the second
+ * one times -d(ln h)/d(ln w), which is 1 for a rigid film of constant viscosity, and falls where its inlet is
+ * piezoviscous or it is elastic. Fitted with FVA 3, as the longest relaxation time c/(k_s - k) is, in natural times
+ * sqrt(b^2 + 2 h R)/u: the complex stiffness is right within 7 % up to ten natural frequencies, and with other oils
+ * within 6 % up to L = 40 and 9 % above. A factor from the map makes that 5 % and 7 %. */
 #define LOCKED 0.02
 #define LOCKED_BY_LOAD 0.087
 #define LONGEST_MEMORY 1.4
@@ -144,8 +144,8 @@ static void fill_film_nodes(const ehd_film_data *data, const locked_factors *fac
             double solids;
             const double dry = structural_approach(point->data, 0.0, p[i], &solids);
             const double c = most(rest.w * rest.ratio, LEAST_DAMPING * k[i]);
-            const double stiff = locked_stiffness(&data->contacts, point->entrainment_speed, dry - approach, p[i], k[i], c, solids,
-                                                  locked_factor(data, factors, p[i]));
+            const double stiff = locked_stiffness(&data->contacts, point->entrainment_speed, dry - approach, p[i], k[i],
+                                                  c, solids, locked_factor(data, factors, p[i]));
             by_y[i] = 1.0 - k[i] / stiff;
             by_c[i] = by_y[i] > LEAST_FILM ? c / by_y[i] : 0.0; /* without film nothing is squeezed */
             slope[i] = 1.0 / stiff - solids;

@@ -4,8 +4,8 @@
 
 EHD_SIZE_OF(ehd_film_table)
 
-/* Fill a table with the law of a point without centrifugal load. The factors of the closed formula are those of one speed
- * and temperature; node: room for (9, EHD_NODES) numbers. */
+/* Fill a table with the law of a point without centrifugal load. The factors of the closed formula are those of one
+ * speed and temperature; node: room for (9, EHD_NODES) numbers. */
 void ehd_film_fill(const ehd_film_data *data, const ehd_law_point *point, double *node, ehd_film_table *table);
 
 /* Factors of the closed formula at loads, out (n), of data of one speed and temperature. */
@@ -21,8 +21,9 @@ void ehd_film_stretches(const ehd_film_table *table, int64_t n, const double *lo
 void ehd_film_steps(const ehd_film_table *table, double step, double last_step, int64_t n, const double *approach,
                     const double *before, const double *change, double *out);
 
-/* x = G' at the end of a step by the changes of G over it and over the last one, and its slope by the first: out (2, n). */
-void ehd_film_squeezes(double step, double last_step, int64_t n, const double *change, const double *last, double *out);
+/* x = G' at the end of a step by the changes of G over it and over the last one, and its slope: out (2, n). */
+void ehd_film_squeezes(double step, double last_step, int64_t n, const double *change, const double *last,
+                       double *out);
 
 /* Energy that contacts store, out (n). */
 void ehd_film_energies(const ehd_film_table *table, int64_t n, const double *state, const double *load, double *out);
@@ -36,8 +37,9 @@ void ehd_film_locked(const ehd_film_contacts *contacts, int64_t n, const double 
                      const double *compliance, double *out);
 
 /* Stiffness of the locked film, out (n); see locked_stiffness. */
-void ehd_film_stiff(const ehd_film_contacts *contacts, double speed, int64_t n, const double *offset, const double *load,
-                    const double *k, const double *c, const double *solids, const double *factor, double *out);
+void ehd_film_stiff(const ehd_film_contacts *contacts, double speed, int64_t n, const double *offset,
+                    const double *load, const double *k, const double *c, const double *solids, const double *factor,
+                    double *out);
 
 void ehd_film_fill(const ehd_film_data *data, const ehd_law_point *point, double *node, ehd_film_table *table) {
     const locked_factors factors = factors_at(data, 0.0, COLDEST + 1.0);
@@ -81,7 +83,8 @@ void ehd_film_steps(const ehd_film_table *table, double step, double last_step, 
     }
 }
 
-void ehd_film_squeezes(double step, double last_step, int64_t n, const double *change, const double *last, double *out) {
+void ehd_film_squeezes(double step, double last_step, int64_t n, const double *change, const double *last,
+                       double *out) {
     const weights by = weights_of(step, last_step);
     for (int64_t i = 0; i < n; i++) {
         const reading x = squeeze(by, change[i], last[i], fading_of(last[i]));
@@ -104,8 +107,9 @@ void ehd_film_locked(const ehd_film_contacts *contacts, int64_t n, const double 
     for (int64_t i = 0; i < n; i++) out[i] = locked_compliance(contacts, offset[i], load[i], compliance[i]);
 }
 
-void ehd_film_stiff(const ehd_film_contacts *contacts, double speed, int64_t n, const double *offset, const double *load,
-                    const double *k, const double *c, const double *solids, const double *factor, double *out) {
+void ehd_film_stiff(const ehd_film_contacts *contacts, double speed, int64_t n, const double *offset,
+                    const double *load, const double *k, const double *c, const double *solids, const double *factor,
+                    double *out) {
     for (int64_t i = 0; i < n; i++)
         out[i] = locked_stiffness(contacts, speed, offset[i], load[i], k[i], c[i], solids[i], factor[i]);
 }

@@ -24,14 +24,15 @@ typedef struct ehd_film_block {
     double *clock;          /* (4) */
     const ehd_film_table *tables; /* (films, nodes): over the speed */
     ehd_film_table *mixed;  /* (films): in use */
-    double *in_use;         /* (films, 2): node and weight of those; negative for none, NaN to be mixed anew at its turn */
+    double *in_use;         /* (films, 2): node and weight of those; negative for none, NaN to be mixed at its turn */
 } ehd_film_block;
 
 EHD_SIZE_OF(ehd_film_block)
 
 int ehd_film_block_answer(void *data, const ehd_moment *at, const double *motion, ehd_answers *answers);
 void ehd_film_block_accept(void *data, const ehd_moment *at);
-void ehd_film_block_powers(void *data, const ehd_moment *at, const double *motion, const ehd_answers *answers, double *out);
+void ehd_film_block_powers(void *data, const ehd_moment *at, const double *motion, const ehd_answers *answers,
+                           double *out);
 
 /* Bring the table in use to a place between two nodes, straight in ln of the speed, number by number. */
 static void mix_film(ehd_film_block *block, int64_t film, int64_t node, double weight) {
@@ -46,7 +47,9 @@ static void mix_film(ehd_film_block *block, int64_t film, int64_t node, double w
     for (size_t i = 0; i < count; i++) out[i] = low[i] + weight * (high[i] - low[i]);
 }
 
-static int64_t film_slices_of(const ehd_film_block *block, int64_t b) { return block->rings.rollers[b] * block->rings.slices[b]; }
+static int64_t film_slices_of(const ehd_film_block *block, int64_t b) {
+    return block->rings.rollers[b] * block->rings.slices[b];
+}
 
 static double *film_memory_of(const ehd_film_block *block, int64_t b, int64_t side) {
     return block->memory + (b * block->rings.sides + side) * SLICE_ROWS * block->most;
@@ -65,11 +68,11 @@ static int64_t film_number_of(const ehd_film_block *block, int64_t b, int64_t si
 static void begin_films(ehd_film_block *block, const ehd_moment *at) {
     double *clock = block->clock;
     const ehd_film_course *course = &block->course;
-    const int64_t steps = (int64_t)clock[CLOCK_STEPS], kept = course->kept[at->step];
+    const int64_t steps = (int64_t)clock[CLOCK_STEPS], kept = course->kept[at->step], first = at->step * course->films;
     clock[CLOCK_TRIED] = at->time;
     for (int64_t f = 0; f < course->films; f++)
         if (block->in_use[2 * f] < 0.0 || steps % kept == 0)
-            mix_film(block, f, course->nodes[at->step * course->films + f], course->weights[at->step * course->films + f]);
+            mix_film(block, f, course->nodes[first + f], course->weights[first + f]);
     const double growth = clock[CLOCK_LAST] > 0.0 ? (at->time - clock[CLOCK_ACCEPTED]) / clock[CLOCK_LAST] : 0.0;
     for (int64_t b = 0; b < block->rings.count; b++)
         for (int64_t side = 0; side < block->rings.sides; side++)
@@ -83,7 +86,8 @@ static int find_loads(ehd_film_block *block, int64_t b, int64_t side, const ehd_
     const ehd_film_table *film = block->mixed + film_number_of(block, b, side);
     const weights step = weights_of(at->time - block->clock[CLOCK_ACCEPTED], block->clock[CLOCK_LAST]);
     double *loads = film_loads_of(block, b, side);
-    slice_loads(film, step, n, film_memory_of(block, b, side), block->approaches, loads, loads + block->most, block->work);
+    slice_loads(film, step, n, film_memory_of(block, b, side), block->approaches, loads, loads + block->most,
+                block->work);
     for (int64_t i = 0; i < n; i++)
         if (loads[i] > film->highest) return 1;
     return 0;
@@ -160,7 +164,8 @@ int ehd_film_block_answer(void *data, const ehd_moment *at, const double *motion
         if (status < 0) return EHD_NO_SOLUTION;
         if (status > 0 && block->strict[b]) return EHD_IN_PYTHON;
         for (int64_t side = 0; side < rings->sides; side++) {
-            const int64_t outside = block->course.outside[at->step * block->course.films + film_number_of(block, b, side)];
+            const int64_t place = at->step * block->course.films + film_number_of(block, b, side);
+            const int64_t outside = block->course.outside[place];
             status = outside > status ? outside : status;
         }
         answers->outside[rings->places[b]] += status;

@@ -49,7 +49,8 @@ static double film_energy(const ehd_film_table *film, double state) {
 static double load_energy(const ehd_film_table *film, double load) {
     double total = 0.0;
     for (int row = 0; row < EHD_LOAD_ROWS; row++) {
-        const double begin = cell_end(row) - 1.0, end = row == EHD_LOAD_ROWS - 1 ? load : least(load, cell_end(row + 1) - 1.0);
+        const double begin = cell_end(row) - 1.0, far = cell_end(row + 1) - 1.0;
+        const double end = row == EHD_LOAD_ROWS - 1 ? load : least(load, far);
         if (load <= begin) break;
         for (int i = 0; i < 3; i++) {
             const double t = GAUSS_PLACE[i] * (end - begin);

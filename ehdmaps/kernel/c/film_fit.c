@@ -25,9 +25,9 @@ typedef struct ehd_film_response {
 
 EHD_SIZE_OF(ehd_film_response)
 
-/* Relative differences of the complex stiffness of the law, k + i omega c/(1 + i omega theta), with a factor of the closed
- * formula, from that of the film solver; into apart (count, 2), real and imaginary parts, unless it is null. Returns the
- * sum of their squares. */
+/* Relative differences of the complex stiffness of the law, k + i omega c/(1 + i omega theta), with a factor of the
+ * closed formula, from that of the film solver; into apart (count, 2), real and imaginary parts, unless it is null.
+ * Returns the sum of their squares. */
 double ehd_film_differences(const ehd_film_response *at, double factor, double *apart);
 
 /* The factor, between 1/most and most. doubt: relative difference below which a response says nothing. */

@@ -10,10 +10,15 @@
  * A step is begin_slices, slice_loads as often as the system asks for them, and commit_slices.
  * ------------------------------------------------------------------------------------------------------------------ */
 
-#define PARABOLA_PART 0.015625      /* how far a parabola reaches, as a part of the distance from the centre: a cell or less */
-#define PARABOLA_LOAD_PART 0.0625   /* the same in the load */
-#define SLICE_TOLERANCE 3e-7        /* a slice has its state when the last move changed its load by less than this part */
-#define SLICE_SMALL 30.0            /* of the load and this [N/m]: what is left is the square */
+/* How far a parabola reaches, as a part of the distance from the centre, a cell or less, and in the load. */
+#define PARABOLA_PART 0.015625
+#define PARABOLA_LOAD_PART 0.0625
+
+/* A slice has its state when the last move changed its load by less than a part of the load and a small one [N/m]: what
+ * is left is the square, which has to lie below what the equations of motion are solved to. */
+#define SLICE_TOLERANCE 3e-7
+#define SLICE_SMALL 30.0
+
 #define SLICE_ROUNDS 12
 #define SLICE_LEAST 1e-30
 #define SLICE_ROWS 22 /* of the memory */
@@ -53,7 +58,8 @@ static void read_parabolas(const ehd_film_table *film, int64_t n, double *memory
     m[n * AT_Y] = c[4] + t * (c[5] + t * (c[6] + t * c[7]));
     m[n * (AT_Y + 1)] = (c[5] + t * (2.0 * c[6] + 3.0 * t * c[7])) * per;
     m[n * (AT_Y + 2)] = (c[6] + 3.0 * t * c[7]) * per * per;
-    const double slope = (c[9] + t * (2.0 * c[10] + 3.0 * t * c[11])) * per, bend = (c[10] + 3.0 * t * c[11]) * per * per;
+    const double slope = (c[9] + t * (2.0 * c[10] + 3.0 * t * c[11])) * per;
+    const double bend = (c[10] + 3.0 * t * c[11]) * per * per;
     const double ahead = xi - m[n * AT_LATEST];
     m[n * AT_G] = fabs(ahead) <= reach ? ahead * (slope - ahead * bend)
                                        : c[8] + t * (c[9] + t * (c[10] + t * c[11])) - squeezing(film, m[n * AT_LATEST]);
@@ -96,9 +102,9 @@ static void begin_slices(const ehd_film_table *film, double growth, int64_t coun
 
 /* A Newton step for the states of all slices, with loads and tangents there; how many still move. trial is its row of the
  * memory: so compilers see that nothing that is written is read elsewhere, and make vector instructions of it. */
-SLICE_CLONES static int64_t round_slices(weights step, int64_t n, const double *restrict memory, double *restrict trial,
-                            const double *restrict delta, double *restrict load, double *restrict tangent,
-                            double *restrict excess) {
+SLICE_CLONES static int64_t round_slices(weights step, int64_t n, const double *restrict memory,
+                                         double *restrict trial, const double *restrict delta, double *restrict load,
+                                         double *restrict tangent, double *restrict excess) {
     const double *around = memory + n * AT_AROUND, *loaded = memory + n * AT_LOADED;
     const double *last = memory + n * AT_CHANGE, *fading = memory + n * AT_FADE;
     const double *p0 = memory + n * AT_P, *p1 = p0 + n, *p2 = p1 + n;
@@ -141,7 +147,8 @@ static void give_unsettled(weights step, int64_t n, double *memory, const double
 static void slice_loads(const ehd_film_table *film, weights step, int64_t n, double *memory, const double *delta,
                         double *load, double *tangent, double *work) {
     int64_t left = 1;
-    for (int k = 0; k < SLICE_ROUNDS && left > 0; k++) left = round_slices(step, n, memory, memory + n * AT_TRIAL, delta, load, tangent, work);
+    for (int k = 0; k < SLICE_ROUNDS && left > 0; k++)
+        left = round_slices(step, n, memory, memory + n * AT_TRIAL, delta, load, tangent, work);
     if (left > 0) give_unsettled(step, n, memory, delta, load, tangent, work);
     for (int64_t i = 0; i < n; i++) {
         double *m = memory + i;

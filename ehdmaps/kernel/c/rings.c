@@ -119,7 +119,8 @@ static void begin_massless(const ehd_rings *rings, int64_t b, ehd_answers *answe
 static void add_massless(const ehd_rings *rings, int64_t b, const ring_roller *roller, const ring_contact *contact,
                          ehd_answers *answers) {
     const int64_t first = rings->firsts[b], felt = rings->felt[b];
-    const double flat[4] = {roller->cosine, roller->sine, 0.0, 0.0}, tilted[4] = {0.0, 0.0, -roller->sine, roller->cosine};
+    const double flat[4] = {roller->cosine, roller->sine, 0.0, 0.0};
+    const double tilted[4] = {0.0, 0.0, -roller->sine, roller->cosine};
     for (int64_t p = 0; p < felt; p++) {
         double *row = answers->slopes + (first + p) * answers->m + first;
         const double by_flat = flat[p] * contact->flat + tilted[p] * contact->mixed;
@@ -140,7 +141,8 @@ static void begin_bodies(const ehd_rings *rings, int64_t b, const ehd_moment *at
     for (int64_t r = own; r < own + rings->rollers[b]; r++) {
         answers->force[r] = outward;
         answers->slopes[r * m + r] = 0.0;
-        for (int64_t i = first; i < first + RING_FELT; i++) answers->slopes[r * m + i] = answers->slopes[i * m + r] = 0.0;
+        for (int64_t i = first; i < first + RING_FELT; i++)
+            answers->slopes[r * m + i] = answers->slopes[i * m + r] = 0.0;
     }
 }
 

@@ -24,7 +24,7 @@ import numpy as np
 
 from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.kernel.library import checked, function
-from ehdmaps.kernel.record import Record, numbers
+from ehdmaps.kernel.record import Record, at, numbers
 from ehdmaps.maps.kernels.memory_table import called
 from ehdmaps.physics.contact import LineContact
 
@@ -140,7 +140,7 @@ def _each(name: str, film: Film, numbers: tuple[float, ...], arrays: Sequence[Fl
     """Answer of a function of many contacts: numbers, the count, arrays (n,)."""
     kept = [np.ascontiguousarray(array, dtype=np.float64) for array in arrays]
     out, geometry = np.empty(kept[0].size), geometry_of(film)
-    called(name)(geometry.ctypes.data, *numbers, out.size, *(array.ctypes.data for array in kept), out.ctypes.data)
+    called(name)(at(geometry), *numbers, out.size, *(at(array) for array in kept), at(out))
     return out
 
 
@@ -246,7 +246,7 @@ def law_differences(
     """
     point = _response_at(film, load, offset, solids, compliance, loss, natural, response)
     apart = np.empty(natural.size, dtype=np.complex128)
-    _fitting()[1](point.address, factor, apart.ctypes.data)
+    _fitting()[1](point.address, factor, at(apart))
     return apart
 
 

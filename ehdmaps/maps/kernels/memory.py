@@ -27,7 +27,7 @@ import numpy.typing as npt
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.kernel.library import checked
-from ehdmaps.kernel.record import Record, numbers
+from ehdmaps.kernel.record import Record, at, numbers
 from ehdmaps.maps.kernels.locked_film import LockedFactors, film_of, geometry_of
 from ehdmaps.maps.kernels.memory_table import NUMBERS, ROWS, MemoryTable, called, equilibrium_at
 from ehdmaps.maps.kernels.tables import Point
@@ -95,7 +95,7 @@ class FilmMemory:
         self._check = check
         table = MemoryTable(np.empty(NUMBERS))
         data, room, fill = film_data(contacts, factors), np.empty((9, 2 * ROWS + 1)), called("ehd_film_fill")
-        with_point(point, entrainment_speed, lambda at: fill(data.address, at, room.ctypes.data, table.address))
+        with_point(point, entrainment_speed, lambda where: fill(data.address, where, at(room), table.address))
         self._table = table
 
     @property
@@ -154,12 +154,15 @@ class FilmMemory:
             )
         if not (isinstance(dt, int | float) and 0.0 < dt < math.inf):
             raise InputError(f"film memory, dt: got {dt!r} s; allowed: finite and > 0 s")
-        found = np.empty((4, ends.size))
-        parts = [np.ascontiguousarray(part) for part in (ends, state.approach, state.change)]
+        size, rows = ends.size, np.empty((7, *ends.shape))
+        rows[0], rows[1], rows[2] = ends, state.approach, state.change
+        first, row = at(rows), 8 * size
         called("ehd_film_steps")(
-            self._table.address, dt, state.step, ends.size, *(part.ctypes.data for part in parts), found.ctypes.data
+            self._table.address, dt, state.step, size, first, first + row, first + 2 * row, first + 3 * row
         )
-        w, tangent, approach, changed = (row.reshape(ends.shape) for row in found)
+        w, tangent, approach, changed = rows[3:]
+        if ends.ndim == 0:
+            w, tangent, approach, changed = (np.asarray(value) for value in (w, tangent, approach, changed))
         self._check(w)
         return w[()], tangent[()], FilmState(approach, changed, w, float(dt))
 
@@ -173,8 +176,8 @@ class FilmMemory:
 
     def _energies(self, name: str, *arrays: FloatArray) -> FloatArray:
         """Energies by a function of the kernel."""
-        kept, out = [np.ascontiguousarray(array) for array in arrays], np.empty(arrays[0].shape)
-        called(name)(self._table.address, out.size, *(array.ctypes.data for array in kept), out.ctypes.data)
+        kept, out = [np.ascontiguousarray(array, dtype=np.float64) for array in arrays], np.empty(arrays[0].shape)
+        called(name)(self._table.address, out.size, *(at(array) for array in kept), at(out))
         return out
 
 
@@ -219,6 +222,6 @@ def _finite(name: str, values: npt.ArrayLike) -> FloatArray:
         array = np.asarray(values, dtype=np.float64)
     except (TypeError, ValueError):
         raise InputError(f"film memory, {name}: got {values!r}; allowed: real numbers") from None
-    if not np.all(np.isfinite(array)):
+    if not np.isfinite(array).all():
         raise InputError(f"film memory, {name}: got {array[~np.isfinite(array)].flat[0]}; allowed: finite numbers")
     return array

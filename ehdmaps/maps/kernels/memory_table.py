@@ -34,6 +34,7 @@ import numpy.typing as npt
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.kernel.library import function
+from ehdmaps.kernel.record import at
 from ehdmaps.maps.kernels.tables import rows_of
 
 LIGHTEST = 1.0
@@ -61,12 +62,14 @@ class MemoryTable:
     ----------
     numbers : array (NUMBERS,)
         The same.
+    address : int
+        Address of the numbers, for `ctypes.c_void_p`.
     """
 
-    __slots__ = ("numbers",)
+    __slots__ = ("address", "numbers")
 
     def __init__(self, numbers: FloatArray) -> None:
-        self.numbers = numbers
+        self.numbers, self.address = numbers, at(numbers)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return MemoryTable, (self.numbers,)
@@ -103,11 +106,6 @@ class MemoryTable:
     def load_cells(self) -> FloatArray:
         """Cubics of a [m] over the distance from the lower end of a cell, in `LIGHTEST`, (LOAD_ROWS, 4)."""
         return self.numbers[_FIRST_LOAD:].reshape(LOAD_ROWS, _LOAD_CELL)
-
-    @property
-    def address(self) -> int:
-        """Address of the numbers, for `ctypes.c_void_p`."""
-        return self.numbers.ctypes.data
 
 
 def equilibrium_at(table: MemoryTable, approach: npt.ArrayLike) -> tuple[Any, Any, Any, Any, Any, Any]:
@@ -158,7 +156,7 @@ def rate_of(h: float, last_h: float, change: npt.ArrayLike, last: npt.ArrayLike)
     one, other = np.broadcast_arrays(np.asarray(change, dtype=np.float64), np.asarray(last, dtype=np.float64))
     ends, begins = np.ascontiguousarray(one), np.ascontiguousarray(other)
     out = np.empty((2, *one.shape))
-    called("ehd_film_squeezes")(h, last_h, one.size, ends.ctypes.data, begins.ctypes.data, out.ctypes.data)
+    called("ehd_film_squeezes")(h, last_h, one.size, at(ends), at(begins), at(out))
     return out[0][()], out[1][()]
 
 
@@ -167,7 +165,7 @@ def _read(name: str, table: MemoryTable, places: npt.ArrayLike, count: int) -> l
     array = np.asarray(places, dtype=np.float64)
     flat = np.ascontiguousarray(array).reshape(-1)
     out = np.empty((count, flat.size))
-    called(name)(table.address, flat.size, flat.ctypes.data, out.ctypes.data)
+    called(name)(table.address, flat.size, at(flat), at(out))
     return [row.reshape(array.shape)[()] for row in out]
 
 
