@@ -16,7 +16,9 @@ state xi alone. The last one is taken up for good. This holds at one speed and t
 from __future__ import annotations
 
 import ctypes
+import functools
 import math
+import threading
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -94,7 +96,7 @@ class FilmMemory:
             )
         self._check = check
         table = MemoryTable(np.empty(NUMBERS))
-        data, room, fill = film_data(contacts, factors), np.empty((9, 2 * ROWS + 1)), called("ehd_film_fill")
+        data, room, fill = film_data(contacts, factors), _room(), called("ehd_film_fill")
         with_point(point, entrainment_speed, lambda where: fill(data.address, where, at(room), table.address))
         self._table = table
 
@@ -202,10 +204,27 @@ class _FilmData(Record):
     shapes: ClassVar = {"factors": ("speeds", "temperatures", "loads")}
 
 
+@functools.cache
+def _film_record() -> type[_FilmData]:
+    """The struct, after it was compared with that in C."""
+    return checked(_FilmData, "ehd_film_data")
+
+
+_own = threading.local()
+
+
+def _room() -> FloatArray:
+    """Values at the nodes while a table is made, of this thread."""
+    if not hasattr(_own, "room"):
+        _own.room = np.empty((9, 2 * ROWS + 1))
+    room: FloatArray = _own.room
+    return room
+
+
 def film_data(contacts: Sequence[LineContact], factors: LockedFactors) -> Record:
     """Contacts in series and the factors of one speed and temperature, for C."""
     values = np.ascontiguousarray(factors.values, dtype=np.float64)
-    return checked(_FilmData, "ehd_film_data")(
+    return _film_record()(
         contacts=geometry_of(film_of(contacts, 0.0)),
         speeds=1,
         temperatures=1,
