@@ -1,12 +1,12 @@
 """Tables of a contact law over the speed of a system, for runs whose speed changes all the time.
 
-Making a table of `mbs.bearings.slice_table` costs fifty bearing forces, too much for each step. Its cells lie at equal
+Making a table of `mbs.bearings.slice_table` costs thirty bearing forces, too much for each step. Its cells lie at equal
 places z = (delta - centre)/scale at all speeds; so a run makes tables at nodes evenly spaced in ln of the speed, as
 it comes to them, and takes between two nodes the straight blend of cells, centre and scale. The nodes are so close
 that the blend is wrong by less than the tables are: `STEP` makes some 1e-8 of load and stiffness of a bearing.
 
-Below the speeds with a whole film one table serves all: what is left of the film moves its knots, see `fade` of
-`mbs.bearings.slice_table`. With a centrifugal load, which changes with the speed, each step has a table of its own.
+Below the speeds with a whole film one table serves all: what is left of the film moves its knots, see `cylinder_law.c`
+of `ehdmaps.kernel`. With a centrifugal load, which changes with the speed, each step has a table of its own.
 
 A few slots hold the nodes and are used again and again. Below a lowest speed, where a film fades out, laws change with
 the speed itself and not with its logarithm: nodes there are evenly spaced in the speed, as closely as at the lowest
