@@ -7,7 +7,6 @@
 `films`                pressure, films and rolling force at a load: dry, by formula, by map
 `slice_table`          a law at one speed as a table that slices read: its kinds and numbers
 `cylinder`             structs and functions of a bearing in C
-`slices`               powers in compiled code, for tapered rollers
 `force_at_point`       the force at one speed, temperature and centrifugal load; loads of the rollers
 `bearing_force`        the force element, with films at once or in time, its energy and the moment on its cage
 `roller_contacts`      contacts one by one: films that relax, rollers as bodies between two contacts

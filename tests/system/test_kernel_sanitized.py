@@ -15,7 +15,10 @@ from tests.cases.programs import needed
 ROOT = Path(__file__).parents[2]
 DATA = ROOT / "tests" / "data" / "c"
 
-FROM_PYTHON = ("tests/unit/test_mbs_gear.py", "tests/unit/test_ball_force.py")
+FROM_PYTHON = (
+    "tests/unit/test_mbs_gear.py", "tests/unit/test_ball_force.py", "tests/unit/test_mbs_changing.py",
+    "tests/unit/test_mbs_level.py", "tests/unit/test_mbs_rollers.py", "tests/unit/test_mbs_table_law.py",
+)  # fmt: skip
 """Tests that call the library from Python, and where numba compiles nothing, or little."""
 
 pytestmark = pytest.mark.slow

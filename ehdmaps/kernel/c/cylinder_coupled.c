@@ -59,7 +59,10 @@ static int read_coupled(const ehd_cylinder_law *law, const coupled_roller *c) {
     }
     if (numbers->kind == EHD_CELLS) {
         read_cells(law->cells, s);
-        for (int64_t i = 0; i < 2 * c->size; i++) s->slope[0][i] *= numbers->slope;
+        for (int64_t i = 0; i < c->size; i++) {
+            s->slope[i][0] *= numbers->slope;
+            s->slope[i][1] *= numbers->slope;
+        }
     }
     return status & EHD_ABOVE_LOAD;
 }
