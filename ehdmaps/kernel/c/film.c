@@ -124,10 +124,10 @@ static double locked_stiffness(const ehd_film_contacts *contacts, double speed, 
 
 /* Values at the nodes: p, y, G and their slopes over the approach; what a has beyond the structure. */
 static void fill_film_nodes(const ehd_film_data *data, const locked_factors *factors, const ehd_law_point *point,
-                            ehd_film_nodes node, ehd_film_table *film) {
-    double *p = node[NODE_P], *z = node[NODE_Z], *k = node[NODE_K], *y = node[NODE_Y];
-    double *g = node[NODE_G], *by_y = node[NODE_BY_Y], *by_c = node[NODE_BY_C];
-    double *beyond = node[NODE_BEYOND], *slope = node[NODE_SLOPE];
+                            ehd_film_nodes at_nodes, ehd_film_table *film) {
+    double *p = at_nodes[NODE_P], *z = at_nodes[NODE_Z], *k = at_nodes[NODE_K], *y = at_nodes[NODE_Y];
+    double *g = at_nodes[NODE_G], *by_y = at_nodes[NODE_BY_Y], *by_c = at_nodes[NODE_BY_C];
+    double *beyond = at_nodes[NODE_BEYOND], *slope = at_nodes[NODE_SLOPE];
     double last_approach = 0.0;
     for (int i = 0; i < EHD_NODES; i++) {
         z[i] = node_place(i);
@@ -175,8 +175,8 @@ static void fill_film_cells(ehd_film_nodes n, ehd_film_table *film) {
 }
 
 /* Cells of a: the structure and what is beyond it, which is straight in its slope between the nodes of p. */
-static void fill_load_cells(const ehd_law_data *law, ehd_film_nodes node, ehd_film_table *film) {
-    const double *p = node[NODE_P], *beyond = node[NODE_BEYOND], *slopes = node[NODE_SLOPE];
+static void fill_load_cells(const ehd_law_data *law, ehd_film_nodes at_nodes, ehd_film_table *film) {
+    const double *p = at_nodes[NODE_P], *beyond = at_nodes[NODE_BEYOND], *slopes = at_nodes[NODE_SLOPE];
     double before = 0.0, slope_before = INFINITY;
     int i = 0;
     while (i < EHD_NODES - 1 && p[i + 1] <= 0.0) i++;
@@ -222,15 +222,15 @@ static reading stretch(const ehd_film_table *film, double load) {
 
 /* Fill a table with the law of a point without centrifugal load. */
 static void fill_film(const ehd_film_data *data, const locked_factors *factors, const ehd_law_point *point,
-                      ehd_film_nodes node, ehd_film_table *film) {
+                      ehd_film_nodes at_nodes, ehd_film_table *film) {
     /* a faded film takes its part of the offset, and of the approach of lift-off */
     film->centre = point->film * point->own.offset;
     film->lift_off = point->film * point->lift_off;
     film->inverse_scale = point->own.inverse_scale;
     film->highest = point->highest_load * (1.0 + LOAD_TOLERANCE);
-    fill_film_nodes(data, factors, point, node, film);
-    fill_film_cells(node, film);
-    fill_load_cells(point->data, node, film);
+    fill_film_nodes(data, factors, point, at_nodes, film);
+    fill_film_cells(at_nodes, film);
+    fill_load_cells(point->data, at_nodes, film);
     film->least_damping = EHD_SHORTEST_MEMORY / stretch(film, point->highest_load).slope;
 }
 
