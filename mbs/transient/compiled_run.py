@@ -125,6 +125,7 @@ class CompiledRun:
             counter=self._counter,
             room=np.zeros(room(n, m, count)),
         )
+        self._numbers_of: dict[float, Numbers] = {}
         self.compiled = 0
         self._take_over()
         self._record(0)
@@ -314,9 +315,11 @@ class CompiledRun:
 
     def _numbers(self, h: float) -> Numbers:
         """Numbers of the method."""
+        if h in self._numbers_of:
+            return self._numbers_of[h]
         method = self._method
         by_q, by_v = method.weights(h)
-        return Numbers(
+        self._numbers_of[h] = found = Numbers(
             h=h,
             by_q=by_q,
             by_v=by_v,
@@ -330,6 +333,7 @@ class CompiledRun:
             residual=self._settings.residual,
             iterations=ITERATIONS,
         )
+        return found
 
 
 def _damping_parts(system: System, modes: FloatArray) -> dict[str, Any]:
