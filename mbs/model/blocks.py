@@ -178,10 +178,6 @@ class Kind:
     placed : callable or None
         Gives an element as it stands in a system, from the rows (ports, coordinates) by which its ports move: one that
         feels less, where the bodies cannot do all that it could feel. What is not felt costs nothing.
-    arrays : type or None
-        Class of the named tuple that functions take which numba compiles.
-    rare : bool
-        Whether what numba compiles is without the kind where there are none of it.
     """
 
     answer: Function
@@ -192,5 +188,3 @@ class Kind:
     accept: Function = None
     powers: Function = None
     placed: Callable[[Any, FloatArray], Any] | None = None
-    arrays: type | None = None
-    rare: bool = False

@@ -72,7 +72,7 @@ class CompiledRun:
         self._speed, self._settings, self._stepper = speed, settings, stepper
         values, modes = scipy.linalg.eigh(system.stiffness, system.mass)
         self._modes, self._by_mass = np.ascontiguousarray(modes), np.ascontiguousarray(modes.T @ system.mass)
-        self._elements = self._elements_of(system)
+        self._elements = RunElements.of(system.elements)
         expand = self._elements.expand
         self._back = np.linalg.pinv(expand) if expand.size else expand.T
         ports = np.concatenate([np.zeros((0, system.size)), *(entry.transform for entry in system.elements)])
@@ -238,10 +238,6 @@ class CompiledRun:
         exchanged = np.where(elements.told[:, None], self._exchanged, math.nan)
         loads, taken = self._sums.tolist()
         return self._stepper.account.sums.plus(Sums(loads, taken, self._lost, works, exchanged))
-
-    def _elements_of(self, system: System) -> RunElements:
-        """The elements as blocks."""
-        return RunElements.of(system.elements)
 
     def _make(self, linear: Linear, numbers: Numbers, data: Sequence[Any], course: Course) -> tuple[int, int, float]:
         """Make steps in compiled code: how many were made, how it ended, and the error of the last one."""

@@ -41,8 +41,3 @@ def kind_of(element: Element) -> Kind | None:
     """Kind of an element in compiled code; None if it has none. A class that inherits from a known one is another."""
     kind = KINDS.get(type(element))
     return kind if kind is not None and kind.takes(element) else None
-
-
-def is_numba(kind: Kind) -> bool:
-    """Tell whether numba compiles the functions of a kind of this package."""
-    return kind.arrays is not None and kind.arrays.__module__.partition(".")[0] == __name__.partition(".")[0]

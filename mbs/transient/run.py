@@ -26,8 +26,8 @@ from mbs.model.elements import Operation, Sensor
 from mbs.model.profiles import Speed, SpeedProfile
 from mbs.model.system import System
 from mbs.settings import Settings
+from mbs.transient.compiled_run import CompiledRun
 from mbs.transient.energy import EnergyBalance, Sums, balance, stored_energy
-from mbs.transient.numba_run import compiled_run
 from mbs.transient.run_elements import in_python
 from mbs.transient.stepping import Mark, Stepper
 
@@ -219,7 +219,7 @@ def run(
     notes = _notes(system) if options.compiled else ()
     if options.compiled and not notes:
         records = (plan.rows, plan.orders, plan.samples + 1, plan.states, plan.stride)
-        engine = compiled_run(system, given, settings, stepper, *records)
+        engine = CompiledRun(system, given, settings, stepper, *records)
     else:
         engine = _Reference(stepper, plan, settings)
     stored = stored_energy(system, stepper.q, stepper.v, stepper.states, Operation(*given.at(first), first))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, cast
 
@@ -40,10 +40,8 @@ class RunElements:
 
     Attributes
     ----------
-    kinds : tuple of Kind
-        The kinds that are needed.
     blocks : tuple of Block
-        The block of each.
+        Blocks of the kinds that are needed.
     functions : tuple of BlockFunctions
         The functions of each.
     expand : array, shape (felt, ports)
@@ -62,7 +60,6 @@ class RunElements:
         Blocks of elements with states of their own, each with the places of its members among all elements.
     """
 
-    kinds: tuple[Kind, ...]
     blocks: tuple[Block, ...]
     functions: tuple[BlockFunctions, ...]
     expand: FloatArray
@@ -74,19 +71,13 @@ class RunElements:
     stateful: tuple[tuple[StatefulBlock, tuple[int, ...]], ...]
 
     @classmethod
-    def of(
-        cls,
-        connected: Sequence[Connected],
-        common: Callable[[Kind], bool] | None = None,
-    ) -> RunElements:
+    def of(cls, connected: Sequence[Connected]) -> RunElements:
         """Elements that all have a kind, each as it stands between its bodies.
 
         Parameters
         ----------
         connected : sequence of Connected
             The elements.
-        common : callable, optional
-            Tells kinds that have a block even where there are none of them.
         """
         connected = [_placed(entry) for entry in connected]
         members: dict[Kind, list[Member]] = {kind: [] for kind in KINDS.values()}
@@ -105,12 +96,11 @@ class RunElements:
             members[kind].append(Member(entry.element, place, first, own, among))
             own, first = own + alone[place].shape[0], first + felt[place].shape[0]
         owners = [place for rows in (alone, felt) for place, part in enumerate(rows) for _ in range(part.shape[0])]
-        used = [kind for kind, of_kind in members.items() if of_kind or (common and common(kind))]
+        used = [kind for kind, of_kind in members.items() if of_kind]
         raised: list[BaseException] = []
         parts = [scipy.linalg.block_diag(*rows) if rows else np.zeros((0, 0)) for rows in (alone, felt)]
         blocks = tuple(kind.gather(members[kind]) for kind in used)
         return cls(
-            kinds=tuple(used),
             blocks=blocks,
             functions=tuple(BlockFunctions(kind, len(connected), raised) for kind in used),
             expand=np.asarray(np.concatenate(parts), dtype=np.float64),
