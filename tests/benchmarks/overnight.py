@@ -7,10 +7,10 @@ With --make the map is generated first, by the command that a user runs. That pr
 times, at random shares of its points, and started again. Then five tables:
 
 kills     what each start took over; points solved once more, alone and without a kill, against the map, bit by bit
-solved    shares, and the points without a solution by cause
+solved    shares; what is said of points, above all causes where there is no solution, and where they lie
 time      processor time a point over load and speed; its sum and how much the dearest points take
 witness   films, k and c of --witness points of the map beside `reynolds` with the same physics
-laws      what the file says of its laws at random points against fresh solutions
+laws      where the map gives them, what its axes lose between its points, and random points against fresh solutions
 
 The picture shows the share that is solved, the film and the time over load and speed.
 """
@@ -32,7 +32,7 @@ from matplotlib.colors import LogNorm
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.job import Job
-from ehdmaps.jobs.make.report import law_lines, status_lines
+from ehdmaps.jobs.make.report import LOG_TAIL, law_lines, reach_lines, spacing_lines, status_rows
 from ehdmaps.jobs.reader import read_job
 from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.physics.contact import LineContact, OperatingPoint
@@ -119,6 +119,16 @@ def again(job: Job, emap: EHDMap, count: int) -> None:
         f"  {same} of {len(places)} random points, solved once more alone, are equal to the bit: "
         f"status, {', '.join(name.replace('_', ' ') for name in FILMS)}"
     )
+
+
+def statuses(dataset: xr.Dataset) -> None:
+    """Print shares, and causes without the last lines of their logs."""
+    solved = usable(dataset)
+    print(f"  {np.count_nonzero(solved)} of {solved.size} points, {100 * solved.mean():.1f} %")
+    for group in status_rows(dataset):
+        print(f"  {group.words:20s} {group.count:5d}  {100 * group.share:6.2f} %")
+        for cause in sorted(group.causes, key=lambda cause: -cause.count):
+            print(f"    {cause.count:5d} x {LOG_TAIL.sub('', cause.text)}\n            {cause.where}")
 
 
 def times(dataset: xr.Dataset) -> None:
@@ -220,16 +230,16 @@ def main() -> None:
     if asked.again:
         again(job, emap, asked.again)
     dataset = emap.dataset
-    solved = usable(dataset)
-    print(f"solved\n  {np.count_nonzero(solved)} of {solved.size} points, {100 * solved.mean():.1f} %")
-    print("\n".join(status_lines(dataset)))
+    print("solved")
+    statuses(dataset)
     print("time")
     times(dataset)
     if asked.witness:
         print("witness")
         witness(job, emap, asked.witness)
     print("laws")
-    print("\n".join(law_lines(dataset)))
+    for lines in (reach_lines(emap), spacing_lines(dataset), law_lines(dataset)):
+        print("\n".join(f"  {line}" for line in lines))
     if asked.plot:
         drawing(dataset, asked.plot)
 

@@ -14,7 +14,7 @@ from ehdmaps.jobs import solvers
 from ehdmaps.jobs.make.assemble import assemble, placed
 from ehdmaps.jobs.make.generate import generate, summary, write_map
 from ehdmaps.jobs.make.law_check import STANDS_ON_LINES, STANDS_ON_POINTS, unmet
-from ehdmaps.jobs.make.report import ERRORS, holes
+from ehdmaps.jobs.make.report import ERRORS, holes, status_rows
 from ehdmaps.jobs.make.tasks import LATER_FIELDS, LONGEST_LINE, LineTask, line_tasks, solver_version
 from ehdmaps.jobs.reader import parse_job
 from ehdmaps.jobs.show.compare import compare, comparison_json, comparison_text
@@ -427,6 +427,19 @@ def test_describe_says_what_is_in_the_map():
         "(law vogel)",
     ):
         assert part in text
+
+
+def test_points_that_failed_for_one_cause_count_together_whatever_their_logs_say():
+    job = job_of()
+    dataset = made(job, Holey((job.loads[3], job.loads[0])))
+    reasons = dataset["reason"].values.astype(object).ravel()
+    for number, index in enumerate(np.flatnonzero(reasons != "")):
+        kind = ("chord", "Newton")[number % 2]
+        reasons[index] = f"did not end; last lines of the log: {kind} step {number}; log /tmp/{number}.log"
+    dataset["reason"] = dataset["reason"].dims, reasons.reshape(dataset["reason"].shape)
+    (cause,) = (cause for group in status_rows(dataset) for cause in group.causes)
+    assert cause.count == 8
+    assert cause.text == "did not end; last lines of the log: chord step 0; log /tmp/0.log"
 
 
 def test_describe_warns_of_an_oil_without_a_source():

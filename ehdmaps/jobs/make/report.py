@@ -64,6 +64,8 @@ NONE_STATED = "none stated"
 """What stands in place of an error that the solver does not state."""
 
 _NUMBER = re.compile(r"[-+]?[0-9]+(?:\.[0-9]+)?(?:[eE][-+]?[0-9]+)?")
+LOG_TAIL = re.compile(r"; last lines of the log:.*")
+"""What a failed run of a program says of its log, behind its cause."""
 
 
 def holes(dataset: xr.Dataset) -> int:
@@ -100,7 +102,7 @@ def status_counts(dataset: xr.Dataset, roughness: float = 0.0) -> dict[str, Bool
 def status_lines(dataset: xr.Dataset, roughness: float = 0.0) -> Iterator[str]:
     """Yield the statuses, grouped by cause, with the corner of the map where each is found.
 
-    Reasons that differ in their numbers only count as one cause; the first is shown.
+    Reasons that differ in their numbers or their logs only count as one cause; the first is shown.
 
     Parameters
     ----------
@@ -176,12 +178,13 @@ def status_rows(dataset: xr.Dataset, roughness: float = 0.0) -> Iterator[StatusG
         Combined rms roughness [m]; 0 where none is known.
     """
     reasons = np.array([plain(reason) for reason in dataset["reason"].values.ravel()], dtype=object)
-    kinds = np.array([_NUMBER.sub("#", reason) for reason in reasons], dtype=object)
+    kinds = np.array([_NUMBER.sub("#", LOG_TAIL.sub("", reason)) for reason in reasons], dtype=object)
     for words, here in status_counts(dataset, roughness).items():
         causes = []
         for kind in sorted(set(kinds[here]) - {""}):
             of_cause = here & (kinds == kind)
-            differ = " (numbers differ)" if len(set(reasons[of_cause])) > 1 else ""
+            bare = {LOG_TAIL.sub("", reason) for reason in reasons[of_cause]}
+            differ = " (numbers differ)" if len(bare) > 1 else ""
             text = f"{reasons[of_cause][0]}{differ}"
             causes.append(Cause(int(np.count_nonzero(of_cause)), text, _corner(dataset, of_cause)))
         yield StatusGroup(words, int(np.count_nonzero(here)), float(here.mean()), _corner(dataset, here), tuple(causes))
