@@ -1,37 +1,9 @@
 /* Calls the library with tables of many sizes, each in memory of exactly its size, and with numbers of any kind, as many
  * times as the first argument says: whatever is refused must be NaN, whatever is not must be finite, and no load may be
  * negative. Returns the number of a check that fails. */
-#include <stdio.h>
-#include <stdlib.h>
-
 #include "kernel.c"
 
-static uint64_t seed = 88172645463325252u;
-
-static uint64_t any(void) {
-    seed ^= seed << 13;
-    seed ^= seed >> 7;
-    seed ^= seed << 17;
-    return seed;
-}
-
-static int64_t up_to(int64_t most_of) { return 1 + (int64_t)(any() % (uint64_t)most_of); }
-
-static double part(void) { return (double)(any() >> 11) / 9007199254740992.0; }
-
-/* NaN, infinities, zeros, denormals, huge and tiny numbers, and numbers around a size. */
-static double number(double size) {
-    static const double odd[] = {0.0, -0.0, 1e-310, -4.9e-324, 1e-30, 1e30, -1e300, 1.7e308};
-    const unsigned kind = (unsigned)(any() % 64);
-    if (kind == 0) return NAN;
-    if (kind == 1) return INFINITY;
-    if (kind == 2) return -INFINITY;
-    if (kind < 8) return odd[any() % 8];
-    if (kind < 16) return (part() - 0.5) * size * pow(10.0, (double)(any() % 13) - 4.0);
-    return (part() - 0.5) * 2.0 * size;
-}
-
-static double *room(int64_t count) { return malloc((size_t)count * sizeof(double)); }
+#include "hostile_numbers.h"
 
 /* A table whose loads rise with the approach from nothing; free its arrays. */
 static ehd_law_table table_of(double scale) {
@@ -111,45 +83,185 @@ static int sound(const ehd_law_data *law, int status, const double *values, int 
     return 1;
 }
 
-/* Laws and bearings with cylindrical rollers. */
+/* The law of a point and of a call. */
 static int laws(void) {
     const ehd_law_data law = law_of();
     ehd_law_point *point = malloc(ehd_law_point_size(&law)), *made = malloc(ehd_law_point_size(&law));
-    ehd_cylinder_law *prepared = calloc(1, ehd_cylinder_law_size(&law));
-    ehd_cylinder *bearing = malloc(ehd_cylinder_size());
-    const int64_t rollers = 2 + up_to(20);
-    double *cosine = room(rollers), *sine = room(rollers);
-    const ehd_cylinder_data data = {&law, rollers, 0.01, 0.01, (int64_t)(any() % 2), cosine, sine};
     int failed = 0;
-    for (int64_t j = 0; j < rollers; j++) {
-        cosine[j] = cos(2.0 * FILM_PI * (double)j / (double)rollers);
-        sine[j] = sin(2.0 * FILM_PI * (double)j / (double)rollers);
-    }
-    while (refuses(&law, ehd_cylinder_make(&data, number(1e-5), (int)(any() % (EHD_MOST_SLICES + 2)) - 1, NULL, bearing))) {}
     for (int n = 0; n < 40 && !failed; n++) {
         ehd_force force;
-        ehd_bearing_force result;
-        double pose[6], velocity[6];
         const double u = number(5.0), T = 350.0 + number(60.0), q = any() % 4 ? 0.0 : number(1e4);
-        for (int i = 0; i < 6; i++) {
-            pose[i] = number(i < 3 ? 1e-5 : 1e-3);
-            velocity[i] = number(1e-3);
-        }
         int status = ehd_law_call(&law, number(1e-5), number(1e-3), u, T, q, point, &force);
         if (!sound(&law, status, &force.load, 3) || force.load < 0.0) failed = 1;
         ehd_law_make(&law, u, T, q, made);
         status = ehd_law_force(made, number(1e-5), number(1e-3), &force);
         if (!sound(&law, status, &force.load, 3) || force.load < 0.0) failed = 2;
-        if (n % 4) continue;
-        status = ehd_cylinder_call(bearing, prepared, pose, any() % 4 ? velocity : NULL, number(10.0), u, T, q, &result);
-        if (!sound(&law, status, result.force, 6) || !sound(&law, status, result.stiffness[0], 36)) failed = 3;
     }
-    free(cosine);
-    free(sine);
-    free(bearing);
-    free(prepared);
     free(made);
     free(point);
+    free_law(&law);
+    return failed;
+}
+
+/* A bearing with cylindrical rollers of any shape; free its arrays. Rings tilt, or slices have weights. */
+static ehd_cylinder cylinder_of(void) {
+    const int64_t rollers = up_to(20), slices = up_to(50);
+    const int level = any() % 4 == 0, alike = any() % 2 == 0;
+    double *position = room(slices + 1), *profile = room(slices + 1), *cosine = room(rollers), *sine = room(rollers);
+    double *weight = level ? room(slices) : NULL;
+    ehd_cylinder bearing = {rollers, slices, !level && alike, 2e-6 * (part() - 0.5), 0.01 / (double)slices, 0.01, 0.5,
+                            0.005, DBL_MAX, 0.0, position, profile, cosine, sine, weight};
+    position[slices] = profile[slices] = 0.0;
+    for (int64_t i = 0; i < slices; i++) {
+        position[i] = (double)(2 * i + 1 - slices) / (2.0 * (double)slices) * 0.01;
+        profile[i] = alike && 2 * i >= slices ? profile[slices - 1 - i] : 2e-6 * part();
+        bearing.least_profile = least(bearing.least_profile, profile[i]);
+        bearing.most_profile = most(bearing.most_profile, profile[i]);
+        if (level) weight[i] = (double)up_to(2);
+    }
+    for (int64_t j = 0; j < rollers; j++) {
+        cosine[j] = cos(2.0 * FILM_PI * (double)j / (double)rollers);
+        sine[j] = sin(2.0 * FILM_PI * (double)j / (double)rollers);
+    }
+    return bearing;
+}
+
+static void free_cylinder(const ehd_cylinder *bearing) {
+    free((void *)(uintptr_t)bearing->position);
+    free((void *)(uintptr_t)bearing->profile);
+    free((void *)(uintptr_t)bearing->cosine);
+    free((void *)(uintptr_t)bearing->sine);
+    free((void *)(uintptr_t)bearing->weight);
+}
+
+/* Pose, velocity and angle of the cage, most of them within reason. */
+static void moved(double state[13]) {
+    const int steady = any() % 4 == 0, odd = any() % 2;
+    for (int i = 0; i < 12; i++) {
+        const double size = i < 3 ? 1e-5 : i >= 6 || any() % 3 ? 1e-3 : 0.0;
+        state[i] = odd ? number(size) : size * (2.0 * part() - 1.0);
+        if (steady && i >= 6) state[i] = 0.0;
+    }
+    state[12] = number(10.0);
+}
+
+/* Bearings with cylindrical rollers: all kinds of laws, made at once or as slices need them; slices may be coupled. */
+static int cylinders(void) {
+    const ehd_law_data law = law_of();
+    const ehd_cylinder bearing = cylinder_of();
+    const int64_t rollers = bearing.rollers, slices = bearing.slices, whole = (int64_t)(any() % 2);
+    const int coupled = !bearing.weight && any() % 4 == 0;
+    ehd_cylinder_numbers numbers;
+    ehd_cylinder_law prepared = {&numbers, room(16 * EHD_ROWS), room(2 * EHD_ROWS), room(16 * EHD_ROWS),
+                                 room(4 * EHD_NODES), malloc(2 * EHD_NODES), malloc(ehd_law_point_size(&law)), 0, 0, 0};
+    ehd_cylinder_work work = {room(4 * slices * (whole ? rollers : 1)), room(slices + 1),
+                              malloc((size_t)(slices + 1) * sizeof *work.row), whole ? 4 * slices : 0, whole};
+    double state[13], *coupling = coupled ? room(slices * slices) : NULL, *values = room(4 * rollers * slices);
+    double *own = room(rollers * slices), *scratch = room(slices * (slices + 9));
+    int failed = 0;
+    for (int64_t i = 0; coupled && i < slices * slices; i++)
+        coupling[i] = 1e-12 * exp(-fabs((double)(i / slices) - (double)(i % slices)));
+    for (int n = 0; n < 3 && !failed; n++) {
+        const int64_t asked = coupled ? EHD_WITHOUT_KNOTS : (int64_t)(any() % 4);
+        const double u = any() % 3 ? number(5.0) : any() % 2 ? number(0.4) : 0.0, q = any() % 4 ? 0.0 : number(1e4);
+        const int made = ehd_cylinder_prepare(&law, u, 350.0 + number(60.0), q, asked, &prepared);
+        for (int k = 0; k < 4 && !failed && !refuses(&law, made); k++) {
+            ehd_bearing_force answer;
+            const ehd_cylinder_call call = {&bearing, &prepared, &work, state, (double *)&answer, coupling, own,
+                                            scratch};
+            moved(state);
+            memset(&answer, 0, sizeof answer);
+            int status = ehd_cylinder_force(&call);
+            if (status & EHD_NO_LOADS) continue;
+            status = settled_force(&law, status, &answer);
+            if (!sound(&law, status, answer.force, 6) || !sound(&law, status, answer.stiffness[0], 36)) failed = 3;
+            if (!sound(&law, status, answer.damping[0], 36)) failed = 3;
+            for (int64_t i = 0; whole && !coupled && numbers.kind != EHD_BY_SLICES && !refuses(&law, status) &&
+                                i < 4 * slices * rollers; i++)
+                if (!isfinite(work.states[i])) failed = 9;
+            if (ehd_cylinder_rollers(&bearing, state, values)) continue;
+            for (int64_t i = 0; i < 4 * rollers; i++)
+                if (!isfinite(values[i])) failed = 14;
+            ehd_cylinder_approaches(&bearing, state, values);
+            ehd_cylinder_of_loads(&bearing, state, values, values, (double *)&answer);
+        }
+    }
+    free(prepared.cells);
+    free(prepared.knots);
+    free(prepared.film);
+    free(prepared.nodes);
+    free(prepared.marks);
+    free(prepared.point);
+    free(work.states);
+    free(work.place);
+    free(work.row);
+    free(coupling);
+    free(values);
+    free(own);
+    free(scratch);
+    free_law(&law);
+    free_cylinder(&bearing);
+    return failed;
+}
+
+/* Numbers of films with memory of a law, with any number of factors; free these. */
+static ehd_film_data films_of(const ehd_law_data *law) {
+    const int64_t speeds = up_to(4), temperatures = up_to(4), loads = up_to(6);
+    double *factors = room(speeds * temperatures * loads);
+    for (int64_t i = 0; i < speeds * temperatures * loads; i++) factors[i] = 0.5 + part();
+    const ehd_film_data data = {law, {1.0 + part(), 5e-3, 2e11}, 0.1, speeds, temperatures, loads, log(0.1),
+                                (double)(speeds - 1) / log(100.0), 1.0 / 220.0,
+                                -(double)(temperatures - 1) / (1.0 / 140.0 - 1.0 / 220.0), log(1e2), 1.0, factors};
+    return data;
+}
+
+/* Films with memory, alone and in a bearing: what is not refused is finite, and no load is negative. */
+static int films(void) {
+    const ehd_law_data law = law_of();
+    const ehd_film_data data = films_of(&law);
+    ehd_cylinder bearing = cylinder_of();
+    const int64_t count = bearing.rollers * bearing.slices;
+    ehd_law_point *point = malloc(ehd_law_point_size(&law));
+    ehd_film *film = calloc(1, sizeof *film);
+    ehd_film_state *begun = calloc((size_t)count, sizeof *begun), *ended = calloc((size_t)count, sizeof *ended);
+    ehd_film_rates *rates = calloc((size_t)count, sizeof *rates);
+    double *states = room(count), pose[13];
+    int failed = 0;
+    ehd_film_make(&data, number(5.0), 350.0 + number(60.0), point, film);
+    for (int n = 0; n < 20 && !failed; n++) {
+        const double approach = number(1e-5);
+        ehd_film_state state = {number(1e-5), number(1.0), number(1e5)};
+        ehd_film_rates rate;
+        ehd_force force;
+        int status = any() % 2 ? EHD_OK : ehd_film_settled(film, number(1e-5), &state);
+        status = ehd_film_advance(film, number(1e-4), number(1e-4), approach, &state, &state, &force);
+        if (film_refuses(film, status) ? !isnan(force.load) : !(isfinite(force.load) && force.load >= 0.0)) failed = 15;
+        if (!film_refuses(film, status) && !(isfinite(force.stiffness) && isfinite(state.approach))) failed = 15;
+        status = ehd_film_rate(film, approach, number(1e-5), &rate);
+        if (film_refuses(film, status) ? !isnan(rate.load) : !(isfinite(rate.load) && rate.load >= 0.0)) failed = 16;
+        if (n % 10) continue;
+        moved(pose);
+        status = ehd_cylinder_settled(&bearing, film, pose, pose[12], begun);
+        for (int64_t i = 0; i < count; i++) {
+            if (film_refuses(film, status)) begun[i].approach = begun[i].change = begun[i].load = 0.0;
+            states[i] = begun[i].approach + number(1e-6);
+        }
+        ehd_bearing_force answer;
+        const double *all = (const double *)&answer;
+        status = ehd_cylinder_advance(&bearing, film, 1e-4 * part(), number(1e-4), pose, pose[12], begun, ended,
+                                      &answer);
+        if (film_refuses(film, status) ? !isnan(all[1]) : !sound(&law, status, all, 78)) failed = 17;
+        status = ehd_cylinder_rates(&bearing, film, pose, pose[12], states, rates, &answer);
+        if (film_refuses(film, status) ? !isnan(all[1]) : !sound(&law, status, all, 78)) failed = 18;
+    }
+    free((void *)(uintptr_t)data.factors);
+    free(point);
+    free(film);
+    free(begun);
+    free(ended);
+    free(rates);
+    free(states);
+    free_cylinder(&bearing);
     free_law(&law);
     return failed;
 }
@@ -264,6 +376,8 @@ int main(int count, char **arguments) {
     const long calls = count > 1 ? atol(arguments[1]) : 100;
     for (long n = 0; n < calls; n++) {
         int failed = laws();
+        if (!failed) failed = cylinders();
+        if (!failed) failed = films();
         if (!failed) failed = elements();
         if (!failed) failed = tapered();
         if (failed) {
