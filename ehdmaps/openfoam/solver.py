@@ -49,7 +49,7 @@ LONGEST_INLET, LEAST_LENGTHS = 0.5, 3.0
 INLET_LIMITS = (5.0, 1e5)
 """Least and longest inlet over sqrt(2 h R); the film upstream of it is known in closed form."""
 
-PARAMETER_VERSION = 6
+PARAMETER_VERSION = 7
 """Raised when a change of this package changes numbers: results of another version are not taken over."""
 
 PHYSICS = (ISOTHERMAL, THERMAL)

@@ -52,9 +52,11 @@ static void putWarmth(const dictionary& dict, const slice& s, slice::unknowns& u
             << " places, allowed is one for each of at least 2 levels of each place" << exit(FatalIOError);
     }
     const label n = s.columns(), rows = flow.film().rows();
+    // the mesh itself does not stand there yet
+    const scalarField faces(s.film(u).x);
     for (label i = 0; i < n; ++i)
     {
-        const scalar middle = 0.5*(flow.film().x()[i] + flow.film().x()[i + 1]);
+        const scalar middle = 0.5*(faces[i] + faces[i + 1]);
         scalarField across(levels.size());
         forAll(levels, k)
         {
