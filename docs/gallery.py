@@ -18,7 +18,7 @@ ROOT = Path(__file__).parents[1]
 EXAMPLES = ROOT / "examples"
 PAGES = Path(__file__).parent / "gallery_pages"
 PATIENCE = 1800.0
-"""Seconds after which an example is taken to hang: each needs some, and minutes where a busy machine compiles."""
+"""Seconds after which an example is taken to hang: some need minutes where a busy machine compiles film solvers."""
 
 
 class ExampleError(RuntimeError):

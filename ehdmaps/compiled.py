@@ -1,4 +1,4 @@
-"""Compiled functions, and where their machine code is kept: under one hash of everything that it was made from.
+"""The film solvers as numba compiles them, and where their machine code is kept: by a hash of what it is made from.
 
 numba keeps compiled code beside the source file and looks at that one file only. A function whose callee changed in
 another file would go on calling the old callee, and an installation could not be removed whole. So `njit` here keeps
@@ -51,7 +51,7 @@ _config: Any = config
 _runtime: Any = runtime
 
 COMPILES = not _config.DISABLE_JIT
-"""Whether functions are compiled; not under ``NUMBA_DISABLE_JIT=1``, for debuggers and for coverage of the kernels."""
+"""Whether functions are compiled; not under ``NUMBA_DISABLE_JIT=1``, for debuggers and for coverage of the solvers."""
 
 _NAME = re.compile(r"[0-9a-f]{16}-[0-9a-f]{8}")
 

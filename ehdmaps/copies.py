@@ -1,4 +1,4 @@
-"""Copies within compiled code.
+"""Copies within what numba compiles.
 
 For ``out[:] = values`` numba compiles the text of an error about shapes too: some seconds for each process and each
 kind of slice, a tenth of all that is compiled.

@@ -1,7 +1,7 @@
 """Ctrl-C, and the end that a system asks for (SIGTERM), in programs that run compiled code.
 
 Both end a program in the same way. Python raises KeyboardInterrupt in whatever Python code runs next. Where that is
-code which numba calls while it passes values to compiled code and back, nobody expects an exception: the process dies
+code which numba calls while it passes values to a film solver and back, nobody expects an exception: the process dies
 of a segmentation fault, or of an error of the interpreter. Libraries in C that are just being imported take it for an
 error of theirs. In such places the exception waits for the next line of this distribution's own code, as a debugger
 would for a breakpoint.

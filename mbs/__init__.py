@@ -23,7 +23,7 @@ the system          `model`: bodies, elements, what is prescribed; the system an
 what bodies are     `flexible` (beams, finite elements, reduction)
 what connects them  `bearings` (the bearing force), `gears`
 linear              `linearised` (modes, responses, over speed); `modal` (identified from hammer hits)
-in time             `transient` (method, compiled runs); `spectral` (levels over speed and order); `timedata` (files)
+in time             `transient` (method, runs in C); `spectral` (levels over speed and order); `timedata` (files)
 analyses            `analyses`: statics, modes, lsa, sweep, runup, campbell, hammer; `planning`: what a scene requires;
                     `library`: what needs no model
 laboratory          `instruments`: tradeoff, variants, tolerance, stability

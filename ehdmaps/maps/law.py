@@ -295,7 +295,7 @@ class ContactLaw:
 
     @property
     def counts(self) -> IntArray:
-        """Points outside the map so far by cause, and those that are no numbers, as compiled code counts them."""
+        """Points outside the map so far by cause, and those that are no numbers, as C counts them."""
         return self._outside.counts
 
     @property
@@ -307,14 +307,14 @@ class ContactLaw:
     def excursions(self) -> tuple[Excursion, ...]:
         """Excursions of points outside the map so far: axis, side, number, the farthest one, and where the map ends.
 
-        Of calls of the law and of `LawAtPoint`, and of what compiled callers report by `note_outside`. Loads below the
+        Of calls of the law and of `LawAtPoint`, and of what callers in C report by `note_outside`. Loads below the
         map are told where the film there is a guess, see `low_loads`, and speeds below it where films are continued;
         they are no error with any policy.
         """
         return self._outside.excursions
 
     def note_outside(self, axis: Axis, values: npt.ArrayLike) -> None:
-        """Take part in `excursions` with values that a caller of the compiled functions met.
+        """Take part in `excursions` with values that a caller of the functions in C met.
 
         Parameters
         ----------
@@ -644,7 +644,7 @@ class LawAtPoint:
 
     @property
     def point(self) -> Point:
-        """Numbers and lines at this speed, temperature and centrifugal load, as compiled code reads them."""
+        """Numbers and lines at this speed, temperature and centrifugal load, as C reads them."""
         return self._made.point
 
     def approach(self, load: float) -> float:

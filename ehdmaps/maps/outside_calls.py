@@ -96,7 +96,7 @@ def floats(**values: npt.ArrayLike) -> dict[str, FloatArray]:
 
 
 def broadcast(named: Mapping[str, FloatArray]) -> tuple[tuple[int, ...], list[FloatArray]]:
-    """Common shape of arrays, and flat arrays of it that compiled code takes: contiguous and writeable.
+    """Common shape of arrays, and flat arrays of it that C takes: contiguous and writeable.
 
     Parameters
     ----------
@@ -165,7 +165,7 @@ class OutsideCalls:
     Attributes
     ----------
     counts : array (4,)
-        Points by cause, as the compiled functions count them.
+        Points by cause, as C counts them.
     """
 
     def __init__(self, kind: str, refused: bool, ends: Mapping[Axis, tuple[float, float]]) -> None:

@@ -18,8 +18,7 @@ needs c = 0 here. With ' for the derivative by the approach,
 
 which is continuous at x = -1/2 as well.
 
-The function is plain Python that branches on numbers and calls nothing. Each kernel compiles it with its own settings
-of numba, which this package does not import.
+The function is plain Python that branches on numbers and calls nothing. `law.c` of `ehdmaps.kernel` has the same in C.
 
 A contact is a film between solids: approach, stiffness and damping from the film and the structural law.
 

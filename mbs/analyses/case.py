@@ -1,6 +1,6 @@
 """Cases that an analysis compares (laws, scenes, models with labels), computed side by side in processes of their own.
 
-A process is a fork of this one: it has the models, and what is compiled, from the beginning, and gives back its result
+A process is a fork of this one: it has the models, and what is imported, from the beginning, and gives back its result
 alone. Where there are no forks, or one process is asked for, cases run one after another in this one.
 """
 

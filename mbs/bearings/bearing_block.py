@@ -183,7 +183,7 @@ class BearingBlock:
 
 
 def _takes(element: Element) -> bool:
-    """Tell whether the force of a bearing is the compiled one."""
+    """Tell whether C has the force of a bearing."""
     return isinstance(element, BearingElement) and type(element.force) is BearingForce and not element.bearing.coupled
 
 

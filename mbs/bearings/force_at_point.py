@@ -208,7 +208,7 @@ class ForceAtPoint:
     conditions : (float, float, float)
         u [m/s], T [K], centrifugal load [N/m]; NaN where a dry law was given none.
     address : int
-        Address of its ``ehd_cylinder_call``: other compiled code writes `state`, calls the library's
+        Address of its ``ehd_cylinder_call``: other code in C writes `state`, calls the library's
         ``ehd_cylinder_force`` with it, and reads `answer`, of an element with arrays of its own.
     state : array (13,)
         Pose (6), velocity (6) and angle of the cage of the last call [m], [rad], [m/s], [rad/s].

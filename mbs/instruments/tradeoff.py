@@ -320,7 +320,7 @@ class _Measured:
         self._tell(self._most, self._most)
 
     def _is_new(self, kind: str) -> bool:
-        """Tell whether its code has not been compiled in this process."""
+        """Tell whether its like has not run in this process."""
         new = kind not in self._warm
         self._warm.add(kind)
         return new
@@ -331,7 +331,7 @@ class _Measured:
 
 
 def _warm(subject: Subject, ramp: Ramp) -> None:
-    """Make some steps, so that what has to be compiled is no cost of a run."""
+    """Make some steps, so that what is imported and made once is no cost of a run."""
     assert subject.scene.run_up is not None
     scene = changes.with_part(subject.scene, 0.0, _WARM_STEPS * subject.scene.run_up.settings.step)
     course = run_course(scene, ramp.highest, [])

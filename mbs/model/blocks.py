@@ -1,4 +1,4 @@
-"""Parts that a kind of elements brings to runs in compiled code: functions in C, and the data that they take.
+"""Parts that a kind of elements brings to runs in C: functions in C, and the data that they take.
 
 A run in time puts all elements of a kind into one block. Its function writes what they answer to a motion; the block
 itself, in Python, holds their data and prepares what changes with the speed. `mbs.transient.kinds` lists the kinds;

@@ -1,1 +1,1 @@
-"""The nonlinear system in time: the method, compiled run-ups, the same in plain Python, and hammer tests."""
+"""The nonlinear system in time: the method, runs in C, the same steps in Python, and hammer tests."""

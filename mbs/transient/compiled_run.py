@@ -1,4 +1,4 @@
-"""A run in compiled code: what `ehd_advance` needs, prepared for a batch of steps, and the steps between.
+"""A run in C: what `ehd_advance` needs, prepared for a batch of steps, and the steps between.
 
 Steps that an element has no compiled answer for (such as loads above a map whose law refuses them) are made by
 `mbs.transient.stepping`, from the same state: motion, and what elements have of their own.

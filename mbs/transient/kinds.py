@@ -1,11 +1,11 @@
-"""The kinds of elements that runs in time have in compiled code.
+"""The kinds of elements that runs in time have in C.
 
 An element whose class is not here, or which its kind does not take, is called from Python at every step; the run says
 so. A new kind is a row here, and a `mbs.model.blocks.Kind` in the folder of its element, with functions in C.
 
-A kind from elsewhere brings functions of its own: addresses of compiled ones, from C or by `numba.cfunc`, of the types
-in `ehdmaps/kernel/c/block.h`; or Python functions, which are called in every iteration of a step and hold Python's
-lock, but leave the rest of the step to compiled code.
+A kind from elsewhere brings functions of its own: addresses of compiled ones, from C or by the user's `numba.cfunc`, of
+the types in `ehdmaps/kernel/c/block.h`; or Python functions, which are called in every iteration of a step and hold
+Python's lock, but leave the rest of the step to C.
 """
 
 from __future__ import annotations

@@ -1,8 +1,9 @@
-"""Runs in time: fixed steps in compiled code, recording what is asked for.
+"""Runs in time: fixed steps in C, recording what is asked for.
 
-Systems of bodies, springs, loads, bearings and gear meshes run in compiled code (`compiled_run`), other elements in
-Python (`stepping`). Both make the same steps by the same method, to what Newton leaves over; for the law of a map
-compiled code reads tables that are blended over the speed (`speed_tables`).
+Systems of bodies, springs, loads, bearings of all kinds and gear meshes run in the C library (`compiled_run`), as do
+elements of one's own that `kinds` lists; with others steps are made in Python (`stepping`). Both make the same steps by
+the same method, to what Newton leaves over; for the law of a map C reads tables that are blended over the speed
+(`speed_tables`).
 
 The period of a free oscillation at the frequency f comes out longer by the part (2 pi f h)^2 (1/12 + 3/8 s^2) with
 s = (1 - rho)/(1 + rho), rho the spectral radius: with rho = 0.8 at 5 kHz by 1.9 % for steps of 15 us, 0.9 % for 10 us.

@@ -1,4 +1,4 @@
-"""What a call of the exported C costs beside the compiled Python, and whether the Windows build gives the same numbers.
+"""What a call of the exported C costs beside that of the library, and whether the Windows build gives the same numbers.
 
     python -m tests.benchmarks.bench_c_kernel MAP.nc [--wine]
 
@@ -79,7 +79,7 @@ def main():
             ratios = level / python_time(force, 0.0), tilted / python_time(force, 1e-5)
             print(
                 f"gcc {flags}: {level:.2f}, {tilted:.2f}; {prepared:.1f}; {law:.3f}; "
-                f"times compiled Python: {ratios[0]:.2f}, {ratios[1]:.2f}"
+                f"times the library: {ratios[0]:.2f}, {ratios[1]:.2f}"
             )
         if arguments.wine:
             zig = [sys.executable, "-m", "ziglang", "cc", "-target", "x86_64-windows-gnu"]

@@ -161,7 +161,7 @@ class Bench:
         start = equilibrium(system, Operation(speed.at(0.0)[0])).displacement + variant.nudge
         sample = max(variant.step, SAMPLE)
         settings = Settings(variant.step, sample, variant.radius, residual=variant.residual)
-        run(system, speed, 10.0 * sample, settings, [self.sensor], start)  # compiles
+        run(system, speed, 10.0 * sample, settings, [self.sensor], start)  # what is made once
         processor, clock = time.process_time(), time.perf_counter()
         record = run(system, speed, self.duration, settings, [self.sensor], start)
         return Made(record, time.process_time() - processor, time.perf_counter() - clock, system.size)

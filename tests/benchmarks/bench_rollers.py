@@ -183,7 +183,7 @@ def run_up(base: Scene, emap: EHDMap, rollers: Rollers, duration: float, begin: 
     sensor = next(sensor for sensor in base.sensors if sensor.name == "S1")
     start = equilibrium(system, Operation(first)).displacement
     start[: rollers_begin(system)] += rollers.nudge
-    run(system, speed, 10.0 * ramp.settings.sample, ramp.settings, [sensor], start)  # compiles
+    run(system, speed, 10.0 * ramp.settings.sample, ramp.settings, [sensor], start)  # what is made once
     clock = time.process_time()
     found = run(system, speed, duration, ramp.settings, [sensor], start)
     return found, (time.process_time() - clock) / found.steps

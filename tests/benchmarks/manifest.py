@@ -12,8 +12,8 @@ Of both programs it keeps the help and every argument of every command. What cha
 times of day and of the clock, versions, hashes of sources, paths, identifiers. OpenFOAM is not run, as a point of it
 takes half a minute: of it the file of a case is compared.
 
-A process that compiles a kernel computes a run in time with the last digits otherwise than one that reads the compiled
-code from the disk. So the work is done in a process of its own, and once more where the first one compiled anything.
+A process that compiles a film solver may compute with other last digits than one that reads the compiled code from the
+disk. So the work is done in a process of its own, and once more where the first one compiled anything.
 Warm it takes some two minutes. Exit status 1 with ``--against``: something differs.
 """
 
@@ -517,7 +517,7 @@ def _made(path: Path) -> None:
             subprocess.run(command, check=True, env=environment, cwd=work)
         if _compiled() == before:
             return
-        print("kernels were compiled: once more with compiled ones", file=sys.stderr)
+        print("film solvers were compiled: once more with compiled ones", file=sys.stderr)
 
 
 def _values(path: Path) -> dict[str, np.ndarray]:

@@ -50,7 +50,7 @@ def test_script_prints_what_is_shown(made_map, monkeypatch, capsys):
 
 def test_blocks_of_python_compile():
     blocks = re.findall(r"```python\n(.*?)```", README + PYTHON, re.DOTALL)
-    assert len(blocks) == 6
+    assert len(blocks) == 7
     for block in blocks:
         compile(block, "README.md", "exec")
 
@@ -86,6 +86,16 @@ def test_a_bearing_in_time_from_python(made_map, monkeypatch):
     # the inner ring moves along y and z: rollers there are loaded, and push it back
     assert found["films"].load.max() > 1e3
     assert np.all(found["forces"].force[1:3] < 0.0)
+
+
+@pytest.mark.slow
+def test_a_law_by_its_address(made_map, monkeypatch):
+    (block,) = (text for text in re.findall(r"```python\n(.*?)```", PYTHON, re.DOTALL) if "law.address" in text)
+    monkeypatch.chdir(made_map)
+    Path("address.py").write_text(block)
+    found = runpy.run_path("address.py")
+    assert found["status"] == 0
+    np.testing.assert_allclose(found["force"], found["law"](2e-6, 0.0, 1.7, 313.15), rtol=1e-12)  # round-off
 
 
 @pytest.mark.slow

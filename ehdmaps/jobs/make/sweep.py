@@ -275,7 +275,7 @@ class _Deaths:
 def _in_pool(tasks: Sequence[Task], workers: int, store: Results, tell: _Tell) -> _Outcomes:
     """Run tasks in worker processes; those that were out when a worker died are tried again alone.
 
-    The first task runs alone while the other workers import. In a fresh installation it compiles what all need, and
+    The first task runs alone while the other workers import. In a fresh installation it compiles a solver for all, and
     they load that from numba's cache; else each worker would compile the same. Slow tasks do not wait for each other.
     """
     waiting = deque(tasks)
