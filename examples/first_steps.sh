@@ -3,7 +3,7 @@
 #
 #     bash .ci/environment && . .venv/bin/activate
 #
-# run this in an empty folder: bash PATH/TO/examples/first_steps.sh. Some four minutes, most of it to compile once.
+# run this in an empty folder: bash PATH/TO/examples/first_steps.sh. Some minutes, about one of them to compile film solvers once.
 set -euo pipefail
 
 # Own bearing: designation and viscosity class are enough; what is estimated is marked, with its effect.
