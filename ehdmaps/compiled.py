@@ -29,6 +29,7 @@ import numba
 from llvmlite import binding
 from numba.core import config, runtime
 
+from ehdmaps.compiling import begin_waiting
 from ehdmaps.outputs import cache_folder, own_folder
 from ehdmaps.program import tell
 from ehdmaps.provenance import compiled_hash
@@ -215,3 +216,6 @@ def _processor() -> str:
     """Eight digits of the processor that code is compiled for: homes are shared by nodes that differ."""
     features = binding.get_host_cpu_features().flatten()
     return hashlib.sha256(f"{binding.get_host_cpu_name()} {features}".encode()).hexdigest()[:8]
+
+
+begin_waiting()

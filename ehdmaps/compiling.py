@@ -1,17 +1,17 @@
-"""Processor time of work, and time that numba spends on compiling, of which users are told and which no rate counts."""
+"""Processor time of work, and time that numba spends on compiling, of which users are told and which no rate counts.
+
+numba is loaded where something listens to it, not before: most questions need none of it.
+"""
 
 from __future__ import annotations
 
 import contextlib
 import functools
 import os
+import sys
 import time
 from collections.abc import Callable
 from typing import Any
-
-from numba.core import event
-
-_EVENTS: Any = event
 
 NOTE = "compiling, once after an installation or an update"
 """What users are told."""
@@ -20,7 +20,7 @@ TOLD_AFTER = 1.0
 """Seconds of compiling after which they are; shorter waits are no reason to."""
 
 
-class Compiling(event.Listener):
+class Compiling:
     """Listens to numba while it compiles; code that is read from disk is none of that.
 
     Parameters
@@ -35,6 +35,7 @@ class Compiling(event.Listener):
         self._say: Callable[[str], None] | None = say
         self._clock = clock
         self._depth, self._begun, self._spent = 0, 0.0, 0.0
+        self._ear: Any = None
 
     @property
     def seconds(self) -> float:
@@ -69,13 +70,46 @@ class Compiling(event.Listener):
             self._spent += self._clock() - self._begun
 
     def listen(self) -> None:
-        """Listen from now on."""
-        _EVENTS.register("numba:compile", self)
+        """Listen from now on; before numba is loaded nothing compiles, so that `ehdmaps.compiled` begins it then."""
+        if "ehdmaps.compiled" in sys.modules:
+            self._register()
+        else:
+            _WAITING.append(self)
+
+    def _register(self) -> None:
+        """Have numba tell what it compiles."""
+        from numba.core import event
+
+        events: Any = event
+        told = {"on_start": self._told(self.on_start), "on_end": self._told(self.on_end)}
+        self._ear = type("Ear", (events.Listener,), told)()
+        events.register("numba:compile", self._ear)
 
     def end(self) -> None:
         """Listen no more."""
+        if self in _WAITING:
+            _WAITING.remove(self)
+        if self._ear is None:
+            return
+        from numba.core import event
+
+        events: Any = event
         with contextlib.suppress(ValueError):  # it has ended already
-            _EVENTS.unregister("numba:compile", self)
+            events.unregister("numba:compile", self._ear)
+
+    @staticmethod
+    def _told(what: Callable[[Any], None]) -> Callable[[Any, Any], None]:
+        """Method of a listener of numba that tells what happened."""
+        return lambda _, event: what(event)
+
+
+_WAITING: list[Compiling] = []
+
+
+def begin_waiting() -> None:
+    """Begin to listen for those who asked before numba was loaded."""
+    while _WAITING:
+        _WAITING.pop()._register()
 
 
 def cpu_seconds() -> float:

@@ -263,7 +263,7 @@ def start_worker(told: Any = None) -> None:
         signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGTERM])
     threading.Thread(target=_end_with_parent, daemon=True).start()
     if told is not None:
-        from ehdmaps.compiling import Compiling  # with numba, which the parent's command line does without
+        from ehdmaps.compiling import Compiling
 
         Compiling(lambda note: _say_once(note, told)).listen()
 

@@ -11,14 +11,14 @@
 | `energy` | the energy of all columns, and the derivative of temperatures by pressures |
 | `warm_newton` | damped Newton for a film with its temperatures and those of the surfaces |
 | `warm_response` | their response to slow motion, with stored heat |
-| `profile` | what a solve is asked, and the converged solution that it gives; how that starts the next one |
+| `profile` | the converged solution that a solve gives; how that starts the next one |
 | `linearisation` | the equations to first order, with the oil that the film stores; response to slow motion |
 | `spectrum` | response at many frequencies from one Krylov space |
 | `ways` | the ways to a solution: Newton on one grid and on two, starts from before, from Hertz, up a ladder of loads |
 | `group_solution` | film of one point in groups: response, numbers, and their errors from both grids |
 | `line` | the story of one solve: coarse grid, place of the spike, fine grid, response over frequency, error estimate |
 | `meniscus` | a starved contact: the place of the inlet's meniscus behind a given oil layer |
-| `limits` | allowed settings of the solver |
+| `limits` | settings of the solver and of its grids, and which are allowed |
 | `solver` | `ReynoldsSolver`: operating points in SI, one line of loads after another |
 | `start` | what the solution of a point gives to another solver |
 

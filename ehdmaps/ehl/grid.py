@@ -34,6 +34,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.compiled import njit
+from ehdmaps.ehl.limits import USUAL_SHAPE, GridShape
 
 RIGID_EXIT_SQUARED = 0.226
 """X_exit^2/(2 H) of rigid surfaces and constant viscosity: c^2 with c = 0.475, the root of
@@ -80,29 +81,6 @@ class Spike:
 
     position: float
     width: float
-
-
-@dataclass(frozen=True)
-class GridShape:
-    """Distribution of the cells of a grid; dimensionless weights, the same for every operating point.
-
-    Weights and widths, as the lengths above, are a choice: they decide how many cells an error takes. What a grid is
-    worth is measured at every point, by the difference to a grid of half as many cells.
-
-    Attributes
-    ----------
-    inlet, exit, core, spike : float
-        Weights of the terms: cells in proportion.
-    inlet_width, exit_width : float
-        Widths within which cells are finest, in those of the zones.
-    """
-
-    inlet: float = 1.0
-    exit: float = 0.4
-    core: float = 0.25
-    spike: float = 0.5
-    inlet_width: float = 1.0
-    exit_width: float = 0.45
 
 
 def thick_film_exit(film: float) -> float:
@@ -158,7 +136,7 @@ class Layout:
 def lay_out(
     film: float,
     inlet_length: float,
-    shape: GridShape = GridShape(),
+    shape: GridShape = USUAL_SHAPE,
     spike: Spike | None = None,
     length: float | None = None,
 ) -> Layout:

@@ -9,9 +9,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ehdmaps.ehl.grid import zone_width
+from ehdmaps.ehl.limits import Resolution
 from ehdmaps.ehl.linearisation import GridShift, Linearisation, Neighbour, Response, linearised
 from ehdmaps.ehl.newton import CONVERGED, STAGNATED
-from ehdmaps.ehl.profile import Profile, Resolution, front, front_node
+from ehdmaps.ehl.profile import Profile, front, front_node
 from ehdmaps.ehl.warm_response import WarmLinearisation, warm_linearised
 from ehdmaps.ehl.ways import LOAD
 from ehdmaps.physics.isotherm import log_viscosity

@@ -13,8 +13,9 @@ import numpy as np
 
 from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.ehl.group_solution import GroupSolution, assembled, left_across, response_share
+from ehdmaps.ehl.limits import Resolution
 from ehdmaps.ehl.newton import CONVERGED
-from ehdmaps.ehl.profile import Profile, Resolution
+from ehdmaps.ehl.profile import Profile
 from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.ehl.spectrum import film_compliances
 from ehdmaps.ehl.ways import coarse_solution, on_fine_grid, with_points

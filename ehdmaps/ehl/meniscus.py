@@ -17,9 +17,10 @@ from typing import NamedTuple
 
 from ehdmaps.ehl.grid import lay_out, zone_width
 from ehdmaps.ehl.group_solution import GroupSolution, assembled
+from ehdmaps.ehl.limits import Resolution
 from ehdmaps.ehl.linearisation import Linearisation
 from ehdmaps.ehl.newton import STAGNATED
-from ehdmaps.ehl.profile import Profile, Resolution, moved, starved_start
+from ehdmaps.ehl.profile import Profile, moved, starved_start
 from ehdmaps.ehl.ways import converged, expected_film, on_coarse_grid, on_fine_grid
 
 FLOW_TOLERANCE = 1e-8

@@ -1,6 +1,7 @@
 """The solver `reynolds`: operating points in SI, one line of loads after another.
 
-The groups of a point go to `line`, which knows no units; what comes back is scaled by b, p_H, b^2/R and b/u.
+The groups of a point go to `line`, which knows no units; what comes back is scaled by b, p_H, b^2/R and b/u. What numba
+compiles is loaded by the first solve: a solver that only stands behind the film table needs none of it.
 """
 
 from __future__ import annotations
@@ -10,20 +11,13 @@ import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.compiling import stopwatch
-from ehdmaps.ehl.column import heat_groups
-from ehdmaps.ehl.grid import GridShape
-from ehdmaps.ehl.group_solution import GroupSolution
-from ehdmaps.ehl.limits import SETTING_LIMITS
-from ehdmaps.ehl.line import group_spectrum, solve_groups
-from ehdmaps.ehl.meniscus import starved_groups
-from ehdmaps.ehl.newton import CONVERGED, DIVERGED
-from ehdmaps.ehl.profile import USUAL_DENSITY, Profile, Resolution
-from ehdmaps.ehl.reynolds import LineProblem
+from ehdmaps.ehl.limits import SETTING_LIMITS, USUAL_DENSITY, GridShape, Resolution
 from ehdmaps.errors import InputError
 from ehdmaps.physics.closed_form import (
     HEAVIEST_LOAD_NUMBER,
@@ -59,6 +53,11 @@ from ehdmaps.physics.solution import (
     no_spectrum,
     slow_spectrum,
 )
+
+if TYPE_CHECKING:
+    from ehdmaps.ehl.group_solution import GroupSolution
+    from ehdmaps.ehl.profile import Profile
+    from ehdmaps.ehl.reynolds import LineProblem
 
 LARGEST_OIL_NUMBER = 150.0
 """Moes' L above which no solve is tried."""
@@ -235,6 +234,8 @@ class ReynoldsSolver(ContactSolverDefaults):
         peak = float(max_pressure(load, contact.radius, contact.reduced_modulus))
         walls = speed * np.array([1.0 - 0.5 * self.slide_to_roll, 1.0 + 0.5 * self.slide_to_roll])
         data = heat_data(lubricant, contact.material)
+        from ehdmaps.ehl.column import heat_groups
+
         heat = heat_groups(lubricant, data, point.temperature, half, contact.radius, peak, walls)
         return problem._replace(heat=heat), M, L
 
@@ -325,6 +326,8 @@ class ReynoldsSolver(ContactSolverDefaults):
         load, speed = point.load, point.entrainment_speed
         _, M, L = self._problem(contact, lubricant, point)
         half = float(half_width(load, contact.radius, contact.reduced_modulus))
+        from ehdmaps.ehl.line import group_spectrum
+
         response = group_spectrum(M, L, groups, 2.0 * math.pi * frequencies * half / speed)
         unit = 4.0 / contact.reduced_modulus  # b/(p_H R)
         return FilmSpectrum(film, frequencies, unit * response.compliance, unit * response.errors)
@@ -366,6 +369,9 @@ class ReynoldsSolver(ContactSolverDefaults):
         supply : OilSupply
             Oil layer before the contact.
         """
+        from ehdmaps.ehl.meniscus import starved_groups
+        from ehdmaps.ehl.newton import CONVERGED
+
         self._without_a_rule("film behind an oil layer")
         state = lubricant.at(point.temperature)
         film, flooded = self._solve(contact, lubricant, point, None)
@@ -424,6 +430,9 @@ class ReynoldsSolver(ContactSolverDefaults):
         beyond = _beyond_reach(peak, M, L)
         if beyond:
             return FilmSolution(Status.OUTSIDE_VALIDITY, beyond), None
+        from ehdmaps.ehl.line import solve_groups
+        from ehdmaps.ehl.newton import CONVERGED, DIVERGED
+
         watch = stopwatch()
         groups = solve_groups(problem, M, L, self.resolution, previous)
         seconds = watch()
@@ -467,6 +476,8 @@ def line_problem(
     slide_to_roll : float
         (u_upper - u_lower)/u.
     """
+    from ehdmaps.ehl.reynolds import LineProblem
+
     alpha = state.pressure_viscosity.pressure_viscosity
     peak = float(max_pressure(load, contact.radius, contact.reduced_modulus))
     M, L = moes_groups(load, speed, state.viscosity, alpha, contact.radius, contact.reduced_modulus)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ehdmaps.arrays import FloatArray
+from ehdmaps.ehl.limits import Resolution
 from ehdmaps.ehl.line import solve_groups
 from ehdmaps.ehl.newton import CONVERGED
-from ehdmaps.ehl.profile import Resolution
 from ehdmaps.ehl.solver import NEWTONIAN_LAW, _beyond_reach, line_problem
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width, max_pressure

@@ -13,18 +13,9 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.ehl.column import NO_HEAT
 from ehdmaps.ehl.grid import Grid, Layout, Spike, lay_out, log_kernel, points_across, thick_film_exit, zone_width
+from ehdmaps.ehl.limits import SEARCH_DENSITY, Resolution
 from ehdmaps.ehl.newton import CONVERGED, DIVERGED, STAGNATED, hertz_start, newton
-from ehdmaps.ehl.profile import (
-    SEARCH_DENSITY,
-    Profile,
-    Resolution,
-    Warmth,
-    front,
-    moved,
-    refined,
-    starved_start,
-    warm_start,
-)
+from ehdmaps.ehl.profile import Profile, Warmth, front, moved, refined, starved_start, warm_start
 from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.ehl.warm_newton import warm_newton
 from ehdmaps.physics.films import moes_central

@@ -9,7 +9,6 @@ reading        a map file as datasets: whether it is a map, and whether it was c
 edges          where the points of a map are known; films beyond its speeds and temperatures
 emap           `EHDMap`, `open_map`: a map file as a value; its curves over load, dense, for charts and tables
 usable         whether a law can be made from a map
-ends           loads at which the films of a map end, over speed and temperature
 film_field     `FilmField`: film of each contact at any load, speed and temperature; down to which load it is known
 grid_field     the film field of the map's own grid, and of lines that its contacts share or have alone
 backbone_plan  which lines are solved for a contact law besides the map
@@ -20,12 +19,10 @@ contact_curve  approach and damping of one contact over load, with the film belo
 oil_layer      the film of a contact on an oil layer, from that of the flooded one
 rough_layer    asperities, and the load that they share with the film
 compilation    curves -> table over approach, speed and temperature
-kept_tables    tables of laws that were made before
-kernels        the room of these tables and the compiled code that reads them, at one point or many; films with memory
+kernels        the room of these tables and of the C that reads them, at one point or many; films with memory
 outside_calls  arguments of a law, and its points outside the map
 law_errors     bounds of the errors of a law, from what the map states
 law_films      below which load the films of a law are a guess, and how they lock
-law_in_c       the law in C, as Python calls it
 law            `ContactLaw`, `LawAtPoint`
 =============  =======================================================================================
 

@@ -30,8 +30,8 @@ from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
 from ehdmaps.errors import MapError
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone_plan import NEIGHBOURS, VALLEY, Axis
-from ehdmaps.maps.ends import one_end
 from ehdmaps.maps.film_field import first_loads, known_from, lifted_loss
+from ehdmaps.maps.kernels.ends import one_end
 from ehdmaps.maps.kernels.locked_film import MOST, film_of, fitted_factor, law_differences, response_error
 from ehdmaps.maps.kernels.splines import mix_lines
 from ehdmaps.physics.contact import LineContact

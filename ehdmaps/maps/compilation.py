@@ -24,8 +24,8 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import MapError
 from ehdmaps.maps.contact_curve import ContactCurve, Curve
-from ehdmaps.maps.ends import ends_at
 from ehdmaps.maps.film_field import FilmField, valley_loads
+from ehdmaps.maps.kernels.ends import ends_at
 from ehdmaps.maps.kernels.splines import hermite, spline_coefficients, spline_slopes
 from ehdmaps.maps.kernels.tables import COLDEST, HALF_SPACE, POWER_LAW, ApproachTable
 from ehdmaps.maps.oil_layer import oil_layer

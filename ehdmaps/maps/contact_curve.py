@@ -25,8 +25,8 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import MapError
-from ehdmaps.maps.ends import ends_at
 from ehdmaps.maps.film_field import FilmField
+from ehdmaps.maps.kernels.ends import ends_at
 from ehdmaps.physics.contact import LineContact
 
 THICK_FILM = 0.005

@@ -16,7 +16,7 @@ from typing import Protocol
 import numpy as np
 
 from ehdmaps.arrays import BoolArray, ComplexArray, FloatArray
-from ehdmaps.maps.ends import ends_at
+from ehdmaps.maps.kernels.ends import ends_at
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.lubricant import Lubricant, LubricantState
 from ehdmaps.physics.moes import moes_groups, valley_load_number
@@ -118,7 +118,7 @@ class FilmField(Protocol):
 
     @property
     def ends(self) -> FloatArray:
-        """Loads up to which the film of every contact is known, see `ehdmaps.maps.ends`.
+        """Loads up to which the film of every contact is known, see `ehdmaps.maps.kernels.ends`.
 
         That of `load_range` or lower.
         """

@@ -26,8 +26,8 @@ from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 from ehdmaps.arrays import ComplexArray, FloatArray, IndexArray
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone import BackboneField
-from ehdmaps.maps.ends import one_end
 from ehdmaps.maps.film_field import FilmField, lifted_loss, same_load
+from ehdmaps.maps.kernels.ends import one_end
 from ehdmaps.maps.kernels.splines import hermite, spline_weights
 from ehdmaps.maps.records import contacts_from_json
 from ehdmaps.physics.contact import LineContact

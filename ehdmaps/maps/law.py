@@ -19,16 +19,16 @@ from ehdmaps.maps.compilation import (
     highest_structural_load,
     structural_parameters,
 )
-from ehdmaps.maps.ends import ends_of
 from ehdmaps.maps.film_field import DryField, FilmField, LowLoads
-from ehdmaps.maps.kept_tables import keeping, kept_table, key_of
+from ehdmaps.maps.kernels.ends import ends_of
 from ehdmaps.maps.kernels.film_response import FilmResponse
+from ehdmaps.maps.kernels.kept_tables import keeping, kept_table, key_of
+from ehdmaps.maps.kernels.law_in_c import LawAddress, LawInC, PointInC
 from ehdmaps.maps.kernels.locked_film import LockedFactors
 from ehdmaps.maps.kernels.memory import FilmMemory, FilmState
 from ehdmaps.maps.kernels.tables import LOAD, LOAD_TOLERANCE, ApproachTable, LawTable, Point
 from ehdmaps.maps.law_errors import LawBounds, LawChange, LawErrors, changed_table
 from ehdmaps.maps.law_films import LawFilms
-from ehdmaps.maps.law_in_c import LawAddress, LawInC, PointInC
 from ehdmaps.maps.outside_calls import Axis, Excursion, OutsideCalls, Range, broadcast, check_finite, floats
 from ehdmaps.maps.rolling_film import RollingFilm
 from ehdmaps.maps.rough_layer import GONE_BELOW
@@ -216,7 +216,7 @@ class ContactLaw:
         Examples
         --------
         >>> import ctypes, numpy as np
-        >>> from ehdmaps.maps.law_in_c import LawAddress
+        >>> from ehdmaps.maps.kernels.law_in_c import LawAddress
         >>> def load(law, approach):  # at rest, at 1 m/s and 40 degC; any language that calls C does it likewise
         ...     at, force = law.address, np.empty(3)
         ...     room = np.empty(at.room // 8)

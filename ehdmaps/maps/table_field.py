@@ -22,8 +22,8 @@ from ehdmaps.errors import MapError
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone import ERROR, IMAGINARY, LOSS_SCALE, REAL, BackboneField, OffsetLine
 from ehdmaps.maps.backbone_plan import STEPS, plan_backbone, zeta_axis
-from ehdmaps.maps.ends import one_end
 from ehdmaps.maps.film_field import RIGID, first_loads, lifted_loss
+from ehdmaps.maps.kernels.ends import one_end
 from ehdmaps.maps.kernels.splines import hermite
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width

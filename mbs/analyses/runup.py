@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import xarray as xr
 
-from ehdmaps.compiling import stopwatch
+from ehdmaps.compiling import cpu_seconds
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.units import RPM
 from mbs.analyses.case import Case, Failed, Progress, side_by_side, silent
@@ -158,7 +158,7 @@ def _run(model: Model, told: Callable[[int], None], settings: RunUp | None = Non
     course, model = _course(model, settings), held(model)
     start = equilibrium(model.system, Operation(course.speed.at(0.0)[0]))
     steps, sensors = course.settings.steps_per_sample, model.scene.sensors
-    elapsed = stopwatch()
+    begin = cpu_seconds()
     record = run_system(
         model.system,
         course_of(model, course),
@@ -169,7 +169,7 @@ def _run(model: Model, told: Callable[[int], None], settings: RunUp | None = Non
         progress=lambda done: told(done * steps),
         options=dataclasses.replace(_KEPT, states=states),
     )
-    seconds = elapsed()
+    seconds = cpu_seconds() - begin
     dataset = with_energy(run_dataset(model.system, record), record.energy)
     dataset = with_states(dataset, states_of(model))
     dataset = described(dataset, **law_attributes(model))

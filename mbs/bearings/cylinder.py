@@ -20,7 +20,7 @@ from mbs.bearings import slice_table as table
 from mbs.bearings.bearing import Bearing
 
 if TYPE_CHECKING:
-    from ehdmaps.maps.law_in_c import LawRecord
+    from ehdmaps.maps.kernels.law_in_c import LawRecord
 
 ABOVE_LOAD, NOT_FINITE, TOO_FAR, NO_LOADS = 1, 8, 32, 128
 """What a call finds: a slice above the mapped load; numbers that are no finite ones, or poses beyond reason; coupled

@@ -40,8 +40,8 @@ from mbs.bearings.cylinder import functions
 from mbs.bearings.slice_table import CELLS, POWER, ROWS, LawNumbers
 
 if TYPE_CHECKING:
+    from ehdmaps.maps.kernels.law_in_c import LawRecord
     from ehdmaps.maps.law import ContactLaw, LawKind, OutsidePolicy
-    from ehdmaps.maps.law_in_c import LawRecord
     from ehdmaps.physics.closed_form import FilmFormula, FormulaSolver
 
 
@@ -579,7 +579,7 @@ class FlatLaw:
             Whether there are centrifugal loads.
         """
         if centrifugal not in self._data:
-            from ehdmaps.maps.law_in_c import LawRecord  # it is loaded already, with the law
+            from ehdmaps.maps.kernels.law_in_c import LawRecord  # it is loaded already, with the law
 
             self._data[centrifugal] = LawRecord.of(law.table if centrifugal else law.plain_table, centrifugal)
         return self._data[centrifugal]

@@ -18,9 +18,10 @@ import numpy as np
 from scipy.optimize import fsolve
 from threadpoolctl import threadpool_limits
 
+from ehdmaps.ehl.limits import Resolution
 from ehdmaps.ehl.line import solve_groups
 from ehdmaps.ehl.newton import newton
-from ehdmaps.ehl.profile import Profile, Resolution, refined
+from ehdmaps.ehl.profile import Profile, refined
 from ehdmaps.ehl.reynolds import FITTED_STEP, LineProblem, residual
 from ehdmaps.ehl.solver import ReynoldsSolver, line_problem
 from ehdmaps.ehl.ways import LOAD

@@ -19,8 +19,8 @@ import xarray as xr
 from scipy.interpolate import RegularGridInterpolator
 
 from ehdmaps.maps.grid_field import GridField
+from ehdmaps.maps.kernels.law_in_c import LawInC
 from ehdmaps.maps.law import ContactLaw
-from ehdmaps.maps.law_in_c import LawInC
 from tests.cases.laws import CONTACTS, OIL, ValleyField, exact_law
 
 POINTS = 200_000

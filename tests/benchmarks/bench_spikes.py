@@ -22,9 +22,10 @@ from threadpoolctl import threadpool_limits
 
 from ehdmaps.ehl.grid import Spike, lay_out
 from ehdmaps.ehl.group_solution import GroupSolution
+from ehdmaps.ehl.limits import Resolution
 from ehdmaps.ehl.line import solve_groups
 from ehdmaps.ehl.newton import CONVERGED
-from ehdmaps.ehl.profile import Profile, Resolution, front, moved
+from ehdmaps.ehl.profile import Profile, front, moved
 from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.ehl.solver import line_problem
 from ehdmaps.ehl.ways import LOOSE_TOLERANCE, converged

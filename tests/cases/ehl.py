@@ -6,8 +6,8 @@ import math
 from functools import cache
 
 from ehdmaps.ehl.group_solution import GroupSolution
+from ehdmaps.ehl.limits import Resolution
 from ehdmaps.ehl.line import solve_groups
-from ehdmaps.ehl.profile import Resolution
 from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.physics.isotherm import PressureViscosity
 

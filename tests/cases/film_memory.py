@@ -15,10 +15,10 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
 from ehdmaps.arrays import ComplexArray, FloatArray
-from ehdmaps.ehl.grid import DRY_DATUM, GridShape
+from ehdmaps.ehl.grid import DRY_DATUM
 from ehdmaps.ehl.group_solution import GroupSolution
+from ehdmaps.ehl.limits import GridShape, Resolution
 from ehdmaps.ehl.line import solve_groups
-from ehdmaps.ehl.profile import Resolution
 from ehdmaps.ehl.solver import ReynoldsSolver, line_problem
 from ehdmaps.ehl.ways import LOAD
 from ehdmaps.jobs.job import Job

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.interpolate import BSpline
 from scipy.optimize import brentq
 
-from ehdmaps.maps.ends import ends_of
+from ehdmaps.maps.kernels.ends import ends_of
 from ehdmaps.maps.kernels.tables import COLDEST
 
 

@@ -11,7 +11,7 @@ from scipy.special import erf
 
 from ehdmaps.maps import schema
 from ehdmaps.maps.contact_curve import ContactCurve, Curve
-from ehdmaps.maps.ends import one_end
+from ehdmaps.maps.kernels.ends import one_end
 from ehdmaps.maps.records import DERIVED, contacts_json, record_json
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.closed_form import FormulaSolver, HertzSolver

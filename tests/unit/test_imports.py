@@ -34,7 +34,7 @@ ALLOWED = {
     "ehdmaps.outputs": {"ehdmaps.errors", "ehdmaps.figures", "ehdmaps.netcdf_structure"},
     "ehdmaps.provenance": set(),
     "ehdmaps.version": {"ehdmaps.provenance"},
-    "ehdmaps.compiled": {"ehdmaps.outputs", "ehdmaps.program", "ehdmaps.provenance"},
+    "ehdmaps.compiled": {"ehdmaps.compiling", "ehdmaps.outputs", "ehdmaps.program", "ehdmaps.provenance"},
     "ehdmaps.kernel": {"ehdmaps.errors", "ehdmaps.outputs"},
     "ehdmaps.interrupts": set(),
     "ehdmaps.program": {"ehdmaps.errors", "ehdmaps.interrupts", "ehdmaps.version"},
@@ -65,6 +65,8 @@ ALLOWED = {
         "ehdmaps.inputs",
         "ehdmaps.kernel",
         "ehdmaps.netcdf_structure",
+        "ehdmaps.outputs",
+        "ehdmaps.provenance",
         "ehdmaps.units",
         "ehdmaps.physics",
         "ehdmaps.table",
@@ -431,8 +433,13 @@ BUDGETS = (
     ("from mbs.bearings import bearing_force", 50, (*SOLVING, *LATER, *MACHINES, "ehdmaps.jobs", "ehdmaps.maps.law")),
     (BEARING, 90, (*SOLVING, *LATER, *MACHINES, "ehdmaps.jobs", "ehdmaps.maps.law", "ehdmaps.maps.emap")),
     (STATICS, 120, (*SOLVING, *LATER, *MACHINES, "ehdmaps.jobs.job", "ehdmaps.maps.law", "ehdmaps.maps.emap")),
-    (FILMS_OF_TABLE, 115, (SOLVING[1], "matplotlib", "xarray", "pandas", "mbs")),
-    ("import ehdmaps; ehdmaps.open_map(MAP).law('inner')", 95, (*SOLVING[:2], "matplotlib", "ehdmaps.jobs", "mbs")),
+    (FILMS_OF_TABLE, 100, (SOLVING[1], "numba", "matplotlib", "xarray", "pandas", "mbs")),
+    ("from mbs.analyses import campbell, runup", 230, ("numba",)),
+    (
+        "import ehdmaps; ehdmaps.open_map(MAP).law('inner')",
+        95,
+        (*SOLVING[:2], "numba", "matplotlib", "ehdmaps.jobs", "mbs"),
+    ),
 )
 """What a question loads of our own modules at most, and what it does not need."""
 

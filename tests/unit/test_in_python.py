@@ -1,17 +1,13 @@
 """What needs no compiled Python, and kernels as Python under NUMBA_DISABLE_JIT=1, for debuggers and for coverage."""
 
 import json
-import math
 import os
 import subprocess
 import sys
 
 import numpy as np
-import pytest
 
-from ehdmaps.compiled import in_python
 from ehdmaps.ehl.dense import factorised, solved
-from ehdmaps.maps.kernels.lines import log
 
 BEARING = ("bearing", "NU308", "--load", "5 kN", "--speed", "500 rpm", "--slices", "5", "--law")
 COMMANDS = (
@@ -19,7 +15,15 @@ COMMANDS = (
     (*BEARING, "map", "--map", "MAP"),
     ("statics", "nu308_rigid", "--law", "hertz:1.25e-5 s"),
     ("modes", "nu308_rigid", "--law", "map", "--map", "MAP"),
+    ("bearing", "NU308", "--load", "5 kN", "--speed", "1500 rpm"),
+    ("bearing", "6208", "--load", "2 kN", "--speed", "1500 rpm"),
+    ("bearing", "32208", "--load", "2 kN", "--axial", "1 kN", "--speed", "1500 rpm"),
+    ("lsa", "spindle"),
+    ("sweep", "nu308_rigid", "--speed", "500 rpm", "900 rpm", "2"),
+    ("critical", "nu308_rigid", "--speed", "500 rpm", "900 rpm", "2"),
 )
+"""Kinds of bearings and of commands, with films of maps and of the film table; runs in time load nothing more."""
+
 
 WITHOUT = """
 import json, sys
@@ -78,9 +82,3 @@ def test_a_kernel_in_python_gives_what_compiled_code_gives(tmp_path):
     np.testing.assert_allclose(
         found, solved(factorised(matrix.copy()), right), rtol=1e-10
     )  # round-off, of the condition
-
-
-@pytest.mark.parametrize("x", [2.3e-308, 1e-9, 0.7, math.sqrt(0.5), 1.0, 1.5, 6e7, 1.7e308])
-def test_logarithms_in_python_are_those_of_compiled_code(x):
-    assert in_python(log)(x) == pytest.approx(log(x), rel=1e-15, abs=1e-15)  # warnings, of overflows, are errors
-    assert log(x) == pytest.approx(math.log(x), rel=1e-15, abs=4e-16)

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from ehdmaps.ehl.limits import Resolution
 from ehdmaps.ehl.line import solve_groups
-from ehdmaps.ehl.profile import Resolution
 from ehdmaps.ehl.reynolds import LineProblem, oil
 from ehdmaps.ehl.solver import ReynoldsSolver, line_problem
 from ehdmaps.errors import InputError

@@ -10,9 +10,9 @@ import pytest
 from numba import njit
 
 import ehdmaps
-from ehdmaps.maps import kept_tables
+from ehdmaps.maps.kernels import kept_tables
+from ehdmaps.maps.kernels.law_in_c import ABOVE_SPEED, NOT_FINITE, LawAddress
 from ehdmaps.maps.law import ContactLaw
-from ehdmaps.maps.law_in_c import ABOVE_SPEED, NOT_FINITE, LawAddress
 from tests.cases.laws import CONTACTS, OIL, SMALL_FIELD
 
 

@@ -13,9 +13,9 @@ import pytest
 from scipy.optimize import brentq
 
 from ehdmaps.errors import InputError, OutsideMapError
+from ehdmaps.maps.kernels.law_in_c import LawInC
 from ehdmaps.maps.kernels.tables import LOAD, NOT_FINITE, SPEED, TEMPERATURE
 from ehdmaps.maps.law import LOAD_REACH, ContactLaw
-from ehdmaps.maps.law_in_c import LawInC
 from tests.cases.laws import CONTACTS, LINE, OIL, SMALL_FIELD, ValleyField, exact_law
 
 FULL_FIELD = ValleyField()

@@ -1,4 +1,4 @@
-"""Parts of the contact law: splines, exp and log, the tail, the curves and the grid field."""
+"""Parts of the contact law: splines, the tail, the curves and the grid field."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ import math
 
 import numpy as np
 import pytest
-from numba import njit
 from scipy.interpolate import CubicSpline
 
 from ehdmaps.errors import MapError
@@ -15,7 +14,6 @@ from ehdmaps.maps.compilation import compile_table, highest_structural_load
 from ehdmaps.maps.contact_curve import ContactCurve, Tail
 from ehdmaps.maps.film_field import LOSS_FLOOR, DryField, lifted_loss
 from ehdmaps.maps.grid_field import GridField
-from ehdmaps.maps.kernels import lines
 from ehdmaps.maps.kernels.splines import hermite, spline_coefficients, spline_slopes, spline_weights
 from tests.cases.laws import CONTACTS, LINE, OIL, SMALL_FIELD, ValleyField
 
@@ -66,19 +64,6 @@ def test_hermite_has_the_given_values_and_slopes():
     for part, wanted in ((0.0, left), (1.0, right)):
         value, slope = hermite(left, right, np.array([part]), 0.2)
         assert [value[0], slope[0]] == pytest.approx([wanted[0][0], wanted[1][0]], rel=1e-13)
-
-
-@njit
-def many(function, values):
-    return np.array([function(value) for value in values])
-
-
-def test_elementary_functions_are_good_to_round_off():
-    x = np.concatenate((np.linspace(-690.0, 690.0, 2001), np.linspace(-1.0, 1.0, 2001)))
-    assert np.max(np.abs(many(lines.exp, x) / np.exp(x) - 1.0)) < 5e-16
-    assert many(lines.exp, np.array([-1e4, 1e4])) == pytest.approx(np.exp([-700.0, 700.0]), rel=1e-15)
-    y = np.concatenate((np.geomspace(1e-300, 1e300, 2001), 1.0 + np.linspace(-1e-3, 1e-3, 2000)))
-    assert np.max(np.abs(many(lines.log, y) - np.log(y)) / (1.0 + np.abs(np.log(y)))) < 4e-16
 
 
 def tail(film=50e-9, exponent=0.7, slope=0.4):

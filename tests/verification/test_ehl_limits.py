@@ -11,8 +11,8 @@ import pytest
 
 from ehdmaps.ehl.grid import DRY_DATUM, lay_out, log_kernel
 from ehdmaps.ehl.group_solution import COMPLIANCE_LOST, FILM_LOST, LOSS_LOST, ROLLING_GAINED
+from ehdmaps.ehl.limits import Resolution
 from ehdmaps.ehl.line import solve_groups
-from ehdmaps.ehl.profile import Resolution
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.physics.films import dowson_higginson_minimum, dowson_toyoda_central, moes_central
 from ehdmaps.physics.hertz import DRY_COMPLIANCE

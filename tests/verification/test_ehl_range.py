@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from ehdmaps.ehl.limits import Resolution
 from ehdmaps.ehl.line import solve_groups
 from ehdmaps.ehl.newton import CONVERGED
-from ehdmaps.ehl.profile import Resolution
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.reader import read_job

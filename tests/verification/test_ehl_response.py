@@ -53,8 +53,8 @@ def test_grid_that_follows_the_spike_gives_the_secant(M: float, L: float) -> Non
     """The tangent with a spike against a secant over +-5 % of load, from solves that place their own grids."""
     result = solved(M, L)
     assert _profile(result).spike is not None
+    from ehdmaps.ehl.limits import Resolution
     from ehdmaps.ehl.line import solve_groups
-    from ehdmaps.ehl.profile import Resolution
 
     problem = roelands_problem(M, L)
     heights = []
@@ -69,8 +69,8 @@ def test_grid_that_follows_the_spike_gives_the_secant(M: float, L: float) -> Non
 
 @pytest.mark.parametrize(("M", "L"), [(1.0, 5.0), (5.0, 8.0)])
 def test_following_and_standing_grids_agree_where_the_front_is_resolved(M: float, L: float) -> None:
+    from ehdmaps.ehl.limits import Resolution
     from ehdmaps.ehl.line import solve_groups
-    from ehdmaps.ehl.profile import Resolution
 
     problem = roelands_problem(M, L)
     following = solve_groups(problem, M, L, Resolution(density=20.0, spike_steepness=1e-3))

@@ -11,10 +11,9 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from ehdmaps.ehl import solver as reynolds
-from ehdmaps.ehl.grid import GridShape
 from ehdmaps.ehl.group_solution import GroupSolution, linearised_profile
+from ehdmaps.ehl.limits import GridShape, Resolution
 from ehdmaps.ehl.line import group_spectrum, solve_groups
-from ehdmaps.ehl.profile import Resolution
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.ehl.spectrum import film_compliances, film_space
 from ehdmaps.ehl.ways import LOAD

@@ -14,9 +14,9 @@ from scipy.optimize import brentq
 import ehdmaps.ehl.meniscus as meniscus_module
 from ehdmaps.ehl.grid import log_kernel
 from ehdmaps.ehl.group_solution import linearised_profile
+from ehdmaps.ehl.limits import Resolution
 from ehdmaps.ehl.meniscus import StarvedGroups, starved_groups
 from ehdmaps.ehl.newton import newton
-from ehdmaps.ehl.profile import Resolution
 from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.ehl.solver import ReynoldsSolver, SuppliedFilm
 from ehdmaps.ehl.ways import LOAD

@@ -10,8 +10,9 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from ehdmaps import STEEL, BearingGeometry, Lubricant
+from ehdmaps.ehl.limits import Resolution
 from ehdmaps.ehl.line import solve_groups
-from ehdmaps.ehl.profile import Profile, Resolution
+from ehdmaps.ehl.profile import Profile
 from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.ehl.solver import ReynoldsSolver, line_problem
 from ehdmaps.errors import MapError

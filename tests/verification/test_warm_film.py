@@ -11,8 +11,8 @@ import pytest
 from ehdmaps.ehl.column import STEP, heat_groups, warm_viscosity
 from ehdmaps.ehl.grid import ACROSS, moved_across, points_across
 from ehdmaps.ehl.group_solution import GroupSolution, left_across
+from ehdmaps.ehl.limits import Resolution
 from ehdmaps.ehl.line import _by_points, _in_turn, _witness, solve_groups
-from ehdmaps.ehl.profile import Resolution
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.ehl.warm_column import (
     empty_columns,

@@ -15,9 +15,9 @@ import pytest
 from ehdmaps.ehl.column import NO_HEAT, STEP, Heat
 from ehdmaps.ehl.grid import ACROSS, points_across
 from ehdmaps.ehl.group_solution import GroupSolution
+from ehdmaps.ehl.limits import Resolution
 from ehdmaps.ehl.line import solve_groups
 from ehdmaps.ehl.newton import CONVERGED
-from ehdmaps.ehl.profile import Resolution
 from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.physics.heat import thermal_loading, viscosity_slope

@@ -17,7 +17,7 @@ from ehdmaps.jobs.make.table_films import table_films, unserved
 from ehdmaps.jobs.make.tasks import of_groups
 from ehdmaps.jobs.solvers import TABLE
 from ehdmaps.maps.emap import EHDMap
-from ehdmaps.maps.kept_tables import keeping, key_of
+from ehdmaps.maps.kernels.kept_tables import keeping, key_of
 from ehdmaps.maps.law import ContactLaw, LawKind, OutsidePolicy
 from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import BearingGeometry

@@ -18,9 +18,9 @@ from scipy.ndimage import maximum_filter
 
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.ehl.group_solution import GroupSolution
+from ehdmaps.ehl.limits import Resolution
 from ehdmaps.ehl.line import group_spectrum, solve_groups
 from ehdmaps.ehl.newton import CONVERGED
-from ehdmaps.ehl.profile import Resolution
 from ehdmaps.ehl.reynolds import LineProblem
 from ehdmaps.physics.isotherm import PressureViscosity
 from ehdmaps.physics.rheology import ShearLaw

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.jobs.job import Job
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone import ERROR, FILMS, IMAGINARY, REAL
@@ -304,7 +303,7 @@ def of_groups(solver: ContactSolver) -> ContactSolver:
     """
     if isinstance(solver, TableSolver):
         return replace(solver, other=of_groups(solver.other), thickest_film=math.inf)
-    return replace(solver, thickest_film=math.inf) if isinstance(solver, ReynoldsSolver) else solver
+    return replace(solver, thickest_film=math.inf) if solver.name == "reynolds" else solver
 
 
 def backbone_group(refined: Refinement, results: Mapping[str, Arrays]) -> xr.Dataset:

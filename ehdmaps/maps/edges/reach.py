@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ehdmaps.arrays import BoolArray, FloatArray, IndexArray
-from ehdmaps.maps.ends import ends_at, one_end
+from ehdmaps.maps.kernels.ends import ends_at, one_end
 from ehdmaps.units import LOAD, SPEED, TEMPERATURE, Display
 
 Axes = tuple[FloatArray, FloatArray, FloatArray]
@@ -106,7 +106,7 @@ class Reach:
 
     @property
     def ends(self) -> FloatArray:
-        """Highest known loads, as of `ehdmaps.maps.ends`."""
+        """Highest known loads, as of `ehdmaps.maps.kernels.ends`."""
         return self._ends(self.last)
 
     def _ends(self, loads: FloatArray) -> FloatArray:

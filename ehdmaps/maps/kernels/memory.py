@@ -30,10 +30,10 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.kernel.library import checked
 from ehdmaps.kernel.record import Record, at, numbers
+from ehdmaps.maps.kernels.law_in_c import with_point
 from ehdmaps.maps.kernels.locked_film import LockedFactors, film_of, geometry_of
 from ehdmaps.maps.kernels.memory_table import NUMBERS, ROWS, MemoryTable, called, equilibrium_at
 from ehdmaps.maps.kernels.tables import Point
-from ehdmaps.maps.law_in_c import with_point
 from ehdmaps.physics.contact import LineContact
 
 

@@ -115,7 +115,7 @@ class LawTable(NamedTuple):
     structure : array (n, 3)
         Structural law of each contact: kind, and two parameters.
     ends : array (1 + n_u, 1 + n_T)
-        Mapped loads, see `ehdmaps.maps.ends`; those above are counted.
+        Mapped loads, see `ehdmaps.maps.kernels.ends`; those above are counted.
     film_speed : float
         Speed below which the film is faded [m/s]; inf for a map without films, 0 where it goes over into asperities.
     lowest_speed, highest_speed : float

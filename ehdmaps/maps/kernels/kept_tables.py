@@ -32,7 +32,7 @@ MOST = 100
 """Tables that are kept, of some 5 MB each; the oldest ones make room."""
 
 _ARRAYS = ("coefficients", "place")
-_DATA = Path(__file__).parents[1] / "table" / "film_table.nc"
+_DATA = Path(__file__).parents[2] / "table" / "film_table.nc"
 
 
 def keeping() -> bool:
