@@ -53,7 +53,7 @@ FILES = sorted(
 def test_no_array_is_assigned_to_a_slice():
     """numba compiles the text of a message about shapes for it; `ehdmaps.copies.put`, or a loop, does the same."""
     found = {str(path.relative_to(ROOT)): list(slices_of_arrays(path.read_text(encoding="utf-8"))) for path in FILES}
-    assert len(found) > 20
+    assert len(found) > 10
     assert {path: lines for path, lines in found.items() if lines} == {}
 
 

@@ -6,6 +6,7 @@ import subprocess
 import sys
 
 import numpy as np
+import pytest
 
 from ehdmaps.ehl.dense import factorised, solved
 
@@ -41,6 +42,7 @@ def trace(frame, event, _):
             seen.add(frame.f_lineno)
         return trace
 import numpy as np
+import pytest
 from ehdmaps.ehl.dense import factorised, solved
 matrix, right = map(np.array, json.loads(sys.argv[1]))
 sys.settrace(trace)
@@ -64,6 +66,7 @@ def told(program, given, folder, **environment):
     return json.loads(result.stdout.rpartition("FOUND ")[2])
 
 
+@pytest.mark.slow
 def test_bearings_are_asked_without_numba(small_map, tmp_path):
     commands = [[small_map if word == "MAP" else word for word in command] for command in COMMANDS]
     assert told(WITHOUT, commands, tmp_path) == [0] * len(COMMANDS)
