@@ -209,7 +209,7 @@ class LawRoom:
         """Array of the struct by its name, such as "cells", shape (2 ROWS, 4, 2); made if it is not there yet."""
         found: FloatArray | None = self.law.given(name)
         if found is None:
-            found = np.zeros(CylinderLaw.shapes[name], dtype=np.int64 if name == "marks" else np.float64)
+            found = np.zeros(CylinderLaw.shapes[name], dtype=np.int64 if name == "marks" else np.float64)  # type: ignore[arg-type]
             self.law.put(**{name: found})
         return found
 

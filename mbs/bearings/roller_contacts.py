@@ -50,7 +50,7 @@ def relaxation_times(law: LawAtPoint, approach: FloatArray) -> FloatArray:
     """
     _, k, _, dy, _, dg = (np.asarray(read) for read in equilibrium_at(law.memory.table, approach))
     # k_s = k/(1 - dy) and G' = c k_s/(k_s - k) make theta = c/(k_s - k) = G'/k_s.
-    return np.divide(dg * (1.0 - dy), k, out=np.zeros_like(k), where=k > 0.0)
+    return np.divide(dg * (1.0 - dy), k, out=np.zeros_like(k), where=k > 0.0)  # type: ignore[no-any-return]
 
 
 def natural_times(law: LawAtPoint, approach: FloatArray) -> FloatArray:

@@ -303,7 +303,7 @@ def of_groups(solver: ContactSolver) -> ContactSolver:
     """
     if isinstance(solver, TableSolver):
         return replace(solver, other=of_groups(solver.other), thickest_film=math.inf)
-    return replace(solver, thickest_film=math.inf) if solver.name == "reynolds" else solver
+    return replace(solver, thickest_film=math.inf) if solver.name == "reynolds" else solver  # type: ignore[type-var]
 
 
 def backbone_group(refined: Refinement, results: Mapping[str, Arrays]) -> xr.Dataset:

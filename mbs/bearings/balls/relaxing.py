@@ -93,7 +93,7 @@ def _of_ball(
     ends[: TIMES.size] += directions[0]
     on = np.flatnonzero(damping > 0.0)
     on = on[np.argsort(-theta[on], kind="stable")]
-    c, felt_on = damping[on], along[on]
+    c, felt_on = damping[on], along[on]  # type: ignore[assignment]
     # the ball, at any frequency, feels all springs
     pulled = (c / theta[on])[:, None] * felt_on
     own = np.diag(c / theta[on]) - pulled @ np.linalg.solve(balance + felt_on.T @ pulled, pulled.T)
