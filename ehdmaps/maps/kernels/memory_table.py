@@ -123,7 +123,7 @@ def equilibrium_at(table: MemoryTable, approach: npt.ArrayLike) -> tuple[Any, An
     p, dp, y, dy, G, dG : float or array
         Values and slopes in the shape of the approaches.
     """
-    return tuple(_read("ehd_film_equilibria", table, approach, 6))  # type: ignore[return-value]
+    return tuple(_read("ehd_film_equilibria", table, approach, 6))
 
 
 def approach_at(table: MemoryTable, load: npt.ArrayLike) -> tuple[Any, Any]:
@@ -136,7 +136,7 @@ def approach_at(table: MemoryTable, load: npt.ArrayLike) -> tuple[Any, Any]:
     load : float or array
         [N/m].
     """
-    return tuple(_read("ehd_film_stretches", table, load, 2))  # type: ignore[return-value]
+    return tuple(_read("ehd_film_stretches", table, load, 2))
 
 
 def rate_of(h: float, last_h: float, change: npt.ArrayLike, last: npt.ArrayLike) -> tuple[Any, Any]:
