@@ -15,6 +15,7 @@ pointer to its data first: C keeps no state of its own.
 
 ===================  ==================================================================================
 numbers.h            what every part needs: the lesser and the greater of two numbers
+elementary.h         logarithm and exponential for loops of vector instructions
 status.[hc]          what calls find, and how it is called
 law.[hc]             contact law over approach, rate, speed and temperature: tables, points, ends
 cells.c              cells of tables that are the binary digits of a number

@@ -125,6 +125,7 @@ def kernel_files(emap: EHDMap, options: KernelOptions, header: Sequence[str]) ->
     source = [
         banner, '#include "ehd.h"\n',
         template("ehdmaps.kernel", "c/numbers.h"),
+        template("ehdmaps.kernel", "c/elementary.h"),
         *(template("ehdmaps.kernel", f"c/{part}.c") for part in bodies),
         _law_data(law, options.centrifugal),
         _film_data(law),

@@ -53,7 +53,7 @@ typedef struct ball_state {
 } ball_state;
 
 /* Speed of a ball around the axis [rad/s] by its contact angles, and its derivatives by both, by_i and by_o. */
-PAIR_INLINE double ball_orbit(const ehd_ball_drive *of, double ix, double ir, double ox, double orr, double *by_i,
+EHD_INLINE double ball_orbit(const ehd_ball_drive *of, double ix, double ir, double ox, double orr, double *by_i,
                               double *by_o) {
     *by_i = *by_o = 0.0;
     if (of->cage == of->cage) return of->cage;
@@ -69,7 +69,7 @@ PAIR_INLINE double ball_orbit(const ehd_ball_drive *of, double ix, double ir, do
 /* F_c of a ball and t by its speed [N], and their derivatives by it [N s]; out (4,). The ball turns against the cage, and
  * its spin is turned by w_c: the gyroscopic moment is J w_c (w_c - w_o) (d_m/Dw) sin a_o. Traction of rings that turn
  * against each other would drive an idle ball out of its groove: t >= -F_c/2. */
-PAIR_INLINE void ball_loads(const ehd_ball_drive *of, double speed, double *out) {
+EHD_INLINE void ball_loads(const ehd_ball_drive *of, double speed, double *out) {
     double traction = of->gyroscopic * speed * (speed - of->outer);
     double by_traction = of->gyroscopic * (2.0 * speed - of->outer);
     out[0] = of->centrifugal * speed * speed;
@@ -82,7 +82,7 @@ PAIR_INLINE void ball_loads(const ehd_ball_drive *of, double speed, double *out)
     out[3] = by_traction;
 }
 
-PAIR_INLINE ball_state ball_state_at(const ball_given *of, double x, double r) {
+EHD_INLINE ball_state ball_state_at(const ball_given *of, double x, double r) {
     ball_state s;
     double ix = of->dx - x, ir = of->dr - r, by_i, by_o, load[4];
     const double reach = sqrt(x * x + r * r), distance = most(sqrt(ix * ix + ir * ir), 1e-300);
@@ -134,10 +134,10 @@ PAIR_INLINE ball_state ball_state_at(const ball_given *of, double x, double r) {
 }
 
 /* Force that is left [N]. */
-PAIR_INLINE double ball_left(const ball_state *s) { return sqrt(s->fx * s->fx + s->fr * s->fr); }
+EHD_INLINE double ball_left(const ball_state *s) { return sqrt(s->fx * s->fx + s->fr * s->fr); }
 
 /* Newton's method from a state: whether it ends in the balance. */
-PAIR_INLINE int ball_newton(const ball_given *of, ball_state *s, int steps) {
+EHD_INLINE int ball_newton(const ball_given *of, ball_state *s, int steps) {
     double allowed = 0.0;
     for (int step = 0; step < steps; step++) {
         const double norm = ball_left(s), trace = s->m00 + s->m11;
@@ -283,7 +283,7 @@ static int ball_anew(const ball_given *of, const ehd_ball_start *start, ball_sta
 }
 
 /* Force, stiffness and damping of a ball in balance, and where it begins the next time. */
-PAIR_INLINE void ball_answer(const ball_given *of, const ball_state *s, ehd_ball_start *start, ehd_ball_found *out) {
+EHD_INLINE void ball_answer(const ball_given *of, const ball_state *s, ehd_ball_start *start, ehd_ball_found *out) {
     const double qi = s->qi, ki = s->ki, ix = s->ix, ir = s->ir, ox = s->ox, orr = s->orr, ti = qi / s->distance;
     const double k00 = (ki - ti) * ix * ix + ti, k01 = (ki - ti) * ix * ir, k11 = (ki - ti) * ir * ir + ti;
     const double m00 = s->m00, m01 = s->m01, m10 = s->m10, m11 = s->m11, determinant = m00 * m11 - m01 * m10;
@@ -349,7 +349,7 @@ PAIR_INLINE void ball_answer(const ball_given *of, const ball_state *s, ehd_ball
 
 /* Find the balance of a ball; whether it was found. share: of two dry contacts of a bearing that stands, see ball_share;
  * else below zero. */
-PAIR_INLINE int ball_place(const ball_given *of, double share, ehd_ball_start *start, ehd_ball_found *out) {
+EHD_INLINE int ball_place(const ball_given *of, double share, ehd_ball_start *start, ehd_ball_found *out) {
     ball_state s;
     if (share >= 0.0) {
         const double length = sqrt(of->dx * of->dx + of->dr * of->dr), one = 1.0 / length;

@@ -8,7 +8,7 @@
 EHD_SIZE_OF(ehd_ball_data)
 
 /* Add what a ball has by d to a matrix (6, 6); d by pose: axial (1, 0, 0, 0, y, z), radial (0, c, s, 0, 0, 0). */
-PAIR_INLINE void ball_add(const double m[4], double c, double s, double y, double z, double *out) {
+EHD_INLINE void ball_add(const double m[4], double c, double s, double y, double z, double *out) {
     const double xx = m[0], xr = m[1], rx = m[2], rr = m[3];
     out[0] += xx;
     out[1] += xr * c;

@@ -12,7 +12,7 @@
 
 /* Springs at a place on a table (rows, springs + 1), straight between rows and held beyond the ends: stiffness [N/m], and
  * the longest of their times [s]. */
-PAIR_INLINE void ball_springs(const double *table, int64_t rows, double place, double *out) {
+EHD_INLINE void ball_springs(const double *table, int64_t rows, double place, double *out) {
     const double held = least(most(place, 0.0), (double)rows - 1.0);
     const int64_t cell = held < (double)rows - 2.0 ? (int64_t)held : rows - 2;
     const double t = held - (double)cell, *low = table + (BALL_SPRINGS + 1) * cell, *high = low + BALL_SPRINGS + 1;
@@ -21,7 +21,7 @@ PAIR_INLINE void ball_springs(const double *table, int64_t rows, double place, d
 
 /* What a contact holds against an approach over a step [s]: passed (springs, 2), the part of each force that is left and
  * its spring of the end of the step; held (3,), see pair_law.c. shorter: times of the springs over the longest one. */
-PAIR_INLINE void ball_hold(const double *shorter, double step, double approach, const double *spring, const double *force,
+EHD_INLINE void ball_hold(const double *shorter, double step, double approach, const double *spring, const double *force,
                            double *passed, double *held) {
     held[0] = held[1] = 0.0;
     held[2] = approach;
@@ -33,7 +33,7 @@ PAIR_INLINE void ball_hold(const double *shorter, double step, double approach, 
 }
 
 /* Bring the forces to the end of a step in which the approach moved, and to the springs there. */
-PAIR_INLINE void ball_go_on(double moved, double *spring, const double *after, const double *passed, double *force) {
+EHD_INLINE void ball_go_on(double moved, double *spring, const double *after, const double *passed, double *force) {
     for (int r = 0; r < BALL_SPRINGS; r++)
         force[r] = pair_gone_on(force[r], passed[2 * r], passed[2 * r + 1] * moved, spring[r], after[r]);
     memcpy(spring, after, (BALL_SPRINGS + 1) * sizeof *spring);

@@ -4,18 +4,6 @@
 
 #define CELL_BITS 5
 
-static double number_of_bits(uint64_t bits) {
-    double x;
-    memcpy(&x, &bits, sizeof x);
-    return x;
-}
-
-static uint64_t bits_of(double x) {
-    uint64_t bits;
-    memcpy(&bits, &x, sizeof bits);
-    return bits;
-}
-
 /* Where cell k begins, as a value of a >= 1. */
 static double cell_end(int k) {
     return number_of_bits(((UINT64_C(1023) << CELL_BITS) + (uint64_t)k) << (52 - CELL_BITS));

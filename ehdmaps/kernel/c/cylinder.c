@@ -6,14 +6,6 @@
 
 #define NO_APPROACH 1e-30
 
-/* In the library, not in what exports write: compiled for newer processors, too, of which the right one is taken. */
-#if defined(EHD_NUMBER) && defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) &&    \
-    !defined(__SANITIZE_ADDRESS__) && defined(__OPTIMIZE__)
-#define CYLINDER_CLONES __attribute__((target_clones("default", "arch=x86-64-v3")))
-#else
-#define CYLINDER_CLONES
-#endif
-
 /* First digits of a = 1 and -1, less the rows of their cells. */
 #define FIRST_ABOVE (UINT64_C(0x3ff) << CELL_BITS)
 #define FIRST_BELOW ((UINT64_C(0xbff) << CELL_BITS) - EHD_ROWS)
@@ -41,29 +33,8 @@ typedef struct sums {
 
 static const sums NO_SUMS = {{0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
 
-/* x^b for a positive normal x, and a result between 1e-300 and 1e300; to some 1e-15 relative. Compilers put it into vector
- * instructions, as it has no branch and no call. */
-static inline double slice_power(double x, double b) {
-    const uint64_t one = UINT64_C(0x3ff0000000000000), root_half = UINT64_C(0x3fe6a09e667f3bcd), bits = bits_of(x);
-    const double ln2 = 6.93147180369123816490e-01, ln2_rest = 1.90821492927058770002e-10;
-    /* the logarithm, of a mantissa m between the roots of 1/2 and 2 by that of (1 + f)/(1 - f) */
-    const uint64_t exponent = (bits + (one - root_half)) >> 52;
-    const double e = number_of_bits(exponent | UINT64_C(0x4330000000000000)) - (4503599627370496.0 + 1023.0);
-    const double m = number_of_bits(bits + one - (exponent << 52)), f = (m - 1.0) / (m + 1.0);
-    const double z = f * f, z2 = z * z, z4 = z2 * z2;
-    const double odd = (2.0 / 3.0 + z * (2.0 / 5.0)) + z2 * (2.0 / 7.0 + z * (2.0 / 9.0));
-    const double odd_on = (2.0 / 11.0 + z * (2.0 / 13.0)) + z2 * (2.0 / 15.0 + z * (2.0 / 17.0));
-    const double odd_sum = odd + z4 * (odd_on + z4 * (2.0 / 19.0 + z * (2.0 / 21.0)));
-    const double y = b * (e * ln2 + (e * ln2_rest + f * (2.0 + z * odd_sum)));
-    /* the exponential; adding 3 2^51 leaves the nearest whole number in the last bits */
-    const double shifted = y * 1.4426950408889634 + 6755399441055744.0, n = shifted - 6755399441055744.0;
-    const double r = (y - n * ln2) - n * ln2_rest, r2 = r * r, r4 = r2 * r2;
-    const double low = (1.0 + r) + r2 * (0.5 + r * (1.0 / 6.0));
-    const double middle = (1.0 / 24.0 + r * (1.0 / 120.0)) + r2 * (1.0 / 720.0 + r * (1.0 / 5040.0));
-    const double high = (1.0 / 40320.0 + r * (1.0 / 362880.0)) + r2 * (1.0 / 3628800.0 + r * (1.0 / 39916800.0));
-    const double series = low + r4 * (middle + r4 * (high + r4 * (1.0 / 479001600.0)));
-    return series * number_of_bits((bits_of(shifted) + 1023) << 52);
-}
+/* x^b for a positive normal x, and a result between 1e-300 and 1e300; to some 1e-15 relative. */
+EHD_INLINE double slice_power(double x, double b) { return plain_exp(b * plain_log(x)); }
 
 static ehd_ring_motion ring_motion_of(const double pose[6], const double velocity[6], double cage_angle) {
     const ehd_ring_motion motion = {pose[1],     pose[2],     pose[4],     pose[5],         velocity[1],
@@ -132,7 +103,7 @@ static int64_t knot_of(const double *knot, double approach, int64_t found) {
 
 /* Powers of the approaches of slices that are pressed, factor approach^b, into place; the other ones are those of the
  * smallest approach. All that loops take is given, so that they have no branches. */
-CYLINDER_CLONES static void power_slices(int64_t count, double gap, double tilt, const double *restrict position,
+EHD_CLONES static void power_slices(int64_t count, double gap, double tilt, const double *restrict position,
                                          const double *restrict profile, double smallest, double factor, double b,
                                          double *restrict place) {
     for (int64_t i = 0; i < count; i++)

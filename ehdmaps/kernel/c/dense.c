@@ -11,14 +11,6 @@
  * T the displacements of the ports by the coordinates, f, K_e, C_e what the elements answer.
  * ------------------------------------------------------------------------------------------------------------------ */
 
-/* Loops that a compiler turns into code for newer processors, too, and chooses when the library is loaded. */
-#if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) &&                           \
-    !defined(__SANITIZE_ADDRESS__) && defined(__OPTIMIZE__)
-#define DENSE_CLONES __attribute__((target_clones("default", "arch=x86-64-v3")))
-#else
-#define DENSE_CLONES
-#endif
-
 /* Linear part and elements of a step in Python. */
 typedef struct ehd_stepper_data {
     int64_t n, m;                              /* coordinates, ports */
@@ -46,12 +38,12 @@ static inline double dense_dot(int64_t n, const double *a, const double *x) {
 }
 
 /* Matrix (rows, n) times vector. */
-DENSE_CLONES static void dense_times(int64_t rows, int64_t n, const double *a, const double *x, double *out) {
+EHD_CLONES static void dense_times(int64_t rows, int64_t n, const double *a, const double *x, double *out) {
     for (int64_t i = 0; i < rows; i++) out[i] = dense_dot(n, a + i * n, x);
 }
 
 /* (M0 + by M1 + by^2 M2) times vector, of three matrices (n, n) one behind the other. */
-DENSE_CLONES static void dense_expanded_times(int64_t n, const double *matrices, double by, const double *x,
+EHD_CLONES static void dense_expanded_times(int64_t n, const double *matrices, double by, const double *x,
                                               double *out) {
     for (int64_t i = 0; i < n; i++) {
         const double *row = matrices + i * n;

@@ -92,17 +92,9 @@ static void begin_slices(const ehd_film_table *film, double growth, int64_t coun
     }
 }
 
-/* Loops that a compiler turns into code for newer processors, too, and chooses when the library is loaded. */
-#if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) &&                           \
-    !defined(__SANITIZE_ADDRESS__) && defined(__OPTIMIZE__)
-#define SLICE_CLONES __attribute__((target_clones("default", "arch=x86-64-v3")))
-#else
-#define SLICE_CLONES
-#endif
-
 /* A Newton step for the states of all slices, with loads and tangents there; how many still move. trial is its row of the
  * memory: so compilers see that nothing that is written is read elsewhere, and make vector instructions of it. */
-SLICE_CLONES static int64_t round_slices(weights step, int64_t n, const double *restrict memory,
+EHD_CLONES static int64_t round_slices(weights step, int64_t n, const double *restrict memory,
                                          double *restrict trial, const double *restrict delta, double *restrict load,
                                          double *restrict tangent, double *restrict excess) {
     const double *around = memory + n * AT_AROUND, *loaded = memory + n * AT_LOADED;

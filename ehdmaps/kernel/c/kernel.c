@@ -10,6 +10,7 @@
 #define EHD_TEXT(NAME) EHD_TEXT_OF(NAME)
 
 #include "numbers.h"
+#include "elementary.h"
 #include "status.h"
 #include "law.h"
 #include "law_many.h"

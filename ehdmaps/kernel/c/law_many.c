@@ -1,18 +1,6 @@
 /* ---------------------------------------------------------------------------------------------------------------------
  * The contact law at many places
- *
- * Logarithm and exponential are own ones without a branch or a call: the textbook reductions with Taylor series long
- * enough for double precision, exp to 4e-16 relative for |x| < 700, log to 3e-16 absolute or relative for positive
- * normal numbers. Nothing is contracted to fused operations: all processors give the same numbers.
  * ------------------------------------------------------------------------------------------------------------------ */
-
-/* Versions of a function for several processors, of which the fastest is taken when the program is loaded. */
-#if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) &&                           \
-    !defined(__SANITIZE_ADDRESS__) && defined(__OPTIMIZE__)
-#define EHD_CLONES __attribute__((target_clones("default", "arch=x86-64-v3")))
-#else
-#define EHD_CLONES
-#endif
 
 #define MANY 128 /* places in a block */
 
@@ -36,30 +24,10 @@ static inline double chosen(int first, double yes, double no) {
     return number_of_bits((bits_of(yes) & mask) | (bits_of(no) & ~mask));
 }
 
-static inline double plain_log(double x) {
-    const uint64_t one = UINT64_C(0x3FF0000000000000), root_half = UINT64_C(0x3FE6A09E667F3BCD), bits = bits_of(x);
-    const uint64_t exponent = (bits + (one - root_half)) >> 52;
-    const double e = number_of_bits(exponent | UINT64_C(0x4330000000000000)) - (4503599627370496.0 + 1023.0);
-    const double m = number_of_bits(bits + one - (exponent << 52));
-    const double f = (m - 1.0) / (m + 1.0), z = f * f, z2 = z * z, z4 = z2 * z2;
-    const double low = (2.0 / 3.0 + z * (2.0 / 5.0)) + z2 * (2.0 / 7.0 + z * (2.0 / 9.0));
-    const double high = (2.0 / 11.0 + z * (2.0 / 13.0)) + z2 * (2.0 / 15.0 + z * (2.0 / 17.0));
-    const double series = low + z4 * (high + z4 * (2.0 / 19.0 + z * (2.0 / 21.0)));
-    return e * 6.93147180369123816490e-01 + (e * 1.90821492927058770002e-10 + f * (2.0 + z * series));
-}
-
-/* Held beyond |x| = 700. */
-static inline double plain_exp(double x) {
+/* x within -700 to 700. */
+static inline double held_exponent(double x) {
     x = chosen(x > -700.0, x, -700.0);
-    x = chosen(x < 700.0, x, 700.0);
-    const double shifted = x * 1.4426950408889634 + 6755399441055744.0, n = shifted - 6755399441055744.0;
-    const double r = (x - n * 6.93147180369123816490e-01) - n * 1.90821492927058770002e-10, r2 = r * r, r4 = r2 * r2;
-    const double low = (1.0 + r) + r2 * (0.5 + r * (1.0 / 6.0));
-    const double middle = (1.0 / 24.0 + r * (1.0 / 120.0)) + r2 * (1.0 / 720.0 + r * (1.0 / 5040.0));
-    const double high = (1.0 / 40320.0 + r * (1.0 / 362880.0)) + r2 * (1.0 / 3628800.0 + r * (1.0 / 39916800.0));
-    const double last = 1.0 / 479001600.0 + r * (1.0 / 6227020800.0);
-    const double series = low + r4 * (middle + r4 * (high + r4 * last));
-    return series * number_of_bits((bits_of(shifted) + 1023) << 52);
+    return chosen(x < 700.0, x, 700.0);
 }
 
 /* Places on the stretched axis, and their derivatives by the approach. */
@@ -81,7 +49,7 @@ static inline void block_forces(int n, const law_block *restrict of, const doubl
     for (int i = 0; i < n; i++) {
         const double g = chosen(of->g[i] > 0.0, of->g[i], 0.0), load = g * g * g;
         const double slope = 3.0 * g * g * (of->dg[i] * of->scale[i]);
-        const double ratio = plain_exp(of->q[i]), bend = ratio * (slope + load * (of->dq[i] * of->scale[i]));
+        const double ratio = plain_exp(held_exponent(of->q[i])), bend = ratio * (slope + load * (of->dq[i] * of->scale[i]));
         const double damping = load * ratio, part = damping * rate[i];
         const int parting = part < -0.5 * load;
         const double by = load / chosen(parting, part, 1.0);

@@ -14,6 +14,13 @@
 #include <stdint.h>
 #include <string.h>
 
+/* Functions that are part of the loops that call them. */
+#if defined(__GNUC__)
+#define EHD_INLINE static inline __attribute__((always_inline))
+#else
+#define EHD_INLINE static inline
+#endif
+
 /* The public function NAME_size, by which Python compares its struct with this one. */
 #define EHD_SIZE_OF(NAME)                                                                                              \
     size_t NAME##_size(void);                                                                                          \

@@ -6,21 +6,15 @@
  * Without a spring, or a null pointer instead of them, it is at rest.
  * ------------------------------------------------------------------------------------------------------------------ */
 
-#if defined(__GNUC__)
-#define PAIR_INLINE static inline __attribute__((always_inline))
-#else
-#define PAIR_INLINE static inline
-#endif
-
 /* Row before a place on a table. */
-PAIR_INLINE int64_t pair_cell(const ehd_pair_law *law, double place) {
+EHD_INLINE int64_t pair_cell(const ehd_pair_law *law, double place) {
     const int64_t last = law->rows - 2;
     const int64_t cell = place > 0.0 ? (place < (double)last ? (int64_t)place : last) : 0;
     return cell < 0 ? 0 : cell;
 }
 
 /* A cubic between two rows, by values and slopes (column, column + 1); straight beyond the ends. */
-PAIR_INLINE double pair_value(const double *low, const double *high, double t) {
+EHD_INLINE double pair_value(const double *low, const double *high, double t) {
     if (t < 0.0) return low[0] + low[1] * t;
     if (t > 1.0) return high[0] + high[1] * (t - 1.0);
     const double r = 1.0 - t;
@@ -28,7 +22,7 @@ PAIR_INLINE double pair_value(const double *low, const double *high, double t) {
 }
 
 /* Load and stiffness of a dry point, F = C g^(3/2). */
-PAIR_INLINE ehd_pair_load pair_point(double coefficient, double approach) {
+EHD_INLINE ehd_pair_load pair_point(double coefficient, double approach) {
     ehd_pair_load found = {0.0, 0.0, 0.0};
     if (approach > 0.0) {
         const double root = coefficient * sqrt(approach);
@@ -39,7 +33,7 @@ PAIR_INLINE ehd_pair_load pair_point(double coefficient, double approach) {
 }
 
 /* Load and stiffness at the end of a step by those at rest, a force m beside them and its spring. */
-PAIR_INLINE void pair_with_held(ehd_pair_load *of, double held, double spring) {
+EHD_INLINE void pair_with_held(ehd_pair_load *of, double held, double spring) {
     const double load = of->load;
     if (held >= 0.0) {
         of->load = load + held;
@@ -52,14 +46,14 @@ PAIR_INLINE void pair_with_held(ehd_pair_load *of, double held, double spring) {
 }
 
 /* Place of an approach on the table. */
-PAIR_INLINE double pair_place(const ehd_pair_law *law, double approach) {
+EHD_INLINE double pair_place(const ehd_pair_law *law, double approach) {
     const double x = (approach - law->centre) * (1.0 / law->scale), size = log(fabs(x) + sqrt(1.0 + x * x));
     return ((x >= 0.0 ? size : -size) - law->first) * (1.0 / law->step);
 }
 
 /* Load and stiffness at an approach, by one over scale and step of the table; held: three numbers of a contact with memory,
  * or null. */
-PAIR_INLINE ehd_pair_load pair_carried_by(const ehd_pair_law *law, double one_scale, double one_step, double approach,
+EHD_INLINE ehd_pair_load pair_carried_by(const ehd_pair_law *law, double one_scale, double one_step, double approach,
                                           const double *held) {
     if (law->rows == 0) return pair_point(law->coefficient, approach);
     ehd_pair_load found;
@@ -84,12 +78,12 @@ PAIR_INLINE ehd_pair_load pair_carried_by(const ehd_pair_law *law, double one_sc
 }
 
 /* The same. */
-PAIR_INLINE ehd_pair_load pair_carried(const ehd_pair_law *law, double approach, const double *held) {
+EHD_INLINE ehd_pair_load pair_carried(const ehd_pair_law *law, double approach, const double *held) {
     return pair_carried_by(law, 1.0 / law->scale, 1.0 / law->step, approach, held);
 }
 
 /* Damping by stiffness and place of pair_carried; none of a contact with memory, which has it in its stiffness. */
-PAIR_INLINE double pair_slowed(const ehd_pair_law *law, double stiffness, double place, const double *held) {
+EHD_INLINE double pair_slowed(const ehd_pair_law *law, double stiffness, double place, const double *held) {
     if (law->rows == 0) return stiffness > 0.0 ? law->damping + law->damping_time * stiffness : 0.0;
     if (held && held[1] > 0.0) return 0.0;
     const int64_t cell = pair_cell(law, place);
@@ -97,7 +91,7 @@ PAIR_INLINE double pair_slowed(const ehd_pair_law *law, double stiffness, double
 }
 
 /* Load, stiffness and damping at an approach; held as of pair_carried. */
-PAIR_INLINE ehd_pair_state pair_at(const ehd_pair_law *law, double approach, const double *held) {
+EHD_INLINE ehd_pair_state pair_at(const ehd_pair_law *law, double approach, const double *held) {
     const ehd_pair_load of = pair_carried(law, approach, held);
     const ehd_pair_state found = {of.load, of.stiffness, pair_slowed(law, of.stiffness, of.place, held)};
     return found;

@@ -12,7 +12,7 @@
 #define PAIR_SHORT 0.25 /* h/theta below which 1 - exp(-a) is its series, right to 1e-15 */
 
 /* Part of the force that is left at the end of a step, and the spring of the end [N/m]; out (2,). */
-PAIR_INLINE void pair_over_step(double step, double spring, double time, double *out) {
+EHD_INLINE void pair_over_step(double step, double spring, double time, double *out) {
     const double a = step / time, x = a < PAIR_SHORT ? a : PAIR_SHORT;
     double series = 1.0 - x / 8.0 * (1.0 - x / 9.0 * (1.0 - x / 10.0 * (1.0 - x / 11.0 * (1.0 - x / 12.0))));
     series = 1.0 - x / 4.0 * (1.0 - x / 5.0 * (1.0 - x / 6.0 * (1.0 - x / 7.0 * series)));
@@ -26,7 +26,7 @@ PAIR_INLINE void pair_over_step(double step, double spring, double time, double 
 
 /* Force at the end of a step beside the spring there [N]: by the force at its beginning, the part of it that is left, the
  * spring of the step times the way of the approach [N], and the springs before and after [N/m]. */
-PAIR_INLINE double pair_gone_on(double force, double left, double pushed, double spring, double after) {
+EHD_INLINE double pair_gone_on(double force, double left, double pushed, double spring, double after) {
     const double found = left * force + pushed;
     return after < spring ? found * after / spring : found;
 }

@@ -44,7 +44,7 @@ typedef struct taper_state {
 
 static double taper_dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-PAIR_INLINE const ehd_taper_rib *taper_rib_of(const ehd_taper_data *data, int64_t m) {
+EHD_INLINE const ehd_taper_rib *taper_rib_of(const ehd_taper_data *data, int64_t m) {
     return (const ehd_taper_rib *)(data->rib + 6 * m);
 }
 

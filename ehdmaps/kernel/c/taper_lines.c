@@ -3,19 +3,11 @@
  *
  * A slice of a dry line has q = C g^(10/9)/n, one with a film the part 1/n of the law of a whole roller, pair_law.h.
  * Slices stand side by side in loops without branches or calls, which compilers put into vector instructions: with a
- * root, a logarithm and an exponential of their own.
+ * root of their own, and logarithm and exponential of elementary.h.
  * ------------------------------------------------------------------------------------------------------------------ */
 
 #define TAPER_CHUNK 32 /* slices at once */
 #define TAPER_LANES 4  /* slices that are added up side by side */
-
-/* In the library, not in what exports write: compiled for newer processors, too, of which the right one is taken. */
-#if defined(EHD_NUMBER) && defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) &&    \
-    !defined(__SANITIZE_ADDRESS__) && defined(__OPTIMIZE__)
-#define TAPER_CLONES __attribute__((target_clones("default", "arch=x86-64-v3")))
-#else
-#define TAPER_CLONES
-#endif
 
 /* Sums of a contact: load, load b; stiffness k, k b, k b b; the same of damping. b is the lever of a slice. */
 typedef struct taper_sums {
@@ -31,30 +23,18 @@ typedef struct taper_line {
     double approach, turn;
 } taper_line;
 
-PAIR_INLINE uint64_t taper_bits(double x) {
-    uint64_t bits;
-    memcpy(&bits, &x, sizeof bits);
-    return bits;
-}
-
-PAIR_INLINE double taper_number(uint64_t bits) {
-    double x;
-    memcpy(&x, &bits, sizeof x);
-    return x;
-}
-
 /* x or 0, whichever is larger. */
-PAIR_INLINE double taper_positive(double x) { return 0.5 * (x + fabs(x)); }
+EHD_INLINE double taper_positive(double x) { return 0.5 * (x + fabs(x)); }
 
-/* x within -700 to 700, where taper_exp has a result. */
-PAIR_INLINE double taper_held(double x) { return x - taper_positive(x - 700.0) + taper_positive(-700.0 - x); }
+/* x within -700 to 700, where plain_exp has a result. */
+EHD_INLINE double taper_held(double x) { return x - taper_positive(x - 700.0) + taper_positive(-700.0 - x); }
 
 /* x^(1/9) of a positive normal number, to 5e-16. The start divides the bits of x as a whole number by 9, which is right
  * to 3.4 %; each step of Halley's method leaves 20/3 of the cube of an error. */
-PAIR_INLINE double taper_ninth_root(double x) {
+EHD_INLINE double taper_ninth_root(double x) {
     const double whole = 4503599627370496.0; /* 2^52, whose last bits are whole numbers */
-    const double place = taper_number(taper_bits(x) >> 12 | UINT64_C(0x4330000000000000)) - whole;
-    double y = taper_number(taper_bits(place * (1.0 / 9.0) + (whole + 909.2935333333 * 1099511627776.0)) << 12);
+    const double place = number_of_bits(bits_of(x) >> 12 | UINT64_C(0x4330000000000000)) - whole;
+    double y = number_of_bits(bits_of(place * (1.0 / 9.0) + (whole + 909.2935333333 * 1099511627776.0)) << 12);
     for (int i = 0; i < 3; i++) {
         const double y2 = y * y, y4 = y2 * y2, y9 = y4 * y4 * y;
         y *= (4.0 * y9 + 5.0 * x) / (5.0 * y9 + 4.0 * x);
@@ -62,33 +42,8 @@ PAIR_INLINE double taper_ninth_root(double x) {
     return y;
 }
 
-/* Natural logarithm of a positive normal number, to 3e-16 absolute or relative. */
-PAIR_INLINE double taper_log(double x) {
-    const uint64_t bits = taper_bits(x), one = UINT64_C(0x3FF0000000000000);
-    const uint64_t exponent = (bits + (one - UINT64_C(0x3FE6A09E667F3BCD))) >> 52;
-    const double e = taper_number(exponent | UINT64_C(0x4330000000000000)) - (4503599627370496.0 + 1023.0);
-    const double m = taper_number(bits + one - (exponent << 52)), f = (m - 1.0) / (m + 1.0);
-    const double z = f * f, z2 = z * z, z4 = z2 * z2;
-    const double low = (2.0 / 3.0 + z * (2.0 / 5.0)) + z2 * (2.0 / 7.0 + z * (2.0 / 9.0));
-    const double high = (2.0 / 11.0 + z * (2.0 / 13.0)) + z2 * (2.0 / 15.0 + z * (2.0 / 17.0));
-    const double series = low + z4 * (high + z4 * (2.0 / 19.0 + z * (2.0 / 21.0)));
-    return e * 6.93147180369123816490e-01 + (e * 1.90821492927058770002e-10 + f * (2.0 + z * series));
-}
-
-/* e^x for |x| <= 700, to 4e-16 relative. */
-PAIR_INLINE double taper_exp(double x) {
-    const double rounding = 6755399441055744.0; /* 3 2^51: adding it leaves the nearest whole number in the last bits */
-    const double shifted = x * 1.4426950408889634 + rounding, n = shifted - rounding;
-    const double r = (x - n * 6.93147180369123816490e-01) - n * 1.90821492927058770002e-10, r2 = r * r, r4 = r2 * r2;
-    const double low = (1.0 + r) + r2 * (1.0 / 2.0 + r * (1.0 / 6.0));
-    const double middle = (1.0 / 24.0 + r * (1.0 / 120.0)) + r2 * (1.0 / 720.0 + r * (1.0 / 5040.0));
-    const double high = (1.0 / 40320.0 + r * (1.0 / 362880.0)) + r2 * (1.0 / 3628800.0 + r * (1.0 / 39916800.0));
-    const double last = 1.0 / 479001600.0 + r * (1.0 / 6227020800.0);
-    return (low + r4 * (middle + r4 * (high + r4 * last))) * taper_number((taper_bits(shifted) + 1023) << 52);
-}
-
 /* Load and stiffness of slices of a dry line, times n. */
-PAIR_INLINE void taper_dry(const ehd_pair_law *law, int count, const double *g, double *load, double *stiffness) {
+EHD_INLINE void taper_dry(const ehd_pair_law *law, int count, const double *g, double *load, double *stiffness) {
     for (int i = 0; i < count; i++) {
         const double pressed = taper_positive(g[i]), root = law->coefficient * taper_ninth_root(pressed + 1e-290);
         load[i] = root * pressed;
@@ -103,13 +58,13 @@ typedef struct taper_places {
     double within[TAPER_CHUNK], beyond[TAPER_CHUNK], root[TAPER_CHUNK];
 } taper_places;
 
-PAIR_INLINE void taper_places_of(const ehd_pair_law *law, int count, const double *g, taper_places *of) {
+EHD_INLINE void taper_places_of(const ehd_pair_law *law, int count, const double *g, taper_places *of) {
     const double per_scale = 1.0 / law->scale, per_step = 1.0 / law->step, last = (double)law->rows - 2.0;
     double place[TAPER_CHUNK];
     for (int i = 0; i < count; i++) {
         const double x = (g[i] - law->centre) * per_scale, root = sqrt(1.0 + x * x);
         of->root[i] = root;
-        place[i] = (copysign(taper_log(fabs(x) + root), x) - law->first) * per_step;
+        place[i] = (copysign(plain_log(fabs(x) + root), x) - law->first) * per_step;
     }
     for (int i = 0; i < count; i++) {
         const double held = place[i] > 0.0 ? place[i] : 0.0; /* also where it is no number */
@@ -123,7 +78,7 @@ PAIR_INLINE void taper_places_of(const ehd_pair_law *law, int count, const doubl
 }
 
 /* Cubics between rows of a column of the table and its slope; straight beyond the ends. */
-PAIR_INLINE void taper_cubics(const double *table, int count, const taper_places *of, double *value, double *slope) {
+EHD_INLINE void taper_cubics(const double *table, int count, const taper_places *of, double *value, double *slope) {
     double low[TAPER_CHUNK], high[TAPER_CHUNK], low_rise[TAPER_CHUNK], high_rise[TAPER_CHUNK];
     for (int i = 0; i < count; i++) {
         const double *row = table + 4 * (int64_t)of->row[i];
@@ -141,20 +96,20 @@ PAIR_INLINE void taper_cubics(const double *table, int count, const taper_places
 }
 
 /* Load and stiffness at rest of slices with a film, times n. */
-PAIR_INLINE void taper_film(const ehd_pair_law *law, int count, const double *g, double *load, double *stiffness) {
+EHD_INLINE void taper_film(const ehd_pair_law *law, int count, const double *g, double *load, double *stiffness) {
     const double factor = 1.5 / (law->scale * law->step);
     taper_places places;
     taper_places_of(law, count, g, &places);
     taper_cubics(law->table, count, &places, load, stiffness);
     for (int i = 0; i < count; i++) {
-        load[i] = law->coefficient * taper_exp(taper_held(1.5 * load[i]));
+        load[i] = law->coefficient * plain_exp(taper_held(1.5 * load[i]));
         stiffness[i] = factor * load[i] * stiffness[i] / places.root[i];
     }
 }
 
 /* The same at the end of a step with memory: with p the load at rest and m the force that is held p + m, or
  * m + sqrt(m^2 + p^2) where it pulls. */
-PAIR_INLINE void taper_with_held(int count, const double *g, const double *pull, const double *spring,
+EHD_INLINE void taper_with_held(int count, const double *g, const double *pull, const double *spring,
                                  const double *at, double *load, double *stiffness) {
     for (int i = 0; i < count; i++) {
         const double more = pull[i] + spring[i] * (g[i] - at[i]), pressed = taper_positive(more), p = load[i];
@@ -165,18 +120,18 @@ PAIR_INLINE void taper_with_held(int count, const double *g, const double *pull,
 }
 
 /* Whether a slice of a dry line carries load. */
-PAIR_INLINE int taper_carries(const taper_line *line, int64_t i) {
+EHD_INLINE int taper_carries(const taper_line *line, int64_t i) {
     return line->approach + line->turn * line->lever[i] - line->profile[i] > 0.0;
 }
 
 /* Approaches of some slices of a line. */
-PAIR_INLINE void taper_approaches(const taper_line *line, int64_t first, int count, double *g) {
+EHD_INLINE void taper_approaches(const taper_line *line, int64_t first, int count, double *g) {
     const double *b = line->lever + first, *depth = line->profile + first;
     for (int i = 0; i < count; i++) g[i] = line->approach + line->turn * b[i] - depth[i];
 }
 
 /* Add up load and stiffness of slices with their levers, each in as many sums as there are lanes. */
-PAIR_INLINE void taper_sum(int count, const double *load, const double *stiffness, const double *lever,
+EHD_INLINE void taper_sum(int count, const double *load, const double *stiffness, const double *lever,
                            double sum[5][TAPER_LANES]) {
     int i = 0;
     for (; i + TAPER_LANES <= count; i += TAPER_LANES)
@@ -199,7 +154,7 @@ PAIR_INLINE void taper_sum(int count, const double *load, const double *stiffnes
 }
 
 /* Sums of load and stiffness of a line. */
-TAPER_CLONES static void taper_line_sums(const taper_line *line, taper_sums *of) {
+EHD_CLONES static void taper_line_sums(const taper_line *line, taper_sums *of) {
     const ehd_pair_law *law = line->law;
     const double part = 1.0 / (double)line->slices;
     double g[TAPER_CHUNK], load[TAPER_CHUNK], stiffness[TAPER_CHUNK], sum[5][TAPER_LANES] = {{0.0}}, total[5];
@@ -229,7 +184,7 @@ TAPER_CLONES static void taper_line_sums(const taper_line *line, taper_sums *of)
 }
 
 /* Sums of the damping of a line whose other sums are known; slices with a spring have none of their own. */
-TAPER_CLONES static void taper_line_dampers(const taper_line *line, taper_sums *of) {
+EHD_CLONES static void taper_line_dampers(const taper_line *line, taper_sums *of) {
     const ehd_pair_law *law = line->law;
     const double *spring = line->memory ? line->memory + EHD_TAPER_SPRING * line->slices : NULL;
     const double part = 1.0 / (double)line->slices;
@@ -246,7 +201,7 @@ TAPER_CLONES static void taper_line_dampers(const taper_line *line, taper_sums *
             taper_places places;
             taper_places_of(law, count, g, &places);
             taper_cubics(law->table + 2, count, &places, damping, slope);
-            for (int i = 0; i < count; i++) damping[i] = taper_exp(taper_held(damping[i]));
+            for (int i = 0; i < count; i++) damping[i] = plain_exp(taper_held(damping[i]));
         }
         for (int i = 0; i < count; i++) {
             const double c = spring && spring[first + i] > 0.0 ? 0.0 : damping[i];

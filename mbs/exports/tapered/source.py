@@ -24,7 +24,7 @@ STEP = 0.1
 """Largest distance of two speeds in ln u: half that of balls, as damping of lines bends sharply over the load."""
 
 _BODY, _FILMS = "tapered_bearing", "tapered_films"
-_KERNEL = ("taper.h", "taper_lines.c", "taper_balance.c", "taper_bearing.c")
+_KERNEL = ("elementary.h", "taper.h", "taper_lines.c", "taper_balance.c", "taper_bearing.c")
 _SHORTER = (1.0,)
 """Times of the springs of a film over the longest one: there is one."""
 
