@@ -106,35 +106,39 @@ static void write_cubic(double cell[4][2], int f, double y0, double y1, double s
 }
 
 /* Slopes of load and damping by z at a node, held so that neither falls below where it must not. */
-static void held_slopes(const double (*values)[4], double scale, int i, double *slope, double *bend) {
+static void held_slopes(const double (*values)[4], double scale, int i, double held[2]) {
     const int last = EHD_NODES - 1;
     const double w = values[i][CELL_LOAD], c = values[i][CELL_DAMPING];
-    *slope = values[i][CELL_SLOPE] * scale;
-    *bend = values[i][CELL_BEND] * scale;
+    double slope = values[i][CELL_SLOPE] * scale, bend = values[i][CELL_BEND] * scale;
     if (i > 0) {
         const double before = 3.0 / (node_place(i) - node_place(i - 1));
-        *slope = least(*slope, (w - values[i - 1][CELL_LOAD]) * before);
-        *bend = least(*bend, c * before);
+        slope = least(slope, (w - values[i - 1][CELL_LOAD]) * before);
+        bend = least(bend, c * before);
     }
     if (i < last) {
         const double after = 3.0 / (node_place(i + 1) - node_place(i));
-        *slope = least(*slope, (values[i + 1][CELL_LOAD] - w) * after);
-        *bend = most(*bend, -c * after);
+        slope = least(slope, (values[i + 1][CELL_LOAD] - w) * after);
+        bend = most(bend, -c * after);
     }
-    *slope = most(*slope, 0.0);
+    held[0] = most(slope, 0.0);
+    held[1] = bend;
 }
 
-/* Cubics of a cell, over the distance from the end that is nearer to the centre, in scales. */
-static void write_cell(const ehd_cylinder_law *law, int row) {
-    const double(*values)[4] = (const double(*)[4])law->nodes, scale = 1.0 / law->numbers->inverse_scale;
-    double(*cell)[2] = (double(*)[2])(law->cells + 8 * (size_t)row), slope, bend, far_slope, far_bend;
-    const int above = row < EHD_ROWS;
-    const int near = above ? EHD_ROWS + row : 2 * EHD_ROWS - row, far = above ? near + 1 : near - 1;
+/* First of the two nodes between which a cell lies, and the cell between a node and the next one. */
+static int node_of_row(int row) { return row < EHD_ROWS ? EHD_ROWS + row : 2 * EHD_ROWS - 1 - row; }
+
+static int row_of_node(int low) { return low < EHD_ROWS ? 2 * EHD_ROWS - 1 - low : low - EHD_ROWS; }
+
+/* Cubics of the cell between two nodes, low and the next one, whose slopes are held: over the distance from the one that
+ * is nearer to the centre, in scales. */
+static void write_cell(const ehd_cylinder_law *law, int low, const double at_low[2], const double at_high[2]) {
+    const double(*values)[4] = (const double(*)[4])law->nodes;
+    double(*cell)[2] = (double(*)[2])(law->cells + 8 * (size_t)row_of_node(low));
+    const int above = low >= EHD_ROWS, near = above ? low : low + 1, far = above ? low + 1 : low;
+    const double *at_near = above ? at_low : at_high, *at_far = above ? at_high : at_low;
     const double by = 1.0 / (node_place(far) - node_place(near));
-    held_slopes(values, scale, near, &slope, &bend);
-    held_slopes(values, scale, far, &far_slope, &far_bend);
-    write_cubic(cell, 0, values[near][CELL_LOAD], values[far][CELL_LOAD], slope, far_slope, by);
-    write_cubic(cell, 1, values[near][CELL_DAMPING], values[far][CELL_DAMPING], bend, far_bend, by);
+    write_cubic(cell, 0, values[near][CELL_LOAD], values[far][CELL_LOAD], at_near[0], at_far[0], by);
+    write_cubic(cell, 1, values[near][CELL_DAMPING], values[far][CELL_DAMPING], at_near[1], at_far[1], by);
 }
 
 /* State at a node of a table, unless it is known. */
@@ -154,11 +158,15 @@ static void know_node(const ehd_cylinder_law *law, int64_t i) {
 /* Make a cell that is not made yet. */
 static void make_cell(const ehd_cylinder_law *law, uint64_t row) {
     unsigned char *made = CELL_MARKS(law);
-    const int64_t low = row < EHD_ROWS ? EHD_ROWS + (int64_t)row : 2 * EHD_ROWS - 1 - (int64_t)row;
+    const double(*values)[4] = (const double(*)[4])law->nodes, scale = 1.0 / law->numbers->inverse_scale;
+    const int low = node_of_row((int)row);
+    double at_low[2], at_high[2];
     if (made[row]) return;
     made[row] = 1;
-    for (int64_t i = low > 0 ? low - 1 : 0; i < low + 3 && i < EHD_NODES; i++) know_node(law, i);
-    write_cell(law, (int)row);
+    for (int i = low > 0 ? low - 1 : 0; i < low + 3 && i < EHD_NODES; i++) know_node(law, i);
+    held_slopes(values, scale, low, at_low);
+    held_slopes(values, scale, low + 1, at_high);
+    write_cell(law, low, at_low, at_high);
 }
 
 /* Begin a table of the point whose cells are made as slices need them; returns 0 where it does not reach lift-off. */
@@ -171,8 +179,15 @@ static int begin_cells(ehd_cylinder_law *law) {
 
 /* Make all cells of a table that is begun. */
 static void make_cells(const ehd_cylinder_law *law) {
+    const double(*values)[4] = (const double(*)[4])law->nodes, scale = 1.0 / law->numbers->inverse_scale;
+    double held[2][2];
     for (int64_t i = 0; i < EHD_NODES; i++) know_node(law, i);
-    for (int row = 0; row < 2 * EHD_ROWS; row++) write_cell(law, row);
+    held_slopes(values, scale, 0, held[0]);
+    for (int low = 0; low < EHD_NODES - 1; low++) { /* the slopes of each node are held once */
+        double *at_low = held[low % 2], *at_high = held[(low + 1) % 2];
+        held_slopes(values, scale, low + 1, at_high);
+        write_cell(law, low, at_low, at_high);
+    }
     memset(CELL_MARKS(law), 1, 2 * EHD_ROWS);
 }
 
