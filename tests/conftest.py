@@ -114,6 +114,22 @@ def pytest_make_collect_report() -> Iterator[None]:
     held_to_run(outcome.get_result())
 
 
+def pytest_sessionfinish(session: pytest.Session) -> None:
+    """Hand what a worker of pytest-xdist spent to the process that reports."""
+    output = getattr(session.config, "workeroutput", None)
+    if output is not None:
+        output["spent"] = [(*test, seconds) for test, seconds in SPENT.items()]
+        output["files"] = dict(FILES)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node: object) -> None:
+    """Take over what a worker spent; one that died hands over nothing."""
+    output = getattr(node, "workeroutput", {})
+    SPENT.update({(phase, name): seconds for phase, name, seconds in output.get("spent", [])})
+    FILES.update(output.get("files", {}))
+
+
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
     """Name the tests that should be quicker or be marked; a report and no failure, for machines differ."""
     over = sorted(((seconds, *test) for test, seconds in SPENT.items() if seconds > QUICK), reverse=True)
