@@ -5,9 +5,10 @@ Loads, approaches and films of the rollers are there to look at.
 
 from __future__ import annotations
 
+import ctypes
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -188,6 +189,27 @@ _BEYOND = 2 + 4
 """Parts of a status: a speed and a temperature outside the map."""
 
 
+@dataclass(frozen=True)
+class ForceAddress:
+    """A bearing force in C, for programs that call it themselves; good as long as its `ForceAtPoint` is.
+
+    `PROTOTYPE` is the type of the function for `ctypes`, which numba's compiled code calls as well: ``int
+    ehd_cylinder_force(const void *data)``. It takes `ForceAtPoint.state`, fills `ForceAtPoint.answer`, and returns 0,
+    or how the bearing lies outside the map, or what is wrong about its pose (then the answer stays as it was); see
+    `ehdmaps/kernel/c/cylinder.h`. One thread at a time.
+
+    Attributes
+    ----------
+    function, data : int
+        Addresses of the function and of what it takes.
+    """
+
+    function: int
+    data: int
+
+    PROTOTYPE: ClassVar = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p)
+
+
 class ForceAtPoint:
     """A `BearingForce` at one speed, temperature and centrifugal load; make it by `BearingForce.at`.
 
@@ -207,9 +229,6 @@ class ForceAtPoint:
     ----------
     conditions : (float, float, float)
         u [m/s], T [K], centrifugal load [N/m]; NaN where a dry law was given none.
-    address : int
-        Address of its ``ehd_cylinder_call``: other code in C writes `state`, calls the library's
-        ``ehd_cylinder_force`` with it, and reads `answer`, of an element with arrays of its own.
     state : array (13,)
         Pose (6), velocity (6) and angle of the cage of the last call [m], [rad], [m/s], [rad/s].
     answer : array (13, 6)
@@ -240,7 +259,7 @@ class ForceAtPoint:
                 self._work.array("cells")[:] = cells
         else:
             self._prepare(law)
-        self._force, self.address = functions().force, self._work.call.address
+        self._force, self._call = functions().force, self._work.call.address
         self.state, self.answer = self._work.state, self._work.answer
         self._pose, self._velocity = self.state[:6], self.state[6:12]
 
@@ -282,9 +301,29 @@ class ForceAtPoint:
         else:
             self._velocity[...] = six_numbers("velocity", velocity)
         self.state[12] = cage_angle
-        status = self._force(self.address)
+        status = self._force(self._call)
         outside = self._settle(status) if status != 0 or self._outside else False
         return self.answer.copy(), outside
+
+    @property
+    def address(self) -> ForceAddress:
+        """The force for programs that call C: they write `state`, call, and read `answer`.
+
+        Examples
+        --------
+        >>> import ehdmaps
+        >>> from mbs import Bearing, BearingForce
+        >>> from mbs.bearings.laws import formula
+        >>> bearing = Bearing.named("NU308")
+        >>> force = BearingForce(bearing, formula(bearing, ehdmaps.Lubricant.named("FVA3"))).at(1.7, 313.15)
+        >>> force.state[2], at = 1e-5, force.address
+        >>> at.PROTOTYPE(at.function)(at.data)
+        0
+        >>> bool(force.answer[0, 2] == force([0.0, 0.0, 1e-5, 0.0, 0.0, 0.0])[0][2])
+        True
+        """
+        function = ctypes.cast(self._force, ctypes.c_void_p).value  # type: ignore[arg-type]
+        return ForceAddress(function or 0, self._call)
 
     @property
     def numbers(self) -> FloatArray:

@@ -46,7 +46,7 @@ def python_time(force, tilt, calls=20000):
     """Microseconds of a call of the library that Python calls, from compiled code."""
     at = force.at(U, T)
     at([0.0, 3e-6, 1e-6, 0.0, tilt, 2.0 * tilt], [0.0, 1e-4, 0.0, 0.0, 10.0 * tilt, 0.0], 0.1)
-    best, given = np.inf, (at.address, at.state, at.answer)
+    best, given = np.inf, (at.address.data, at.state, at.answer)
     called(*given, 10)
     for _ in range(15):
         begin = time.process_time()

@@ -50,7 +50,7 @@ def test_script_prints_what_is_shown(made_map, monkeypatch, capsys):
 
 def test_blocks_of_python_compile():
     blocks = re.findall(r"```python\n(.*?)```", README + PYTHON, re.DOTALL)
-    assert len(blocks) == 7
+    assert len(blocks) == 8
     for block in blocks:
         compile(block, "README.md", "exec")
 
@@ -96,6 +96,18 @@ def test_a_law_by_its_address(made_map, monkeypatch):
     found = runpy.run_path("address.py")
     assert found["status"] == 0
     np.testing.assert_allclose(found["force"], found["law"](2e-6, 0.0, 1.7, 313.15), rtol=1e-12)  # round-off
+
+
+@pytest.mark.slow
+def test_a_bearing_by_its_address(made_map, monkeypatch):
+    (block,) = (text for text in re.findall(r"```python\n(.*?)```", PYTHON, re.DOTALL) if "force.address" in text)
+    monkeypatch.chdir(made_map)
+    Path("address.py").write_text(block)
+    found = runpy.run_path("address.py")
+    assert found["status"] == 0
+    answer, force = found["force"].answer.copy(), found["force"]
+    for part, same in zip(force(force.state[:6].copy()), (answer[0], answer[1:7], answer[7:]), strict=True):
+        assert np.array_equal(part, same)
 
 
 @pytest.mark.slow

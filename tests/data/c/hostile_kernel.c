@@ -313,6 +313,93 @@ static int elements(void) {
     return failed;
 }
 
+/* An element of a user: a hardening spring at each port, which refuses a motion now and then. */
+static int spring_answer(void *data, const ehd_moment *at, const double *motion, ehd_answers *answers) {
+    const int64_t m = answers->m;
+    const double stiffness = *(const double *)data;
+    if (any() % 256 == 0) return any() % 2 ? EHD_NO_SOLUTION : EHD_STOPPED;
+    for (int64_t i = 0; i < m; i++) {
+        const double x = motion[i], bend = 1.0 + 1e8 * x * x;
+        answers->force[i] -= stiffness * x * bend;
+        answers->slopes[i * m + i] += stiffness * (1.0 + 3e8 * x * x) * at->by_q;
+    }
+    return EHD_FOUND;
+}
+
+/* What a block that is asked before the springs has to do: their forces are sums. */
+static int nothing_answer(void *data, const ehd_moment *at, const double *motion, ehd_answers *answers) {
+    (void)data, (void)at, (void)motion;
+    memset(answers->force, 0, sizeof(double) * (size_t)answers->m);
+    memset(answers->slopes, 0, sizeof(double) * (size_t)(answers->m * answers->m));
+    return EHD_FOUND;
+}
+
+/* Steps of a run with arrays of exactly their sizes: a step that fails leaves the state as it was, one that is made from
+ * finite numbers under finite loads is finite. */
+static int runs(void) {
+    const int64_t n = up_to(6), m = up_to(4), elements = m, outputs = up_to(3), rows = 12, stride = up_to(3);
+    const int64_t samples = (rows + stride - 1) / stride, kept = (int64_t)(any() % 2), loads = up_to(3) - 1, starts[2] = {0, n};
+    const double h = 1e-5, by_q = 0.3 * h * h, by_v = 0.6 * h;
+    double stiffness = 1e6 * part(), error, *all[24], *zero;
+    int64_t status, taken = 0, counter = 0, *orders = calloc((size_t)outputs, sizeof *orders);
+    int64_t *outside = calloc((size_t)elements, sizeof *outside), *diagonal = calloc((size_t)n, sizeof *diagonal);
+    int failed = 0;
+#define TAKE(count) (all[taken] = zero = calloc((size_t)(count) + 1, sizeof(double)), taken++, zero)
+    double *lambda = TAKE(n), *damping = TAKE(n * n), *turning = TAKE(n * n), *inverse = TAKE(3 * n * n), *ports = TAKE(m * n);
+    double *reach = TAKE(3 * m * n), *receptance = TAKE(3 * m * m), *size = TAKE(m * m), *physical = TAKE(n), *motion = TAKE(4 * n);
+    double *forces = TAKE(3 * m), *seen = TAKE(outputs * n), *output = TAKE(rows * outputs), *sampled = TAKE(samples * m);
+    double *moved = TAKE(3 * samples * n), *load = TAKE(n), *felt = TAKE(2 * m), *powers = TAKE(3 * elements), *sums = TAKE(3 + m);
+    double *exchanged = TAKE(2 * elements), *values = TAKE(n), *steady = TAKE(n), *varying = TAKE(loads * n);
+    double *work = TAKE(ehd_run_room(n, m, elements));
+#undef TAKE
+    for (int64_t i = 0; i < n; i++) {
+        lambda[i] = 1e6 * part();
+        damping[i * n + i] = values[i] = 100.0 * part();
+        inverse[i * n + i] = 1.0 / (1.0 + by_v * damping[i * n + i] + by_q * lambda[i]);
+        physical[i] = part();
+        diagonal[i] = i;
+        steady[i] = number(100.0);
+        for (int64_t k = 0; k < loads; k++) varying[k * n + i] = number(10.0);
+        for (int64_t k = 0; k < m; k++) ports[k * n + i] = part() - 0.5;
+        for (int64_t k = 0; k < outputs; k++) seen[k * n + i] = part() - 0.5;
+    }
+    for (int64_t k = 0; k < m; k++)
+        for (int64_t i = 0; i < n; i++) {
+            reach[k * n + i] = ports[k * n + i] * inverse[i * n + i];
+            for (int64_t l = 0; l < m; l++) {
+                receptance[k * m + l] += reach[k * n + i] * ports[l * n + i];
+                size[k * m + l] += ports[k * n + i] * ports[l * n + i];
+            }
+        }
+    for (int64_t k = 0; k < outputs; k++) orders[k] = (int64_t)(any() % 3);
+    const ehd_linear linear = {n, m, 1, 0, (int64_t)(any() % 2), 0.0, lambda, damping, turning, inverse, ports, reach,
+                               receptance, size, physical};
+    const ehd_numbers numbers = {h, by_q, by_v, 0.2, 0.4, 0.3, 0.6, 0.5, 1e-10, any() % 2 ? INFINITY : 1e-3, 1e-10, 12};
+    const ehd_run run = {n, m, elements, motion, forces, outputs, stride, kept, seen, orders, output, sampled, moved, load,
+                         felt, powers, sums, sums + 2, exchanged, 1, sums + 2 + m, starts, diagonal, diagonal, values,
+                         outside, &counter, work};
+    const ehd_block blocks[2] = {{nothing_answer, NULL, NULL, NULL}, {spring_answer, NULL, NULL, &stiffness}};
+    for (int64_t step = 0; step < rows && !failed; step++) {
+        double before[24], factors[2], time = h * (double)step, speed = number(10.0), angle = number(10.0);
+        int finite = fabs(speed) < 1e30;
+        for (int64_t k = 0; k < loads; k++) finite &= fabs(factors[k] = number(1.0)) < 1e30;
+        for (int64_t i = 0; i < n; i++) finite &= fabs(steady[i]) < 1e30 && fabs(motion[i]) < 1e-3;
+        for (int64_t i = 0; i < loads * n; i++) finite &= fabs(varying[i]) < 1e30;
+        memcpy(before, motion, sizeof(double) * (size_t)(4 * n));
+        const ehd_course course = {1, loads, &time, &speed, &angle, steady, varying, factors, &step};
+        const int64_t made = ehd_advance(&run, &linear, &numbers, blocks, 2, &course, &error, &status);
+        if (made != (status == EHD_FOUND)) failed = 9;
+        if (status != EHD_FOUND && memcmp(before, motion, sizeof(double) * (size_t)(4 * n)) != 0) failed = 10;
+        for (int64_t i = 0; i < 4 * n; i++)
+            if (status == EHD_FOUND && finite && !isfinite(motion[i])) failed = 11;
+    }
+    for (int64_t i = 0; i < taken; i++) free(all[i]);
+    free(orders);
+    free(outside);
+    free(diagonal);
+    return failed;
+}
+
 /* Rollers between ribs with lines of any number of slices, dry, with films, with memory: what is found is finite. */
 static int tapered(void) {
     const int64_t rollers = up_to(6), slices = 1 + up_to(70), ribs = up_to(EHD_TAPER_RIBS + 1) - 1;
@@ -379,6 +466,7 @@ int main(int count, char **arguments) {
         if (!failed) failed = cylinders();
         if (!failed) failed = films();
         if (!failed) failed = elements();
+        if (!failed) failed = runs();
         if (!failed) failed = tapered();
         if (failed) {
             printf("check %d, round %ld\n", failed, n);
