@@ -196,7 +196,7 @@ class ForceAddress:
     `PROTOTYPE` is the type of the function for `ctypes`, which numba's compiled code calls as well: ``int
     ehd_cylinder_force(const void *data)``. It takes `ForceAtPoint.state`, fills `ForceAtPoint.answer`, and returns 0,
     or how the bearing lies outside the map, or what is wrong about its pose (then the answer stays as it was); see
-    `ehdmaps/kernel/c/cylinder.h`. One thread at a time.
+    `ehdmaps/kernel/c/cylinder/cylinder.h`. One thread at a time.
 
     Attributes
     ----------

@@ -6,7 +6,7 @@ load; they stand for the cubics of its cells, from which they differ in third or
 leaves their reach, and every few steps, as the law follows the speed (`mbs.bearings.speed_tables`). Tables over the
 speed are mixed as often as slices read them, see `Course.kept`.
 
-The equations are in `ehdmaps/kernel/c/film_slices.c` and `ehdmaps/kernel/c/film_block.c`.
+The equations are in `ehdmaps/kernel/c/film/film_slices.c` and `ehdmaps/kernel/c/film/film_block.c`.
 """
 
 from __future__ import annotations
@@ -108,11 +108,11 @@ class MemoryTables:
 
 LATEST, CHANGE, FADE, LOAD, TRIAL, AROUND = 0, 2, 3, 4, 5, 6
 MEMORY = 22
-"""Rows of the memory of the slices, see `ehdmaps/kernel/c/film_slices.c`, and how many there are."""
+"""Rows of the memory of the slices, see `ehdmaps/kernel/c/film/film_slices.c`, and how many there are."""
 
 _BEFORE, _NO_CHANGE = 1, 1e-30
 ACCEPTED, LAST, TRIED, _STEPS = range(4)
-"""Times of a run, as in `ehdmaps/kernel/c/film_block.c`."""
+"""Times of a run, as in `ehdmaps/kernel/c/film/film_block.c`."""
 
 
 def resume(films: FilmState, memory: FloatArray) -> None:

@@ -1,4 +1,4 @@
-"""Bearings with cylindrical rollers of a run as C takes them, see `ehdmaps/kernel/c/rings.h`."""
+"""Bearings with cylindrical rollers of a run as C takes them, see `ehdmaps/kernel/c/run/rings.h`."""
 
 from __future__ import annotations
 

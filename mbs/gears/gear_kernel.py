@@ -1,4 +1,4 @@
-"""Force of a gear mesh along its line of action, by the C library: `ehdmaps/kernel/c/gear.c` has the equations.
+"""Force of a gear mesh along its line of action, by the C library: `ehdmaps/kernel/c/run/gear.c` has the equations.
 
 Each flank feels one compression and its rate. Stiffness and damping act while it is compressed; within `TOUCH` of first
 contact they rise from zero, so that the force is C1 in compression and rate.

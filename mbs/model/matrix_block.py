@@ -1,4 +1,4 @@
-"""Connections by matrices in compiled runs. Their functions are in `ehdmaps/kernel/c/matrix.c`."""
+"""Connections by matrices in compiled runs. Their functions are in `ehdmaps/kernel/c/run/matrix.c`."""
 
 from __future__ import annotations
 

@@ -4,7 +4,7 @@ A function of a kind (`mbs.model.blocks.Kind`) is one of these:
 
 - the name of a function in the C library, for the kinds of this package;
 - an address as an integer, a ctypes function, or an object that has it as `address`, as `numba.cfunc` makes it: any
-  function of the types in `ehdmaps/kernel/c/block.h`, which takes the address of the block's data;
+  function of the types in `ehdmaps/kernel/c/run/block.h`, which takes the address of the block's data;
 - any other callable: it is called from the run with the data themselves and with arrays of numpy, as
   `mbs.model.blocks.Kind` says. This costs some 10 us each time, and holds Python's lock.
 """

@@ -4,7 +4,7 @@ An element whose class is not here, or which its kind does not take, is called f
 so. A new kind is a row here, and a `mbs.model.blocks.Kind` in the folder of its element, with functions in C.
 
 A kind from elsewhere brings functions of its own: addresses of compiled ones, from C or by the user's `numba.cfunc`, of
-the types in `ehdmaps/kernel/c/block.h`; or Python functions, which are called in every iteration of a step and hold
+the types in `ehdmaps/kernel/c/run/block.h`; or Python functions, which are called in every iteration of a step and hold
 Python's lock, but leave the rest of the step to C.
 """
 

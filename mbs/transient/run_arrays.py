@@ -1,4 +1,4 @@
-"""The structs of a run as `ehd_advance` takes them; `ehdmaps/kernel/c/advance.c` says what is done with them."""
+"""The structs of a run as `ehd_advance` takes them; `ehdmaps/kernel/c/run/advance.c` says what is done with them."""
 
 from __future__ import annotations
 
@@ -185,7 +185,7 @@ class Run(Record):
 
 
 class BlockRow(ctypes.Structure):
-    """A block as `ehd_advance` takes it: addresses of its functions and of its data, see `ehdmaps/kernel/c/block.h`."""
+    """A block as `ehd_advance` takes it: addresses of its functions and of its data, see `ehdmaps/kernel/c/run/block.h`."""
 
     _fields_ = tuple((name, ctypes.c_void_p) for name in ("answer", "accept", "powers", "data"))
 

@@ -79,16 +79,16 @@ FAULTS = (
     ),
     Fault(
         "compliance of the solids, factor",
-        "ehdmaps/kernel/c/law.c",
+        "ehdmaps/kernel/c/law/law.c",
         "*compliance += b * part / w;",
         "*compliance += part / w;",
     ),
     Fault(
-        "damping of a faded film, factor", "ehdmaps/kernel/c/law.c", "found.dc *= part / slope;", "found.dc /= slope;"
+        "damping of a faded film, factor", "ehdmaps/kernel/c/law/law.c", "found.dc *= part / slope;", "found.dc /= slope;"
     ),
     Fault(
         "film memory, tangent",
-        "ehdmaps/kernel/c/film.c",
+        "ehdmaps/kernel/c/film/film.c",
         "? load.slope / rise : 0.0",
         "? 2.0 * load.slope / rise : 0.0",
     ),
@@ -106,13 +106,13 @@ FAULTS = (
     ),
     Fault(
         "tilt of a roller, sign",
-        "ehdmaps/kernel/c/cylinder.c",
+        "ehdmaps/kernel/c/cylinder/cylinder.c",
         "m->theta_z * r.cosine - m->theta_y * r.sine",
         "m->theta_z * r.cosine + m->theta_y * r.sine",
     ),
     Fault(
         "gap of a roller, wrong axis",
-        "ehdmaps/kernel/c/cylinder.c",
+        "ehdmaps/kernel/c/cylinder/cylinder.c",
         "m->y * r.cosine + m->z * r.sine",
         "m->z * r.cosine + m->y * r.sine",
     ),
@@ -120,13 +120,13 @@ FAULTS = (
     Fault("time of a film, factor left out", "mbs/bearings/roller_contacts.py", "(dg * (1.0 - dy), k,", "(dg, k,"),
     Fault(
         "step of integration, factor two",
-        "ehdmaps/kernel/c/advance.c",
+        "ehdmaps/kernel/c/run/advance.c",
         "(0.5 - numbers->beta)",
         "(1.0 - numbers->beta)",
     ),
     Fault(
         "energy over a step, factor two",
-        "ehdmaps/kernel/c/advance.c",
+        "ehdmaps/kernel/c/run/advance.c",
         "0.5 * numbers->h * (run->powers",
         "numbers->h * (run->powers",
     ),

@@ -1,4 +1,4 @@
-"""Films with memory as a scalar text: what `ehdmaps/kernel/c/film.c` is compared with at random places."""
+"""Films with memory as a scalar text: what `ehdmaps/kernel/c/film/film.c` is compared with at random places."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ def test_faults_can_be_planted(fault, tmp_path):
         compile(wrong, fault.file, "exec")
         return
     sources = shutil.copytree(building.SOURCES, tmp_path / "c")
-    (sources / Path(fault.file).name).write_text(wrong, encoding="utf-8")
+    (sources / (mutations.ROOT / fault.file).relative_to(building.SOURCES)).write_text(wrong, encoding="utf-8")
     compiler = building.usable_compiler(os.environ)
     subprocess.run([*compiler, "-std=c99", "-fsyntax-only", str(sources / building.UNIT)], check=True)
 

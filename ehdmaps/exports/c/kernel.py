@@ -108,10 +108,11 @@ def kernel_files(emap: EHDMap, options: KernelOptions, header: Sequence[str]) ->
     law = emap.law(kind, options.outside)
     bearing = emap.bearing if kind == "series" else None
     banner = comment(header)
-    heads, bodies, facades = ["status", "law", "film"], ["status", "law", "cells", "film"], ["law_facade"]
+    heads, bodies = ["status", "law/law", "film/film"], ["status", "law/law", "law/cells", "film/film"]
+    facades = ["law_facade"]
     if bearing is not None:
-        heads += ["cylinder_law", "cylinder", "cylinder_films"]
-        bodies += ["cylinder_law", "cylinder", "cylinder_films"]
+        parts = [f"cylinder/{part}" for part in ("cylinder_law", "cylinder", "cylinder_films")]
+        heads, bodies = heads + parts, bodies + parts
         facades += ["bearing_facade"]
     guard = "EHD_H"
     top = [

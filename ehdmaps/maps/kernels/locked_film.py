@@ -2,7 +2,7 @@
 
 At high frequency the oil cannot leave the inlet, and stiffens the contact a little above its dry structure: it takes
 `locked_compliances` off the compliance of the solids. The closed formula for it is fitted to the linear response of the
-isothermal Newtonian line contact, see `LOCKED` and `LONGEST_MEMORY` in `ehdmaps/kernel/c/film.c`.
+isothermal Newtonian line contact, see `LOCKED` and `LONGEST_MEMORY` in `ehdmaps/kernel/c/film/film.c`.
 
 A map with film compliances at natural frequencies has a factor for it besides, `fitted_factor`. The law in time has
 stiffness and damping of slow motion and the stiffness k_s of the locked film, of which only k_s is open. So the factor
@@ -157,7 +157,7 @@ MOST = 8.0
 
 
 class Response(Record):
-    """A point of a map with the response of its film, see `ehdmaps/kernel/c/film_fit.c`."""
+    """A point of a map with the response of its film, see `ehdmaps/kernel/c/film/film_fit.c`."""
 
     _fields_ = (
         ("contacts", ctypes.c_double * 3),
@@ -176,7 +176,7 @@ class Response(Record):
 
 @functools.cache
 def _fitting() -> tuple[Callable[..., Any], Callable[..., Any]]:
-    """Functions of `ehdmaps/kernel/c/film_fit.c`: the factor, and the differences."""
+    """Functions of `ehdmaps/kernel/c/film/film_fit.c`: the factor, and the differences."""
     checked(Response, "ehd_film_response")
     pointer, number = ctypes.c_void_p, ctypes.c_double
     return (

@@ -17,7 +17,7 @@ Euler, or by any rate x with the sign of the change of G, this holds for steps o
 
 The table has p, y and G over xi in cells which are the binary digits of 1 + |z|, z = (xi - centre)/scale, and a over w
 in cells which are those of 1 + w/`LIGHTEST`: no logarithm is needed to find one. All are cubics through values and
-slopes that rise. The equations are in `ehdmaps/kernel/c/film.c`.
+slopes that rise. The equations are in `ehdmaps/kernel/c/film/film.c`.
 
 The stiffness k_s of the locked film and its bound: `ehdmaps.maps.kernels.locked_film`.
 """
@@ -56,7 +56,7 @@ class MemoryTable:
     Parameters
     ----------
     numbers : array (NUMBERS,)
-        An `ehd_film_table` of `ehdmaps/kernel/c/film.h`: numbers alone.
+        An `ehd_film_table` of `ehdmaps/kernel/c/film/film.h`: numbers alone.
 
     Attributes
     ----------
@@ -183,12 +183,12 @@ _ARGUMENTS: dict[str, tuple[Any, ...]] = {
     "ehd_film_locked": (_POINTER, _COUNT, *(_POINTER,) * 4),
     "ehd_film_stiff": (_POINTER, _NUMBER, _COUNT, *(_POINTER,) * 7),
 }
-"""Arguments of the functions of `ehdmaps/kernel/c/film_arrays.c`."""
+"""Arguments of the functions of `ehdmaps/kernel/c/film/film_arrays.c`."""
 
 
 @functools.cache
 def called(name: str) -> Callable[..., Any]:
-    """Return a function of `ehdmaps/kernel/c/film_arrays.c`, which returns nothing."""
+    """Return a function of `ehdmaps/kernel/c/film/film_arrays.c`, which returns nothing."""
     if function("ehd_film_table_size", result=ctypes.c_size_t)() != 8 * NUMBERS:
-        raise AssertionError("ehd_film_table of ehdmaps/kernel/c/film.h has not NUMBERS numbers")
+        raise AssertionError("ehd_film_table of ehdmaps/kernel/c/film/film.h has not NUMBERS numbers")
     return function(name, *_ARGUMENTS[name], result=None)

@@ -1,6 +1,6 @@
 """Ball bearings, deep groove and angular contact: five freedoms, quasi-static, with the speed of their balls.
 
-The balance of the balls, the sums over them and films with memory are in C: `ehdmaps/kernel/c/ball*`, `pair*`.
+The balance of the balls, the sums over them and films with memory are in C: `ehdmaps/kernel/c/ball` and `pair`.
 
 =====================  ================================================================================================
 `laws`                 contact laws of both raceways: Hertz, with a damper, or a film over it

@@ -1,4 +1,4 @@
-"""Ball bearings in compiled runs, by `ehdmaps/kernel/c/ball_block.c`.
+"""Ball bearings in compiled runs, by `ehdmaps/kernel/c/ball/ball_block.c`.
 
 Films change with the speed: their laws are made at nodes that lie evenly in its logarithm, on one grid of approaches,
 and blended straight between two nodes, see `mbs.bearings.balls.film_tables`.

@@ -8,7 +8,7 @@ K_r = c_r/theta_r each, whose forces f_r are its states:
 
 So a load is never a tension, and rises with the approach. Small oscillations see k and c over frequency as linear
 analyses have them. Over a step in which the approach goes evenly the solution is exact, see
-`ehdmaps/kernel/c/pair_memory.c`: p gets a constant force and a spring, no more.
+`ehdmaps/kernel/c/pair/pair_memory.c`: p gets a constant force and a spring, no more.
 """
 
 from __future__ import annotations

@@ -6,7 +6,7 @@ whose angle b from that of the bearing has tan b = sin a_o/(cos a_o + g), and go
 
     w_c = (w_i (1 - g cos a_i) + w_o (c + g cos a_i))/(1 + c),        c = cos(a_i - a_o).
 
-Forces have it from `ehdmaps/kernel/c/ball_balance.c`; here it is for arrays that may be complex, by which linear
+Forces have it from `ehdmaps/kernel/c/ball/ball_balance.c`; here it is for arrays that may be complex, by which linear
 analyses differentiate it, and `tests.cases.balls` has it by vectors in space. Each ball has a speed of its own, as
 pockets let it: slow motion of the ring changes w_c, and with it the loads. A cage that holds the balls gives them its
 speed: of motion too fast for the ball to follow.

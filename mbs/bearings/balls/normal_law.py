@@ -1,4 +1,4 @@
-"""Law of a ball's contact over its approach: load, stiffness, damping, by `ehdmaps/kernel/c/pair_law.c`.
+"""Law of a ball's contact over its approach: load, stiffness, damping, by `ehdmaps/kernel/c/pair/pair_law.c`.
 
 Each law is F = C g^(3/2), with the dry overlap g = approach, or with g(approach) from a table for films.
 """

@@ -1,6 +1,6 @@
 """Films of a ball bearing that relax: what both contacts of each ball add to K and C of slow motion at a frequency.
 
-A ball is at d and v as in `ehdmaps/kernel/c/ball_balance.c`, without mass against small motions. Its contacts have
+A ball is at d and v as in `ehdmaps/kernel/c/ball/ball_balance.c`, without mass against small motions. Its contacts have
 springs k, dampers c_r in series with springs c_r/theta_r along their directions, and the stiffness Q/l by which loads
 turn. With the ends xi of the dampers, their places at rest by d, Xi, the matrix D of the c_r and A of the stiffness
 that the xi feel where the ball is in balance, small motions of d see

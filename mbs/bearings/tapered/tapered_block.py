@@ -1,4 +1,4 @@
-"""Bearings of tapered rollers, or of rollers between ribs, in compiled runs, by `ehdmaps/kernel/c/taper_block.c`.
+"""Bearings of tapered rollers, or of rollers between ribs, in compiled runs, by `ehdmaps/kernel/c/taper/taper_block.c`.
 
 Films change with the speed: see `mbs.bearings.balls.film_tables`.
 """

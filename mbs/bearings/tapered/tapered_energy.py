@@ -4,7 +4,7 @@ Contacts at rest store U, the sum of the integrals of their loads over the appro
 
     dU/dt = f . dD/dt + F . dV/dt,
 
-V and D of `ehdmaps/kernel/c/taper_balance.c`, f the forces of the ring on its rollers: the first part is the work of
+V and D of `ehdmaps/kernel/c/taper/taper_balance.c`, f the forces of the ring on its rollers: the first part is the work of
 the ring and of the turning cage, the second one that of speed.
 """
 

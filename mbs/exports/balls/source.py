@@ -19,7 +19,7 @@ SOURCE = Kind("a bearing in C made by ehdmaps", (".c",), has_mark)
 HEADER = Kind("the header of a bearing in C made by ehdmaps", (".h",), has_mark)
 
 _BODIES, _FILMS, _LAW = "ball_bearing", "ball_films", "bearing_law"
-_KERNEL = ("ball.h", "ball_balance.c", "ball_bearing.c")
+_KERNEL = ("ball/ball.h", "ball/ball_balance.c", "ball/ball_bearing.c")
 
 _WORDS = re.compile(r"[^a-z0-9_]+")
 
@@ -121,7 +121,7 @@ def source_texts(
             "export of a ball bearing, contact angle: got one below zero; allowed: >= 0; the source mirrors it"
         )
     memory = [_FILMS] if laws.memory else []
-    kernel = (*pair_files(laws), *_KERNEL, *(f"{name}.c" for name in memory))
+    kernel = (*pair_files(laws), *_KERNEL, *(f"ball/{name}.c" for name in memory))
     headers, bodies = ([_template(f"{name}.{end}") for name in (_BODIES, *memory)] for end in "hc")
     numbers = _public_numbers(force, laws), _private_numbers(force, laws)
     return joined(header, numbers, kernel, headers, bodies, prefix, include)
@@ -135,8 +135,8 @@ def pair_files(laws: SpeedLaws) -> tuple[str, ...]:
     laws : SpeedLaws
         Laws of the contacts.
     """
-    speeds, memory = () if laws.dry else ("pair_speeds.c",), ("pair_memory.c",) if laws.memory else ()
-    return ("numbers.h", "pair_law.h", "pair_law.c", *speeds, *memory)
+    speeds, memory = () if laws.dry else ("pair/pair_speeds.c",), ("pair/pair_memory.c",) if laws.memory else ()
+    return ("numbers.h", "pair/pair_law.h", "pair/pair_law.c", *speeds, *memory)
 
 
 def joined(

@@ -24,7 +24,9 @@ STEP = 0.1
 """Largest distance of two speeds in ln u: half that of balls, as damping of lines bends sharply over the load."""
 
 _BODY, _FILMS = "tapered_bearing", "tapered_films"
-_KERNEL = ("elementary.h", "taper.h", "taper_lines.c", "taper_balance.c", "taper_bearing.c")
+_KERNEL = (
+    "elementary.h", "taper/taper.h", "taper/taper_lines.c", "taper/taper_balance.c", "taper/taper_bearing.c",
+)  # fmt: skip
 _SHORTER = (1.0,)
 """Times of the springs of a film over the longest one: there is one."""
 
@@ -120,7 +122,7 @@ def source_texts(
         )
     numbers = _public_numbers(force, laws), _private_numbers(force, laws)
     memory = [_FILMS] if laws.memory else []
-    kernel = (*pair_files(laws), *_KERNEL, *(["taper_films.c"] if laws.memory else []))
+    kernel = (*pair_files(laws), *_KERNEL, *(["taper/taper_films.c"] if laws.memory else []))
     headers, bodies = ([template("mbs.exports.tapered", f"{name}.{end}") for name in (_BODY, *memory)] for end in "hc")
     return joined(header, numbers, kernel, headers, bodies, prefix, include)
 

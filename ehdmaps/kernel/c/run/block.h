@@ -22,7 +22,7 @@
 #ifndef EHD_BLOCK_H
 #define EHD_BLOCK_H
 
-#include "numbers.h"
+#include "../numbers.h"
 
 /* How an answer, and a run, ended. */
 enum {
