@@ -186,7 +186,7 @@ def test_only_known_laws_of_shear_get_in(value):
         np.array([math.inf]),
         np.array(["0", "1; #calc"]),
         np.array([[0.0, 1.0]]),
-        np.array([object()]),
+        pytest.param(np.array([object()]), id="an object"),  # whose text has its address
         "#calc",
     ],
     ids=repr,
