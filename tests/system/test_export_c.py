@@ -285,17 +285,18 @@ def corner(tmp_path_factory):
     return path
 
 
-@pytest.mark.parametrize("outside", ["clamp", "asymptote"])
-def test_loads_end_where_points_of_the_map_are_missing(corner, tmp_path, outside):
-    kernel = Kernel(
-        compiled(exported(corner, tmp_path / "c", "--outside", outside, "--centrifugal"), "-shared", "-fPIC")
-    )
+@pytest.mark.parametrize(("outside", "options"), [("clamp", ["--centrifugal"]), ("asymptote", [])])
+def test_loads_end_where_points_of_the_map_are_missing(corner, tmp_path, outside, options):
+    folder = exported(corner, tmp_path / "c", "--outside", outside, *options)
+    kernel = Kernel(compiled(folder, "-shared", "-fPIC", "-O0"))  # the tables are long
     law = open_map(corner).law("series", outside)
     ends = [law.known_load(u, T) for u, T in ((2.4, 313.15), (1.7, 316.0), (1.2, 313.15), (-0.1, 340.0))]
     assert ends[0] < ends[1] < ends[2] == pytest.approx(ends[3], rel=1e-14)  # round-off
     for u, T in ((2.4, 313.15), (1.7, 316.0), (3.0, 310.0), (-0.1, 340.0)):
-        for q in (0.0, 3e3):
+        for q in (0.0, 3e3) if options else (0.0,):
             assert_law(kernel, law, u, T, q)
+    if not options:
+        return
     assert kernel.at(2.4, 313.15, 0.99 * ends[0]) == 0
     assert kernel.at(2.4, 313.15, 1.01 * ends[0]) == BAD_CENTRIFUGAL
     assert kernel.at(1.2, 313.15, 1.01 * ends[0]) == 0
