@@ -8,6 +8,6 @@
 | `resampled` | the law on a grid that linear interpolation reads |
 | `modelica` | the law at one speed and temperature as pure functions in Modelica |
 | `c` | the law and the bearing in C99 |
-| `shims` | user routines of Adams, RecurDyn and Simpack over the kernel in C |
+| `simpack` | a user force of Simpack over the kernel in C |
 | `fmu` | a bearing as a Functional Mock-up Unit |
 """

@@ -101,7 +101,7 @@ def state(folder: Path = SOURCES) -> str:
 
 
 def state_of(library: Path) -> str:
-    """Return the number of the C files that a library was made of; empty where there is no such file, or no number in it.
+    """Return the number of the C files that a library was made of; empty without such a file, or a number in it.
 
     Parameters
     ----------

@@ -2,8 +2,8 @@
 
 A run in time puts all elements of a kind into one block. Its function writes what they answer to a motion; the block
 itself, in Python, holds their data and prepares what changes with the speed. `mbs.transient.kinds` lists the kinds;
-`mbs.gears.gear_block` is a short one to look at, and `ehdmaps/kernel/c/run/block.h` has the types of the functions. This
-module knows nothing of compiled code.
+`mbs.gears.gear_block` is a short one to look at, and `ehdmaps/kernel/c/run/block.h` has the types of the functions.
+This module knows nothing of compiled code.
 """
 
 from __future__ import annotations

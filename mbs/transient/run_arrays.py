@@ -185,7 +185,7 @@ class Run(Record):
 
 
 class BlockRow(ctypes.Structure):
-    """A block as `ehd_advance` takes it: addresses of its functions and of its data, see `ehdmaps/kernel/c/run/block.h`."""
+    """A block as `ehd_advance` takes it: addresses of functions and of data, see `ehdmaps/kernel/c/run/block.h`."""
 
     _fields_ = tuple((name, ctypes.c_void_p) for name in ("answer", "accept", "powers", "data"))
 

@@ -84,7 +84,10 @@ FAULTS = (
         "*compliance += part / w;",
     ),
     Fault(
-        "damping of a faded film, factor", "ehdmaps/kernel/c/law/law.c", "found.dc *= part / slope;", "found.dc /= slope;"
+        "damping of a faded film, factor",
+        "ehdmaps/kernel/c/law/law.c",
+        "found.dc *= part / slope;",
+        "found.dc /= slope;",
     ),
     Fault(
         "film memory, tangent",

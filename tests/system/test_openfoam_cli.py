@@ -137,7 +137,7 @@ def test_kill_9_of_a_running_solver_costs_nothing(folder):
     job = start(command("generate", "job.toml", "--workers", "2"), cwd=folder, stdout=subprocess.PIPE, text=True)
     wait_for(lambda: len(openfoam_fake.starts(build_of(folder))) >= 3)
     os.kill(int(openfoam_fake.starts(build_of(folder))[-1][0]), signal.SIGKILL)
-    out, _ = job.communicate(timeout=60)
+    out, _ = job.communicate(timeout=300)
     assert job.returncode == 0
     assert counts(out) == (0, POINTS + BESIDE, 0)
     assert "1 x solved at the second try, the first ehlFoam was killed by signal 9 (SIGKILL)" in out
@@ -180,7 +180,7 @@ def test_the_end_of_a_job_is_the_end_of_its_solvers(folder, done, end, workers):
         os.killpg(job.pid, end)  # as a terminal does: to the workers too
     else:
         job.kill()
-    out, err = job.communicate(timeout=60)
+    out, err = job.communicate(timeout=300)
     assert job.returncode == (130 if end is signal.SIGINT else -9)
     assert out == ""
     assert "Traceback" not in err

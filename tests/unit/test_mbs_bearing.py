@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
 import dataclasses
 import math
 import subprocess
@@ -13,7 +12,7 @@ import pytest
 from numba import njit
 
 from ehdmaps.errors import InputError, MapError
-from ehdmaps.kernel.library import checked, function
+from ehdmaps.kernel.library import checked
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.physics.oil_supply import FLOODED
 from mbs.bearings import laws
@@ -189,19 +188,20 @@ def test_results_do_not_depend_on_what_was_called_before():
 def test_other_compiled_code_calls_the_kernel():
     point = force().at(1.0, 330.0)
     expected = point(POSE, VELOCITY, 0.3)
-    called = function("ehd_cylinder_force", ctypes.c_void_p)
+    at = point.address
+    called = at.PROTOTYPE(at.function)
 
     @njit
-    def twice(address, state, angle):
+    def twice(data, state, angle):
         status = 0
         for _ in range(2):
             state[12] = angle
-            status += called(address)
+            status += called(data)
         return status
 
     point(POSE, VELOCITY, 0.1)
     assert not np.array_equal(point.answer[0], expected[0])
-    assert twice(point.address, point.state, 0.3) == 0
+    assert twice(at.data, point.state, 0.3) == 0
     np.testing.assert_array_equal(point.answer, np.vstack([expected[0], expected[1], expected[2]]))
 
 

@@ -97,7 +97,7 @@ def gathered_for_c(members):
 
 
 IN_C = r"""
-#include "block.h"
+#include "run/block.h"
 
 typedef struct cubics { int64_t count, *firsts, *places; double *numbers; } cubics;
 

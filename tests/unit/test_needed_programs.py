@@ -18,7 +18,7 @@ ASKING = {"tests/cases/programs.py", "tests/openfoam/test_build.py"}
 """The helper, and the test of a script on a machine of its own."""
 
 SHORT = (
-    "tests/system/test_export_shims.py::test_simpack_feels_the_bearing",
+    "tests/system/test_export_simpack.py::test_simpack_feels_the_bearing",
     "tests/system/test_report_browser.py",
     "tests/system/test_octave.py",
     "tests/system/test_setup.py",

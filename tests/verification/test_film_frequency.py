@@ -10,7 +10,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from ehdmaps.ehl import solver as reynolds
+from ehdmaps.ehl import line
 from ehdmaps.ehl.group_solution import GroupSolution, linearised_profile
 from ehdmaps.ehl.limits import GridShape, Resolution
 from ehdmaps.ehl.line import group_spectrum, solve_groups
@@ -124,8 +124,8 @@ def test_low_frequencies_give_film_compliance_and_loss_of_slow_motion(M: float, 
 
 def test_many_frequencies_take_one_solution(monkeypatch: pytest.MonkeyPatch) -> None:
     solves = []
-    real = reynolds.solve_groups
-    monkeypatch.setattr(reynolds, "solve_groups", lambda *given: solves.append(given) or real(*given))
+    real = line.solve_groups
+    monkeypatch.setattr(line, "solve_groups", lambda *given: solves.append(given) or real(*given))
     point = OperatingPoint(88571.0, 1.7, 313.15)
     found = ReynoldsSolver().film_spectrum(CONTACTS[0], OIL, point, np.geomspace(10.0, 2e4, 60))
     assert len(solves) == 1

@@ -1,7 +1,7 @@
 """The contact law in C, as Python calls it: its numbers as a struct, calls of one place and of many, points.
 
-The equations are in `ehdmaps/kernel/c/law/law.c` and `law_many.c`. Nothing is refused here: what lies outside the map is
-counted by cause, and held.
+The equations are in `ehdmaps/kernel/c/law/law.c` and `law_many.c`. Nothing is refused here: what lies outside the map
+is counted by cause, and held.
 """
 
 from __future__ import annotations
@@ -207,9 +207,9 @@ class LawAddress:
 
     `PROTOTYPE` is the type of the function for `ctypes`, which numba's compiled code calls as well:
     ``int ehd_law_call(const void *data, double approach, double rate, double entrainment_speed, double temperature,
-    double centrifugal_load, void *room, double force[3])``, in SI units, see `ehdmaps/kernel/c/law/law.h`. It fills load,
-    stiffness and damping, and returns 0, or a sum of `ABOVE_LOAD`, `ABOVE_SPEED` and so on: the law is held there, and
-    NaN for numbers that are not finite. Each thread has memory of its own.
+    double centrifugal_load, void *room, double force[3])``, in SI units, see `ehdmaps/kernel/c/law/law.h`. It fills
+    load, stiffness and damping, and returns 0, or a sum of `ABOVE_LOAD`, `ABOVE_SPEED` and so on: the law is held
+    there, and NaN for numbers that are not finite. Each thread has memory of its own.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""A ball bearing as the kernel in C has it (`ehdmaps/kernel/c/ball/ball.h`): lengths, speeds, laws, and rows of balls."""
+"""A ball bearing as the C library has it (`ehdmaps/kernel/c/ball/ball.h`): lengths, speeds, laws, rows of balls."""
 
 from __future__ import annotations
 

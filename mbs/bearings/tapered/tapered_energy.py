@@ -4,8 +4,8 @@ Contacts at rest store U, the sum of the integrals of their loads over the appro
 
     dU/dt = f . dD/dt + F . dV/dt,
 
-V and D of `ehdmaps/kernel/c/taper/taper_balance.c`, f the forces of the ring on its rollers: the first part is the work of
-the ring and of the turning cage, the second one that of speed.
+V and D of `ehdmaps/kernel/c/taper/taper_balance.c`, f the forces of the ring on its rollers: the first part is the work
+of the ring and of the turning cage, the second one that of speed.
 """
 
 from __future__ import annotations

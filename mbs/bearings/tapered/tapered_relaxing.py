@@ -1,9 +1,9 @@
 """Films of tapered rollers that relax: what both lines of each roller add to K and C of slow motion at a frequency.
 
-A roller is at D and V as in `ehdmaps/kernel/c/taper/taper_balance.c`, without mass against small motions. Each slice has a
-spring k, and a damper c in series with a spring c/theta, as of cylindrical rollers, see `mbs.bearings.roller_contacts`.
-It feels n.V at the cup and n.(D - V) at the cone: a V + b D. With the ends of the dampers at rest, Xi = a S + b by D,
-and the diagonal matrices of c and theta, small motions of D see
+A roller is at D and V as in `ehdmaps/kernel/c/taper/taper_balance.c`, without mass against small motions. Each slice
+has a spring k, and a damper c in series with a spring c/theta, as of cylindrical rollers, see
+`mbs.bearings.roller_contacts`. It feels n.V at the cup and n.(D - V) at the cone: a V + b D. With the ends of the
+dampers at rest, Xi = a S + b by D, and the diagonal matrices of c and theta, small motions of D see
 
     Z(s) = K + s C - s^2 Xi' c^(1/2) T (1 + s T)^-1 c^(1/2) Xi,       T = theta + c^(1/2) a M^-1 a' c^(1/2),
 

@@ -21,13 +21,10 @@ enum { SLOT_MOST = 256, SLOT_FULL = 1024 };
 int bearing_slot(int number, const double axis[3], const double place[3], const double speed[3],
                  const double turning[3], double cage_angle, double T, double clearance, double force[6]);
 
-/* The same with films that have a memory, at a time [s]; trial: a call of which nothing is to be kept (film_history.h).
+/* The same with films that have a memory, at a time [s] (film_history.h).
  * Their damping is in their states, so that speed has no part in the force. SLOT_FULL also where there is no room. */
 int bearing_slot_memory(int number, const double axis[3], const double place[3], const double turning[3],
-                        double cage_angle, double T, double clearance, double time, int trial, double force[6]);
-
-/* What of a status that does not refuse an element, which bearing_slot was called for, had not had before. */
-int bearing_slot_news(int number, int status);
+                        double cage_angle, double T, double clearance, double time, double force[6]);
 
 /* Name of a status, for messages. */
 const char *bearing_slot_text(int status);

@@ -9,7 +9,7 @@ enum { FILMS = EHD_ROLLERS * EHD_SLICES };
 
 /* A bearing; the law, or films and their history, come with the first call that needs them. */
 typedef struct slot {
-    int used, number, told;
+    int used, number;
     double clearance;
     ehd_bearing bearing;
     ehd_prepared *law;
@@ -90,7 +90,7 @@ static int force_at(const slot *own, const double pose[6], double cage_angle, co
 }
 
 int bearing_slot_memory(int number, const double axis[3], const double place[3], const double turning[3],
-                        double cage_angle, double T, double clearance, double time, int trial, double force[6])
+                        double cage_angle, double T, double clearance, double time, double force[6])
 {
     double across[2], pose[6], step, last_step;
     const double spin = spin_of(axis, turning, across);
@@ -113,7 +113,7 @@ int bearing_slot_memory(int number, const double axis[3], const double place[3],
     status = ehd_film_at(own->film, EHD_ENTRAINMENT * fabs(spin), T);
     if (EHD_REFUSES(status))
         return status;
-    kind = film_history_call(&own->history, time, trial, &before, &step, &last_step, &after);
+    kind = film_history_call(&own->history, time, &before, &step, &last_step, &after);
     if (kind == FILMS_STEP)
         status |= ehd_bearing_advance(&own->bearing, own->film, step, last_step, pose, cage_angle, before, after,
                                       &found);
@@ -125,21 +125,10 @@ int bearing_slot_memory(int number, const double axis[3], const double place[3],
     }
     if (EHD_REFUSES(status))
         return status;
-    if (!trial)
-        film_history_keep(&own->history, time, kind);
+    film_history_keep(&own->history, time, kind);
     for (i = 0; i < 6; ++i)
         force[i] = found.force[i];
     return status;
-}
-
-int bearing_slot_news(int number, int status)
-{
-    slot *own = find(number);
-    const int news = own ? status & ~own->told : status;
-
-    if (own)
-        own->told |= status;
-    return news;
 }
 
 const char *bearing_slot_text(int status)

@@ -6,8 +6,7 @@
  * begins a new step there; a call at the same time, or at an earlier one within the step, repeats the step. Calls before
  * that, and all calls before time goes on for the first time, find films in equilibrium.
  *
- * A trial leaves no trace. Where a program does not say that a call is one, the last call at a time counts: it should be
- * within the tolerance of the solver of what it accepts.
+ * The last call at a time counts: it should be within the tolerance of the solver of what it accepts.
  *
  * A step is one of ehd_film_advance, so that the solver's step decides: damping at the frequency f is wrong by some
  * (2 pi f step)^2/3.
@@ -33,7 +32,7 @@ int film_history_make(film_history *of, int count);
 
 /* What a call at a time [s] is. `before` are the films at its begin, `step` and `last_step` [s] are for
  * ehd_film_advance; `after` is where the caller puts the films that it finds. */
-int film_history_call(film_history *of, double time, int trial, const ehd_film_state **before, double *step,
+int film_history_call(film_history *of, double time, const ehd_film_state **before, double *step,
                       double *last_step, ehd_film_state **after);
 
 /* Keep what was put there. */

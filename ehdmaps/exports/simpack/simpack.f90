@@ -85,9 +85,9 @@ subroutine uforce40(task, par_dim, uin_dim, stdyn_dim, stroot_dim, ov_dim, id, p
          real(c_double), intent(out) :: found(6)
          integer(c_int) :: bearing_slot
       end function
-      function bearing_slot_memory(number, axis, place, turning, cage_angle, T, clearance, now, trial, found) bind(c)
+      function bearing_slot_memory(number, axis, place, turning, cage_angle, T, clearance, now, found) bind(c)
          use, intrinsic :: iso_c_binding
-         integer(c_int), value :: number, trial
+         integer(c_int), value :: number
          real(c_double), intent(in) :: axis(3), place(3), turning(3)
          real(c_double), value :: cage_angle, T, clearance, now
          real(c_double), intent(out) :: found(6)
@@ -113,7 +113,7 @@ subroutine uforce40(task, par_dim, uin_dim, stdyn_dim, stroot_dim, ov_dim, id, p
    cage = 0.0d0
    if (uin_dim > 0) cage = uin(1)
    if (par(4) /= 0.0d0) then
-      status = bearing_slot_memory(id, axis, place, turning, cage, par(2), par(3), time, 0, found)
+      status = bearing_slot_memory(id, axis, place, turning, cage, par(2), par(3), time, found)
    else
       status = bearing_slot(id, axis, place, speed, turning, cage, par(2), par(3), found)
    end if

@@ -14,7 +14,7 @@ int film_history_make(film_history *of, int count)
     return of->at_begin != 0;
 }
 
-int film_history_call(film_history *of, double time, int trial, const ehd_film_state **before, double *step,
+int film_history_call(film_history *of, double time, const ehd_film_state **before, double *step,
                       double *last_step, ehd_film_state **after)
 {
     const int onward = of->asked && time > of->last;
@@ -27,14 +27,13 @@ int film_history_call(film_history *of, double time, int trial, const ehd_film_s
         return FILMS_SETTLE;
     *step = time - (onward ? of->last : of->begin);
     *last_step = onward ? of->last_step : of->step_before;
-    *before = onward ? of->at_last : of->at_begin;
-    if (onward && !trial) { /* what was found last is what the solver has accepted */
+    *before = of->at_begin;
+    if (onward) { /* what was found last is what the solver has accepted */
         for (i = 0; i < of->count; ++i)
             of->at_begin[i] = of->at_last[i];
         of->begin = of->last;
         of->step_before = of->last_step;
         of->gone = 1;
-        *before = of->at_begin;
     }
     return *step > 0.0 ? FILMS_STEP : FILMS_STAY;
 }
