@@ -30,6 +30,12 @@ def own_reductions() -> Iterator[None]:
         yield
 
 
+@pytest.fixture(scope="session")
+def law_tables(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """Folder for tables of laws that commands share, as those of a user do."""
+    return str(tmp_path_factory.mktemp("laws"))
+
+
 @pytest.fixture(scope="session", autouse=True)
 def own_binaries() -> Iterator[None]:
     """Compile units for this system alone: for all of them it takes ten seconds of processor time each."""

@@ -32,7 +32,7 @@ from ehdmaps.maps import schema
 from ehdmaps.maps.backbone_plan import NEIGHBOURS, VALLEY, Axis
 from ehdmaps.maps.film_field import first_loads, known_from, lifted_loss
 from ehdmaps.maps.kernels.ends import one_end
-from ehdmaps.maps.kernels.locked_film import MOST, film_of, fitted_factor, law_differences, response_error
+from ehdmaps.maps.kernels.locked_film import MOST, film_of, fitted_factors, response_error
 from ehdmaps.maps.kernels.splines import mix_lines
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width
@@ -417,13 +417,9 @@ class BackboneField:
         lifted = lifted_loss(loss, width, speed, solids + compliance)
         error = response_error(solids, response, errors)
         film, natural = film_of((self._reference,), speed), self._responses.natural
-        logs, apart = [], []
-        for i in np.flatnonzero(known):
-            point = (film, loads[i], offset[i], solids[i], compliance[i], lifted[i], natural, response[i])
-            factor = fitted_factor(*point, error[i])
-            logs.append(math.log(factor))
-            apart.append(law_differences(*point, factor))
-        return self._zeta[known], np.array(logs), np.array(apart)
+        values = (array[known] for array in (loads, offset, solids, compliance, lifted))
+        factors, apart = fitted_factors(film, *values, natural, response[known], error[known])
+        return self._zeta[known], np.log(factors), apart
 
     def _at(
         self,

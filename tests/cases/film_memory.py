@@ -26,7 +26,7 @@ from ehdmaps.jobs.make.generate import generate_in_memory
 from ehdmaps.maps.emap import EHDMap
 from ehdmaps.maps.film_field import lifted_loss
 from ehdmaps.maps.kernels.film_response import FilmsOfContact
-from ehdmaps.maps.kernels.locked_film import film_of, fitted_factor, law_differences, locked_stiffness, response_error
+from ehdmaps.maps.kernels.locked_film import film_of, fitted_factors, locked_stiffness, response_error
 from ehdmaps.maps.law import LawAtPoint
 from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.hertz import half_width, natural_time
@@ -394,18 +394,15 @@ def response(contact: LineContact, oil: Lubricant, point: OperatingPoint) -> Res
     solids = float(contact.structural_compliance(load))
     kept, locked = found.compliance[-held.size :], film_of((contact,), speed)
     error = response_error(np.array([solids]), kept[None], found.largest_error[None, -held.size :])
-    factor = fitted_factor(
-        locked, load, film.film_offset, solids, film.film_compliance, float(loss), held, kept, float(error[0])
-    )
+    values = (np.array([value]) for value in (load, film.film_offset, solids, film.film_compliance, float(loss)))
+    factors, apart = fitted_factors(locked, *values, held, kept[None], error)
+    factor = float(factors[0])
     stiff, by_formula = (locked_stiffness(locked, film.film_offset, load, k, c, solids, each) for each in (factor, 1.0))
     wrong = np.abs(relaxing(k, c, stiff, omega) / exact - 1.0)
-    apart = law_differences(
-        locked, load, film.film_offset, solids, film.film_compliance, float(loss), held, kept, factor
-    )
     relaxation = np.array([c / (stiff - k) if stiff > k else 0.0])
     films = FilmsOfContact(
         *(np.array([value]) for value in (k, c)), relaxation, *(np.array([time]) for time in (natural, half / speed)),
-        held, apart[None],
+        held, apart,
     )  # fmt: skip
     by_map = films.compliance(1j * READ / natural)[:, 0]
     state = oil.at(point.temperature)

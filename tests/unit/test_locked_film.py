@@ -17,7 +17,7 @@ from ehdmaps.maps.kernels.locked_film import (
     MOST,
     LockedFactors,
     film_of,
-    fitted_factor,
+    fitted_factors,
     locked_compliances,
     locked_stiffness,
 )
@@ -71,13 +71,22 @@ class Remembering(FormulaSolver):
         return FilmSpectrum(film, frequencies, found, np.zeros((frequencies.size, 1), dtype=complex))
 
 
+def one_factor(film, *values):
+    """Factor at one point: load, offset, solids, compliance, loss, natural frequencies, response, error."""
+    *numbers, natural, response, error = values
+    arrays = (np.array([value]) for value in numbers)
+    (factor,), apart = fitted_factors(film, *arrays, natural, response[None], np.array([error]))
+    assert apart.shape == (1, natural.size)
+    return factor
+
+
 @pytest.mark.parametrize("factor", [0.4, 1.0, 1.7, 3.0])
 @pytest.mark.parametrize("load", [2e4, 2e5])
 def test_factor_is_found_again_in_the_response_of_the_law(factor, load):
     speed = 1.2
     film = film_at(CONTACT, load, speed)
     time = natural_time(load, film.film_offset, speed, CONTACT.radius, CONTACT.reduced_modulus)
-    found = fitted_factor(
+    found = one_factor(
         film_of((CONTACT,), speed), load, film.film_offset, CONTACT.structural_compliance(load), film.film_compliance,
         film.loss_compliance, NATURAL, response_of(CONTACT, film, load, speed, factor, NATURAL / time), 0.0,
     )  # fmt: skip
@@ -89,7 +98,7 @@ def test_factor_is_found_again_in_the_response_of_the_law(factor, load):
 def test_whatever_is_stored_the_factor_is_bounded(size):
     for load in (1e3, 1e5):
         film = film_at(CONTACT, load, 1.0)
-        found = fitted_factor(
+        found = one_factor(
             film_of((CONTACT,), 1.0), load, film.film_offset, CONTACT.structural_compliance(load),
             film.film_compliance, film.loss_compliance, NATURAL, np.full(5, size * (1.0 - 1.0j)), 0.0,
         )  # fmt: skip
@@ -101,7 +110,7 @@ def test_a_response_that_says_nothing_leaves_the_formula():
     load, speed = 1e5, 1.0
     solids, compliance, loss = CONTACT.structural_compliance(load), 1e-13, 1e-22
     slow = np.full(5, compliance + 0j)
-    found = fitted_factor(film_of((CONTACT,), speed), load, 1e-6, solids, compliance, loss, NATURAL, slow, 0.0)
+    found = one_factor(film_of((CONTACT,), speed), load, 1e-6, solids, compliance, loss, NATURAL, slow, 0.0)
     assert found == pytest.approx(1.0, rel=2e-2)
 
 

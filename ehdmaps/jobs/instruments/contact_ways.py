@@ -26,7 +26,7 @@ from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import SolverError
 from ehdmaps.jobs.instruments.answers import Answer, Question, film_answer, known
 from ehdmaps.maps.contact_curve import FilmSamples, Tail
-from ehdmaps.maps.kernels.locked_film import film_of, fitted_factor, locked_stiffness, response_error
+from ehdmaps.maps.kernels.locked_film import film_of, fitted_factors, locked_stiffness, response_error
 from ehdmaps.maps.law import ContactLaw
 from ehdmaps.maps.oil_layer import OilLayer
 from ehdmaps.maps.rolling_film import FlowFilm
@@ -399,10 +399,11 @@ class LockedPole:
         factor = 1.0
         if spectrum is not None:
             error = response_error(np.array([solids]), spectrum.compliance[None], spectrum.largest_error[None])
-            factor = fitted_factor(
-                geometry, point.load, film.film_offset, solids, film.film_compliance, loss,
-                np.array(self.solver.natural_frequencies), spectrum.compliance, float(error[0]),
-            )  # fmt: skip
+            at_load = (
+                np.array([value]) for value in (point.load, film.film_offset, solids, film.film_compliance, loss)
+            )
+            natural = np.array(self.solver.natural_frequencies)
+            factor = float(fitted_factors(geometry, *at_load, natural, spectrum.compliance[None], error)[0][0])
         locked = locked_stiffness(geometry, film.film_offset, point.load, k, c, solids, factor)
         omega = 2.0 * math.pi * question.frequency
         relaxation = c / (locked - k) if locked > k else 0.0

@@ -4,7 +4,7 @@ At high frequency the oil cannot leave the inlet, and stiffens the contact a lit
 `locked_compliances` off the compliance of the solids. The closed formula for it is fitted to the linear response of the
 isothermal Newtonian line contact, see `LOCKED` and `LONGEST_MEMORY` in `ehdmaps/kernel/c/film/film.c`.
 
-A map with film compliances at natural frequencies has a factor for it besides, `fitted_factor`. The law in time has
+A map with film compliances at natural frequencies has a factor for it besides, `fitted_factors`. The law in time has
 stiffness and damping of slow motion and the stiffness k_s of the locked film, of which only k_s is open. So the factor
 is the one by which the complex stiffness of the law comes closest to that of the film solver, in the mean square of the
 relative differences at the frequencies that the map holds. Whatever the factor, the law is passive.
@@ -15,16 +15,13 @@ one: a factor of e is held as likely as a difference of `DOUBT`, or of the respo
 
 from __future__ import annotations
 
-import ctypes
-import functools
-from collections.abc import Callable, Sequence
-from typing import Any, ClassVar, NamedTuple
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from ehdmaps.arrays import ComplexArray, FloatArray
-from ehdmaps.kernel.library import checked, function
-from ehdmaps.kernel.record import Record, at, numbers
+from ehdmaps.kernel.record import at
 from ehdmaps.maps.kernels.memory_table import called
 from ehdmaps.physics.contact import LineContact
 
@@ -156,98 +153,46 @@ MOST = 8.0
 """Largest factor of the closed formula, and inverse of the smallest one."""
 
 
-class Response(Record):
-    """A point of a map with the response of its film, see `ehdmaps/kernel/c/film/film_fit.c`."""
-
-    _fields_ = (
-        ("contacts", ctypes.c_double * 3),
-        ("speed", ctypes.c_double),
-        ("load", ctypes.c_double),
-        ("offset", ctypes.c_double),
-        ("solids", ctypes.c_double),
-        ("compliance", ctypes.c_double),
-        ("loss", ctypes.c_double),
-        ("count", ctypes.c_int64),
-        ("natural", numbers),
-        ("response", numbers),
-    )
-    shapes: ClassVar = {"natural": ("count",), "response": ("count", 2)}
-
-
-@functools.cache
-def _fitting() -> tuple[Callable[..., Any], Callable[..., Any]]:
-    """Functions of `ehdmaps/kernel/c/film/film_fit.c`: the factor, and the differences."""
-    checked(Response, "ehd_film_response")
-    pointer, number = ctypes.c_void_p, ctypes.c_double
-    return (
-        function("ehd_film_fitted", pointer, number, number, result=number),
-        function("ehd_film_differences", pointer, number, pointer, result=number),
-    )
-
-
-def _response_at(
-    film: Film, load: float, offset: float, solids: float, compliance: float, loss: float, natural: FloatArray,
-    response: ComplexArray,
-) -> Response:  # fmt: skip
-    """A point for C."""
-    return Response(
-        contacts=geometry_of(film),
-        speed=film.speed,
-        load=load,
-        offset=offset,
-        solids=solids,
-        compliance=compliance,
-        loss=loss,
-        count=natural.size,
-        natural=np.ascontiguousarray(natural, dtype=np.float64),
-        response=np.ascontiguousarray(response, dtype=np.complex128).view(np.float64),
-    )
-
-
-def fitted_factor(
-    film: Film, load: float, offset: float, solids: float, compliance: float, loss: float, natural: FloatArray,
-    response: ComplexArray, error: float,
-) -> float:  # fmt: skip
-    """Factor of the closed formula of the locked film at one point.
+def fitted_factors(
+    film: Film, loads: FloatArray, offsets: FloatArray, solids: FloatArray, compliances: FloatArray,
+    losses: FloatArray, natural: FloatArray, responses: ComplexArray, errors: FloatArray,
+) -> tuple[FloatArray, ComplexArray]:  # fmt: skip
+    """Factors of the closed formula of the locked film, and what the law leaves out with them.
 
     Parameters
     ----------
     film : Film
         One contact at a speed > 0.
-    load, offset : float
-        [N/m] and film offset [m], > 0.
-    solids : float
-        Compliance of the structure [m2/N].
-    compliance, loss : float
-        Film compliance [m2/N] and loss compliance [m2 s/N] of slow motion, as the law takes them.
+    loads, offsets : array (n,)
+        [N/m] and film offsets [m], > 0.
+    solids : array (n,)
+        Compliances of the structure [m2/N].
+    compliances, losses : array (n,)
+        Film compliances [m2/N] and loss compliances [m2 s/N] of slow motion, as the law takes them.
     natural : array (k,)
         Natural frequencies omega sqrt(b^2 + 2 h R)/u.
-    response : array (k,)
+    responses : array (n, k)
         Film compliances there, complex [m2/N].
-    error : float
-        Relative error of the complex stiffness that they make.
+    errors : array (n,)
+        Relative errors of the complex stiffness that they make.
+
+    Returns
+    -------
+    factors : array (n,)
+        Factors, between 1/`MOST` and `MOST`.
+    apart : array (n, k)
+        Relative differences of the complex stiffness of the law from that of the film solver.
     """
-    point = _response_at(film, load, offset, solids, compliance, loss, natural, response)
-    return float(_fitting()[0](point.address, max(error, DOUBT), MOST))
-
-
-def law_differences(
-    film: Film, load: float, offset: float, solids: float, compliance: float, loss: float, natural: FloatArray,
-    response: ComplexArray, factor: float,
-) -> ComplexArray:  # fmt: skip
-    """Relative differences of the complex stiffness of the law from that of the film solver, shape (k,).
-
-    Parameters
-    ----------
-    film, load, offset, solids, compliance, loss, natural, response
-        The same as for `fitted_factor`.
-    factor : float
-        Factor of the closed formula.
-    """
-    point = _response_at(film, load, offset, solids, compliance, loss, natural, response)
-    apart = np.empty(natural.size, dtype=np.complex128)
-    _fitting()[1](point.address, factor, at(apart))
-    return apart
+    values = np.column_stack((loads, offsets, solids, compliances, losses, np.maximum(errors, DOUBT)))
+    values, natural = (np.ascontiguousarray(array, dtype=np.float64) for array in (values, natural))
+    responses = np.ascontiguousarray(responses, dtype=np.complex128)
+    count, geometry = values.shape[0], geometry_of(film)
+    factors, apart = np.empty(count), np.empty((count, natural.size), dtype=np.complex128)
+    called("ehd_film_fits")(
+        at(geometry), film.speed, MOST, natural.size, at(natural), count, at(values), at(responses), at(factors),
+        at(apart),
+    )  # fmt: skip
+    return factors, apart
 
 
 def response_error(solids: FloatArray, response: ComplexArray, errors: FloatArray) -> FloatArray:

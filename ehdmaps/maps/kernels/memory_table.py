@@ -182,13 +182,14 @@ _ARGUMENTS: dict[str, tuple[Any, ...]] = {
     "ehd_film_spent": (_POINTER, _COUNT, *(_POINTER,) * 5),
     "ehd_film_locked": (_POINTER, _COUNT, *(_POINTER,) * 4),
     "ehd_film_stiff": (_POINTER, _NUMBER, _COUNT, *(_POINTER,) * 7),
+    "ehd_film_fits": (_POINTER, _NUMBER, _NUMBER, _COUNT, _POINTER, _COUNT, *(_POINTER,) * 4),
 }
-"""Arguments of the functions of `ehdmaps/kernel/c/film/film_arrays.c`."""
+"""Arguments of the functions of `film_arrays.c` and `film_fit.c` in `ehdmaps/kernel/c/film`."""
 
 
 @functools.cache
 def called(name: str) -> Callable[..., Any]:
-    """Return a function of `ehdmaps/kernel/c/film/film_arrays.c`, which returns nothing."""
+    """Return a function of `film_arrays.c` or `film_fit.c`, which returns nothing."""
     if function("ehd_film_table_size", result=ctypes.c_size_t)() != 8 * NUMBERS:
         raise AssertionError("ehd_film_table of ehdmaps/kernel/c/film/film.h has not NUMBERS numbers")
     return function(name, *_ARGUMENTS[name], result=None)

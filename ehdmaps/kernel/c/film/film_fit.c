@@ -23,17 +23,16 @@ typedef struct ehd_film_response {
     const double *response;     /* (count, 2): film compliance there, real and imaginary part [m2/N] */
 } ehd_film_response;
 
-EHD_SIZE_OF(ehd_film_response)
+/* Factors of points at one speed, between 1/most and most, into factors (points); what they leave, relative differences
+ * of the complex stiffness of the law, k + i omega c/(1 + i omega theta), from that of the film solver, into apart
+ * (points, count, 2), real and imaginary parts. natural (count); values (points, 6): load, offset, compliance of the
+ * structure, film compliance, loss, and the relative difference below which a response says nothing; responses
+ * (points, count, 2). */
+void ehd_film_fits(const ehd_film_contacts *contacts, double speed, double most_factor, int64_t count,
+                   const double *natural, int64_t points, const double *values, const double *responses,
+                   double *factors, double *apart);
 
-/* Relative differences of the complex stiffness of the law, k + i omega c/(1 + i omega theta), with a factor of the
- * closed formula, from that of the film solver; into apart (count, 2), real and imaginary parts, unless it is null.
- * Returns the sum of their squares. */
-double ehd_film_differences(const ehd_film_response *at, double factor, double *apart);
-
-/* The factor, between 1/most and most. doubt: relative difference below which a response says nothing. */
-double ehd_film_fitted(const ehd_film_response *at, double doubt, double most_factor);
-
-/* As ehd_film_differences, with a number to which the squares are added. */
+/* Relative differences with a factor into apart, unless it is null; the sum of their squares, and of `total`. */
 static double differences_from(double total, const ehd_film_response *at, double factor, double *apart) {
     const double k = 1.0 / (at->solids + at->compliance), c = at->loss * k * k, radius = at->contacts.radius;
     const double stiff = locked_stiffness(&at->contacts, at->speed, at->offset, at->load, k, c, at->solids, factor);
@@ -57,10 +56,6 @@ static double differences_from(double total, const ehd_film_response *at, double
     return total;
 }
 
-double ehd_film_differences(const ehd_film_response *at, double factor, double *apart) {
-    return differences_from(0.0, at, factor, apart);
-}
-
 /* What is least at the factor: squares of the differences, and what holds it at one. */
 static double misfit(const ehd_film_response *at, double doubt, double log_factor) {
     const double held = doubt * log_factor;
@@ -69,7 +64,7 @@ static double misfit(const ehd_film_response *at, double doubt, double log_facto
 
 static double tried(int i, double reach) { return reach * (2.0 * i / (FIT_TRIES - 1) - 1.0); }
 
-double ehd_film_fitted(const ehd_film_response *at, double doubt, double most_factor) {
+static double fitted_factor(const ehd_film_response *at, double doubt, double most_factor) {
     const double reach = log(most_factor);
     double lowest = INFINITY;
     int best = 0;
@@ -89,4 +84,15 @@ double ehd_film_fitted(const ehd_film_response *at, double doubt, double most_fa
             low = left;
     }
     return exp(0.5 * (low + high));
+}
+
+void ehd_film_fits(const ehd_film_contacts *contacts, double speed, double most_factor, int64_t count,
+                   const double *natural, int64_t points, const double *values, const double *responses,
+                   double *factors, double *apart) {
+    for (int64_t i = 0; i < points; i++, values += 6, responses += 2 * count, apart += 2 * count) {
+        const ehd_film_response at = {*contacts, speed, values[0], values[1], values[2], values[3], values[4], count,
+                                      natural, responses};
+        factors[i] = fitted_factor(&at, values[5], most_factor);
+        differences_from(0.0, &at, factors[i], apart);
+    }
 }
