@@ -275,11 +275,11 @@ def _between_points(
     if not isinstance(films, MapFilms) or films.emap.known_between or not films.emap.law_errors.has_spacing_errors:
         return ""
     wrong, whole = np.zeros(2), np.zeros(2)
-    for group in element.contact_groups(pose, operation):
-        loads, k, c, _ = group.state()
-        if (bounds := group.law.bounds(loads)) is None:
+    for side in element.sides(pose, operation):
+        loads, k, c = (part.ravel() for part in side.state())
+        if (bounds := side.law.bounds(loads)) is None:
             return ""
-        along = np.array([k, c]) * (group.rows[:, 1:3] @ load / np.hypot(*load)) ** 2
+        along = np.array([k, c]) * ((side.feel @ side.pose)[..., 1:3].reshape(-1, 2) @ load / np.hypot(*load)) ** 2
         wrong += np.sum(along * [bounds.stiffness, bounds.damping], axis=1)
         whole += np.sum(along, axis=1)
     shares = wrong / np.maximum(whole, 1e-300)

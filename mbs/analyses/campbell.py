@@ -93,11 +93,11 @@ def law_changes(model: Model, speeds: Sequence[float]) -> Changes | None:
             connected = balance.system.elements[index]
             if not isinstance(connected.element, RingElement):
                 return None
-            groups = connected.element.contact_groups(connected.transform @ balance.displacement, operation)
+            sides = connected.element.sides(connected.transform @ balance.displacement, operation)
             changes = []
-            for group in groups:
-                load, stiffness, damping, _ = group.state()
-                bounds = group.law.bounds(load)
+            for side in sides:
+                load, stiffness, damping = (part.ravel() for part in side.state())
+                bounds = side.law.bounds(load)
                 if bounds is None:
                     return None
                 changes.append(

@@ -2,25 +2,20 @@
 
 from __future__ import annotations
 
-import dataclasses
-from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Iterable
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.units import RPM
 from mbs.analyses.operating import operating
-from mbs.bearings.bearing_element import RingElement, ring_following
-from mbs.linearised.validity import ContactsInBalance, FilmError, LoadedContacts
-from mbs.model.elements import Element, Forces, Operation
+from mbs.bearings.bearing_element import ring_following
+from mbs.linearised.validity import ContactsInBalance, FilmError
+from mbs.model.contacts import slow_springs
+from mbs.model.elements import OnRings, Operation
 from mbs.model.equilibrium import equilibrium
-from mbs.model.relaxation import FILM_WORDS, NOTABLE, Films, Relaxation
+from mbs.model.relaxation import FILM_WORDS, NOTABLE, Films
 from mbs.scene.assembly import Model
-
-if TYPE_CHECKING:
-    from mbs.bearings.balls.ball_element import MachineBalls
-    from mbs.bearings.tapered.tapered_element import TaperedElement
 
 
 def film_errors(
@@ -43,169 +38,59 @@ def film_errors(
         Films whose error is estimated; those of the model if left out.
     """
     found = []
-    system = model.system
-    speeds = {bearing.name: bearing.entrainment_speed(operation) for bearing in model.bearings}
-    for index in system.select(RingElement):
-        connected = system.elements[index]
-        element, ports = connected.element, connected.transform @ displacement
-        error = film_error(element, ports, operation, films or model.memory, speeds[element.name] == 0.0)
+    for index in model.ring_places:
+        connected = model.system.elements[index]
+        element = connected.element
+        assert isinstance(element, OnRings)
+        error = film_error(element, connected.transform @ displacement, operation, films or model.memory)
         found += [] if error is None else [error]
-    if model.scene.tapered:
-        from mbs.bearings.tapered.tapered_element import TaperedElement  # with kernels that others do not need
-
-        for index in system.select(TaperedElement):
-            connected = system.elements[index]
-            element, ports = connected.element, connected.transform @ displacement
-            assert isinstance(element, TaperedElement)
-            error = line_error(element, ports, operation, films or element.memory)
-            found += [] if error is None else [error]
-    if model.scene.balls:
-        from mbs.bearings.balls.ball_element import MachineBalls
-
-        for index in system.select(MachineBalls):
-            connected = system.elements[index]
-            element, ports = connected.element, connected.transform @ displacement
-            assert isinstance(element, MachineBalls)
-            error = ball_error(element, ports, operation, films or element.memory)
-            found += [] if error is None else [error]
     return found
 
 
-def ball_error(element: MachineBalls, ports: FloatArray, operation: Operation, films: Films) -> FilmError | None:
-    """Estimated error of the films of balls along their load; None without films, and without a load.
+def film_error(element: OnRings, ports: FloatArray, operation: Operation, films: Films) -> FilmError | None:
+    """Estimated error of the films of a bearing along its load; None without films, and without a load.
+
+    By what its springs and dampers leave out, where the response of its films is known; else, of films with memory, by
+    its contacts one by one as they move in slow motion.
 
     Parameters
     ----------
-    element : MachineBalls
+    element : OnRings
         The bearing.
-    ports : array, shape (6,)
-        Displacement of its inner ring against the outer one at the equilibrium.
-    operation : Operation
-        Speed and angle.
-    films : {"slow", "memory"}
-        Films whose error is estimated: by what their springs and dampers leave out of the film table.
-    """
-    if element.films is None:
-        return None
-    forces = element.evaluate(ports, np.zeros(6), operation)
-    motion = _along_load(forces)
-    if motion is None:
-        return None
-    condensed = element.law_errors(ports, operation)
-    contacts = () if condensed is None else (ContactsInBalance(condensed, motion),)
-    along = element.name, films, forces, motion
-    return _error(along, condensed is None, element.film_relaxation(ports, operation), np.zeros(0), contacts)
-
-
-def line_error(element: TaperedElement, ports: FloatArray, operation: Operation, films: Films) -> FilmError | None:
-    """Estimated error of the films of tapered rollers along their load; None without films, and without a load.
-
-    Parameters
-    ----------
-    element : TaperedElement
-        The bearing.
-    ports : array, shape (6,)
-        Displacement of its inner ring against the outer one at the equilibrium.
-    operation : Operation
-        Speed and angle.
-    films : {"slow", "memory"}
-        Films whose error is estimated; with memory by the slices one by one as they move in slow motion.
-    """
-    if element.films is None:
-        return None
-    forces = element.evaluate(ports, np.zeros(6), operation)
-    motion = _along_load(forces)
-    if motion is None:
-        return None
-    slices = element.film_slices(ports, operation)
-    relaxation, natural = slices or (element.film_relaxation(ports, operation), np.zeros(0))
-    if films == "slow":
-        relaxation = element.film_relaxation(ports, operation)
-    return _error((element.name, films, forces, motion), slices is None, relaxation, natural)
-
-
-def _along_load(forces: Forces) -> FloatArray | None:
-    """Unit motion of the inner ring along its load, shape (6,); None without a load."""
-    load = float(np.linalg.norm(forces.force[:3]))
-    return np.array([*(forces.force[:3] / load), 0.0, 0.0, 0.0]) if load > 0.0 else None
-
-
-def _error(
-    along: tuple[str, Films, Forces, FloatArray],
-    at_rest: bool,
-    relaxation: Relaxation,
-    natural: FloatArray,
-    contacts: Sequence[LoadedContacts | ContactsInBalance] = (),
-) -> FilmError:
-    """Error of a bearing by its name, its films, its forces, and a motion of its ports."""
-    name, films, forces, motion = along
-    return FilmError(
-        bearing=name,
-        films=films,
-        at_rest=at_rest,
-        stiffness=float(motion @ forces.stiffness @ motion),
-        damping=float(motion @ forces.damping @ motion),
-        springs=(relaxation.rows @ motion) ** 2,
-        times=relaxation.times,
-        natural=natural,
-        contacts=tuple(contacts),
-    )
-
-
-def film_error(
-    element: Element, ports: FloatArray, operation: Operation, films: Films, at_rest: bool
-) -> FilmError | None:
-    """Estimated error of the films of a bearing; None without films, and without a load.
-
-    Parameters
-    ----------
-    element : Element
-        The bearing, a `RingElement`.
     ports : array, shape (m,)
         Displacements of its ports at the equilibrium.
     operation : Operation
         Speed and angle.
     films : {"slow", "memory"}
         Films whose error is estimated.
-    at_rest : bool
-        Whether its surfaces stand still, so that there is no film.
     """
-    assert isinstance(element, RingElement)
     relaxation = element.film_relaxation(ports, operation)
     if relaxation is None:
         return None
     forces = element.evaluate(ports, np.zeros_like(ports), operation)
-    load = float(np.linalg.norm(forces.force[1:3]))
+    load = float(np.linalg.norm(forces.force[:3]))
     if load == 0.0:
         return None
-    along = np.array([0.0, *(forces.force[1:3] / load), 0.0, 0.0, 0.0])
-    motion = ring_following(forces.stiffness) @ along
-    contacts = _contacts(element, ports, operation, relaxation, motion)
-    natural = element.natural_times(ports, operation)
-    return _error((element.name, films, forces, motion), at_rest, relaxation, natural, contacts)
-
-
-def _contacts(
-    element: RingElement, ports: FloatArray, operation: Operation, relaxation: Relaxation, motion: FloatArray
-) -> tuple[LoadedContacts, ...]:
-    """The loaded slices of a bearing along a motion of its ports; none where no response of the films is known."""
-    found: list[LoadedContacts] = []
-    begin = 0
-    for group in element.contact_groups(ports, operation):
-        # The slices of groups are those of the relaxation, one after the other.
-        part = slice(begin, begin + group.approach.size)
-        begin = part.stop
-        load, stiffness, _, _ = group.state()
-        on = load > 0.0
-        loaded = dataclasses.replace(group, rows=group.rows[on], approach=group.approach[on])
-        response = loaded.film_response()
-        if response is None:
-            return ()
-        springs = (relaxation.rows[part][on] @ motion) ** 2
-        found.append(
-            LoadedContacts(stiffness[on] * (loaded.rows @ motion) ** 2, springs, relaxation.times[part][on], response)
-        )
-    return tuple(found)
+    motion = ring_following(forces.stiffness) @ np.array([*(forces.force[:3] / load), 0.0, 0.0, 0.0])
+    condensed, natural, contacts = element.small_motions(ports, operation), np.zeros(0), None
+    if condensed is not None:
+        if condensed.left_out is not None:
+            contacts = ContactsInBalance(condensed, motion)
+        elif films == "memory":
+            relaxation = slow_springs(condensed.contacts, condensed.pose)
+        if condensed.natural is not None:
+            natural = condensed.natural.reshape(-1)
+    return FilmError(
+        bearing=element.name,
+        films=films,
+        at_rest=element.entrainment_rate * operation.speed == 0.0,
+        stiffness=float(motion @ forces.stiffness @ motion),
+        damping=float(motion @ forces.damping @ motion),
+        springs=(relaxation.rows @ motion) ** 2,
+        times=relaxation.times,
+        natural=natural,
+        contacts=contacts,
+    )
 
 
 def notable_from(model: Model, speeds: FloatArray, displacements: FloatArray | None = None) -> FloatArray:

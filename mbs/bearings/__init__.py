@@ -9,7 +9,8 @@
 `cylinder`             structs and functions of a bearing in C
 `force_at_point`       the force at one speed, temperature and centrifugal load; loads of the rollers
 `bearing_force`        the force element, with films at once or in time, its energy and the moment on its cage
-`roller_contacts`      contacts one by one: films that relax, rollers as bodies between two contacts
+`roller_contacts`      rollers as bodies between two contacts
+`slices_in_balance`    small motions: films with memory in linear analyses, errors of the law
 `contact_report`       what the contacts feel in an equilibrium, what rolling costs, which limits are passed
 `bearing_element`      a bearing in a system: rollers massless or bodies, films that follow at once or need time
 `speed_tables`         tables of a law over the speed of a run

@@ -24,6 +24,7 @@ from mbs.bearings.cylinder import Arrays
 from mbs.bearings.force_at_point import RollerLoads
 from mbs.bearings.laws import DryLaw, FlatLaw
 from mbs.model.body import Body
+from mbs.model.condensed import Condensed
 from mbs.model.elements import Excitation, Forces, OnRings, Operation, Port, Powers
 from mbs.model.findings import Gauge
 from mbs.model.relaxation import Films, Relaxation
@@ -31,7 +32,8 @@ from mbs.model.relaxation import Films, Relaxation
 if TYPE_CHECKING:
     from ehdmaps.maps.kernels.memory import FilmMemory, FilmState
     from ehdmaps.maps.law import ContactLaw
-    from mbs.bearings.roller_contacts import ContactGroup, RollerContacts
+    from mbs.bearings.roller_contacts import RollerContacts
+    from mbs.bearings.slices_in_balance import Side
     from mbs.model.system import System
 
 
@@ -65,7 +67,14 @@ class RingElement(OnRings):
     """Element that is listed as a roller bearing: its first six displacements are those of an inner ring.
 
     `mbs.model.system.System.select` finds bearings by this class; a bearing of your own inherits from it.
+
+    Attributes
+    ----------
+    films : {"slow", "memory"}
+        Whether small oscillations see the films of slow motion at any frequency, or films that relax.
     """
+
+    films: Films = "slow"
 
     @property
     def flat_laws(self) -> tuple[FlatLaw, ...]:
@@ -90,8 +99,8 @@ class RingElement(OnRings):
         """
         return 0.0
 
-    def film_relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
-        """Find how its films would relax, whether linear analyses are to see that or not; None without films.
+    def sides(self, displacement: FloatArray, operation: Operation) -> tuple[Side, ...]:
+        """Its slices at rest by the law that they have; none without films, and where slices are coupled.
 
         Parameters
         ----------
@@ -100,27 +109,16 @@ class RingElement(OnRings):
         operation : Operation
             Speed, angle and time.
         """
-        return None
-
-    def natural_times(self, displacement: FloatArray, operation: Operation) -> FloatArray:
-        """Natural times of the contacts of `film_relaxation`, in its order, shape (r,) [s]; none without films.
-
-        Parameters
-        ----------
-        displacement, operation
-            The same as for `film_relaxation`.
-        """
-        return np.zeros(0)
-
-    def contact_groups(self, displacement: FloatArray, operation: Operation) -> tuple[ContactGroup, ...]:
-        """Its slices by the law that they have, at rest; none without films.
-
-        Parameters
-        ----------
-        displacement, operation
-            The same as for `film_relaxation`.
-        """
         return ()
+
+    def small_motions(self, displacement: FloatArray, operation: Operation) -> Condensed | None:
+        """See `OnRings.small_motions`: of its `sides`."""
+        sides = self.sides(displacement, operation)
+        if not sides:
+            return None
+        from mbs.bearings.slices_in_balance import slices_in_balance
+
+        return slices_in_balance(sides, relaxes=self.films == "memory")
 
 
 @dataclass(frozen=True, eq=False)
@@ -267,22 +265,13 @@ class BearingElement(RingElement):
         return self.film_relaxation(displacement, operation) if self.films == "memory" else None
 
     def film_relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
-        """See `RingElement.film_relaxation`; with centrifugal load the times are those without it, as an estimate."""
+        """See `OnRings.film_relaxation`; with centrifugal load the times are those without it, as an estimate."""
         if not self.film_laws:
             return None
-        from mbs.bearings.roller_contacts import bearing_relaxation
+        from mbs.bearings.slices_in_balance import slice_relaxation
 
-        law = self.film_laws[0].at(self.entrainment_speed(operation), self.temperature)
-        return bearing_relaxation(law, self.rollers(displacement, operation), self.bearing.slice_length)
-
-    def natural_times(self, displacement: FloatArray, operation: Operation) -> FloatArray:
-        """See `RingElement.natural_times`."""
-        if not self.film_laws:
-            return np.zeros(0)
-        from mbs.bearings.roller_contacts import natural_times
-
-        law = self.film_laws[0].at(self.entrainment_speed(operation), self.temperature)
-        return natural_times(law, self.rollers(displacement, operation).approach).reshape(-1)
+        side, rollers = self._side(displacement, operation)
+        return slice_relaxation([side], [rollers.damping * side.length])
 
     @property
     def error_words(self) -> str:
@@ -290,17 +279,17 @@ class BearingElement(RingElement):
         errors = self.film_laws[0].errors if self.film_laws else None
         return "" if errors is None else errors.words
 
-    def contact_groups(self, displacement: FloatArray, operation: Operation) -> tuple[ContactGroup, ...]:
-        """See `RingElement.contact_groups`: slices of both contacts in series; none where slices are coupled."""
-        if self.bearing.coupled or not self.film_laws:
-            return ()
-        from mbs.bearings.roller_contacts import ContactGroup, massless_rows
+    def sides(self, displacement: FloatArray, operation: Operation) -> tuple[Side, ...]:
+        """See `RingElement.sides`: slices of both contacts in series."""
+        return () if self.bearing.coupled or not self.film_laws else self._side(displacement, operation)[:1]
+
+    def _side(self, displacement: FloatArray, operation: Operation) -> tuple[Side, RollerLoads]:
+        """Slices of both contacts in series, of a law with films, and the rollers."""
+        from mbs.bearings.slices_in_balance import massless_side
 
         u, q = self.entrainment_speed(operation), self.centrifugal_load(operation)
-        rollers = self.rollers(displacement, operation)
-        law, length = self.film_laws[0].at(u, self.temperature, q), self.bearing.slice_length
-        relaxes = self.films == "memory"
-        return (ContactGroup(law, massless_rows(rollers), rollers.approach.reshape(-1), length, relaxes),)
+        rollers, law = self.rollers(displacement, operation), self.film_laws[0].at(u, self.temperature, q)
+        return massless_side(law, rollers, self.bearing.slice_length), rollers
 
     def evaluate(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> Forces:
         """Force on the inner ring, stiffness and damping, see `Element.evaluate`."""
@@ -430,22 +419,27 @@ class RollerElement(RingElement):
         return self.film_relaxation(displacement, operation) if self.films == "memory" else None
 
     def film_relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
-        """See `RingElement.film_relaxation`."""
-        return self.contacts.relaxation(displacement, **self.plain.conditions(operation))
+        """See `OnRings.film_relaxation`."""
+        sides = self.sides(displacement, operation)
+        if not sides:
+            return None
+        from mbs.bearings.slices_in_balance import slice_relaxation
 
-    def natural_times(self, displacement: FloatArray, operation: Operation) -> FloatArray:
-        """See `RingElement.natural_times`."""
-        return self.contacts.natural_times(displacement, **self.plain.conditions(operation))
+        return slice_relaxation(sides)
+
+    @property
+    def entrainment_rate(self) -> float:
+        """See `OnRings.entrainment_rate`."""
+        return self.plain.entrainment_rate
 
     @property
     def error_words(self) -> str:
         """See `OnRings.error_words`."""
         return self.plain.error_words
 
-    def contact_groups(self, displacement: FloatArray, operation: Operation) -> tuple[ContactGroup, ...]:
-        """See `RingElement.contact_groups`: slices of the inner contacts, and of the outer ones."""
-        relaxes = self.films == "memory"
-        return self.contacts.groups(displacement, relaxes=relaxes, **self.plain.conditions(operation))
+    def sides(self, displacement: FloatArray, operation: Operation) -> tuple[Side, ...]:
+        """See `RingElement.sides`: slices of the inner contacts, and of the outer ones."""
+        return self.contacts.sides(displacement, **self.plain.conditions(operation))
 
     def evaluate(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> Forces:
         """Forces on rings and rollers, stiffness and damping, see `Element.evaluate`."""

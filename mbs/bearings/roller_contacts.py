@@ -1,22 +1,16 @@
-"""Contacts one by one: how their films relax, and bearings whose rollers are bodies between two contacts.
+"""Bearings whose rollers are bodies between two contacts.
 
-In linear analyses each slice answers at its own frequency: its film moves like a damper as long as it can follow, and
-is locked at high frequency: stiffness and damping k and c of the map become k + s c/(1 + s theta), with the relaxation
-time theta of `ehdmaps.maps.kernels.memory_table`. That is the law which films with memory follow in time, for small
-oscillations about an equilibrium.
-
-Rollers that are bodies have a radial freedom each, between an inner and an outer contact. All is linear in a frame that
-does not move: poses of both rings and radial places of the rollers are small displacements from the nominal positions.
-A roller takes half of the tilt between the rings, as its two contacts, being nearly alike, make it do. Clearance and
-profile divide evenly between the contacts. The rollers being rigid, the slices of a roller carry on both sides what the
-two laws give them; only their sums balance. With equal laws that is what `BearingForce` finds with both contacts in
+The rollers have a radial freedom each, between an inner and an outer contact. All is linear in a frame that does not
+move: poses of both rings and radial places of the rollers are small displacements from the nominal positions. A roller
+takes half of the tilt between the rings, as its two contacts, being nearly alike, make it do. Clearance and profile
+divide evenly between the contacts. The rollers being rigid, the slices of a roller carry on both sides what the two
+laws give them; only their sums balance. With equal laws that is what `BearingForce` finds with both contacts in
 series; with the laws of a map the two differ by the square of the small difference of the contacts.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,148 +18,14 @@ import numpy.typing as npt
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, OutsideMapError, SolverError
-from ehdmaps.maps.kernels.memory_table import equilibrium_at
-from ehdmaps.physics.hertz import half_width
 from mbs.bearings.bearing import Bearing
-from mbs.bearings.force_at_point import RollerLoads
 from mbs.bearings.laws import DryLaw, FlatLaw, Law
+from mbs.bearings.slices_in_balance import Side
 from mbs.model.elements import Forces
-from mbs.model.relaxation import Relaxation
 
 if TYPE_CHECKING:
-    from ehdmaps.maps.kernels.film_response import FilmResponse
     from ehdmaps.maps.kernels.memory import FilmMemory, FilmState
     from ehdmaps.maps.law import ContactLaw, LawAtPoint
-
-
-def relaxation_times(law: LawAtPoint, approach: FloatArray) -> FloatArray:
-    """Relaxation times theta of contacts at rest [s], in the shape of their approaches [m]; 0 without load or film.
-
-    Parameters
-    ----------
-    law : LawAtPoint
-        The law at a speed and temperature, without centrifugal load.
-    approach : array
-        Approaches [m].
-    """
-    _, k, _, dy, _, dg = (np.asarray(read) for read in equilibrium_at(law.memory.table, approach))
-    # k_s = k/(1 - dy) and G' = c k_s/(k_s - k) make theta = c/(k_s - k) = G'/k_s.
-    return np.divide(dg * (1.0 - dy), k, out=np.zeros_like(k), where=k > 0.0)  # type: ignore[no-any-return]
-
-
-def natural_times(law: LawAtPoint, approach: FloatArray) -> FloatArray:
-    """Natural times sqrt(b^2 + 2 h R)/u of contacts at rest [s], in the shape of their approaches; infinite at rest.
-
-    h is the film of each contact in series, from which the little is left out by which oil stiffens the structure.
-
-    Parameters
-    ----------
-    law : LawAtPoint
-        The law at a speed and temperature, without centrifugal load.
-    approach : array
-        Approaches [m].
-    """
-    loads, _, y, _, _, _ = equilibrium_at(law.memory.table, approach)
-    films = np.maximum(-y, 0.0)
-    contacts = law.law.contacts
-    radius = sum(contact.radius for contact in contacts) / len(contacts)
-    half = half_width(np.maximum(loads, 0.0), radius, contacts[0].reduced_modulus)
-    size = np.sqrt(half**2 + 2.0 * films / len(contacts) * radius)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.asarray(size / abs(law.entrainment_speed))
-
-
-def relaxing(rows: FloatArray, damping: FloatArray, times: FloatArray) -> Relaxation:
-    """Contacts whose films relax; those that do not have a row of zeros.
-
-    Parameters
-    ----------
-    rows : array, shape (r, m)
-        Approach of each contact by the displacements of the ports.
-    damping, times : array, shape (r,)
-        c of each contact [N s/m] and theta [s].
-    """
-    relaxes = (damping > 0.0) & (times > 0.0)
-    some = float(times[relaxes].max()) if relaxes.any() else 1.0
-    times = np.where(relaxes, times, some)
-    return Relaxation(rows * np.sqrt(np.where(relaxes, damping, 0.0) / times)[:, None], times)
-
-
-def massless_rows(rollers: RollerLoads) -> FloatArray:
-    """Approach of each slice of massless rollers by the pose of the inner ring, shape (Z n, 6).
-
-    Parameters
-    ----------
-    rollers : RollerLoads
-        The rollers at rest.
-    """
-    x = rollers.position
-    cos, sin = (np.repeat(part[:, None], x.size, axis=1) for part in (np.cos(rollers.angle), np.sin(rollers.angle)))
-    nothing = np.zeros_like(cos)
-    return np.stack([nothing, cos, sin, nothing, -sin * x, cos * x], axis=-1).reshape(-1, 6)
-
-
-def bearing_relaxation(law: LawAtPoint, rollers: RollerLoads, slice_length: float) -> Relaxation:
-    """Relaxation of all slices of a bearing with massless rollers, in the pose (6,) of its inner ring.
-
-    Parameters
-    ----------
-    law : LawAtPoint
-        The law at the speed and temperature, without centrifugal load.
-    rollers : RollerLoads
-        The rollers at rest.
-    slice_length : float
-        Length of a slice [m].
-    """
-    times = relaxation_times(law, rollers.approach)
-    return relaxing(massless_rows(rollers), rollers.damping.reshape(-1) * slice_length, times.reshape(-1))
-
-
-@dataclass(frozen=True, eq=False)
-class ContactGroup:
-    """Slices of a bearing that have the same law, all rollers after each other.
-
-    Attributes
-    ----------
-    law : LawAtPoint
-        The law at the speed and temperature of the bearing.
-    rows : array, shape (r, m)
-        Approach of each slice by the displacements of the ports of the bearing.
-    approach : array, shape (r,)
-        Approaches at rest [m].
-    length : float
-        Length of a slice [m].
-    relaxes : bool
-        Whether the films relax in linear analyses.
-    """
-
-    law: LawAtPoint
-    rows: FloatArray
-    approach: FloatArray
-    length: float
-    relaxes: bool
-
-    def state(self, shift: FloatArray | float = 0.0) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Load [N/m], stiffness [N/m], damping [N s/m] and relaxation time [s] of each slice, shape (r,) each.
-
-        Parameters
-        ----------
-        shift : float or array, shape (r,)
-            Added to the approaches [m]. Times are 0 for films that do not relax.
-        """
-        approach = self.approach + shift
-        load, stiffness, damping = self.law(approach, np.zeros_like(approach))
-        times = relaxation_times(self.law, approach) if self.relaxes else np.zeros_like(approach)
-        return load, stiffness * self.length, damping * self.length, times
-
-    def natural_times(self) -> FloatArray:
-        """Natural time of each slice [s], shape (r,), see `natural_times`."""
-        return natural_times(self.law, self.approach)
-
-    def film_response(self) -> FilmResponse | None:
-        """Part that the law of its slices leaves out with memory; None where nothing is known of oscillating films."""
-        loads = self.state()[0]
-        return self.law.law.film_response(loads, self.law.entrainment_speed, self.law.temperature)
 
 
 _STEPS = 100
@@ -324,70 +184,27 @@ class RollerContacts:
             K += self._matrix(flat, tilted, tangent * length)
         return Forces(f, K, C), (films[0], films[1])
 
-    def relaxation(
+    def sides(
         self, displacement: npt.ArrayLike, *, cage_angle: float, entrainment_speed: float, temperature: float
-    ) -> Relaxation | None:
-        """Find how the films of all contacts relax, at rest; None for laws without films.
-
-        Parameters
-        ----------
-        displacement : array (12 + Z,)
-            Displacements [m], [rad].
-        cage_angle, entrainment_speed, temperature : float
-            The same as for `BearingForce`.
-        """
-        conditions = {"entrainment_speed": entrainment_speed, "temperature": temperature}
-        groups = self.groups(displacement, relaxes=True, cage_angle=cage_angle, **conditions)
-        if not groups:
-            return None
-        _, _, damping, times = np.concatenate([group.state() for group in groups], axis=1)
-        return relaxing(np.concatenate([group.rows for group in groups]), damping, times)
-
-    def groups(
-        self,
-        displacement: npt.ArrayLike,
-        *,
-        relaxes: bool,
-        cage_angle: float,
-        entrainment_speed: float,
-        temperature: float,
-    ) -> tuple[ContactGroup, ...]:
+    ) -> tuple[Side, ...]:
         """Slices of the inner contacts and of the outer ones, at rest; none for laws without films.
 
         Parameters
         ----------
         displacement : array (12 + Z,)
             Displacements [m], [rad].
-        relaxes : bool
-            Whether films relax in linear analyses.
         cage_angle, entrainment_speed, temperature : float
             The same as for `BearingForce`.
         """
         q = self._vector("displacement", displacement)
-        groups = []
+        found = []
         for side, law in enumerate(self.laws):
             if isinstance(law, DryLaw):
                 return ()
-            flat, tilted = self._rows(side, cage_angle)
-            point = self._point(side, law, entrainment_speed, temperature)
-            delta = self._approach(flat, tilted, q).reshape(-1)
-            rows = (flat[:, None, :] + self._x[:, None] * tilted[:, None, :]).reshape(-1, self.size)
-            groups.append(ContactGroup(point, rows, delta, self.bearing.slice_length, relaxes))
-        return tuple(groups)
-
-    def natural_times(
-        self, displacement: npt.ArrayLike, *, cage_angle: float, entrainment_speed: float, temperature: float
-    ) -> FloatArray:
-        """Natural times of all contacts at rest, in the order of `relaxation` [s]; none for laws without films.
-
-        Parameters
-        ----------
-        displacement, cage_angle, entrainment_speed, temperature
-            The same as for `relaxation`.
-        """
-        conditions = {"entrainment_speed": entrainment_speed, "temperature": temperature}
-        groups = self.groups(displacement, relaxes=True, cage_angle=cage_angle, **conditions)
-        return np.concatenate([np.zeros(0), *(natural_times(group.law, group.approach) for group in groups)])
+            rows = self._rows(side, cage_angle)
+            point, approach = self._point(side, law, entrainment_speed, temperature), self._approach(*rows, q)
+            found.append(Side(point, np.stack(rows, axis=1), approach, self._x, self.bearing.slice_length))
+        return tuple(found)
 
     def settled(
         self,

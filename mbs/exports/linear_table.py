@@ -219,7 +219,7 @@ def linear_table(path: Path, arguments: argparse.Namespace) -> LinearTable:
         displacement.append(balance.displacement)
         stiffness.append(dynamic.real)
         damping.append(np.where(slow[:, None, None], balance.element_damping[0], rate))
-        error = film_error(element, place, operation, films, speed == 0.0) if speed else None
+        error = film_error(element, place, operation, films) if speed else None
         film_errors += [] if error is None else [error]
         bands.append(_relative_bands(balance, error))
     if outside:

@@ -1,35 +1,29 @@
 """Part that films with memory leave out of a linear analysis: of its modes, and of its dynamic stiffness.
 
-Each slice has one relaxation time, which the film solver has not, see `ehdmaps.maps.kernels.film_response`. What it
-leaves out of the dynamic stiffness, dZ, moves an eigenvalue by
+Each slice has one relaxation time, which the film solver has not, see `ehdmaps.maps.kernels.film_response`; a ball has
+a few springs and dampers. What they leave out of the dynamic stiffness, dZ of `mbs.model.condensed`, moves an
+eigenvalue by
 
     d lambda = -y' dZ(lambda) x,    with y' Z'(lambda) x = 1,
 
-as the errors of a map do in `mbs.linearised.bands`. Here the signs are known, so that the parts of all slices and
-bearings add up as they are. How wrong dZ may be as it is read is known by its size alone; it counts as having one phase
-along the loads of a bearing. A law that holds no response of its films has that size for all of dZ. Balls and tapered
-rollers in balance have the dZ of `mbs.model.condensed`.
+as the errors of a map do in `mbs.linearised.bands`. Here the signs are known, so that the parts of all bearings add up
+as they are. How wrong dZ may be as it is read is known by its size alone; it counts as having one phase along the loads
+of a bearing. A law that holds no response of its films has that size for all of dZ.
 """
 
 from __future__ import annotations
 
-import dataclasses
-from collections.abc import Mapping
+from collections.abc import Sequence
 from dataclasses import dataclass
-from types import MappingProxyType
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from ehdmaps.arrays import BoolArray, ComplexArray, FloatArray
-from ehdmaps.maps.kernels.film_response import law_stiffness
-from mbs.bearings.bearing_element import RingElement
-from mbs.linearised.validity import films_in_balance, memory_error
+from ehdmaps.arrays import ComplexArray, FloatArray
+from mbs.linearised.validity import films_in_balance
 from mbs.model.condensed import Condensed
+from mbs.model.elements import OnRings
 from mbs.model.equilibrium import Equilibrium
-
-if TYPE_CHECKING:
-    from ehdmaps.maps.kernels.film_response import FilmResponse
 
 FIRST_ORDER = 0.3
 """Change of an eigenvalue, by its imaginary part, above which the first order says nothing."""
@@ -51,50 +45,8 @@ class FilmLawPart(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class FilmSlices:
-    """Slices of a group whose films have a memory.
-
-    Attributes
-    ----------
-    element : int
-        Which element of the system they are of.
-    rows : array, shape (r, n)
-        Approach of each by the coordinates of the system.
-    loaded : array of bool, shape (r,)
-        Which have a load; l of them. Others leave out nothing.
-    stiffness, damping, times, natural : array, shape (l,)
-        k [N/m], c [N s/m], relaxation time and natural time [s].
-    response : FilmResponse or None
-        What the law leaves out; None where it holds no response of its films.
-    """
-
-    element: int
-    rows: FloatArray
-    loaded: BoolArray
-    stiffness: FloatArray
-    damping: FloatArray
-    times: FloatArray
-    natural: FloatArray
-    response: FilmResponse | None
-
-    def left_out(self, s: ComplexArray) -> tuple[ComplexArray, FloatArray]:
-        """Part of the dynamic stiffness that the law leaves out at frequencies s (k,) [1/s], and its possible error.
-
-        Shape (k, r) each [N/m].
-        """
-        own = law_stiffness(self.stiffness, self.damping, self.times, s)
-        part, doubt = np.zeros((2, s.size, self.loaded.size), dtype=np.complex128)
-        if self.response is None:
-            doubt[:, self.loaded] = np.abs(own) * memory_error(np.multiply.outer(np.abs(s), self.natural))
-        else:
-            part[:, self.loaded] = own * self.response.correction(s)
-            doubt[:, self.loaded] = np.abs(own) * self.response.doubt(s)
-        return part, doubt.real
-
-
-@dataclass(frozen=True, eq=False)
-class FilmsInBalance:
-    """Films with memory of a bearing whose rolling elements are in balance.
+class CondensedBearing:
+    """A bearing whose rolling elements are in balance, in a system.
 
     Attributes
     ----------
@@ -102,8 +54,8 @@ class FilmsInBalance:
         Which element of the system it is.
     condensed : Condensed
         The bearing.
-    transform : array, shape (6, n)
-        Displacement of its inner ring by the coordinates of the system.
+    transform : array, shape (p, n)
+        Displacement of its ports by the coordinates of the system.
     """
 
     element: int
@@ -121,27 +73,41 @@ class FilmsInBalance:
         return films_in_balance(self.condensed, s, left, right)
 
 
+def condensed_bearings(balance: Equilibrium) -> tuple[CondensedBearing, ...]:
+    """All bearings of a system that have films, in the order of its elements.
+
+    Parameters
+    ----------
+    balance : Equilibrium
+        Equilibrium at which the system is linearised.
+    """
+    found = []
+    for index in balance.system.select(OnRings):
+        connected = balance.system.elements[index]
+        element, transform = connected.element, connected.transform
+        assert isinstance(element, OnRings)
+        condensed = element.small_motions(transform @ balance.displacement, balance.operation)
+        found += [] if condensed is None else [CondensedBearing(index, condensed, transform)]
+    return tuple(found)
+
+
 @dataclass(frozen=True, eq=False)
 class FilmPart:
     """Part that the films of all bearings leave out at an equilibrium.
 
     Attributes
     ----------
-    groups : tuple of FilmSlices
-        Groups of all bearings in slices, in the order of the elements.
-    in_balance : tuple of FilmsInBalance
-        Other bearings, likewise.
+    bearings : tuple of CondensedBearing
+        Bearings whose films have a memory, in the order of the elements.
     """
 
-    groups: tuple[FilmSlices, ...]
+    bearings: tuple[CondensedBearing, ...]
     _mass: FloatArray
-    in_balance: tuple[FilmsInBalance, ...] = ()
 
     @property
     def known(self) -> bool:
         """Tell whether all laws hold a response of their films, so that signs are known."""
-        in_slices = all(group.response is not None for group in self.groups)
-        return in_slices and all(one.condensed.left_out is not None for one in self.in_balance)
+        return all(one.condensed.left_out is not None for one in self.bearings)
 
     def eigenvalue_changes(
         self, eigenvalues: ComplexArray, right: ComplexArray, left: ComplexArray
@@ -158,15 +124,7 @@ class FilmPart:
         swings = eigenvalues.imag > 0.0
         turned, moved, s = np.linalg.solve(self._mass, left[swings].T), right[:, swings], eigenvalues[swings]
         change, doubt = np.zeros(eigenvalues.shape, dtype=np.complex128), np.zeros(eigenvalues.shape)
-        by_element = {group.element: np.zeros(s.shape, dtype=np.complex128) for group in self.groups}
-        for group in self.groups:
-            part, possible = group.left_out(s)
-            weights = ((group.rows @ turned) * (group.rows @ moved)).T
-            change[swings] -= np.sum(part * weights, axis=1)
-            by_element[group.element] += np.sum(possible * weights, axis=1)
-        for sums in by_element.values():
-            doubt[swings] += np.abs(sums)
-        for one in self.in_balance:
+        for one in self.bearings:
             ends = ((one.transform @ vectors).T[:, :, None] for vectors in (turned, moved))
             missing, wrong = one.left_out(s, *ends)
             change[swings] -= missing[:, 0, 0]
@@ -174,35 +132,22 @@ class FilmPart:
         return change, doubt
 
 
-def film_part(balance: Equilibrium, in_balance: Mapping[int, Condensed] = MappingProxyType({})) -> FilmPart | None:
+def film_part(balance: Equilibrium, bearings: Sequence[CondensedBearing] | None = None) -> FilmPart | None:
     """Part that films with memory leave out; None where no films have a memory.
 
     Parameters
     ----------
     balance : Equilibrium
         Equilibrium at which the system is linearised.
-    in_balance : mapping of int to Condensed
-        Bearings whose rolling elements are in balance, by their elements.
+    bearings : sequence of CondensedBearing, optional
+        Its bearings, where they are condensed already.
     """
-    system, found = balance.system, []
-    for index in system.select(RingElement):
-        connected = system.elements[index]
-        element = connected.element
-        assert isinstance(element, RingElement)
-        for group in element.contact_groups(connected.transform @ balance.displacement, balance.operation):
-            if not group.relaxes or group.law.entrainment_speed == 0.0:
-                continue
-            on = group.state()[0] > 0.0
-            loaded = dataclasses.replace(group, rows=group.rows[on], approach=group.approach[on])
-            _, stiffness, damping, times = loaded.state()
-            rows, natural = group.rows @ connected.transform, loaded.natural_times()
-            found.append(FilmSlices(index, rows, on, stiffness, damping, times, natural, loaded.film_response()))
-    others = tuple(
-        FilmsInBalance(index, one, system.elements[index].transform)
-        for index, one in in_balance.items()
-        if one.relaxes and np.any(one.contacts.times)
+    found = tuple(
+        one
+        for one in (condensed_bearings(balance) if bearings is None else bearings)
+        if one.condensed.relaxes and np.any(one.condensed.contacts.times)
     )
-    return FilmPart(tuple(found), system.mass, others) if found or others else None
+    return FilmPart(found, balance.system.mass) if found else None
 
 
 def film_law_part(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ehdmaps.arrays import ComplexArray, FloatArray
-from ehdmaps.maps.kernels.film_response import FilmResponse, by_powers
+from ehdmaps.maps.kernels.film_response import by_powers
 from mbs.bearings.bearing_element import ring_matrices
 from mbs.linearised.dynamic import element_dynamic_stiffness
 from mbs.model.condensed import Condensed
@@ -49,38 +48,15 @@ def memory_error(place: FloatArray) -> FloatArray:
     return np.asarray(np.round(by_powers(place, _PLACES, _WITHIN), 12))
 
 
-class LoadedContacts(NamedTuple):
-    """Slices of a bearing that have the same law, as they are felt along its load.
-
-    Attributes
-    ----------
-    stiffness, springs, times : array, shape (r,)
-        k of slow motion [N/m], stiffness of the spring in series with the damper [N/m], and relaxation time [s].
-    response : FilmResponse
-        What their law leaves out, by what the map holds.
-    """
-
-    stiffness: FloatArray
-    springs: FloatArray
-    times: FloatArray
-    response: FilmResponse
-
-    def left_out(self, s: ComplexArray) -> tuple[ComplexArray, FloatArray]:
-        """Part that films with memory leave out at frequencies s (k,) [1/s], and its possible error [N/m]; (k,)."""
-        place = np.multiply.outer(s, self.times)
-        own = self.stiffness + self.springs * place / (1.0 + place)
-        return np.sum(own * self.response.correction(s), axis=1), np.sum(np.abs(own) * self.response.doubt(s), axis=1)
-
-
 class ContactsInBalance(NamedTuple):
     """Contacts of rolling elements in balance, as they are felt along the load of their bearing.
 
     Attributes
     ----------
     condensed : Condensed
-        The bearing; films with memory.
-    motion : array, shape (6,)
-        Motion of its inner ring along the load.
+        The bearing.
+    motion : array, shape (p,)
+        Motion of its ports along the load.
     """
 
     condensed: Condensed
@@ -89,7 +65,7 @@ class ContactsInBalance(NamedTuple):
     def left_out(self, s: ComplexArray) -> tuple[ComplexArray, FloatArray]:
         """Part that films with memory leave out at frequencies s (k,) [1/s], and its possible error [N/m]; (k,)."""
         along = self.motion.astype(np.complex128)[None, :, None]
-        missing, possible = films_in_balance(dataclasses.replace(self.condensed, relaxes=True), s, along, along)
+        missing, possible = films_in_balance(self.condensed, s, along, along)
         return missing[:, 0, 0], np.abs(possible[:, 0, 0])
 
 
@@ -111,8 +87,7 @@ def films_in_balance(
         assert condensed.natural is not None
         doubt = memory_error(np.multiply.outer(np.abs(s), condensed.natural))
         part = np.zeros(doubt.shape, dtype=np.complex128)
-    missing, possible = condensed.parts_along(s, left, right, (part, doubt.astype(np.complex128)))
-    return missing, possible
+    return condensed.parts_along(s, left, right, part, doubt)
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,8 +114,8 @@ class FilmError:
         Stiffness [N/m] and relaxation time [s] of each slice, as of `mbs.model.relaxation`.
     natural : array, shape (r,)
         Natural time of each slice [s].
-    contacts : tuple of LoadedContacts or ContactsInBalance
-        The loaded slices, or balls; none of a law whose map holds no response.
+    contacts : ContactsInBalance or None
+        Its rolling elements, where what holds their law holds the response of films, too.
     """
 
     bearing: str
@@ -151,15 +126,15 @@ class FilmError:
     springs: FloatArray
     times: FloatArray
     natural: FloatArray
-    contacts: tuple[LoadedContacts | ContactsInBalance, ...] = ()
+    contacts: ContactsInBalance | None = None
 
     def error(self, frequencies: FloatArray) -> FloatArray:
         """Estimated |dZ/Z| at frequencies (k,) [Hz]; 0 at rest."""
         omega = 2.0 * np.pi * np.asarray(frequencies, dtype=np.float64)
         if self.at_rest or not np.any(self.springs > 0.0):
             return np.zeros(omega.shape)
-        if self.contacts:
-            return self._by_response(omega)
+        if self.contacts is not None:
+            return self._by_response(omega, *self.contacts.left_out(np.asarray(1j * omega)))
         if self.films == "memory":
             weights = np.where(self.springs > 0.0, self.springs * self.times / np.maximum(self.natural, 1e-30), 0.0)
             errors = memory_error(np.multiply.outer(omega, self.natural))
@@ -170,17 +145,14 @@ class FilmError:
 
     @property
     def held_by(self) -> str:
-        """Name of what holds the response of its films, for people."""
-        return "film table" if any(isinstance(one, ContactsInBalance) for one in self.contacts) else "map"
+        """Name of what holds the response of its films, for people; empty where nothing does."""
+        return "" if self.contacts is None else self.contacts.condensed.held_by
 
-    def _by_response(self, omega: FloatArray) -> FloatArray:
-        """The error at angular frequencies (k,) [rad/s], by what the map holds."""
+    def _by_response(self, omega: FloatArray, left_out: ComplexArray, doubt: FloatArray) -> FloatArray:
+        """The error at angular frequencies (k,) [rad/s], by the part that films with memory leave out [N/m]."""
         s = np.asarray(1j * omega)
         place = np.multiply.outer(s, self.times)
         more = -(place**2 / (1.0 + place)) @ self.springs
-        parts = [contacts.left_out(s) for contacts in self.contacts]
-        left_out = np.sum([part for part, _ in parts], axis=0)
-        doubt = np.sum([part for _, part in parts], axis=0)
         true = self.stiffness + s * self.damping + more + left_out
         wrong = left_out if self.films == "memory" else more + left_out
         return np.asarray((np.abs(wrong) + doubt) / np.abs(true), dtype=np.float64)

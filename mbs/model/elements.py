@@ -335,15 +335,25 @@ class OnRings(ElementDefaults):
         """Name the errors that its law states, for people; empty for laws that state none."""
         return ""
 
-    def law_errors(self, displacement: FloatArray, operation: Operation) -> Condensed | None:
-        """Condense its rolling elements, with what the errors of its law change; None where none are stated.
+    def small_motions(self, displacement: FloatArray, operation: Operation) -> Condensed | None:
+        """Condense its rolling elements for small motions, with what errors of its law change; None without films.
 
         Parameters
         ----------
-        displacement : array, shape (6,)
-            Displacement of the inner ring against the outer one, at rest [m or rad].
+        displacement : array, shape (m,)
+            Displacements of its ports, at rest [m or rad].
         operation : Operation
             Speed, angle and time.
+        """
+        return None
+
+    def film_relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
+        """Find how its films would relax, whether linear analyses are to see that or not; None without films.
+
+        Parameters
+        ----------
+        displacement, operation
+            The same as of `small_motions`.
         """
         return None
 

@@ -76,3 +76,19 @@ class Relaxation:
         m = self.rows.shape[1]
         products = (self.rows[:, :, None] * self.rows[:, None, :]).reshape(-1, m * m)
         return np.asarray((weights @ products).reshape(-1, m, m), dtype=np.complex128)
+
+
+def relaxing(rows: FloatArray, damping: FloatArray, times: FloatArray) -> Relaxation:
+    """Contacts whose films relax; those that do not have a row of zeros.
+
+    Parameters
+    ----------
+    rows : array, shape (r, m)
+        Approach of each contact by the displacements of the ports.
+    damping, times : array, shape (r,)
+        c of each contact [N s/m] and theta [s].
+    """
+    relaxes = (damping > 0.0) & (times > 0.0)
+    some = float(times[relaxes].max()) if relaxes.any() else 1.0
+    times = np.where(relaxes, times, some)
+    return Relaxation(rows * np.sqrt(np.where(relaxes, damping, 0.0) / times)[:, None], times)

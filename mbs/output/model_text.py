@@ -226,7 +226,7 @@ def _film_line(entry: FilmError, frequency: float, words: str) -> str:
     line = (
         f"{entry.bearing}: {FILM_WORDS[entry.films]}; estimated error of the dynamic stiffness along the load at "
         f"{frequency:.5g} Hz{words}: {100.0 * error:.2g} %"
-        + (f", by the response that the {entry.held_by} holds" if entry.contacts else "")
+        + (f", by the response that the {entry.held_by} holds" if entry.held_by else "")
     )
     if error <= NOTABLE:
         return line

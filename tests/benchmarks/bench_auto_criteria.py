@@ -42,7 +42,7 @@ from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.contact_report import BearingPoint
 from mbs.bearings.films import DryContacts
-from mbs.bearings.roller_contacts import bearing_relaxation, natural_times, relaxation_times
+from mbs.bearings.slices_in_balance import massless_side, natural_times, relaxation_times, slice_relaxation
 from mbs.linearised.validity import FilmError
 from mbs.planning.criteria import (
     TOUCHING,
@@ -184,7 +184,8 @@ def bearing_cases(emap: EHDMap, made: Laws, count: int, rng: np.random.Generator
 def film_error(point: BearingPoint, law: ContactLaw) -> FilmError:
     """How far films of slow motion are from those with memory, along the load of a bearing."""
     at = law.at(point.entrainment_speed, point.temperature)
-    relaxation = bearing_relaxation(at, point.rollers, point.bearing.slice_length)
+    length = point.bearing.slice_length
+    relaxation = slice_relaxation([massless_side(at, point.rollers, length)], [point.rollers.damping * length])
     along = np.array([0.0, 1.0, 0.0, 0.0, 0.0, 0.0])
     return FilmError(
         "one",

@@ -23,7 +23,6 @@ from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.films import ball_films
 from mbs.bearings.balls.response import ContactResponse
 from mbs.bearings.bearing_element import NO_MAP
-from mbs.linearised.bands import KINDS as KINDS_OF_CHANGES
 from mbs.linearised.bands import law_bands
 from mbs.linearised.dynamic import dynamic_slope, dynamic_stiffness, newton
 from mbs.linearised.linear import (
@@ -35,7 +34,6 @@ from mbs.linearised.linear import (
 )
 from mbs.linearised.modes import state_modes, undamped_modes
 from mbs.linearised.sweep import along_load
-from mbs.model.condensed import DIRECTIONS
 from mbs.model.elements import OnRings, Operation
 from mbs.model.equilibrium import equilibrium
 from tests.conformance.machines import KINDS, MIXED
@@ -174,11 +172,16 @@ class Base:
         assert np.isfinite(self.laws.of_undamped(at_rest.frequency, at_rest.shapes)).all()
         assert np.isfinite(only.eigenvalue_changes(self.values, self.shapes, self.left)).all()
 
+    def change_of(self, name, kind):
+        """Place of a change of a bearing."""
+        elements = [connected.element for connected in self.model.system.elements]
+        (index,) = (index for index, element in enumerate(elements) if getattr(element, "name", "") == name)
+        return self.laws.change_of(index, kind)
+
     def check_bearing(self, name):
         """Damping and films of a bearing in balance."""
-        one = next(one for one in self.laws._condensed if self.model.system.elements[one.element].element.name == name)
         for kind, step in (("damping", PART), ("film", FILM)):
-            (change,) = np.flatnonzero(one.weights[:, DIRECTIONS.index(kind)] == 1.0)
+            change = self.change_of(name, kind)
             way = (0.0, step) if kind == "damping" else (step, 0.0)
             systems = [wrong(self.model.system, name, sign * way[0], sign * way[1]) for sign in (1.0, -1.0)]
             self.check(change, *systems, step)
@@ -202,15 +205,10 @@ def test_bands_are_those_of_machines_solved_again(machine, films, even):
     films of lines with memory are straight between the rows of their tables: 1 %. Others are smooth over the steps,
     and leave what `FILM` and `PART` say."""
     base = Machine(machine.text(), films)
-    of_slices = [name for name in base.names if name in base.sliced]
-    for place, name in enumerate(of_slices):
-        for kind, step, within in (("damping", PART, 2e-4), ("film", 1e-10, 2e-2)):
-            change = len(KINDS_OF_CHANGES) * place + KINDS_OF_CHANGES.index(kind)
-            base.check_eigenvalues(name, kind, change, step, within)
     for name in base.names:
-        if name not in base.sliced:
-            for kind, step, within in (("damping", PART, 2e-4), ("film", FILM, 1e-2 if films == "memory" else 2e-4)):
-                base.check_eigenvalues(name, kind, base.change_of(name, kind), step, within)
+        of_films = ("film", 1e-10, 2e-2) if name in base.sliced else ("film", FILM, 1e-2 if films == "memory" else 2e-4)
+        for kind, step, within in (("damping", PART, 2e-4), of_films):
+            base.check_eigenvalues(name, kind, base.change_of(name, kind), step, within)
 
 
 class Machine(Base):
@@ -220,12 +218,6 @@ class Machine(Base):
         super().__init__("", films, scene=text)
         self.names = [entry.name for entry in self.model.on_rings]
         self.sliced = {entry.name for entry in self.model.bearings}
-
-    def change_of(self, name, kind):
-        """Place of a change of a bearing in balance."""
-        one = next(one for one in self.laws._condensed if self.model.system.elements[one.element].element.name == name)
-        (change,) = np.flatnonzero(one.weights[:, DIRECTIONS.index(kind)] == 1.0)
-        return int(change)
 
     def changed(self, name, kind, step):
         """The system with one law that is wrong by a step."""
@@ -256,7 +248,7 @@ def test_stiffness_at_held_loads(even):
     model = assemble(parse_scene(SCENE + PAIR, "rotor", "rotor.toml"), "table")
     element = model.system.elements[model.system.select(OnRings)[0]].element
     operation, place = Operation(model.scene.speed), np.array([3e-6, 0.0, 0.0, 0.0, 0.0, 0.0])
-    condensed = element.law_errors(place, operation)
+    condensed = element.small_motions(place, operation)
     at = element.settled(place, operation)
     np.testing.assert_allclose(condensed.stiffness, at.force(at.pose, **at.conditions)[1], rtol=1e-9, atol=1.0)
     found = []
@@ -270,7 +262,7 @@ def test_stiffness_at_held_loads(even):
     by_hand = (np.array(found[0]) - np.array(found[1])) / (2.0 * PART)
     for hand, changes in zip(by_hand, condensed.changes_of_slow_motion, strict=True):
         size = np.abs(np.diag(hand))[[0, 1, 4]].max()
-        np.testing.assert_allclose(changes[DIRECTIONS.index("stiffness")], hand, atol=1e-5 * size)
+        np.testing.assert_allclose(changes[condensed.direction("stiffness")], hand, atol=1e-5 * size)
 
 
 def test_bands_are_told_and_dry_or_standing_bearings_have_none():
@@ -293,9 +285,9 @@ def test_rings_in_their_clearance_hardly_have_bands():
         parse_scene(SCENE + PAIR.replace("6 um", "-2 um").replace("--", ""), "rotor", "rotor.toml"), "table"
     )
     element = model.system.elements[model.system.select(OnRings)[0]].element
-    condensed = element.law_errors(np.zeros(6), Operation(model.scene.speed))
+    condensed = element.small_motions(np.zeros(6), Operation(model.scene.speed))
     assert np.all(np.isfinite(condensed.changes(np.array([1j, 1e4j]))))
-    assert np.all(np.isfinite(condensed.forces))
+    assert np.all(np.isfinite(condensed.stated.forces))
 
 
 def test_springs_of_balls_leave_out_what_the_table_holds_besides():
@@ -335,12 +327,12 @@ def test_estimated_errors_of_films_of_balls(films):
     s = 2j * np.pi * frequencies
     connected = model.system.elements[model.system.select(OnRings)[0]]
     ports = connected.transform @ balance.displacement
-    condensed = connected.element.law_errors(ports, operation)
+    condensed = connected.element.small_motions(ports, operation)
     force = balance.forces[model.system.select(OnRings)[0]]
     along = np.r_[force[:3] / np.linalg.norm(force[:3]), 0.0, 0.0, 0.0]
 
     def stiffness(factors, at):
-        whole = dataclasses.replace(condensed, relaxes=True, contacts=condensed.contacts._replace(stiffness=factors))
+        whole = dataclasses.replace(condensed, contacts=condensed.contacts._replace(stiffness=factors))
         before, after, z = whole._ends(at, *whole._whole)
         before, after = before @ along, after @ along
         felt = [whole.contacts.feel @ side[..., None] for side in (before, after)]
@@ -371,9 +363,9 @@ def test_what_films_leave_out_moves_modes_and_responses():
     balance, laws, step = base.balance, base.laws, 1e-3
     bearings = tuple(
         dataclasses.replace(one, condensed=dataclasses.replace(one.condensed, left_out=Without(one.condensed.left_out)))
-        for one in laws.films.in_balance
+        for one in laws.films.bearings
     )
-    films = dataclasses.replace(laws.films, in_balance=bearings)
+    films = dataclasses.replace(laws.films, bearings=bearings)
 
     def missing(s):
         every = np.eye(6, dtype=np.complex128)[None]

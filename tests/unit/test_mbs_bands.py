@@ -18,9 +18,9 @@ from mbs.analyses.lsa import LsaSettings, lsa
 from mbs.analyses.modes import modes
 from mbs.analyses.ramp import silent_run
 from mbs.bearings.bearing_element import NO_MAP, error_words
-from mbs.linearised.bands import law_bands
+from mbs.linearised.bands import KINDS, law_bands
 from mbs.linearised.dynamic import dynamic_stiffness
-from mbs.linearised.film_part import FilmSlices
+from mbs.linearised.film_part import CondensedBearing
 from mbs.linearised.linear import frequency_response, input_matrix, responses, seen_of_loads, sensor_matrix
 from mbs.linearised.modes import state_modes, undamped_modes
 from mbs.linearised.sweep import along_load
@@ -71,25 +71,20 @@ def changed(balance, laws, change, part):
     """The equilibrium with stiffness, damping and relaxation of its slices changed by a part of a change."""
     stiffness, damping = [list(given) for given in (balance.element_stiffness, balance.element_damping)]
     relaxations = list(balance.relaxations)
-    by_element: dict[int, list] = {}
-    for one in change:
-        by_element.setdefault(laws._groups[one.group].element, []).append(one)
     whole_k, whole_c = balance.stiffness.copy(), balance.damping.copy()
-    for element, parts in by_element.items():
-        rows = np.concatenate([laws._groups[one.group].port_rows for one in parts])
-        k, c, t = (
-            part * np.concatenate([getattr(one, name) for one in parts]) for name in ("stiffness", "damping", "times")
-        )
-        transform = balance.system.elements[element].transform
+    for one in laws.bearings:
+        at, by = one.condensed.contacts, one.condensed.slopes.contacts
+        rows = (at.feel @ one.condensed.pose).reshape(-1, one.transform.shape[0])
+        k, c, t = (part * more[change].ravel() for more in (by.stiffness, by.damping, by.times))
         dk, dc = rows.T @ (k[:, None] * rows), rows.T @ (c[:, None] * rows)
-        stiffness[element], damping[element] = stiffness[element] + dk, damping[element] + dc
-        whole_k, whole_c = whole_k + transform.T @ dk @ transform, whole_c + transform.T @ dc @ transform
-        old_c = np.concatenate([laws._groups[one.group].damping for one in parts])
-        old_t = np.concatenate([laws._groups[one.group].times for one in parts])
-        times, loss = old_t + t, old_c + c
+        stiffness[one.element], damping[one.element] = stiffness[one.element] + dk, damping[one.element] + dc
+        whole_k, whole_c = (
+            whole + one.transform.T @ more @ one.transform for whole, more in ((whole_k, dk), (whole_c, dc))
+        )
+        times, loss = at.times.ravel() + t, at.damping.ravel() + c
         relaxes = (loss > 0.0) & (times > 0.0)
         springs = np.sqrt(np.where(relaxes, loss, 0.0) / np.where(relaxes, times, 1.0))
-        relaxations[element] = Relaxation(rows * springs[:, None], np.where(relaxes, times, times.max()))
+        relaxations[one.element] = Relaxation(rows * springs[:, None], np.where(relaxes, times, times.max()))
     other = dataclasses.replace(
         balance,
         stiffness=whole_k,
@@ -125,9 +120,9 @@ def test_derivatives_are_those_of_systems_solved_again(models, scene):
     np.testing.assert_allclose(back @ input_matrix(balance, inputs), direct, rtol=1e-4)  # the few states of the films
     back = seen_of_loads(balance, states, sensors, frequencies, laws.ports)
     motion = laws.ports @ responses(balance, inputs, frequencies)
-    for index, change in enumerate(laws.changes[:3]):
-        only = dataclasses.replace(laws, changes=(change,), films=None)
-        other = changed(balance, laws, change, SMALL)
+    for index, kind in enumerate(KINDS):
+        assert laws.change_of(laws.bearings[0].element, kind) == index
+        only, other = laws.only(index), changed(balance, laws, index, SMALL)
         again = states_of(other)
         moved = (nearest(again.eigenvalues, values + SMALL * found[index]) - values) / SMALL
         scale = np.abs(found[index]) + 1e-2 * np.abs(found[index]).max()
@@ -280,20 +275,21 @@ def with_response():
 @pytest.fixture
 def sure(monkeypatch):
     """Films of which what they leave out is known without a doubt."""
-    plain = FilmSlices.left_out
+    plain = CondensedBearing.left_out
 
-    def left_out(slices, s):
-        part, doubt = plain(slices, s)
+    def left_out(bearing, *asked):
+        part, doubt = plain(bearing, *asked)
         return part, 0.0 * doubt
 
-    monkeypatch.setattr(FilmSlices, "left_out", left_out)
+    monkeypatch.setattr(CondensedBearing, "left_out", left_out)
 
 
 def more_of(balance, laws, s, size):
     """Dynamic stiffness with a part of what the films leave out, shape (n, n)."""
     added = dynamic_stiffness(balance, np.array([s]))[0]
-    for group in laws.films.groups:
-        added = added + size * (group.rows.T * group.left_out(np.array([s]))[0][0]) @ group.rows
+    for one in laws.films.bearings:
+        own, _ = one.left_out(np.array([s]), *[one.transform.astype(np.complex128)[None]] * 2)
+        added = added + size * own[0]
     return added
 
 
@@ -336,9 +332,10 @@ def test_bands_hold_what_films_with_memory_leave_out(models, with_response):
         assert np.all(bands.by_films[:, swings] > 0.0) and not np.any(bands.by_films[:, ~swings])
         assert np.all(bands.damping_ratio[swings] > bands.by_films[1, swings]) and 0.0 < bands.film_share < 1.0
         assert "one relaxation time" in found.dataset.attrs["bands"]
-        for group in laws.films.groups:
-            part, doubt = group.left_out(2j * np.pi * frequencies)
-            size = np.sum(np.abs(part) + doubt, axis=1) / group.stiffness.sum()
+        for one in laws.films.bearings:
+            along = np.eye(6, dtype=np.complex128)[None, :, 1:2]
+            part, doubt = one.left_out(2j * np.pi * frequencies, along, along)
+            size = np.abs(part[:, 0, 0]) + np.abs(doubt[:, 0, 0])
             assert size[0] > 0.0 and np.all(np.diff(size) > 0.0)
         loud = lsa(model, LsaSettings((50.0, 4e3), Operation(SPEED)))
         assert 0.0 < loud.film_share < 1.0 and "one relaxation time" in loud.dataset.attrs["bands"]

@@ -16,22 +16,24 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.rollers.ribbed_geometry import ribbed_estimate
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from mbs import assemble, parse_scene
-from mbs.analyses.film_errors import film_course, film_error, film_errors, line_error, notable_from
+from mbs.analyses.film_errors import film_course, film_error, film_errors, notable_from
 from mbs.analyses.reach import fade_lines, fade_of
 from mbs.bearings.balls.answers import FELT
 from mbs.bearings.balls.normal_law import contact
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
-from mbs.bearings.roller_contacts import RollerContacts, relaxation_times
+from mbs.bearings.roller_contacts import RollerContacts
+from mbs.bearings.slices_in_balance import relaxation_times, slice_relaxation
 from mbs.bearings.tapered.line_film import LOADS, LineFilms, line_films
+from mbs.bearings.tapered.rollers_in_balance import line_relaxation
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
 from mbs.bearings.tapered.tapered_block import TAPERED, TaperedBlock
 from mbs.bearings.tapered.tapered_element import TaperedElement
-from mbs.bearings.tapered.tapered_relaxing import line_relaxation
 from mbs.linearised.linear import frequency_response, state_space
 from mbs.linearised.modes import modes
 from mbs.model.blocks import FOUND, Member, Moment
+from mbs.model.contacts import slow_springs
 from mbs.model.elements import Input, Operation, Sensor
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import SpeedProfile
@@ -208,7 +210,8 @@ def test_films_of_slow_motion_say_from_where_they_are_wrong(emap, films):
     balance = equilibrium(machine.system, machine.operation)
     element = machine.system.elements[0].element
     ports = machine.system.elements[0].transform @ balance.displacement
-    relaxation, _ = element.film_slices(ports, machine.operation)
+    condensed = element.small_motions(ports, machine.operation)
+    relaxation = slow_springs(condensed.contacts, condensed.pose)
     damping, free = balance.element_damping[0], np.ix_(FELT, FELT)
     assert np.max(np.abs(relaxation.damping - damping)[free]) < 1e-6 * np.max(np.abs(damping))
     rest = film_errors(machine, balance.displacement, Operation(0.0))
@@ -222,13 +225,13 @@ def test_films_of_slow_motion_say_from_where_they_are_wrong(emap, films):
         "theirs", "ring", "ground", bearing, BearingForce(bearing, emap.law("series", "clamp")), WARM, films="slow"
     )
     at = Operation(U / CYLINDER.entrainment_speed(1.0))
-    one, other = line_error(ours, POSE, at, "slow"), film_error(theirs, POSE, at, "slow", False)
-    frequencies, plain_error = np.geomspace(100.0, 1e4, 5), dataclasses.replace(other, contacts=())
+    one, other = film_error(ours, POSE, at, "slow"), film_error(theirs, POSE, at, "slow")
+    frequencies, plain_error = np.geomspace(100.0, 1e4, 5), dataclasses.replace(other, contacts=None)
     np.testing.assert_allclose(one.error(frequencies), plain_error.error(frequencies), rtol=0.1)
     assert one.frequency == pytest.approx(plain_error.frequency, rel=0.1)
     # with memory what is left is that of the relaxing contacts themselves
-    kept = line_error(ours, POSE, at, "memory").error(frequencies)
-    theirs = dataclasses.replace(film_error(theirs, POSE, at, "memory", False), contacts=())
+    kept = film_error(ours, POSE, at, "memory").error(frequencies)
+    theirs = dataclasses.replace(film_error(theirs, POSE, at, "memory"), contacts=None)
     np.testing.assert_allclose(kept, theirs.error(frequencies), rtol=0.1)
     assert film_errors(machine, balance.displacement, machine.operation)[0].films == "memory"
     (line,) = film_course(machine, (500.0,))
@@ -305,7 +308,7 @@ def test_without_an_angle_memory_is_that_of_cylindrical_rollers_as_bodies(emap, 
     contacts = RollerContacts(bearing, emap.law("inner", "clamp"), emap.law("outer", "clamp"))
     place = contacts.settled(POSE, **conditions)
     _, k, c = contacts(place, **conditions)
-    bodies = contacts.relaxation(place, **conditions)
+    bodies = slice_relaxation(contacts.sides(place, **conditions))
     series = BearingForce(bearing, emap.law("series", "clamp"))
     element = BearingElement("series", "ring", "ground", bearing, series, WARM, films="memory")
     turning = Operation(U / CYLINDER.entrainment_speed(1.0))

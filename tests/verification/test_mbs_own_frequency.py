@@ -217,7 +217,7 @@ class TestAgainstSlowFilms:
         scene = read_scene("gearbox")
         slow = assemble(scene, "map", emap, 30e-6, "slow")
         balance = gearbox(emap, 500.0, "memory")
-        entry = dataclasses.replace(film_errors(slow, balance.displacement, balance.operation)[0], contacts=())
+        entry = dataclasses.replace(film_errors(slow, balance.displacement, balance.operation)[0], contacts=None)
         relaxation, force = balance.relaxations[0], balance.forces[0]
         along = np.array([0.0, *(force[1:3] / np.linalg.norm(force[1:3])), 0.0, 0.0, 0.0])
         s = 2j * math.pi * np.array([3000.0])

@@ -17,7 +17,6 @@ import pytest
 from scipy.linalg import eig, eigh, expm
 from scipy.optimize import brentq
 
-from mbs.bearings.roller_contacts import relaxing
 from mbs.flexible.beam import (
     CrossSection,
     element_gyroscopic,
@@ -34,6 +33,7 @@ from mbs.linearised.modes import modes
 from mbs.model.body import FREEDOMS, Inertia, lever_arm
 from mbs.model.elements import ElementDefaults, Forces, Operation, Port, Spring
 from mbs.model.equilibrium import equilibrium
+from mbs.model.relaxation import relaxing
 from mbs.model.system import System
 
 E, NU, RHO = 210e9, 0.3, 7850.0

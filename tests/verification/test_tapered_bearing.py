@@ -21,8 +21,8 @@ from mbs.bearings import laws
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.tapered.kernel_structs import MEMORY
+from mbs.bearings.tapered.rollers_in_balance import by_pose
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
-from mbs.bearings.tapered.tapered_relaxing import by_pose
 from tests.cases.line_films import made_up_films
 
 GEOMETRY = tapered_estimate("32208")

@@ -11,6 +11,7 @@ The balance of the balls, the sums over them and films with memory are in C: `eh
 `ball_speed`           speed of the cage by contact angles, loads of the balls by that, their work
 `ball_block`           ball bearings in compiled runs
 `ball_memory`          films with memory in time
+`balls_in_balance`     small motions: films with memory in linear analyses, errors of the film table
 `answers`              what bearings of five freedoms share in compiled runs
 `film_tables`          laws over the speed for compiled runs
 `films`                films of both contacts at one speed, solved at some loads, and the law that they make

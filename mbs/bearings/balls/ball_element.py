@@ -2,7 +2,7 @@
 
 The cage's angle goes evenly, by pure rolling at the nominal contact angle. The speeds by which balls have their
 centrifugal load and gyroscopic moment are those of their own contact angles. Films have the stiffness and damping of
-slow motion, or a memory: of small oscillations about rest see `mbs.bearings.balls.relaxing`, in time
+slow motion, or a memory: of small oscillations about rest see `mbs.bearings.balls.balls_in_balance`, in time
 `mbs.bearings.balls.ball_memory`.
 """
 
@@ -160,17 +160,11 @@ class MachineBalls(BallElement):
         """Relaxation of the films of both contacts of all balls, where they relax, see `Element.relaxation`."""
         return self.film_relaxation(displacement, operation) if self.relaxes else None
 
-    def film_relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation:
-        """Relaxation that its films have with memory; dry balls have springs without stiffness.
-
-        Parameters
-        ----------
-        displacement : array (6,)
-            Displacement of the inner ring against the outer one.
-        operation : Operation
-            Speed and angle.
-        """
-        from mbs.bearings.balls.relaxing import ball_relaxation
+    def film_relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
+        """See `OnRings.film_relaxation`; at rest, balls have springs without stiffness."""
+        if self.films is None:
+            return None
+        from mbs.bearings.balls.balls_in_balance import ball_relaxation
 
         at = self.settled(displacement, operation)
         return ball_relaxation(
@@ -182,14 +176,14 @@ class MachineBalls(BallElement):
         """See `OnRings.error_words`."""
         return "" if self.films is None else "errors of the film table of points"
 
-    def law_errors(self, displacement: FloatArray, operation: Operation) -> Condensed | None:
-        """See `OnRings.law_errors`."""
+    def small_motions(self, displacement: FloatArray, operation: Operation) -> Condensed | None:
+        """See `OnRings.small_motions`."""
         if not self.varies:
             return None
-        from mbs.bearings.balls.ball_errors import ball_errors
+        from mbs.bearings.balls.balls_in_balance import balls_in_balance
 
         at = self.settled(displacement, operation)
-        return ball_errors(at.force, at.balls, at.conditions, relaxes=self.relaxes)
+        return balls_in_balance(at.force, at.balls, at.conditions, relaxes=self.relaxes)
 
     def balls(self, displacement: FloatArray, operation: Operation) -> BallLoads:
         """See `BallElement.balls`."""

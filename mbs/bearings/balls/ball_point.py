@@ -245,7 +245,7 @@ def ball_dynamic_stiffness(point: BallPoint, omega: FloatArray) -> ComplexArray:
     omega : array (n,)
         Circular frequencies of small oscillations [rad/s].
     """
-    from mbs.bearings.balls.relaxing import ball_relaxation
+    from mbs.bearings.balls.balls_in_balance import ball_relaxation
 
     force, s = point.force, np.asarray(1j * omega, dtype=np.complex128)
     speeds = {"inner_speed": point.inner_speed, "outer_speed": point.outer_speed}

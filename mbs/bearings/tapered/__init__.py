@@ -6,7 +6,7 @@
 `tapered_bearing`      the force; loads of the rollers
 `tapered_element`      a bearing in a machine: films of its speed
 `tapered_memory`       films with memory in time
-`tapered_relaxing`     films with memory in linear analyses
+`rollers_in_balance`   small motions: films with memory in linear analyses, errors of the law
 `tapered_energy`       energy of dry contacts, and the work of speed
 `tapered_block`        the bearings of a compiled run
 `line_film`            films of both raceways at one speed as tables for the kernel

@@ -80,7 +80,7 @@ class LineFilms:
         table : array (rows, 4)
             The table.
         """
-        from mbs.bearings.roller_contacts import relaxation_times  # with the kernels of films with memory
+        from mbs.bearings.slices_in_balance import relaxation_times  # with the kernels of films with memory
 
         approach, _, damping = on_rows(law, table)
         times = relaxation_times(self.points[side], approach)

@@ -1,7 +1,7 @@
 """A bearing of tapered rollers, or of rollers between ribs, in a machine: quasi-static, with the films of its speed.
 
 Films have the stiffness and damping of slow motion, or a memory: of small oscillations about rest see
-`mbs.bearings.tapered.tapered_relaxing`, in time `mbs.bearings.tapered.tapered_memory`.
+`mbs.bearings.tapered.rollers_in_balance`, in time `mbs.bearings.tapered.tapered_memory`.
 """
 
 from __future__ import annotations
@@ -128,46 +128,26 @@ class TaperedElement(OnRings):
             return None
         return self.film_relaxation(displacement, operation)
 
-    def film_relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation:
-        """Relaxation that its films have with memory.
-
-        Parameters
-        ----------
-        displacement : array (6,)
-            Displacement of the inner ring against the outer one.
-        operation : Operation
-            Speed and angle.
-        """
-        from mbs.bearings.tapered.tapered_relaxing import line_relaxation  # with kernels that runs do not need
+    def film_relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
+        """See `OnRings.film_relaxation`; at rest, lines have springs without stiffness."""
+        if self.films is None:
+            return None
+        from mbs.bearings.tapered.rollers_in_balance import line_relaxation  # with kernels that runs do not need
 
         return line_relaxation(*self._at(displacement, operation))
-
-    def film_slices(self, displacement: FloatArray, operation: Operation) -> tuple[Relaxation, FloatArray] | None:
-        """Relaxation of its slices one by one, and their natural times [s], for estimates; None where nothing rolls.
-
-        Parameters
-        ----------
-        displacement, operation
-            The same as of `film_relaxation`.
-        """
-        if self.force_at(operation).films.dry:
-            return None
-        from mbs.bearings.tapered.tapered_relaxing import slice_relaxation
-
-        return slice_relaxation(*self._at(displacement, operation))
 
     @property
     def error_words(self) -> str:
         """See `OnRings.error_words`."""
         return str(getattr(self.films, "error_words", ""))
 
-    def law_errors(self, displacement: FloatArray, operation: Operation) -> Condensed | None:
-        """See `OnRings.law_errors`."""
+    def small_motions(self, displacement: FloatArray, operation: Operation) -> Condensed | None:
+        """See `OnRings.small_motions`."""
         if self.force_at(operation).films.dry:
             return None
-        from mbs.bearings.tapered.roller_errors import roller_errors
+        from mbs.bearings.tapered.rollers_in_balance import rollers_in_balance
 
-        return roller_errors(*self._at(displacement, operation), relaxes=self.memory == "memory")
+        return rollers_in_balance(*self._at(displacement, operation), relaxes=self.memory == "memory")
 
     def _at(self, displacement: FloatArray, operation: Operation) -> tuple[TaperedForce, float]:
         """The force after a call at a displacement, and the angle of the cage [rad]."""

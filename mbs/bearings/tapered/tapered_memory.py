@@ -3,8 +3,8 @@
 A slice at rest has the load p(approach). Beside it acts a spring K = c/theta in series with a damper, whose force f is
 its state, as at the contacts of balls, `mbs.bearings.balls.ball_memory`: the load is p + f, and where f pulls it is
 f + sqrt(f^2 + p^2), never a tension. c is the damping of slow motion and theta the relaxation time of
-`mbs.bearings.roller_contacts`: small oscillations are those of linear analyses, `tapered_relaxing`. Over a step f is
-exact, so that the balance of a roller stays that of a convex potential.
+`mbs.bearings.slices_in_balance`: small oscillations are those of linear analyses, `rollers_in_balance`. Over a step f
+is exact, so that the balance of a roller stays that of a convex potential.
 
 K and theta are read from tables over the approach with the rows of the laws, straight between them; beyond the ends K
 stays, and theta follows c.
