@@ -13,10 +13,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ehdmaps.errors import InputError
-from mbs.analyses.bearing_point import bearing_points
 from mbs.bearings.contact_report import BearingPoint
-from mbs.output.bearing_table import BearingDescription, bearing_dataset, bearing_text
+from mbs.output.bearing_table import CYLINDRICAL
 from mbs.output.files import described
+from mbs.output.point_files import point_dataset
+from mbs.output.point_kind import Description
+from mbs.output.point_table import point_text
 from mbs.scene.assembly import Model
 from mbs.scene.choices import OPTIONS
 
@@ -35,30 +37,30 @@ class BearingResult:
 
     Attributes
     ----------
-    description : BearingDescription
+    description : Description
         What was asked, and what was assumed, in words.
     points : list of list of BearingPoint
         Points by load, then by speed.
     """
 
-    description: BearingDescription
+    description: Description
     points: list[list[BearingPoint]]
 
     @property
     def text(self) -> str:
         """Lines that `mbs bearing` prints."""
-        return "\n".join(bearing_text(self.description, self.points))
+        return "\n".join(point_text(CYLINDRICAL, self.description, self.points))
 
     @cached_property
     def dataset(self) -> xr.Dataset:
         """Data set that `mbs bearing -o` writes; made when it is asked for."""
-        return bearing_dataset(self.description, self.points)
+        return point_dataset(CYLINDRICAL, self.description, self.points)
 
     def plot(self) -> Figure:
         """Figure that `mbs bearing --plot` writes."""
         from mbs.output.bearing_plot import bearing_figure
 
-        return bearing_figure(self.description, self.points)
+        return bearing_figure(CYLINDRICAL, self.description, self.points)
 
 
 def bearing(
@@ -107,7 +109,7 @@ def bearing(
     >>> found.dataset.sizes["load"]
     1
     """
-    from mbs.commands.bearing import law_of, read_request
+    from mbs.commands.one_bearing.cylindrical import read_request
 
     given = dict(choices or {})
     arguments = argparse.Namespace(
@@ -129,9 +131,7 @@ def bearing(
         allowed = ", ".join(choice.name for choice in OPTIONS)
         raise InputError(f"bearing, choices: got {', '.join(map(repr, given))}; allowed: {allowed}")
     request = read_request(arguments)
-    law = law_of(request)
-    at = (request.load_vectors, request.speeds, request.temperature)
-    return BearingResult(request.description, bearing_points(request.bearing, law, request.films, *at))
+    return BearingResult(request.description, request.points())
 
 
 @dataclass(frozen=True, eq=False)

@@ -456,6 +456,16 @@ class BearingPoint(WithFindings):
         return float(np.hypot(*self.load))
 
     @property
+    def inner_speed(self) -> float:
+        """Speed of the inner ring [rad/s], by the name of points of other kinds."""
+        return self.speed
+
+    @property
+    def smallest_film(self) -> float:
+        """Smallest film of all contacts [m]; NaN where no film is known."""
+        return float(np.min(self.contacts.minimum_film))
+
+    @property
     def axes(self) -> FloatArray:
         """Unit vectors along and across the load, in rows (2, 2)."""
         along = self.load / self.size
@@ -477,7 +487,7 @@ class BearingPoint(WithFindings):
 
     def film_parameter(self, roughness: float) -> float:
         """Lambda: smallest film of all contacts over the combined rms roughness [m]; NaN where no film is known."""
-        return float(np.min(self.contacts.minimum_film)) / roughness
+        return self.smallest_film / roughness
 
     def film_share(self, surface: Surface, lubricant: Lubricant) -> float:
         """Share of the film in the load of the most loaded roller, of the contact where it is less; NaN without films.

@@ -70,7 +70,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
 
         lines += ball_lines(model, balance)
     if model.scene.tapered:
-        from mbs.commands.one_bearing.tapered_table import tapered_lines
+        from mbs.output.tapered_table import tapered_lines
 
         lines += tapered_lines(model, balance)
     others = list(zip(model.on_rings, contacts, found.losses, strict=True))[len(model.bearings) :]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, cast
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,21 +15,15 @@ from matplotlib.ticker import MaxNLocator
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.figures import COLOURS, WARNING, typeset
-from ehdmaps.physics.hertz import LINE_LIMIT
 from ehdmaps.units import PRESSURE, RPM, written
-from mbs.bearings.contact_report import BearingContacts, BearingPoint
+from mbs.bearings.contact_report import BearingContacts
 from mbs.bearings.films import SIDES
 from mbs.model.equilibrium import Equilibrium
-from mbs.output.bearing_table import (
-    WIDE_RANGE,
-    BearingDescription,
-    Points,
-    bearing_heading,
-    bearing_row,
-    without_numbers,
-)
 from mbs.output.page import grid, page
 from mbs.output.page import grid as quiet_grid
+from mbs.output.point_kind import Description, Kind, Points, Row, row_of
+from mbs.output.point_table import heading
+from mbs.output.point_words import WIDE_RANGE, smallest, without_numbers
 from mbs.scene.assembly import Model
 from mbs.scene.fields import FORCE, MICROMETRE
 
@@ -44,55 +38,63 @@ _MOST_LINES = 8
 _WIDE = 130
 
 
-def bearing_figure(description: BearingDescription, points: Points) -> Figure:
-    """Roller loads and the most loaded roller of one point; curves over load or speed for more.
+def bearing_figure(kind: Kind, description: Description, points: Points) -> Figure:
+    """Loads of the rolling elements and what contacts feel at one point; curves over load or speed for more.
 
     Parameters
     ----------
-    description : BearingDescription
+    kind : Kind
+        Kind of the bearing.
+    description : Description
         What the points have in common.
-    points : sequence of sequence of BearingPoint
+    points : sequence of sequence
         Points by load, then by speed.
     """
     if len(points) == 1 and len(points[0]) == 1:
-        return _page(description, points[0][0], description.roughness)
-    return _curves(description, points)
+        return _page(kind, description, points[0][0])
+    return _curves(kind, description, points)
 
 
-def _page(description: BearingDescription, point: BearingPoint, roughness: float) -> Figure:
-    """One point: rollers on the left, slices of the most loaded one on the right."""
+def _page(kind: Kind, description: Description, point: Any) -> Figure:
+    """One point: rolling elements on the left, what contacts feel on the right."""
     figure = Figure(figsize=(10.5, 6.8), layout="constrained")
-    row = bearing_row(point, roughness)
-    parameter = row["film_parameter"]
+    row = row_of(kind, description, point)
+    parameter, roughness = row["film_parameter"], typeset(MICROMETRE.text(description.roughness))
+    axial = f" and {FORCE.text(point.axial, 6)} axial" if kind.axial else ""
     summary = (
-        f"{FORCE.text(point.size, 6)}, {RPM.text(point.speed)}: K along the load {1e-6 * row['stiffness_along']:.4g} "
-        f"N/µm, across {1e-6 * row['stiffness_across']:.4g} N/µm; c along {1e-3 * row['damping_along']:.3g} N s/mm"
-        + ("" if math.isnan(parameter) else f"; Λ = {parameter:.3g} at {typeset(MICROMETRE.text(roughness))} roughness")
+        f"{FORCE.text(point.size, 6)}{axial}, {RPM.text(point.inner_speed)}: K along the load "
+        f"{1e-6 * row['stiffness_along']:.4g} N/µm, across {1e-6 * row['stiffness_across']:.4g} N/µm; c along "
+        f"{1e-3 * row['damping_along']:.3g} N s/mm"
+        + ("" if math.isnan(parameter) else f"; Λ = {parameter:.3g} at {roughness} roughness")
     )
-    _title(figure, description, summary, point.problems)
+    _title(figure, heading(kind, description, point), summary, point.problems)
     grid = figure.add_gridspec(3, 2, width_ratios=(1.0, 1.15))
     polar = figure.add_subplot(grid[:, 0], projection="polar")
     assert isinstance(polar, PolarAxes)
-    _rollers(polar, point)
+    _around(polar, kind, point)
     panels = [figure.add_subplot(grid[0, 1])]
     panels += [figure.add_subplot(grid[i, 1], sharex=panels[0]) for i in (1, 2)]
-    _slices(panels, point)
+    _contacts(panels, kind, point)
     return figure
 
 
-def _rollers(polar: PolarAxes, point: BearingPoint) -> None:
-    """Load of each roller at its angle, and the direction of the load."""
-    rollers = point.rollers
-    highest = float(rollers.load.max())
-    width = 0.7 * 2.0 * math.pi / rollers.angle.size
-    polar.bar(rollers.angle, rollers.load, width=width, color=COLOURS[0], alpha=0.85)
-    angle = math.atan2(point.load[1], point.load[0])
-    polar.annotate(
-        "",
-        xy=(angle, 1.22 * highest),
-        xytext=(angle, 0.0),
-        arrowprops={"arrowstyle": "-|>", "color": COLOURS[1], "lw": 1.6},
-    )
+def _around(polar: PolarAxes, kind: Kind, point: Any) -> None:
+    """Load of each rolling element at its angle, and the direction of the load."""
+    elements, name = kind.elements(point), kind.element
+    load = np.atleast_2d(elements.load)[0]
+    highest = max(float(load.max()), 1e-9)
+    polar.bar(elements.angle, load, width=0.7 * 2.0 * math.pi / load.size, color=COLOURS[0], alpha=0.85)
+    y, z = point.axes[0][-2:]
+    angle = math.atan2(z, y)
+    title = f"load of the {name}s, N\nhighest {highest:.5g} N, {point.loaded} of {load.size} above 1 % of it"
+    if point.size > 0.0:
+        title += f"\nred: direction of the {'radial ' * kind.axial}load on the inner ring"
+        polar.annotate(
+            "",
+            xy=(angle, 1.22 * highest),
+            xytext=(angle, 0.0),
+            arrowprops={"arrowstyle": "-|>", "color": COLOURS[1], "lw": 1.6},
+        )
     polar.set_ylim(0.0, 1.25 * highest)
     polar.yaxis.set_major_locator(MaxNLocator(4))
     polar.set_rlabel_position(math.degrees(angle) + 180.0)
@@ -102,104 +104,96 @@ def _rollers(polar: PolarAxes, point: BearingPoint) -> None:
     polar.tick_params(labelsize=8)
     polar.grid(color="0.85", lw=0.5)
     polar.set_axisbelow(True)
-    polar.set_title(
-        f"load of the rollers, N\nhighest {highest:.5g} N, {point.loaded} of {rollers.load.size} above 1 % of it\n"
-        "red: direction of the load on the inner ring",
-        fontsize=9,
-    )
+    polar.set_title(title, fontsize=9)
 
 
-def _slices(panels: Sequence[Axes], point: BearingPoint) -> None:
-    """Load, pressures and films along the most loaded roller."""
-    index = point.most_loaded
-    place = 1e3 * point.rollers.position
-    panels[0].plot(place, 1e-3 * point.rollers.load_per_length[index], color="0.2", lw=1.2)
-    panels[0].set_ylabel("load per\nlength, N/mm")
-    angle = math.degrees(point.rollers.angle[index])
-    panels[0].set_title(f"along the most loaded roller, at {angle:.4g}°", fontsize=9)
-    films = False
-    for side, name, colour in zip(point.contacts.sides, SIDES, _SIDES, strict=True):
-        panels[1].plot(place, 1e-9 * side.hertz_pressure[index], color=colour, lw=1.2, label=name)
-        if np.any(np.isfinite(side.central_film[index])):
-            films = True
-            panels[2].plot(place, 1e6 * side.central_film[index], color=colour, lw=1.2, label=f"{name}, central")
-            panels[2].plot(
-                place, 1e6 * side.minimum_film[index], color=colour, lw=1.2, ls=":", label=f"{name}, smallest"
-            )
+def _contacts(panels: Sequence[Axes], kind: Kind, point: Any) -> None:
+    """Load, pressures and films of contacts over their place."""
+    curves = kind.curves(point)
+    place, colours = curves.place, ("0.2",) if len(curves.load) == 1 else _SIDES
+    for load, colour in zip(curves.load, colours, strict=True):
+        panels[0].plot(place, load, color=colour, lw=1.2)
+    panels[0].set_ylabel(curves.load_words)
+    panels[0].set_title(curves.title, fontsize=9)
+    # The thick films of contacts without load would hide the others.
+    thickest = max(smallest(side) for side in np.where(curves.pressure > 0.0, curves.central_film, math.nan))
+    films = not math.isnan(thickest)
+    for side, (name, colour) in enumerate(zip(SIDES, _SIDES, strict=True)):
+        panels[1].plot(place, 1e-9 * curves.pressure[side], color=colour, lw=1.2, label=name)
+        if np.any(np.isfinite(curves.central_film[side])):
+            panels[2].plot(place, 1e6 * curves.central_film[side], color=colour, lw=1.2, label=f"{name}, central")
+            thinnest = 1e6 * curves.minimum_film[side]
+            panels[2].plot(place, thinnest, color=colour, lw=1.2, ls=":", label=f"{name}, smallest")
     panels[1].set_ylabel("Hertz\npressure, GPa")
     panels[2].set_ylabel("film, µm")
-    panels[2].set_xlabel("place along the roller, mm")
-    _static_limit(panels[1], point.contacts.hertz_pressure)
+    panels[2].set_xlabel(curves.place_words)
+    _static_limit(panels[1], kind, curves.pressure)
     for panel in panels:
         panel.set_ylim(0.0, 1.1 * panel.get_ylim()[1])
         quiet_grid(panel)
-    if films and point.entrainment_speed > 0.0:
-        # The thick films at the unloaded ends would hide the others.
-        panels[2].set_ylim(0.0, 2.0e6 * float(np.max(point.contacts.central_film)))
-    for panel in panels[1 : 3 if films and point.entrainment_speed > 0.0 else 2]:
+    films_shown = films and point.entrainment_speed > 0.0
+    if films_shown:
+        panels[2].set_ylim(0.0, 2.0e6 * thickest)
+    for panel in panels[1 : 3 if films_shown else 2]:
         panel.legend(fontsize=7.5, frameon=False, loc="center left", bbox_to_anchor=(1.0, 0.5))
-    if not films or point.entrainment_speed == 0.0:
+    if not films_shown:
         words = "at rest: no film" if films else "no film is known"
         panels[2].text(0.5, 0.5, words, transform=panels[2].transAxes, ha="center", color="0.4")
 
 
-def _curves(description: BearingDescription, points: Points) -> Figure:
+def _curves(kind: Kind, description: Description, points: Points) -> Figure:
     """Curves over load (a line a speed), or over speed if there is one load."""
     figure = Figure(figsize=(11.0, 6.8), layout="constrained")
     everything = [point for line in points for point in line]
     over_load = len(points) > 1
     lines = [list(column) for column in zip(*points, strict=True)] if over_load else [list(points[0])]
     fixed = FORCE.text(points[0][0].size, 6) if not over_load else ""
-    fixed = RPM.text(points[0][0].speed) if over_load and len(lines) == 1 else fixed
-    _title(figure, description, fixed, [line for point in everything for line in point.problems])
+    fixed = RPM.text(points[0][0].inner_speed) if over_load and len(lines) == 1 else fixed
+    problems = [line for point in everything for line in point.problems]
+    _title(figure, heading(kind, description, everything[0]), fixed, problems)
     panels = list(figure.subplots(2, 3, sharex=True).ravel())
     if len(lines) > _MOST_LINES:  # evenly spaced ones, the ends among them
         lines = [lines[i] for i in np.unique(np.linspace(0, len(lines) - 1, _MOST_LINES).round().astype(int))]
     for order, line in enumerate(lines):
-        colour = _shade(order, len(lines))
-        _line(panels, line, description.roughness, colour, over_load, RPM.text(line[0].speed) if len(lines) > 1 else "")
-    _label(panels, over_load, description.roughness, everything)
+        label = RPM.text(line[0].inner_speed) if len(lines) > 1 else ""
+        _line(panels, [row_of(kind, description, point) for point in line], _shade(order, len(lines)), over_load, label)
+    rows = [row_of(kind, description, point) for point in everything]
+    _label(panels, kind, over_load, typeset(MICROMETRE.text(description.roughness)), rows)
     if len(lines) > 1:
         handles, labels = panels[0].get_legend_handles_labels()
         figure.legend(handles, labels, fontsize=8, frameon=False, loc="outside right center", title="speed")
     return figure
 
 
-def _line(
-    panels: Sequence[Axes], line: list[BearingPoint], roughness: float, colour: str, over_load: bool, label: str
-) -> None:
+def _line(panels: Sequence[Axes], rows: Sequence[Row], colour: str, over_load: bool, label: str) -> None:
     """One line in each panel."""
-    x = np.array([point.size if over_load else RPM.value(point.speed) for point in line])
-    rows = [bearing_row(point, roughness) for point in line]
+    x = np.array([row["load"] if over_load else RPM.value(row["speed"]) for row in rows])
 
     def of(name: str, factor: float) -> FloatArray:
         return factor * np.array([row[name] for row in rows])
-
-    def worst(pick: Callable[[BearingPoint], FloatArray], factor: float) -> FloatArray:
-        return factor * np.array([pick(point) for point in line])
 
     panels[0].plot(x, of("stiffness_along", 1e-6), color=colour, lw=1.3, label=label)
     panels[0].plot(x, of("stiffness_across", 1e-6), color=colour, lw=1.0, ls="--")
     panels[1].plot(x, of("damping_along", 1e-3), color=colour, lw=1.3)
     panels[1].plot(x, of("damping_across", 1e-3), color=colour, lw=1.0, ls="--")
-    panels[2].plot(x, of("highest_roller_load", 1.0), color=colour, lw=1.3)
+    panels[2].plot(x, of("highest_raceway_load", 1.0), color=colour, lw=1.3)
     for side, dashes in ((0, "-"), (1, "--")):
-        panels[3].plot(x, worst(lambda p: p.contacts.hertz_pressure, 1e-9)[:, side], color=colour, lw=1.2, ls=dashes)
-        panels[4].plot(x, worst(lambda p: p.contacts.minimum_film, 1e6)[:, side], color=colour, lw=1.2, ls=dashes)
+        panels[3].plot(x, of("hertz_pressure", 1e-9)[:, side], color=colour, lw=1.2, ls=dashes)
+        panels[4].plot(x, of("minimum_film", 1e6)[:, side], color=colour, lw=1.2, ls=dashes)
     panels[5].plot(x, of("film_parameter", 1.0), color=colour, lw=1.3)
 
 
-def _label(panels: Sequence[Axes], over_load: bool, roughness: float, points: Sequence[BearingPoint]) -> None:
+def _label(panels: Sequence[Axes], kind: Kind, over_load: bool, roughness: str, rows: Sequence[Row]) -> None:
     """Words on the panels."""
     texts = (
         "stiffness, N/µm\nsolid along, dashed across the load",
         "damping (low-frequency limit), N s/mm\nsolid along, dashed across the load",
-        "highest roller load, N",
+        f"highest {kind.element} load, N",
         "largest Hertz pressure, GPa\nsolid inner, dashed outer raceway",
         "smallest film, µm\nsolid inner, dashed outer raceway",
-        f"Λ, film over {typeset(MICROMETRE.text(roughness))} of roughness\n(mixed below 3, boundary below 1)",
+        f"Λ, film over {roughness} of roughness\n(mixed below 3, boundary below 1)",
     )
-    spread = points[-1].size / points[0].size if over_load else 1.0
+    spread = rows[-1]["load"] / rows[0]["load"] if over_load and rows[0]["load"] > 0.0 else 1.0
     for panel, text in zip(panels, texts, strict=True):
         panel.set_title(text, fontsize=9)
         quiet_grid(panel)
@@ -212,31 +206,31 @@ def _label(panels: Sequence[Axes], over_load: bool, roughness: float, points: Se
         panel.margins(x=0.02)
         if not any(np.any(np.isfinite(line.get_ydata())) for line in panel.get_lines()):
             panel.text(0.5, 0.5, "no film is known", transform=panel.transAxes, ha="center", color="0.4")
-    if not any(np.any(point.damping) for point in points):
+    if not any(row["damping_along"] or row["damping_across"] for row in rows):
         panels[1].set_ylim(0.0, 1.0)
         panels[1].text(0.5, 0.5, "dry contacts: no damping", transform=panels[1].transAxes, ha="center", color="0.4")
     top = panels[5].get_ylim()[1]
     for limit in (1.0, 3.0):
         if limit < top:
             panels[5].axhline(limit, color="0.5", lw=0.8, ls=":")
-    _static_limit(panels[3], np.array([point.contacts.hertz_pressure.max() for point in points]))
+    _static_limit(panels[3], kind, np.array([row["hertz_pressure"] for row in rows]))
     for panel in panels[3:]:
         panel.set_xlabel("load on the inner ring, N" if over_load else "speed of the inner ring, rpm")
 
 
-def _static_limit(panel: Axes, pressures: FloatArray) -> None:
+def _static_limit(panel: Axes, kind: Kind, pressures: FloatArray) -> None:
     """A line at the static limit, where pressures come near it."""
-    if np.max(pressures) > 0.75 * LINE_LIMIT:
-        panel.axhline(1e-9 * LINE_LIMIT, color=WARNING, lw=0.9, ls=":")
-        words = f"static limit {PRESSURE.text(LINE_LIMIT)}"
+    limit = kind.static_limit
+    if np.max(pressures) > 0.75 * limit:
+        panel.axhline(1e-9 * limit, color=WARNING, lw=0.9, ls=":")
+        words = f"static limit {PRESSURE.text(limit)}"
         place = panel.get_yaxis_transform()
-        panel.text(0.02, 1e-9 * LINE_LIMIT, words, color=WARNING, fontsize=7.5, va="bottom", transform=place)
+        panel.text(0.02, 1e-9 * limit, words, color=WARNING, fontsize=7.5, va="bottom", transform=place)
 
 
-def _title(figure: Figure, description: BearingDescription, words: str, problems: Sequence[str]) -> None:
+def _title(figure: Figure, heads: Sequence[str], words: str, problems: Sequence[str]) -> None:
     """Write what is shown, what was assumed, and why it may not hold."""
-    heading = "\n".join(line.strip() for line in bearing_heading(description))
-    lines = typeset(heading).splitlines()
+    lines = typeset("\n".join(line.strip() for line in heads)).splitlines()
     lines += [words] if words else []
     figure.suptitle(
         "\n".join(part for line in lines for part in textwrap.wrap(line, _WIDE, break_on_hyphens=False)), fontsize=9.5

@@ -21,8 +21,8 @@ from mbs.analyses.reach import fade_lines, outside_at
 from mbs.model.elements import GROUND
 from mbs.model.findings import Severity
 from mbs.model.relaxation import NOTABLE
-from mbs.output.bearing_table import regime
 from mbs.output.model_text import LITTLE_DAMPING, OTHER_DAMPING, clearance_text, temperature_text, weight_text
+from mbs.output.point_words import regime
 from mbs.output.result_text import kinds
 from mbs.output.state_text import class_lines, flooded_note, largest_torque, state_lines
 from mbs.report.bearings import loaded

@@ -22,9 +22,10 @@ from mbs.bearings.balls.ball_point import ball_point
 from mbs.bearings.balls.films import ball_films
 from mbs.bearings.balls.laws import dry_law
 from mbs.cli import main
-from mbs.commands.one_bearing.ball_files import BallExport, write_export
+from mbs.commands.one_bearing.balls import BALL_BEARINGS
+from mbs.commands.one_bearing.files import Export, write_export
 from mbs.model.elements import Operation
-from mbs.output.ball_table import BallDescription
+from mbs.output.point_kind import Description
 from tests.cases.ball_runs import driven
 from tests.cases.fmu import FIVE, POSE, Unit, stepped
 from tests.unit.test_ball_relaxing import by_hand
@@ -172,8 +173,8 @@ def test_solved_films_have_no_memory():
     law = ball_films(geometry, Lubricant.named("FVA3"), geometry.entrainment_speed(SPEED), WARM, solves=False).law
     force = BallForce(geometry, dataclasses.replace(law, responses=()))
     point = ball_point(force, (2000.0, 1000.0, 0.0), SPEED)
-    description = BallDescription("films", "", 0.0, WARM, 0.3e-6, False, ())
-    given = BallExport(force, description, [point], 0.0, lambda u: force.law, True)
+    description = Description("films", "", 0.0, WARM, 0.3e-6, False, ())
+    given = Export(BALL_BEARINGS, force, description, [point], 0.0, lambda u: force.law, True)
     for name in ("x.toml", "x.c"):
         with pytest.raises(SolverError, match="no response over frequency"):
             write_export(name, given)

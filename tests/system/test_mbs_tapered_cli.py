@@ -92,7 +92,7 @@ def test_tables_hold_the_balance(capsys, here) -> None:
     ("command", "words"),
     [
         (("32208", "--load", "5 kN", "--speed", "0 rpm"), "--axial: got 0 N; allowed: above zero"),
-        ((*LOADED, "--clearance", "5 um", "--plot", "a.png"), "--clearance, --plot: not for tapered roller bearings"),
+        ((*LOADED, "--clearance", "5 um", "--coupled"), "--clearance, --coupled: not for tapered roller bearings"),
         ((*LOADED, "--law", "films"), "for a tapered roller bearing; allowed: hertz, hertz:TIME"),
         (
             (*LOADED, "--profile", "a.csv"),

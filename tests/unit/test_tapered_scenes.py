@@ -14,11 +14,11 @@ from mbs import assemble, parse_scene
 from mbs.analyses.soundness import findings_at_rest
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
 from mbs.bearings.tapered.tapered_point import tapered_point
-from mbs.commands.one_bearing.tapered_table import tapered_lines
 from mbs.linearised.modes import modes
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.model.findings import Cause
+from mbs.output.tapered_table import tapered_lines
 from mbs.scene.matrices import MatrixSpec
 
 GEOMETRY = tapered_estimate("32208")

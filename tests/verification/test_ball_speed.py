@@ -15,7 +15,10 @@ from mbs.bearings.balls.ball_motion import ball_motion
 from mbs.bearings.balls.ball_point import ball_point
 from mbs.bearings.balls.ball_speed import Drive, ball_loads, orbit
 from mbs.bearings.balls.laws import dry_law
-from mbs.output.ball_table import BallDescription, ball_dataset, ball_text
+from mbs.output.ball_table import BALLS
+from mbs.output.point_files import point_dataset
+from mbs.output.point_kind import Description
+from mbs.output.point_table import point_text
 from tests.cases.balls import balls_in_space, rolls
 
 RPM = math.pi / 30.0
@@ -178,14 +181,14 @@ def test_slip_and_spin_are_outputs() -> None:
     """Dataset and page: of all balls, the largest of loaded ones; no slip in rolling; traction as the note says it."""
     geometry = ball_estimate("7208B")
     point = ball_point(BallForce(geometry, dry_law(geometry)), (1000.0, 10.0, 0.0), 1e4 * RPM)
-    given = BallDescription("dry Hertz", "", 0.0, 313.15, 0.3e-6, False, ())
-    data = ball_dataset(given, [[point]]).isel(load=0, speed=0)
+    given = Description("dry Hertz", "", 0.0, 313.15, 0.3e-6, False, ())
+    data = point_dataset(BALLS, given, [[point]]).isel(load=0, speed=0)
     assert data["slip"].values.max() < 1e-9
     assert data["spin"].sel(contact="inner") == np.abs(data["ball_spin"].sel(contact="inner")).max() > 1000.0
     assert abs(data["spin"].sel(contact="outer")) < 1e-9
     assert data["ball_speed"].values == pytest.approx(point.cage_speed, rel=0.01)
     share = np.abs(point.balls.traction) / point.balls.load[1]
     assert data["gyroscopic_traction"] == share.max() > 0.05
-    text = "\n".join(ball_text(given, [[point]]))
+    text = "\n".join(point_text(BALLS, given, [[point]]))
     assert "spin of the ring on the ball     rad/s          1723" in text
     assert "gyroscopic traction up to 0.077 of the load" in text

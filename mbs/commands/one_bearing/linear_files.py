@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from ehdmaps.exports.target import BEARING_AXES
 from ehdmaps.outputs import MARK, Output, write_text
 from ehdmaps.units import RPM
 from ehdmaps.version import version
-from mbs.output.bearing_table import result_kind
+from mbs.output.point_files import result_kind
 from mbs.scene.fields import FORCE
 
 if TYPE_CHECKING:
@@ -22,38 +22,6 @@ if TYPE_CHECKING:
 
 LINEAR = (".toml", ".bdf", ".inp", ".txt")
 """Endings of files for linear programs: ROSS, Nastran, CalculiX or Abaqus, Ansys; see `mbs.exports.linear_bearing`."""
-
-
-class AtLoad(Protocol):
-    """A bearing in equilibrium: a point of balls or of tapered rollers."""
-
-    @property
-    def inner_speed(self) -> float:
-        """Speed of the inner ring [rad/s]."""
-
-    @property
-    def size(self) -> float:
-        """Size of the radial load [N]."""
-
-    @property
-    def axial(self) -> float:
-        """Axial load [N]."""
-
-    @property
-    def stiffness(self) -> FloatArray:
-        """Stiffness, -d force/d pose, (6, 6)."""
-
-    @property
-    def damping(self) -> FloatArray:
-        """Damping, -d force/d velocity, (6, 6)."""
-
-    @property
-    def problems(self) -> tuple[str, ...]:
-        """Reasons why the laws do not hold at the point."""
-
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """Facts that are to be known of the point."""
 
 
 def ending_of(path: str | None) -> str:
@@ -117,12 +85,12 @@ def header_of(heading: Sequence[str]) -> tuple[str, ...]:
     return (f"{MARK} {version()}", *BEARING_AXES, *(line.strip() for line in heading))
 
 
-def around(points: Sequence[AtLoad]) -> tuple[str, ...]:
+def around(points: Sequence[Any]) -> tuple[str, ...]:
     """The load of points over speed, and what is to be known of them.
 
     Parameters
     ----------
-    points : sequence of AtLoad
+    points : sequence
         Points at one load.
     """
     point = points[0]
@@ -154,7 +122,7 @@ def write_linear(
     path: str,
     name: str,
     heading: Sequence[str],
-    points: Sequence[AtLoad],
+    points: Sequence[Any],
     outer_speed: float,
     oscillating: Oscillating | None = None,
 ) -> str:
@@ -168,7 +136,7 @@ def write_linear(
         Name of the bearing.
     heading : sequence of str
         What was computed, as it is told to people.
-    points : sequence of AtLoad
+    points : sequence
         Points at the one load, over the speeds.
     outer_speed : float
         Speed of the outer ring [rad/s].

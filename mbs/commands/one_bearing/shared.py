@@ -1,18 +1,20 @@
-"""Options that bearings of balls and of tapered rollers have in common: refusals, the damper of the law, the oil."""
+"""Options that bearings of several kinds have in common: loads and speeds, refusals, the damper of the law, the oil."""
 
 from __future__ import annotations
 
 import argparse
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.designations.clearance import clearance_range
 from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
 from ehdmaps.physics.surface import SMOOTH, CrownedProfile, Surface, TabulatedProfile
+from ehdmaps.units import RPM
+from mbs.commands.one_bearing.values import LOADS, MOST_POINTS, SPEEDS, read_direction, read_one, read_values
 from mbs.scene.contact_laws import HERTZ_FORMS, Damper, hertz_damper
-from mbs.scene.fields import MICROMETRE
+from mbs.scene.fields import FORCE, MICROMETRE
 
 if TYPE_CHECKING:
     from ehdmaps.physics.point.ball_geometry import BallGeometry
@@ -20,6 +22,52 @@ if TYPE_CHECKING:
 
 CELSIUS_40, ROUGHNESS = 313.15, 0.3e-6
 """Assumed where nothing is given: the temperature of the raceways [K], the combined rms roughness [m]."""
+
+
+class Operating(NamedTuple):
+    """Loads and speeds that are asked for.
+
+    Attributes
+    ----------
+    loads : tuple of float
+        Sizes of the radial load on the inner ring [N].
+    axial : float
+        Axial load on the inner ring [N].
+    way : (float, float)
+        Direction of the radial load, y and z; a unit vector.
+    speeds : tuple of float
+        Speeds of the inner ring [rad/s].
+    outer_speed : float
+        Speed of the outer ring [rad/s].
+    """
+
+    loads: tuple[float, ...]
+    axial: float
+    way: tuple[float, float]
+    speeds: tuple[float, ...]
+    outer_speed: float
+
+
+def read_operating(arguments: argparse.Namespace, problems: list[str], *, axial: bool = True) -> Operating:
+    """Loads and speeds, of which there may not be too many.
+
+    Parameters
+    ----------
+    arguments : Namespace
+        Options as they were parsed.
+    problems : list of str
+        What is wrong; added to.
+    axial : bool
+        Whether the bearing takes an axial load and a speed of its outer ring.
+    """
+    pushed, outer = (arguments.axial, arguments.outer_speed) if axial else (None, None)
+    along = read_one("--axial", pushed, "N", (-LOADS[1], LOADS[1]), FORCE, 0.0, problems)
+    loads = read_values("--load", arguments.load, "N", (0.0 if along else LOADS[0], LOADS[1]), FORCE, problems)
+    speeds = read_values("--speed", arguments.speed, "rad/s", SPEEDS, RPM, problems)
+    turning = read_one("--outer-speed", outer, "rad/s", (-SPEEDS[1], SPEEDS[1]), RPM, 0.0, problems)
+    if len(loads) * len(speeds) > MOST_POINTS:
+        problems.append(f"--load, --speed: got {len(loads) * len(speeds)} points; allowed: at most {MOST_POINTS}")
+    return Operating(loads, along, read_direction(arguments.direction, problems), speeds, turning)
 
 
 def refuse_others(
@@ -53,9 +101,9 @@ def refuse_others(
     ]
     for name, usual in (("profile", "iso"), ("slices", "41")):
         given += [f"--{name}"] * (name not in own and getattr(arguments, name) != usual)
-    given += ["--coupled"] * bool(arguments.coupled) + ["--plot"] * (arguments.plot is not None)
+    given += ["--coupled"] * bool(arguments.coupled)
     if given:
-        names = (*taken, *own, "oil", "axial", "outer-speed", "tilts", "direction")
+        names = (*taken, *own, "oil", "axial", "outer-speed", "tilts", "direction", "plot")
         allowed = ", ".join(f"--{name}" for name in names)
         problems.append(f"{', '.join(given)}: not for {kind}s; allowed: {allowed} and -o; leave it out")
 
@@ -131,7 +179,9 @@ def assumed_clearance(geometry: BearingGeometry | BallGeometry | TaperedGeometry
     return [] if given else ["no clearance" if reach is None else reach.words]
 
 
-def read_oil(name: str | None, temperature: float, problems: list[str]) -> Lubricant | None:
+def read_oil(
+    name: str | None, temperature: float, problems: list[str], usual: Lubricant | None = None
+) -> Lubricant | None:
     """The oil, which must suit the temperature; None where a problem was noted.
 
     Parameters
@@ -142,10 +192,12 @@ def read_oil(name: str | None, temperature: float, problems: list[str]) -> Lubri
         Temperature of the raceways [K].
     problems : list of str
         What is wrong; added to.
+    usual : Lubricant, optional
+        The usual oil; FVA 3 if left out.
     """
     option = "--oil"
     try:
-        oil = Lubricant.named(DEFAULT_OIL if name is None else name)
+        oil = usual if name is None and usual is not None else Lubricant.named(DEFAULT_OIL if name is None else name)
         option = "--temperature"
         oil.at(temperature)
     except InputError as error:

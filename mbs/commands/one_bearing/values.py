@@ -12,7 +12,7 @@ import numpy as np
 from ehdmaps.choices import texts_of
 from ehdmaps.errors import InputError
 from ehdmaps.units import Display, quantity, short
-from mbs.output.bearing_table import WIDE_RANGE
+from mbs.output.point_words import WIDE_RANGE
 from mbs.scene.choices import OPTIONS
 
 MOST_POINTS = 500

@@ -1,0 +1,170 @@
+"""A family of bearings that carry axial load, as `mbs bearing` asks for them: what differs between them is a row."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.surface import Surface
+from mbs.output.point_kind import Description, Kind
+from mbs.scene.contact_laws import Damper
+
+if TYPE_CHECKING:
+    from mbs.bearings.balls.film_tables import PairLaw
+    from mbs.commands.one_bearing.linear_files import Oscillating
+    from mbs.exports.balls.speed_laws import SpeedLaws
+
+
+class Asked(NamedTuple):
+    """A bearing as it was asked for.
+
+    Attributes
+    ----------
+    geometry : BallGeometry or TaperedGeometry
+        Geometry with its clearance.
+    options : mapping
+        What its force takes beside: profile, slices.
+    """
+
+    geometry: Any
+    options: Mapping[str, Any]
+
+
+class AtSpeed(NamedTuple):
+    """The force at a speed, its films where a point tells of them, and what is to be said of it.
+
+    Attributes
+    ----------
+    force : BallForce or TaperedForce
+        Geometry and law.
+    films : BallFilms or None
+        Films of balls.
+    problems, notes : tuple of str
+        Why films are lacking, and what is to be known of them.
+    """
+
+    force: Any
+    films: Any = None
+    problems: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Request:
+    """Request to be answered.
+
+    Attributes
+    ----------
+    family : Family
+        Family of the bearing.
+    force : BallForce or TaperedForce
+        Geometry, and its dry law.
+    films : str
+        Law with films, by name; empty where the law is dry.
+    by_default : bool
+        Whether films are those of the default: speeds without any are dry then, and say why.
+    memory : bool
+        Whether the films of a file for another program have a memory.
+    oil : Lubricant
+        Oil of the films.
+    surface : Surface
+        Surfaces of the contacts with films; smooth where a roughness is only assumed.
+    loads : tuple of float
+        Sizes of the radial load on the inner ring [N].
+    axial : float
+        Axial load on the inner ring [N].
+    way : (float, float)
+        Direction of the radial load, y and z; a unit vector.
+    speeds : tuple of float
+        Speeds of the inner ring [rad/s].
+    outer_speed : float
+        Speed of the outer ring [rad/s].
+    description : Description
+        The same in words.
+    """
+
+    family: Family
+    force: Any
+    films: str
+    by_default: bool
+    memory: bool
+    oil: Lubricant
+    surface: Surface
+    loads: tuple[float, ...]
+    axial: float
+    way: tuple[float, float]
+    speeds: tuple[float, ...]
+    outer_speed: float
+    description: Description
+
+    def entrainment_speed(self, speed: float) -> float:
+        """Entrainment speed at a speed of the inner ring [rad/s], in m/s."""
+        return float(self.force.geometry.entrainment_speed(speed, self.outer_speed))
+
+
+@dataclass(frozen=True)
+class Family:
+    """A family of bearings: what its command takes, and how it is answered.
+
+    Attributes
+    ----------
+    kind : Kind
+        Table of its points.
+    words : str
+        How a bearing is called.
+    taken, own : tuple of str
+        Choices that it takes, and further options: profile, slices.
+    film_laws : tuple of str
+        Laws with films, by name.
+    beside_laws : str
+        What a message says after the laws that are allowed.
+    memory : tuple of str
+        Endings of files whose films may have a memory.
+    read : callable
+        (arguments, choices, problems) -> bearing as it was asked for; None where a problem was noted.
+    axial_problem : callable
+        (geometry, axial load) -> what is wrong with an axial load; empty where nothing is.
+    force : callable
+        (asked, damper) -> force with the dry law.
+    words_of : callable
+        (law with films or empty, oil, surface, damper) -> law, and films, in words.
+    films : callable
+        (request) -> law with the films of an entrainment speed [m/s]; None without any.
+    at_speed : callable
+        (request) -> function of the speed of the inner ring [rad/s].
+    point : callable
+        (what is at the speed, load, speeds of the rings, and what all have by name) -> point.
+    speed_laws : callable
+        (force, films or None, lowest and highest entrainment speed, memory) -> laws over the speed, to be exported.
+    writers : callable
+        () -> writers of a source and of a unit.
+    of_largest : bool
+        Whether errors of the damping are told as parts of its largest value.
+    oscillating : callable or None
+        (points) -> K and C of films with memory.
+    assumed : tuple of str
+        What is assumed of each of them.
+    """
+
+    kind: Kind
+    words: str
+    taken: tuple[str, ...]
+    own: tuple[str, ...]
+    film_laws: tuple[str, ...]
+    beside_laws: str
+    memory: tuple[str, ...]
+    read: Callable[[argparse.Namespace, Mapping[str, Any], list[str]], Asked | None]
+    axial_problem: Callable[[Any, float], str]
+    force: Callable[[Asked, Damper], Any]
+    words_of: Callable[[str, Lubricant, Surface, Damper], tuple[str, str]]
+    films: Callable[[Request], Callable[[float], PairLaw] | None]
+    at_speed: Callable[[Request], Callable[[float], AtSpeed]]
+    point: Callable[..., Any]
+    speed_laws: Callable[[Any, Callable[[float], PairLaw] | None, tuple[float, float], bool], SpeedLaws]
+    writers: Callable[[], tuple[Callable[..., str], Callable[..., str]]]
+    of_largest: bool = False
+    oscillating: Callable[[Sequence[Any]], Oscillating] | None = None
+    assumed: tuple[str, ...] = ()

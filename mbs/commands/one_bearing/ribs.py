@@ -1,0 +1,178 @@
+"""`mbs bearing` of rollers and ribs, tapered or NJ and NUP under axial load: their rows of the families."""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import math
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
+
+from ehdmaps.errors import InputError
+from ehdmaps.physics.catalogue import designated
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.rollers.ribbed_geometry import RibbedGeometry, ribbed_estimate
+from ehdmaps.physics.rollers.tapered_catalogue import tapered_estimate
+from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
+from ehdmaps.physics.surface import Surface
+from ehdmaps.units import RPM
+from mbs.bearings.tapered.line_film import LineFilms
+from mbs.bearings.tapered.tapered_bearing import MOST_SLICES, SLICES, TaperedForce
+from mbs.bearings.tapered.tapered_point import tapered_point
+from mbs.commands.one_bearing.family import Asked, AtSpeed, Family, Request
+from mbs.commands.one_bearing.shared import read_profile_text
+from mbs.commands.one_bearing.values import read_whole
+from mbs.output.tapered_table import RIBBED
+from mbs.scene.contact_laws import Damper
+from mbs.scene.fields import FORCE
+from mbs.scene.map_set import TABLE_LAW
+
+if TYPE_CHECKING:
+    from mbs.exports.balls.speed_laws import SpeedLaws
+
+_TAKEN = ("law", "temperature", "roughness", "films")
+"""Choices that all of them take; those without a contact angle have a clearance too."""
+
+
+def _read_tapered(arguments: argparse.Namespace, _: Mapping[str, Any], problems: list[str]) -> Asked | None:
+    """The tapered roller bearing of a designation, with profile and slices."""
+    geometry = _geometry(lambda: tapered_estimate(arguments.bearing), problems)
+    if arguments.profile not in ("iso", "straight"):
+        problems.append(
+            f"--profile: got {arguments.profile!r:.60} for a tapered roller bearing; allowed: iso, straight"
+        )
+    slices = _slices(arguments, problems)
+    return None if geometry is None else Asked(geometry, {"profile": arguments.profile, "slices": slices})
+
+
+def _read_ribbed(arguments: argparse.Namespace, chosen: Mapping[str, Any], problems: list[str]) -> Asked | None:
+    """The bearing NJ or NUP of a designation, with its clearance, profile and slices."""
+    geometry = _geometry(lambda: ribbed_estimate(arguments.bearing, chosen.get("clearance")), problems)
+    slices = _slices(arguments, problems)
+    if geometry is None:
+        return None
+    profile = read_profile_text(arguments.profile, designated(arguments.bearing), problems)
+    return Asked(geometry, {"profile": profile, "slices": slices})
+
+
+def _geometry(read: Callable[[], TaperedGeometry], problems: list[str]) -> TaperedGeometry | None:
+    """The bearing; None where a problem was noted."""
+    try:
+        return read()
+    except InputError as error:
+        problems += [f"BEARING: {problem}" for problem in error.problems]
+        return None
+
+
+def _slices(arguments: argparse.Namespace, problems: list[str]) -> int:
+    """Slices of a roller: fewer than those of cylindrical ones where nothing is asked for."""
+    return SLICES if arguments.slices == "41" else read_whole("--slices", arguments.slices, 2, MOST_SLICES, problems)
+
+
+def _axial_of_tapered(geometry: TaperedGeometry, axial: float) -> str:
+    """A problem with an axial load of a tapered roller bearing; empty without one."""
+    if axial > 0.0:
+        return ""
+    return (
+        f"--axial: got {FORCE.text(axial)}; allowed: above zero: the rings of a single tapered roller bearing fall "
+        f"apart without; half of its rollers carry at {1.25 * math.tan(geometry.cup_angle):.3g} of the radial load"
+    )
+
+
+def _axial_of_ribs(geometry: RibbedGeometry, axial: float) -> str:
+    """A problem with an axial load of ribs; empty without one."""
+    both = geometry.carries == "both"
+    if axial > 0.0 or (axial < 0.0 and both):
+        return ""
+    allowed = "not zero; without the option it is a bearing without ribs"
+    allowed = allowed if both else "above zero: NJ carries one way, here along x"
+    return f"--axial: got {FORCE.text(axial)}; allowed: {allowed}"
+
+
+def _words_of(law: str, oil: Lubricant, surface: Surface, damper: Damper) -> tuple[str, str]:
+    """Law and films."""
+    films = f"films by the formulas of Moes and Dowson-Higginson, {oil.title}"
+    if law:
+        rough = "" if surface.smooth else f", {surface.label}"
+        return f"film table at radius and speed of the middle, rib dry{rough}", films
+    return "dry, ISO/TS 16281, rib Hertz" + (f", {damper.words} of each contact" if damper.words else ""), films
+
+
+def _films(request: Request) -> Callable[[float], LineFilms] | None:
+    """Laws of both lines by the entrainment speed [m/s]; None where nothing rolls, or none are asked for."""
+    fastest = max(request.entrainment_speed(speed) for speed in request.speeds)
+    if not request.films or not fastest > 0.0:
+        return None
+    from mbs.scene.tapered.films import FilmsOfLines, OilOfLines
+
+    geometry, temperature = request.force.geometry, request.description.temperature
+    films = FilmsOfLines(geometry, OilOfLines("table", request.oil, temperature, fastest, surface=request.surface))
+    return lambda u: films(u / geometry.entrainment_speed(1.0), 0.0)
+
+
+def _at_speed(request: Request) -> Callable[[float], AtSpeed]:
+    """The force at a speed of the inner ring; dry where nothing rolls, or no films are asked for."""
+    films = _films(request)
+
+    def at(speed: float) -> AtSpeed:
+        if films is None:
+            return AtSpeed(request.force)
+        try:
+            at_speed = films(request.entrainment_speed(speed))
+        except InputError as error:
+            if not request.by_default:
+                raise
+            words = f"{RPM.text(speed)}: dry and without damping, as the film table has no films there ({error})"
+            return AtSpeed(request.force, problems=(words,))
+        return AtSpeed(request.force.with_films(at_speed))
+
+    return at
+
+
+def _speed_laws(
+    force: TaperedForce, films: Callable[[float], Any] | None, ends: tuple[float, float], memory: bool
+) -> SpeedLaws:
+    """Laws over the speeds of the points."""
+    from mbs.exports.tapered.source import line_speed_laws
+
+    return line_speed_laws(force) if films is None else line_speed_laws(force, films, ends, memory=memory)
+
+
+def _writers() -> tuple[Callable[..., str], Callable[..., str]]:
+    """Writers of a source and of a unit."""
+    from mbs.exports.tapered.source import write_source
+    from mbs.exports.tapered.unit import write_tapered_unit
+
+    return write_source, write_tapered_unit
+
+
+TAPERED_BEARINGS = Family(
+    kind=RIBBED,
+    words="tapered roller bearing",
+    taken=_TAKEN,
+    own=("profile", "slices"),
+    film_laws=(TABLE_LAW,),
+    beside_laws="",
+    memory=(".c", ".fmu"),
+    read=_read_tapered,
+    axial_problem=_axial_of_tapered,
+    force=lambda asked, damper: TaperedForce(asked.geometry, damper.constant, damper.time, **asked.options),
+    words_of=_words_of,
+    films=_films,
+    at_speed=_at_speed,
+    point=lambda at, *given, **more: tapered_point(at.force, *given, **more),
+    speed_laws=_speed_laws,
+    writers=_writers,
+    of_largest=True,
+)
+"""Tapered roller bearings."""
+
+RIBBED_BEARINGS = dataclasses.replace(
+    TAPERED_BEARINGS,
+    words="ribbed roller bearing",
+    taken=(*_TAKEN, "clearance"),
+    read=_read_ribbed,
+    axial_problem=_axial_of_ribs,
+    assumed=("no axial clearance",),
+)
+"""Cylindrical roller bearings whose ribs carry an axial load: NJ and NUP."""

@@ -1,0 +1,152 @@
+"""`mbs bearing` of bearings that carry axial load, by designation: every problem at once, points, files."""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import math
+from functools import cache
+from typing import Any
+
+from ehdmaps.errors import AnalysisError, InputError, SolverError
+from ehdmaps.outputs import FIGURE, Output, output_problems
+from ehdmaps.physics.lubricant import DEFAULT_OIL
+from ehdmaps.units import TEMPERATURE
+from mbs.analyses.bearing_point import points_over, without_holes
+from mbs.commands.one_bearing.family import AtSpeed, Family, Request
+from mbs.commands.one_bearing.files import Export, bearing_outputs, is_export, write_export
+from mbs.commands.one_bearing.linear_files import count_problems, ending_of
+from mbs.commands.one_bearing.shared import (
+    CELSIUS_40,
+    assumed_clearance,
+    read_damper,
+    read_oil,
+    read_operating,
+    read_surface,
+    refuse_others,
+)
+from mbs.commands.one_bearing.values import read_choices
+from mbs.model.findings import Cause, Finding
+from mbs.output.point_files import write_points
+from mbs.output.point_kind import Description
+from mbs.scene.contact_laws import Damper
+from mbs.scene.map_set import TABLE_LAW
+
+
+def read_request(arguments: argparse.Namespace, family: Family) -> Request:
+    """Read the bearing and all options.
+
+    Parameters
+    ----------
+    arguments : Namespace
+        Options as they were parsed.
+    family : Family
+        Family of the bearing.
+
+    Raises
+    ------
+    InputError
+        With every problem.
+    """
+    problems: list[str] = []
+    chosen = read_choices(arguments, problems)
+    asked = family.read(arguments, chosen, problems)
+    refuse_others(arguments, list(chosen), family.taken, family.words, problems, family.own)
+    operating = read_operating(arguments, problems)
+    if asked is not None and (wrong := family.axial_problem(asked.geometry, operating.axial)):
+        problems.append(wrong)
+    law = chosen.get("law", TABLE_LAW)
+    films = law if law in family.film_laws else ""
+    if "films" in chosen and not (films and ending_of(arguments.output) in family.memory):
+        files = ", ".join(f"NAME{ending}" for ending in family.memory)
+        problems.append(
+            f"--films: got {chosen['films']!r} for a {family.words}; allowed: with --law {TABLE_LAW} and -o {files}"
+        )
+    more = "".join(f", {name}" for name in family.film_laws) + family.beside_laws
+    damper = Damper() if films else read_damper(law, family.words, more, problems)
+    temperature = float(chosen.get("temperature", CELSIUS_40))
+    oil = read_oil(arguments.oil, temperature, problems)
+    problems += output_problems((*bearing_outputs(arguments.output), Output("--plot", arguments.plot, FIGURE)), [])
+    counts = len(operating.loads), len(operating.speeds)
+    problems += count_problems(arguments.output, *counts, of_one_load=is_export(arguments.output))
+    if problems or asked is None or damper is None or oil is None:
+        raise InputError(tuple(dict.fromkeys(problems)))
+    surface, roughness, for_lambda = read_surface(chosen)
+    words, source = family.words_of(films, oil, surface, damper)
+    with_clearance = "clearance" in family.taken
+    assumed = (
+        *([f"temperature {TEMPERATURE.text(CELSIUS_40)}"] if "temperature" not in chosen else []),
+        *for_lambda,
+        *(assumed_clearance(asked.geometry, "clearance" in chosen) if with_clearance else []),
+        *family.assumed,
+        *([f"oil {DEFAULT_OIL}"] if arguments.oil is None else []),
+    )
+    return Request(
+        family=family,
+        force=family.force(asked, damper),
+        films=films,
+        by_default="law" not in chosen,
+        memory=chosen.get("films") == "memory",
+        oil=oil,
+        surface=surface,
+        **operating._asdict(),
+        description=Description(
+            law=words,
+            films=source + ("" if oil.verified else " (unverified data of the oil)"),
+            direction=math.degrees(math.atan2(operating.way[1], operating.way[0])),
+            temperature=temperature,
+            roughness=roughness,
+            tilts=arguments.tilts,
+            assumed=assumed,
+        ),
+    )
+
+
+def points_of(request: Request) -> list[list[Any]]:
+    """Points at every load and every speed.
+
+    Parameters
+    ----------
+    request : Request
+        What is asked.
+    """
+    at_speed = cache(request.family.at_speed(request))
+    loads = [(request.axial, load * request.way[0], load * request.way[1]) for load in request.loads]
+    return points_over(loads, request.speeds, lambda load, speed: _point(request, load, speed, at_speed(speed)))
+
+
+def _point(request: Request, load: tuple[float, float, float], speed: float, at: AtSpeed) -> Any:
+    """The point at a load and a speed, with what is to be said of its films."""
+    description = request.description
+    conditions = {"tilts": description.tilts, "oil": request.oil, "temperature": description.temperature}
+    point = request.family.point(at, load, speed, request.outer_speed, **conditions)
+    told = [Finding(Cause.REACH, words) for words in at.problems] + [Finding(Cause.FILM, words) for words in at.notes]
+    return dataclasses.replace(point, findings=(*point.findings, *told))
+
+
+def write_file(path: str, request: Request, points: list[list[Any]]) -> str:
+    """Write the file of -o, and return what was written in words.
+
+    Parameters
+    ----------
+    path : str
+        Path of -o.
+    request : Request
+        What was asked.
+    points : list of list
+        Points by load, then by speed.
+
+    Raises
+    ------
+    InputError, AnalysisError
+        If it cannot be written, or a point or a speed has no answer.
+    """
+    family, description = request.family, request.description
+    if not is_export(path):
+        return write_points(family.kind, description, points, path)
+    row = without_holes(path, points[0])
+    films, memory = family.films(request), request.memory
+    try:
+        return write_export(path, Export(family, request.force, description, row, request.outer_speed, films, memory))
+    except SolverError as error:
+        raise AnalysisError(f"-o {path}: {error}") from error

@@ -1,0 +1,142 @@
+"""Points of one bearing of any kind in words: what was asked, the page of a single point, or a table of several."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from ehdmaps.units import DAMPER, FILM, PRESSURE, RPM, SPRING, Display
+from mbs.bearings.films import SIDES
+from mbs.output.point_kind import Column, Description, Kind, Pair, Points, first_row, row_of
+from mbs.output.point_words import hole_line, lambda_line, no_dust, shown, unsound_lines, warning_lines
+from mbs.scene.fields import FORCE, MICROMETRE
+
+_ROUND_OFF = 1e-8
+"""Part of the largest of several numbers below which one of them is shown as zero."""
+
+
+def point_text(kind: Kind, description: Description, points: Points, beside: Sequence[str] = ()) -> list[str]:
+    """Lines that describe all points, and warn.
+
+    Parameters
+    ----------
+    kind : Kind
+        Kind of the bearing.
+    description : Description
+        What they have in common.
+    points : sequence of sequence
+        Points by load, then by speed.
+    beside : sequence of str
+        Further lines on a single point.
+    """
+    everything = [point for line in points for point in line]
+    lines = heading(kind, description, everything[0])
+    if len(everything) == 1:
+        (only,) = everything
+        lines += [*_page(kind, description, only), *beside, *_loaded(kind, only), *kind.last(only)]
+    else:
+        lines += _table(kind, description, everything)
+    return unsound_lines(everything) + lines + kind.remarks(everything, description) + warning_lines(everything)
+
+
+def heading(kind: Kind, description: Description, point: Any) -> list[str]:
+    """Tell what was computed, and what of it was assumed or estimated.
+
+    Parameters
+    ----------
+    kind : Kind
+        Kind of the bearing.
+    description : Description
+        What all points have in common.
+    point : object
+        One of them.
+    """
+    geometry = kind.geometry_of(point)
+    return [
+        f"{geometry.title}: law {description.law}; {description.films}",
+        *(f"  {line}" for line in kind.about(description, point)),
+        f"  assumed: {', '.join(description.assumed) or 'nothing'}",
+        *([f"  {geometry.estimated}"] if geometry.estimated else []),
+    ]
+
+
+_HERTZ = Pair("Hertz pressure", PRESSURE, "hertz_pressure")
+_FILMS = (Pair("smallest central film", FILM, "central_film"), Pair("smallest film", FILM, "minimum_film"))
+
+
+def _page(kind: Kind, description: Description, point: Any) -> list[str]:
+    """The numbers of one point."""
+    row, ways = row_of(kind, description, point), ("along", "across", "axial")[: 3 if kind.axial else 2]
+
+    def in_ways(label: str, display: Display, name: str) -> str:
+        values = [display.value(row[f"{name}_{way}"]) for way in ways]
+        largest = max(map(abs, values))
+        clean = (0.0 if abs(value) < _ROUND_OFF * largest else value for value in values)
+        return f"  {label:32s} {display.unit:8s} " + " ".join(f"{value:12.5g}" for value in clean)
+
+    def heads(*words: str) -> str:
+        return f"  {'':32s} {'':8s} " + " ".join(f"{word:>12s}" for word in words)
+
+    between, after = kind.pairs(point)
+    load, tilts = FORCE.text(point.size, 6), list[str]()
+    speed = RPM.text(point.inner_speed)
+    if kind.axial:
+        load += f" radial and {FORCE.text(point.axial, 6)} axial"
+        speed += f", outer ring {RPM.text(point.outer_speed)}" if point.outer_speed else ""
+    if description.tilts:
+        tilts = [f"  {'tilt about y and z':32s} {'mrad':8s} {1e3 * row['tilt_y']:12.5g} {1e3 * row['tilt_z']:12.5g}"]
+    return [
+        f"{load} on the inner ring at {speed}: entrainment speed {point.entrainment_speed:.4g} m/s",
+        heads(*ways) + " the load" * (not kind.axial),
+        in_ways("inner ring moves by", MICROMETRE, "displacement"),
+        in_ways("stiffness", SPRING, "stiffness"),
+        in_ways("damping, low-frequency limit", DAMPER, "damping"),
+        *tilts,
+        heads(*SIDES) + " raceway",
+        *(
+            f"  {label:32s} {display.unit:8s} "
+            + " ".join(f"{shown(no_dust(display.value(x))):>12s}" for x in row[name])
+            for label, display, name in (_HERTZ, *between, *_FILMS, *after)
+        ),
+        lambda_line(row["film_parameter"], MICROMETRE.text(description.roughness))
+        + kind.beside_lambda(point, description),
+        *(f"  {line}" for line in kind.closing(point, row)),
+    ]
+
+
+def _loaded(kind: Kind, point: Any) -> list[str]:
+    """A line for each loaded rolling element."""
+    angles, loads = kind.elements(point).angle, first_row(kind.elements(point).load)
+    hidden = "; the others not shown" if point.loaded < angles.size else ""
+    return [
+        f"  {point.loaded} of {angles.size} {kind.element}s carry more than 1 % of the highest load{hidden}",
+        f"  {kind.element:>6s} {'angle':>7s} {kind.heads[0]}".rstrip(),
+        f"  {'':>6s} {'deg':>7s} {kind.heads[1]}".rstrip(),
+        *(
+            f"  {index:6d} {math.degrees(angles[index]):7.1f} {kind.of_one(point, index)}"
+            for index in np.argsort(angles)
+            if loads[index] > 0.01 * loads.max()
+        ),
+    ]
+
+
+def _table(kind: Kind, description: Description, points: Sequence[Any]) -> list[str]:
+    """A line for each point."""
+    columns = [one for one in kind.columns if not (one.rough and description.surface.smooth)]
+    heads = ([one.head for one in columns], [one.unit for one in columns])
+    lines = [_joined(columns, words).rstrip() for words in heads]
+    for point in points:
+        if point.failed:
+            lines.append(hole_line(point.size, point.inner_speed))
+            continue
+        row = row_of(kind, description, point)
+        lines.append(_joined(columns, [one.text(row) for one in columns]) + " !" * bool(point.problems))
+    return lines
+
+
+def _joined(columns: Sequence[Column], words: Sequence[str]) -> str:
+    """A line of the table."""
+    return " ".join(f"{word:>{one.width}s}" for one, word in zip(columns, words, strict=True))

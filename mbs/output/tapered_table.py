@@ -1,0 +1,142 @@
+"""Points of bearings of rollers and ribs, and such bearings of a machine: what `mbs.output.point_kind` asks."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ehdmaps.physics.hertz import LINE_LIMIT
+from ehdmaps.physics.rollers.ribbed_geometry import RibbedGeometry
+from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
+from ehdmaps.units import PRESSURE, RPM, TEMPERATURE
+from mbs.bearings.tapered.roller_findings import line_pressures
+from mbs.bearings.tapered.tapered_element import TaperedElement
+from mbs.bearings.tapered.tapered_point import RIB_FRICTION, TaperedPoint
+from mbs.model.findings import CARRIES
+from mbs.output.point_kind import CONTACT_SIDES, Description, Kind, Number, Row, column, columns_of, numbers_of
+from mbs.output.point_words import matrix_line, shown, smallest, tilting
+from mbs.output.state_text import beside_class
+from mbs.scene.fields import DEGREE, FORCE
+
+if TYPE_CHECKING:
+    from mbs.model.equilibrium import Equilibrium
+    from mbs.scene.assembly import Model
+
+_SPEEDS = (
+    Number("cage_speed", "rad/s", "speed of the cage, in pure rolling"),
+    Number("centrifugal_load", "N", "centrifugal load of a roller"),
+)
+_RIB = (
+    Number("highest_rib_load", "N", "highest load of the rib", lambda p, _: p.rollers.load[2].max()),
+    Number("rib_pressure", "Pa", "largest Hertz pressure at the rib", lambda p, _: p.rib_pressure.max()),
+    Number("rib_film", "m", "smallest central film at the rib", lambda p, _: smallest(p.rib_film)),
+    Number("rib_sliding_speed", "m/s", "sliding speed at the rib", lambda p, _: p.sliding_speed),
+    Number("rib_power", "W", f"power of all rib contacts with a friction of {RIB_FRICTION:g}"),
+    Number("equivalent_load", "N", "dynamic equivalent reference load of ISO/TS 16281"),
+    Number("reference_life", "1", "basic reference rating life L10r in millions of turns", lambda p, _: p.life),
+)
+_BOTH = ("contact", "roller")
+_EACH = (
+    Number("roller_load", "N", "load of the contact of the roller", lambda p, _: p.rollers.load[:2], _BOTH),
+    Number("rib_load", "N", "load of the rib", lambda p, _: p.rollers.load[2], ("roller",)),
+)
+
+
+def _about(description: Description, point: TaperedPoint) -> list[str]:
+    """Lines on the geometry, its slices and the load."""
+    force = point.force
+    geometry = force.geometry
+    return [
+        f"{geometry.rollers} rollers of {1e3 * geometry.roller_diameter:.4g} x {1e3 * geometry.roller_length:.4g} mm "
+        f"on {1e3 * geometry.pitch_diameter:.4g} mm; {_angles(geometry)}",
+        f"profile {force.profile}, {force.positions.size} slices, {TEMPERATURE.text(description.temperature)}, "
+        f"{tilting(description, 'roller')}",
+    ]
+
+
+def _angles(geometry: TaperedGeometry) -> str:
+    """Contact angle and cones, or ribs."""
+    if isinstance(geometry, RibbedGeometry):
+        return (
+            f"clearance {1e6 * geometry.diametral_clearance:.4g} um{beside_class(geometry)}; ribs carry "
+            f"{geometry.ways}, open by {DEGREE.value(geometry.rib_angle):.3g} deg against spherical ends (assumed)"
+        )
+    angles = [DEGREE.value(x) for x in (geometry.cup_angle, geometry.half_cone_angle, geometry.cone_angle)]
+    return (
+        f"contact angle {angles[0]:.4g} deg, half cone angle of the rollers {angles[1]:.3g} deg, cone "
+        f"{angles[2]:.4g} deg"
+    )
+
+
+def _closing(point: TaperedPoint, row: Row) -> list[str]:
+    """Lines on the rib, the cage and the life."""
+    return [
+        f"rib: up to {FORCE.text(row['highest_rib_load'])} and {1e-9 * row['rib_pressure']:.3g} GPa, slides with "
+        f"{point.sliding_speed:.3g} m/s, film {shown(1e6 * row['rib_film'], 3)} um (order of magnitude); "
+        f"{point.rib_power:.3g} W at a friction of {RIB_FRICTION:g}, assumed",
+        f"cage {RPM.text(point.cage_speed)}, centrifugal load of a roller {FORCE.text(point.centrifugal_load)}",
+        f"equivalent load {FORCE.text(point.equivalent_load)}, L10r {point.life:.4g} million turns (ISO/TS 16281)",
+    ]
+
+
+def _of_one(point: TaperedPoint, index: int) -> str:
+    """Loads, their places and pressures of a roller."""
+    inner, outer, rib = point.rollers.load[:, index]
+    off, pressures = 1e3 * point.rollers.centre[:, index], 1e-9 * point.pressure[:, index]
+    loads = f"{inner:9.5g} {outer:9.5g} {rib:9.4g}"
+    return f"{loads} {off[0]:11.3g} {off[1]:9.3g} {pressures[0]:11.3g} {pressures[1]:9.3g}"
+
+
+RIBBED = Kind(
+    element="roller",
+    words="bearing of rollers and ribs",
+    static_limit=LINE_LIMIT,
+    axial=True,
+    numbers=(*numbers_of("roller", _SPEEDS, axial=True, speed=" in the middle of a roller"), *_RIB),
+    sides=CONTACT_SIDES,
+    each=_EACH,
+    columns=columns_of(
+        "roller",
+        [column("rib", "N", 8, 4, "highest_rib_load")],
+        [column("P_ref", "N", 9, 5, "equivalent_load")],
+        axial=True,
+    ),
+    about=_about,
+    closing=_closing,
+    heads=(
+        f"{'load, N':>29s} {'off the middle, mm':>21s} {'Hertz pressure, GPa':>21s}",
+        f"{'inner':>9s} {'outer':>9s} {'rib':>9s} {'inner':>11s} {'outer':>9s} {'inner':>11s} {'outer':>9s}",
+    ),
+    of_one=_of_one,
+)
+"""Tapered roller bearings, and those of cylindrical rollers that ribs hold along the axis."""
+
+
+def tapered_lines(model: Model, balance: Equilibrium) -> list[str]:
+    """Lines on each tapered roller bearing: its load, loads of the rollers, stiffness and damping.
+
+    Parameters
+    ----------
+    model : Model
+        Scene with its law.
+    balance : Equilibrium
+        Equilibrium of its system.
+    """
+    lines = []
+    for index, connected in enumerate(model.system.elements):
+        element = connected.element
+        if not isinstance(element, TaperedElement):
+            continue
+        rollers = element.rollers(connected.transform @ balance.displacement, balance.operation)
+        force, cone = balance.forces[index], rollers.load[0]
+        pressures = line_pressures(element.force_at(balance.operation), rollers).max(axis=1)
+        lines += [
+            f"{element.name}: {force[0]:.5g} N along x, {math.hypot(force[1], force[2]):.5g} N across it on the inner "
+            f"ring; {np.count_nonzero(cone > CARRIES * cone.max())} of {cone.size} rollers loaded, up to "
+            f"{cone.max():.5g} N at the inner raceway, rib up to {rollers.load[2].max():.4g} N; Hertz pressure up to "
+            f"{PRESSURE.value(pressures[0]):.4g} inner, {PRESSURE.text(pressures[1])} outer",
+            matrix_line(balance, index),
+        ]
+    return lines

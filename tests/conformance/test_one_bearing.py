@@ -1,0 +1,71 @@
+"""`mbs bearing` of every kind of bearing: one page, one table, one dataset, one CSV, one figure."""
+
+from __future__ import annotations
+
+import csv
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from tests.cases.commands import check_units, run
+
+KINDS = {
+    "NU308": (),
+    "NA4908": (),
+    "6208": (),
+    "7208B": ("--axial", "2 kN"),
+    "32208": ("--axial", "2 kN"),
+    "NUP308": ("--axial=-500 N",),
+    "NJ308": ("--axial", "500 N"),
+}
+"""Designations, one of each kind, with the options without which they carry nothing."""
+
+OLD = {"loaded_elements": "loaded_{}s", "highest_raceway_load": "highest_{}_load"}
+"""Names that all kinds have, and those that each had for itself."""
+
+SHARED = (
+    "stiffness_along", "stiffness_across", "damping_along", "damping_across", "displacement_along",
+    "displacement_across", "highest_raceway_load", "loaded_elements", "film_parameter", "hertz_pressure",
+    "central_film", "minimum_film", "outside",
+)  # fmt: skip
+"""Variables of the dataset of every kind, beside loads of rolling elements."""
+
+SEEN = {}
+"""Dimensions, units and words of the first kind."""
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_one_bearing(name, capsys, tmp_path, monkeypatch):
+    """The same names, units and words for all, and files that say the same as the page."""
+    monkeypatch.chdir(tmp_path)
+    ask = (name, "--load", "2 kN", "--speed", "1500 rpm", "--law", "hertz:1.25e-5 s", *KINDS[name])
+    status, page, err = run(capsys, "bearing", *ask, "-o", "a.nc", "--plot", "a.png")
+    assert status == 0, err
+    with xr.open_dataset("a.nc") as data:
+        data.load()
+    check_units(data)
+    element = "ball" if "ball" in data.dims else "roller"
+    told = {one: (data[one].dims, data[one].attrs["units"], data[one].attrs["long_name"]) for one in SHARED}
+    assert told == SEEN.setdefault("told", told)
+    first = np.atleast_2d(data[f"{element}_load"].values[0, 0])[0]
+    assert float(data["highest_raceway_load"][0, 0]) == first.max()
+    assert int(data["loaded_elements"][0, 0]) == np.count_nonzero(first > 0.01 * first.max())
+    for new, old in OLD.items():
+        copy = data[old.format(element)]
+        assert np.array_equal(copy, data[new])
+        assert copy.attrs["comment"].startswith(f"copy of {new}: the next release has no ")
+    for words in (f"{element}s carry more than 1 %", "damping, low-frequency limit", "Lambda", "assumed: "):
+        assert words in page
+    assert (tmp_path / "a.png").stat().st_size > 10_000
+    status, table, err = run(capsys, "bearing", *ask, "--speed", "3000 rpm", "-o", "a.csv", "--plot", "b.png")
+    assert status == 0, err
+    heads = next(line for line in table.splitlines() if "K along" in line).split()
+    assert {"load", "speed", f"{element}s", "Hertz", "Lambda"} <= set(heads)
+    assert (tmp_path / "b.png").stat().st_size > 10_000
+    with open("a.csv", encoding="utf-8") as file:
+        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    assert len(rows) == 2
+    for one in (*OLD, *(old.format(element) for old in OLD.values()), "stiffness_along", "film_parameter"):
+        value = float(rows[0][f"{one} [{data[one].attrs['units']}]"])
+        assert value == pytest.approx(float(data[one][0, 0]), rel=1e-8)
