@@ -417,8 +417,10 @@ class BackboneField:
         lifted = lifted_loss(loss, width, speed, solids + compliance)
         error = response_error(solids, response, errors)
         film, natural = film_of((self._reference,), speed), self._responses.natural
-        values = (array[known] for array in (loads, offset, solids, compliance, lifted))
-        factors, apart = fitted_factors(film, *values, natural, response[known], error[known])
+        factors, apart = fitted_factors(
+            film, loads[known], offset[known], solids[known], compliance[known], lifted[known], natural,
+            response[known], error[known],
+        )  # fmt: skip
         return self._zeta[known], np.log(factors), apart
 
     def _at(

@@ -162,7 +162,7 @@ class LawBands:
     @property
     def _changes(self) -> int:
         """How many changes there are."""
-        return self.bearings[0].condensed.stated.forces.shape[0]
+        return len(self.bearings[0].condensed.stated.forces)
 
     @cached_property
     def _active(self) -> tuple[IntArray, ...]:

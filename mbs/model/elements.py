@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, Literal, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, Protocol
 
 import numpy as np
 
@@ -271,6 +271,12 @@ class OnRings(ElementDefaults):
     """
 
     locating: ClassVar[bool] = False
+
+    if TYPE_CHECKING:  # a property at run time would be the default of the fields of this name
+
+        @property
+        def name(self) -> str:
+            """Name of the element."""
 
     @property
     def entrainment_rate(self) -> float:

@@ -399,11 +399,11 @@ class LockedPole:
         factor = 1.0
         if spectrum is not None:
             error = response_error(np.array([solids]), spectrum.compliance[None], spectrum.largest_error[None])
-            at_load = (
-                np.array([value]) for value in (point.load, film.film_offset, solids, film.film_compliance, loss)
-            )
-            natural = np.array(self.solver.natural_frequencies)
-            factor = float(fitted_factors(geometry, *at_load, natural, spectrum.compliance[None], error)[0][0])
+            (factor,), _ = fitted_factors(
+                geometry, np.array([point.load]), np.array([film.film_offset]), np.array([solids]),
+                np.array([film.film_compliance]), np.array([loss]), np.array(self.solver.natural_frequencies),
+                spectrum.compliance[None], error,
+            )  # fmt: skip
         locked = locked_stiffness(geometry, film.film_offset, point.load, k, c, solids, factor)
         omega = 2.0 * math.pi * question.frequency
         relaxation = c / (locked - k) if locked > k else 0.0
