@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING
 
 from ehdmaps.errors import InputError
 from mbs.bearings.contact_report import BearingPoint
-from mbs.output.bearing_table import CYLINDRICAL
 from mbs.output.files import described
-from mbs.output.point_files import point_dataset
-from mbs.output.point_kind import Description
-from mbs.output.point_table import point_text
+from mbs.output.one_bearing.cylindrical import CYLINDRICAL
+from mbs.output.one_bearing.files import point_dataset
+from mbs.output.one_bearing.kind import Description
+from mbs.output.one_bearing.table import point_text
 from mbs.scene.assembly import Model
 from mbs.scene.choices import OPTIONS
 

@@ -12,7 +12,7 @@ from mbs.analyses.operating import operating
 from mbs.bearings.bearing_element import ring_following
 from mbs.linearised.validity import ContactsInBalance, FilmError
 from mbs.model.contacts import slow_springs
-from mbs.model.elements import OnRings, Operation
+from mbs.model.elements import Element, OnRings, Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.model.relaxation import FILM_WORDS, NOTABLE, Films
 from mbs.scene.assembly import Model
@@ -40,14 +40,13 @@ def film_errors(
     found = []
     for index in model.ring_places:
         connected = model.system.elements[index]
-        element = connected.element
-        assert isinstance(element, OnRings)
-        error = film_error(element, connected.transform @ displacement, operation, films or model.memory)
+        ports = connected.transform @ displacement
+        error = film_error(connected.element, ports, operation, films or model.memory)
         found += [] if error is None else [error]
     return found
 
 
-def film_error(element: OnRings, ports: FloatArray, operation: Operation, films: Films) -> FilmError | None:
+def film_error(element: Element, ports: FloatArray, operation: Operation, films: Films) -> FilmError | None:
     """Estimated error of the films of a bearing along its load; None without films, and without a load.
 
     By what its springs and dampers leave out, where the response of its films is known; else, of films with memory, by
@@ -55,8 +54,8 @@ def film_error(element: OnRings, ports: FloatArray, operation: Operation, films:
 
     Parameters
     ----------
-    element : OnRings
-        The bearing.
+    element : Element
+        The bearing, an `OnRings`.
     ports : array, shape (m,)
         Displacements of its ports at the equilibrium.
     operation : Operation
@@ -64,6 +63,7 @@ def film_error(element: OnRings, ports: FloatArray, operation: Operation, films:
     films : {"slow", "memory"}
         Films whose error is estimated.
     """
+    assert isinstance(element, OnRings)
     relaxation = element.film_relaxation(ports, operation)
     if relaxation is None:
         return None

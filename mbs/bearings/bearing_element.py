@@ -24,7 +24,6 @@ from mbs.bearings.cylinder import Arrays
 from mbs.bearings.force_at_point import RollerLoads
 from mbs.bearings.laws import DryLaw, FlatLaw
 from mbs.model.body import Body
-from mbs.model.condensed import Condensed
 from mbs.model.elements import Excitation, Forces, OnRings, Operation, Port, Powers
 from mbs.model.findings import Gauge
 from mbs.model.relaxation import Films, Relaxation
@@ -34,6 +33,7 @@ if TYPE_CHECKING:
     from ehdmaps.maps.law import ContactLaw
     from mbs.bearings.roller_contacts import RollerContacts
     from mbs.bearings.slices_in_balance import Side
+    from mbs.model.condensed import Condensed
     from mbs.model.system import System
 
 

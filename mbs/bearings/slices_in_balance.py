@@ -157,20 +157,20 @@ def slices_in_balance(sides: Sequence[Side], *, relaxes: bool) -> Condensed | No
     """
     if any(side.law.entrainment_speed == 0.0 for side in sides):
         return None
-    states = [side.state() for side in sides]
-    load, k, c = (np.concatenate(parts) for parts in zip(*states, strict=True))
+    loads, *numbers = zip(*(side.state() for side in sides), strict=True)
+    k, c = (np.concatenate(parts) for parts in numbers)
     times = np.concatenate([relaxation_times(side.law, side.approach) for side in sides])
     natural = np.concatenate([natural_times(side.law, side.approach) for side in sides])
     feel, pose = (np.concatenate([getattr(side, name) for side in sides]) for name in ("feel", "pose"))
     nothing, ones = np.zeros((k.shape[0], 2, 2)), np.ones((*k.shape, 1))
     contacts = Contacts(feel, nothing, k, c, ones, times[..., None])
     responses = [
-        (side.law.law.film_response(loads[loads > 0.0], *side.law.conditions[:2]), loads > 0.0)
-        for side, (loads, _, _) in zip(sides, states, strict=True)
+        (side.law.law.film_response(load[load > 0.0], *side.law.conditions[:2]), load > 0.0)
+        for side, load in zip(sides, loads, strict=True)
     ]
 
     def left_out(s: ComplexArray) -> tuple[ComplexArray, FloatArray]:
-        part, doubt = np.zeros((s.size, *load.shape), dtype=np.complex128), np.zeros((s.size, *load.shape))
+        part, doubt = np.zeros((s.size, *k.shape), dtype=np.complex128), np.zeros((s.size, *k.shape))
         first = 0
         for response, on in responses:
             assert response is not None
@@ -180,21 +180,23 @@ def slices_in_balance(sides: Sequence[Side], *, relaxes: bool) -> Condensed | No
         return part, doubt
 
     known = all(response is not None for response, _ in responses)
-    slopes = _slopes(sides, contacts, pose, relaxes)
+    slopes = _slopes(sides, loads, contacts, pose, relaxes)
     return Condensed(contacts, pose, relaxes, slopes, natural, left_out if known else None)
 
 
-def _slopes(sides: Sequence[Side], contacts: Contacts, pose: FloatArray, relaxes: bool) -> Slopes | None:
-    """Derivatives of slices; None where a law states no errors."""
-    bounds = [side.law.bounds(side.state()[0].ravel()) for side in sides]
+def _slopes(
+    sides: Sequence[Side], loads: Sequence[FloatArray], contacts: Contacts, pose: FloatArray, relaxes: bool
+) -> Slopes | None:
+    """Derivatives of slices under loads (Z, n) [N/m] of each side; None where a law states no errors."""
+    bounds = [side.law.bounds(load.ravel()) for side, load in zip(sides, loads, strict=True)]
     stated = [one for one in bounds if one is not None]
     if len(stated) < len(bounds):
         return None
     k, c, times = contacts.stiffness, contacts.damping, contacts.times[..., 0]
     _, k_ahead, c_ahead = (np.concatenate(parts) for parts in zip(*(side.state(_SMALL) for side in sides), strict=True))
     ahead = [relaxation_times(side.law, side.approach + _SMALL) for side in sides] if relaxes else [times]
-    rises = ((after - now) / _SMALL for after, now in ((k_ahead, k), (c_ahead, c), (np.concatenate(ahead), times)))
-    k_rise, c_rise, times_rise = rises
+    nearby = (k_ahead, k), (c_ahead, c), (np.concatenate(ahead), times)
+    k_rise, c_rise, times_rise = ((after - now) / _SMALL for after, now in nearby)
     stiffness, damping, films = (
         np.concatenate([getattr(one, name) for one in stated]).reshape(k.shape)
         for name in ("stiffness", "damping", "film_offset")

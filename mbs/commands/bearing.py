@@ -12,10 +12,9 @@ from ehdmaps.outputs import write_figure
 from ehdmaps.physics.designations.families import not_served
 from ehdmaps.physics.rollers.ribbed_geometry import ribbed_way
 from mbs.commands.one_bearing.cylindrical import read_request
-from mbs.output.bearing_table import CYLINDRICAL
-from mbs.output.point_files import write_points
-from mbs.output.point_kind import Description, Kind, Points
-from mbs.output.point_table import point_text
+from mbs.output.one_bearing.cylindrical import CYLINDRICAL
+from mbs.output.one_bearing.kind import Description, Kind, Points
+from mbs.output.one_bearing.table import point_text
 
 _BALLS = re.compile(r"\s*[67]\d{3}(?!\d)")
 """Beginning of the designation of a ball bearing."""
@@ -34,6 +33,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         kind, description, points = CYLINDRICAL, cylinders.description, cylinders.points()
         lines = point_text(kind, description, points, cylinders.beside(points))
         if arguments.output:
+            from mbs.output.one_bearing.files import write_points
+
             lines.append(write_points(kind, description, points, arguments.output))
     else:
         from mbs.commands.one_bearing import rolling  # with kernels that others do not need

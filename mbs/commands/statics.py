@@ -66,11 +66,11 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             *_matrix(f"C [{DAMPINGS}]", DAMPER.factor * damping),
         ]
     if model.balls:
-        from mbs.output.ball_table import ball_lines
+        from mbs.output.one_bearing.balls import ball_lines
 
         lines += ball_lines(model, balance)
     if model.scene.tapered:
-        from mbs.output.tapered_table import tapered_lines
+        from mbs.output.one_bearing.ribs import tapered_lines
 
         lines += tapered_lines(model, balance)
     others = list(zip(model.on_rings, contacts, found.losses, strict=True))[len(model.bearings) :]

@@ -27,7 +27,7 @@ from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.contact_report import axes_left
 from mbs.commands.one_bearing.cylindrical import BearingRequest, read_request
-from mbs.commands.one_bearing.values import read_values
+from mbs.commands.one_bearing.shared import read_values
 from mbs.exports.linear_bearing import Format, LinearBearing
 from mbs.linearised.bands import law_bands
 from mbs.linearised.dynamic import element_dynamic_stiffness

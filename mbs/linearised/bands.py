@@ -161,8 +161,8 @@ class LawBands:
 
     @property
     def _changes(self) -> int:
-        """How many changes there are."""
-        return len(self.bearings[0].condensed.stated.forces)
+        """Number of changes."""
+        return int(self.bearings[0].condensed.stated.forces.shape[0])
 
     @cached_property
     def _active(self) -> tuple[IntArray, ...]:
@@ -273,7 +273,7 @@ def law_bands(balance: Equilibrium) -> LawBands | None:
 def _through(
     at_places: ComplexArray, s: ComplexArray, logs: FloatArray, back: ComplexArray, motion: ComplexArray
 ) -> ComplexArray:
-    """What sensors see of a change of Z (k, p, p) at places s (k,), at the logarithms of all frequencies.
+    """Change that sensors see by one of Z (k, p, p) at places s (k,), at the logarithms of all frequencies.
 
     Shape (frequencies, sensors, inputs); by what sensors see of loads on the ports, and by motions of these.
     """

@@ -140,7 +140,7 @@ def film_part(balance: Equilibrium, bearings: Sequence[CondensedBearing] | None 
     balance : Equilibrium
         Equilibrium at which the system is linearised.
     bearings : sequence of CondensedBearing, optional
-        Its bearings, where they are condensed already.
+        Bearings of the system, where they are condensed already.
     """
     found = tuple(
         one

@@ -115,7 +115,7 @@ class FilmError:
     natural : array, shape (r,)
         Natural time of each slice [s].
     contacts : ContactsInBalance or None
-        Its rolling elements, where what holds their law holds the response of films, too.
+        Rolling elements, where what holds their law holds the response of films, too.
     """
 
     bearing: str

@@ -195,7 +195,7 @@ def none_moved(contacts: Contacts, directions: int) -> Contacts:
     return Contacts(*(np.zeros((directions, *part.shape)) for part in contacts))
 
 
-def relaxation(contacts: Contacts, pose: FloatArray) -> Relaxation:
+def relaxation(contacts: Contacts, pose: FloatArray, films: int | None = None) -> Relaxation:
     """Springs in series with dampers that a bearing is, Z J r of them; those that do not relax have no stiffness.
 
     With the approaches of the dampers by D in slow motion, Xi = h_d - h_v H_vv^-1 H_vd, and with diagonal matrices of
@@ -215,13 +215,15 @@ def relaxation(contacts: Contacts, pose: FloatArray) -> Relaxation:
         Contacts at rest.
     pose : array (Z, m, p)
         D by the ports of the bearing.
+    films : int, optional
+        Number of contacts of each rolling element, the first ones, that have films, in place of all J.
     """
-    m = pose.shape[1]
-    damping, times, ends = _slow_dampers(contacts, m)
+    m, r, own = pose.shape[1], contacts.shares.shape[-1], contacts.at_rest[:, pose.shape[1] :, pose.shape[1] :]
+    first = slice(films if films is None else films * r)
+    damping, times, ends = (part[:, first] for part in _slow_dampers(contacts, m))
     relaxes = (damping > 0.0) & (times > 0.0)
     root = np.sqrt(np.where(relaxes, damping, 0.0))[..., None]
-    own = contacts.at_rest[:, m:, m:]
-    felt = root * np.repeat(contacts.feel[..., m:], contacts.shares.shape[-1], axis=1)
+    felt = root * np.repeat(contacts.feel[..., m:], r, axis=1)[:, first]
     compliance = felt @ np.linalg.solve(0.5 * (own + np.swapaxes(own, 1, 2)), np.swapaxes(felt, 1, 2))
     places = np.arange(root.shape[1])
     compliance[:, places, places] += np.where(relaxes, times, 1.0)

@@ -15,10 +15,12 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError
-from mbs.model.condensed import Condensed
 from mbs.model.findings import Gauge
 from mbs.model.profiles import Constant, LoadProfile
 from mbs.model.relaxation import Relaxation
+
+if TYPE_CHECKING:
+    from mbs.model.condensed import Condensed
 
 GROUND = "ground"
 """The place that does not move."""

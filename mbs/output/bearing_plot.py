@@ -19,11 +19,10 @@ from ehdmaps.units import PRESSURE, RPM, written
 from mbs.bearings.contact_report import BearingContacts
 from mbs.bearings.films import SIDES
 from mbs.model.equilibrium import Equilibrium
+from mbs.output.one_bearing.kind import Description, Kind, Points, Row, row_of, smallest
+from mbs.output.one_bearing.table import WIDE_RANGE, heading, without_numbers
 from mbs.output.page import grid, page
 from mbs.output.page import grid as quiet_grid
-from mbs.output.point_kind import Description, Kind, Points, Row, row_of
-from mbs.output.point_table import heading
-from mbs.output.point_words import WIDE_RANGE, smallest, without_numbers
 from mbs.scene.assembly import Model
 from mbs.scene.fields import FORCE, MICROMETRE
 

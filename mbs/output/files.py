@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import dataclasses
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ehdmaps.outputs import MADE_AS, dataset_kind, written_aside
+from ehdmaps.outputs import MADE_AS, TABLE, Kind, dataset_kind, written_aside
 from ehdmaps.provenance import code_hash
 from ehdmaps.version import version
 
@@ -22,6 +23,13 @@ _RESULT = "result of mbs"
 
 RESULT = dataset_kind("a result of mbs", _RESULT)
 """What -o writes, but where a command says otherwise."""
+
+
+def result_kind(path: str | None) -> Kind:
+    """Kind of file that a result is written as, by the ending of its name."""
+    if path is not None and Path(path).suffix.lower() == ".csv":
+        return TABLE
+    return dataclasses.replace(RESULT, endings=(".nc", ".csv"))
 
 
 def write_dataset(dataset: xr.Dataset, path: Path) -> None:

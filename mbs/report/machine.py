@@ -22,7 +22,7 @@ from mbs.model.elements import GROUND
 from mbs.model.findings import Severity
 from mbs.model.relaxation import NOTABLE
 from mbs.output.model_text import LITTLE_DAMPING, OTHER_DAMPING, clearance_text, temperature_text, weight_text
-from mbs.output.point_words import regime
+from mbs.output.one_bearing.table import regime
 from mbs.output.result_text import kinds
 from mbs.output.state_text import class_lines, flooded_note, largest_torque, state_lines
 from mbs.report.bearings import loaded

@@ -25,7 +25,7 @@ from mbs.cli import main
 from mbs.commands.one_bearing.balls import BALL_BEARINGS
 from mbs.commands.one_bearing.files import Export, write_export
 from mbs.model.elements import Operation
-from mbs.output.point_kind import Description
+from mbs.output.one_bearing.kind import Description
 from tests.cases.ball_runs import driven
 from tests.cases.fmu import FIVE, POSE, Unit, stepped
 from tests.unit.test_ball_relaxing import by_hand

@@ -19,7 +19,7 @@ from mbs.cli import main
 from mbs.linearised.modes import modes
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
-from mbs.output.ball_table import ball_lines
+from mbs.output.one_bearing.balls import ball_lines
 from mbs.scene.matrices import MatrixSpec
 
 LAW = "hertz:1.25e-5 s"

@@ -18,7 +18,7 @@ from mbs.linearised.modes import modes
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.model.findings import Cause
-from mbs.output.tapered_table import tapered_lines
+from mbs.output.one_bearing.ribs import tapered_lines
 from mbs.scene.matrices import MatrixSpec
 
 GEOMETRY = tapered_estimate("32208")

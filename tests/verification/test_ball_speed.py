@@ -15,10 +15,10 @@ from mbs.bearings.balls.ball_motion import ball_motion
 from mbs.bearings.balls.ball_point import ball_point
 from mbs.bearings.balls.ball_speed import Drive, ball_loads, orbit
 from mbs.bearings.balls.laws import dry_law
-from mbs.output.ball_table import BALLS
-from mbs.output.point_files import point_dataset
-from mbs.output.point_kind import Description
-from mbs.output.point_table import point_text
+from mbs.output.one_bearing.balls import BALLS
+from mbs.output.one_bearing.files import point_dataset
+from mbs.output.one_bearing.kind import Description
+from mbs.output.one_bearing.table import point_text
 from tests.cases.balls import balls_in_space, rolls
 
 RPM = math.pi / 30.0

@@ -25,13 +25,13 @@ from mbs.bearings.balls.ball_memory import FilmsOfBalls
 from mbs.bearings.balls.ball_speed import dry_energy, speed_work, turned_by
 from mbs.bearings.balls.laws import BallLaw
 from mbs.bearings.balls.normal_law import nothing_held
-from mbs.model.condensed import Condensed
 from mbs.model.elements import Forces, Operation, Powers, check_apart
 from mbs.model.findings import Gauge
 from mbs.model.relaxation import Films, Relaxation
 
 if TYPE_CHECKING:
     from mbs.bearings.contact_report import BearingContacts, RollingLoss
+    from mbs.model.condensed import Condensed
 
 MOST_SPEEDS = 64
 """Speeds whose films are kept."""

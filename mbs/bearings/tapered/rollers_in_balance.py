@@ -46,7 +46,7 @@ def line_relaxation(force: TaperedForce, cage_angle: float) -> Relaxation:
         Angle of the first roller at that call [rad].
     """
     lines = _lines(force, cage_angle, np.ones(force.angles.size, dtype=np.bool_))
-    return relaxation(lines.contacts, lines.pose)
+    return relaxation(lines.contacts, lines.pose, 2 * force.shape.levers.size)
 
 
 def rollers_in_balance(force: TaperedForce, cage_angle: float, *, relaxes: bool) -> Condensed | None:

@@ -23,13 +23,13 @@ from mbs.bearings.tapered.roller_findings import roller_gauge
 from mbs.bearings.tapered.tapered_bearing import TaperedForce, TaperedLoads
 from mbs.bearings.tapered.tapered_energy import TaperedStates, dry_energy, place_work
 from mbs.bearings.tapered.tapered_memory import FilmsOfRollers
-from mbs.model.condensed import Condensed
 from mbs.model.elements import Excitation, Forces, OnRings, Operation, Port, Powers, check_apart
 from mbs.model.findings import Gauge
 from mbs.model.relaxation import Films, Relaxation
 
 if TYPE_CHECKING:
     from mbs.bearings.contact_report import BearingContacts, RollingLoss
+    from mbs.model.condensed import Condensed
 
 HARMONICS = 3
 """Multiples of the passing frequency of the rollers that are worth following."""

@@ -1,8 +1,7 @@
 """`mbs bearing`: one bearing without a scene.
 
 =================  =====================================================================================
-values             loads, speeds, directions and choices, every problem noted
-shared             loads and speeds together, refusals, damper, oil, surfaces
+shared             loads, speeds and choices, refusals, damper, oil, surfaces; every problem noted
 given, cylindrical  cylindrical rollers and needles: a designation or a file, maps and films
 family             what differs between bearings that carry axial load: a row each
 balls, ribs        the rows: ball bearings; tapered rollers, NJ and NUP

@@ -21,7 +21,7 @@ from mbs.bearings.balls.ball_point import BallPoint, ball_dynamic_stiffness, bal
 from mbs.bearings.balls.laws import BallLaw, dry_law
 from mbs.commands.one_bearing.family import Asked, AtSpeed, Family, Request
 from mbs.commands.one_bearing.linear_files import Oscillating
-from mbs.output.ball_table import BALLS
+from mbs.output.one_bearing.balls import BALLS
 from mbs.scene.contact_laws import Damper
 from mbs.scene.map_set import TABLE_LAW
 

@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING, Any
 from ehdmaps.choices import STRUCTURE
 from ehdmaps.errors import EhdmapsError, InputError
 from ehdmaps.outputs import FIGURE, Output, output_problems
-from ehdmaps.physics.bearing import BearingGeometry
+from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
 from ehdmaps.physics.contact import OIL_TEMPERATURES
 from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.rollers.ribbed_geometry import NO_RIBS
-from ehdmaps.physics.solids import Material
+from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.physics.surface import SMOOTH, Surface
 from ehdmaps.units import TEMPERATURE, closest, short
 from mbs.analyses.bearing_point import bearing_points
@@ -28,19 +28,21 @@ from mbs.bearings.contact_report import BearingPoint
 from mbs.bearings.films import SIDES, FilmSource, FormulaFilms, MapFilms
 from mbs.bearings.laws import Law
 from mbs.bearings.thermal import BearingState, Mounting, operating_clearance
-from mbs.commands.one_bearing.given import Given, read_given
 from mbs.commands.one_bearing.shared import (
     CELSIUS_40,
     ROUGHNESS,
+    Given,
     assumed_clearance,
+    read_choices,
     read_oil,
+    read_one,
     read_operating,
     read_profile_text,
+    read_whole,
 )
-from mbs.commands.one_bearing.values import read_choices, read_one, read_whole
-from mbs.output.bearing_table import asperity_band
-from mbs.output.point_files import result_kind
-from mbs.output.point_kind import Description, Points
+from mbs.output.files import result_kind
+from mbs.output.one_bearing.cylindrical import asperity_band
+from mbs.output.one_bearing.kind import Description, Points
 from mbs.scene.choices import LACKS
 from mbs.scene.contact_laws import (
     HERTZ_FORMS,
@@ -154,7 +156,7 @@ def read_request(arguments: argparse.Namespace) -> BearingRequest:
         With every problem.
     """
     problems: list[str] = []
-    given = read_given(arguments.bearing, problems)
+    given = _given(arguments.bearing, problems)
     chosen = read_choices(arguments, problems)
     if "films" in chosen:
         problems.append("--films: not for one bearing of rollers, whose K and C are those of slow motion; leave it out")
@@ -247,6 +249,15 @@ def read_request(arguments: argparse.Namespace) -> BearingRequest:
             state=state,
         ),
     )
+
+
+def _given(source: str, problems: list[str]) -> Given | None:
+    """The bearing of a name, a shipped job or a file."""
+    if source in BEARINGS:
+        return Given(BEARINGS[source], STEEL)
+    from mbs.commands.one_bearing.given import read_given  # with catalogues and readers of files
+
+    return read_given(source, problems)
 
 
 def _elsewhere(arguments: argparse.Namespace) -> str:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.surface import Surface
-from mbs.output.point_kind import Description, Kind
+from mbs.output.one_bearing.kind import Description, Kind
 from mbs.scene.contact_laws import Damper
 
 if TYPE_CHECKING:

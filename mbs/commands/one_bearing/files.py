@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 from ehdmaps.outputs import Output
 from ehdmaps.units import TEMPERATURE
 from mbs.commands.one_bearing.linear_files import around, ending_of, header_of, is_linear, linear_outputs, write_linear
-from mbs.output.point_kind import Description
-from mbs.output.point_table import heading
+from mbs.output.one_bearing.kind import Description
+from mbs.output.one_bearing.table import heading
 
 if TYPE_CHECKING:
     from mbs.bearings.balls.film_tables import PairLaw

@@ -3,43 +3,15 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
 
 from ehdmaps.errors import InputError
 from ehdmaps.inputs import first_bytes, read_text
-from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
+from ehdmaps.physics.bearing import BEARINGS
 from ehdmaps.physics.catalogue import designated, designations, plain_designation
-from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.rollers.needle_catalogue import needle_designations
-from ehdmaps.physics.solids import STEEL, Material
-from ehdmaps.physics.surface import Surface
+from ehdmaps.physics.solids import STEEL
 from ehdmaps.units import closest, short
-
-
-@dataclass(frozen=True)
-class Given:
-    """A bearing as it is given: oil, supply and surfaces are None where nothing states them.
-
-    Attributes
-    ----------
-    geometry : BearingGeometry
-        Geometry of the bearing.
-    material : Material
-        Material of rings and rollers.
-    oil : Lubricant or None
-        Oil of the file.
-    supply : OilSupply or None
-        Oil supply of the file.
-    surface : Surface or None
-        Surfaces of the file.
-    """
-
-    geometry: BearingGeometry
-    material: Material
-    oil: Lubricant | None = None
-    supply: OilSupply | None = None
-    surface: Surface | None = None
+from mbs.commands.one_bearing.shared import Given
 
 
 def read_given(source: str, problems: list[str]) -> Given | None:
@@ -52,8 +24,6 @@ def read_given(source: str, problems: list[str]) -> Given | None:
     problems : list of str
         List that takes what is wrong.
     """
-    if source in BEARINGS:
-        return Given(BEARINGS[source], STEEL)
     from ehdmaps.jobs.defaults import SHIPPED  # with the readers of all tables of a job
 
     is_file = "\0" not in source and os.path.isfile(source)

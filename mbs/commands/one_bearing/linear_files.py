@@ -14,7 +14,7 @@ from ehdmaps.exports.target import BEARING_AXES
 from ehdmaps.outputs import MARK, Output, write_text
 from ehdmaps.units import RPM
 from ehdmaps.version import version
-from mbs.output.point_files import result_kind
+from mbs.output.files import result_kind
 from mbs.scene.fields import FORCE
 
 if TYPE_CHECKING:

@@ -20,9 +20,8 @@ from mbs.bearings.tapered.line_film import LineFilms
 from mbs.bearings.tapered.tapered_bearing import MOST_SLICES, SLICES, TaperedForce
 from mbs.bearings.tapered.tapered_point import tapered_point
 from mbs.commands.one_bearing.family import Asked, AtSpeed, Family, Request
-from mbs.commands.one_bearing.shared import read_profile_text
-from mbs.commands.one_bearing.values import read_whole
-from mbs.output.tapered_table import RIBBED
+from mbs.commands.one_bearing.shared import read_profile_text, read_whole
+from mbs.output.one_bearing.ribs import RIBBED
 from mbs.scene.contact_laws import Damper
 from mbs.scene.fields import FORCE
 from mbs.scene.map_set import TABLE_LAW

@@ -19,16 +19,16 @@ from mbs.commands.one_bearing.linear_files import count_problems, ending_of
 from mbs.commands.one_bearing.shared import (
     CELSIUS_40,
     assumed_clearance,
+    read_choices,
     read_damper,
     read_oil,
     read_operating,
     read_surface,
     refuse_others,
 )
-from mbs.commands.one_bearing.values import read_choices
 from mbs.model.findings import Cause, Finding
-from mbs.output.point_files import write_points
-from mbs.output.point_kind import Description
+from mbs.output.one_bearing.files import write_points
+from mbs.output.one_bearing.kind import Description
 from mbs.scene.contact_laws import Damper
 from mbs.scene.map_set import TABLE_LAW
 

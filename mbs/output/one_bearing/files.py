@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Sequence
 from pathlib import Path
@@ -12,21 +11,13 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.outputs import MARK, TABLE, write_text
-from ehdmaps.outputs import Kind as FileKind
 from mbs.bearings.films import SIDES
 from mbs.model.body import FREEDOMS
-from mbs.output.files import RESULT, described, write_dataset
-from mbs.output.point_kind import Description, Kind, Number, Points, Row, row_of
+from mbs.output.files import described, write_dataset
+from mbs.output.one_bearing.kind import Description, Kind, Number, Points, Row, row_of
 
 if TYPE_CHECKING:
     import xarray as xr
-
-
-def result_kind(path: str | None) -> FileKind:
-    """Kind of file that a result is written as, by the ending of its name."""
-    if path is not None and Path(path).suffix.lower() == ".csv":
-        return TABLE
-    return dataclasses.replace(RESULT, endings=(".nc", ".csv"))
 
 
 def write_points(kind: Kind, description: Description, points: Points, path: str) -> str:

@@ -1,4 +1,4 @@
-"""Points of a ball bearing, and ball bearings of a machine: what `mbs.output.point_kind` asks of balls."""
+"""Points of a ball bearing, and ball bearings of a machine: what `mbs.output.one_bearing.kind` asks of balls."""
 
 from __future__ import annotations
 
@@ -13,8 +13,20 @@ from mbs.bearings.balls.ball_element import MachineBalls, Settled
 from mbs.bearings.balls.ball_findings import ball_pressures
 from mbs.bearings.balls.ball_motion import ball_motion
 from mbs.bearings.balls.ball_point import BallPoint
-from mbs.output.point_kind import CONTACT_SIDES, Column, Description, Kind, Number, Pair, Row, columns_of, numbers_of
-from mbs.output.point_words import matrix_line, no_dust, tilting
+from mbs.output.one_bearing.kind import (
+    CONTACT_SIDES,
+    Column,
+    Description,
+    Kind,
+    Number,
+    Pair,
+    Row,
+    columns_of,
+    no_dust,
+    numbers_of,
+    tilting,
+)
+from mbs.output.one_bearing.table import matrix_line
 from mbs.output.state_text import beside_class
 from mbs.scene.fields import DEGREE, FORCE, MICROMETRE
 

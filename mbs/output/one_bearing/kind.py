@@ -1,6 +1,6 @@
 """A kind of bearings as a table of one bearing asks for it: numbers, columns and lines, and parts that kinds share.
 
-The kinds are rows: `mbs.output.bearing_table`, `mbs.output.ball_table`, `mbs.output.tapered_table`.
+The kinds are rows: `mbs.output.one_bearing.cylindrical`, `mbs.output.one_bearing.balls`, `mbs.output.one_bearing.ribs`.
 """
 
 from __future__ import annotations
@@ -16,9 +16,8 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.surface import SMOOTH, Surface
-from ehdmaps.units import DAMPER, FILM, PRESSURE, RPM, SPRING, Display
+from ehdmaps.units import DAMPER, FILM, PRESSURE, RPM, SPRING, Display, written
 from mbs.bearings.thermal import BearingState
-from mbs.output.point_words import shown, smallest
 
 Points = Sequence[Sequence[Any]]
 """Points of one kind, by load, then by speed."""
@@ -400,3 +399,49 @@ def row_of(kind: Kind, description: Description, point: Any) -> dict[str, Any]:
     for number in kind.sides:
         row[number.name] = np.full(2, math.nan) if point.failed else number.of(point, description)
     return row
+
+
+def tilting(description: Description, element: str) -> str:
+    """Tell how the load acts, and whether the ring tilts.
+
+    Parameters
+    ----------
+    description : Description
+        What all points have in common.
+    element : str
+        Name of a rolling element.
+    """
+    return (
+        f"load at {description.direction:.4g} deg from y (a {element}) towards z, inner ring "
+        f"{'tilts freely' if description.tilts else 'does not tilt'}"
+    )
+
+
+def smallest(values: FloatArray) -> float:
+    """Smallest number; NaN if there is none.
+
+    Parameters
+    ----------
+    values : ndarray
+        Any of them may be NaN.
+    """
+    known = values[np.isfinite(values)]
+    return float(known.min()) if known.size else math.nan
+
+
+def shown(value: float, digits: int = 5) -> str:
+    """A number; a dash where there is none.
+
+    Parameters
+    ----------
+    value : float
+        The number, or NaN.
+    digits : int
+        Digits that count.
+    """
+    return "-" if math.isnan(value) else written(value, digits)
+
+
+def no_dust(value: float) -> float:
+    """Zero in place of round-off."""
+    return 0.0 if abs(value) < 1e-9 else value

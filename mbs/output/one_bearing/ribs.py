@@ -1,4 +1,4 @@
-"""Points of bearings of rollers and ribs, and such bearings of a machine: what `mbs.output.point_kind` asks."""
+"""Points of bearings of rollers and ribs, and such bearings of a machine: what `mbs.output.one_bearing.kind` asks."""
 
 from __future__ import annotations
 
@@ -15,8 +15,20 @@ from mbs.bearings.tapered.roller_findings import line_pressures
 from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.bearings.tapered.tapered_point import RIB_FRICTION, TaperedPoint
 from mbs.model.findings import CARRIES
-from mbs.output.point_kind import CONTACT_SIDES, Description, Kind, Number, Row, column, columns_of, numbers_of
-from mbs.output.point_words import matrix_line, shown, smallest, tilting
+from mbs.output.one_bearing.kind import (
+    CONTACT_SIDES,
+    Description,
+    Kind,
+    Number,
+    Row,
+    column,
+    columns_of,
+    numbers_of,
+    shown,
+    smallest,
+    tilting,
+)
+from mbs.output.one_bearing.table import matrix_line
 from mbs.output.state_text import beside_class
 from mbs.scene.fields import DEGREE, FORCE
 

@@ -1,4 +1,4 @@
-"""Points of a cylindrical roller bearing: what `mbs.output.point_kind` asks of them."""
+"""Points of a cylindrical roller bearing: what `mbs.output.one_bearing.kind` asks of them."""
 
 from __future__ import annotations
 
@@ -14,8 +14,18 @@ from ehdmaps.units import DAMPER, PRESSURE, SPRING, TEMPERATURE
 from mbs.bearings.contact_report import BearingPoint
 from mbs.bearings.films import SIDES
 from mbs.bearings.thermal import BearingState
-from mbs.output.point_kind import Column, Curves, Description, Kind, Number, Pair, columns_of, numbers_of
-from mbs.output.point_words import shown, smallest
+from mbs.output.one_bearing.kind import (
+    Column,
+    Curves,
+    Description,
+    Kind,
+    Number,
+    Pair,
+    columns_of,
+    numbers_of,
+    shown,
+    smallest,
+)
 from mbs.output.state_text import beside_class, flooded_note, largest_torque, loss_words, state_words
 from mbs.scene.contact_laws import surface_label
 from mbs.scene.fields import MICROMETRE
