@@ -198,7 +198,7 @@ class LawBands:
         logs = np.log(np.clip(2.0 * np.pi * frequencies, places[0], places[-1]))
         moved = np.zeros((self._changes, *responses.shape), dtype=np.complex128)
         missing, wrong = np.zeros_like(moved[0]), np.zeros(responses.shape)
-        memory = () if self.films is None else [one.element for one in self.films.bearings]
+        memory = {} if self.films is None else {one.element: one for one in self.films.bearings}
         for one, active, at in self._parts():
             seen = back[:, :, at], motion[:, at]
             changes = one.condensed.changes(s)[:, :, active][..., active]
@@ -206,7 +206,8 @@ class LawBands:
                 moved[change] -= _through(changes[change], s, logs, *seen)
             if one.element in memory:
                 every = np.eye(one.condensed.pose.shape[2], dtype=np.complex128)[None]
-                part, possible = (both[:, active][..., active] for both in one.left_out(s, every, every))
+                both = memory[one.element].left_out(s, every, every)
+                part, possible = (each[:, active][..., active] for each in both)
                 missing -= _through(part, s, logs, *seen)
                 wrong += np.abs(_through(possible, s, logs, *seen))
         by_films = np.abs((missing * unit).real) + wrong
