@@ -120,7 +120,7 @@ FAULTS = (
         "m->z * r.cosine + m->y * r.sine",
     ),
     Fault("friction torque, unit left out", "mbs/bearings/contact_report.py", "1e-3 * 1e-7 * f0", "1e-7 * f0", True),
-    Fault("time of a film, factor left out", "mbs/bearings/roller_contacts.py", "(dg * (1.0 - dy), k,", "(dg, k,"),
+    Fault("time of a film, factor left out", "mbs/bearings/slices_in_balance.py", "(dg * (1.0 - dy), k,", "(dg, k,"),
     Fault(
         "step of integration, factor two",
         "ehdmaps/kernel/c/run/advance.c",
