@@ -15,6 +15,7 @@ from mbs.scene.contact_laws import Damper
 if TYPE_CHECKING:
     from mbs.bearings.balls.film_tables import PairLaw
     from mbs.commands.one_bearing.linear_files import Oscillating
+    from mbs.commands.one_bearing.shared import Operating
     from mbs.exports.balls.speed_laws import SpeedLaws
 
 
@@ -54,7 +55,7 @@ class AtSpeed(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Request:
-    """Request to be answered.
+    """Bearing by designation with its law and films, loads and speeds, as asked for on the command line.
 
     Attributes
     ----------
@@ -72,16 +73,8 @@ class Request:
         Oil of the films.
     surface : Surface
         Surfaces of the contacts with films; smooth where a roughness is only assumed.
-    loads : tuple of float
-        Sizes of the radial load on the inner ring [N].
-    axial : float
-        Axial load on the inner ring [N].
-    way : (float, float)
-        Direction of the radial load, y and z; a unit vector.
-    speeds : tuple of float
-        Speeds of the inner ring [rad/s].
-    outer_speed : float
-        Speed of the outer ring [rad/s].
+    operating : Operating
+        Loads and speeds.
     description : Description
         The same in words.
     """
@@ -93,16 +86,12 @@ class Request:
     memory: bool
     oil: Lubricant
     surface: Surface
-    loads: tuple[float, ...]
-    axial: float
-    way: tuple[float, float]
-    speeds: tuple[float, ...]
-    outer_speed: float
+    operating: Operating
     description: Description
 
     def entrainment_speed(self, speed: float) -> float:
         """Entrainment speed at a speed of the inner ring [rad/s], in m/s."""
-        return float(self.force.geometry.entrainment_speed(speed, self.outer_speed))
+        return float(self.force.geometry.entrainment_speed(speed, self.operating.outer_speed))
 
 
 @dataclass(frozen=True)

@@ -99,7 +99,7 @@ def _words_of(law: str, oil: Lubricant, surface: Surface, damper: Damper) -> tup
 
 def _films(request: Request) -> Callable[[float], LineFilms] | None:
     """Laws of both lines by the entrainment speed [m/s]; None where nothing rolls, or none are asked for."""
-    fastest = max(request.entrainment_speed(speed) for speed in request.speeds)
+    fastest = max(request.entrainment_speed(speed) for speed in request.operating.speeds)
     if not request.films or not fastest > 0.0:
         return None
     from mbs.scene.tapered.films import FilmsOfLines, OilOfLines

@@ -89,7 +89,7 @@ def read_request(arguments: argparse.Namespace, family: Family) -> Request:
         memory=chosen.get("films") == "memory",
         oil=oil,
         surface=surface,
-        **operating._asdict(),
+        operating=operating,
         description=Description(
             law=words,
             films=source + ("" if oil.verified else " (unverified data of the oil)"),
@@ -111,15 +111,16 @@ def points_of(request: Request) -> list[list[Any]]:
         What is asked.
     """
     at_speed = cache(request.family.at_speed(request))
-    loads = [(request.axial, load * request.way[0], load * request.way[1]) for load in request.loads]
-    return points_over(loads, request.speeds, lambda load, speed: _point(request, load, speed, at_speed(speed)))
+    asked = request.operating
+    loads = [(asked.axial, load * asked.way[0], load * asked.way[1]) for load in asked.loads]
+    return points_over(loads, asked.speeds, lambda load, speed: _point(request, load, speed, at_speed(speed)))
 
 
 def _point(request: Request, load: tuple[float, float, float], speed: float, at: AtSpeed) -> Any:
     """The point at a load and a speed, with what is to be said of its films."""
     description = request.description
     conditions = {"tilts": description.tilts, "oil": request.oil, "temperature": description.temperature}
-    point = request.family.point(at, load, speed, request.outer_speed, **conditions)
+    point = request.family.point(at, load, speed, request.operating.outer_speed, **conditions)
     told = [Finding(Cause.REACH, words) for words in at.problems] + [Finding(Cause.FILM, words) for words in at.notes]
     return dataclasses.replace(point, findings=(*point.findings, *told))
 
@@ -144,9 +145,9 @@ def write_file(path: str, request: Request, points: list[list[Any]]) -> str:
     family, description = request.family, request.description
     if not is_export(path):
         return write_points(family.kind, description, points, path)
-    row = without_holes(path, points[0])
+    row, outer_speed = without_holes(path, points[0]), request.operating.outer_speed
     films, memory = family.films(request), request.memory
     try:
-        return write_export(path, Export(family, request.force, description, row, request.outer_speed, films, memory))
+        return write_export(path, Export(family, request.force, description, row, outer_speed, films, memory))
     except SolverError as error:
         raise AnalysisError(f"-o {path}: {error}") from error
