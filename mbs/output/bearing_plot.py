@@ -146,10 +146,12 @@ def _curves(kind: Kind, description: Description, points: Points) -> Figure:
     everything = [point for line in points for point in line]
     over_load = len(points) > 1
     lines = [list(column) for column in zip(*points, strict=True)] if over_load else [list(points[0])]
-    fixed = FORCE.text(points[0][0].size, 6) if not over_load else ""
-    fixed = RPM.text(points[0][0].inner_speed) if over_load and len(lines) == 1 else fixed
+    first = everything[0]
+    held = [] if over_load else [FORCE.text(first.size, 6)]
+    held += [f"{FORCE.text(first.axial, 6)} axial"] if kind.axial else []
+    held += [RPM.text(first.inner_speed)] * (over_load and len(lines) == 1)
     problems = [line for point in everything for line in point.problems]
-    _title(figure, heading(kind, description, everything[0]), fixed, problems)
+    _title(figure, heading(kind, description, first), ", ".join(held), problems)
     panels = list(figure.subplots(2, 3, sharex=True).ravel())
     if len(lines) > _MOST_LINES:  # evenly spaced ones, the ends among them
         lines = [lines[i] for i in np.unique(np.linspace(0, len(lines) - 1, _MOST_LINES).round().astype(int))]

@@ -58,11 +58,12 @@ def test_one_bearing(name, capsys, tmp_path, monkeypatch):
     for words in (f"{element}s carry more than 1 %", "damping, low-frequency limit", "Lambda", "assumed: "):
         assert words in page
     assert (tmp_path / "a.png").stat().st_size > 10_000
-    status, table, err = run(capsys, "bearing", *ask, "--speed", "3000 rpm", "-o", "a.csv", "--plot", "b.png")
+    status, table, err = run(capsys, "bearing", *ask, "--speed", "3000 rpm", "-o", "a.csv", "--plot", "b.svg")
     assert status == 0, err
     heads = next(line for line in table.splitlines() if "K along" in line).split()
     assert {"load", "speed", f"{element}s", "Hertz", "Lambda"} <= set(heads)
-    assert (tmp_path / "b.png").stat().st_size > 10_000
+    drawn = (tmp_path / "b.svg").read_text(encoding="utf-8")  # with its texts as comments
+    assert "<!-- 2000 N" in drawn and (" N axial -->" in drawn) == (" axial" in page)
     with open("a.csv", encoding="utf-8") as file:
         rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
     assert len(rows) == 2
