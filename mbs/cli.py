@@ -234,7 +234,7 @@ def _level_tolerance(command: argparse.ArgumentParser) -> None:
         "--tolerance",
         metavar="LEVEL",
         help="of one law: choose step and slices by short trials so that the sum level at equal speed keeps "
-        'it, such as "1 dB"; with --auto films, supply and roughness, too; a choice is kept and used again',
+        'it, such as "1 dB"; with --auto films, supply and roughness, too',
     )
 
 

@@ -22,10 +22,9 @@ settings.load_profile("ci" if os.environ.get("CI") else "developer")
 
 @pytest.fixture(scope="session", autouse=True)
 def own_reductions() -> Iterator[None]:
-    """Keep reductions, choices and tables of laws out of the user's folder, in programs that tests start too."""
+    """Keep reductions and tables of laws out of the user's folder, in programs that tests start too."""
     with tempfile.TemporaryDirectory() as folder, pytest.MonkeyPatch.context() as patch:
         patch.setenv("EHDMAPS_REDUCED", folder)
-        patch.setenv("EHDMAPS_CHOICES", folder)
         patch.setenv("EHDMAPS_LAW_TABLES", "off")  # laws are made anew, whatever a test has changed of how
         yield
 

@@ -1,10 +1,10 @@
-"""Cost of a tolerance of levels: processor time of a run-up with `--tolerance`, the first time, over the run itself.
+"""Cost of a tolerance of levels: processor time of a run-up with `--tolerance` over the run itself.
 
 Run: python -m tests.benchmarks.bench_tolerance [SCENE ...] [--law "hertz:1.25e-5 s"] [--tolerance "3 dB"] [--pairs 3]
 
 Each pair is a run with the tolerance and a plain one with the settings that it chose, in one process, after a pair that
 does not count. Where these are not those of the scene, a plain run with those of the scene is timed as well. Each has
-its laws made anew, and a choice that was kept before is not used. Ramps of gears are shortened.
+its laws made anew. Ramps of gears are shortened.
 """
 
 from __future__ import annotations

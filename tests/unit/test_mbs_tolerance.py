@@ -256,3 +256,29 @@ class TestCommand:
             with pytest.raises(InputError) as caught:
                 importlib.import_module("mbs.commands.campbell").run(given)
             assert any(problem in one for one in caught.value.problems)
+
+    def test_a_run_up_keeps_a_tolerance_too(self, tmp_path, monkeypatch):
+        asked = []
+
+        def answer(subject, tolerance, run, settings, progress):
+            asked.append(tolerance)
+            numerics = Numerics(1e-5, None, None)
+            chosen = numerics.applied(subject)
+            return tolerance_module.Tolerated(chosen, numerics, ("chosen",), True, 0.3, 5.0), run(chosen)[0]
+
+        monkeypatch.setattr("mbs.instruments.commands.tolerance.within", answer)
+        scene = tmp_path / "swinging.toml"
+        text = SWINGING.replace('"1 s"', '"0.05 s"').replace('step = "20 us"', 'step = "20 us"\nsample = "0.1 ms"')
+        scene.write_text(text)
+        given = argparse.Namespace(scene=str(scene), tolerance="20 dB", workers=1, output=None, plot=None)
+        runup = importlib.import_module("mbs.commands.runup").run
+        text, status = runup(given)
+        assert status == 0 and asked == [20.0]
+        assert "chosen\n" in text and "in 0.05 s: 5000 steps" in text
+        assert "estimated error of the step of 10 us: S1 " in text
+        given.tolerance = "1 %"
+        with pytest.raises(InputError, match=r"--tolerance: got '1 %'; allowed: above 0 dB"):
+            runup(given)
+        given.tolerance, given.law = "1 dB", ["hertz", "hertz:1.25e-5 s"]
+        with pytest.raises(InputError, match="--tolerance: got 2 combinations of laws"):
+            runup(given)

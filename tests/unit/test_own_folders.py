@@ -11,7 +11,6 @@ from ehdmaps import compiled
 from ehdmaps.openfoam import installation
 from ehdmaps.outputs import cache_folder, others_may_write, own_folder
 from mbs.flexible import carry_out
-from mbs.instruments import kept_choice
 
 SOMEBODY = 65534
 
@@ -68,26 +67,22 @@ def test_a_relative_folder_for_caches_is_none() -> None:
 
 
 def test_nothing_is_read_from_where_others_may_write(tmp_path, monkeypatch) -> None:
-    """Compiled code, reductions, choices and the solver of OpenFOAM."""
-    for name in ("compiled", "reduced", "choices", "openfoam"):
+    """Compiled code, reductions and the solver of OpenFOAM."""
+    for name in ("compiled", "reduced", "openfoam"):
         (tmp_path / name).mkdir()
     monkeypatch.setenv("EHDMAPS_REDUCED", str(tmp_path / "reduced"))
     monkeypatch.setenv("EHDMAPS_OPENFOAM", str(tmp_path / "openfoam"))
     solver = tmp_path / "openfoam" / "bin" / "ehlFoam"
     solver.parent.mkdir()
     solver.touch(mode=0o755)
-    (tmp_path / "choices" / "a.json").write_text("{}")
     read = []
     monkeypatch.setattr(carry_out, "read_reduced", read.append)
     carry_out._from_disk("key")
-    monkeypatch.setattr(kept_choice.json, "loads", lambda text: read.append(text) or {})
-    kept_choice._read(tmp_path / "choices" / "a.json", None)
-    assert read == [tmp_path / "reduced" / "key.npz", "{}"]
-    for name in ("compiled", "reduced", "choices", "openfoam"):
+    assert read == [tmp_path / "reduced" / "key.npz"]
+    for name in ("compiled", "reduced", "openfoam"):
         (tmp_path / name).chmod(0o777)
     carry_out._from_disk("key")
-    kept_choice._read(tmp_path / "choices" / "a.json", None)
-    assert len(read) == 2
+    assert len(read) == 1
     with pytest.raises(PermissionError):
         compiled._use(tmp_path / "compiled")
     assert any("ehlFoam: others may write in" in problem for problem in installation.missing())

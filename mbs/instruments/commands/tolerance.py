@@ -10,8 +10,7 @@ from ehdmaps.errors import InputError
 from mbs.analyses.case import Case
 from mbs.analyses.step_error import StepCheck
 from mbs.commands.common import Told
-from mbs.instruments.kept_choice import kept_within
-from mbs.instruments.tolerance import Found, Tolerated, read_tolerance
+from mbs.instruments.tolerance import Found, Tolerated, read_tolerance, within
 from mbs.scene.choices import Subject
 from mbs.settings import CampbellSettings
 
@@ -60,7 +59,7 @@ def tolerated_run(
     run: Callable[[list[Case]], tuple[Found, StepCheck | None]],
     settings: CampbellSettings | None = None,
 ) -> tuple[Found, Tolerated | None]:
-    """Make a run, with the settings that are chosen for a tolerance, or were chosen before; as cases came without one.
+    """Make a run, with the settings that are chosen for a tolerance; as cases came without one.
 
     Parameters
     ----------
@@ -98,5 +97,5 @@ def tolerated_run(
             changed = dataclasses.replace(changed, scene=dataclasses.replace(changed.scene, run_up=course))
         return run([dataclasses.replace(cases[0], model=changed.model(), subject=changed)])
 
-    tolerated, found = kept_within(subject, tolerance, made, settings, Told("trial"))
+    tolerated, found = within(subject, tolerance, made, settings, Told("trial"))
     return found, tolerated
