@@ -23,6 +23,5 @@ napoleon_google_docstring = False
 autodoc_typehints = "none"
 autodoc_member_order = "bysource"
 exclude_patterns = ["_build"]
-html_theme = "alabaster"
-# Pages of the repository are included as they are: their links to its files are for readers of the repository.
-suppress_warnings = ["myst.xref_missing", "myst.header"]
+html_theme = "furo"
+html_title = f"ehdmaps {release}"

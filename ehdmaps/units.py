@@ -2,7 +2,7 @@
 
 Inside the package and in files everything is SI, temperatures in K. `quantity` turns what a person typed
 ("62 N/mm", "40 degC") into that; the `Display` values turn it back into an engineer's units, one for each quantity in
-whatever is printed or drawn: the table "Units" of the reference page has them.
+whatever is printed or drawn: the table "Units" of docs/reference_ehdmaps.md has them.
 """
 
 from __future__ import annotations

@@ -120,7 +120,7 @@ def physics_option(*words: str) -> Word:
     *words : str
         What it may know, of `ehdmaps.physics.heat.PHYSICS`.
     """
-    return Word("physics", words, "heat in the films, see the sections on heat of the reference page")
+    return Word("physics", words, "heat in the films, see [films with heat](reference_ehdmaps.md#films-with-heat)")
 
 
 def _nothing() -> tuple[str, ...]:

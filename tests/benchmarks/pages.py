@@ -38,17 +38,17 @@ from tests.benchmarks.printed_tables import Output
 ROOT = Path(__file__).parents[2]
 PAGES = (
     "README.md",
-    "FILMS.md",
-    "TRADE.md",
+    "docs/real_films.md",
+    "docs/tradeoffs.md",
     "docs/measured.md",
     "docs/accuracy.md",
     "docs/point_contacts.md",
     "docs/cfd.md",
     "docs/solids.md",
     "docs/python.md",
-    "ehdmaps/GLOSSARY.md",
-    "mbs/MACHINES.md",
-    "openfoam_cases/RESULTS.md",
+    "docs/glossary.md",
+    "docs/machines.md",
+    "docs/openfoam_results.md",
 )
 MADE = {
     "nu308.nc": "ehdmaps generate nu308 -o nu308.nc",

@@ -27,14 +27,14 @@ _JOB = """# Keys of job files
 Made by `python -m tests.manual --write` from what the readers ask for. A quantity is a text with a unit, `"62 N/mm"`;
 any unit of its kind will do. Limits include both ends. A key without a default may be left out unless it says
 "required". Unknown keys are errors, and all problems of a file are listed at once. The
-[reference](../ehdmaps/REFERENCE.md) explains what lies behind them.
+[reference](reference_ehdmaps.md) explains what lies behind them.
 """
 _SCENE = """# Keys of scene files
 
 Made by `python -m tests.manual --write` from what the readers ask for. A quantity is a text with a unit, `"500 rpm"`;
 any unit of its kind will do. Limits include both ends. A key without a default may be left out unless it says
 "required". Unknown keys are errors, and all problems of a file are listed at once. The
-[reference](../mbs/REFERENCE.md#scene-file) explains what lies behind them.
+[reference](reference_mbs.md#scene-file) explains what lies behind them.
 
 Places are written `"body:frame"`; `"body"` alone is its frame `centre`, and `"ground"` does not move. Every table may
 have `assumed`, a list of those of its keys whose values are assumptions; results tell them.

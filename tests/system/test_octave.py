@@ -14,7 +14,7 @@ from ehdmaps.jobs.cli import main
 from tests.cases.jobs import SMALL
 from tests.cases.programs import needed
 
-PAGE = Path(__file__).parents[2] / "ehdmaps" / "REFERENCE.md"
+PAGE = Path(__file__).parents[2] / "docs" / "reference_ehdmaps.md"
 
 
 @pytest.fixture

@@ -1,4 +1,4 @@
-"""What README and the reference page of mbs tell a user to type."""
+"""What README and the pages of the documentation tell a user to type."""
 
 from __future__ import annotations
 
@@ -132,17 +132,24 @@ def test_first_block_of_python_runs(made_map, monkeypatch):
 
 PAGES = (
     "README.md",
-    "FILMS.md",
-    "TRADE.md",
+    "docs/index.md",
+    "docs/first_steps.md",
+    "docs/guide_map.md",
+    "docs/guide_bearing.md",
+    "docs/guide_machine.md",
+    "docs/guide_cfd.md",
+    "docs/ball_bearings.md",
+    "docs/real_films.md",
+    "docs/tradeoffs.md",
     "docs/measured.md",
     "docs/accuracy.md",
     "docs/evidence.md",
     "docs/cfd.md",
     "docs/solids.md",
-    "ehdmaps/REFERENCE.md",
-    "mbs/REFERENCE.md",
-    "mbs/MACHINES.md",
-    "openfoam_cases/RESULTS.md",
+    "docs/reference_ehdmaps.md",
+    "docs/reference_mbs.md",
+    "docs/machines.md",
+    "docs/openfoam_results.md",
     "examples/first_steps.sh",
 )
 PARSERS = {"ehdmaps": ehdmaps_cli.parser, "mbs": cli.parser}
@@ -193,7 +200,9 @@ def test_commands_are_understood(page, command):
     assert recorded or scene in {None, "SCENE", *own, *shipped_systems()}
 
 
-@pytest.mark.parametrize(("program", "page"), [("ehdmaps", "ehdmaps/REFERENCE.md"), ("mbs", "mbs/REFERENCE.md")])
+@pytest.mark.parametrize(
+    ("program", "page"), [("ehdmaps", "docs/reference_ehdmaps.md"), ("mbs", "docs/reference_mbs.md")]
+)
 def test_pages_show_every_command(program, page):
     (commands,) = (action.choices for action in PARSERS[program]()._actions if action.dest == "command")
     text = (ROOT / page).read_text(encoding="utf-8") + README

@@ -327,7 +327,7 @@ def test_picture_names_seats_and_sensors():
 
 @pytest.mark.parametrize(
     "page",
-    ["examples/README.md", "mbs/MACHINES.md", *(f"mbs/systems/{name}.toml" for name in SCENES)],
+    ["examples/README.md", "docs/machines.md", *(f"mbs/systems/{name}.toml" for name in SCENES)],
 )
 def test_commands_that_are_shown_are_understood(page):
     text = (ROOT / page).read_text(encoding="utf-8")

@@ -287,7 +287,7 @@ def test_what_is_wrong_about_the_keys_is_said(more, words):
 
 
 def test_the_block_of_the_reference_page_is_read():
-    page = (Path(__file__).parents[2] / "mbs" / "REFERENCE.md").read_text()
+    page = (Path(__file__).parents[2] / "docs" / "reference_mbs.md").read_text()
     block = page.partition("### Warm bearings and their fits")[2].partition("```toml")[2].partition("```")[0]
     (bearing,) = parse_scene(PLAIN[: PLAIN.index("[[bearings]]")] + block, "page", "page").bearings
     assert bearing.thermal == HeatPaths(

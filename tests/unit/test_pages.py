@@ -52,7 +52,7 @@ def test_every_name_stands_on_one_page():
 
 
 def test_the_ten_rows_of_the_trade_have_the_figures_of_its_tables():
-    page = (ROOT / "TRADE.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "tradeoffs.md").read_text(encoding="utf-8")
     rows = [row for row in page.partition("## One contact")[0].splitlines() if row.startswith("| ")][1:]
     assert len(rows) == 10
     tables = "\n".join(block.text for block in ALL if block.name.startswith(("budget-of", "trade-of")))

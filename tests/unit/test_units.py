@@ -163,7 +163,7 @@ def test_what_people_are_shown_is_the_same_quantity_in_another_unit():
 
 
 def test_the_reference_page_has_the_unit_of_every_quantity():
-    page = (ROOT / "ehdmaps" / "REFERENCE.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "reference_ehdmaps.md").read_text(encoding="utf-8")
     table = page.partition("## Units\n")[2].partition("\n## ")[0]
     for display in [value for value in vars(units).values() if isinstance(value, Display)] + [*MOTIONS.values()]:
         if display.unit != "K":
