@@ -24,4 +24,4 @@ autodoc_typehints = "none"
 autodoc_member_order = "bysource"
 exclude_patterns = ["_build"]
 html_theme = "furo"
-html_title = f"ehdmaps {release}"
+html_title = f"ehdmaps {release.partition('+')[0]}"
