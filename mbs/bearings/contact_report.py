@@ -35,8 +35,10 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.maps.kernels.tables import LOAD_TOLERANCE
+from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.heat import inlet_shear_heating_factor, thermal_loading, viscosity_slope
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.rollers.ratings import Rollers, ratings
 from ehdmaps.physics.solution import tip_words
 from ehdmaps.physics.surface import Surface
 from ehdmaps.units import LOAD, PRESSURE, SPEED, TEMPERATURE
@@ -44,6 +46,7 @@ from mbs.bearings.bearing import Bearing
 from mbs.bearings.films import ContactState, FilmSource
 from mbs.bearings.force_at_point import RollerLoads
 from mbs.bearings.laws import DryLaw, Law, TableLaw
+from mbs.life import ReferenceLife, roller_reference_life
 from mbs.model.findings import Finding, WithFindings
 
 
@@ -454,6 +457,26 @@ class BearingPoint(WithFindings):
     def size(self) -> float:
         """Size of the load [N]."""
         return float(np.hypot(*self.load))
+
+    @property
+    def geometry(self) -> BearingGeometry:
+        """Geometry of the bearing."""
+        return self.bearing.geometry
+
+    @property
+    def ratings(self) -> tuple[float, float]:
+        """C of ISO 281 and C0 of ISO 76 by the inner geometry [N]."""
+        geometry = self.geometry
+        rollers = Rollers(geometry.roller_diameter, geometry.roller_length, geometry.rollers)
+        return ratings(rollers, geometry.pitch_diameter)
+
+    @property
+    def reference(self) -> ReferenceLife:
+        """Equivalent load and life of ISO/TS 16281, by the rating of ISO 281."""
+        geometry = self.geometry
+        loads = self.rollers.load_per_length * geometry.roller_length / self.bearing.slices
+        gamma = geometry.roller_diameter / geometry.pitch_diameter
+        return roller_reference_life(np.stack([loads, loads]), self.ratings[0], gamma, 0.0)
 
     @property
     def inner_speed(self) -> float:

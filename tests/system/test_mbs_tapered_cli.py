@@ -17,9 +17,9 @@ from ehdmaps.physics.rollers.tapered_catalogue import tapered_boundary, tapered_
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from mbs.bearings.balls.normal_law import contact
 from mbs.bearings.tapered.line_film import LOADS, cylinder_of, line_film
-from mbs.bearings.tapered.reference_load import reference_load
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
 from mbs.bearings.tapered.tapered_point import tapered_point
+from mbs.life import roller_reference_life
 from tests.cases import commands
 
 RPM = math.pi / 30.0
@@ -160,7 +160,7 @@ def test_no_equilibrium_and_overload_are_said() -> None:
     point = tapered_point(FORCE, (1e5, 2e5, 0.0), 0.0)
     assert point.pressure.max() > LINE_LIMIT and "the static limit of ISO 76" in point.problems[0]
     little = tapered_point(FORCE, (1350.0, 5000.0, 0.0), 0.0)
-    assert "less than half" in " ".join(little.notes) and little.life > 0.0
+    assert "less than half" in " ".join(little.notes) and little.reference.life > 0.0
     free = tapered_point(FORCE, (2000.0, 5000.0, 0.0), 0.0, tilts=True)
     assert "crowd at an end" in " ".join(free.notes)
 
@@ -171,11 +171,11 @@ def test_the_reference_load_is_that_of_a_public_code() -> None:
     pose = [0.0, 5.024242357274666e-6, 0.0, 0.0, 0.0, 0.0]
     assert force(pose)[0][1] == pytest.approx(-3000.0, rel=1e-9)  # digits of its displacement
     slices = force.rollers(pose).slices * 13.6e-3 / 40
-    load, life = reference_load(slices, 40e3, 9.0 / 43.5, 0.0)
+    load, life = roller_reference_life(slices, 40e3, 9.0 / 43.5, 0.0, edges=False)
     assert load == pytest.approx(1435.1519996562806, rel=1e-9)
     assert life == pytest.approx(65645.8036738807, rel=1e-9)
-    assert reference_load(slices, 40e3, 9.0 / 43.5, 0.0, inner_turns=False)[1] < life
-    assert reference_load(0.0 * slices, 40e3, 9.0 / 43.5, 0.0) == (0.0, math.inf)
+    assert roller_reference_life(slices, 40e3, 9.0 / 43.5, 0.0, inner_turns=False, edges=False)[1] < life
+    assert roller_reference_life(0.0 * slices, 40e3, 9.0 / 43.5, 0.0) == (0.0, math.inf)
 
 
 def test_factors_of_catalogues_come_near_the_lives_of_slices() -> None:
@@ -184,7 +184,9 @@ def test_factors_of_catalogues_come_near_the_lives_of_slices() -> None:
     thrust = tapered_boundary("32208").thrust_factor
     half = tapered_point(force, (0.5 * 5000.0 / thrust, 5000.0, 0.0), 300.0)
     axial = tapered_point(force, (5000.0, 0.0, 0.0), 300.0)
-    equal = 5000.0 * (half.life / axial.life) ** 0.25 / 5000.0  # lives go with the fourth power of lines
+    equal = (
+        5000.0 * (half.reference.life / axial.reference.life) ** 0.25 / 5000.0
+    )  # lives go with the fourth power of lines
     assert equal == pytest.approx(0.377 / math.tan(force.geometry.cup_angle), rel=0.03)  # rounding of both factors
     assert equal == pytest.approx(thrust, rel=0.08)  # catalogues are on the safe side
 

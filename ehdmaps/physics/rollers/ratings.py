@@ -83,6 +83,17 @@ def dynamic_rating(rollers: Rollers, pitch: float, angle: float = 0.0, quality: 
     return float(factor * length ** (7.0 / 9.0) * rollers.number**0.75 * diameter ** (29.0 / 27.0))
 
 
+def ratings(rollers: Rollers, pitch: float, angle: float = 0.0) -> tuple[float, float]:
+    """C of ISO 281 and C0 of ISO 76 [N].
+
+    Parameters
+    ----------
+    rollers, pitch, angle
+        See `dynamic_rating`.
+    """
+    return dynamic_rating(rollers, pitch, angle), static_rating(rollers, pitch, angle)
+
+
 def with_static_rating(diameter: float, count: float, pitch: float, rating: float, angle: float = 0.0) -> Rollers:
     """Rollers of a diameter and number whose length gives a static rating.
 

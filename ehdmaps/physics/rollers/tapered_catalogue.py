@@ -25,7 +25,7 @@ from ehdmaps.errors import InputError, closest, short
 from ehdmaps.physics.designations.clearance import delivered
 from ehdmaps.physics.designations.families import not_served
 from ehdmaps.physics.designations.reader import TAPERED, plain_name
-from ehdmaps.physics.rollers.ratings import Rollers, by_ratings, dynamic_rating, static_rating, with_static_rating
+from ehdmaps.physics.rollers.ratings import Rollers, by_ratings, ratings, with_static_rating
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 
 FILLED = 0.9
@@ -231,8 +231,7 @@ def tapered_ratings(geometry: TaperedGeometry) -> tuple[float, float]:
         The bearing.
     """
     rollers = Rollers(geometry.roller_diameter, geometry.roller_length, geometry.rollers)
-    pitch, angle = geometry.pitch_diameter, geometry.cup_angle
-    return dynamic_rating(rollers, pitch, angle), static_rating(rollers, pitch, angle)
+    return ratings(rollers, geometry.pitch_diameter, geometry.cup_angle)
 
 
 def _code(bore: float) -> str:

@@ -17,11 +17,14 @@ import numpy as np
 from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.point.ball_catalogue import ball_dynamic_rating, ball_static_rating
+from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.physics.point.film_formulas import hamrock_dowson_central, hamrock_dowson_minimum
 from ehdmaps.units import written
 from mbs.bearings.balls.ball_bearing import BallElement, BallForce, BallLoads
 from mbs.bearings.balls.ball_findings import ball_gauge, ball_pressures, reach_of
 from mbs.bearings.balls.ball_motion import Motion, ball_motion
+from mbs.life import ReferenceLife, ball_reference_life
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import Load, Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
@@ -101,6 +104,22 @@ class BallPoint(WithFindings):
     def gyroscopic_traction(self) -> float:
         """Largest traction that holds a gyroscopic moment, over the load of its ball at the outer raceway."""
         return self.balls.gyroscopic_traction
+
+    @property
+    def geometry(self) -> BallGeometry:
+        """Geometry of the bearing."""
+        return self.force.geometry
+
+    @property
+    def ratings(self) -> tuple[float, float]:
+        """C of ISO 281 and C0 of ISO 76 by the inner geometry [N]."""
+        return ball_dynamic_rating(self.geometry), ball_static_rating(self.geometry)
+
+    @property
+    def reference(self) -> ReferenceLife:
+        """Equivalent load and life of ISO/TS 16281, by the rating of ISO 281."""
+        turns = abs(self.inner_speed) >= abs(self.outer_speed)
+        return ball_reference_life(self.geometry, self.balls.load, self.ratings[0], inner_turns=turns)
 
     @property
     def size(self) -> float:

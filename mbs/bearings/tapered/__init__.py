@@ -11,6 +11,5 @@
 `tapered_block`        the bearings of a compiled run
 `line_film`            films of both raceways at one speed as tables for the kernel
 `tapered_point`        an operating point: equilibrium, pressures, films, the rib
-`reference_load`       equivalent load and life by the loads of all slices
 =====================  ================================================================================================
 """

@@ -19,12 +19,13 @@ from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.film_formulas import hamrock_dowson_central
 from ehdmaps.physics.rollers.tapered_catalogue import tapered_ratings
+from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from ehdmaps.units import written
 from mbs.bearings.films import FormulaFilms
-from mbs.bearings.tapered.reference_load import reference_load
 from mbs.bearings.tapered.roller_findings import line_pressures, reach_of, roller_gauge
 from mbs.bearings.tapered.tapered_bearing import TaperedForce, TaperedLoads
 from mbs.bearings.tapered.tapered_element import TaperedElement
+from mbs.life import ReferenceLife, roller_reference_life
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import Load, Operation
 from mbs.model.equilibrium import equilibrium
@@ -68,8 +69,8 @@ class TaperedPoint(WithFindings):
         Power that all ribs take with the friction `RIB_FRICTION` [W].
     centrifugal_load : float
         Centrifugal load of a roller [N].
-    equivalent_load, life : float
-        P_ref of ISO/TS 16281 [N], and L10r in millions of turns.
+    reference : ReferenceLife
+        Equivalent load and life of ISO/TS 16281.
     findings : tuple of Finding
         What is beyond its laws, and what else is to be known.
     failed : bool
@@ -94,10 +95,19 @@ class TaperedPoint(WithFindings):
     sliding_speed: float
     rib_power: float
     centrifugal_load: float
-    equivalent_load: float
-    life: float
+    reference: ReferenceLife
     findings: tuple[Finding, ...]
     failed: bool = False
+
+    @property
+    def geometry(self) -> TaperedGeometry:
+        """Geometry of the bearing."""
+        return self.force.geometry
+
+    @property
+    def ratings(self) -> tuple[float, float]:
+        """C of ISO 281 and C0 of ISO 76 by the inner geometry [N]."""
+        return tapered_ratings(self.geometry)
 
     @property
     def size(self) -> float:
@@ -215,7 +225,7 @@ def tapered_point(
     length = geometry.roller_length / force.positions.size
     gamma = geometry.roller_diameter * math.cos(geometry.cup_angle) / geometry.pitch_diameter
     turns = abs(inner_speed) >= abs(outer_speed)
-    equivalent, life = reference_load(
+    reference = roller_reference_life(
         rollers.slices * length, tapered_ratings(geometry)[0], gamma, geometry.cup_angle, inner_turns=turns
     )
     centrifugal, _ = force.speed_loads(inner_speed, outer_speed)
@@ -238,8 +248,7 @@ def tapered_point(
         sliding_speed=float(np.max(slides[carries] if np.any(carries) else slides, initial=0.0)),
         rib_power=RIB_FRICTION * float(slides @ rollers.ribs.sum(axis=1)),
         centrifugal_load=centrifugal,
-        equivalent_load=equivalent,
-        life=life,
+        reference=reference,
         findings=(*roller_gauge(force, rollers).findings, *filter(None, [reach_of(force, rollers)])),
     )
 

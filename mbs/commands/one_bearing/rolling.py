@@ -98,6 +98,7 @@ def read_request(arguments: argparse.Namespace, family: Family) -> Request:
             roughness=roughness,
             tilts=arguments.tilts,
             assumed=assumed,
+            oil=oil,
         ),
     )
 

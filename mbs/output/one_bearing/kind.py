@@ -18,6 +18,7 @@ from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.surface import SMOOTH, Surface
 from ehdmaps.units import DAMPER, FILM, PRESSURE, RPM, SPRING, Display, written
 from mbs.bearings.thermal import BearingState
+from mbs.life import required_viscosity
 
 Points = Sequence[Sequence[Any]]
 """Points of one kind, by load, then by speed."""
@@ -302,7 +303,19 @@ def numbers_of(element: str, own: Sequence[Number], *, axial: bool, speed: str =
         Number("highest_raceway_load", "N", highest, lambda p, _: np.max(first_row(getattr(p, f"{element}s").load))),
         Number("loaded_elements", "1", loaded, lambda p, _: p.loaded),
         Number("film_parameter", "1", film, lambda p, description: p.smallest_film / description.roughness),
+        Number("equivalent_load", "N", "equivalent load P_ref of ISO/TS 16281", lambda p, _: p.reference.load),
+        Number("reference_life", "1", "basic reference life L10r in millions of turns", lambda p, _: p.reference.life),
+        Number("viscosity_ratio", "1", "viscosity ratio kappa of ISO 281", _viscosity_ratio),
     )
+
+
+def _viscosity_ratio(point: Any, description: Description) -> float:
+    """Ratio kappa of ISO 281; NaN where nothing turns, or no oil is known."""
+    speed = abs(point.inner_speed - getattr(point, "outer_speed", 0.0))
+    if description.oil is None or speed == 0.0:
+        return math.nan
+    oil = description.oil.at(description.temperature)
+    return oil.viscosity / oil.density / required_viscosity(speed, point.geometry.pitch_diameter)
 
 
 def first_row(load: FloatArray) -> FloatArray:
@@ -377,6 +390,7 @@ def columns_of(element: str, before: Sequence[Column], after: Sequence[Column], 
         Column("Hertz", PRESSURE.unit, 7, lambda row: f"{PRESSURE.value(max(row['hertz_pressure'])):.4g}"),
         Column("smallest", f"film, {FILM.unit}", 9, lambda row: shown(FILM.value(smallest(row["minimum_film"])), 4)),
         Column("Lambda", "", 7, lambda row: shown(row["film_parameter"], 3)),
+        column("P_ref", "N", 9, 5, "equivalent_load"),
         *after,
     )
 

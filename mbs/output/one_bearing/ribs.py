@@ -46,8 +46,6 @@ _RIB = (
     Number("rib_film", "m", "smallest central film at the rib", lambda p, _: smallest(p.rib_film)),
     Number("rib_sliding_speed", "m/s", "sliding speed at the rib", lambda p, _: p.sliding_speed),
     Number("rib_power", "W", f"power of all rib contacts with a friction of {RIB_FRICTION:g}"),
-    Number("equivalent_load", "N", "dynamic equivalent reference load of ISO/TS 16281"),
-    Number("reference_life", "1", "basic reference rating life L10r in millions of turns", lambda p, _: p.life),
 )
 _BOTH = ("contact", "roller")
 _EACH = (
@@ -83,13 +81,12 @@ def _angles(geometry: TaperedGeometry) -> str:
 
 
 def _closing(point: TaperedPoint, row: Row) -> list[str]:
-    """Lines on the rib, the cage and the life."""
+    """Lines on the rib and the cage."""
     return [
         f"rib: up to {FORCE.text(row['highest_rib_load'])} and {1e-9 * row['rib_pressure']:.3g} GPa, slides with "
         f"{point.sliding_speed:.3g} m/s, film {shown(1e6 * row['rib_film'], 3)} um (order of magnitude); "
         f"{point.rib_power:.3g} W at a friction of {RIB_FRICTION:g}, assumed",
         f"cage {RPM.text(point.cage_speed)}, centrifugal load of a roller {FORCE.text(point.centrifugal_load)}",
-        f"equivalent load {FORCE.text(point.equivalent_load)}, L10r {point.life:.4g} million turns (ISO/TS 16281)",
     ]
 
 
@@ -112,7 +109,7 @@ RIBBED = Kind(
     columns=columns_of(
         "roller",
         [column("rib", "N", 8, 4, "highest_rib_load")],
-        [column("P_ref", "N", 9, 5, "equivalent_load")],
+        [],
         axial=True,
     ),
     about=_about,

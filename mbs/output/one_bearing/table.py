@@ -10,8 +10,20 @@ import numpy as np
 
 from ehdmaps.units import DAMPER, FILM, PRESSURE, RPM, SPRING, Display
 from mbs.bearings.films import SIDES
+from mbs.life import CLEAN, CONTAMINATED, LEAST_RATIO, a_iso, fatigue_limit, ratio_of_films
 from mbs.model.findings import MEANINGLESS, Severity, WithFindings
-from mbs.output.one_bearing.kind import Column, Description, Kind, Pair, Points, first_row, no_dust, row_of, shown
+from mbs.output.one_bearing.kind import (
+    Column,
+    Description,
+    Kind,
+    Pair,
+    Points,
+    Row,
+    first_row,
+    no_dust,
+    row_of,
+    shown,
+)
 from mbs.scene.fields import FORCE, MICROMETRE
 
 if TYPE_CHECKING:
@@ -106,7 +118,40 @@ def _page(kind: Kind, description: Description, point: Any) -> list[str]:
         ),
         lambda_line(row["film_parameter"], MICROMETRE.text(description.roughness))
         + kind.beside_lambda(point, description),
-        *(f"  {line}" for line in kind.closing(point, row)),
+        *(f"  {line}" for line in (*kind.closing(point, row), *life_lines(kind.element, point, row))),
+    ]
+
+
+def life_lines(element: str, point: Any, row: Row) -> list[str]:
+    """Lines on the life of one point: by its loads, and with its oil.
+
+    Parameters
+    ----------
+    element : str
+        How a rolling element is called.
+    point : object
+        The point.
+    row : mapping
+        Its numbers.
+    """
+    kind, power = ("ball", "3") if element == "ball" else ("roller", "10/3")
+    rating, static = point.ratings
+    words = (
+        f"equivalent load {FORCE.text(row['equivalent_load'])}, L10r {row['reference_life']:.4g} million turns "
+        f"(ISO/TS 16281) with C {FORCE.text(rating)} by its inner geometry (ISO 281); with a maker's C: (C/P)^{power}"
+    )
+    kappa, film = row["viscosity_ratio"], row["film_parameter"]
+    if math.isnan(kappa):
+        return [words]
+    own = "" if math.isnan(film) else f", {ratio_of_films(film):.2g} by the film"
+    if kappa < LEAST_RATIO:
+        return [words, f"viscosity ratio {kappa:.2g}{own}: below {LEAST_RATIO:g} ISO 281 has no a_ISO"]
+    limit = fatigue_limit(static, point.geometry.pitch_diameter, kind) / row["equivalent_load"]
+    factors = [a_iso(kappa, cleanliness * limit, kind) for cleanliness in (CONTAMINATED, CLEAN)]
+    return [
+        words,
+        f"viscosity ratio {kappa:.2g} by ISO 281{own}; with the former L10r is multiplied by a_ISO {factors[0]:.2g} in "
+        f"slightly contaminated, {factors[1]:.2g} in filtered oil (e_C {CONTAMINATED:g}, {CLEAN:g})",
     ]
 
 
