@@ -44,6 +44,7 @@ PAGES = (
     "docs/accuracy.md",
     "docs/point_contacts.md",
     "docs/cfd.md",
+    "docs/witnesses.md",
     "docs/solids.md",
     "docs/python.md",
     "docs/glossary.md",

@@ -1,0 +1,194 @@
+"""Measured and makers' data beside what this program says with its defaults. Nothing is fitted to any of them.
+
+The data are in tests/data/witness, each file with its source, units and conditions.
+"""
+
+from __future__ import annotations
+
+import csv
+import dataclasses
+import math
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+from scipy.optimize import root
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.physics.lubricant import Lubricant
+from ehdmaps.physics.point.ball_catalogue import ball_estimate
+from ehdmaps.physics.point.ball_geometry import BallGeometry
+from ehdmaps.physics.point.ellipse import Ellipse
+from ehdmaps.physics.solids import Material
+from ehdmaps.point import solve
+from ehdmaps.table.points.file import shipped_point_table
+from mbs.bearings.balls.ball_bearing import BallForce
+from mbs.bearings.balls.ball_point import ball_point
+from mbs.bearings.balls.laws import dry_law
+from mbs.life import ball_reference_life
+
+FOLDER = Path(__file__).parents[1] / "data" / "witness"
+STEEL_ON_GLASS = 2.0 / ((1.0 - 0.3**2) / 210e9 + (1.0 - 0.21**2) / 70e9)
+"""E' of the rig [Pa]."""
+
+KELVIN = 273.15
+LOOSE_GROOVES = 0.52, 0.53
+"""Grooves that other makers grind: the loose end of what a designation leaves open."""
+
+
+@dataclass(frozen=True, eq=False)
+class Series:
+    """Numbers of a source beside ours.
+
+    Attributes
+    ----------
+    name, unit : str
+        What is compared, and the unit of both.
+    labels : tuple of str
+        Each point in words.
+    theirs, ours : array (n,)
+        Numbers of the source, and ours.
+    """
+
+    name: str
+    unit: str
+    labels: tuple[str, ...]
+    theirs: FloatArray
+    ours: FloatArray
+
+    @property
+    def ratio(self) -> FloatArray:
+        """Ours over theirs, (n,)."""
+        return self.ours / self.theirs
+
+
+def rows(name: str) -> list[dict[str, str]]:
+    """Rows of a file of witnesses."""
+    with (FOLDER / f"{name}.csv").open(encoding="utf-8") as file:
+        return list(csv.DictReader(line for line in file if not line.startswith("#")))
+
+
+def pair_rigidity(geometry: BallGeometry, preload: float) -> float:
+    """Axial stiffness of a pair at rest under its preload, twice that of one bearing [N/m]."""
+    return 2.0 * float(ball_point(BallForce(geometry, dry_law(geometry)), (preload, 0.0, 0.0), 0.0).stiffness[0, 0])
+
+
+@cache
+def gmn_pairs() -> tuple[Series, Series]:
+    """Axial rigidity of pairs by GMN's catalogue beside estimated bearings: with our grooves, and with loose ones."""
+    table = rows("gmn_pair_rigidity")
+    theirs = np.array([float(row["pair_axial_rigidity_N_per_um"]) for row in table])
+    labels = tuple(f"{row['designation']} {row['preload_N']} N" for row in table)
+    estimates = [ball_estimate(row["designation"]) for row in table]
+    loose = [
+        dataclasses.replace(one, inner_conformity=LOOSE_GROOVES[0], outer_conformity=LOOSE_GROOVES[1])
+        for one in estimates
+    ]
+    preloads = [float(row["preload_N"]) for row in table]
+    names = (
+        "axial rigidity of pairs, GMN",
+        f"the same with grooves {LOOSE_GROOVES[0]:g}, {LOOSE_GROOVES[1]:g}",
+    )
+    ours = (
+        np.array([1e-6 * pair_rigidity(*each) for each in zip(bearings, preloads, strict=True)])
+        for bearings in (estimates, loose)
+    )
+    first, second = (Series(name, "N/um", labels, theirs, each) for name, each in zip(names, ours, strict=True))
+    return first, second
+
+
+@cache
+def measured_films() -> tuple[Series, ...]:
+    """Central films of FVA 3 by interferometry beside those of the film table, a series for each temperature."""
+    ball = Ellipse(9.525e-3, 9.525e-3, STEEL_ON_GLASS)
+    table, oil = shipped_point_table(), Lubricant.named("FVA3")
+    found = []
+    for series in ("T20", "T40", "T80"):
+        points = [row for row in rows("fva3_films") if row["series"] == series]
+        load, speed, celsius, theirs = (
+            np.array([float(row[name]) for row in points])
+            for name in ("load_N", "speed_m_per_s", "oil_degC", "central_film_nm")
+        )
+        films = table.films(ball, oil, load, speed, celsius + KELVIN)
+        labels = tuple(f"{u:.3g} m/s {t:.1f} degC" for u, t in zip(speed, celsius, strict=True))
+        name = f"film of FVA 3 at {celsius.mean():.0f} degC, interferometry"
+        found.append(Series(name, "nm", labels, theirs, 1e9 * films.central_film))
+    return tuple(found)
+
+
+@cache
+def centre_line() -> tuple[Series, ...]:
+    """Mourier's films along the centre line, measured and computed: the plateau, and the smallest film at the exit."""
+    oil = Lubricant.roelands(viscosity=0.25, pressure_viscosity=22e-9, density=850.0)
+    solution = solve(Ellipse(12.5e-3, 12.5e-3, 110e9), oil, 15.0, 0.09, 313.15)
+    assert solution.field is not None
+    line = CubicSpline(1e6 * solution.field.x, 1e9 * solution.field.film[:, 0])
+    exit_film = float(line(np.linspace(100.0, 150.0, 2001)).min())
+    found = []
+    for kind, words in (("experiment", "interferometry"), ("authors_simulation", "their simulation")):
+        place, theirs = (
+            np.array([float(row[name]) for row in rows("mourier_centre_line") if row["kind"] == kind])
+            for name in ("x_um", "film_nm")
+        )
+        inside = np.abs(place) < PLATEAU
+        labels = tuple(f"x {x:.0f} um" for x in place[inside])
+        name = f"film along a centre line, {words}"
+        found += [
+            Series(name, "nm", labels, theirs[inside], line(place[inside])),
+            Series(f"its smallest film, {words}", "nm", ("exit",), theirs.min(keepdims=True), np.array([exit_film])),
+        ]
+    return tuple(found)
+
+
+PLATEAU = 100.0
+"""Half of the plateau of the film [um]; the Hertz circle has 136.5 um."""
+
+_X, _Y, _TILT = 0, 1, 5
+
+
+@cache
+def iso_16281() -> tuple[Series, ...]:
+    """Displacements, tilt and life of ISO/TS 16281 by a commercial program."""
+    numbers: dict[str, list[tuple[str, float, float]]] = {}
+    for row in rows("iso16281_ball"):
+        pose, life = _solved({name: float(text) if text else math.nan for name, text in row.items()})
+        for name, scale, value in (
+            ("axial_displacement_um", 1e6, pose[_X]),
+            ("radial_displacement_um", 1e6, pose[_Y]),
+            ("tilt_mrad", 1e3, pose[_TILT]),
+            ("L10r_1e6", 1.0, life),
+        ):
+            if row[name]:
+                numbers.setdefault(name, []).append((f"case {row['case']}", float(row[name]), scale * value))
+    found = []
+    for name, each in numbers.items():
+        labels, theirs, ours = zip(*each, strict=True)
+        quantity, _, unit = name.rpartition("_")
+        words = f"{quantity.replace('_', ' ')}, ISO/TS 16281"
+        found.append(Series(words, unit, labels, np.array(theirs), np.array(ours)))
+    return tuple(found)
+
+
+def _solved(case: dict[str, float]) -> tuple[FloatArray, float]:
+    """Pose of the inner ring, and L10r, of a case of the commercial program."""
+    geometry = BallGeometry("6305", 11.5e-3, 43.5e-3, 7, 0.52, 0.53, 0.0, 1e-6 * case["radial_clearance_um"])
+    force = BallForce(geometry, dry_law(geometry, Material(210e9, 0.3)))
+    loads = {_X: case["axial_N"], _Y: case["radial_N"], _TILT: 0.0}
+    free = [way for way in loads if loads[way] or (way == _TILT and not math.isnan(case["tilt_mrad"]))]
+    target = np.array([loads.get(way, 0.0) for way in range(6)])
+
+    def pose_of(values: FloatArray) -> FloatArray:
+        pose = np.zeros(6)
+        pose[free] = 1e-3 * values
+        return pose
+
+    def left(values: FloatArray) -> FloatArray:
+        return np.asarray((force(pose_of(values), inner_speed=0.0)[0] + target)[free])
+
+    start = [{_X: 0.14, _Y: 0.02, _TILT: 2.7}[way] for way in free]  # mm and mrad
+    values = root(left, start, tol=1e-13).x
+    assert np.max(np.abs(left(values))) < 1e-6
+    pose = pose_of(values)
+    return pose, ball_reference_life(geometry, force.balls(pose, inner_speed=0.0).load, 23400.0).life
