@@ -21,16 +21,16 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from mbs.gears.gear_kernel import BY_RATE, FORCE, SLOPE, MeshData, mesh_energy, mesh_force, mesh_powers
-from mbs.gears.pair import GearPair
+from mbs.gears.pair import PLACED, GearPair
 from mbs.model.elements import ElementDefaults, Excitation, Forces, Operation, Port, Powers
 
 HARMONICS = 5
 """Multiples of the meshing order that are worth following."""
 
-_DISTANCE = ("m (z1 + z2)/2", "m (z1 + z2)/(2 cos(helix_angle))")
+_DISTANCE = ("m (z1 + z2)/2", "m (z1 + z2)/(2 cos(helix_angle))", "with the profile shifts")
 
-PLACED = 1e-6
-"""How far the distance of the centres may be off [m], and the ratio of the spins, as a part of it."""
+SPINS = 1e-6
+"""How far the ratio of the spins may be off, as a part of it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,7 +145,7 @@ def gear_mesh(
         n . (u1 - u2) + r_b1 theta_x1 + r_b2 theta_x2 - e,
 
     the other flank n' = -cos(alpha) t + sin(alpha) c, both rotations with the opposite sign, and - backlash + e. Angles
-    alpha are those of the transverse section. Helical flanks, with the base helix angle beta_b, have
+    alpha are working ones, of the transverse section. Helical flanks, with the base helix angle beta_b, have
     n = cos(alpha) t + sin(alpha) c - tan(beta_b) x and n' = -cos(alpha) t + sin(alpha) c + tan(beta_b) x: n . u is a
     motion in the transverse section still, and the tilts of a gear count with the moment of the axial part about its
     centre. With the tangential force F_t on the pitch circle the axial one is F_t tan(beta), the radial one
@@ -168,6 +168,7 @@ def gear_mesh(
     distance = np.asarray(position2, dtype=np.float64) - np.asarray(position1, dtype=np.float64)
     apart, wanted = math.hypot(distance[1], distance[2]), pair.centre_distance
     where = f"gear pair {pair.name!r}"
+    rule = _DISTANCE[2 if pair.profile_shift else bool(pair.helix_angle)]
     problems = []
     if not abs(distance[0]) <= PLACED:
         problems.append(
@@ -175,12 +176,12 @@ def gear_mesh(
         )
     if not abs(apart - wanted) <= PLACED:
         problems.append(
-            f"{where}: the centres are {apart * 1e3:.7g} mm apart; allowed: {_DISTANCE[bool(pair.helix_angle)]} = "
+            f"{where}: the centres are {apart * 1e3:.7g} mm apart; allowed: {rule} = "
             f"{wanted * 1e3:.7g} mm; "
             "move one of the shafts"
         )
     needed = -spin1 * pair.teeth[0] / pair.teeth[1]
-    if not (math.isfinite(spin1) and abs(spin2 - needed) <= PLACED * abs(needed)):
+    if not (math.isfinite(spin1) and abs(spin2 - needed) <= SPINS * abs(needed)):
         problems.append(
             f"{where}: the spins are {spin1!r} and {spin2!r}; allowed: {needed:.15g} for the second gear, by the teeth"
         )
@@ -188,7 +189,7 @@ def gear_mesh(
         raise InputError(problems)
     towards = np.array([0.0, distance[1], distance[2]]) / apart
     along = np.array([0.0, -towards[2], towards[1]])
-    angle, lean = pair.transverse_pressure_angle, math.tan(pair.base_helix_angle)
+    angle, lean = pair.working_pressure_angle, math.tan(pair.base_helix_angle)
     first, second = pair.pitch_radii
     rows = np.zeros((2, 12))
     for row, side in zip(rows, (1.0, -1.0), strict=True):

@@ -3,6 +3,17 @@
 Spur gears are helical gears of helix angle zero. Module and pressure angle are those of the normal section, which the
 tool has; stiffness, damping, backlash and transmission error are those along the line of action in the transverse
 section, as of ISO 6336 and ISO 21771.
+
+Gears with profile shift x1, x2 mesh without play at the working pressure angle alpha_w and the centre distance a,
+
+    inv alpha_w = inv alpha_t + 2 tan(alpha_n) (x1 + x2)/(z1 + z2),    a cos alpha_w = m_t (z1 + z2)/2 cos alpha_t,
+
+inv t = tan t - t. Their tip circles, where none are given, keep the clearance at the roots of the other gear
+(DIN 3960): d_a = d + 2 m_n (1 + x + k), k m_n = a - m_t (z1 + z2)/2 - m_n (x1 + x2).
+
+References
+----------
+ISO 21771:2007 and DIN 3960, geometry of cylindrical gears. ISO 6336-1:2006, clause 9, method B: stiffness of teeth.
 """
 
 from __future__ import annotations
@@ -21,12 +32,23 @@ MOST_HARMONICS = 50
 STEEPEST = math.radians(45.0)
 """Largest helix angle, either hand [rad]."""
 
+MOST_SHIFT = 2.0
+"""Largest profile shift, in modules."""
+
+PLACED = 1e-6
+"""How far the distance of the centres may be off [m]."""
+
 LEAST_STIFFNESS = 0.01
 """Least of the varying stiffness, as a part of the mean."""
 
 
-def contact_ratio(teeth: tuple[int, int], pressure_angle: float, addendum: float = 1.0) -> float:
-    """Transverse contact ratio of a pair of gears without profile shift.
+def contact_ratio(
+    teeth: tuple[int, int],
+    pressure_angle: float,
+    addendum: float | tuple[float, float] = 1.0,
+    working_angle: float | None = None,
+) -> float:
+    """Transverse contact ratio of a pair of gears.
 
     Parameters
     ----------
@@ -34,8 +56,11 @@ def contact_ratio(teeth: tuple[int, int], pressure_angle: float, addendum: float
         Numbers of teeth of both gears.
     pressure_angle : float
         Pressure angle of the transverse section [rad].
-    addendum : float
-        Addendum in modules of the transverse section: the cosine of the helix angle for usual tools.
+    addendum : float or (float, float)
+        How far the tips, or those of each gear, stand out of the pitch circle, in modules of the transverse section:
+        the cosine of the helix angle for usual tools without profile shift.
+    working_angle : float, optional
+        Working pressure angle of the transverse section [rad]; the pressure angle without profile shift.
 
     Returns
     -------
@@ -58,13 +83,17 @@ def contact_ratio(teeth: tuple[int, int], pressure_angle: float, addendum: float
     1.58
     """
     sine, cosine = math.sin(pressure_angle), math.cos(pressure_angle)
-    longest = 0.5 * sum(teeth) * sine
-    reaches = [math.sqrt((0.5 * z + addendum) ** 2 - (0.5 * z * cosine) ** 2) for z in teeth]
+    longest = 0.5 * sum(teeth) * (sine if working_angle is None else cosine * math.tan(working_angle))
+    heights = addendum if isinstance(addendum, tuple) else (addendum, addendum)
+    reaches = [
+        math.sqrt(max((0.5 * z + height) ** 2 - (0.5 * z * cosine) ** 2, 0.0))
+        for z, height in zip(teeth, heights, strict=True)
+    ]
     shown = f"teeth {teeth[0]} and {teeth[1]}, pressure angle {math.degrees(pressure_angle):.6g} deg"
     if not max(reaches) <= longest:
         raise InputError(
             f"gear pair, contact ratio: got {shown}, where a tip reaches below the other's base circle; allowed: more "
-            "teeth; or give the harmonics of the stiffness as a list"
+            "teeth, or a profile shift; or give the harmonics of the stiffness as a list"
         )
     ratio = (sum(reaches) - longest) / (math.pi * cosine)
     if ratio < 1.0:
@@ -72,6 +101,82 @@ def contact_ratio(teeth: tuple[int, int], pressure_angle: float, addendum: float
             f"gear pair, contact ratio: got {shown}, which makes {ratio:.4g}; allowed: at least 1, or the teeth part"
         )
     return ratio
+
+
+def involute(angle: float) -> float:
+    """inv t = tan t - t of a pressure angle [rad]."""
+    return math.tan(angle) - angle
+
+
+def angle_of_involute(value: float) -> float:
+    """Pressure angle of a value of `involute`, >= 0 [rad].
+
+    Parameters
+    ----------
+    value : float
+        tan t - t.
+
+    Examples
+    --------
+    >>> round(math.degrees(angle_of_involute(0.034317)), 3)
+    26.089
+    """
+    angle = min(math.cbrt(3.0 * value), 1.4)  # exact for small ones; Newton goes down from above
+    for _ in range(_MOST_STEPS):
+        step = (involute(angle) - value) / math.tan(angle) ** 2 if angle > 0.0 else 0.0
+        angle -= step
+        if abs(step) <= 1e-16:
+            break
+    return angle
+
+
+_MOST_STEPS = 50
+
+
+def tooth_stiffness(
+    teeth: tuple[int, int],
+    shifts: tuple[float, float] = (0.0, 0.0),
+    helix_angle: float = 0.0,
+    pressure_angle: float = math.radians(20.0),
+) -> float:
+    """Single stiffness c' of a pair of steel teeth for each metre of face width [N/m2], ISO 6336-1, method B.
+
+    Parameters
+    ----------
+    teeth : (int, int)
+        Numbers of teeth z1 <= z2.
+    shifts : (float, float)
+        Profile shifts x1, x2.
+    helix_angle, pressure_angle : float
+        Helix angle, pressure angle of the normal section [rad].
+
+    Notes
+    -----
+    Of solid discs and the basic rack A of ISO 53, under 100 N/mm of specific load and more; below, flanks are softer,
+    (w/100 N/mm)^(1/4). The standard's regression is for x1 >= x2 and -0.5 <= x1 + x2 <= 2.
+
+    Examples
+    --------
+    >>> round(1e-9 * tooth_stiffness((21, 23)), 2)
+    11.85
+    """
+    helix, (x1, x2) = math.cos(helix_angle), shifts
+    one, other = (z / helix**3 for z in teeth)
+    flexibility = 0.04723 + 0.15551 / one + 0.25791 / other
+    flexibility += -0.00635 * x1 - 0.11654 * x1 / one - 0.00193 * x2 - 0.24188 * x2 / other
+    flexibility += 0.00529 * x1**2 + 0.00182 * x2**2
+    rack = (1.0 + 0.5 * (1.2 - _DEDENDUM)) * (1.0 - 0.02 * (20.0 - math.degrees(pressure_angle)))
+    return 1e9 / flexibility * _MEASURED * rack * helix
+
+
+_MEASURED = 0.8
+"""Factor C_M of the standard: what measured teeth have of calculated stiffness."""
+
+_DEDENDUM = 1.25
+"""Dedendum of the basic rack, in modules."""
+
+STIFFNESS_ERROR = 0.1
+"""Part by which an estimated stiffness may be off."""
 
 
 def overlap_ratio(face_width: float, helix_angle: float, module: float) -> float:
@@ -146,8 +251,9 @@ class GearPair:
         Pressure angle of the normal section [rad].
     face_width : float
         [m].
-    stiffness : float
-        Mean mesh stiffness for each metre of face width [N/m2], of force and motion in the transverse section.
+    stiffness : float or None
+        Mean mesh stiffness for each metre of face width [N/m2], of force and motion in the transverse section; None for
+        that of `tooth_stiffness` and the contact ratio, c' (0.75 eps_alpha + 0.25) of ISO 6336-1.
     backlash : float
         Play between the flanks along the line of action [m].
     damping : float
@@ -164,6 +270,12 @@ class GearPair:
         Mesh phase at the beginning [rad].
     helix_angle : float
         Helix angle [rad]; positive where the first gear is right-handed, 0 for spur gears.
+    profile_shift : tuple of float
+        x1 and x2 in modules; or x1 alone, where the distance tells x2; none without shift.
+    working_distance : float or None
+        Working centre distance [m]; None: that of the profile shifts.
+    tip_diameters : (float, float) or None
+        Tip diameters of both gears [m]; None: with the usual clearance.
 
     Raises
     ------
@@ -178,7 +290,7 @@ class GearPair:
     module: float
     pressure_angle: float
     face_width: float
-    stiffness: float
+    stiffness: float | None
     backlash: float
     damping: float = 0.0
     harmonics: int | tuple[float, ...] = 5
@@ -187,6 +299,9 @@ class GearPair:
     transmission_error_phases: tuple[float, ...] = ()
     phase: float = 0.0
     helix_angle: float = 0.0
+    profile_shift: tuple[float, ...] = ()
+    working_distance: float | None = None
+    tip_diameters: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
         problems = self._number_problems()
@@ -212,6 +327,8 @@ class GearPair:
             if phases > amplitudes:
                 problems.append(f"gear pair, {name}: got {phases} for {amplitudes} amplitudes; allowed: as many")
         if not problems:
+            problems += self._shift_problems()
+        if not problems:
             problems += self._stiffness_problems()
         if problems:
             raise InputError(problems)
@@ -232,21 +349,72 @@ class GearPair:
         return math.atan(math.tan(self.helix_angle) * math.cos(self.transverse_pressure_angle))
 
     @property
-    def centre_distance(self) -> float:
-        """m_t (z1 + z2)/2 [m]."""
+    def reference_distance(self) -> float:
+        """m_t (z1 + z2)/2, the centre distance without profile shift [m]."""
         return 0.5 * self.transverse_module * sum(self.teeth)
 
     @property
+    def shifts(self) -> tuple[float, float]:
+        """Profile shifts x1, x2; one that is not given by the working distance."""
+        if len(self.profile_shift) == 2:
+            return self.profile_shift[0], self.profile_shift[1]
+        if not self.profile_shift:
+            return 0.0, 0.0
+        return self.profile_shift[0], self._sum_by_distance() - self.profile_shift[0]
+
+    @property
+    def working_pressure_angle(self) -> float:
+        """Pressure angle of the transverse section at which the gears mesh [rad]."""
+        total = sum(self.shifts)
+        if total == 0.0:
+            return self.transverse_pressure_angle
+        more = 2.0 * math.tan(self.pressure_angle) * total / sum(self.teeth)
+        return angle_of_involute(involute(self.transverse_pressure_angle) + more)
+
+    @property
+    def centre_distance(self) -> float:
+        """Working centre distance, at which the gears mesh [m]."""
+        return self.reference_distance * self._widened
+
+    @property
     def pitch_radii(self) -> tuple[float, float]:
-        """Radii of the pitch circles of both gears [m]."""
-        first, second = (0.5 * self.transverse_module * z for z in self.teeth)
+        """Radii of the working pitch circles of both gears, which touch [m]."""
+        first, second = (0.5 * self.transverse_module * z * self._widened for z in self.teeth)
         return first, second
 
     @property
     def base_radii(self) -> tuple[float, float]:
         """Radii of the base circles of both gears [m]."""
-        first, second = (radius * math.cos(self.transverse_pressure_angle) for radius in self.pitch_radii)
+        cosine = math.cos(self.transverse_pressure_angle)
+        first, second = (0.5 * self.transverse_module * z * cosine for z in self.teeth)
         return first, second
+
+    @property
+    def tips(self) -> tuple[float, float]:
+        """Tip diameters of both gears [m]."""
+        if self.tip_diameters is not None:
+            return self.tip_diameters
+        total = sum(self.shifts)
+        shortened = self.centre_distance - self.reference_distance - self.module * total if total else 0.0
+        first, second = (
+            self.transverse_module * z + 2.0 * (self.module * (1.0 + x) + shortened)
+            for z, x in zip(self.teeth, self.shifts, strict=True)
+        )
+        return first, second
+
+    @property
+    def _widened(self) -> float:
+        """Working centre distance over that without profile shift."""
+        if sum(self.shifts) == 0.0:
+            return 1.0
+        return math.cos(self.transverse_pressure_angle) / math.cos(self.working_pressure_angle)
+
+    def _sum_by_distance(self) -> float:
+        """Sum of the profile shifts by the working distance."""
+        assert self.working_distance is not None
+        cosine = self.reference_distance * math.cos(self.transverse_pressure_angle) / self.working_distance
+        more = involute(math.acos(cosine)) - involute(self.transverse_pressure_angle)
+        return 0.5 * more * sum(self.teeth) / math.tan(self.pressure_angle)
 
     @property
     def contact_ratios(self) -> tuple[float, float]:
@@ -257,13 +425,31 @@ class GearPair:
         InputError
             Where `contact_ratio` does.
         """
-        transverse = contact_ratio(self.teeth, self.transverse_pressure_angle, math.cos(self.helix_angle))
+        working, heights = None, (math.cos(self.helix_angle),) * 2
+        if self.profile_shift or self.tip_diameters is not None:
+            working, module = self.working_pressure_angle, self.transverse_module
+            heights = tuple(0.5 * (tip / module - z) for tip, z in zip(self.tips, self.teeth, strict=True))
+        transverse = contact_ratio(self.teeth, self.transverse_pressure_angle, (heights[0], heights[1]), working)
         return transverse, overlap_ratio(self.face_width, self.helix_angle, self.module)
 
     @property
     def mean_stiffness(self) -> float:
         """Mean mesh stiffness of the whole face width [N/m]."""
-        return self.stiffness * self.face_width
+        if self.stiffness is not None:
+            return self.stiffness * self.face_width
+        (z1, x1), (z2, x2) = sorted(zip(self.teeth, self.shifts, strict=True))
+        single = tooth_stiffness((z1, z2), (x1, x2), self.helix_angle, self.pressure_angle)
+        return single * (0.75 * self.contact_ratios[0] + 0.25) * self.face_width
+
+    @property
+    def estimate(self) -> str:
+        """How the stiffness was estimated, and how well; empty where it is given."""
+        if self.stiffness is not None:
+            return ""
+        return (
+            f"{self.name}: mesh stiffness {1e-9 * self.mean_stiffness / self.face_width:.3g} N/(um mm) by ISO 6336-1, "
+            f"+-{100 * STIFFNESS_ERROR:.0f} %, less below 100 N/mm of load"
+        )
 
     @cached_property
     def stiffness_harmonics(self) -> tuple[float, ...]:
@@ -313,6 +499,8 @@ class GearPair:
             ("backlash", "m", True),
         ):
             value = getattr(self, name)
+            if value is None and name == "stiffness":
+                continue
             if not (math.isfinite(value) and (value > 0.0 or (zero and value == 0.0))):
                 problems.append(
                     f"gear pair, {name}: got {value!r} {unit}; allowed: finite and {'>=' if zero else '>'} 0"
@@ -320,6 +508,46 @@ class GearPair:
         if not math.isfinite(self.phase):
             problems.append(f"gear pair, phase: got {self.phase!r} rad; allowed: finite")
         return problems
+
+    def _shift_problems(self) -> list[str]:
+        """List problems with profile shifts, working distance and tip diameters."""
+        shown, where = f"{self.profile_shift!r:.60}", "gear pair, profile_shift"
+        if len(self.profile_shift) > 2 or not all(abs(x) <= MOST_SHIFT for x in self.profile_shift):
+            return [f"{where}: got {shown}; allowed: x1 and x2 from -{MOST_SHIFT:g} to {MOST_SHIFT:g}, or x1 alone"]
+        distance = self.working_distance
+        if distance is not None and not (
+            self.reference_distance * math.cos(self.transverse_pressure_angle)
+            < distance
+            < 2.0 * self.reference_distance
+        ):
+            return [
+                f"gear pair, working_distance: got {1e3 * distance:.7g} mm; allowed: above the sum of the base radii, "
+                f"up to twice the distance without profile shift, {1e3 * self.reference_distance:.7g} mm"
+            ]
+        if len(self.profile_shift) == 1 and distance is None:
+            return [f"{where}: got x1 = {shown} alone; allowed: x1 and x2, or x1 and the working distance"]
+        if len(self.profile_shift) != 1 and distance is not None and not abs(distance - self.centre_distance) <= PLACED:
+            return [
+                f"gear pair, working_distance: got {1e3 * distance:.7g} mm; allowed with these profile shifts: "
+                f"{1e3 * self.centre_distance:.7g} mm; or leave x2 out, which then follows"
+            ]
+        if self.tip_diameters is not None:
+            base = [2.0 * radius for radius in self.base_radii]
+            given = self.tip_diameters
+            if len(given) != 2 or not all(low < tip < math.inf for low, tip in zip(base, given, strict=False)):
+                return [
+                    f"gear pair, tip_diameters: got {given!r:.60} m; allowed: two, above the base circles of "
+                    f"{1e3 * base[0]:.5g} and {1e3 * base[1]:.5g} mm"
+                ]
+        total = self.reference_distance * math.cos(self.transverse_pressure_angle)
+        if (
+            involute(self.transverse_pressure_angle)
+            + 2.0 * math.tan(self.pressure_angle) * sum(self.shifts) / sum(self.teeth)
+            <= 0.0
+            or not total < self.centre_distance
+        ):
+            return [f"{where}: got {shown}, with which the teeth do not mesh; allowed: a larger sum"]
+        return []
 
     def _stiffness_problems(self) -> list[str]:
         """List problems with the course of the stiffness: it must stay positive."""

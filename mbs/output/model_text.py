@@ -111,7 +111,7 @@ def heading(model: Model, speed: float | None = None) -> list[str]:
 
 
 def _estimated(model: Model) -> list[str]:
-    """A line for each kind of bearing whose inner geometry is an estimate."""
+    """A line for each kind of bearing whose inner geometry is an estimate, and for each estimated gear mesh."""
     kinds: dict[tuple[str, str], list[str]] = {}
     entries = [(entry.geometry.name, entry.geometry.estimated, entry.name) for entry in model.scene.bearings]
     entries += [(entry.geometry.name, entry.geometry.estimated, entry.name) for entry in model.scene.balls]
@@ -119,7 +119,8 @@ def _estimated(model: Model) -> list[str]:
     for name, estimated, bearing in entries:
         if estimated:
             kinds.setdefault((name, estimated), []).append(bearing)
-    return [f"  {name} ({', '.join(bearings)}): {words}" for (name, words), bearings in kinds.items()]
+    lines = [f"  {name} ({', '.join(bearings)}): {words}" for (name, words), bearings in kinds.items()]
+    return lines + [f"  {pair.estimate}" for pair in model.scene.gears if pair.estimate]
 
 
 def band_lines(model: Model, film_share: float = 0.0) -> list[str]:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
+from collections.abc import Collection, Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from ehdmaps.jobs.table import Table
@@ -11,6 +13,7 @@ from mbs.gears.pair import FEWEST_TEETH, MOST_HARMONICS, MOST_TEETH, STEEPEST, G
 from mbs.model.elements import GROUND
 from mbs.scene import fields
 from mbs.scene.fields import DEGREE, MICROMETRE
+from mbs.scene.specs import BodySpec, FlexibleSpec
 
 if TYPE_CHECKING:
     from mbs.scene.surroundings import Built, Surroundings
@@ -40,7 +43,7 @@ def read_gears(section: Table, name: str) -> GearPair | None:
     )
     helix_angle = section.quantity("helix_angle", "rad", -STEEPEST, STEEPEST, DEGREE)
     face_width = section.quantity("face_width", "m", 1e-5, 10.0, LENGTH, required=True)
-    stiffness = section.quantity("stiffness", "N/m^2", 1e6, 1e13, STIFFNESS, required=True)
+    stiffness = section.quantity("stiffness", "N/m^2", 1e6, 1e13, STIFFNESS)
     backlash = section.quantity("backlash", "m", 0.0, 1.0, LENGTH, required=True)
     damping = section.quantity("damping", "N s/m", 0.0, 1e9, DAMPER)
     harmonics = _harmonics(section)
@@ -48,6 +51,9 @@ def read_gears(section: Table, name: str) -> GearPair | None:
     error = _quantities(section, "transmission_error", "m", 1e-2, MICROMETRE)
     error_phases = _quantities(section, "transmission_error_phases", "rad", 10.0, DEGREE)
     phase = section.quantity("phase", "rad", -10.0, 10.0, DEGREE)
+    shifts = _shifts(section)
+    distance = section.quantity("working_distance", "m", 1e-5, 100.0, LENGTH)
+    tips = _quantities(section, "tip_diameters", "m", 100.0, LENGTH)
     if (
         len(section.problems) > before
         or on is None
@@ -55,7 +61,6 @@ def read_gears(section: Table, name: str) -> GearPair | None:
         or module is None
         or pressure_angle is None
         or face_width is None
-        or stiffness is None
         or backlash is None
     ):
         return None
@@ -78,6 +83,9 @@ def read_gears(section: Table, name: str) -> GearPair | None:
             transmission_error_phases=error_phases,
             phase=phase or 0.0,
             helix_angle=helix_angle or 0.0,
+            profile_shift=shifts,
+            working_distance=distance,
+            tip_diameters=tips or None,  # type: ignore[arg-type]  # the pair says how many there are
         ),
     )
 
@@ -149,6 +157,47 @@ def _harmonics(section: Table) -> int | tuple[float, ...]:
             return tuple(float(part) for part in numbers)
     section.note("harmonics", f"got {value!r:.60}; allowed: {_WORDS_HARMONICS}, each from -1 to 1")
     return 0
+
+
+def _shifts(section: Table) -> tuple[float, ...]:
+    """Read the profile shifts; empty if absent or wrong."""
+    value = section.get("profile_shift")
+    if "profile_shift" not in section:
+        return ()
+    if isinstance(value, list) and 1 <= len(value) <= 2:
+        numbers = [part for part in value if isinstance(part, (int, float)) and not isinstance(part, bool)]
+        if len(numbers) == len(value):
+            return tuple(float(part) for part in numbers)
+    section.note("profile_shift", f"got {short(value)}; allowed: x1 and x2, such as [0.3, -0.1], or [x1] alone")
+    return ()
+
+
+def spins_by_teeth(bodies: Sequence[BodySpec], pairs: Iterable[GearPair], typed: Collection[str]) -> list[BodySpec]:
+    """The bodies with the spins that the teeth ask for, through any chain of meshes, where none is typed.
+
+    Parameters
+    ----------
+    bodies : sequence of BodySpec
+        The bodies.
+    pairs : iterable of GearPair
+        The gear pairs between them.
+    typed : collection of str
+        Names of the bodies whose spin is typed, which stays.
+    """
+    known = {body.name: body.spin for body in bodies if body.name in typed}
+    meshes = [(pair.on.partition(":")[0], pair.against.partition(":")[0], *pair.teeth) for pair in pairs]
+    meshes += [(other, one, theirs, own) for one, other, own, theirs in meshes]
+    for seed in (None, *bodies):
+        if seed is not None and seed.spin and seed.name not in known:
+            known[seed.name] = seed.spin  # of a shaft by lengths, where no teeth ask for another one
+        while found := {two: -known[one] * z1 / z2 for one, two, z1, z2 in meshes if one in known and two not in known}:
+            known |= found
+    return [
+        dataclasses.replace(body, spin=known[body.name])
+        if body.name in known and not isinstance(body, FlexibleSpec)
+        else body
+        for body in bodies
+    ]
 
 
 def _quantities(section: Table, key: str, unit: str, largest: float, display: Display) -> tuple[float, ...]:

@@ -25,6 +25,7 @@ from mbs.model.elements import Input, Load, Sensor, Spring
 from mbs.model.profiles import Constant, Course, Harmonic, LoadProfile, SpeedProfile
 from mbs.scene import fields, kinds
 from mbs.scene.fields import DEGREE, FORCE, HERTZ, LONGEST_FILE, MICROMETRE, MILLISECOND, MOMENT, Built
+from mbs.scene.gears import GearPair, spins_by_teeth
 from mbs.scene.matrices import MatrixSpec, read_spring
 from mbs.scene.scene import Scene
 from mbs.scene.shafts.standing import mounts, read_gravity
@@ -246,6 +247,7 @@ class _Reader:
             from mbs.scene.tapered.ribs import held_by_ribs
 
             elements = held_by_ribs(elements, bodies, top.problems)
+        bodies = spins_by_teeth(bodies, (one for one in elements if isinstance(one, GearPair)), self._typed_spins())
         inputs = self._all("inputs", self._input)
         sensors = self._all("sensors", self._sensor)
         laws = self._laws()
@@ -289,6 +291,11 @@ class _Reader:
             campbell=campbell or CampbellSettings(),
             assumed=self._assumed,
         )
+
+    def _typed_spins(self) -> set[str]:
+        """Names of the bodies whose spin is typed."""
+        tables = [entry for key in ("bodies", "shafts") for entry in self._top.get(key) or []]
+        return {str(entry.get("name")) for entry in tables if isinstance(entry, dict) and "spin" in entry}
 
     def _all(self, key: str, read: Callable[[Table, str], Built | None]) -> list[Built]:
         """Read each table of a list of tables; the name of each comes first."""

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import re
 import tomllib
+from importlib import resources
 
 import numpy as np
 import pytest
@@ -14,8 +16,11 @@ from ehdmaps.jobs.table import Table
 from mbs.gears.gear import gear_mesh
 from mbs.gears.gear_kernel import TOUCH, flank_force
 from mbs.gears.pair import GearPair, contact_ratio, pair_harmonics
+from mbs.model.body import Inertia
 from mbs.model.elements import Operation
-from mbs.scene.gears import read_gears
+from mbs.scene.gears import read_gears, spins_by_teeth
+from mbs.scene.reader import parse_scene
+from mbs.scene.specs import RigidSpec
 
 ALPHA = math.radians(20.0)
 PAIR = GearPair(
@@ -65,6 +70,17 @@ class TestPair:
             ({"transmission_error_phases": (0.0,) * 3}, "transmission_error_phases: got 3 for 2 amplitudes"),
             ({"teeth": (8, 60)}, "a tip reaches below the other's base circle"),
             ({"teeth": (60, 60), "pressure_angle": math.radians(45.0), "module": 1e-3}, None),
+            ({"profile_shift": (0.3,)}, "profile_shift: got x1 = (0.3,) alone; allowed: x1 and x2, or x1 and the"),
+            ({"profile_shift": (9.0, 0.0)}, "profile_shift: got (9.0, 0.0); allowed: x1 and x2 from -2 to 2"),
+            ({"profile_shift": (math.nan, 0.0)}, "profile_shift: got (nan, 0.0)"),
+            ({"profile_shift": (0.1, 0.1, 0.1)}, "profile_shift: got (0.1, 0.1, 0.1)"),
+            ({"profile_shift": (-1.5, -1.5)}, "with which the teeth do not mesh; allowed: a larger sum"),
+            ({"working_distance": 0.1}, "working_distance: got 100 mm; allowed with these profile shifts: 99 mm"),
+            ({"working_distance": 0.05}, "working_distance: got 50 mm; allowed: above the sum of the base radii"),
+            ({"working_distance": math.nan}, "working_distance: got nan mm"),
+            ({"profile_shift": (0.1,), "working_distance": 1.0}, "up to twice the distance without profile shift, 99"),
+            ({"tip_diameters": (0.01, 0.2)}, "tip_diameters: got (0.01, 0.2) m; allowed: two, above the base circles"),
+            ({"tip_diameters": (0.1,)}, "tip_diameters: got (0.1,) m; allowed: two"),
         ],
     )
     def test_refuses(self, changes, message):
@@ -94,6 +110,118 @@ class TestPair:
     def test_no_harmonics_is_a_constant_stiffness(self):
         assert dataclasses.replace(PAIR, harmonics=0).stiffness_harmonics == ()
         assert pair_harmonics(2.0, 3) == pytest.approx((0.0, 0.0, 0.0), abs=1e-16)
+
+
+SHIFTED = dataclasses.replace(PAIR, teeth=(12, 24), module=3e-3, profile_shift=(0.6, 0.36))
+
+
+class TestProfileShift:
+    def test_a_published_pair(self):
+        """KHK's worked example, 12 and 24 teeth of 3 mm, x 0.6 and 0.36; 1e-5 and 1e-4 are the digits printed."""
+        assert math.degrees(SHIFTED.working_pressure_angle) == pytest.approx(26.0886, rel=1e-5)
+        assert 1e3 * SHIFTED.centre_distance == pytest.approx(56.4999, rel=2e-6)
+        assert [2e3 * r for r in SHIFTED.pitch_radii] == pytest.approx([37.667, 75.333], rel=1.5e-5)
+        assert [2e3 * r for r in SHIFTED.base_radii] == pytest.approx([33.8289, 67.6579], rel=2e-6)
+        assert [1e3 * tip for tip in SHIFTED.tips] == pytest.approx([44.840, 79.400], rel=1e-5)
+        assert SHIFTED.contact_ratios[0] == pytest.approx(1.202, rel=4e-4)
+
+    def test_the_same_by_its_distance(self):
+        """The same table begins with 56.500 mm: the angle is 26.0888 degrees, the sum of the shifts 0.960."""
+        pair = dataclasses.replace(SHIFTED, profile_shift=(0.6,), working_distance=56.5e-3)
+        assert math.degrees(pair.working_pressure_angle) == pytest.approx(26.0888, rel=1e-5)
+        assert pair.shifts == pytest.approx((0.6, 0.36), abs=1e-3)
+        assert pair.centre_distance == pytest.approx(56.5e-3, rel=1e-12)
+        both = dataclasses.replace(pair, profile_shift=pair.shifts)
+        assert both.contact_ratios == pytest.approx(pair.contact_ratios, rel=1e-10)
+
+    def test_a_published_helical_pair(self):
+        """KHK's example of 12 and 60 teeth, 3 mm, 30 degrees, x1 0.09809: 23.1126 degrees, 125.000 mm."""
+        pair = dataclasses.replace(
+            PAIR, teeth=(12, 60), module=3e-3, helix_angle=math.radians(30.0), profile_shift=(0.09809, 0.0)
+        )
+        assert math.degrees(pair.working_pressure_angle) == pytest.approx(23.1126, rel=2e-6)
+        assert 1e3 * pair.centre_distance == pytest.approx(125.0, rel=1e-6)
+
+    def test_shifts_that_cancel_change_tips_alone(self):
+        pair = dataclasses.replace(PAIR, profile_shift=(0.3, -0.3))
+        assert pair.centre_distance == PAIR.centre_distance and pair.pitch_radii == PAIR.pitch_radii
+        assert [tip - plain for tip, plain in zip(pair.tips, PAIR.tips, strict=True)] == pytest.approx(
+            [0.6 * 4.5e-3, -0.6 * 4.5e-3], rel=1e-12
+        )
+
+    def test_contact_ratio_by_counting_along_the_line_of_action(self):
+        """Both tip circles cut the common tangent of the base circles; found on coordinates, by the given tips."""
+        first, second = SHIFTED.base_radii
+        a = SHIFTED.centre_distance
+        tangent = math.sqrt(a**2 - (first + second) ** 2)  # between the points where it leaves the base circles
+        place = np.linspace(0.0, tangent, 2_000_001)
+        inside = (np.hypot(first, place) <= 0.5 * SHIFTED.tips[0]) & (
+            np.hypot(second, tangent - place) <= 0.5 * SHIFTED.tips[1]
+        )
+        pitch = math.pi * SHIFTED.transverse_module * math.cos(SHIFTED.transverse_pressure_angle)
+        length = np.count_nonzero(inside) * tangent / 2e6
+        assert SHIFTED.contact_ratios[0] == pytest.approx(length / pitch, rel=1e-5)  # steps of the count
+        given = dataclasses.replace(SHIFTED, tip_diameters=(44.0e-3, 79.0e-3))
+        assert given.contact_ratios[0] < SHIFTED.contact_ratios[0]
+
+    @pytest.mark.parametrize("helix", [0.0, 0.3])
+    def test_turning_without_slip_compresses_nothing(self, helix):
+        """Rolling involutes: gears that turn by their teeth keep the compression, one alone moves by its base radius."""
+        pair = dataclasses.replace(SHIFTED, helix_angle=helix, tip_diameters=None)
+        second = pair.centre_distance * np.array([0.0, math.cos(0.4), math.sin(0.4)])
+        rows = gear_mesh(pair, (0.0,) * 3, second, 1.0, -0.5).rows
+        turn = np.zeros(12)
+        turn[3], turn[9] = 1.0, -0.5
+        np.testing.assert_allclose(rows @ turn, 0.0, atol=1e-15)
+        np.testing.assert_allclose(rows[:, 3], [pair.base_radii[0], -pair.base_radii[0]], rtol=1e-12)
+        with pytest.raises(InputError, match=r"the centres are 54 mm apart; allowed: with the profile shifts = 5"):
+            gear_mesh(pair, (0.0,) * 3, (0.0, 54e-3, 0.0), 1.0, -0.5)
+
+    def test_the_stiffness_of_iso_6336(self):
+        """The regression written out for 21 and 23 teeth, and what shifted teeth add; usual pairs have 14 to 20."""
+        plain = dataclasses.replace(PAIR, stiffness=None)
+        single = 0.8 * 0.975 / (0.04723 + 0.15551 / 21 + 0.25791 / 23)
+        expected = single * (0.75 * plain.contact_ratios[0] + 0.25)
+        assert 1e-9 * plain.mean_stiffness / plain.face_width == pytest.approx(expected, rel=1e-12)
+        assert 14.0 < expected < 20.0
+        assert plain.estimate.startswith("mesh: mesh stiffness 17") and PAIR.estimate == ""
+        stiffer = dataclasses.replace(plain, profile_shift=(0.4, 0.4)).mean_stiffness / plain.mean_stiffness
+        assert 0.85 < stiffer < 1.05  # thicker teeth, fewer of them in contact
+        mirrored = dataclasses.replace(plain, teeth=(23, 21)).mean_stiffness
+        assert mirrored == pytest.approx(plain.mean_stiffness, rel=1e-12)
+
+
+class TestSpins:
+    SHAFT = RigidSpec("one", [Inertia(1.0, 1.0, 1.0)], ["theta_x"])
+
+    def spins(self, typed, *pairs, **default):
+        bodies = [dataclasses.replace(self.SHAFT, name=name, spin=spin) for name, spin in default.items()]
+        meshes = [
+            dataclasses.replace(PAIR, on=f"{one}:gear", against=f"{other}:gear", teeth=teeth)
+            for one, other, *teeth in pairs
+        ]
+        return {body.name: body.spin for body in spins_by_teeth(bodies, meshes, typed)}
+
+    def test_through_a_chain_from_any_end(self):
+        chain = ("a", "b", 20, 40), ("b", "c", 21, 63)
+        assert self.spins({"a"}, *chain, a=3.0, b=0.0, c=0.0) == {"a": 3.0, "b": -1.5, "c": 0.5}
+        assert self.spins({"c"}, *chain, a=0.0, b=0.0, c=0.5) == {"a": 3.0, "b": -1.5, "c": 0.5}
+
+    def test_what_is_typed_stays(self):
+        assert self.spins({"a", "b"}, ("a", "b", 20, 40), a=1.0, b=-0.7) == {"a": 1.0, "b": -0.7}
+
+    def test_a_shaft_by_lengths_turns_with_the_system_where_nothing_else_is_said(self):
+        assert self.spins(set(), ("a", "b", 20, 40), a=1.0, b=1.0, d=0.0) == {"a": 1.0, "b": -0.5, "d": 0.0}
+        assert self.spins({"b"}, ("a", "b", 20, 40), a=1.0, b=1.0) == {"a": -2.0, "b": 1.0}
+
+    def test_in_a_scene(self):
+        text = (resources.files("mbs") / "systems" / "gearbox.toml").read_text(encoding="utf-8")
+        where = resources.files("mbs") / "systems"
+        without = re.sub(r"(?m)^spin = -.*\n", "", text)
+        assert without != text
+        scenes = [parse_scene(each, "gearbox", "gearbox", where) for each in (text, without)]
+        first, second = ([body.spin for body in scene.bodies] for scene in scenes)
+        assert first == pytest.approx(second, rel=1e-12)
 
 
 class TestPlacing:
@@ -262,7 +390,7 @@ class TestReader:
         assert problems == []
         for field in dataclasses.fields(GearPair):
             got, wanted = getattr(pair, field.name), getattr(PAIR, field.name)
-            assert got == (pytest.approx(wanted, rel=1e-14) if not isinstance(wanted, str) else wanted)
+            assert got == (wanted if isinstance(wanted, str | None) else pytest.approx(wanted, rel=1e-14))
 
     def test_short_table(self):
         pair, problems = read(
@@ -290,6 +418,10 @@ class TestReader:
             ({"face_width": "-1 mm"}, "face_width: got '-1 mm'"),
             ({"stiffness": "14 N/um"}, "stiffness: got the unit 'N/um'"),
             ({"backlash": None}, "backlash: missing"),
+            ({"profile_shift": 0.3}, "profile_shift: got 0.3; allowed: x1 and x2, such as [0.3, -0.1], or [x1] alone"),
+            ({"profile_shift": [0.1, "x"]}, "profile_shift: got a list of 2 entries; allowed: x1 and x2"),
+            ({"profile_shift": [0.2]}, "profile_shift: got x1 = (0.2,) alone"),
+            ({"working_distance": 99}, "working_distance: got 99 without a unit"),
             ({"damping": "-1 N s/m"}, "damping: got '-1 N s/m'; allowed: 0 N s/m"),
             ({"harmonics": 51}, "harmonics: got 51; allowed: a whole number from 0 to 50"),
             ({"harmonics": True}, "harmonics: got True"),
