@@ -6,8 +6,9 @@ import argparse
 import math
 from collections.abc import Iterator
 
+from ehdmaps.errors import InputError
 from ehdmaps.physics.rollers.ribbed_geometry import RibbedGeometry
-from ehdmaps.units import LENGTH, RPM
+from ehdmaps.units import LENGTH, RPM, SPRING
 from mbs.analyses.campbell import campbell_problems
 from mbs.analyses.hammer import hammer_problems
 from mbs.analyses.lsa import lsa_problems
@@ -17,7 +18,7 @@ from mbs.commands.cases import load_model
 from mbs.model.body import Body
 from mbs.output.model_text import heading
 from mbs.scene.assembly import Model
-from mbs.scene.fields import HERTZ, MICROMETRE
+from mbs.scene.fields import DEGREE, HERTZ, MICROMETRE
 from mbs.scene.scene import Scene
 from mbs.scene.specs import BallSpec, BearingSpec, RigidSpec, ShaftSpec, TaperedSpec
 from mbs.scene.tapered.ribs import open_sides
@@ -29,7 +30,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     model = load_model(arguments)
     scene = model.scene
     lines = [*heading(model, scene.speed), *_oil(scene), "", *_bodies(model), *_bearings(model)]
-    lines += [f"  gear pair {entry.name}: {entry.on} against {entry.against}" for entry in scene.gears]
+    lines += _gears(scene)
     lines += [f"  load {load.name}: on {load.on}" for load in scene.loads]
     found = open_sides(scene)
     ends = [f"problem: {problem}" for problem in found] or ["no problem found"]
@@ -80,6 +81,20 @@ def _bearings(model: Model) -> Iterator[str]:
     others: tuple[BallSpec | TaperedSpec, ...] = (*model.scene.balls, *model.scene.tapered)
     for other in others:
         yield f"  bearing {other.name}: {_located(other)}, {_where(model.scene, other)}"
+
+
+def _gears(scene: Scene) -> Iterator[str]:
+    """A line for each gear pair: places, how its teeth meet, mean stiffness."""
+    for pair in scene.gears:
+        try:
+            transverse, overlap = pair.contact_ratios
+            ratios = f"contact ratio {transverse:.3g} transverse, {overlap:.3g} by the helix"
+        except InputError:  # of teeth whose harmonics are given
+            ratios = "contact ratio not known"
+        yield (
+            f"  gear pair {pair.name}: {pair.on} against {pair.against}, {ratios}, working pressure angle "
+            f"{DEGREE.text(pair.working_pressure_angle)}, mean stiffness {SPRING.text(pair.mean_stiffness)}"
+        )
 
 
 def _located(spec: BallSpec | TaperedSpec) -> str:
