@@ -132,7 +132,7 @@ def life_lines(element: str, point: Any, row: Row) -> list[str]:
     point : object
         The point.
     row : mapping
-        Its numbers.
+        Numbers of the point by name, SI.
     """
     kind, power = ("ball", "3") if element == "ball" else ("roller", "10/3")
     rating, static = point.ratings
