@@ -443,7 +443,7 @@ class GearPair:
 
     @property
     def estimate(self) -> str:
-        """How the stiffness was estimated, and how well; empty where it is given."""
+        """Words on an estimated stiffness and its error; empty where it is given."""
         if self.stiffness is not None:
             return ""
         return (
