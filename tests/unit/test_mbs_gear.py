@@ -166,7 +166,7 @@ class TestProfileShift:
 
     @pytest.mark.parametrize("helix", [0.0, 0.3])
     def test_turning_without_slip_compresses_nothing(self, helix):
-        """Rolling involutes: gears that turn by their teeth keep the compression, one alone moves by its base radius."""
+        """Rolling involutes: turning by the teeth keeps the compression, one alone moves by its base radius."""
         pair = dataclasses.replace(SHIFTED, helix_angle=helix, tip_diameters=None)
         second = pair.centre_distance * np.array([0.0, math.cos(0.4), math.sin(0.4)])
         rows = gear_mesh(pair, (0.0,) * 3, second, 1.0, -0.5).rows
