@@ -11,8 +11,9 @@ from mbs import cli as of_machines
 
 _HEAD = """# Commands
 
-Made by `python -m tests.manual --write` from what `--help` says. Options that many commands take stand once, at the end
-of each program. A text with a unit may have any unit of its kind: `"500 rpm"`, `"8.33 Hz"`.
+All commands of `ehdmaps` and `mbs` with their options, as `--help` prints them. Options that many commands share stand
+at the end of each program. A quantity may have any unit of its kind: `"500 rpm"`, `"8.33 Hz"`. This page is made by
+`python -m tests.manual --write`.
 """
 
 

@@ -24,20 +24,21 @@ _AS_ELSEWHERE = ("[correction]", "geometry", "[[bearings]] supply")
 
 _JOB = """# Keys of job files
 
-Made by `python -m tests.manual --write` from what the readers ask for. A quantity is a text with a unit, `"62 N/mm"`;
-any unit of its kind will do. Limits include both ends. A key without a default may be left out unless it says
-"required". Unknown keys are errors, and all problems of a file are listed at once. The
-[reference](reference_ehdmaps.md) explains what lies behind them.
+A job states a bearing or contact, an oil, the axes of a map and the solver; `ehdmaps check` lists all problems of a
+file at once. A quantity is a text with a unit, `"62 N/mm"`; any unit of its kind will do. Limits include both ends. A
+key without a default is optional unless it is marked "required". Unknown keys are errors. Models and limits are in the
+[reference](reference_ehdmaps.md). This page is made by `python -m tests.manual --write` from what the readers allow.
 """
 _SCENE = """# Keys of scene files
 
-Made by `python -m tests.manual --write` from what the readers ask for. A quantity is a text with a unit, `"500 rpm"`;
-any unit of its kind will do. Limits include both ends. A key without a default may be left out unless it says
-"required". Unknown keys are errors, and all problems of a file are listed at once. The
-[reference](reference_mbs.md#scene-file) explains what lies behind them.
+A scene states bodies, bearings, loads and analyses of a machine; `mbs check` lists all problems of a file at once. A
+quantity is a text with a unit, `"500 rpm"`; any unit of its kind will do. Limits include both ends. A key without a
+default is optional unless it is marked "required". Unknown keys are errors. Models and limits are in the
+[reference](reference_mbs.md#scene-file). This page is made by `python -m tests.manual --write` from what the readers
+allow.
 
-Places are written `"body:frame"`; `"body"` alone is its frame `centre`, and `"ground"` does not move. Every table may
-have `assumed`, a list of those of its keys whose values are assumptions; results tell them.
+Places are written `"body:frame"`; `"body"` alone is its frame `centre`, and `"ground"` is fixed. Every table may
+have `assumed`, a list of those of its keys whose values are assumptions; results list them.
 """
 
 
@@ -125,7 +126,7 @@ def _table(name: str, readings: Mapping[str, Reading], words: Mapping[str, Any])
     lines = ["", f"{level} {words.get('_title', name)}", ""]
     if "_" in words:
         lines += [words["_"], ""]
-    lines += ["| key | allowed | default | what it is |", "|---|---|---|---|"]
+    lines += ["| key | allowed | default | meaning |", "|---|---|---|---|"]
     for key, entry in words.items():
         if key in readings:
             read = readings[key]
