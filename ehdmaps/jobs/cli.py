@@ -60,6 +60,12 @@ def parser() -> argparse.ArgumentParser:
     )
     generate.add_argument("--solver", metavar="NAME", help=_SOLVER)
     generate.add_argument("--workers", metavar="N", type=count, help="processes; default: all cores")
+    generate.add_argument(
+        "--executor",
+        metavar="ENGINE",
+        help="what solves the points in place of processes on this machine: dask:ADDRESS, executorlib:local, "
+        "executorlib:slurm or mpi; the map and what is solved stay here",
+    )
     generate.add_argument("--fresh", action="store_true", help="forget what is solved already")
     generate.add_argument(
         "--fresh-films",

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Mapping
+from concurrent.futures import Executor
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers
+from ehdmaps.jobs.executors import executor_problem, named_executor
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.make.batch import SUMMARY, is_batch, read_batch
 from ehdmaps.jobs.make.batch_generate import batch_path, generate_batch, make_folder
@@ -37,12 +39,14 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         return _batch(batches[0], arguments)
     tolerance = None if arguments.law_tolerance is None else read_tolerance(arguments.law_tolerance)
     texts, status = [], 0
-    for job, output in _planned(arguments):
-        text, map_status = _made(job, output, arguments, tolerance)
-        texts.append(text)
-        status = max(status, map_status)
-        if map_status == INTERRUPTED:
-            break
+    planned = _planned(arguments)
+    with named_executor(arguments.executor, arguments.workers) as executor:
+        for job, output in planned:
+            text, map_status = _made(job, output, arguments, tolerance, executor)
+            texts.append(text)
+            status = max(status, map_status)
+            if map_status == INTERRUPTED:
+                break
     return "\n\n".join(text for text in texts if text), status
 
 
@@ -67,14 +71,16 @@ def _batch(source: str, arguments: argparse.Namespace) -> tuple[str, int]:
     check_outputs([Output("summary", folder / SUMMARY, TABLE)], [source])
     store = store_path(batch_path(batch, folder))
     try:
-        result = generate_batch(
-            batch,
-            folder,
-            arguments.workers,
-            arguments.fresh,
-            progress,
-            told=lambda total: progress(total, "map"),
-        )
+        with named_executor(arguments.executor, arguments.workers) as executor:
+            result = generate_batch(
+                batch,
+                folder,
+                arguments.workers,
+                arguments.fresh,
+                progress,
+                executor,
+                told=lambda total: progress(total, "map"),
+            )
     except KeyboardInterrupt:
         tell(f"\nstopped; what is solved is kept in {store}: the same command goes on from there")
         return "", INTERRUPTED
@@ -85,6 +91,8 @@ def _planned(arguments: argparse.Namespace) -> list[tuple[Job, Path]]:
     """All jobs with the maps that they become; all problems at once, before the first one is made."""
     several = len(arguments.jobs) > 1
     problems = []
+    if arguments.executor is not None and (problem := executor_problem(arguments.executor)):
+        problems.append(problem)
     if several and arguments.output is not None:
         problems.append("-o: stands beside several jobs; allowed: with one; each map is called after its job")
     planned: list[tuple[Job, Path]] = []
@@ -130,7 +138,9 @@ def read_tolerance(text: str) -> float:
     return quantity_within(text, "", low, high, f"--law-tolerance: got {text[:40]!r}; {allowed}")
 
 
-def _made(job: Job, output: Path, arguments: argparse.Namespace, tolerance: float | None) -> tuple[str, int]:
+def _made(
+    job: Job, output: Path, arguments: argparse.Namespace, tolerance: float | None, executor: Executor | None
+) -> tuple[str, int]:
     """Make one map."""
     by = job.corrected_by
     if arguments.fresh_films:
@@ -140,7 +150,7 @@ def _made(job: Job, output: Path, arguments: argparse.Namespace, tolerance: floa
     corrector = _built(by.solver, by.options, kept) if by else None
     try:
         generated = generate(
-            job, output, arguments.workers, arguments.fresh, progress, solver, corrector, tolerance=tolerance
+            job, output, arguments.workers, arguments.fresh, progress, solver, corrector, executor, tolerance=tolerance
         )
     except KeyboardInterrupt:
         tell(f"\nstopped; what is solved is kept in {store_path(output)}: the same command goes on from there")
