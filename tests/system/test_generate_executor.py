@@ -90,6 +90,19 @@ def test_processes_of_executorlib_make_the_same_map(job, tmp_path, capsys):
 
 
 @pytest.mark.slow  # the same
+def test_ranks_of_mpi_make_the_same_map(job, tmp_path, capsys):
+    mpiexec = Path(sys.executable).with_name("mpiexec")
+    if not mpiexec.exists():
+        pytest.skip("no mpiexec beside Python: pip install mpich")
+    assert main(["generate", str(job), "-o", str(tmp_path / "own.nc"), "--workers", "1"]) == 0
+    command = [sys.executable, "-m", "mpi4py.futures", "-m", "ehdmaps", "generate", str(job)]
+    command += ["-o", str(tmp_path / "theirs.nc"), "--executor", "mpi"]
+    done = subprocess.run([mpiexec, "-n", "3", *command], capture_output=True, text=True, timeout=240, check=False)
+    assert done.returncode == 0, done.stderr
+    same(tmp_path / "own.nc", tmp_path / "theirs.nc")
+
+
+@pytest.mark.slow  # the same
 def test_a_dask_cluster_that_loses_a_worker_makes_the_same_map(job, tmp_path, capsys):
     """A scheduler and two workers; one is killed by SIGKILL once the first points are told."""
     assert main(["generate", str(job), "-o", str(tmp_path / "own.nc"), "--workers", "1"]) == 0
