@@ -279,4 +279,4 @@ def fatigue_limit(static_rating: float, pitch_diameter: float, kind: Elements) -
         Kind of the rolling elements.
     """
     over, power = (22.0, 0.5) if kind == "ball" else (8.2, 0.3)
-    return static_rating / over * min(1.0, 0.1 / pitch_diameter) ** power
+    return static_rating / over * math.pow(min(1.0, 0.1 / pitch_diameter), power)

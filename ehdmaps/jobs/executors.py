@@ -71,8 +71,7 @@ def named_executor(text: str | None, workers: int | None = None) -> Iterator[Exe
     if problem := executor_problem(text):
         raise InputError(problem)
     engine, _, where = text.partition(":")
-    open_engine: Callable[[str, int | None], contextlib.AbstractContextManager[Any]]
-    open_engine = {"dask": _dask, "executorlib": _executorlib, "mpi": _mpi}[engine]
+    open_engine: Callable[[str, int | None], Any] = {"dask": _dask, "executorlib": _executorlib, "mpi": _mpi}[engine]
     with open_engine(where, workers) as executor:
         yield executor
 
@@ -83,17 +82,17 @@ def _dask(address: str, _: int | None) -> Iterator[Executor]:
     with needs("cluster", "distributed", "--executor dask"):
         from distributed import Client
     try:
-        client = Client(address, timeout=_ANSWERS_WITHIN, set_as_default=False)
+        client = Client(address, timeout=_ANSWERS_WITHIN, set_as_default=False)  # type: ignore[no-untyped-call]
     except (OSError, ValueError, TypeError) as error:
         raise InputError(
             f"--executor: no dask scheduler answers at {address!r:.60} ({error!s:.100}); start one with `dask "
             "scheduler`, and workers with `dask worker ADDRESS --nworkers N --nthreads 1`"
         ) from error
-    with client, client.get_executor(pure=False) as executor:
+    with client, client.get_executor(pure=False) as executor:  # type: ignore[no-untyped-call]
         yield executor
 
 
-def _executorlib(where: str, workers: int | None) -> contextlib.AbstractContextManager[Any]:
+def _executorlib(where: str, workers: int | None) -> Any:
     """Executor of executorlib; its processes stay from task to task."""
     with needs("cluster", "executorlib", "--executor executorlib"):
         from executorlib import SingleNodeExecutor, SlurmJobExecutor
@@ -102,7 +101,7 @@ def _executorlib(where: str, workers: int | None) -> contextlib.AbstractContextM
     return SingleNodeExecutor(max_workers=workers or available_cores(), block_allocation=True)
 
 
-def _mpi(_: str, workers: int | None) -> contextlib.AbstractContextManager[Any]:
+def _mpi(_: str, workers: int | None) -> Any:
     """Executor of the ranks of MPI."""
     with needs("mpi", "mpi4py", "--executor mpi"):
         from mpi4py.futures import MPIPoolExecutor

@@ -428,8 +428,9 @@ class GearPair:
         working, heights = None, (math.cos(self.helix_angle),) * 2
         if self.profile_shift or self.tip_diameters is not None:
             working, module = self.working_pressure_angle, self.transverse_module
-            heights = tuple(0.5 * (tip / module - z) for tip, z in zip(self.tips, self.teeth, strict=True))
-        transverse = contact_ratio(self.teeth, self.transverse_pressure_angle, (heights[0], heights[1]), working)
+            (tip1, tip2), (z1, z2) = self.tips, self.teeth
+            heights = 0.5 * (tip1 / module - z1), 0.5 * (tip2 / module - z2)
+        transverse = contact_ratio(self.teeth, self.transverse_pressure_angle, heights, working)
         return transverse, overlap_ratio(self.face_width, self.helix_angle, self.module)
 
     @property

@@ -19,13 +19,14 @@ from ehdmaps.jobs.supply import read_supply, read_surface
 from ehdmaps.jobs.table import Table
 from ehdmaps.physics.contact import OIL_TEMPERATURES
 from ehdmaps.units import DAMPER, RPM, SPRING, TEMPERATURE, Display, closest, short
+from mbs.gears.pair import GearPair
 from mbs.model.body import FREEDOMS, Inertia
 from mbs.model.drive import Drive, DrivenSpeed, TorqueCurve
 from mbs.model.elements import Input, Load, Sensor, Spring
 from mbs.model.profiles import Constant, Course, Harmonic, LoadProfile, SpeedProfile
 from mbs.scene import fields, kinds
 from mbs.scene.fields import DEGREE, FORCE, HERTZ, LONGEST_FILE, MICROMETRE, MILLISECOND, MOMENT, Built
-from mbs.scene.gears import GearPair, spins_by_teeth
+from mbs.scene.gears import spins_by_teeth
 from mbs.scene.matrices import MatrixSpec, read_spring
 from mbs.scene.scene import Scene
 from mbs.scene.shafts.standing import mounts, read_gravity

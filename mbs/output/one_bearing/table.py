@@ -10,7 +10,7 @@ import numpy as np
 
 from ehdmaps.units import DAMPER, FILM, PRESSURE, RPM, SPRING, Display
 from mbs.bearings.films import SIDES
-from mbs.life import CLEAN, CONTAMINATED, LEAST_RATIO, a_iso, fatigue_limit, ratio_of_films
+from mbs.life import CLEAN, CONTAMINATED, LEAST_RATIO, Elements, a_iso, fatigue_limit, ratio_of_films
 from mbs.model.findings import MEANINGLESS, Severity, WithFindings
 from mbs.output.one_bearing.kind import (
     Column,
@@ -134,7 +134,8 @@ def life_lines(element: str, point: Any, row: Row) -> list[str]:
     row : mapping
         Numbers of the point by name, SI.
     """
-    kind, power = ("ball", "3") if element == "ball" else ("roller", "10/3")
+    kind: Elements = "ball" if element == "ball" else "roller"
+    power = {"ball": "3", "roller": "10/3"}[kind]
     rating, static = point.ratings
     words = (
         f"equivalent load {FORCE.text(row['equivalent_load'])}, L10r {row['reference_life']:.4g} million turns "
