@@ -24,4 +24,6 @@ autodoc_typehints = "none"
 autodoc_member_order = "bysource"
 exclude_patterns = ["_build"]
 html_theme = "furo"
+html_static_path = ["wide.css"]
+html_css_files = ["wide.css"]
 html_title = f"ehdmaps {release.partition('+')[0]}"

@@ -337,9 +337,7 @@ def _bearing(top: Program) -> None:
         """'{ crown_drop = "10 um" }' or '{ positions = ["0 mm", "7.5 mm"], depths = ["0 um", "4 um"] }' (iso)""",
     )
     command.add_argument("--slices", metavar="N", default="41", help="of a roller (41)")
-    command.add_argument(
-        "--coupled", action="store_true", help="slices know of their neighbours: the elasticity of three dimensions"
-    )
+    command.add_argument("--coupled", action="store_true", help="slices coupled elastically, as in three dimensions")
     command.add_argument(
         "-o",
         "--output",

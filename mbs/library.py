@@ -92,7 +92,7 @@ def bearing(
     slices : int
         Slices of a roller.
     coupled : bool
-        Whether slices know of their neighbours.
+        Whether slices are coupled elastically.
     choices : dict of str to str, optional
         Choices by the names of the options: {"law": "hertz", "clearance": "20 um"}.
 

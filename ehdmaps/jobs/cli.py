@@ -14,7 +14,7 @@ from ehdmaps.program import Program, count, run
 _KEEP = "openfoam: keep the case folders of all runs; default folder: ehdmaps-cases"
 _SOLVER = (
     "hertz | formula | reynolds | openfoam; instead of the job's, with the physics and shear of the "
-    "job where it knows them, and default settings"
+    "job where it has them, and default settings"
 )
 
 _TARGET = "csv"
@@ -39,7 +39,7 @@ def parser() -> argparse.ArgumentParser:
         description="Elastohydrodynamic contact maps for roller bearings.",
         epilog="JOB is a job file, a map (its job is repeated), or the name of a shipped job: nu308, n1014, "
         "nu308_cfd, nu308_openfoam, nu308_night; for generate, check and status also a batch file, of many maps. "
-        "Exit status: 0 done; 1 done, with failed points or laws that miss their bars; 2 bad input, nothing "
+        "Exit status: 0 done; 1 done, with failed points or laws beyond their error limits; 2 bad input, nothing "
         "written; 130 stopped with Ctrl-C, 143 by SIGTERM.",
         renamed=_RENAMED,
     )
@@ -49,7 +49,7 @@ def parser() -> argparse.ArgumentParser:
     instead.add_argument("--oil", metavar="NAME", help='its oil, such as "ISO VG 46, VI 120"; default: FVA3')
 
     generate = top.add_command(
-        _MAKE, "generate", "make a map; the same command goes on after an interruption", _OF_BEARING
+        _MAKE, "generate", "make a map; after an interruption the same command continues", _OF_BEARING
     )
     generate.add_argument("jobs", metavar="JOB", nargs="*", help="of several, one map after the other")
     generate.add_argument(
@@ -66,7 +66,7 @@ def parser() -> argparse.ArgumentParser:
         help="what solves the points in place of processes on this machine: dask:ADDRESS, executorlib:local, "
         "executorlib:slurm or mpi; the map and what is solved stay here",
     )
-    generate.add_argument("--fresh", action="store_true", help="forget what is solved already")
+    generate.add_argument("--fresh", action="store_true", help="do not use what is solved already")
     generate.add_argument(
         "--fresh-films",
         action="store_true",
@@ -76,11 +76,11 @@ def parser() -> argparse.ArgumentParser:
         "--law-tolerance",
         metavar="SHARE",
         help='of k, c and film offset of the contact laws, "1 %%": fresh solves confirm it at 99 %% of random points '
-        "(95 %% in the damping valley); solved lines are laid more closely until then; default: the usual bars",
+        "(95 %% in the damping valley); solved lines are refined until then; default: the usual error limits",
     )
     generate.add_argument("--keep-cases", metavar="FOLDER", nargs="?", const="ehdmaps-cases", help=_KEEP)
 
-    status = top.add_command(_MAKE, "status", "how far a map is that is being made, or was interrupted")
+    status = top.add_command(_MAKE, "status", "progress of a map that is being made, or was interrupted")
     status.add_argument(
         "map",
         metavar="MAP.nc",
@@ -95,7 +95,7 @@ def parser() -> argparse.ArgumentParser:
     _add_job(check)
     check.add_argument("--solver", metavar="NAME", help=_SOLVER)
 
-    show = top.add_command(_LOOK, "show", "what a map holds", _OF_MAPS)
+    show = top.add_command(_LOOK, "show", "what a map contains", _OF_MAPS)
     _add_job(show, "map")
 
     plot = top.add_command(
@@ -148,7 +148,7 @@ def parser() -> argparse.ArgumentParser:
     solve.add_argument(
         "--solver",
         metavar="NAME",
-        help=_SOLVER + "; or roller, roller:PROFILE: whole rollers under --load, with their ends",
+        help=_SOLVER + "; or roller, roller:PROFILE: rollers of finite length under --load",
     )
     solve.add_argument(
         "--films", metavar="FILMS", help="of balls: solved | table; table: read from the film table; default: solved"
@@ -184,7 +184,7 @@ def parser() -> argparse.ArgumentParser:
     way.add_argument(
         "--check",
         action="store_true",
-        help="say whether the executable is up to date, and solve a point with it; build nothing",
+        help="check whether the executable is up to date, and solve a point with it; build nothing",
     )
 
     _add_solids(top)

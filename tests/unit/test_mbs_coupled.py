@@ -1,4 +1,4 @@
-"""Bearings whose slices know of their neighbours: against the method in Python, derivatives, energy, refusals."""
+"""Bearings with coupled slices: against the method in Python, derivatives, energy, refusals."""
 
 from __future__ import annotations
 

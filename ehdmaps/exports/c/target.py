@@ -25,7 +25,7 @@ def add_law_arguments(parser: argparse.ArgumentParser) -> None:
         "--outside",
         choices=get_args(OutsidePolicy),
         default="error",
-        help="outside the map: calls are refused (the default), or held at its edge and told so",
+        help="outside the map: refuse calls (the default), or go on by the edge or the asymptote, with a status",
     )
     parser.add_argument("--clearance", metavar="LENGTH", help="diametral clearance; that of the map if left out")
     parser.add_argument("--slices", type=int, default=41, help="slices of a roller; 41 if left out")

@@ -124,7 +124,7 @@ def _lines(generated: Generated, output: Path) -> Iterator[str]:
     )
     estimated = json.loads(dataset.attrs["lubricant"]).get("estimated")
     if estimated or int(dataset.attrs["lubricant_verified"]) == 0:
-        yield f"lubricant: {estimated or 'its data are not verified; see the reference page'}"
+        yield f"lubricant: {estimated or 'its data are not verified: compare them with a data sheet'}"
 
 
 FEW = 200
