@@ -26,7 +26,7 @@ linear              `linearised` (modes, responses, over speed); `modal` (identi
 in time             `transient` (method, runs in C); `spectral` (levels over speed and order); `timedata` (files)
 analyses            `analyses`: statics, modes, lsa, sweep, runup, campbell, hammer; `planning`: what a scene requires;
                     `library`: what needs no model
-laboratory          `instruments`: tradeoff, variants, tolerance, stability
+laboratory          `laboratory`: tradeoff, variants, stability
 for people          `output` (datasets, figures), `report` (a page to send), `commands`, `cli`; `systems`: scenes
 ==================  ====================================================================================
 
@@ -57,7 +57,7 @@ if TYPE_CHECKING:
     from mbs.flexible.plan import Attached, ReductionPlan
     from mbs.flexible.shaft_parts import Disc, Section
     from mbs.gears.pair import GearPair
-    from mbs.instruments.variants import Variation, variants
+    from mbs.laboratory.variants import Variation, variants
     from mbs.library import bearing, modal_fit, reduce, write_report
     from mbs.model.body import Inertia
     from mbs.model.drive import Drive
@@ -176,7 +176,7 @@ _HOMES = {
     "SweepRange": "settings",
     "SweepSettings": "analyses.sweep",
     "Unbalance": "scene.turning",
-    "Variation": "instruments.variants",
+    "Variation": "laboratory.variants",
     "assemble": "scene.assembly",
     "automatic": "planning.auto",
     "bearing": "library",
@@ -194,7 +194,7 @@ _HOMES = {
     "shipped_systems": "scene.reader",
     "statics": "analyses.statics",
     "sweep": "analyses.sweep",
-    "variants": "instruments.variants",
+    "variants": "laboratory.variants",
     "write_report": "library",
 }
 

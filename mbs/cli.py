@@ -13,7 +13,7 @@ from ehdmaps.errors import AnalysisError
 from ehdmaps.program import Program, count, run
 from mbs.scene.choices import OPTIONS, VARIED
 
-_INSTRUMENTS = ("stability", "tradeoff", "variants")
+_MEASURING = ("stability", "tradeoff", "variants")
 """Commands that measure the program and its choices."""
 
 _LOOK, _LINEAR, _TIME, _MEASURED = "look", "linear", "in time", "measured"
@@ -574,7 +574,10 @@ def _command(arguments: argparse.Namespace) -> tuple[str, int]:
     """Load the command that is asked for, and do it."""
     # A module cannot be called import.
     name = {"import": "importing"}.get(arguments.command, arguments.command.replace("-", "_"))
-    rooms = {**dict.fromkeys(_INSTRUMENTS, "mbs.instruments.commands"), **dict.fromkeys(_SCENES, "mbs.commands.scenes")}
+    rooms = {
+        **dict.fromkeys(_MEASURING, "mbs.laboratory.commands"),
+        **dict.fromkeys(_SCENES, "mbs.commands.scenes"),
+    }
     room = rooms.get(name, "mbs.commands")
     result: tuple[str, int] = importlib.import_module(f"{room}.{name}").run(arguments)
     return result

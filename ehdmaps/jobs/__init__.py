@@ -18,12 +18,13 @@ regression   a smooth function through few points, with what it is uncertain by
 make         the room from a job to a map file, from a batch to its maps
 solve        the room of single operating points
 show         the room where a map is opened, described, drawn, compared
-instruments  the laboratory: speed against accuracy, stability at the extremes
+budget       the room of error budgets: ways of computing a contact beside others
+cost         time and memory of a job, from points that are tried
 calls        the functions of Python: generate, compare, solve, solve_points
 commands     one module a command
 cli          the command line
 ===========  ====================================================================================
 
-Arrows run from `show`, `solve` and `instruments` to `make`, and from all of them to the modules above the rooms.
+Arrows run from `show`, `solve` and `budget` to `make`, and from all of them to the modules above the rooms.
 Nothing is imported here: take the names from their modules.
 """

@@ -24,6 +24,9 @@ _MAKE, _LOOK, _GIVE, _MEASURE = "make a map", "look", "hand over", "laboratory"
 _OF_BEARING = ("bearing", "oil")
 _OF_MAPS = (*(choice.key for choice in MAP_CHOICES), *_OF_BEARING)
 
+_MEASURING = ("stability", "tradeoff")
+"""Commands whose work is in `mbs.laboratory`: no room of ehdmaps imports it."""
+
 _RENAMED = {
     "--tolerance": "--law-tolerance of generate",
     "--frequencies": "--frequency FROM TO POINTS",
@@ -355,7 +358,11 @@ def _command(arguments: argparse.Namespace) -> tuple[str, int]:
 
         if is_roller(arguments.solver):
             return solve_rollers(arguments)
-    result: tuple[str, int] = importlib.import_module(f"ehdmaps.jobs.commands.{arguments.command}").run(arguments)
+    result: tuple[str, int]
+    if arguments.command in _MEASURING:
+        result = importlib.import_module(f"mbs.laboratory.commands.{arguments.command}").run_contacts(arguments)
+    else:
+        result = importlib.import_module(f"ehdmaps.jobs.commands.{arguments.command}").run(arguments)
     return result
 
 

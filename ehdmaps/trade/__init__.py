@@ -1,13 +1,10 @@
-"""Speed against accuracy, as it was measured: one record for contacts, maps and systems, and how it is shown.
-
-The modules in the order in which data pass through them:
+"""Speed against accuracy, as it was measured: rows of contacts and of machines, and what is made of them.
 
 =======  ================================================================================
-record   `Trade`: choices with their cost, and the errors of what a user looks at; which no other one beats
-text     printed tables
-data     labelled dataset and JSON, and their files by the rule of all files that are written
-figure   one picture, with the front of the best choices
+record   `Trade`: choices with their cost, and the errors of what a user looks at
+entry    `Entry`: a way to an answer as it will be measured, beside what it is held against
+budget   sources of error, by how much results are wrong without them
 =======  ================================================================================
 
-What is measured is no part of it: contacts and maps are in `ehdmaps.jobs`, systems in `mbs.analyses`.
+Contacts are measured in `ehdmaps.jobs.budget`, machines in `mbs.budget`, both at length in `mbs.laboratory`.
 """

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -25,6 +24,21 @@ class Judged:
 
     name: str
     unit: str = "1"
+
+    @property
+    def printed_unit(self) -> str:
+        """Unit of an error as it is printed."""
+        return "%" if self.unit == "1" else self.unit
+
+    def printed(self, error: float) -> float:
+        """An error as it is printed: in per cent, or dB.
+
+        Parameters
+        ----------
+        error : float
+            Error of the quantity.
+        """
+        return error * 100.0 if self.unit == "1" else error
 
 
 @dataclass(frozen=True)
@@ -214,30 +228,12 @@ class Trade:
     sources: tuple[Source, ...] = ()
     shown: tuple[str, ...] = ()
 
+    def quantity(self, name: str) -> Judged:
+        """One of the quantities.
 
-def front(cost: Sequence[float], error: Sequence[float]) -> tuple[int, ...]:
-    """Indices of the choices that no other one beats, by rising cost.
-
-    Parameters
-    ----------
-    cost : sequence of float
-        Cost of each choice.
-    error : sequence of float
-        Error of each choice; one whose cost or error is not finite is never on the front.
-
-    Returns
-    -------
-    tuple of int
-        Each further one costs more than the one before, and has a smaller error.
-
-    Examples
-    --------
-    >>> front([1.0, 2.0, 3.0, 2.5], [0.5, 0.1, 0.2, math.nan])
-    (0, 1)
-    """
-    known = [index for index in range(len(cost)) if math.isfinite(cost[index]) and math.isfinite(error[index])]
-    best: list[int] = []
-    for index in sorted(known, key=lambda index: (cost[index], error[index])):
-        if not best or error[index] < error[best[-1]]:
-            best.append(index)
-    return tuple(best)
+        Parameters
+        ----------
+        name : str
+            Name of the quantity.
+        """
+        return next(judged for judged in self.judged if judged.name == name)

@@ -25,6 +25,6 @@ soundness      results whose own checks failed so grossly that their figures mea
 =============  ====================================================================================
 
 What a scene requires of its maps and physics is in `mbs.planning`, what measures the program and its
-choices in `mbs.instruments`. Nothing is imported here: take
+choices in `mbs.laboratory`. Nothing is imported here: take
 the functions from `mbs`, or from their modules.
 """

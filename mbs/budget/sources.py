@@ -9,18 +9,17 @@ import contextlib
 import dataclasses
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
-from ehdmaps.arrays import FloatArray
 from ehdmaps.choices import supply_from_text
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.surface import Surface
+from ehdmaps.trade.entry import Entry, Group
 from ehdmaps.trade.record import Choice, ErrorSummary, Judged, Source, Trade
 from ehdmaps.units import RPM
 from mbs.analyses.case import common_clearance
-from mbs.budget.linear_look import LinearLook, LinearReference, linear_look
+from mbs.budget.linear_look import LinearDifferences, LinearLook, LinearReference, linear_look
 from mbs.scene.assembly import Model
 from mbs.scene.choices import CHOICES, LawChoice, Subject, named_law
 from mbs.scene.contact_laws import law_label
@@ -46,15 +45,8 @@ UNKNOWN = "what a scene states"
 """Group of the choices of what is stated."""
 
 
-@dataclass(frozen=True)
-class Tried:
-    """Choice that is measured, and what it is compared with."""
-
-    group: str
-    label: str
-    subject: Subject
-    reference: Subject
-    default: bool = False
+Tried = Entry[Subject]
+"""A choice that is measured, in a group with what it is compared with."""
 
 
 def model_choices(base: Subject, model: Model) -> list[Tried]:
@@ -115,10 +107,10 @@ def error_budget(subject: Subject, highest: float) -> Trade:
     choices = []
     for one in model_choices(base, model):
         try:
-            found = beside.look if one.subject is base else linear_look(one.subject.model())
+            found = beside.look if one.way is base else linear_look(one.way.model())
         except (AnalysisError, InputError):
             continue  # what has no equilibrium has no error either
-        choices.append(linear_row(f"linear: {one.group}", one.label, found, beside, one.default))
+        choices.append(linear_row(one, found, beside))
     counted = f"{beside.chosen.size} modes and {len(beside.peaks)} peaks"
     sample = f"{counted} up to {HERTZ.text(highest)} at {RPM.text(scene.speed)}"
     return Trade(
@@ -139,7 +131,7 @@ def error_budget(subject: Subject, highest: float) -> Trade:
 
 def _unknown(base: Subject, model: Model) -> Iterator[Tried]:
     """Choices of what a scene states or leaves open, each a little off."""
-    clearance = common_clearance(model)
+    clearance, group = common_clearance(model), Group(UNKNOWN, base)
     stated: list[tuple[str, float | str | Surface, str]] = [
         ("temperature", base.scene.temperature + WARMER, f"rings {WARMER:g} K warmer than stated")
     ]
@@ -153,15 +145,15 @@ def _unknown(base: Subject, model: Model) -> Iterator[Tried]:
         stated.append(("roughness", ROUGH, ROUGH.label))
     for key, value, label in stated:
         with contextlib.suppress(InputError):
-            yield Tried(UNKNOWN, label, CHOICES[key].change(base, value), base)
+            yield Entry(group, label, CHOICES[key].change(base, value))
     if model.surface is not None and not model.surface.smooth and model.surface.corners[0] != model.surface:
         soft = dataclasses.replace(base.scene, surface=model.surface.corners[0])
-        yield Tried(UNKNOWN, "softest usual asperities", dataclasses.replace(base, scene=soft), base)
+        yield Entry(group, "softest usual asperities", dataclasses.replace(base, scene=soft))
 
 
 def _laws(base: Subject) -> Iterator[Tried]:
     """Laws from dry to the most complete one."""
-    memory = base.law
+    memory, group = base.law, Group("law", base)
     has_map = memory.name != "formula"
     has_formula = has_map and not base.scene.balls  # balls have none
     laws = [
@@ -174,64 +166,60 @@ def _laws(base: Subject) -> Iterator[Tried]:
     for law, default in laws:
         same = law.name == memory.name and law.films == memory.films
         subject = base if same else dataclasses.replace(base, law=law)
-        yield Tried("law", law.label, subject, base, default)
+        yield Entry(group, law.label, subject, default=default)
 
 
 def _supplies(base: Subject) -> Iterator[Tried]:
     """Oil supplies, by the reference law."""
     if base.scene.balls:  # whose films are flooded
         return
-    given = set(base.model().supplies.values())
+    given, group = set(base.model().supplies.values()), Group("oil supply", base)
     for text in SUPPLIES:
         supply = supply_from_text(text)
         same = given == {supply}
         subject = base if same else dataclasses.replace(base, law=dataclasses.replace(base.law, supply=supply))
-        yield Tried("oil supply", text, subject, base, same)
+        yield Entry(group, text, subject, default=same)
 
 
-def linear_row(group: str, label: str, found: LinearLook, beside: LinearReference, default: bool) -> Choice:
+def linear_row(entry: Tried, found: LinearLook, beside: LinearReference) -> Choice:
     """Make the row of a linear analysis.
 
     Parameters
     ----------
-    group, label : str
-        Group and name of the choice.
+    entry : Entry
+        The choice.
     found : LinearLook
         What was found.
     beside : LinearReference
         The reference.
-    default : bool
-        Whether it is what is used where nothing is said.
     """
-    parts = beside.beside(found)
-    errors = (parts.frequency, parts.damping, parts.height, parts.load)
-    return differences_row(group, label, found.seconds, beside, default, *errors)
+    return differences_row(entry, found.seconds, beside, beside.beside(found))
 
 
-def differences_row(
-    group: str,
-    label: str,
-    seconds: float,
-    beside: LinearReference,
-    default: bool,
-    frequency: FloatArray,
-    damping: FloatArray,
-    height: FloatArray,
-    load: FloatArray,
-) -> Choice:
-    """Make a row from its errors at the modes, peaks and bearings of the reference; arguments as of `linear_row`."""
+def differences_row(entry: Tried, seconds: float, beside: LinearReference, parts: LinearDifferences) -> Choice:
+    """Make a row from its errors at the modes, peaks and bearings of the reference.
+
+    Parameters
+    ----------
+    entry : Entry
+        The choice.
+    seconds : float
+        Processor time [s].
+    beside : LinearReference
+        The reference.
+    parts : LinearDifferences
+        The errors.
+    """
     modes = [HERTZ.text(value) for value in beside.look.modes.frequency[beside.chosen]]
     peaks = [HERTZ.text(at) for _, at in beside.peaks]
     missing = tuple(
-        f"no mode like that of {name}" for name, value in zip(modes, frequency, strict=True) if np.isnan(value)
+        f"no mode like that of {name}" for name, value in zip(modes, parts.frequency, strict=True) if np.isnan(value)
     )
     errors = {
-        FREQUENCY: ErrorSummary.of(frequency, modes),
-        DAMPING: ErrorSummary.of(damping, modes),
-        HEIGHT: ErrorSummary.of(height, peaks),
-        LOAD: ErrorSummary.of(load, list(beside.look.bearings)),
+        FREQUENCY: ErrorSummary.of(parts.frequency, modes),
+        DAMPING: ErrorSummary.of(parts.damping, modes),
+        HEIGHT: ErrorSummary.of(parts.height, peaks),
+        LOAD: ErrorSummary.of(parts.load, list(beside.look.bearings)),
     }
-    kept = {name: found for name, found in errors.items() if found.points}
-    return Choice(
-        group, label, seconds, kept, solved=len(modes) - len(missing), asked=len(modes), lost=missing, default=default
-    )
+    count = len(modes)
+    return entry.choice("linear: ", seconds, errors, solved=count - len(missing), asked=count, lost=missing)

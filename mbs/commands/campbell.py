@@ -24,8 +24,6 @@ from mbs.commands.auto import analysed
 from mbs.commands.campbell_recorded import measured_lines, measured_run, read_look, recorded_runs, signal_problems
 from mbs.commands.cases import load_cases
 from mbs.commands.common import Looked, Told, write, write_plot
-from mbs.instruments.commands.tolerance import asked_tolerance, several_problems, tolerated_run
-from mbs.instruments.tolerance import Tolerated
 from mbs.linearised.sweep_result import ComplexSweep, Sweep
 from mbs.model.elements import Sensor
 from mbs.output.campbell_table import (
@@ -41,6 +39,8 @@ from mbs.output.model_text import band_lines, heading, held_lines
 from mbs.output.result_text import drive_lines, energy_lines
 from mbs.output.time_files import is_time_data, write_time_data
 from mbs.planning.question import in_time
+from mbs.planning.tolerance import Tolerated
+from mbs.planning.tolerated import asked_tolerance, several_problems, tolerated_run
 from mbs.settings import CampbellSettings
 from mbs.spectral.levels import Reference, difference_text
 from mbs.spectral.orders import OrderPeak
@@ -116,7 +116,7 @@ def _ran(asked: _Asked, with_modes: bool, workers: int) -> _Ran:
         )
         return found, found.runs[0].steps
 
-    return _Ran(*tolerated_run(asked.cases, asked.tolerance, run, asked.settings), asked.measured)
+    return _Ran(*tolerated_run(asked.cases, asked.tolerance, run, asked.settings, Told("trial")), asked.measured)
 
 
 def _looks_at(asked: _Asked) -> Looked:

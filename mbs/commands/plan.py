@@ -12,7 +12,7 @@ from pathlib import Path
 from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.commands.check import cost_of
-from ehdmaps.jobs.instruments.cost import total
+from ehdmaps.jobs.cost import total
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.make.generate import planned_tasks
 from ehdmaps.outputs import SEALED, Output, output_problems, sealed, write_text

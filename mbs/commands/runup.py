@@ -27,14 +27,14 @@ from mbs.commands.auto import analysed
 from mbs.commands.campbell_recorded import read_source, signal_problems
 from mbs.commands.cases import load_cases
 from mbs.commands.common import Looked, Told, read_option, write
-from mbs.instruments.commands.tolerance import asked_tolerance, several_problems, tolerated_run
-from mbs.instruments.tolerance import Tolerated
 from mbs.output.files import described
 from mbs.output.model_text import heading, held_lines
 from mbs.output.result_text import drive_lines, energy_lines, signal_lines
 from mbs.output.results import with_spectra
 from mbs.output.time_files import is_time_data, read_time_data, write_time_data
 from mbs.planning.question import in_time
+from mbs.planning.tolerance import Tolerated
+from mbs.planning.tolerated import asked_tolerance, several_problems, tolerated_run
 from mbs.scene.fields import HERTZ, MILLISECOND
 from mbs.scene.reader import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
 from mbs.scene.scene import Scene
@@ -115,7 +115,7 @@ def _ran(asked: _Asked, workers: int, *, states: bool) -> tuple[RunUps, _Asked, 
         found = runups(cases, Told("step"), keep_partial=True, workers=workers, states=states)
         return found, found.runs[0].steps
 
-    found, tolerated = tolerated_run(asked.cases, asked.tolerance, run)
+    found, tolerated = tolerated_run(asked.cases, asked.tolerance, run, progress=Told("trial"))
     return found, asked, tolerated
 
 

@@ -261,7 +261,7 @@ _QUANTITIES = (
 
 
 class VariantRow(Protocol):
-    """Change as it is written: see `mbs.instruments.variants.Variant`."""
+    """Change as it is written: see `mbs.laboratory.variants.Variant`."""
 
     @property
     def key(self) -> str:

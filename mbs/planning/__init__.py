@@ -11,6 +11,8 @@ of_table   which films balls, tapered and ribbed rollers need, and what is not k
 machine    what the scene file switches, and how much the other choice would change
 left_out   what commands without `--auto` say of heat
 kept_maps  maps that were made before
+tolerance  step and slices that keep the level of a run-up within a tolerance
+tolerated  runs with such settings, for `--tolerance`
 auto       an analysis that chooses its physics, and makes maps of what the film table has not
 =========  ==========================================================================================
 """

@@ -18,7 +18,7 @@ import numpy as np
 
 from mbs.analyses.campbell import CampbellResult, campbell
 from mbs.analyses.step_error import StepCheck
-from mbs.instruments.tolerance import Numerics, Tolerated, read_tolerance, within
+from mbs.planning.tolerance import Numerics, Tolerated, read_tolerance, within
 from mbs.scene import changes, map_set
 from mbs.scene.choices import LawChoice, Subject
 from mbs.scene.reader import read_scene

@@ -7,10 +7,10 @@ import json
 import pytest
 
 from ehdmaps.jobs.cli import main
-from ehdmaps.jobs.instruments import stability_readers as of_ehdmaps
-from ehdmaps.stability.findings import checks_text
-from ehdmaps.stability.fuzzing import fuzz
-from mbs.instruments import readers as of_mbs
+from mbs.laboratory.extremes import machine_readers as of_mbs
+from mbs.laboratory.extremes import map_readers as of_ehdmaps
+from mbs.laboratory.extremes.check import checks_text
+from mbs.laboratory.extremes.fuzzing import fuzz
 
 READERS = {**of_ehdmaps.READERS, **of_mbs.READERS}
 
@@ -45,7 +45,7 @@ def test_contacts_at_the_extremes(tmp_path, capsys) -> None:
 def test_a_failure_ends_with_status_1(monkeypatch, capsys) -> None:
     reader = of_ehdmaps.READERS["status of a run"]()
     wrong = type(reader)(reader.name, reader.folders, lambda folder: "another number")
-    monkeypatch.setattr("ehdmaps.jobs.commands.stability.READERS", {"status of a run": lambda: wrong})
+    monkeypatch.setattr("mbs.laboratory.commands.stability.MAP_READERS", {"status of a run": lambda: wrong})
     assert main(["stability", "--only", "status of a run", "--mutations", "3", "--json"]) == 1
     (check,) = json.loads(capsys.readouterr().out)["checks"]
     assert check["failed"] == 4 and check["failures"][0]["what"] == "another number"  # the good file, too

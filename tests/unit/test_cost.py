@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from ehdmaps.errors import SolverError
-from ehdmaps.jobs.instruments import cost as costs
-from ehdmaps.jobs.instruments.cost import BYTES_PER_POINT, Cost, Trial, total
+from ehdmaps.jobs import cost as costs
+from ehdmaps.jobs.cost import BYTES_PER_POINT, Cost, Trial, total
 from ehdmaps.jobs.make.tasks import LineTask, line_tasks
 from ehdmaps.jobs.reader import parse_job
 from ehdmaps.physics.closed_form import FormulaSolver

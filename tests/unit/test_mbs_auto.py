@@ -213,7 +213,7 @@ def test_numerical_settings_are_chosen_for_the_map_and_its_physics(file, capsys,
         chosen.append((subject.law.name, subject.law.films, tolerance))
         raise AnalysisError("enough")
 
-    monkeypatch.setattr("mbs.instruments.commands.tolerance.kept_within", within)
+    monkeypatch.setattr("mbs.planning.tolerated.within", within)
     assert run(capsys, "campbell", file, "--auto", "--tolerance", "1 dB")[0] == 1
     assert chosen == [("map", "memory", 1.0)]
 

@@ -12,8 +12,8 @@ from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.laws import hertz
 from mbs.cli import main
-from mbs.instruments.element import element_checks
-from mbs.instruments.integrator import SCENARIOS, integrator_checks
+from mbs.laboratory.extremes.bearings import element_checks
+from mbs.laboratory.extremes.integrator import SCENARIOS, integrator_checks
 from mbs.model.elements import Forces
 from tests.cases.laws import CONTACTS, OIL, SMALL_FIELD
 
@@ -28,7 +28,7 @@ def films(bearing: Bearing):
 
 @pytest.mark.parametrize(("laws", "runs"), [(dry, 30), (films, 1)])
 def test_bearing_elements_pass(laws, runs):
-    checks = element_checks(runs, 3, laws)
+    checks = list(element_checks(runs, 3, laws))
     assert [failure.what for check in checks for failure in check.failures] == []
     assert sum(check.right for check in checks) == len(checks) * runs
 
@@ -47,7 +47,7 @@ def test_a_damping_that_gives_power_is_found(monkeypatch):
 
 
 def test_integrator_passes_and_explicit_methods_fail_where_they_have_to():
-    checks = integrator_checks(4, 2)
+    checks = list(integrator_checks(4, 2))
     assert [failure.what for check in checks for failure in check.failures] == []
     assert len(checks) == 3 + len(SCENARIOS)
     assert all(np.isfinite(check.seconds) for check in checks)

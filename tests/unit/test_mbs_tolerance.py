@@ -13,10 +13,10 @@ from ehdmaps.errors import InputError
 from mbs import parse_scene, read_scene
 from mbs.analyses.campbell import campbell
 from mbs.analyses.sensors import looked_at
-from mbs.instruments import tolerance as tolerance_module
-from mbs.instruments.ramp_parts import WINDOWS, ramp_of
-from mbs.instruments.tolerance import Numerics, drift, read_tolerance
+from mbs.laboratory.tradeoff.ramp_parts import WINDOWS, ramp_of
 from mbs.model.profiles import Advanced, Course, Harmonic, SpeedProfile
+from mbs.planning import tolerance as tolerance_module
+from mbs.planning.tolerance import Numerics, drift, read_tolerance
 from mbs.scene import changes
 from mbs.scene.choices import LawChoice, Subject
 from tests.cases.swinging import SWINGING
@@ -206,11 +206,11 @@ class TestChoosing:
     def test_runs_that_drift_apart_have_no_level(self, swinging, monkeypatch):
         # A quarter of the time, in which two runs drift apart by e^16: rounding grows by e^64 in the whole.
         subject = Subject(changes.with_step(swinging, 80e-6), DRY)
-        monkeypatch.setattr("mbs.instruments.tolerance.drift", lambda *_: 16.0)
+        monkeypatch.setattr("mbs.planning.tolerance.drift", lambda *_: 16.0)
         found = within(subject, 0.5)
         assert not found.met and found.numerics.step == 80e-6
         assert "does not forget its start" in "\n".join(found.lines)
-        monkeypatch.setattr("mbs.instruments.tolerance.drift", lambda *_: 1.0)
+        monkeypatch.setattr("mbs.planning.tolerance.drift", lambda *_: 1.0)
         assert within(subject, 0.5).met
 
     @pytest.mark.slow
@@ -266,7 +266,7 @@ class TestCommand:
             chosen = numerics.applied(subject)
             return tolerance_module.Tolerated(chosen, numerics, ("chosen",), True, 0.3, 5.0), run(chosen)[0]
 
-        monkeypatch.setattr("mbs.instruments.commands.tolerance.within", answer)
+        monkeypatch.setattr("mbs.planning.tolerated.within", answer)
         scene = tmp_path / "swinging.toml"
         text = SWINGING.replace('"1 s"', '"0.05 s"').replace('step = "20 us"', 'step = "20 us"\nsample = "0.1 ms"')
         scene.write_text(text)

@@ -9,15 +9,16 @@ import numpy as np
 import pytest
 
 from ehdmaps.maps.emap import EHDMap
-from ehdmaps.trade.answer import answer_lines, budget
-from ehdmaps.trade.data import trade_json
-from ehdmaps.trade.text import trade_text
+from ehdmaps.trade.budget import budget
 from mbs import assemble, parse_scene, read_scene
 from mbs.budget import sources
 from mbs.budget.linear_look import LinearReference, linear_look
 from mbs.cli import main
-from mbs.instruments import tradeoff as analysis
-from mbs.instruments.tradeoff import TradeoffSettings, tradeoff
+from mbs.laboratory.tradeoff import machines as analysis
+from mbs.laboratory.tradeoff.answer import answer_lines
+from mbs.laboratory.tradeoff.data import trade_json
+from mbs.laboratory.tradeoff.machines import TradeoffSettings, tradeoff
+from mbs.laboratory.tradeoff.text import trade_text
 from mbs.scene import changes
 from mbs.scene.choices import LawChoice
 from mbs.scene.map_set import MapSet

@@ -16,8 +16,8 @@ from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.maps.emap import EHDMap
 from mbs import assemble, campbell, read_scene
 from mbs.analyses.case import Case
-from mbs.instruments import variants as analysis
-from mbs.instruments.variants import Variation, variants
+from mbs.laboratory import variants as analysis
+from mbs.laboratory.variants import Variation, variants
 from mbs.output.campbell_plot import variants_figure
 from mbs.scene import changes
 from mbs.scene.bodies import build_body
@@ -89,7 +89,7 @@ def levels(monkeypatch):
 def run_command(scene, **values):
     names = ("law", "map", "films", "clearance", "structural_law", "output", "plot", "highest", "window")
     given = argparse.Namespace(**{**dict.fromkeys(names), "vary": [], "workers": 1, "scene": str(scene), **values})
-    return importlib.import_module("mbs.instruments.commands.variants").run(given)
+    return importlib.import_module("mbs.laboratory.commands.variants").run(given)
 
 
 class TestChanges:

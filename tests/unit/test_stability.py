@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 import os
 import signal
@@ -13,10 +14,10 @@ import numpy as np
 import pytest
 
 from ehdmaps.errors import InputError
-from ehdmaps.stability import fuzzing
-from ehdmaps.stability.findings import MOST_FAILURES, Check, Tally, checks_json, checks_text, write_checks
-from ehdmaps.stability.fuzzing import Reader, case_of, fuzz
-from ehdmaps.stability.mutations import BINARY_WAYS, LARGEST, TEXT_WAYS, damage
+from mbs.laboratory.extremes import fuzzing
+from mbs.laboratory.extremes.check import MOST_FAILURES, Check, Verdict, checked, checks_json, checks_text, searched
+from mbs.laboratory.extremes.damage import BINARY_WAYS, LARGEST, TEXT_WAYS, damage
+from mbs.laboratory.extremes.fuzzing import Reader, case_of, fuzz
 
 GOOD = {"a.txt": b'load = "1.5 N/mm"\npoints = 3\n' * 5, "a.nc": bytes(range(256)) * 4}
 
@@ -145,22 +146,21 @@ def test_only_the_named_files_are_damaged() -> None:
     assert all(case_of(reader, 1, number).files["a.txt"] == GOOD["a.txt"] for number in range(20))
 
 
-def test_checks_as_text_and_json(tmp_path) -> None:
-    tally = Tally("films", "within 1 %")
-    tally.right("0.4 % off at M = 3", 0.4)
-    tally.right("0.9 % off at M = 5", 0.9)
-    for _ in range(3):
-        tally.refused("too thick")
-    for number in range(MOST_FAILURES + 2):
-        tally.failed(f"M = {number}", "2 % off")
-    found = tally.check()
+def test_checks_as_text_and_json() -> None:
+    right = [Verdict("0.4 % off at M = 3", 0.4), Verdict("0.9 % off at M = 5", 0.9)]
+    wrong = [Verdict(f"M = {number}", wrong="2 % off") for number in range(MOST_FAILURES + 2)]
+    found = checked("films", "within 1 %", [*right, *3 * [Verdict(refused="too thick")], *wrong])
     text = checks_text([found])
     assert "films" in text and "worst: 0.9 % off at M = 5" in text and "refused: 3 too thick" in text
     assert "FAILED: 2 % off; case: M = 0" in text and "FAILED: 2 more" in text
     assert text.splitlines()[1].split()[:5] == ["films", "27", "2", "3", "22"]
     read = json.loads(checks_json([found]))["checks"][0]
     assert Check(**{**read, "failures": found.failures}) == found
-    for name in ("a.txt", "a.json"):
-        write_checks(tmp_path / name, "all", [found])
-        write_checks(tmp_path / name, "all", [found])  # what we made may be replaced
-        assert "films" in (tmp_path / name).read_text()
+
+
+@pytest.mark.parametrize("name", ["a.txt", "a.json"])
+def test_what_is_found_is_written(tmp_path, name) -> None:
+    asked = argparse.Namespace(only=None, output=str(tmp_path / name), json=False)
+    for _ in range(2):  # what we made may be replaced
+        text, status = searched(asked, {"films": lambda: [checked("films", "within 1 %", [Verdict()])]}, "all")
+        assert "films" in (tmp_path / name).read_text() and text.startswith("all\n") and status == 0

@@ -15,7 +15,6 @@ from scipy import sparse
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import InputError, MapError, StoreError
 from ehdmaps.jobs.commands.status import run as run_status
-from ehdmaps.jobs.instruments.stability_points import wild_point
 from ehdmaps.jobs.make.store import Store
 from ehdmaps.jobs.reader import parse_job, read_job
 from ehdmaps.maps.emap import open_map
@@ -31,6 +30,7 @@ from mbs.flexible.finite_elements import FiniteElementModel, NodePositions
 from mbs.flexible.matrix_files import assemble_model, read_dofs, read_matrix_market
 from mbs.flexible.reduced_body import ReducedBody
 from mbs.flexible.reduced_file import read_reduced
+from mbs.laboratory.extremes.contact_points import wild_point
 from tests.cases.flexible import spring
 from tests.system.hostile_tables import JOB, SCENE
 

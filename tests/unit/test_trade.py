@@ -13,21 +13,12 @@ from matplotlib.collections import LineCollection
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.show.budget_chart import budget_section
-from ehdmaps.trade.answer import (
-    answer_lines,
-    budget,
-    budget_axis,
-    budget_lines,
-    budget_marks,
-    cheapest,
-    number,
-    size,
-    time_text,
-)
-from ehdmaps.trade.data import check_trade_files, trade_dataset, trade_json, write_trade
-from ehdmaps.trade.figure import trade_figure
-from ehdmaps.trade.record import Choice, ErrorSummary, Judged, Scope, Source, Trade, front
-from ehdmaps.trade.text import trade_text
+from ehdmaps.trade.budget import budget, budget_axis, budget_marks
+from ehdmaps.trade.record import Choice, ErrorSummary, Judged, Scope, Source, Trade
+from mbs.laboratory.tradeoff.answer import answer_lines, budget_lines, cheapest, number, time_text
+from mbs.laboratory.tradeoff.data import check_trade_files, trade_dataset, trade_json, write_trade
+from mbs.laboratory.tradeoff.figure import front, trade_figure
+from mbs.laboratory.tradeoff.text import trade_text
 
 PLACES = ("inner, 1 N/mm", "outer, 30 N/mm", "inner, 7 N/mm")
 
@@ -229,7 +220,7 @@ def test_a_bar_that_begins_below_the_axis_is_marked(trade: Trade) -> None:
     rare = choice("rare", 1e-3, [0.0, 0.0, 0.03])
     plain = replace(trade, choices=(rare,), sources=(Source("seldom", "rare"),), shown=("film",))
     low, high = budget_axis(plain, budget(plain))
-    assert 0.0 < low < size(plain, "film", budget(plain)[0].errors["film"].high) < high
+    assert 0.0 < low < plain.quantity("film").printed(budget(plain)[0].errors["film"].high) < high
     (panel,) = trade_figure(plain).axes
     assert [line.get_marker() for line in panel.lines] == ["<"]
     section = str(budget_section(plain).content[-1])

@@ -11,23 +11,19 @@ import pytest
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import InputError
 from ehdmaps.jobs import solvers
-from ehdmaps.jobs.instruments.answers import Answer, Question, film_answer, scales
-from ehdmaps.jobs.instruments.contact_ways import (
-    AtFrequency,
+from ehdmaps.jobs.budget.answers import Answer, Question, film_answer, scales
+from ehdmaps.jobs.budget.contact_ways import (
     Flooded,
     FromLaw,
-    FromTable,
     LayerRule,
     LockedPole,
-    MorePiezoviscous,
-    OnLayer,
-    OtherSolids,
     RoughRule,
     Slow,
-    Warmer,
+    more_piezoviscous,
+    other_solids,
+    warmer,
 )
-from ehdmaps.jobs.instruments.contestants import Entry, Group, contestants, sources
-from ehdmaps.jobs.instruments.tradeoff import measure
+from ehdmaps.jobs.budget.entries import sources
 from ehdmaps.jobs.make.sampling import draw_sample
 from ehdmaps.jobs.make.table_law import table_map
 from ehdmaps.jobs.reader import parse_job
@@ -41,7 +37,11 @@ from ehdmaps.physics.moes import moes_groups, valley_load_number
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.solution import ContactSolverDefaults, FilmSolution, Status
 from ehdmaps.physics.surface import Surface
+from ehdmaps.trade.entry import Entry, Group
 from ehdmaps.trade.record import Choice, Trade
+from mbs.laboratory.tradeoff.contacts import measure
+from mbs.laboratory.tradeoff.contestants import contestants
+from mbs.laboratory.tradeoff.solved_ways import AtFrequency, FromTable, OnLayer
 from tests.cases.jobs import LINE, SMALL
 from tests.cases.laws import CONTACTS, NU308, OIL, SMALL_FIELD
 
@@ -265,7 +265,7 @@ def test_the_table_of_contestants():
 def test_missing_openfoam_is_said(monkeypatch):
     monkeypatch.setattr(installation, "missing", lambda: ("setpriv is not in PATH",))
     monkeypatch.setattr(
-        "ehdmaps.jobs.instruments.tradeoff.contestants", lambda job, openfoam: _nothing_but_formulas(openfoam)
+        "mbs.laboratory.tradeoff.contacts.contestants", lambda job, openfoam: _nothing_but_formulas(openfoam)
     )
     frame = measure(JOB, 2, 1, 3).frame
     assert "openfoam: left out; setpriv is not in PATH" in frame
@@ -307,14 +307,14 @@ def test_what_is_stated_otherwise_is_solved_otherwise():
     solver = ReynoldsSolver(density=4.0)
     plain = Flooded(solver)
     hot = replace(HEAVY, point=replace(HEAVY.point, temperature=HEAVY.point.temperature + 5.0))
-    assert Warmer(plain, 5.0)(HEAVY) == plain(hot)
-    assert MorePiezoviscous(plain, 1.0)(HEAVY).values["stiffness"] == pytest.approx(
+    assert plain(warmer(5.0, HEAVY)) == plain(hot)
+    assert plain(more_piezoviscous(1.0, HEAVY)).values["stiffness"] == pytest.approx(
         plain(HEAVY).values["stiffness"], rel=1e-9
     )
     # the film goes with about the square root of alpha there: between the powers of 0.3 and 0.8
-    thicker = MorePiezoviscous(plain, 1.1)(HEAVY).values["film offset"] / plain(HEAVY).values["film offset"]
+    thicker = plain(more_piezoviscous(1.1, HEAVY)).values["film offset"] / plain(HEAVY).values["film offset"]
     assert 1.1**0.3 < thicker < 1.1**0.8
-    soft = OtherSolids(plain, "half_space", NU308)(HEAVY).values
+    soft = plain(other_solids("half_space", NU308, HEAVY)).values
     assert soft["film offset"] == plain(HEAVY).values["film offset"]
     compliance = with_law(INNER, "half_space", NU308).structural_compliance(HEAVY.point.load)
     assert 1.0 / soft["stiffness"] == pytest.approx(float(compliance) + soft["film compliance"], rel=1e-9)

@@ -13,7 +13,6 @@ from scipy.optimize import brentq
 
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import SolverError
-from ehdmaps.jobs.instruments.contact_ways import solved_sharing
 from ehdmaps.kernel import library
 from ehdmaps.maps.film_field import FilmField
 from ehdmaps.maps.law import ContactLaw
@@ -24,6 +23,7 @@ from ehdmaps.physics.hertz import max_pressure
 from ehdmaps.physics.moes import moes_groups
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.surface import Surface
+from mbs.laboratory.tradeoff.solved_ways import solved_sharing
 from tests.cases.laws import CONTACTS, OIL, SMALL_FIELD
 
 INNER = CONTACTS[0]

@@ -6,8 +6,8 @@ import argparse
 from collections.abc import Iterator
 
 from ehdmaps.jobs import solvers
+from ehdmaps.jobs.cost import Cost, cost, total
 from ehdmaps.jobs.estimate_bands import band_lines
-from ehdmaps.jobs.instruments.cost import Cost, cost, total
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.make.batch import is_batch, read_batch
 from ehdmaps.jobs.make.batch_generate import plan_batch

@@ -6,7 +6,7 @@ import argparse
 import shlex
 from pathlib import Path
 
-from ehdmaps.jobs.show.map_budget import map_budget
+from ehdmaps.jobs.budget.map_budget import map_budget
 from ehdmaps.jobs.show.map_report import map_report
 from ehdmaps.jobs.show.opening import choice_words, open_given
 from ehdmaps.outputs import Output, check_outputs

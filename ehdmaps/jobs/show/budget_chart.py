@@ -1,4 +1,4 @@
-"""An error budget as a section of a report: the bars of `ehdmaps.trade.figure`, drawn without a picture."""
+"""An error budget as a section of a report: bars of `ehdmaps.trade.budget`, drawn without a picture."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from ehdmaps.figures import COLOURS, typeset
 from ehdmaps.report.chart import number
 from ehdmaps.report.page import Markup, Section, sentences, tag
-from ehdmaps.trade.answer import BUDGET_WORDS, UNITS, Bar, Mark, budget, budget_axis, budget_marks
+from ehdmaps.trade.budget import BUDGET_WORDS, Bar, Mark, budget, budget_axis, budget_marks
 from ehdmaps.trade.record import Trade
 
 _WIDTH, _LEFT, _RIGHT, _TOP, _FOOT = 860.0, 270.0, 20.0, 10.0, 46.0
@@ -82,16 +82,17 @@ def _bar(mark: Mark, begin: float, end: float, top: float, cut: bool, words: str
 def _words(trade: Trade, mark: Mark) -> str:
     """Quantity, median and 95 % quantile of a bar."""
     name = trade.shown[mark.place]
-    (unit,) = (UNITS[judged.unit] for judged in trade.judged if judged.name == name)
-    return f"{name}: {number(mark.low, 2)} to {number(mark.high, 2)} {unit}"
+    return f"{name}: {number(mark.low, 2)} to {number(mark.high, 2)} {trade.quantity(name).printed_unit}"
 
 
 def _legend(trade: Trade, bars: Sequence[Bar]) -> Markup:
     """Colours of the quantities; the triangle, where there is one."""
-    units = {judged.name: UNITS[judged.unit] for judged in trade.judged}
     low, _ = budget_axis(trade, bars)
     entries = [
-        (tag("rect", x="1", y="1", width="24", height="10", fill=COLOURS[place]), f"{name}, {units[name]}")
+        (
+            tag("rect", x="1", y="1", width="24", height="10", fill=COLOURS[place]),
+            f"{name}, {trade.quantity(name).printed_unit}",
+        )
         for place, name in enumerate(trade.shown)
     ]
     if any(mark.low < low for mark in budget_marks(trade, bars)):

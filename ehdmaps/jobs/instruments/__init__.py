@@ -1,1 +1,0 @@
-"""Laboratory instruments: speed against accuracy of contacts, and wild inputs to all readers and solvers."""
