@@ -23,6 +23,7 @@ napoleon_google_docstring = False
 autodoc_typehints = "none"
 autodoc_member_order = "bysource"
 exclude_patterns = ["_build"]
+highlight_language = "none"  # of blocks without a language: printed tables
 html_theme = "furo"
 html_static_path = ["wide.css"]
 html_css_files = ["wide.css"]
