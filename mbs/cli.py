@@ -415,10 +415,7 @@ def _modal_fit(top: Program) -> None:
     command.add_argument("file", metavar="FILE", help=f"universal file (UFF), measured or made by `mbs hammer`; {_UFF}")
     command.add_argument("--band", nargs=2, metavar=("FROM", "TO"), help='such as "100 Hz" "5 kHz"')
     command.add_argument("--modes", type=int, metavar="N", help="how many to keep at most")
-    command.add_argument("--order", type=int, metavar="N", help="highest number of pole pairs (24)")
-    command.add_argument(
-        "--method", choices=("rfp", "lscf", "both"), default="rfp", help="rational fractions, p-LSCF (of [modal], too)"
-    )
+    command.add_argument("--order", type=int, metavar="N", help="highest number of pole pairs (40)")
     command.add_argument("--estimator", choices=("h1", "h2"), default="h1", help="noise on the responses, on the force")
     command.add_argument(
         "--window-decay",

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from mbs.analyses.hammer import HammerResult
     from mbs.flexible.reduced_body import ReducedBody
-    from mbs.modal.result import Method, ModalFit
+    from mbs.modal.result import ModalFit
     from mbs.output.files import Figure
 
 
@@ -160,14 +160,13 @@ class ModalFitResult:
         """Figure that `mbs modal-fit --plot` writes."""
         from mbs.output.modes_plot import fit_figure
 
-        return fit_figure(self.title, [self.fit])
+        return fit_figure(self.title, self.fit)
 
 
 def modal_fit(
     source: str | Path | HammerResult,
     band: tuple[float, float] | None = None,
     modes: int | None = None,
-    method: Method = "rfp",
 ) -> ModalFitResult:
     """Frequencies and damping ratios from hammer hits or frequency responses.
 
@@ -179,8 +178,6 @@ def modal_fit(
         Limits of the band [Hz]; all lines if left out.
     modes : int, optional
         How many to keep at most.
-    method : {"rfp", "lscf"}
-        Rational fraction polynomials, or p-LSCF.
 
     Raises
     ------
@@ -203,7 +200,7 @@ def modal_fit(
         responses = estimate(hits, "h1", decay).responses
     if responses is None:
         raise InputError(f"{source}: has coherences only; allowed: frequency responses, or hits")
-    return ModalFitResult(title, identify(responses, method, band, modes=modes))
+    return ModalFitResult(title, identify(responses, band, modes=modes))
 
 
 def reduce(body: str | Path) -> ReducedBody:

@@ -8,16 +8,15 @@ import math
 from pathlib import Path
 
 import numpy as np
-import xarray as xr
 
-from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.errors import InputError
 from ehdmaps.outputs import FIGURE, Output, output_problems, write_figure
 from ehdmaps.units import quantity
 from mbs.commands.common import RESOLUTION
 from mbs.modal.estimation import Estimate, estimate, needed_decay
 from mbs.modal.fit import identify
 from mbs.modal.records import Responses
-from mbs.modal.result import Method, ModalFit, fit_dataset
+from mbs.modal.result import ModalFit, fit_dataset
 from mbs.modal.uff import UFF, Measurement, read_uff, write_uff
 from mbs.output.files import RESULT, described, write_dataset
 
@@ -30,30 +29,18 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     band, decay, windowed = _options(arguments)
     measured = _declared(read_uff(Path(arguments.file)), windowed, arguments)
     responses, lines = _responses(measured, arguments, decay)
-    methods: tuple[Method, ...] = ("rfp", "lscf") if arguments.method == "both" else (arguments.method,)
-    fits: list[ModalFit] = []
-    failed: list[AnalysisError] = []
-    for method in methods:
-        try:
-            fits.append(
-                identify(responses, method, band, arguments.order, arguments.modes, refined=not arguments.no_refine)
-            )
-        except AnalysisError as error:
-            failed.append(error)
-    if not fits:
-        raise AnalysisError("\n".join(str(error) for error in failed))
-    inside = fits[0].responses
+    fit = identify(responses, band, arguments.order, arguments.modes, refined=not arguments.no_refine)
+    inside = fit.responses
     lines = [
         f"{arguments.file}: {measured.title or 'no title'}",
         *(f"  {note}" for note in measured.notes),
         *lines,
         f"{len(inside.pairs)} responses, {inside.frequency.size} lines from {inside.frequency[0]:.6g} Hz to "
         f"{inside.frequency[-1]:.6g} Hz",
+        *_table(fit),
     ]
-    for fit in fits:
-        lines += _table(fit)
-    poor = [*(f"warning: {error}" for error in failed), *_poor(fits)]
-    lines += [*_overlaps(fits[0]), *poor, *_write(arguments, measured, responses, fits)]
+    poor = _poor(fit)
+    lines += [*_overlaps(fit), *poor, *_write(arguments, measured, responses, fit)]
     return "\n".join(lines), 1 if poor else 0
 
 
@@ -189,7 +176,7 @@ def _table(fit: ModalFit) -> list[str]:
     orders = max(entry.order for entry in fit.candidates)
     how = "refined to the least error" if fit.refined else "medians over the orders"
     lines = [
-        f"{_NAMES[fit.method]}, orders 1 to {orders}, poles {how}",
+        f"p-LSCF, orders 1 to {orders}, poles {how}",
         "  mode   frequency/Hz        +-   damping ratio        +-   orders      (+-: standard uncertainty)",
     ]
     for k in range(fit.poles.size):
@@ -203,15 +190,11 @@ def _table(fit: ModalFit) -> list[str]:
     ]
 
 
-_NAMES: dict[Method, str] = {"rfp": "rational fraction polynomials", "lscf": "p-LSCF"}
-
-
-def _poor(fits: list[ModalFit]) -> list[str]:
+def _poor(fit: ModalFit) -> list[str]:
     """Lines on responses that a fit does not explain."""
     return [
-        f"warning: {_NAMES[fit.method]} leaves {100.0 * error:.3g} % of {label}, more than {100.0 * TOLERANCE:.3g} %: "
+        f"warning: p-LSCF leaves {100.0 * error:.3g} % of {label}, more than {100.0 * TOLERANCE:.3g} %: "
         "noise, or modes that are missing; average more hits, or narrow the band"
-        for fit in fits
         for label, error in zip(fit.responses.labels, fit.error, strict=True)
         if error > TOLERANCE
     ]
@@ -231,17 +214,12 @@ def _overlaps(fit: ModalFit) -> list[str]:
     return lines
 
 
-def _write(
-    arguments: argparse.Namespace, measured: Measurement, responses: Responses, fits: list[ModalFit]
-) -> list[str]:
+def _write(arguments: argparse.Namespace, measured: Measurement, responses: Responses, fit: ModalFit) -> list[str]:
     """Write what is asked for; a line for each file."""
     lines = []
     if arguments.output:
-        dataset = fit_dataset(fits[0])
-        for other in fits[1:]:
-            dataset = dataset.merge(_beside(other))
         about = {"title": measured.title, "source": Path(arguments.file).name, "estimator": arguments.estimator}
-        write_dataset(described(dataset, **about), Path(arguments.output))
+        write_dataset(described(fit_dataset(fit), **about), Path(arguments.output))
         lines.append(f"{arguments.output}: written")
     if arguments.responses:
         write_uff(Path(arguments.responses), Measurement(measured.title, (), responses))
@@ -249,13 +227,6 @@ def _write(
     if arguments.plot:
         from mbs.output.modes_plot import fit_figure
 
-        write_figure(fit_figure(measured.title or Path(arguments.file).name, fits), arguments.plot, RESOLUTION)
+        write_figure(fit_figure(measured.title or Path(arguments.file).name, fit), arguments.plot, RESOLUTION)
         lines.append(f"{arguments.plot}: written")
     return lines
-
-
-def _beside(fit: ModalFit) -> xr.Dataset:
-    """Modes of the second method, under names of its own."""
-    kept = ("frequency", "damping_ratio", "frequency_uncertainty", "damping_ratio_uncertainty")
-    dataset = fit_dataset(fit)[list(kept)].drop_vars("mode")
-    return dataset.rename({"mode": f"{fit.method}_mode", **{name: f"{fit.method}_{name}" for name in kept}})

@@ -24,12 +24,14 @@ J. S. Bendat, A. G. Piersol, Random Data, 4th ed., Wiley 2010, sections 6 and 9.
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
+import scipy  # its parts at first use: scipy.signal takes half a second
 
 from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.errors import AnalysisError, InputError
@@ -140,19 +142,11 @@ def second_pulses(force: FloatArray) -> list[tuple[int, float]]:
     open_[max(first - reach, 0) : last + reach + 1] = False
     if not open_.any() or peak == 0.0:
         return []
-    away = np.abs(force - np.median(force[open_]))
+    away = np.where(open_, np.abs(force - np.median(force[open_])), 0.0)
     level = max(_STANDS_OUT * 1.4826 * float(np.median(away[open_])), _SMALLEST_SECOND * peak)
-    found: list[tuple[int, float]] = []
-    while open_.any():
-        seen = np.where(open_, away, 0.0)
-        at = int(np.argmax(seen))
-        if seen[at] <= level:
-            return found
-        found.append((at, float(away[at]) / peak))
-        if len(found) > _MOST_BOUNCES:
-            return []
-        open_[max(at - width - reach, 0) : at + width + reach + 1] = False
-    return found
+    found = scipy.signal.find_peaks(away, height=level, distance=width + reach + 1)[0]
+    found = found[np.argsort(-away[found], kind="stable")]
+    return [] if found.size > _MOST_BOUNCES else [(int(at), float(away[at]) / peak) for at in found]
 
 
 def pulse(force: FloatArray, level: float = 0.1) -> tuple[int, int]:
@@ -204,40 +198,9 @@ _STANDS_OUT, _SMALLEST_SECOND, _MOST_BOUNCES = 6.0, 0.01, 4
 _FLAT = 3
 """Equal samples at the top of a record that mean that the channel was overloaded."""
 
-
-@dataclass(frozen=True)
-class HitLimits:
-    """Limits beyond which hits are left out.
-
-    Attributes
-    ----------
-    double : float
-        Largest second pulse, as a part of the first one.
-    silent : float
-        Smallest peak of the force, as a multiple of the rms of the rest of its record.
-    overload : float
-        Largest value that a channel can show, in its SI unit; infinite: only flat tops are seen.
-
-    Raises
-    ------
-    InputError
-        With every value that is not possible.
-    """
-
-    double: float = 0.1
-    silent: float = 10.0
-    overload: float = float("inf")
-
-    def __post_init__(self) -> None:
-        problems = []
-        if not 0.0 < self.double <= 1.0:
-            problems.append(f"hit limits, double: got {self.double!r}; allowed: above 0, up to 1")
-        if not 1.0 <= self.silent < float("inf"):
-            problems.append(f"hit limits, silent: got {self.silent!r}; allowed: finite, from 1")
-        if not self.overload > 0.0:
-            problems.append(f"hit limits, overload: got {self.overload!r}; allowed: > 0")
-        if problems:
-            raise InputError(problems)
+_DOUBLE, _SILENT = 0.1, 10.0
+"""Largest second pulse, as a part of the first one, and smallest peak of the force, over the rms of the rest of its
+record, of hits that are not left out."""
 
 
 @dataclass(frozen=True)
@@ -288,8 +251,6 @@ def estimate(
     records: Sequence[Hits],
     estimator: Estimator = "h1",
     decay: float = 0.0,
-    limits: HitLimits | None = None,
-    windowed_force: bool = True,
 ) -> Estimate:
     """Frequency responses and coherence of all places hit.
 
@@ -301,10 +262,6 @@ def estimate(
         H1 where noise is on the responses, H2 where it is on the force.
     decay : float
         1/tau of an exponential window that force and response get [1/s], beside that which they have been through.
-    limits : HitLimits, optional
-        Which hits are left out.
-    windowed_force : bool
-        Whether the force is taken as zero but for its pulse.
 
     Raises
     ------
@@ -313,7 +270,6 @@ def estimate(
     AnalysisError
         If no hit of a place is left.
     """
-    limits = limits or HitLimits()
     grids = {(entry.step, entry.force.shape[1]) for entry in records}
     if len(grids) != 1:
         shown = ", ".join(f"{samples} samples every {step:.6g} s" for step, samples in sorted(grids))
@@ -327,14 +283,14 @@ def estimate(
         raise InputError(f"hits: got records that have been through windows of {shown}; allowed: one for all places")
     responses, coherences, pairs, used, rejected, bounced = [], [], [], [], [], []
     for entry in records:
-        bad = _rejected(entry, limits)
+        bad = _rejected(entry)
         kept = [hit for hit in range(entry.force.shape[0]) if hit + 1 not in {one.hit for one in bad}]
         if not kept:
             reasons = "; ".join(f"hit {one.hit}: {one.reason}, {one.detail}" for one in bad)
             raise AnalysisError(f"hits at {entry.reference.label}: none is left ({reasons}); hit again")
         force, response = entry.force[kept], entry.response[kept]
-        if windowed_force:
-            force = force * np.stack([force_window(record) for record in force])
+        # A hammer is silent but for its pulses.
+        force = force * np.stack([force_window(record) for record in force])
         window = exponential_window(samples, step, decay)
         same = window if entry.force_decays else window * exponential_window(samples, step, entry.decay)
         H, gamma = transfer(force * same, response * window, estimator)
@@ -379,16 +335,17 @@ def transfer(force: FloatArray, response: FloatArray, estimator: Estimator = "h1
     coherence : array, shape (sensors, lines)
         0 to 1; NaN of a single hit, whose coherence is 1 whatever it was.
     """
-    F = np.fft.rfft(force, axis=-1)[:, None]
-    X = np.fft.rfft(response, axis=-1)
-    by_force = np.sum(np.abs(F) ** 2, axis=0)
-    by_response = np.sum(np.abs(X) ** 2, axis=0)
-    cross = np.sum(X * F.conj(), axis=0)
+    hits, samples = force.shape
+    # Averages over hits are Welch's averages over segments without window and overlap.
+    average = functools.partial(scipy.signal.csd, nperseg=samples, noverlap=0, window="boxcar", detrend=False)
+    f, x = force.ravel(), np.moveaxis(response, 1, 0).reshape(-1, hits * samples)
+    by_force, by_response = average(f, f)[1].real, average(x, x)[1].real
+    cross = average(f, x)[1]
     numerator, denominator = (cross, by_force + 0j * by_response) if estimator == "h1" else (by_response, cross.conj())
     H = np.divide(numerator, denominator, out=np.zeros_like(cross), where=np.abs(denominator) > 0.0)
     product = by_force * by_response
     gamma = np.divide(np.abs(cross) ** 2, product, out=np.zeros_like(product), where=product > 0.0)
-    if force.shape[0] < 2:
+    if hits < 2:
         gamma = np.full_like(gamma, np.nan)
     return H, np.minimum(gamma, 1.0)
 
@@ -411,17 +368,17 @@ def relative_deviation(coherence: FloatArray, hits: int) -> FloatArray:
     return np.asarray(np.sqrt((1.0 - clipped) / (2.0 * max(hits, 1) * clipped)))
 
 
-def _rejected(entry: Hits, limits: HitLimits) -> list[Rejected]:
+def _rejected(entry: Hits) -> list[Rejected]:
     """Hits that are not fit for use."""
     rejected = []
     for hit, (force, response) in enumerate(zip(entry.force, entry.response, strict=True), start=1):
-        verdict = _verdict(force, response, entry, limits)
+        verdict = _verdict(force, response, entry)
         if verdict:
             rejected.append(Rejected(hit, entry.reference, *verdict))
     return rejected
 
 
-def _verdict(force: FloatArray, response: FloatArray, entry: Hits, limits: HitLimits) -> tuple[Reason, str] | None:
+def _verdict(force: FloatArray, response: FloatArray, entry: Hits) -> tuple[Reason, str] | None:
     """Reason why a hit is not fit for use, and what was seen; None if it is fit."""
     channels = (("the force", force), *zip((sensor.label for sensor in entry.sensors), response, strict=True))
     for name, record in channels:
@@ -431,15 +388,15 @@ def _verdict(force: FloatArray, response: FloatArray, entry: Hits, limits: HitLi
         top = float(size.max())
         flat = size >= top * (1.0 - 1e-9)
         longest = np.max(np.convolve(flat, np.ones(_FLAT), mode="valid"))
-        if top > limits.overload or (top > 0.0 and longest >= _FLAT):
+        if top > 0.0 and longest >= _FLAT:
             return "overload", f"{name} stays at {top:.4g}"
     first, last = pulse(force)
     margin = max(last - first + 1, _MARGIN)
     rest = np.concatenate([force[: max(first - margin, 0)], force[last + 1 + margin :]])
     peak = float(np.abs(force).max())
-    if peak == 0.0 or (rest.size and peak < limits.silent * float(np.sqrt(np.mean(rest**2)))):
+    if peak == 0.0 or (rest.size and peak < _SILENT * float(np.sqrt(np.mean(rest**2)))):
         return "no hit", f"the force of {peak:.3g} does not stand out of its noise"
     second = float(np.abs(rest).max(initial=0.0))
-    if second > limits.double * peak:
+    if second > _DOUBLE * peak:
         return "double hit", f"a second pulse of {100.0 * second / peak:.3g} % of the first"
     return None

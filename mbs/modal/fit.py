@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 
 import numpy as np
@@ -11,13 +10,13 @@ from scipy.ndimage import uniform_filter1d
 from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
 from ehdmaps.errors import AnalysisError, InputError
 from mbs.modal.estimation import relative_deviation, without_window
-from mbs.modal.lscf import IMPROPER, lscf_poles, rational_poles
+from mbs.modal.lscf import lscf_poles
 from mbs.modal.records import Responses
 from mbs.modal.residues import Parts, fit_residues, laplace, refine, synthesise
-from mbs.modal.result import Method, ModalFit
-from mbs.modal.stabilisation import Criteria, Stabilisation, stabilise
+from mbs.modal.result import ModalFit
+from mbs.modal.stabilisation import Stabilisation, stabilise
 
-ORDER = 24
+ORDER = 40
 """Highest number of pole pairs, if it is left out."""
 
 MOST = 100
@@ -38,11 +37,9 @@ _FLOOR = 1e-6
 
 def identify(
     responses: Responses,
-    method: Method = "rfp",
     band: tuple[float, float] | None = None,
     order: int | None = None,
     modes: int | None = None,
-    criteria: Criteria | None = None,
     refined: bool = True,
 ) -> ModalFit:
     """Modes of a band, by their poles in all responses at once.
@@ -51,16 +48,12 @@ def identify(
     ----------
     responses : Responses
         Responses, with an exponential window or without; its decay is taken out of the poles.
-    method : {"rfp", "lscf"}
-        Rational fraction polynomials, or p-LSCF.
     band : (float, float), optional
         Limits of the band, from and to [Hz]; all if left out.
     order : int, optional
-        Highest number of pole pairs, 1 to 100; 24 if left out, or what the lines allow.
+        Highest number of pole pairs, 1 to 100; 40 if left out, or what the lines allow.
     modes : int, optional
         How many modes to keep at most, those with the most energy in the responses; all stable ones if left out.
-    criteria : Criteria, optional
-        What makes a pole stable.
     refined : bool
         Whether the poles are moved to the least error of the responses.
 
@@ -81,34 +74,26 @@ def identify(
         problems.append(f"modes: got {modes!r}; allowed: 1 to {MOST}")
     if problems:
         raise InputError(problems)
-    criteria = criteria or Criteria()
     inside = responses.within(low, high)
-    # Real and imaginary parts of the lines, shared by numerators and the denominator.
-    possible = (2 * inside.frequency.size - IMPROPER) // 8
+    # Real and imaginary parts of the lines, shared by numerators and the denominator, and half of them to spare.
+    possible = (inside.frequency.size - 1) // 4
     if possible < 1:
         raise InputError(f"band: got {inside.frequency.size} lines; allowed: 8 or more, and many for a good fit")
     orders = range(1, min(order or ORDER, possible) + 1)
-    # A mode cannot come back more often than there are orders.
-    criteria = dataclasses.replace(criteria, orders=min(criteria.orders, len(orders)))
     s, weight = laplace(inside.frequency, inside.decay), weights(inside)
     even = np.repeat(1.0 / _rms(inside.response)[:, None], inside.frequency.size, axis=1)
-    if method == "rfp":
-        of_orders = rational_poles(inside.frequency, inside.response, weight, orders)
-    else:
-        of_orders = lscf_poles(inside.frequency, inside.response, orders)
     stable = stabilise(
-        of_orders,
+        lscf_poles(inside.frequency, inside.response, orders),
         orders,
         (float(inside.frequency[0]), float(inside.frequency[-1])),
         lambda poles: (
             fit_residues(s, inside.response, even, inside.derivatives, without_window(poles, inside.decay)).residues
         ),
-        criteria,
     )
     chosen, poles, deviation = _significant(s, inside, weight, stable, modes, refined)
     if not chosen.size:
         raise AnalysisError(
-            f"modal fit ({method}): no stable mode from {inside.frequency[0]:.6g} Hz to {inside.frequency[-1]:.6g} Hz "
+            f"modal fit: no stable mode from {inside.frequency[0]:.6g} Hz to {inside.frequency[-1]:.6g} Hz "
             f"up to order {orders[-1]}; choose a band around a resonance, average more hits, or raise the order"
         )
     parts = fit_residues(s, inside.response, weight, inside.derivatives, poles)
@@ -116,7 +101,6 @@ def identify(
     parts = Parts(parts.residues[rising], parts.below, parts.above)
     left = inside.response - synthesise(s, inside.derivatives, poles[rising], parts)
     return ModalFit(
-        method=method,
         responses=inside,
         poles=poles[rising],
         deviation=deviation[rising],
@@ -158,7 +142,8 @@ def _significant(
 ) -> tuple[IntArray, ComplexArray, FloatArray]:
     """Stable poles without which the error would rise by more than noise explains: which, their values, deviations.
 
-    The least needed pole is taken out first, and the others are fitted again.
+    The least needed half of those that are not needed is taken out first, because two may stand for one mode, and the
+    others are fitted again.
     """
     chosen = np.arange(stable.poles.size)
     while chosen.size:
@@ -167,16 +152,21 @@ def _significant(
         if refined:
             poles, deviation, strayed = refine(s, inside.response, weight, inside.derivatives, poles)
             if strayed.max() > _STRAYED:
-                chosen = np.delete(chosen, int(np.argmax(strayed)))
+                chosen = _without_half(chosen, -strayed, -_STRAYED)
                 continue
         error = _error(s, inside, weight, poles)
         rise = np.array([_error(s, inside, weight, np.delete(poles, k)) - error for k in range(chosen.size)])
-        least = int(np.argmin(rise))
-        enough = rise[least] > _SIGNIFICANT**2 * alike(inside) * error / inside.response.size
-        if enough and (modes is None or chosen.size <= modes):
+        limit = _SIGNIFICANT**2 * alike(inside) * error / inside.response.size
+        if rise.min() > limit and (modes is None or chosen.size <= modes):
             return chosen, poles, deviation
-        chosen = np.delete(chosen, least)
+        chosen = _without_half(chosen, rise, limit)
     return chosen, np.zeros(0, dtype=np.complex128), np.zeros((0, 2))
+
+
+def _without_half(chosen: IntArray, worth: FloatArray, limit: float) -> IntArray:
+    """The poles without the worse half of those that are worth no more than the limit, and without one at least."""
+    count = max((int(np.count_nonzero(worth <= limit)) + 1) // 2, 1)
+    return np.delete(chosen, np.argsort(worth, kind="stable")[:count])
 
 
 def _error(s: ComplexArray, inside: Responses, weight: FloatArray, poles: ComplexArray) -> float:

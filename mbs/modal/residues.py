@@ -7,6 +7,9 @@ A response of quantity q (0 displacement, 1 velocity, 2 acceleration) is taken a
 with L for the modes below the band (inertia) and U for those above it (flexibility), and 1/tau of the exponential
 window that the responses have been through.
 
+sdypy-EMA has residues too (`get_constants`), but with complex L and U, one quantity for all rows, no weights and no
+window, and it refines no pole and states no uncertainty. Differences in place of the Jacobian take ten times as long.
+
 References
 ----------
 G. H. Golub, V. Pereyra, Inverse Problems 19 (2003) R1-R26 (variable projection; the Jacobian is Kaufman's).
@@ -99,9 +102,9 @@ def synthesise(s: ComplexArray, derivatives: tuple[int, ...], poles: ComplexArra
     parts : Parts
         Residues of the modes.
     """
-    total = np.stack([contribution.sum(axis=0) for contribution in _contributions(s, poles, parts.residues)], axis=0)
-    total = total + parts.below[:, None] / s**2 + parts.above[:, None]
-    return np.asarray(total * s ** np.array(derivatives)[:, None], dtype=np.complex128)
+    reference = _reference(s)
+    parameters = np.stack([parts.below / reference**2, parts.above, *parts.residues.real, *parts.residues.imag])
+    return np.asarray((_shapes(s, poles) @ parameters).T * s ** np.array(derivatives)[:, None], dtype=np.complex128)
 
 
 def refine(
@@ -211,12 +214,6 @@ def _information(jacobian: FloatArray, s: ComplexArray) -> FloatArray:
     return total
 
 
-def assurance(first: ComplexArray, second: ComplexArray) -> float:
-    """Modal assurance criterion of two shapes, 0 to 1; of shapes of one row it is always 1."""
-    size = float((np.vdot(first, first) * np.vdot(second, second)).real)
-    return float(abs(np.vdot(first, second)) ** 2 / size) if size > 0.0 else 0.0
-
-
 def _reference(s: ComplexArray) -> float:
     """Frequency that makes the columns of about one size [1/s]."""
     return float(np.sqrt(np.abs(s[0]) * np.abs(s[-1])))
@@ -262,12 +259,3 @@ def _solve(columns: FloatArray, values: FloatArray) -> FloatArray:
     size = np.where(size > 0.0, size, 1.0)
     solution = np.linalg.lstsq(columns / size, values, rcond=None)[0]
     return np.asarray(solution / size[:, None], dtype=np.float64)
-
-
-def _contributions(s: ComplexArray, poles: ComplexArray, residues: ComplexArray) -> Iterator[ComplexArray]:
-    """Yield what each mode has of each row for q = 0, shape (modes, lines)."""
-    plus = 1.0 / (s - poles[:, None])
-    minus = 1.0 / (s - poles.conj()[:, None])
-    for row in range(residues.shape[1]):
-        residue = residues[:, row][:, None]
-        yield np.asarray(residue * plus + residue.conj() * minus, dtype=np.complex128)

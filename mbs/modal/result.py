@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 import xarray as xr
@@ -13,8 +12,6 @@ from mbs.modal.records import Responses
 from mbs.modal.residues import Parts, laplace, synthesise
 from mbs.modal.stabilisation import Candidate
 
-Method = Literal["rfp", "lscf"]
-
 
 @dataclass(frozen=True, eq=False)
 class ModalFit:
@@ -22,8 +19,6 @@ class ModalFit:
 
     Attributes
     ----------
-    method : {"rfp", "lscf"}
-        Method that gave the poles.
     responses : Responses
         What was fitted: the lines of the band.
     poles : array of complex, shape (modes,)
@@ -44,7 +39,6 @@ class ModalFit:
         Whether the poles are those of the least error, else medians over the orders.
     """
 
-    method: Method
     responses: Responses
     poles: ComplexArray
     deviation: FloatArray
@@ -154,7 +148,7 @@ def fit_dataset(fit: ModalFit) -> xr.Dataset:
         "frequency_line": ("frequency_line", measured.frequency, {"units": "Hz", "long_name": "frequency"}),
     }
     attributes = {
-        "method": fit.method,
+        "method": "lscf",
         "refined": int(fit.refined),
         "hits": measured.hits,
         "window_decay_per_s": measured.decay,

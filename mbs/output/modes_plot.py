@@ -263,44 +263,42 @@ _SIZE = (9.0, 8.5)
 _MOST_ROWS = 5
 """Responses drawn: those with the most energy; more would hide each other."""
 
-_MARKS = {"rfp": ("o", "rational fraction polynomials"), "lscf": ("^", "p-LSCF")}
 _UNITS = {"displacement": "m", "velocity": "m/s", "acceleration": "m/s2", "force": "N", "unknown": ""}
 
 
-def fit_figure(title: str, fits: Sequence[ModalFit]) -> Figure:
+def fit_figure(title: str, fit: ModalFit) -> Figure:
     """Magnitude and phase of the responses with the fit, their coherence, and the poles over the order.
 
     Parameters
     ----------
     title : str
         Heading of the page.
-    fits : sequence of ModalFit
-        Fits of the same responses; the lines of the fit are those of the first one.
+    fit : ModalFit
+        What is drawn.
     """
-    first = fits[0]
     figure = Figure(figsize=_SIZE, layout="constrained")
-    write_heading(figure, f"{title}\n{_summary(first)}", 10)
-    energy = np.sum(np.abs(first.responses.response) ** 2, axis=1)
+    write_heading(figure, f"{title}\n{_summary(fit)}", 10)
+    energy = np.sum(np.abs(fit.responses.response) ** 2, axis=1)
     shown = sorted(np.argsort(-energy, kind="stable")[:_MOST_ROWS].tolist())
-    known = np.any(np.isfinite(first.responses.coherence[shown]))
-    units = list(dict.fromkeys(_display(*first.responses.pairs[row]).unit for row in shown))
+    known = np.any(np.isfinite(fit.responses.coherence[shown]))
+    units = list(dict.fromkeys(_display(*fit.responses.pairs[row]).unit for row in shown))
     heights = [*[3.0 / len(units) ** 0.5] * len(units), 1.4, *([1.0] if known else []), 2.2]
     axes = list(figure.subplots(len(heights), 1, sharex=True, height_ratios=heights))
     magnitudes = dict(zip(units, axes, strict=False))
-    _responses(magnitudes, axes[len(units)], first, shown)
+    _responses(magnitudes, axes[len(units)], fit, shown)
     if known:
         panel = axes[len(units) + 1]
         for row, colour in zip(shown, COLOURS, strict=False):
-            panel.plot(first.responses.frequency, first.responses.coherence[row], color=colour, lw=0.7)
-        panel.set(ylabel=f"coherence,\n{first.responses.hits} hits", ylim=(0.0, 1.05))
-    _diagram(axes[-1], fits)
+            panel.plot(fit.responses.frequency, fit.responses.coherence[row], color=colour, lw=0.7)
+        panel.set(ylabel=f"coherence,\n{fit.responses.hits} hits", ylim=(0.0, 1.05))
+    _diagram(axes[-1], fit)
     for panel in axes:
-        for frequency in first.frequency:
+        for frequency in fit.frequency:
             panel.axvline(frequency, color="0.75", lw=0.7, zorder=0)
         panel.grid(color="0.9", lw=0.5)
         panel.set_axisbelow(True)
         panel.tick_params(labelsize=8)
-    axes[0].set_xlim(first.responses.frequency[0], first.responses.frequency[-1])
+    axes[0].set_xlim(fit.responses.frequency[0], fit.responses.frequency[-1])
     axes[-1].set_xlabel("frequency, Hz")
     return figure
 
@@ -327,20 +325,16 @@ def _responses(magnitudes: dict[str, Axes], phase: Axes, fit: ModalFit, shown: S
     phase.set(ylabel="phase, degrees", yticks=[-180, -90, 0, 90, 180])
 
 
-def _diagram(panel: Axes, fits: Sequence[ModalFit]) -> None:
+def _diagram(panel: Axes, fit: ModalFit) -> None:
     """Poles over the order: stable ones filled."""
-    highest = 1
-    for fit, colour in zip(fits, ("0.1", COLOURS[1]), strict=False):
-        mark, name = _MARKS[fit.method]
-        # The window is taken out, so that the poles stand over the peaks.
-        poles = np.array([entry.pole for entry in fit.candidates]) + fit.responses.decay
-        orders = np.array([entry.order for entry in fit.candidates])
-        stable = np.array([entry.stable for entry in fit.candidates], dtype=bool)
-        frequency = np.abs(poles) / (2.0 * np.pi)
-        panel.plot(frequency[stable], orders[stable], mark, color=colour, ms=3.5, label=f"{name}: stable")
-        panel.plot(frequency[~stable], orders[~stable], mark, color=colour, ms=2.5, mfc="none", mew=0.4, alpha=0.5)
-        highest = max(highest, int(orders.max()))
-    panel.set(ylabel="order, pole pairs\n(hollow: not stable)", ylim=(0, highest + 1))
+    # The window is taken out, so that the poles stand over the peaks.
+    poles = np.array([entry.pole for entry in fit.candidates]) + fit.responses.decay
+    orders = np.array([entry.order for entry in fit.candidates])
+    stable = np.array([entry.stable for entry in fit.candidates], dtype=bool)
+    frequency = np.abs(poles) / (2.0 * np.pi)
+    panel.plot(frequency[stable], orders[stable], "^", color=COLOURS[1], ms=3.5, label="p-LSCF: stable")
+    panel.plot(frequency[~stable], orders[~stable], "^", color=COLOURS[1], ms=2.5, mfc="none", mew=0.4, alpha=0.5)
+    panel.set(ylabel="order, pole pairs\n(hollow: not stable)", ylim=(0, int(orders.max()) + 1))
     panel.legend(fontsize=8, frameon=False, ncols=2, loc="lower right", bbox_to_anchor=(1.0, 1.0), borderpad=0.1)
 
 

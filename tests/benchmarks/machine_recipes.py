@@ -246,9 +246,9 @@ def hammer_test(outputs: Sequence[Output]) -> list[Figure]:
         (float(f), 100.0 * float(zeta))
         for f, zeta in re.findall(rf"(?m)^ +\d+ +{NUMBER} Hz   damping ratio {NUMBER}", outputs[0].text)
     ]
-    first = outputs[1].text.partition("p-LSCF")[0]
     fitted = [
-        (float(f), 100.0 * float(zeta)) for f, zeta in re.findall(rf"(?m)^ +\d+ +{NUMBER} +\S+ +{NUMBER} ", first)
+        (float(f), 100.0 * float(zeta))
+        for f, zeta in re.findall(rf"(?m)^ +\d+ +{NUMBER} +\S+ +{NUMBER} ", outputs[1].text)
     ]
     pairs = [(fit, min(eigenvalues, key=lambda each: abs(each[0] - fit[0]))) for fit in (fitted[0], fitted[-1])]
     (strong, strong_exact), (weak, weak_exact) = pairs

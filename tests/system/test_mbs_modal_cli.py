@@ -62,7 +62,7 @@ def test_from_a_scene_to_its_modes(here, capsys):
     assert "4 hits at each of 1 places, 2 sensors, linearised at the equilibrium" in out
     assert "standard deviation 1 % of the peak of each channel" in out
     assert "1606.39 Hz   damping ratio 0.00419" in out
-    again = ("modal-fit", "h.uff", "--band", "1.3 kHz", "1.9 kHz", "--order", "16", "--method", "both")
+    again = ("modal-fit", "h.uff", "--band", "1.3 kHz", "1.9 kHz", "--order", "16")
     files = ("-o", "fit.nc", "--plot", "fit.png", "--responses", "frf.uff")
     status, out, err = run(capsys, *again, *files)
     assert (status, err) == (0, "")
@@ -81,7 +81,6 @@ def test_from_a_scene_to_its_modes(here, capsys):
             value = data[name].values
             room = 5.0 * data[f"{name}_uncertainty"].values + 0.5 * digit
             assert np.all(np.abs(value - true) < np.minimum(room, most * np.array(true)))
-        np.testing.assert_allclose(data["lscf_frequency"], data["frequency"], rtol=1e-3)
         assert np.all(data["coherence"] <= 1.0)
         found = data["damping_ratio"].values
     assert (here / "fit.png").stat().st_size > 50_000

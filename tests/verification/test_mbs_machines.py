@@ -217,7 +217,7 @@ class TestRig:
         balance = equilibrium(model.system, model.operation)
         test = HammerTest(highest=5000.0, duration=0.6, hits=8, noise=0.01, seed=0, spread=0.5)
         records = linear_hits(balance, self.scene.inputs, self.scene.sensors, test)
-        fit = identify(estimate(records).responses, "rfp", (1000.0, 2900.0))
+        fit = identify(estimate(records).responses, (1000.0, 2900.0))
         true = modes(balance)
         assert fit.frequency.size >= 2
         for mode in range(2):
