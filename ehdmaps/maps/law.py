@@ -372,8 +372,8 @@ class ContactLaw:
             and abs(entrainment_speed) >= self._told_below
         ):
             force = self._plain_in_c.force(delta, rate, entrainment_speed, temperature, 0.0)
-            if force is not None and not 0.0 < force[0] < self._guessed_somewhere:
-                return np.float64(force[0]), np.float64(force[1]), np.float64(force[2])
+            if force is not None and (self._guessed_somewhere == 0.0 or not 0.0 < force[0] < self._guessed_somewhere):
+                return force
         named = floats(
             delta=delta,
             rate=rate,

@@ -30,6 +30,7 @@
 #include "law/cells.c"
 #include "law/law_many.c"
 EHD_SIZE_OF(ehd_law_data)
+EHD_SIZE_OF(ehd_law_errand)
 
 size_t ehd_law_point_head_size(void);
 size_t ehd_law_point_head_size(void) { return sizeof(ehd_law_point); }

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ctypes
 import functools
+import struct
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
@@ -109,6 +110,24 @@ class ForceRecord(ctypes.Structure):
     _fields_: ClassVar = [("load", ctypes.c_double), ("stiffness", ctypes.c_double), ("damping", ctypes.c_double)]
 
 
+class _ErrandRecord(ctypes.Structure):
+    """`ehd_law_errand`."""
+
+    _fields_: ClassVar = [
+        ("force", ForceRecord),
+        *((name, ctypes.c_double) for name in ("approach", "rate", "u", "T", "q")),
+        ("data", ctypes.c_void_p),
+        ("room", ctypes.c_void_p),
+    ]
+
+
+_ask = struct.Struct("5d").pack_into
+"""Puts the arguments into an errand, behind the force."""
+
+_ARGUMENTS = ctypes.sizeof(ForceRecord)
+"""Place of the arguments there [bytes]."""
+
+
 class _LineRecord(ctypes.Structure):
     """`ehd_line`."""
 
@@ -167,6 +186,7 @@ class _Functions(NamedTuple):
     make: Callable[..., int]
     force: Callable[..., int]
     call: Callable[..., int]
+    run: Callable[[int], int]
     approach: Callable[..., float]
     force_many: Callable[..., None]
     call_many: Callable[..., None]
@@ -178,11 +198,13 @@ def _functions() -> _Functions:
     pointer, number, count = ctypes.c_void_p, ctypes.c_double, ctypes.c_int64
     library.checked(LawRecord, "ehd_law_data")
     library.checked(_PointRecord, "ehd_law_point_head")
+    library.checked(_ErrandRecord, "ehd_law_errand")
     return _Functions(
         library.function("ehd_law_point_size", pointer, result=ctypes.c_size_t),
         library.function("ehd_law_make", pointer, number, number, number, pointer),
         library.function("ehd_law_force", pointer, number, number, pointer),
         library.function("ehd_law_call", pointer, *[number] * 5, pointer, pointer),
+        library.function("ehd_law_run", pointer),
         library.function("ehd_law_approach", pointer, number, result=number),
         library.function("ehd_law_force_many", pointer, count, *[pointer] * 4, result=None),
         library.function("ehd_law_call_many", pointer, count, *[pointer] * 8, result=None),
@@ -190,15 +212,16 @@ def _functions() -> _Functions:
 
 
 class _Scratch:
-    """Memory of one call at a time."""
+    """Memory of one call at a time: the errand as a row of numbers, and the room of its point."""
 
-    __slots__ = "force", "force_address", "room", "room_address"
+    __slots__ = "address", "numbers", "room"
 
-    def __init__(self, size: int) -> None:
-        self.force = ForceRecord()
-        self.force_address = ctypes.addressof(self.force)
+    def __init__(self, size: int, data: int) -> None:
         self.room = np.empty(size // 8)
-        self.room_address = at(self.room)
+        self.numbers = np.zeros(ctypes.sizeof(_ErrandRecord) // 8)
+        self.address = at(self.numbers)
+        errand = _ErrandRecord.from_address(self.address)
+        errand.data, errand.room = data, at(self.room)
 
 
 @dataclass(frozen=True)
@@ -249,7 +272,7 @@ class LawInC:
         self.data = LawRecord.of(table, centrifugal)
         self._address = self.data.address
         self._functions = _functions()
-        self._call = self._functions.call
+        self._run = self._functions.run
         self.point_size = int(self._functions.size(self._address))
         self._free: list[_Scratch] = []
 
@@ -259,7 +282,7 @@ class LawInC:
     @property
     def door(self) -> LawAddress:
         """Addresses for other programs."""
-        function = ctypes.cast(self._call, ctypes.c_void_p).value  # type: ignore[arg-type]
+        function = ctypes.cast(self._functions.call, ctypes.c_void_p).value  # type: ignore[arg-type]
         return LawAddress(function or 0, self._address, self.point_size)
 
     def _scratch(self) -> _Scratch:
@@ -267,11 +290,11 @@ class LawInC:
         try:
             return self._free.pop()
         except IndexError:
-            return _Scratch(self.point_size)
+            return _Scratch(self.point_size, self._address)
 
     def force(
         self, delta: float, rate: float, entrainment_speed: float, temperature: float, centrifugal_load: float
-    ) -> tuple[float, float, float] | None:
+    ) -> tuple[np.float64, np.float64, np.float64] | None:
         """Load and its derivatives at one place; None where any of it is outside the map or not finite.
 
         Parameters
@@ -281,16 +304,15 @@ class LawInC:
         entrainment_speed, temperature, centrifugal_load : float
             u [m/s], T [K], q [N/m].
         """
+        # each argument of a call by ctypes takes as long as packing all
         try:
             scratch = self._free.pop()
         except IndexError:
-            scratch = _Scratch(self.point_size)
-        status = self._call(
-            self._address, delta, rate, entrainment_speed, temperature, centrifugal_load, scratch.room_address,
-            scratch.force_address,
-        )  # fmt: skip
-        force = scratch.force
-        found = force.load, force.stiffness, force.damping
+            scratch = _Scratch(self.point_size, self._address)
+        numbers = scratch.numbers
+        _ask(numbers, _ARGUMENTS, delta, rate, entrainment_speed, temperature, centrifugal_load)
+        status = self._run(scratch.address)
+        found = numbers[0], numbers[1], numbers[2]
         self._free.append(scratch)
         return None if status else found
 
@@ -311,7 +333,7 @@ class LawInC:
         """
         forces, counts, scratch = np.empty((3, flat[0].size)), np.zeros(4, dtype=np.int64), self._scratch()
         self._functions.call_many(
-            self._address, flat[0].size, *map(at, flat), scratch.room_address, at(forces), at(counts)
+            self._address, flat[0].size, *map(at, flat), at(scratch.room), at(forces), at(counts)
         )
         self._free.append(scratch)
         return forces, counts

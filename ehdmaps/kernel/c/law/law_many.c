@@ -241,3 +241,7 @@ void ehd_law_call_many(const ehd_law_data *D, int64_t count, const double *appro
         }
     }
 }
+
+int ehd_law_run(ehd_law_errand *of) {
+    return ehd_law_call(of->data, of->approach, of->rate, of->u, of->T, of->q, of->room, &of->force);
+}
