@@ -26,7 +26,7 @@ from ehdmaps.errors import MapError
 from ehdmaps.maps.contact_curve import ContactCurve, Curve
 from ehdmaps.maps.film_field import FilmField, valley_loads
 from ehdmaps.maps.kernels.ends import ends_at
-from ehdmaps.maps.kernels.splines import hermite, spline_coefficients, spline_slopes
+from ehdmaps.maps.kernels.splines import law_nodes, spline_coefficients
 from ehdmaps.maps.kernels.tables import COLDEST, HALF_SPACE, POWER_LAW, ApproachTable
 from ehdmaps.maps.oil_layer import oil_layer
 from ehdmaps.maps.rolling_film import RollingFilm
@@ -174,26 +174,27 @@ def compile_table(
 
     logs = np.log(curve.loss_ratio)
     values = np.empty((log_speeds.size, kelvins.size, nodes.size, 2))
-    for i, j in np.ndindex(log_speeds.size, kelvins.size):
-        line = stretched[:, i, j]
-        if not np.all(np.diff(line) > 0.0):
-            raise MapError(
-                f"law: the approach of the contacts {', '.join(c.name for c in contacts)} does not rise with "
-                f"load at {math.exp(log_speeds[i]):.4g} m/s, {kelvins[j]:.2f} K; a law needs that; "
-                "look at that part of the map, solve it again with a finer grid"
-            )
-        roots, slopes, ratios, within = root[:, i, j], root_slope[:, i, j], logs[:, i, j], nodes
-        if not supply.flooded:
+    falling = np.any(~(np.diff(stretched, axis=0) > 0.0), axis=0)
+    for i, j in np.argwhere(falling)[:1]:
+        raise MapError(
+            f"law: the approach of the contacts {', '.join(c.name for c in contacts)} does not rise with "
+            f"load at {math.exp(log_speeds[i]):.4g} m/s, {kelvins[j]:.2f} K; a law needs that; "
+            "look at that part of the map, solve it again with a finer grid"
+        )
+    if supply.flooded:
+        law_nodes((stretched, root, root_slope, logs), nodes, -1, values)
+    else:
+        for i, j in np.ndindex(log_speeds.size, kelvins.size):
+            line, roots, slopes, ratios = (part[:, i, j] for part in (stretched, root, root_slope, logs))
             foot = lifted if surface.smooth else int(np.searchsorted(roots, _FOOT))
             line, roots, slopes, ratios = line[foot:], roots[foot:], slopes[foot:], ratios[foot:]
-            within = np.maximum(nodes, line[0])
+            held = 0 if surface.smooth else 2
             if surface.smooth:
                 slopes = _slackened(line, roots, slopes, resolution.approach)
             else:
                 line, roots, slopes = _without_foot(line, roots, slopes, resolution.approach)
                 ratios = np.concatenate((np.full(2, ratios[0]), ratios))
-        values[i, j, :, 0] = _continued_root(line, roots, slopes, nodes)
-        values[i, j, :, 1] = _continued_log(line, ratios, within)
+            law_nodes((line, roots, slopes, ratios), nodes, held, values[i, j])
 
     coefficients = values
     place = np.stack((offset, 1.0 / scale), axis=-1)
@@ -378,28 +379,3 @@ def _rising(coefficients: FloatArray) -> FloatArray:
     that knee a cubic rings, and g would fall.
     """
     return np.minimum.accumulate(coefficients[..., ::-1], axis=-1)[..., ::-1]
-
-
-def _continued_root(line: FloatArray, root: FloatArray, slope: FloatArray, nodes: FloatArray) -> FloatArray:
-    """g at the nodes of s; below the samples its tangent, above them ln g is linear."""
-    values = _between(line, root, slope, nodes)
-    below, above = nodes - line[0], nodes - line[-1]
-    values = np.where(below < 0.0, root[0] + slope[0] * below, values)
-    growth = slope[-1] / root[-1]
-    return np.where(above > 0.0, root[-1] * np.exp(growth * np.maximum(above, 0.0)), values)
-
-
-def _continued_log(line: FloatArray, logs: FloatArray, nodes: FloatArray) -> FloatArray:
-    """ln(c/w) at the nodes of s; its tangents outside the samples."""
-    slope = spline_slopes(line, logs)
-    below, above = np.minimum(nodes - line[0], 0.0), np.maximum(nodes - line[-1], 0.0)
-    return np.asarray(_between(line, logs, slope, nodes) + below * slope[0] + above * slope[-1])
-
-
-def _between(line: FloatArray, values: FloatArray, slope: FloatArray, nodes: FloatArray) -> FloatArray:
-    """Cubics through samples with slopes at the nodes of s; the values of the ends beyond them."""
-    inside = np.clip(nodes, line[0], line[-1])
-    piece = np.clip(np.searchsorted(line, inside) - 1, 0, line.size - 2)
-    step = line[piece + 1] - line[piece]
-    ends = ((values[piece], slope[piece]), (values[piece + 1], slope[piece + 1]))
-    return hermite(*ends, (inside - line[piece]) / step, step)[0]

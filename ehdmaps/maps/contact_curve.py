@@ -34,7 +34,6 @@ THICK_FILM = 0.005
 
 _FADE_RATIO = 4.0
 _LEAST_COMPLIANCE = 1e-3
-_JOIN_POWER = 3.0
 _NEWTON_STEPS = 60
 _CLOSE = 1e-9
 
@@ -108,8 +107,9 @@ class Tail:
         # Above the fade the hyperbola is inverted at once; in the fade tau goes from 1 at ha to 0 at 4 ha.
         unfaded = root >= np.cbrt(self.fade_load)
         safe = np.where(unfaded, root, 1.0)
-        film = pole + strength / safe**3
-        slope = -3.0 * strength / safe**4
+        over = strength / (safe * safe * safe)
+        film = pole + over
+        slope = -3.0 * over / safe
 
         faded = np.nonzero(~unfaded)
         lines = faded[1:]
@@ -125,7 +125,7 @@ class Tail:
         log_ratio = (
             np.log(self.damping / self.load)
             + 0.5 * np.log(part)
-            + (self.damping_exponent - 1.5) * (part**_JOIN_POWER - 1.0) / _JOIN_POWER
+            + (self.damping_exponent - 1.5) * (part * part * part - 1.0) / 3.0
         )
         return film, slope, log_ratio
 
@@ -234,8 +234,8 @@ class Curve:
 
 def load_of(root: FloatArray) -> FloatArray:
     """Load w = g^3 [N/m], zero below g = 0."""
-    load: FloatArray = np.maximum(root, 0.0) ** 3
-    return load
+    held: FloatArray = np.maximum(root, 0.0)
+    return held * held * held  # numpy's cube takes ten times as long
 
 
 def dry_slope(contact: LineContact, root: FloatArray) -> FloatArray:

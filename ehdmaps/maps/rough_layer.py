@@ -55,11 +55,11 @@ from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.kernel import library
 from ehdmaps.kernel.record import Record, at, numbers
 from ehdmaps.maps.contact_curve import FilmSamples, dry_slope
+from ehdmaps.maps.film_field import groups_at
 from ehdmaps.maps.schema import DIMS
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import max_pressure
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.moes import moes_groups
 from ehdmaps.physics.surface import Surface
 
 if TYPE_CHECKING:
@@ -366,13 +366,9 @@ class RoughLayer:
         # p_H = sqrt(w E'/(2 pi R))
         per_square = 2.0 * math.pi * contact.radius / modulus * (4.0 / math.pi) ** 2
         loads, oils = np.zeros((2, speeds.size, temperatures.size))
-        for k, temperature in enumerate(temperatures):
-            state = self.lubricant.at(float(temperature))
-            alpha = state.pressure_viscosity.pressure_viscosity
-            for j, speed in enumerate(speeds):
-                if speed > 0.0:
-                    load, oil = moes_groups(1.0, float(speed), state.viscosity, alpha, contact.radius, modulus)
-                    loads[j, k], oils[j, k] = math.log(load * per_square), math.log(max(oil, _LEAST_OIL_NUMBER))
+        moving = speeds > 0.0
+        units, groups = groups_at(contact, self.lubricant, speeds[moving], temperatures)
+        loads[moving], oils[moving] = np.log(units * per_square), np.log(np.maximum(groups, _LEAST_OIL_NUMBER))
         out = np.empty((3, *film.shape))
         samples = [np.broadcast_to(values, film.shape).copy() for values in (root, logs, by_root)]
         samples += [loads, oils, np.ascontiguousarray(film), np.ascontiguousarray(slope), np.empty((2, loads.size))]

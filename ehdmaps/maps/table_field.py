@@ -8,27 +8,30 @@ derivative of its film offset.
 
 from __future__ import annotations
 
+import ctypes
+import functools
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from scipy.interpolate import CubicSpline, PPoly
+from scipy.interpolate import CubicSpline
 
 from ehdmaps.arrays import BoolArray, ComplexArray, FloatArray, IndexArray
 from ehdmaps.errors import MapError
+from ehdmaps.kernel import library, record
 from ehdmaps.maps import schema
 from ehdmaps.maps.backbone import ERROR, IMAGINARY, LOSS_SCALE, REAL, BackboneField, OffsetLine
-from ehdmaps.maps.backbone_plan import STEPS, plan_backbone, zeta_axis
-from ehdmaps.maps.film_field import RIGID, first_loads, lifted_loss
+from ehdmaps.maps.backbone_plan import STEPS, VALLEY, plan_backbone, zeta_axis
+from ehdmaps.maps.film_field import RIGID, first_loads, groups_at, lifted_loss
 from ehdmaps.maps.kernels.ends import one_end
 from ehdmaps.maps.kernels.splines import hermite
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.moes import moes_groups, moes_speed_number, valley_load_number
+from ehdmaps.physics.moes import valley_load_number
 from ehdmaps.table.fields import NATURAL_FREQUENCIES
 from ehdmaps.table.file import film_table
 from ehdmaps.table.films import FilmTable, TableFilms
@@ -67,8 +70,20 @@ class _Lines(NamedTuple):
 
     film: OffsetLine
     damping: CubicSpline
-    ends: Range
     groups: _Groups
+
+    def at(self, zeta: FloatArray) -> FloatArray:
+        """ln of the film offset over its unit, its slope, and the damping, (3, n, n_u, n_T), straight beyond the ends.
+
+        `zeta` is (n, n_u, n_T).
+        """
+        found, cells = np.empty((3, *zeta.shape)), self.damping.c.shape[1]
+        numbers = self.damping.x, self.film.integral.c, self.film.bend, np.array(VALLEY), self.damping.c
+        breaks, quartic, bend, valley, cubic = (np.ascontiguousarray(part) for part in numbers)
+        places, room = np.ascontiguousarray(zeta), np.empty(bend.shape[1], dtype=np.int64)
+        before, after = (breaks, quartic, bend, valley, cubic), (places, room, *found)
+        _columns()(room.size, cells, *map(record.at, before), zeta.shape[0], *map(record.at, after))
+        return found
 
 
 class TableField:
@@ -142,14 +157,7 @@ class TableField:
                 self._kept.pop(next(iter(self._kept)))
             lines = self._kept[key] = self._lines(chosen, speeds, temperatures)
         zeta = np.log(loads * lines.groups.unit / lines.groups.valley)
-        zeta = zeta.reshape(loads.shape[0], math.prod(zeta.shape[1:]))  # also of no loads at all
-        inside = np.clip(zeta, *lines.ends)
-        beyond = zeta - inside
-        value, steep = columns(lines.film.integral, inside)
-        slope = steep + lines.film.bent(inside, 1)
-        log_film = value + lines.film.bent(inside, 0) + slope * beyond
-        share, rate = columns(lines.damping, inside)
-        log_film, slope, share = (values.reshape(loads.shape) for values in (log_film, slope, share + rate * beyond))
+        log_film, slope, share = lines.at(zeta)
         offset = lines.groups.film * np.exp(log_film)
         compliance = -slope * offset / loads
         width = half_width(loads, chosen.radius, chosen.reduced_modulus)
@@ -180,17 +188,11 @@ class TableField:
 
     def _groups(self, contact: LineContact, speeds: FloatArray, temperatures: FloatArray) -> _Groups:
         """Groups of a contact at speeds (n_u,) or (n_u, n_T)."""
-        every = np.broadcast_to(speeds if speeds.ndim == 2 else speeds[:, None], (len(speeds), temperatures.size))
-        found = np.empty((4, *every.shape))
-        radius, modulus = contact.radius, contact.reduced_modulus
-        for k, temperature in enumerate(temperatures.tolist()):
-            state = self._lubricant.at(temperature)
-            alpha = state.pressure_viscosity.pressure_viscosity
-            for j, speed in enumerate(every[:, k].tolist()):
-                unit, L = moes_groups(1.0, speed, state.viscosity, alpha, radius, modulus)
-                scale = radius * math.sqrt(moes_speed_number(speed, state.viscosity, radius, modulus))
-                found[:, j, k] = float(unit), float(valley_load_number(L)), scale, float(L)
-        return _Groups(found[0], found[1], found[2], found[3], every)
+        units, numbers = groups_at(contact, self._lubricant, speeds, temperatures)
+        every = np.broadcast_to(speeds if speeds.ndim == 2 else speeds[:, None], units.shape)
+        # film and load of one have the same speed number
+        films = 1.0 / (contact.reduced_modulus * units)
+        return _Groups(units, valley_load_number(numbers), films, numbers, every)
 
     def _lines(self, contact: LineContact, speeds: FloatArray, temperatures: FloatArray) -> _Lines:
         """Lines over the loads of the field, from rigid films on, at each speed and temperature."""
@@ -222,7 +224,7 @@ class TableField:
         _bridge(axis, held)
         _go_on(axis, held)
         film_line = OffsetLine.through(axis, held[0], held[1])
-        return _Lines(film_line, CubicSpline(axis, held[2]), (float(axis[0]), float(axis[-1])), groups)
+        return _Lines(film_line, CubicSpline(axis, held[2]), groups)
 
     def _read(
         self,
@@ -269,22 +271,22 @@ class TableField:
             f'{TEMPERATURE.text(float(temperatures[i]))}; have the films solved: [solver] films = "solved"'
         )
 
-    def knows(self, contact: str, speeds: FloatArray, temperatures: FloatArray) -> bool:
-        """Tell whether the table has films in the middle of the loads of a contact at all speeds and temperatures.
+    def knows(self, contact: str, speeds: FloatArray, temperatures: FloatArray) -> BoolArray:
+        """Tell at which temperatures the table has films in the middle of the loads of a contact, (n_T,).
 
         Parameters
         ----------
         contact : str
             Name of the contact.
         speeds, temperatures : array (n_u,), (n_T,)
-            [m/s], > 0, and [K].
+            [m/s], > 0, at all of which there are films, and [K].
         """
         chosen = self._contacts[contact]
         groups = self._groups(chosen, speeds, temperatures)
         middle = np.log(math.sqrt(self.load_range[0] * self.load_range[1]) * groups.unit / groups.valley)
         at = np.nonzero(np.ones(groups.unit.shape, dtype=bool))
         _, read = self._read(chosen, middle[at], at, speeds, temperatures)
-        return bool(np.all(read.usable))
+        return np.asarray(np.all(read.usable.reshape(middle.shape), axis=0))
 
     def film_errors(
         self, contact: str, loads: FloatArray, speed: float, temperature: float
@@ -368,23 +370,11 @@ def _go_on(axis: FloatArray, values: FloatArray) -> None:
         values[2] = np.where(outside, values[2, end, lines] + rate * away, values[2])
 
 
-def columns(lines: PPoly, x: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Values and derivatives of lines, each at places of its own.
-
-    Parameters
-    ----------
-    lines : PPoly
-        Polynomials with coefficients (k, n, lines).
-    x : ndarray, shape (m, lines)
-        Places within the breakpoints.
-    """
-    cell = np.clip(np.searchsorted(lines.x, x, side="right") - 1, 0, lines.x.size - 2)
-    part, which = x - lines.x[cell], np.arange(x.shape[1])
-    value, slope = np.zeros_like(x), np.zeros_like(x)
-    for coefficient in lines.c:
-        slope = slope * part + value
-        value = value * part + coefficient[cell, which]
-    return value, slope
+@functools.cache
+def _columns() -> Callable[..., None]:
+    """The function of the C library that reads lines."""
+    pointer, count = ctypes.c_void_p, ctypes.c_int64
+    return library.function("ehd_film_columns", count, count, *[pointer] * 5, count, *[pointer] * 5, result=None)
 
 
 def table_lines(

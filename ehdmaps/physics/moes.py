@@ -14,28 +14,31 @@ H. Moes, Optimum similarity analysis with applications to elastohydrodynamic lub
 from __future__ import annotations
 
 import math
+from typing import TypeVar
 
 import numpy as np
 
-from ehdmaps.arrays import Values, as_given
+from ehdmaps.arrays import FloatArray, Values, as_given
+
+Speeds = TypeVar("Speeds", float, FloatArray)
 
 
 def moes_groups(
     load: Values,
-    speed: float,
+    speed: Speeds,
     viscosity: float,
     pressure_viscosity: float,
     radius: float,
     reduced_modulus: float,
-) -> tuple[Values, float]:
+) -> tuple[Values, Speeds]:
     """Load number M = w/(E'R) (eta0 us/(E'R))^(-1/2) and oil number L = alpha E' (eta0 us/(E'R))^(1/4).
 
     Parameters
     ----------
     load : float or array
         w [N/m].
-    speed : float
-        Entrainment speed u, the mean of the surface speeds [m/s], > 0; us = 2u.
+    speed : float or array
+        Entrainment speed u, the mean of the surface speeds [m/s], > 0; us = 2u. An array, of an array of loads only.
     viscosity : float
         eta0 [Pa s].
     pressure_viscosity : float
@@ -52,16 +55,16 @@ def moes_groups(
     (4.632, 20.037)
     """
     speed_number = moes_speed_number(speed, viscosity, radius, reduced_modulus)
-    load_number = load / (reduced_modulus * radius) / math.sqrt(speed_number)
-    return as_given(load_number, load), pressure_viscosity * reduced_modulus * speed_number**0.25
+    load_number = load / (reduced_modulus * radius) / np.sqrt(speed_number)
+    return as_given(load_number, load), as_given(pressure_viscosity * reduced_modulus * speed_number**0.25, speed)
 
 
-def moes_speed_number(speed: float, viscosity: float, radius: float, reduced_modulus: float) -> float:
+def moes_speed_number(speed: Speeds, viscosity: float, radius: float, reduced_modulus: float) -> Speeds:
     """Group eta0 us/(E'R) with the sum us = 2u of the surface speeds.
 
     Parameters
     ----------
-    speed : float
+    speed : float or array
         Entrainment speed u, the mean of the surface speeds [m/s], > 0.
     viscosity : float
         eta0 [Pa s].
@@ -70,7 +73,7 @@ def moes_speed_number(speed: float, viscosity: float, radius: float, reduced_mod
     reduced_modulus : float
         E' [Pa].
     """
-    return viscosity * 2.0 * speed / (reduced_modulus * radius)
+    return as_given(viscosity * 2.0 * speed / (reduced_modulus * radius), speed)
 
 
 def film_from_moes(

@@ -223,6 +223,16 @@ def heavier_films(field: Field, value: FloatArray, slope: FloatArray, above: Flo
     return np.asarray(value - slope * np.expm1(-above) if field.scale else value + slope * above)
 
 
+@cache
+def _weights() -> tuple[Callable[..., None], ...]:
+    """The functions of the C library for weights of splines and of polynomials."""
+    pointer, count = ctypes.c_void_p, ctypes.c_int64
+    return (
+        library.function("ehd_spline_weights", pointer, count, count, *[pointer] * 4, result=None),
+        library.function("ehd_lagrange_weights", pointer, count, count, pointer, pointer, result=None),
+    )
+
+
 def knots_of(nodes: FloatArray) -> FloatArray:
     """Knots of the cubic spline through nodes, that has no knot at the last node but one at either end.
 
@@ -249,24 +259,10 @@ def spline_weights(knots: FloatArray, x: FloatArray) -> tuple[IndexArray, FloatA
     first : ndarray, shape (n,)
     weights, slopes : ndarray, shape (n, 4)
     """
-    cell = np.clip(np.searchsorted(knots, x, side="right") - 1, DEGREE, knots.size - DEGREE - 2)
-    basis = [np.ones_like(x)]
-    lower = basis
-    for degree in range(1, DEGREE + 1):
-        lower = basis
-        basis = [np.zeros_like(x)]
-        for r in range(degree):
-            right, left = knots[cell + r + 1], knots[cell + 1 - degree + r]
-            share = lower[r] / (right - left)
-            basis[r] = basis[r] + (right - x) * share
-            basis.append((x - left) * share)
-    # derivative: DEGREE (N_{i,2}/(t_{i+3} - t_i) - N_{i+1,2}/(t_{i+4} - t_{i+1}))
-    slope = [np.zeros_like(x) for _ in range(DEGREE + 1)]
-    for r in range(DEGREE):
-        share = DEGREE * lower[r] / (knots[cell + r + 1] - knots[cell + 1 - DEGREE + r])
-        slope[r] = slope[r] - share
-        slope[r + 1] = slope[r + 1] + share
-    return cell - DEGREE, np.stack(basis, axis=-1), np.stack(slope, axis=-1)
+    first, (weights, slopes) = np.empty(x.size, dtype=np.int64), np.empty((2, x.size, DEGREE + 1))
+    knots, x = (np.ascontiguousarray(part, np.float64) for part in (knots, x))
+    _weights()[0](at(knots), knots.size, x.size, *map(at, (x, first, weights, slopes)))
+    return first, weights, slopes
 
 
 def lagrange_weights(nodes: FloatArray, x: FloatArray) -> FloatArray:
@@ -279,14 +275,10 @@ def lagrange_weights(nodes: FloatArray, x: FloatArray) -> FloatArray:
     x : ndarray, shape (n,)
         Places at which it is read.
     """
-    apart = x - nodes[:, None]
-    return np.stack(
-        [
-            np.prod(np.delete(apart, k, axis=0), axis=0) / np.prod(nodes[k] - np.delete(nodes, k))
-            for k in range(nodes.size)
-        ],
-        axis=-1,
-    )
+    weights = np.empty((x.size, nodes.size))
+    nodes, x = (np.ascontiguousarray(part, np.float64) for part in (nodes, x))
+    _weights()[1](at(nodes), nodes.size, x.size, at(x), at(weights))
+    return weights
 
 
 def cell_of(nodes: FloatArray, x: FloatArray) -> IndexArray:

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import ctypes
 import dataclasses
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -26,8 +29,13 @@ def folder(tmp_path, monkeypatch):
 INNER = CONTACTS[0]
 
 
-def made(contact=INNER):
-    return ContactLaw("inner", (contact,), OIL, SMALL_FIELD)
+def made(contact=INNER, oil=OIL):
+    return ContactLaw("inner", (contact,), oil, SMALL_FIELD)
+
+
+def same_bits(law, other):
+    for one, two in zip(law.table.own, other.table.own, strict=True):
+        assert np.asarray(one).tobytes() == np.asarray(two).tobytes()
 
 
 def refuse(*arguments):
@@ -39,11 +47,15 @@ def test_a_table_is_read_again(folder, monkeypatch):
     assert len(list(folder.glob("*.npz"))) == 1
     monkeypatch.setattr("ehdmaps.maps.law.compile_table", refuse)
     again = made()
-    assert np.array_equal(again.table.own.coefficients, first.table.own.coefficients)
-    assert again.table.own[2:] == first.table.own[2:]
+    same_bits(again, first)
     assert again(1e-6, 1e-4, 1.0, 330.0) == first(1e-6, 1e-4, 1.0, 330.0)
     with pytest.raises(AssertionError, match="made again"):
         made(dataclasses.replace(INNER, radius=1.01 * INNER.radius))
+    with pytest.raises(AssertionError, match="made again"):
+        made(oil=dataclasses.replace(OIL, density_15=1.01 * OIL.density_15))
+    monkeypatch.setattr(kept_tables, "_code", lambda: b"of another state of the files")
+    with pytest.raises(AssertionError, match="made again"):
+        made()
 
 
 @pytest.mark.parametrize("content", [b"", b"PK\x03\x04 no file of numpy", None])
@@ -51,8 +63,9 @@ def test_a_damaged_table_is_made_again(folder, content):
     first = made()
     (path,) = folder.glob("*.npz")
     path.write_bytes(path.read_bytes()[:-500] if content is None else content)
-    assert np.array_equal(made().table.own.coefficients, first.table.own.coefficients)
+    same_bits(made(), first)
     assert path.stat().st_size > 1000
+    same_bits(made(), first)
 
 
 def test_a_table_that_others_may_have_written_is_not_read(folder, monkeypatch):
@@ -61,6 +74,32 @@ def test_a_table_that_others_may_have_written_is_not_read(folder, monkeypatch):
     monkeypatch.setattr("ehdmaps.maps.law.compile_table", refuse)
     with pytest.raises(AssertionError, match="made again"):
         made()
+
+
+def test_a_folder_that_cannot_be_written_keeps_nothing(folder):
+    folder.write_text("a file where the folder would be")
+    same_bits(made(), made())
+    assert folder.is_file()
+
+
+def test_makers_at_once_keep_one_table(folder):
+    """Threads, which share the number of the process: names of parts do not rest on it."""
+    with ThreadPoolExecutor(4) as pool:
+        laws = list(pool.map(lambda _: made(), range(4)))
+    assert len(list(folder.iterdir())) == 1
+    for law in (*laws[1:], made()):
+        same_bits(law, laws[0])
+
+
+@pytest.mark.slow
+def test_processes_at_once_keep_one_table(folder):
+    text = "from tests.unit.test_kept_tables import made; made()"
+    processes = [subprocess.Popen([sys.executable, "-c", text]) for _ in range(2)]
+    assert [process.wait(60) for process in processes] == [0, 0]
+    (path,) = folder.iterdir()
+    before = path.stat().st_mtime_ns
+    made()
+    assert path.stat().st_mtime_ns == before
 
 
 def test_the_oldest_tables_make_room(folder, monkeypatch):

@@ -7,14 +7,16 @@ import math
 
 import numpy as np
 import pytest
-from scipy.interpolate import CubicSpline
+from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
 from ehdmaps.errors import MapError
+from ehdmaps.maps.backbone import OffsetLine
 from ehdmaps.maps.compilation import compile_table, highest_structural_load
 from ehdmaps.maps.contact_curve import ContactCurve, Tail
 from ehdmaps.maps.film_field import LOSS_FLOOR, DryField, lifted_loss
 from ehdmaps.maps.grid_field import GridField
-from ehdmaps.maps.kernels.splines import hermite, spline_coefficients, spline_slopes, spline_weights
+from ehdmaps.maps.kernels.splines import hermite, law_nodes, spline_coefficients, spline_weights
+from ehdmaps.maps.table_field import _Lines
 from tests.cases.laws import CONTACTS, LINE, OIL, SMALL_FIELD, ValleyField
 
 
@@ -50,13 +52,56 @@ def test_weights_are_a_spline_inside_and_a_tangent_outside():
     assert spline_weights(np.array([0.0, 1.0]), np.array([2.0])) @ [1.0, 3.0] == pytest.approx([5.0])
 
 
-@pytest.mark.parametrize("count", [4, 5, 300])
-def test_slopes_of_a_spline_are_those_of_scipy(count):
+@pytest.mark.parametrize("degree", [2, 3])
+@pytest.mark.parametrize("n", [3, 4, 5, 30])
+def test_coefficients_are_those_of_the_spline_without_a_knot_at_its_ends(degree, n):
+    values = np.random.default_rng(n).normal(size=(n, 2))
+    found = spline_coefficients(values, 0, degree)
+    side = (1.0 / 8.0, 1.0 / 6.0)[degree - 2]
+    at_nodes = side * found[:-2] + (1.0 - 2.0 * side) * found[1:-1] + side * found[2:]
+    np.testing.assert_allclose(at_nodes, values, rtol=0.0, atol=1e-14)  # round-off
+    ends = np.diff(found, min(n, degree + 1), axis=0)[[0, -1]]
+    np.testing.assert_allclose(ends, 0.0, atol=1e-12)  # round-off of fourth differences
+
+
+@pytest.mark.parametrize("held", [-1, 0, 2])
+@pytest.mark.parametrize(("count", "lines"), [(4, 1), (5, 9), (300, 16)])
+def test_nodes_of_a_table_lie_on_the_cubics_of_scipy(count, lines, held):
     rng = np.random.default_rng(count)
-    nodes, values = np.cumsum(rng.uniform(0.01, 1.0, count)), rng.normal(size=count)
-    # 1e-12 of the largest slope bounds round-off: both solve the same system.
-    wanted = CubicSpline(nodes, values)(nodes, 1)
-    assert spline_slopes(nodes, values) == pytest.approx(wanted, rel=0.0, abs=1e-12 * np.max(np.abs(wanted)))
+    s = np.cumsum(rng.uniform(0.01, 1.0, (count, lines)), axis=0)
+    root, slope = rng.uniform(1.0, 2.0, (count, lines)), rng.uniform(-0.5, 1.0, (count, lines))
+    logs = rng.normal(size=(count, lines))
+    nodes, found = np.linspace(-2.0, np.max(s) + 0.5, 77), np.empty((lines, 77, 2))
+    law_nodes((s, root, slope, logs), nodes, held, found)
+    for k in range(lines):
+        x, away = np.clip(nodes, s[0, k], s[-1, k]), nodes - np.clip(nodes, s[0, k], s[-1, k])
+        g = CubicHermiteSpline(s[:, k], root[:, k], slope[:, k])(x)
+        g[away < 0.0] += (slope[0, k] * away)[away < 0.0]
+        g[away > 0.0] *= np.exp(slope[-1, k] / root[-1, k] * away)[away > 0.0]
+        spline = CubicSpline(s[:, k], logs[:, k])
+        ratio = spline(x) + away * spline(x, 1)
+        if held >= 0:
+            ratio[nodes < s[held, k]] = logs[held, k]
+        # 1e-11 of the largest value bounds round-off: close samples have steep slopes
+        np.testing.assert_allclose(found[k, :, 0], g, rtol=0.0, atol=1e-11 * np.max(np.abs(g)))
+        np.testing.assert_allclose(found[k, :, 1], ratio, rtol=0.0, atol=1e-11 * np.max(np.abs(ratio)))
+
+
+def test_lines_of_the_film_table_are_the_polynomials_of_scipy():
+    rng = np.random.default_rng(3)
+    zeta = np.cumsum(rng.uniform(0.02, 0.6, 30)) - 5.0
+    film = OffsetLine.through(zeta, *rng.normal(size=(2, 30, 6)))
+    lines = _Lines(film, CubicSpline(zeta, rng.normal(size=(30, 6))), None)
+    places = rng.uniform(-6.0, 6.0, (50, 2, 3))
+    found = lines.at(places).reshape(3, 50, 6)
+    for k in range(6):
+        x = np.clip(places.reshape(50, 6)[:, k], zeta[0], zeta[-1])
+        away = places.reshape(50, 6)[:, k] - x
+        slope = film.steep(x)[:, k] + film.bent(x[:, None], 1)[:, k]
+        value = film.integral(x)[:, k] + film.bent(x[:, None], 0)[:, k] + slope * away
+        share = lines.damping(x)[:, k] + lines.damping(x, 1)[:, k] * away
+        for got, wanted in zip(found[..., k], (value, slope, share), strict=True):
+            np.testing.assert_allclose(got, wanted, rtol=0.0, atol=1e-12 * np.max(np.abs(wanted)))  # round-off
 
 
 def test_hermite_has_the_given_values_and_slopes():

@@ -25,11 +25,11 @@ from functools import cached_property
 
 import numpy as np
 
-from ehdmaps.arrays import ComplexArray, FloatArray, IndexArray
+from ehdmaps.arrays import BoolArray, ComplexArray, FloatArray, IndexArray
 from ehdmaps.errors import EhdmapsError
 from ehdmaps.maps.backbone import LOSS_SCALE
 from ehdmaps.maps.compilation import Resolution
-from ehdmaps.maps.film_field import FilmField, lifted_loss
+from ehdmaps.maps.film_field import FilmField, lifted_loss, valley_loads
 from ehdmaps.maps.kernels.tables import COLDEST
 from ehdmaps.maps.law_errors import LawBounds
 from ehdmaps.maps.rough_layer import TEMPERATURE_REACH, WHOLE_TO
@@ -37,7 +37,7 @@ from ehdmaps.maps.table_field import TableField
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.moes import moes_groups, moes_speed_number, valley_load_number
+from ehdmaps.physics.moes import moes_speed_number
 
 _TRIED = 16
 """Temperatures that are tried within the reach."""
@@ -113,28 +113,29 @@ class ContinuedField:
 
         A law has a node up to a step of its axis beyond its reach: there are films there, too.
         """
-        found = end
-        for step in range(1, _TRIED + 1 if self.share else 1):
-            T = end + way * self.share * TEMPERATURE_REACH * step / _TRIED
-            node = COLDEST + 1.0 / (1.0 / (T - COLDEST) - way * 1e-3 * Resolution().temperature) if T > COLDEST else 0.0
-            if T < _COLDEST or not (self._knows(T) and self._knows(node)):
-                break
-            found = T
-        return found
+        steps = np.arange(1.0, _TRIED + 1.0 if self.share and end >= _COLDEST else 1.0)
+        tried = end + way * self.share * TEMPERATURE_REACH * steps / _TRIED
+        tried = tried[tried >= _COLDEST]
+        nodes = COLDEST + 1.0 / (1.0 / (tried - COLDEST) - way * 1e-3 * Resolution().temperature)
+        known = np.all(self._known(np.concatenate((tried, nodes))).reshape(2, -1), axis=0)
+        return float(np.append(end, tried)[np.argmin(np.append(known, False))])
 
-    def _knows(self, temperature: float) -> bool:
-        """Tell whether there are films at a temperature [K], at the slowest speed and the highest one."""
-        slow, fast = self.speed_range
+    def _known(self, temperatures: FloatArray) -> BoolArray:
+        """Tell at which temperatures [K] there are films, at the slowest speed and the highest one, (n_T,)."""
+        known: BoolArray = np.array([self._has_state(temperature) for temperature in temperatures.tolist()], dtype=bool)
+        speeds = np.array([self.slowest, *self.speed_range])
+        for contact in self.line_contacts:
+            if self.table is not None and np.any(known):
+                known[known] = self.table.knows(contact.name, speeds, temperatures[known])
+        return known
+
+    def _has_state(self, temperature: float) -> bool:
+        """Tell whether the oil has a viscosity at a temperature [K]."""
         try:
-            state = self.lubricant.at(temperature)
+            viscosity = self.lubricant.at(temperature).viscosity
         except EhdmapsError:
             return False
-        if not (math.isfinite(state.viscosity) and state.viscosity > 0.0):
-            return False
-        if self.table is None:
-            return True
-        speeds, kelvin = np.array([self.slowest, slow, fast]), np.array([temperature])
-        return all(self.table.knows(contact.name, speeds, kelvin) for contact in self.line_contacts)
+        return math.isfinite(viscosity) and viscosity > 0.0
 
     def first_loads(self, speeds: FloatArray, temperatures: FloatArray) -> FloatArray:
         """Loads from which on films are known [N/m], (n_u, n_T); see `FilmField.first_loads`."""
@@ -222,14 +223,7 @@ class ContinuedField:
 
     def _load_units(self, contact: LineContact, speeds: FloatArray, temperatures: FloatArray) -> FloatArray:
         """Loads at the bottom of the valley [N/m], (n_u, n_T): zeta is ln of the load over them."""
-        units = np.empty((speeds.size, temperatures.size))
-        for k, temperature in enumerate(temperatures.tolist()):
-            state = self.lubricant.at(temperature)
-            alpha = state.pressure_viscosity.pressure_viscosity
-            for j, speed in enumerate(speeds.tolist()):
-                unit, L = moes_groups(1.0, speed, state.viscosity, alpha, contact.radius, contact.reduced_modulus)
-                units[j, k] = float(valley_load_number(L)) / float(unit)
-        return units
+        return valley_loads(contact, self.lubricant, speeds, temperatures)
 
     def _named(self, contact: str) -> LineContact:
         """The contact of a name."""
@@ -352,7 +346,7 @@ def continued_field(origin: FilmField, contacts: Sequence[LineContact], lubrican
         cold, hot = origin.temperature_range
         slow, fast = origin.speed_range
         speeds, kelvins = np.array([slow / WHOLE_TO, slow, fast]), np.array(sorted({cold, hot}))
-        if not all(table.knows(contact.name, speeds, kelvins) for contact in line_contacts):
+        if not all(np.all(table.knows(contact.name, speeds, kelvins)) for contact in line_contacts):
             table = None
     except EhdmapsError:
         table = None

@@ -22,7 +22,7 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.kernel import building
 from ehdmaps.maps.kernels.tables import ApproachTable
-from ehdmaps.outputs import cache_folder, others_may_write, own_folder
+from ehdmaps.outputs import cache_folder, new_part, others_may_write, own_folder
 from ehdmaps.provenance import code_hash
 
 VARIABLE = "EHDMAPS_LAW_TABLES"
@@ -107,9 +107,9 @@ def _write(path: Path, table: ApproachTable) -> None:
     """Write a table into its file, whole or not at all, and remove the oldest ones that are too many."""
     own_folder(path.parent)
     numbers: FloatArray = np.array([getattr(table, name) for name in ApproachTable._fields[2:]])
-    part = path.with_name(f".{path.stem}.{os.getpid()}.part")
+    part, descriptor = new_part(path)
     try:
-        with part.open("xb") as file:
+        with os.fdopen(descriptor, "wb") as file:
             np.savez(file, coefficients=table.coefficients, place=table.place, numbers=numbers)
         part.replace(path)
     finally:

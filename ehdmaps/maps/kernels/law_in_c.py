@@ -218,7 +218,7 @@ class _Scratch:
 
     def __init__(self, size: int, data: int) -> None:
         self.room = np.empty(size // 8)
-        self.numbers = np.zeros(ctypes.sizeof(_ErrandRecord) // 8)
+        self.numbers: Any = np.zeros(ctypes.sizeof(_ErrandRecord) // 8)
         self.address = at(self.numbers)
         errand = _ErrandRecord.from_address(self.address)
         errand.data, errand.room = data, at(self.room)
@@ -332,9 +332,7 @@ class LawInC:
             Places outside the map by cause, see `ehdmaps.maps.kernels.tables`.
         """
         forces, counts, scratch = np.empty((3, flat[0].size)), np.zeros(4, dtype=np.int64), self._scratch()
-        self._functions.call_many(
-            self._address, flat[0].size, *map(at, flat), at(scratch.room), at(forces), at(counts)
-        )
+        self._functions.call_many(self._address, flat[0].size, *map(at, flat), at(scratch.room), at(forces), at(counts))
         self._free.append(scratch)
         return forces, counts
 

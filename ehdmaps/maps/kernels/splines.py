@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import ctypes
 import functools
-import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from scipy.interpolate import make_interp_spline
-from scipy.linalg.lapack import dgtsv
 
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.kernel import library
@@ -38,19 +36,35 @@ def spline_coefficients(values: FloatArray, axis: int, degree: int) -> FloatArra
     n = values.shape[axis]
     if n == 1:
         return np.ascontiguousarray(np.repeat(values, degree + 1, axis=axis))
-    matrix = np.zeros((n + 2, n + 2))
-    for i in range(1, n + 1):
-        matrix[i, i - 1 : i + 2] = _AT_NODE[degree]
-    # A difference of the coefficients vanishes at both ends.
-    order = min(n, degree + 1)
-    end = [(-1.0) ** i * math.comb(order, i) for i in range(order + 1)]
-    matrix[0, : order + 1] = matrix[-1, -order - 1 :] = end
-    solved = np.tensordot(np.linalg.inv(matrix)[:, 1:-1], values, (1, axis))
+    # a value is its coefficient and `side` times the second difference of the coefficients, of which this is a spline
+    # too: a difference of it vanishes at both ends
+    side, order = _AT_SIDE[degree], min(n, degree + 1)
+    given = np.ascontiguousarray(np.moveaxis(values, axis, 0))
+    bends = np.zeros_like(given)
+    if n > 2:
+        middle, beside = np.full(n - 2, 1.0 - 2.0 * side), np.full(n - 3, side)
+        above, below = beside.copy(), beside.copy()
+        middle[[0, -1]], above[:1], below[-1:] = (1.0, 0.0, 0.0) if order == 4 else (1.0 - side, side, side)
+        if n == 3:
+            middle[0] = 1.0
+        inner = bends[1:-1]
+        inner[:] = np.diff(given, 2, axis=0)
+        for i in range(1, n - 2):
+            factor = below[i - 1] / middle[i - 1]
+            middle[i] -= factor * above[i - 1]
+            inner[i] -= factor * inner[i - 1]
+        inner[-1] /= middle[-1]
+        for i in range(n - 4, -1, -1):
+            inner[i] = (inner[i] - above[i] * inner[i + 1]) / middle[i]
+        bends[0], bends[-1] = (2.0 * inner[0] - inner[1], 2.0 * inner[-1] - inner[-2]) if order == 4 else inner[[0, -1]]
+    solved = np.empty((n + 2, *given.shape[1:]))
+    solved[1:-1] = given - side * bends
+    solved[0], solved[-1] = 2.0 * solved[1] - solved[2] + bends[0], 2.0 * solved[-2] - solved[-3] + bends[-1]
     return np.ascontiguousarray(np.moveaxis(solved, 0, axis))
 
 
-_AT_NODE = {2: (1.0 / 8.0, 6.0 / 8.0, 1.0 / 8.0), 3: (1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0)}
-"""Values of the three B-splines that are not zero at a node."""
+_AT_SIDE = {2: 1.0 / 8.0, 3: 1.0 / 6.0}
+"""Value of a B-spline at the nodes beside that where it is largest."""
 
 
 def spline_weights(nodes: FloatArray, wanted: FloatArray) -> FloatArray:
@@ -77,32 +91,6 @@ def spline_weights(nodes: FloatArray, wanted: FloatArray) -> FloatArray:
     inside = np.clip(wanted, nodes[0], nodes[-1])
     weights: FloatArray = spline(inside) + (wanted - inside)[:, None] * spline(inside, nu=1)
     return weights
-
-
-def spline_slopes(nodes: FloatArray, values: FloatArray) -> FloatArray:
-    """Slopes at its nodes of a cubic spline, not-a-knot: those of `scipy.interpolate.CubicSpline`, with less overhead.
-
-    Parameters
-    ----------
-    nodes, values : array (n,)
-        Nodes, rising, at least four, and the values there.
-
-    Examples
-    --------
-    >>> spline_slopes(np.array([0.0, 1.0, 3.0, 4.0]), np.array([1.0, 8.0, 64.0, 125.0])).round(12)
-    array([ 3., 12., 48., 75.])
-    """
-    step = np.diff(nodes)
-    rise = np.diff(values) / step
-    first, last = step[0] + step[1], step[-1] + step[-2]
-    lower, upper = np.append(step[1:], last), np.append(first, step[:-1])
-    middle, right = np.empty_like(values), np.empty_like(values)
-    middle[0], middle[1:-1], middle[-1] = step[1], 2.0 * (step[:-1] + step[1:]), step[-2]
-    right[0] = ((step[0] + 2.0 * first) * step[1] * rise[0] + step[0] ** 2 * rise[1]) / first
-    right[1:-1] = 3.0 * (step[1:] * rise[:-1] + step[:-1] * rise[1:])
-    right[-1] = (step[-1] ** 2 * rise[-2] + (2.0 * last + step[-1]) * step[-2] * rise[-1]) / last
-    slopes: FloatArray = dgtsv(lower, middle, upper, right)[3]
-    return slopes
 
 
 def hermite(
@@ -170,3 +158,35 @@ def mix_lines(
         at(lattice), lattice.shape[1], first, spacing, lines.size, at(lines), at(weights), zeta.size, at(zeta), at(into)
     )
     out[...] = into
+
+
+@functools.cache
+def _nodes() -> Callable[..., None]:
+    """The function of the C library that makes the nodes of a table."""
+    pointer, count = ctypes.c_void_p, ctypes.c_int64
+    samples = [count, count, *[pointer] * 4]
+    return library.function("ehd_law_nodes", *samples, count, count, *[pointer] * 3, result=None)
+
+
+def law_nodes(samples: Sequence[FloatArray], nodes: FloatArray, held: int, values: FloatArray) -> None:
+    """g and ln(c/w) at the nodes of the stretched approach s, from samples along lines.
+
+    Cubics between the samples. g goes on along its tangent below them, and as an exponential above them; ln(c/w) along
+    its tangents.
+
+    Parameters
+    ----------
+    samples : four of ndarray, shape (n, ...)
+        s, which rises along each line, g, dg/ds and ln(c/w), at n >= 4 samples.
+    nodes : ndarray, shape (m,)
+        Nodes of s, rising.
+    held : int
+        Number of the sample below which ln(c/w) stays what it is there; -1 for none.
+    values : ndarray, shape (..., m, 2)
+        Filled with g and ln(c/w) at the nodes.
+    """
+    nodes, *of = (np.ascontiguousarray(part, np.float64) for part in (nodes, *samples))
+    lines = of[0][0].size
+    room, into = np.empty(34 * len(of[0])), np.empty((lines, nodes.size, 2))
+    _nodes()(len(of[0]), lines, *map(at, of), held, nodes.size, at(nodes), at(room), at(into))
+    values[...] = into.reshape(values.shape)
