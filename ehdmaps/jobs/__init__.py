@@ -13,8 +13,8 @@ solvers      names and settings of the solvers
 defaults     what a job takes where it says nothing; the job of a designation
 reader       job file, shipped job or map file -> `Job`
 job_text     values in SI -> the text of a job file, for `Job.build`
+smooth       a smooth function through few points, with its spread by leaving out
 estimate_bands  effect of what is estimated on stiffness, damping and film
-regression   a smooth function through few points, with what it is uncertain by
 make         the room from a job to a map file, from a batch to its maps
 solve        the room of single operating points
 show         the room where a map is opened, described, drawn, compared

@@ -7,7 +7,7 @@ The held-out points are drawn over the job's own range with another seed than th
 in the damping valley. `left out` is what the correction itself says of its error: at its own points, each left out in
 turn, each weighed by the part of the range that is nearest to it. `in 1 s` is the share of held-out points within one
 standard deviation that the map would state, 68 % where these are right. Costs are those that the dearer solver states
-for its points, and processor seconds of choosing them and of the regression. Runs take over what the store has.
+for its points, and processor seconds of choosing them and of the fit. Runs take over what the store has.
 """
 
 from __future__ import annotations
@@ -23,13 +23,11 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.make.correction import JUDGED, Correction, Films, Place, correction, error_of, quantiles
-from ehdmaps.jobs.make.correction_design import places_of
 from ehdmaps.jobs.make.sampling import VALLEY_SHARE, draw, draw_in_valley
 from ehdmaps.jobs.make.store import Arrays, NoStore, Results, Store
 from ehdmaps.jobs.make.sweep import sweep
 from ehdmaps.jobs.make.tasks import LineTask
 from ehdmaps.jobs.reader import read_job
-from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.solution import ContactSolver, Status
 
 HELD_OUT_SEED = 77
@@ -45,8 +43,6 @@ PAIRS = {
     "reynolds-full_stress": (("reynolds", {}), ("openfoam", {"flow": "full_stress"})),
 }
 """Cheaper and dearer solver, each with its keys."""
-
-FILMS = ("film_offset", "film_compliance", "loss_compliance")
 
 
 class HeldOut:
@@ -85,17 +81,16 @@ class HeldOut:
             if not all(Status(int(one["status"][0])).usable for one in (arrays, true)):
                 continue
             corrected = made.corrected(cheap, arrays) if made else arrays
-            contact, loads = cheap.contact, np.array(cheap.loads)
-            where = Place(loads, half_width(loads, contact.radius, contact.reduced_modulus), cheap.entrainment_speed)
-            films, truth = (Films(*(found[name] for name in FILMS)) for found in (corrected, true))
-            for name, value in error_of(contact, where, films, truth).items():
+            loads = np.array(cheap.loads)
+            where = Place.of(cheap.contact, cheap.lubricant, loads, cheap.entrainment_speed, cheap.temperature)
+            films, truth = Films.of(corrected), Films.of(true)
+            for name, value in error_of(where, films, truth).items():
                 errors[name].append(float(value[0]))
             if made:
-                places = places_of(contact, cheap.lubricant, loads, cheap.entrainment_speed, cheap.temperature)
-                of_k, of_c = made.model_errors(contact, films, places, where)
+                of_k, of_c = made.model_errors(films, where)
                 # As `error_of` relates errors of damping.
-                k = 1.0 / (contact.structural_compliance(loads) + truth.compliance)
-                c = np.abs(films.loss) * (1.0 / (contact.structural_compliance(loads) + films.compliance)) ** 2
+                k = 1.0 / (where.dry + truth.compliance)
+                c = np.abs(films.loss) / (where.dry + films.compliance) ** 2
                 scale = np.maximum(truth.loss * k**2, 0.02 * k * where.width / where.speed)
                 stated["stiffness"].append(float(of_k[0]))
                 stated["damping"].append(float((of_c * c / scale)[0]))
@@ -159,18 +154,17 @@ def row(
     stated: Mapping[str, FloatArray],
 ) -> str:
     """One line of the table."""
-    equal = np.full(errors["stiffness"].size, 1.0 / errors["stiffness"].size)
-    cells = [f"{count:6d} {made.usable if made else 0:6d} {made.seconds if made else 0.0:7.1f} {own:6.2f}"]
-    for name in JUDGED:
-        found = quantiles(errors[name], equal)
+    usable, seconds = (made.record["usable"], made.record["solve_seconds"]) if made else (0, 0.0)
+    cells = [f"{count:6d} {usable:6d} {seconds:7.1f} {own:6.2f}"]
+    for name, found in quantiles(errors).items():
         text = f"{found['median']:10.2%} {found['95 %']:7.2%} {found['largest']:8.2%}"
         if name in stated:
             inside = np.mean(np.abs(errors[name]) <= stated[name]) if made else np.nan
             text += f" {inside:7.0%}" if made else "       -"
         cells.append(text)
     if made:
-        left = [quantiles(made.left_out[name], made.shares) for name in JUDGED]
-        cells.append("; ".join(f"{one['median']:.2%} {one['95 %']:.2%}" for one in left))
+        left = made.record["leave_one_out"]
+        cells.append("; ".join(f"{left[name]['median']:.2%} {left[name]['95 %']:.2%}" for name in JUDGED))
     return " | ".join(cells)
 
 

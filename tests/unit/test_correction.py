@@ -1,4 +1,4 @@
-"""Films of one solver corrected by few points of a dearer one: regression, design, map, laws, failures, and the job."""
+"""Films of one solver corrected by few points of a dearer one: smooth function, design, map, laws, failures, job."""
 
 from __future__ import annotations
 
@@ -14,23 +14,22 @@ from ehdmaps.errors import InputError, MapError
 from ehdmaps.jobs.cli import main
 from ehdmaps.jobs.job import CorrectedBy, Job
 from ehdmaps.jobs.make import generate as generating
-from ehdmaps.jobs.make.correction import Films, Place, _slow_change, correction, error_of
+from ehdmaps.jobs.make.correction import FILMS, Films, Place, _slow_change, correction, error_of
 from ehdmaps.jobs.make.correction_design import VALLEY, candidates, places_of, spread_out
 from ehdmaps.jobs.make.sampling import draw, draw_in_valley
 from ehdmaps.jobs.make.tasks import LineTask
 from ehdmaps.jobs.reader import parse_job
-from ehdmaps.jobs.regression import Regression
+from ehdmaps.jobs.smooth import Smooth
 from ehdmaps.maps import schema
 from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.closed_form import FormulaSolver
-from ehdmaps.physics.hertz import half_width, natural_time
+from ehdmaps.physics.hertz import natural_time
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.physics.solution import ContactSolver, ContactSolverDefaults, FilmSolution, Status
 from tests.cases.jobs import LINE, map_job, spaced
 
-FILMS = ("film_offset", "film_compliance", "loss_compliance")
 RATIOS = (0.97, 0.97, 0.97**2)
 """Of film offset and compliance, and of the loss: one factor, which leaves a derivative a derivative."""
 
@@ -72,7 +71,7 @@ def in_memory(tasks):
     return {task.key: task.run() for task in tasks}
 
 
-# regression
+# the smooth function
 
 
 def wave(places):
@@ -85,34 +84,28 @@ RANGES = np.array([4.0, 2.0, 100.0])
 def observed(count, noise=0.0):
     rng = np.random.default_rng(7)
     places = rng.uniform(size=(count, 3)) * RANGES
-    value, slope = wave(places)
-    sure = np.ones(count)
-    return Regression.fitted(places, RANGES, value + noise * rng.normal(size=count), sure, slope, sure)
+    values = np.array(wave(places))
+    values[0] += noise * rng.normal(size=count)
+    return Smooth.fitted(places, RANGES, values, np.ones((2, count)))
 
 
 def test_what_is_predicted_for_a_point_left_out_is_what_the_others_say():
-    regression = observed(9, noise=1e-3)
+    smooth = observed(9, noise=1e-3)
     keep = np.arange(9) != 4
-    others = Regression(
-        regression.places[keep],
-        regression.observed.reshape(2, 9)[:, keep].ravel(),
-        regression.doubts.reshape(2, 9)[:, keep].ravel(),
-        regression.settings,
+    others = replace(
+        smooth, places=smooth.places[keep], observed=smooth.observed[:, keep], doubts=smooth.doubts[:, keep]
     )
-    value, slope = others.at(regression.places[[4]])
     # Round-off of a matrix whose condition the constant makes a million.
-    assert regression.left_out.value[4] == pytest.approx(value[0], rel=1e-6)
-    assert regression.left_out.slope[4] == pytest.approx(slope[0], rel=1e-6)
-    assert np.mean(regression.left_out.squares) == pytest.approx(1.0, rel=1e-9)  # by the choice of the variance
+    assert smooth.left_out[:, 4] == pytest.approx(others.at(smooth.places[[4]])[:, 0], rel=1e-6)
 
 
 def test_value_and_slope_belong_together_and_come_closer_with_more_points():
     held_out = np.random.default_rng(8).uniform(size=(100, 3)) * RANGES
     step, errors = np.array([1e-4, 0.0, 0.0]), []
     for count in (4, 16, 64):
-        regression = observed(count)
-        value, slope = regression.at(held_out)
-        quotient = (regression.at(held_out + step)[0] - regression.at(held_out - step)[0]) / 2e-4
+        smooth = observed(count)
+        value, slope = smooth.at(held_out)
+        quotient = (smooth.at(held_out + step)[0] - smooth.at(held_out - step)[0]) / 2e-4
         np.testing.assert_allclose(
             slope, quotient, atol=1e-5
         )  # of the quotient: round-off of the weights over its step
@@ -121,25 +114,33 @@ def test_value_and_slope_belong_together_and_come_closer_with_more_points():
     assert errors[-1] < 1e-3 * 0.3
 
 
-def test_one_more_point_makes_the_function_surer_there_and_changes_nothing_else():
-    regression, here = observed(8), np.array([[2.0, 1.0, 50.0]])
-    more = regression.and_at(here)
-    assert more.spread(here)[0, 0, 0] < 0.01 * regression.spread(here)[0, 0, 0]
-    np.testing.assert_allclose(more.at(here)[0], regression.at(here)[0], rtol=1e-6)
-    with_noise = regression.spread(here, np.array([[1.0, 3.0]])) - regression.spread(here)
-    assert with_noise[0, 1, 1] == pytest.approx(
-        9.0 * regression.spread(here, np.ones((1, 2)))[0, 1, 1] - 9.0 * regression.spread(here)[0, 1, 1], rel=1e-6
-    )
+def test_the_spread_is_the_error_of_leaving_out_larger_by_what_was_chosen_and_has_the_noise_of_what_is_doubtful():
+    smooth, here = observed(24, noise=1e-3), np.array([[2.0, 1.0, 50.0]])
+    assert smooth.chosen == 5 and smooth.freedom == 24 / 19
+    spread = [smooth.spread(here, np.array([[1.0], [doubt]])) for doubt in (1.0, 2.0, 3.0)]
+    # A doubt counts by its square.
+    assert 5.0 * (spread[1] - spread[0]) == pytest.approx(3.0 * (spread[2] - spread[1]), rel=1e-6, abs=1e-12)
+    assert spread[2][0, 1, 1] > spread[0][0, 1, 1] > 0.0
+    held_out = np.random.default_rng(8).uniform(size=(200, 3)) * RANGES
+    sizes = np.abs(smooth.at(held_out)[0] - wave(held_out)[0])
+    stated = np.sqrt(smooth.spread(held_out, np.ones((2, 200)))[:, 0, 0])
+    # Deviations hold two thirds of the errors, and more by the noise that the function itself has not.
+    assert np.mean(sizes <= stated) > 0.6 and np.mean(sizes <= 2.0 * stated) > 0.9
+    assert np.median(stated) < 5e-3  # the noise is 1e-3
 
 
 def test_a_constant_under_noise_is_its_mean():
     rng = np.random.default_rng(3)
     places, noise = rng.uniform(size=(40, 3)) * RANGES, 0.01 * rng.normal(size=40)
-    found = Regression.fitted(places, RANGES, 0.2 + noise, np.ones(40))
-    value, _ = found.at(rng.uniform(size=(50, 3)) * RANGES)
-    # Four deviations of a mean of 40; what wiggles along with the noise stays below its own size.
-    assert abs(np.mean(value) - 0.2) < 4.0 * 0.01 / np.sqrt(40.0)
-    assert np.std(value) < 0.01
+    sure = np.ones((2, 40))
+    found = Smooth.fitted(places, RANGES, np.array([0.2 + noise, 0.01 * rng.normal(size=40)]), sure)
+    alone = found.alike((0.2 + noise)[None], sure[:1])
+    assert alone.chosen == 1 and np.all(alone.lengths == found.lengths)
+    for one in (found, alone):
+        value = one.at(rng.uniform(size=(50, 3)) * RANGES)[0]
+        # Four deviations of a mean of 40; what wiggles along with the noise stays below its own size.
+        assert abs(np.mean(value) - 0.2) < 4.0 * 0.01 / np.sqrt(40.0)
+        assert np.std(value) < 0.01
 
 
 # design
@@ -149,15 +150,12 @@ def test_first_points_fill_the_range():
     among = candidates(job_of())
     chosen = spread_out(among, 16)
     assert len(set(chosen)) == 16
-    apart = np.sqrt(np.sum((among.scaled[:, None] - among.scaled[chosen][None]) ** 2, axis=2))
     rng = np.random.default_rng(1)
-    at_random = [
-        np.max(
-            np.min(np.linalg.norm(among.scaled[:, None] - among.scaled[rng.permutation(len(apart))[:16]], axis=2), 1)
-        )
-        for _ in range(5)
+    farthest = [
+        np.max(np.min(among.apart(among.places[some]), axis=1))
+        for some in (chosen, *(rng.permutation(len(among.points))[:16] for _ in range(5)))
     ]
-    assert np.max(np.min(apart, axis=1)) < min(at_random)
+    assert farthest[0] < min(farthest[1:])
     assert among.shares(among.places[chosen]).sum() == pytest.approx(1.0, rel=1e-12)  # round-off
 
 
@@ -188,7 +186,7 @@ def test_a_solver_that_differs_by_a_factor_is_recovered():
     cheap, dear = FormulaSolver(), Scaled(FormulaSolver())
     job = job_of()
     made = correction(job, cheap, dear, 8, in_memory)
-    assert len(made.points) == made.usable == 8
+    assert made.record["asked"] == made.record["usable"] == len(made.record["points"]) == 8
     rng = np.random.default_rng(5)
     for point in (draw(job, rng) for _ in range(20)):
         films = [
@@ -197,11 +195,11 @@ def test_a_solver_that_differs_by_a_factor_is_recovered():
         ]
         arrays, wanted = (task.run() for task in films)
         found = made.corrected(films[0], arrays)
-        # The least variance of a regression: differences of 1e-7; the loss counts arsinh, of which it is a part.
+        # The least variance of a smooth function: differences of 1e-7; the loss counts arsinh, of which it is a part.
         for name, tolerance in (("film_offset", 1e-6), ("film_compliance", 1e-6), ("central_film", 1e-6)):
             assert found[name][0] == pytest.approx(wanted[name][0], rel=tolerance)
-    assert made.record()["before"]["film_offset"]["median"] == pytest.approx(1.0 / 0.97 - 1.0, rel=1e-9)
-    assert made.record()["leave_one_out"]["film_offset"]["largest"] < 1e-6
+    assert made.record["before"]["film_offset"]["median"] == pytest.approx(1.0 / 0.97 - 1.0, rel=1e-9)
+    assert made.record["leave_one_out"]["film_offset"]["largest"] < 1e-6
 
 
 def test_corrected_film_compliance_is_the_derivative_of_the_corrected_film_offset():
@@ -235,14 +233,12 @@ def held_out():
         errors, stated = [], []
         for (task, _), (arrays, truth) in zip(tasks, solved, strict=True):
             contact, loads = task.contact, np.array(task.loads)
-            width = half_width(loads, contact.radius, contact.reduced_modulus)
-            where = Place(loads, width, task.entrainment_speed)
-            films = Films(*((made.corrected(task, arrays) if made else arrays)[name] for name in FILMS))
-            error = error_of(contact, where, films, Films(*(truth[name] for name in FILMS)))
+            where = Place.of(contact, task.lubricant, loads, task.entrainment_speed, task.temperature)
+            films = Films.of(made.corrected(task, arrays) if made else arrays)
+            error = error_of(where, films, Films.of(truth))
             errors.append([error[name][0] for name in ("film_offset", "stiffness", "damping")])
             if made:
-                places = places_of(contact, task.lubricant, loads, task.entrainment_speed, task.temperature)
-                stated.append(made.model_errors(contact, films, places, where)[0][0])
+                stated.append(made.model_errors(films, where)[0][0])
         found[count] = np.abs(errors), np.array(stated), made
     return found
 
@@ -261,7 +257,7 @@ def test_errors_of_leaving_out_are_those_at_held_out_points(held_out):
     for count in (16, 32):
         errors, _, made = held_out[count]
         for column, name in enumerate(("film_offset", "stiffness", "damping")):
-            left_out = made.record()["leave_one_out"][name]["median"]
+            left_out = made.record["leave_one_out"][name]["median"]
             assert 0.25 < left_out / np.median(errors[:, column]) < 4.0
 
 
@@ -299,15 +295,13 @@ def test_a_correction_that_leaving_out_does_not_bear_out_is_not_applied():
     idle = [made for made in found if made.applied == (False, False)]
     assert len(idle) >= 2
     made = idle[0]
-    assert made.record()["not_applied"] == ["film_offset", "loss_compliance"]
+    assert made.record["not_applied"] == ["film_offset", "loss_compliance"]
     task = LineTask(job.contacts[0], job.lubricant, (2e4,), 1.0, 333.15, cheap)
     found = made.corrected(task, arrays := task.run())
     assert found["loss_compliance"] == pytest.approx(arrays["loss_compliance"], rel=1e-12)  # round-off of arsinh
     assert found["film_offset"] == arrays["film_offset"]
-    width = half_width(np.array([2e4]), task.contact.radius, task.contact.reduced_modulus)
-    films, where = Films(*(found[name] for name in FILMS)), Place(np.array([2e4]), width, 1.0)
-    places = places_of(task.contact, job.lubricant, np.array([2e4]), 1.0, 333.15)
-    of_k, _ = made.model_errors(task.contact, films, places, where)
+    films, where = Films.of(found), Place.of(task.contact, job.lubricant, np.array([2e4]), 1.0, 333.15)
+    of_k, _ = made.model_errors(films, where)
     # The noise of the film compliance is 2 %, and what that is of k: noise in k is taken as that of light loads.
     share = films.compliance / (films.compliance + task.contact.structural_compliance(2e4))
     assert 0.02 * share[0] < of_k[0] < 0.05
@@ -345,7 +339,7 @@ def test_a_corrected_map_says_so_and_goes_on_where_it_was_interrupted(tmp_path, 
         assert again.dataset[name].equals(first.dataset[name])
     emap = open_map(path)
     direct = generating.generate_in_memory(replace(job, corrected_by=None), 1, solver=Scaled(FormulaSolver())).dataset
-    # The least variance of a regression, 1e-7.
+    # The least variance of a smooth function, 1e-7.
     for name, tolerance in (("stiffness", 1e-6), ("film_offset", 1e-6)):
         np.testing.assert_allclose(emap.dataset[name], direct[name], rtol=tolerance)
     assert emap.dataset.attrs["schema_version"] == schema.SCHEMA_VERSION
@@ -426,11 +420,11 @@ def test_points_that_fail_are_counted_and_named(tmp_path, capsys, monkeypatch):
 def test_without_enough_points_there_is_no_map(tmp_path):
     dear, path = Scaled(FormulaSolver(), slowest=1e9), tmp_path / "a.nc"
     with pytest.raises(
-        MapError, match="correction of formula by scaled: 0 of 4 points have a solution by both"
+        MapError, match="correction of formula by scaled: 0 of 8 points have a solution by both"
     ) as error:
         generating.generate(job_of(), path, 1, corrector=dear)
     text = str(error.value)
-    assert "the first" in text and "4 stagnated: slower than 1e+09 m/s" in text and "delete corrected_by" in text
+    assert "the first" in text and "8 stagnated: slower than 1e+09 m/s" in text and "delete corrected_by" in text
     assert not path.exists() and (tmp_path / "a.nc.store").exists()
     with pytest.raises(InputError, match="corrector: got one for a job without corrected_by"):
         generating.generate(job_of(TEXT), path, 1, corrector=dear)

@@ -10,7 +10,7 @@ sampling           random operating points of a job
 table_films        films of a map from the film table, or why not
 table_law          laws without a file of a map
 table_make         the film table itself
-correction_design  where a dearer solver tells most about a cheaper one
+correction_design  where a dearer solver is asked for what a cheaper one gets wrong
 correction         films of one solver corrected by few points of a dearer one
 law_check          the contact laws against fresh solves
 spacing            errors of contact laws between the points of a map

@@ -16,7 +16,6 @@ from ehdmaps.jobs.make.tasks import ERRORS_OF_SOME, FOUND_BY_SOME, LineTask, sol
 from ehdmaps.maps import schema
 from ehdmaps.maps.records import MODEL_ERRORS, contacts_json, derived, record_json
 from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.hertz import half_width
 from ehdmaps.physics.solution import ContactSolver, Status
 from ehdmaps.provenance import code_hash
 from ehdmaps.version import version
@@ -167,20 +166,15 @@ def with_correction(
     lines_of : str
         Name of the solver of the lines, where these alone are corrected, by points of the map.
     """
-    from ehdmaps.jobs.make.correction import Films, Place
-    from ehdmaps.jobs.make.correction_design import places_of
+    from ehdmaps.jobs.make.correction import FILMS, Films, Place
 
-    shape = job.shape
-    errors = np.zeros((len(MODEL_ERRORS), *shape))
-    loads = np.array(job.loads)
-    names = ("film_offset", "film_compliance", "loss_compliance")
+    errors, loads = np.zeros((len(MODEL_ERRORS), *job.shape)), np.array(job.loads)
     for i, contact in enumerate(job.contacts):
-        width = half_width(loads, contact.radius, contact.reduced_modulus)
         for j, speed in enumerate(job.entrainment_speeds):
             for k, temperature in enumerate(job.temperatures if speed > 0.0 else ()):
-                places = places_of(contact, job.lubricant, loads, speed, temperature)
-                films = Films(*(dataset[name].values[i, :, j, k] for name in names))
-                errors[:, i, :, j, k] = correction.model_errors(contact, films, places, Place(loads, width, speed))
+                films = Films.of({name: dataset[name].values[i, :, j, k] for name in FILMS})
+                place = Place.of(contact, job.lubricant, loads, speed, temperature)
+                errors[:, i, :, j, k] = correction.model_errors(films, place)
     known = np.isfinite(dataset["film_offset"].values)
     values = {name: np.where(known, error, np.nan) for name, error in zip(MODEL_ERRORS, errors, strict=True)}
     made_by = {
@@ -188,7 +182,7 @@ def with_correction(
         "settings": corrector.settings(),
         "version": solver_version(corrector),
         **({"lines": lines_of} if lines_of else {}),
-        **correction.record(),
+        **correction.record,
     }
     variables = {name: schema.typed(schema.variable(name), array) for name, array in values.items()}
     return dataset.assign(variables).assign_attrs(

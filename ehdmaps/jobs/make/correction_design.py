@@ -1,4 +1,4 @@
-"""Places where a dearer solver tells most about what a cheaper one gets wrong, over a job's own range.
+"""Places at which a dearer solver is asked for what a cheaper one gets wrong, over a job's own range.
 
 A place is (s, ln(1 + L), T): zeta = ln(M/M_valley(L)) and Moes' L, by which the film of a contact goes at one
 temperature, and the temperature [K]. zeta is stretched around the damping valley, zeta = 0.3 sinh(s): there films
@@ -14,7 +14,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ehdmaps.arrays import FloatArray, IndexArray
+from ehdmaps.arrays import FloatArray
 from ehdmaps.jobs.job import Job
 from ehdmaps.jobs.make.sampling import SamplePoint, draw, draw_in_valley
 from ehdmaps.physics.closed_form import FormulaSolver
@@ -73,7 +73,7 @@ def per_zeta(places: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True, eq=False)
 class Candidates:
-    """Random points of a job, which stand for its range.
+    """Points of a job, which stand for its range.
 
     Attributes
     ----------
@@ -81,54 +81,36 @@ class Candidates:
         The points; none of them at the place of another one.
     places : array (n, 3)
         Their places.
-    stiffness_shares : array (n,)
-        k h/w with the film h of Moes' formula: by how much k changes, relatively, with the exponent of the film over
-        the load.
     """
 
     points: tuple[SamplePoint, ...]
     places: FloatArray
-    stiffness_shares: FloatArray
 
     @cached_property
     def ranges(self) -> FloatArray:
         """Ranges of the coordinates, shape (3,)."""
         return np.asarray(np.ptp(self.places, axis=0))
 
-    @cached_property
-    def scaled(self) -> FloatArray:
-        """Places in units of the ranges."""
-        return self.in_ranges(self.places)
-
-    def in_ranges(self, places: FloatArray) -> FloatArray:
-        """Places in units of the ranges.
+    def apart(self, places: FloatArray) -> FloatArray:
+        """Squares of the distances of the candidates from some places, in units of the ranges, shape (n, m).
 
         Parameters
         ----------
         places : array (m, 3)
             Places (s, ln(1 + L), T).
         """
-        return np.asarray(places / np.where(self.ranges > 0.0, self.ranges, 1.0))
+        apart = (self.places[:, None] - places[None]) / np.where(self.ranges > 0.0, self.ranges, 1.0)
+        return np.asarray(np.sum(apart**2, axis=2))
 
-    def nearest(self, to: FloatArray) -> IndexArray:
-        """Index of the nearest of some places for each candidate, shape (n,).
-
-        Parameters
-        ----------
-        to : array (m, 3)
-            The places, at least one.
-        """
-        return np.asarray(np.argmin(_distances(self.scaled, self.in_ranges(to)), axis=1))
-
-    def shares(self, of: FloatArray) -> FloatArray:
+    def shares(self, places: FloatArray) -> FloatArray:
         """Share of the candidates that each of some places is nearest to, shape (m,); one in all.
 
         Parameters
         ----------
-        of : array (m, 3)
-            The places, at least one.
+        places : array (m, 3)
+            Places (s, ln(1 + L), T), at least one.
         """
-        return np.bincount(self.nearest(of), minlength=len(of)) / len(self.points)
+        return np.bincount(np.argmin(self.apart(places), axis=1), minlength=len(places)) / len(self.points)
 
 
 def candidates(job: Job) -> Candidates:
@@ -140,7 +122,7 @@ def candidates(job: Job) -> Candidates:
         The job; of one that is all standstill there are none.
     """
     if max(job.entrainment_speeds) <= 0.0:
-        return Candidates((), np.empty((0, 3)), np.empty(0))
+        return Candidates((), np.empty((0, 3)))
     rng = np.random.default_rng(SEED)
     drawn = [draw(job, rng) for _ in range(CANDIDATES)]
     drawn += [point for _ in range(IN_VALLEY) if (point := draw_in_valley(job, rng)) is not None]
@@ -157,23 +139,17 @@ def usable(job: Job, drawn: Sequence[SamplePoint]) -> Candidates:
     drawn : sequence of SamplePoint
         Points of its range, with speeds above zero.
     """
-    kept, places, shares = [], [], []
-    solver = FormulaSolver()
-    for point in drawn:
-        (film,) = solver.solve_line(point.contact, job.lubricant, (point.load,), point.speed, point.temperature)
-        if not film.status.usable:
-            continue
-        compliance = point.contact.structural_compliance(point.load) + film.film_compliance
-        places.append(
-            places_of(point.contact, job.lubricant, np.array([point.load]), point.speed, point.temperature)[0]
-        )
-        shares.append(film.film_offset / point.load / compliance)
-        kept.append(point)
-    if not kept:
-        return Candidates((), np.empty((0, 3)), np.empty(0))
-    _, first = np.unique(np.round(np.array(places) / _SAME_PLACE), axis=0, return_index=True)
-    first = np.sort(first)
-    return Candidates(tuple(kept[i] for i in first), np.array(places)[first], np.array(shares)[first])
+    oil = job.lubricant
+    kept: dict[tuple[float, ...], tuple[SamplePoint, FloatArray]] = {}
+    for contact, load, speed, temperature in drawn:
+        (film,) = FormulaSolver().solve_line(contact, oil, (load,), speed, temperature)
+        if film.status.usable:
+            place = places_of(contact, oil, np.array([load]), speed, temperature)[0]
+            kept.setdefault(
+                tuple(np.round(place / _SAME_PLACE)), (SamplePoint(contact, load, speed, temperature), place)
+            )
+    points, places = zip(*kept.values(), strict=True) if kept else ((), np.empty((0, 3)))
+    return Candidates(points, np.array(places))
 
 
 def spread_out(among: Candidates, count: int) -> list[int]:
@@ -186,25 +162,17 @@ def spread_out(among: Candidates, count: int) -> list[int]:
     count : int
         How many, at most.
     """
-    scaled = among.scaled
-    chosen = [int(np.argmin(np.sum((scaled - scaled.mean(axis=0)) ** 2, axis=1)))]
-    while len(chosen) < min(count, len(scaled)):
-        chosen.append(int(np.argmax(np.min(_distances(scaled, scaled[chosen]), axis=1))))
+    if not among.points:
+        return []
+    places = among.places
+    chosen = [int(np.argmin(among.apart(places.mean(axis=0)[None])))]
+    while len(chosen) < min(count, len(places)):
+        chosen.append(int(np.argmax(np.min(among.apart(places[chosen]), axis=1))))
     for _ in range(_CENTRES):
-        owner = np.argmin(_distances(scaled, scaled[chosen]), axis=1)
-        centres = np.array([scaled[owner == i].mean(axis=0) for i in range(len(chosen))])
-        moved = [int(i) for i in np.argmin(_distances(scaled, centres), axis=0)]
+        owner = np.argmin(among.apart(places[chosen]), axis=1)
+        centres = np.array([places[owner == i].mean(axis=0) for i in range(len(chosen))])
+        moved = [int(i) for i in np.argmin(among.apart(centres), axis=0)]
         if moved == chosen or len(set(moved)) < len(moved):
             break
         chosen = moved
     return chosen
-
-
-def free(among: Candidates, taken: Sequence[int]) -> IndexArray:
-    """Indices of the candidates that are not taken yet."""
-    return np.setdiff1d(np.arange(len(among.points)), taken)
-
-
-def _distances(one: FloatArray, other: FloatArray) -> FloatArray:
-    """Squares of the distances, shape (n, m)."""
-    return np.asarray(np.sum((one[:, None, :] - other[None, :, :]) ** 2, axis=2))
