@@ -23,8 +23,9 @@ from mbs.bearings.balls.ball_element import MachineBalls
 from mbs.bearings.balls.films import ball_films
 from mbs.bearings.balls.laws import dry_law
 from mbs.cli import main
-from mbs.exports.balls.source import source_texts, write_source
-from mbs.exports.balls.speed_laws import dry_speed_laws, error_between, film_speed_laws
+from mbs.exports.one_bearing.balls import BALLS
+from mbs.exports.one_bearing.source import source_texts, write_source
+from mbs.exports.one_bearing.speed_laws import error_between
 from mbs.model.elements import Operation
 from tests.cases.c_balls import BallKernel, compiled_balls
 from tests.cases.fmu import Unit
@@ -58,9 +59,9 @@ def exported(tmp_path_factory):
         geometry = ball_estimate(name)
         ends = (geometry.entrainment_speed(rpm * RPM) for rpm in (1000.0, 6000.0))
         dry = dry_law(geometry, damping_time=DAMPER)
-        laws = film_speed_laws(films(geometry), *ends) if filmed else dry_speed_laws(dry.inner, dry.outer)
+        laws = BALLS.speed_laws(BallForce(geometry, dry), films(geometry) if filmed else None, tuple(ends))
         source = folder / f"{name}.c"
-        write_source(source, BallForce(geometry, dry), laws, ("made by ehdmaps",))
+        write_source(BALLS, source, BallForce(geometry, dry), laws, ("made by ehdmaps",))
         found[name] = geometry, laws, BallKernel(compiled_balls(source), f"ball_{name}".lower())
     return found
 
@@ -297,5 +298,5 @@ def test_rollers_are_exported_by_another_command(ending, capsys):
 def test_mirrored_bearings_are_not_exported_twice():
     geometry = dataclasses.replace(ball_estimate("7208B"), contact_angle=-0.7)
     law = dry_law(geometry)
-    with pytest.raises(InputError, match="contact angle: got one below zero"):
-        source_texts(BallForce(geometry, law), dry_speed_laws(law.inner, law.outer), ())
+    with pytest.raises(InputError, match="ball bearing: got one that carries along -x"):
+        source_texts(BALLS, BallForce(geometry, law), BALLS.speed_laws(BallForce(geometry, law)), ())

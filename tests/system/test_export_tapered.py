@@ -19,8 +19,9 @@ from mbs.bearings.tapered.line_film import LineFilms
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
 from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.cli import main
-from mbs.exports.balls.speed_laws import error_between
-from mbs.exports.tapered.source import exported_play, line_speed_laws, source_texts, write_source
+from mbs.exports.one_bearing.rollers import RIBBED, TAPERED
+from mbs.exports.one_bearing.source import source_texts, write_source
+from mbs.exports.one_bearing.speed_laws import error_between
 from mbs.model.elements import Operation
 from tests.cases.c_balls import BallKernel, compiled_balls
 from tests.cases.fmu import Unit
@@ -48,6 +49,10 @@ def geometry_of(name):
     return tapered_estimate(name) if name[0].isdigit() else ribbed_estimate(name, 20e-6, 30e-6)
 
 
+def kind_of(name):
+    return TAPERED if name[0].isdigit() else RIBBED
+
+
 def turned(geometry):
     """The same bearing the other way round."""
     if geometry.contact_angle:
@@ -63,12 +68,12 @@ def exported(tmp_path_factory):
         geometry = geometry_of(name)
         # a constant damper jumps where a line begins to carry: rollers between ribs are at that edge by themselves
         force = TaperedForce(geometry, 0.0 if filmed or name.startswith("N") else 50.0, 0.0 if filmed else DAMPER)
-        laws = line_speed_laws(force, made_up_films(geometry), (1.0, 8.0)) if filmed else line_speed_laws(force)
+        laws = kind_of(name).speed_laws(force, made_up_films(geometry) if filmed else None, (1.0, 8.0))
         source = folder / f"{name}.c"
-        write_source(source, force, laws, ("made by ehdmaps",))
+        write_source(kind_of(name), source, force, laws, ("made by ehdmaps",))
         prefix = name.lower() if name.startswith("N") else f"roller_{name}"
         kernel = BallKernel(compiled_balls(source), prefix, "rollers")
-        assert kernel.make(exported_play(force)) == 0
+        assert kernel.make(kind_of(name).play(force.geometry)) == 0
         found[name] = force, laws, kernel
     return found
 
@@ -78,7 +83,7 @@ def exported(tmp_path_factory):
 def test_kernel_is_that_of_python(exported, name, mirrored):
     """At random poses and velocities, pressed and with some or all rollers lifted off, at rest and fast."""
     force, laws, kernel = exported[name]
-    kernel.make(exported_play(force), mirrored)
+    kernel.make(kind_of(name).play(force.geometry), mirrored)
     way, geometry = (-1.0, turned(force.geometry)) if mirrored else (1.0, force.geometry)
     other = TaperedForce(geometry, force.damping, force.damping_time)
     rng, loaded, partly = np.random.default_rng(4), 0, 0
@@ -111,7 +116,7 @@ def test_kernel_is_that_of_python(exported, name, mirrored):
 def test_slow_rollers_find_their_balance(exported, name):
     """Idle rollers in a play of 1e4 times what their centrifugal loads press them in: from nothing, and in sequence."""
     force, _, kernel = exported[name]
-    kernel.make(exported_play(force))
+    kernel.make(kind_of(name).play(force.geometry))
     rng = np.random.default_rng(3)
     for speed in (0.01, 0.1, 1.0, 10.0):
         for pose in rng.normal(size=(40, 6)) * SIZES:
@@ -127,7 +132,7 @@ def test_slow_rollers_find_their_balance(exported, name):
 def test_stiffness_is_the_derivative_of_the_force(exported, name):
     """Quotients of differences over 4 nm, to their second order; 1e-13 of a force of 10 kN over 4 nm is less."""
     force, _, kernel = exported[name]
-    kernel.make(exported_play(force))
+    kernel.make(kind_of(name).play(force.geometry))
     pose = np.array([25e-6, 12e-6, -7e-6, 0.0, 3e-4, -2e-4])
     _, found = kernel.call(pose, np.zeros(6), 0.3, 300.0, 0.0)
     for axis in FREE:
@@ -170,7 +175,7 @@ def test_statuses(exported):
     np.testing.assert_allclose(kernel.call(pose, still, 0.0, 300.0, 0.0)[1], before[1], rtol=1e-9, atol=1e-6)
     geometry = turned(tapered_estimate("32208"))
     with pytest.raises(InputError, match="carries along -x"):
-        source_texts(TaperedForce(geometry), laws, ())
+        source_texts(TAPERED, TaperedForce(geometry), laws, ())
 
 
 LOAD = ("--load", "5 kN", "--axial", "2 kN", "--law", "hertz:1.25e-5 s", "--speed", "6000 rpm")

@@ -261,7 +261,7 @@ def test_what_is_netcdf_is_not_written_under_another_ending(here, name):
 
 
 def test_c_has_no_quotation_marks_in_names(here):
-    from mbs.exports.balls.source import SOURCE
+    from mbs.exports.one_bearing.source import SOURCE
 
     assert "allowed: no quotation mark, which ends the header's name in C" in problem('a"b.c', SOURCE)
 

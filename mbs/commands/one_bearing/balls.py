@@ -27,7 +27,7 @@ from mbs.scene.map_set import TABLE_LAW
 
 if TYPE_CHECKING:
     from mbs.bearings.balls.films import BallFilms
-    from mbs.exports.balls.speed_laws import SpeedLaws
+    from mbs.exports.one_bearing.kind import ExportKind
 
 FILMS = "films"
 """Law of contacts with films that are read from the table of points, and solved where it has none; `table` reads."""
@@ -107,24 +107,11 @@ def _slowest(request: Request) -> float:
     return slowest_films(request.force.geometry, request.oil, request.description.temperature)
 
 
-def _speed_laws(
-    force: BallForce, films: Callable[[float], Any] | None, ends: tuple[float, float], memory: bool
-) -> SpeedLaws:
-    """Laws over the speeds of the points."""
-    from mbs.bearings.balls.response import SHORTER
-    from mbs.exports.balls.speed_laws import dry_speed_laws, film_speed_laws
+def _exported() -> ExportKind:
+    """Its sources and units."""
+    from mbs.exports.one_bearing import balls
 
-    if films is None:
-        return dry_speed_laws(force.law.inner, force.law.outer)
-    return film_speed_laws(films, *ends, shorter=SHORTER if memory else ())
-
-
-def _writers() -> tuple[Callable[..., str], Callable[..., str]]:
-    """Writers of a source and of a unit."""
-    from mbs.exports.balls.source import write_source
-    from mbs.exports.balls.unit import write_ball_unit
-
-    return write_source, write_ball_unit
+    return balls.BALLS
 
 
 def _oscillating(points: Sequence[BallPoint]) -> Oscillating:
@@ -162,8 +149,7 @@ BALL_BEARINGS = Family(
     films=_films,
     at_speed=_at_speed,
     point=lambda at, *given, **more: ball_point(at.force, *given, films=at.films, **more),
-    speed_laws=_speed_laws,
-    writers=_writers,
+    exported=_exported,
     oscillating=_oscillating,
 )
 """Ball bearings."""

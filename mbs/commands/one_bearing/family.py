@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from mbs.bearings.balls.film_tables import PairLaw
     from mbs.commands.one_bearing.linear_files import Oscillating
     from mbs.commands.one_bearing.shared import Operating
-    from mbs.exports.balls.speed_laws import SpeedLaws
+    from mbs.exports.one_bearing.kind import ExportKind
 
 
 class Asked(NamedTuple):
@@ -126,12 +126,8 @@ class Family:
         (request) -> function of the speed of the inner ring [rad/s].
     point : callable
         (what is at the speed, load, speeds of the rings, and what all have by name) -> point.
-    speed_laws : callable
-        (force, films or None, lowest and highest entrainment speed, memory) -> laws over the speed, to be exported.
-    writers : callable
-        () -> writers of a source and of a unit.
-    of_largest : bool
-        Whether errors of the damping are told as parts of its largest value.
+    exported : callable
+        () -> what its sources and units have of their own.
     oscillating : callable or None
         (points) -> K and C of films with memory.
     assumed : tuple of str
@@ -152,8 +148,6 @@ class Family:
     films: Callable[[Request], Callable[[float], PairLaw] | None]
     at_speed: Callable[[Request], Callable[[float], AtSpeed]]
     point: Callable[..., Any]
-    speed_laws: Callable[[Any, Callable[[float], PairLaw] | None, tuple[float, float], bool], SpeedLaws]
-    writers: Callable[[], tuple[Callable[..., str], Callable[..., str]]]
-    of_largest: bool = False
+    exported: Callable[[], ExportKind]
     oscillating: Callable[[Sequence[Any]], Oscillating] | None = None
     assumed: tuple[str, ...] = ()

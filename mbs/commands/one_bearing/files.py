@@ -15,7 +15,7 @@ from mbs.output.one_bearing.table import heading
 if TYPE_CHECKING:
     from mbs.bearings.balls.film_tables import PairLaw
     from mbs.commands.one_bearing.family import Family
-    from mbs.exports.balls.speed_laws import SpeedLaws
+    from mbs.exports.one_bearing.speed_laws import SpeedLaws
 
 SOURCE, UNIT = ".c", ".fmu"
 """Endings of files that hold the bearing itself."""
@@ -76,7 +76,7 @@ def bearing_outputs(path: str | None) -> tuple[Output, ...]:
     """
     ending = ending_of(path)
     if path is not None and ending == SOURCE:
-        from mbs.exports.balls import source
+        from mbs.exports.one_bearing import source
 
         return Output("-o", path, source.SOURCE), Output("-o", str(source.header_of(path)), source.HEADER)
     if ending == UNIT:
@@ -106,18 +106,21 @@ def write_export(path: str, given: Export) -> str:
     if is_linear(path):
         oscillating = family.oscillating(points) if given.memory and family.oscillating else None
         return write_linear(path, given.force.geometry.name, heads, points, given.outer_speed, oscillating)
-    ends, words = _turning_speeds(given), DRY
+    kind, ends, words = family.exported(), _turning_speeds(given), DRY
     films = None if ends is None else given.films
-    laws = family.speed_laws(given.force, films, ends or (0.0, 0.0), given.memory)
+    laws = kind.speed_laws(given.force, films, ends or (0.0, 0.0), memory=given.memory)
     if films is not None:
-        words = _film_words(laws, films, of_largest=family.of_largest)
+        words = _film_words(laws, films, of_largest=kind.of_largest)
     temperature = f"temperature: {TEMPERATURE.text(given.description.temperature)}"
     header = (*header_of(heads), temperature, f"law: {given.description.law}", words)
-    write_source, write_unit = family.writers()
     if ending_of(path) == SOURCE:
-        return write_source(path, given.force, laws, header)
+        from mbs.exports.one_bearing.source import write_source
+
+        return write_source(kind, path, given.force, laws, header)
+    from mbs.exports.one_bearing.unit import write_bearing_unit
+
     header = (*header, *around(points), "start: the first of the speeds")
-    return write_unit(path, given.force, laws, _start_of(points[0]), header)
+    return write_bearing_unit(kind, path, given.force, laws, _start_of(points[0]), header)
 
 
 def _turning_speeds(given: Export) -> tuple[float, float] | None:
@@ -130,7 +133,7 @@ def _turning_speeds(given: Export) -> tuple[float, float] | None:
 
 def _film_words(laws: SpeedLaws, films: Callable[[float], PairLaw], *, of_largest: bool) -> str:
     """Speeds of films and how right they are between them, in words."""
-    from mbs.exports.balls.speed_laws import LIGHT, error_between
+    from mbs.exports.one_bearing.speed_laws import LIGHT, error_between
 
     kind, (slow, fast) = "films with memory" if laws.memory else "films", laws.speeds[[0, -1]].tolist()
     words = f"{kind}: at {laws.speeds.size} entrainment speeds from {slow:.6g} to {fast:.6g} m/s"

@@ -27,7 +27,7 @@ from mbs.scene.fields import FORCE
 from mbs.scene.map_set import TABLE_LAW
 
 if TYPE_CHECKING:
-    from mbs.exports.balls.speed_laws import SpeedLaws
+    from mbs.exports.one_bearing.kind import ExportKind
 
 _TAKEN = ("law", "temperature", "roughness", "films")
 """Choices that all of them take; those without a contact angle have a clearance too."""
@@ -128,21 +128,18 @@ def _at_speed(request: Request) -> Callable[[float], AtSpeed]:
     return at
 
 
-def _speed_laws(
-    force: TaperedForce, films: Callable[[float], Any] | None, ends: tuple[float, float], memory: bool
-) -> SpeedLaws:
-    """Laws over the speeds of the points."""
-    from mbs.exports.tapered.source import line_speed_laws
+def _exported_tapered() -> ExportKind:
+    """Sources and units of tapered rollers."""
+    from mbs.exports.one_bearing import rollers
 
-    return line_speed_laws(force) if films is None else line_speed_laws(force, films, ends, memory=memory)
+    return rollers.TAPERED
 
 
-def _writers() -> tuple[Callable[..., str], Callable[..., str]]:
-    """Writers of a source and of a unit."""
-    from mbs.exports.tapered.source import write_source
-    from mbs.exports.tapered.unit import write_tapered_unit
+def _exported_ribbed() -> ExportKind:
+    """Sources and units of rollers between ribs."""
+    from mbs.exports.one_bearing import rollers
 
-    return write_source, write_tapered_unit
+    return rollers.RIBBED
 
 
 TAPERED_BEARINGS = Family(
@@ -160,9 +157,7 @@ TAPERED_BEARINGS = Family(
     films=_films,
     at_speed=_at_speed,
     point=lambda at, *given, **more: tapered_point(at.force, *given, **more),
-    speed_laws=_speed_laws,
-    writers=_writers,
-    of_largest=True,
+    exported=_exported_tapered,
 )
 """Tapered roller bearings."""
 
@@ -172,6 +167,7 @@ RIBBED_BEARINGS = dataclasses.replace(
     taken=(*_TAKEN, "clearance"),
     read=_read_ribbed,
     axial_problem=_axial_of_ribs,
+    exported=_exported_ribbed,
     assumed=("no axial clearance",),
 )
 """Cylindrical roller bearings whose ribs carry an axial load: NJ and NUP."""

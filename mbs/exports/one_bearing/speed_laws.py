@@ -1,4 +1,4 @@
-"""Laws of ball contacts over the entrainment speed: one table of approaches and speeds, as programs in C read it.
+"""Laws of contacts over the entrainment speed: one table of approaches and speeds, as programs in C read it.
 
 A law at one speed is a table over z = asinh((approach - centre)/scale). Here centre and scale go with the film offset
 h of the speed at one load, centre = -h and scale = h/2, so that the same nodes of z are the same places of all films,
@@ -25,7 +25,7 @@ STEP = 0.2
 """Largest distance of two speeds in ln u: with it loads are right within some 1e-4 between them."""
 
 NEIGHBOURS = 4
-"""Most speeds of the table that a place between them takes; as in `contact_law.c`."""
+"""Most speeds of the table that a place between them takes; as in `pair_speeds.c`."""
 
 LIGHT = 1e-2
 """Part of the highest load from which on the error between speeds is stated."""

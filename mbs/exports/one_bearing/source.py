@@ -1,30 +1,28 @@
-"""A ball bearing in C: the kernel that Python calls, numbers of one bearing, what callers see; what others share."""
+"""A bearing as a C source: the kernel that Python calls, numbers of one bearing, and what callers see."""
 
 from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.exports.c.text import comment, define, number, renamed, template
 from ehdmaps.outputs import Kind, has_mark, write_text
-from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.normal_law import NormalLaw
-from mbs.exports.balls.speed_laws import SpeedLaws
+from mbs.exports.one_bearing.kind import ExportKind
+from mbs.exports.one_bearing.speed_laws import SpeedLaws
 
 SOURCE = Kind("a bearing in C made by ehdmaps", (".c",), has_mark)
 HEADER = Kind("the header of a bearing in C made by ehdmaps", (".h",), has_mark)
 
-_BODIES, _FILMS, _LAW = "ball_bearing", "ball_films", "bearing_law"
-_KERNEL = ("ball/ball.h", "ball/ball_balance.c", "ball/ball_bearing.c")
-
 _WORDS = re.compile(r"[^a-z0-9_]+")
 
 
-def prefix_of(path: str | Path, kind: str = "ball") -> str:
+def prefix_of(path: str | Path, kind: str) -> str:
     """Prefix of all names in the sources of a file, by its own: `front.c` has `front_bearing_call`.
 
     Parameters
@@ -49,15 +47,17 @@ def header_of(path: str | Path) -> Path:
     return Path(path).with_suffix(".h")
 
 
-def write_source(path: str | Path, force: BallForce, laws: SpeedLaws, header: Sequence[str]) -> str:
+def write_source(kind: ExportKind, path: str | Path, force: Any, laws: SpeedLaws, header: Sequence[str]) -> str:
     """Write source and header, and return what was written in words.
 
     Parameters
     ----------
+    kind : ExportKind
+        Kind of the bearing.
     path : str or Path
         File of the source; the header goes beside it.
-    force : BallForce
-        Geometry and material.
+    force : BallForce or TaperedForce
+        The bearing, dry.
     laws : SpeedLaws
         Laws of the contacts.
     header : sequence of str
@@ -68,40 +68,29 @@ def write_source(path: str | Path, force: BallForce, laws: SpeedLaws, header: Se
     InputError
         If a file may not be replaced or cannot be written.
     """
-    return write_texts(path, source_texts(force, laws, header, prefix_of(path), header_of(path).name), prefix_of(path))
-
-
-def write_texts(path: str | Path, texts: Mapping[str, str], prefix: str) -> str:
-    """Write header and source, and return what was written in words.
-
-    Parameters
-    ----------
-    path : str or Path
-        File of the source; the header goes beside it.
-    texts : mapping of str to str
-        Texts of the header, `h`, and of the source, `c`.
-    prefix : str
-        What all public names begin with.
-
-    Raises
-    ------
-    InputError
-        If a file may not be replaced or cannot be written.
-    """
-    write_text(header_of(path), texts["h"], HEADER)
+    prefix, beside = prefix_of(path, kind.element), header_of(path)
+    texts = source_texts(kind, force, laws, header, prefix, beside.name)
+    write_text(beside, texts["h"], HEADER)
     write_text(path, texts["c"], SOURCE)
-    return f"{path}, {header_of(path)}: written (C99, names begin with {prefix}_)"
+    return f"{path}, {beside}: written (C99, names begin with {prefix}_)"
 
 
 def source_texts(
-    force: BallForce, laws: SpeedLaws, header: Sequence[str], prefix: str = "ehd", include: str = "bearing.h"
+    kind: ExportKind,
+    force: Any,
+    laws: SpeedLaws,
+    header: Sequence[str],
+    prefix: str = "ehd",
+    include: str = "bearing.h",
 ) -> dict[str, str]:
     """Texts of the header, `h`, and of the source, `c`.
 
     Parameters
     ----------
-    force : BallForce
-        Geometry and material.
+    kind : ExportKind
+        Kind of the bearing.
+    force : BallForce or TaperedForce
+        The bearing, dry.
     laws : SpeedLaws
         Laws of the contacts.
     header : sequence of str
@@ -116,69 +105,28 @@ def source_texts(
     InputError
         For a bearing that is mirrored already: the source does that.
     """
-    if force.geometry.contact_angle < 0.0:
+    if kind.mirrored(force.geometry):
         raise InputError(
-            "export of a ball bearing, contact angle: got one below zero; allowed: >= 0; the source mirrors it"
+            f"export of a {kind.words}: got one that carries along -x; allowed: along +x; the source mirrors it"
         )
-    memory = [_FILMS] if laws.memory else []
-    kernel = (*pair_files(laws), *_KERNEL, *(f"ball/{name}.c" for name in memory))
-    headers, bodies = ([_template(f"{name}.{end}") for name in (_BODIES, *memory)] for end in "hc")
-    numbers = _public_numbers(force, laws), _private_numbers(force, laws)
-    return joined(header, numbers, kernel, headers, bodies, prefix, include)
-
-
-def pair_files(laws: SpeedLaws) -> tuple[str, ...]:
-    """Files of the kernel with the laws of contacts.
-
-    Parameters
-    ----------
-    laws : SpeedLaws
-        Laws of the contacts.
-    """
     speeds, memory = () if laws.dry else ("pair/pair_speeds.c",), ("pair/pair_memory.c",) if laws.memory else ()
-    return ("numbers.h", "pair/pair_law.h", "pair/pair_law.c", *speeds, *memory)
-
-
-def joined(
-    header: Sequence[str],
-    numbers: tuple[str, str],
-    kernel: Sequence[str],
-    headers: Sequence[str],
-    bodies: Sequence[str],
-    prefix: str,
-    include: str,
-) -> dict[str, str]:
-    """Texts of the header, `h`, and of the source, `c`, with the laws of contacts.
-
-    Parameters
-    ----------
-    header : sequence of str
-        Lines that say where it comes from, put first.
-    numbers : (str, str)
-        Constants that callers may read, and those that only the functions read.
-    kernel : sequence of str
-        Files of the kernel, `.h` and `.c`.
-    headers, bodies : sequence of str
-        Declarations and functions of the bearing.
-    prefix : str
-        What all public names begin with, in lower case.
-    include : str
-        Name of the header.
-    """
+    kernel = ("numbers.h", "pair/pair_law.h", "pair/pair_law.c", *speeds, *memory, *kind.kernel)
+    kernel = (*kernel, kind.film_kernel) if laws.memory else kernel
+    bodies = (f"{kind.files}_bearing", *([f"{kind.files}_films"] if laws.memory else []))
     banner, guard = comment(header), "EHD_BEARING_H"
     top = [
         banner, f"#ifndef {guard}\n#define {guard}\n\n#include <stddef.h>\n",
-        numbers[0],
+        kind.public(force) + _public_law(laws),
         '#ifdef __cplusplus\nextern "C" {\n#endif\n',
-        _template(f"{_LAW}.h"), *headers,
+        _template("bearing_law.h"), *(_template(f"{name}.h") for name in bodies),
         f"#ifdef __cplusplus\n}}\n#endif\n\n#endif /* {guard} */\n",
     ]  # fmt: skip
     source = [
         banner, '#include "@HEADER@"\n',
         *(_kernel(name) for name in kernel if name.endswith(".h")),
-        numbers[1],
+        kind.private(force) + "\n" + _private_law(laws),
         *(_kernel(name) for name in kernel if name.endswith(".c")),
-        _template(f"{_LAW}.c"), *bodies,
+        _template("bearing_law.c"), *(_template(f"{name}.c") for name in bodies),
     ]  # fmt: skip
     texts = {"h": "\n".join(top), "c": "\n".join(source)}
     return {name: renamed(text, prefix).replace("@HEADER@", include) for name, text in texts.items()}
@@ -186,7 +134,7 @@ def joined(
 
 def _template(name: str) -> str:
     """Text of a file of this package."""
-    return template("mbs.exports.balls", name)
+    return template("mbs.exports.one_bearing", name)
 
 
 def _kernel(name: str) -> str:
@@ -194,32 +142,8 @@ def _kernel(name: str) -> str:
     return template("ehdmaps.kernel", f"c/{name}")
 
 
-def _public_numbers(force: BallForce, laws: SpeedLaws) -> str:
-    """Constants that callers may read."""
-    geometry = force.geometry
-    return "".join(
-        (
-            define("EHD_BALLS", geometry.balls, "number of balls"),
-            define("EHD_BALL_DIAMETER", geometry.ball_diameter, "[m]"),
-            define("EHD_PITCH_DIAMETER", geometry.pitch_diameter, "[m]"),
-            define("EHD_CONTACT_ANGLE", geometry.contact_angle, "nominal [rad]"),
-            define("EHD_CLEARANCE", geometry.clearance, "diametral clearance of the export [m]"),
-            define("EHD_CAGE_INNER", 0.5 * (1.0 - geometry.gamma), "turns of the cage for each of the inner ring"),
-            define("EHD_CAGE_OUTER", 0.5 * (1.0 + geometry.gamma), "turns of the cage for each of the outer ring"),
-            define("EHD_ENTRAINMENT", geometry.entrainment_speed(1.0, 0.0), "entrainment speed [m/rad], see below"),
-            public_law(laws),
-        )
-    )
-
-
-def public_law(laws: SpeedLaws) -> str:
-    """Constants of the laws that callers may read.
-
-    Parameters
-    ----------
-    laws : SpeedLaws
-        Laws of the contacts.
-    """
+def _public_law(laws: SpeedLaws) -> str:
+    """Constants of the laws that callers may read."""
     slow, fast = (laws.speeds[0], laws.speeds[-1]) if laws.speeds.size else (0.0, math.inf)
     return "".join(
         (
@@ -233,28 +157,8 @@ def public_law(laws: SpeedLaws) -> str:
     )
 
 
-def _private_numbers(force: BallForce, laws: SpeedLaws) -> str:
-    """Constants and tables that only the functions read."""
-    geometry, shape, drive = force.geometry, force.shape, force.drive
-    parts = [
-        define("GROOVE_DISTANCE", geometry.groove_distance, "of the grooves' centres where balls just touch [m]")
-        + define("INNER_ARM", shape.inner_arm, "of the inner groove's centre and the centre of a ball that touches [m]")
-        + define("OUTER_ARM", shape.outer_arm, "the same of the outer one [m]")
-        + define("CENTRIFUGAL", drive.centrifugal, "centrifugal load of a ball over the square of its speed [kg m]")
-        + define("GYROSCOPIC", drive.gyroscopic, "the same of the traction of its gyroscopic moment [kg m]"),
-        private_law(laws),
-    ]
-    return "\n".join(parts)
-
-
-def private_law(laws: SpeedLaws) -> str:
-    """Constants and tables of the laws that only the functions read.
-
-    Parameters
-    ----------
-    laws : SpeedLaws
-        Laws of the contacts.
-    """
+def _private_law(laws: SpeedLaws) -> str:
+    """Constants and tables of the laws that only the functions read."""
     parts = [_contact("INNER", laws.inner) + _contact("OUTER", laws.outer)]
     if laws.dry:
         return "\n".join(parts)
