@@ -232,7 +232,7 @@ def bearing_point(
     balance = ring_at_rest(element, load, operation)
     given = np.array(load, dtype=np.float64)
     pose = np.array([0.0, *balance.displacement, 0.0, 0.0, 0.0])
-    rollers, u = element.rollers(pose, operation), element.entrainment_speed(operation)
+    rollers, u = element.loads(pose, operation), element.entrainment_speed(operation)
     contacts = bearing_contacts(films, rollers, u, temperature)
     stiffness = balance.element_stiffness[0][1:3, 1:3]
     gauge = element.gauge(pose, operation)

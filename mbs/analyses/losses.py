@@ -71,7 +71,7 @@ def _of_bearing(
     films: FilmSource, bearing: BearingElement, motion: FloatArray, operation: Operation
 ) -> tuple[BearingContacts, RollingLoss]:
     """Contacts and loss of one bearing at the motion (6,) of its inner ring."""
-    rollers, u = bearing.rollers(motion, operation), bearing.entrainment_speed(operation)
+    rollers, u = bearing.loads(motion, operation), bearing.entrainment_speed(operation)
     at = rollers, u, bearing.temperature, bearing.centrifugal_load(operation)
     try:
         contacts = bearing_contacts(films, *at)

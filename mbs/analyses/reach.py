@@ -238,7 +238,7 @@ def outside_at(model: Model, balance: Equilibrium) -> list[str]:
     if not any(balance.outside.values()):
         return []
     loads = {
-        bearing.name: float(bearing.rollers(motion, balance.operation).load_per_length.max())
+        bearing.name: float(bearing.loads(motion, balance.operation).load_per_length.max())
         for bearing, motion in ring_motions(model, balance.displacement)
         if isinstance(bearing.force, BearingForce)
     }

@@ -216,7 +216,7 @@ class BearingElement(RingElement):
             "temperature": self.temperature,
         }
 
-    def rollers(self, displacement: FloatArray, operation: Operation) -> RollerLoads:
+    def loads(self, displacement: FloatArray, operation: Operation) -> RollerLoads:
         """Loads of all rollers at rest at the displacement (6,) of the inner ring against the outer one.
 
         Raises
@@ -240,17 +240,17 @@ class BearingElement(RingElement):
         """See `OnRings.largest_load`; NaN of forces that are no `BearingForce`."""
         if not isinstance(self.force, BearingForce):
             return math.nan
-        return float(self.rollers(displacement, operation).load_per_length.max())
+        return float(self.loads(displacement, operation).load_per_length.max())
 
     def element_loads(self, displacement: FloatArray, operation: Operation) -> FloatArray | None:
         """See `OnRings.element_loads`; None of forces that are no `BearingForce`."""
-        return self.rollers(displacement, operation).load if isinstance(self.force, BearingForce) else None
+        return self.loads(displacement, operation).load if isinstance(self.force, BearingForce) else None
 
     def gauge(self, displacement: FloatArray, operation: Operation) -> Gauge | None:
         """See `OnRings.gauge`; None of forces that are no `BearingForce`."""
         if not isinstance(self.force, BearingForce):
             return None
-        lines = self.rollers(displacement, operation).load_per_length
+        lines = self.loads(displacement, operation).load_per_length
         sides = lines, np.maximum(lines + self.centrifugal_load(operation), 0.0)
         contacts = self.bearing.geometry.contacts(self.bearing.material, "iso16281")
         pressure = [
@@ -288,7 +288,7 @@ class BearingElement(RingElement):
         from mbs.bearings.slices_in_balance import massless_side
 
         u, q = self.entrainment_speed(operation), self.centrifugal_load(operation)
-        rollers, law = self.rollers(displacement, operation), self.film_laws[0].at(u, self.temperature, q)
+        rollers, law = self.loads(displacement, operation), self.film_laws[0].at(u, self.temperature, q)
         return massless_side(law, rollers, self.bearing.slice_length), rollers
 
     def evaluate(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> Forces:
@@ -316,7 +316,7 @@ class BearingElement(RingElement):
         if not isinstance(self.force, BearingForce):
             return None
         conditions = self.entrainment_speed(operation), self.temperature, self.centrifugal_load(operation)
-        rollers = self.rollers(displacement, operation)
+        rollers = self.loads(displacement, operation)
         energy = energy_at_rest(self.force.law, conditions, self.bearing, rollers.approach)
         coupling = self.force.coupling
         if coupling is None:
@@ -332,7 +332,7 @@ class BearingElement(RingElement):
         if self.bearing.coupled:
 
             def own(sample: int) -> FloatArray:
-                return self.rollers(displacements[sample], operations[sample]).approach
+                return self.loads(displacements[sample], operations[sample]).approach
 
             return brought_by_speed(self.force.law, self.force.bearing, conditions, own)
 

@@ -50,7 +50,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     for index, (bearing, motion) in enumerate(ring_motions(model, balance.displacement)):
         force = balance.forces[index]
         size = float(np.hypot(force[1], force[2]))
-        rollers = bearing.rollers(motion, balance.operation)
+        rollers = bearing.loads(motion, balance.operation)
         stiffness, damping = ring_matrices(balance.element_stiffness[index], balance.element_damping[index])
         lines += [
             f"{bearing.name}: {size:.6g} N on the inner ring "
@@ -65,14 +65,10 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             *_matrix(f"K [{STIFFNESSES}]", SPRING.factor * stiffness),
             *_matrix(f"C [{DAMPINGS}]", DAMPER.factor * damping),
         ]
-    if model.balls:
-        from mbs.output.one_bearing.balls import ball_lines
+    if model.on_rings[len(model.bearings) :]:
+        from mbs.output.one_bearing.located import located_lines
 
-        lines += ball_lines(model, balance)
-    if model.scene.tapered:
-        from mbs.output.one_bearing.ribs import tapered_lines
-
-        lines += tapered_lines(model, balance)
+        lines += located_lines(model, balance)
     others = list(zip(model.on_rings, contacts, found.losses, strict=True))[len(model.bearings) :]
     lines += [f"{entry.name}: {_contact_words(state)}; {loss_words(loss, 'elements')}" for entry, state, loss in others]
     if model.gears:
@@ -80,7 +76,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
 
         lines += gear_lines(model, balance)
     lines += flooded_note(largest_torque(found.losses), model.supplies.values())
-    lines += _slow(model, balance) if model.supplies or model.scene.tapered or model.balls else []
+    lines += _slow(model, balance) if model.supplies or others else []
     lines += fade_lines(model, np.array([model.scene.speed]))
     outside = outside_at(model, balance)
     lines += [*judged.last, *(f"warning: {line}" for line in found.free), *outside]

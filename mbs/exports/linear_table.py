@@ -211,7 +211,7 @@ def linear_table(path: Path, arguments: argparse.Namespace) -> LinearTable:
         operation = Operation(speed)
         balance = ring_at_rest(element, request.load_vectors[0], operation)
         place = np.array([0.0, *balance.displacement, 0.0, 0.0, 0.0])
-        highest = float(element.rollers(place, operation).load_per_length.max())
+        highest = float(element.loads(place, operation).load_per_length.max())
         outside += axes_left(law, highest, element.entrainment_speed(operation), request.temperature)
         slow = omega == 0.0
         dynamic = element_dynamic_stiffness(balance, 0, s)

@@ -270,9 +270,12 @@ class OnRings(ElementDefaults):
     ----------
     locating : bool
         Whether it holds the ring along the axis, once its clearance is taken up.
+    rolling_element : str
+        How one of its rolling elements is called: roller, ball.
     """
 
     locating: ClassVar[bool] = False
+    rolling_element: ClassVar[str] = "roller"
 
     if TYPE_CHECKING:  # a property at run time would be the default of the fields of this name
 
@@ -315,6 +318,16 @@ class OnRings(ElementDefaults):
             Load of a ball [N], or load per length of a slice of a roller [N/m].
         """
         return math.nan
+
+    def loads(self, displacement: FloatArray, operation: Operation) -> Any:
+        """State of its rolling elements at rest: their angles, `angle`, and loads, `load`, by the law in force.
+
+        Parameters
+        ----------
+        displacement, operation
+            The same as of `felt`.
+        """
+        raise NotImplementedError
 
     def element_loads(self, displacement: FloatArray, operation: Operation) -> FloatArray | None:
         """Loads of all rolling elements on the inner raceway at rest, shape (Z,) [N]; None where none are known.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import textwrap
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -27,8 +27,7 @@ from mbs.scene.assembly import Model
 from mbs.scene.fields import FORCE, MICROMETRE
 
 if TYPE_CHECKING:
-    from mbs.bearings.bearing_element import BearingElement
-    from mbs.bearings.tapered.tapered_element import TaperedElement
+    pass
 
 _SIDES = COLOURS[:2]
 """Colours of the inner and the outer contact."""
@@ -272,19 +271,13 @@ def statics_figure(
     """
     count, elements = len(model.on_rings), []
     figure, axes = page(model, f"{written(model.scene.speed * _RPM)} rpm", count)
-    balls = {entry.name: entry for entry in model.balls}
     for bearing, state in zip(model.on_rings, contacts, strict=True):
         motion = model.system.relative(bearing.inner, bearing.outer) @ balance.displacement
-        ball, words = balls.get(bearing.name), _contact_words(state)
-        if ball is None:
-            rollers = cast("BearingElement | TaperedElement", bearing).rollers(motion, balance.operation)
-            angle, load = rollers.angle, np.atleast_2d(rollers.load)[0]
-        else:
-            found = ball.balls(motion, balance.operation)
-            angle, load = found.angle, found.load[0]
-            angles = " and ".join(f"{math.degrees(found.mean_angle(side)):.3g}" for side in (0, 1))
+        found, words = bearing.loads(motion, balance.operation), _contact_words(state)
+        if mean_angle := getattr(found, "mean_angle", None):  # of balls
+            angles = " and ".join(f"{math.degrees(mean_angle(side)):.3g}" for side in (0, 1))
             words = f"{words}\ncontact angles {angles}\N{DEGREE SIGN}, inner and outer"
-        elements.append((bearing.name, words, angle, load))
+        elements.append((bearing.name, words, found.angle, np.atleast_2d(found.load)[0]))
     for panel, (name, words, angle, load) in zip(axes, elements, strict=False):
         panel.bar(np.degrees(angle), load, width=0.6 * 360.0 / angle.size, color=COLOURS[0])
         panel.set_title(f"{name}\n{words}", fontsize=9)
@@ -293,7 +286,7 @@ def statics_figure(
         grid(panel)
     for panel in axes[count:]:
         panel.set_visible(False)
-    kinds = ["roller"] * (len(balls) < count) + ["ball"] * bool(balls)
+    kinds = sorted({bearing.rolling_element for bearing in model.on_rings}, reverse=True)
     figure.supylabel(f"load of the {' or '.join(kinds)}, N", fontsize=10)
     words = f"angle of the {' or '.join(kinds)} from y towards z, degrees"
     wrapped = [part for line in warnings for part in textwrap.wrap(f"warning: {line}", 110)]

@@ -8,30 +8,25 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections import OrderedDict
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.errors import AnalysisError
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.physics.point.ellipse import Ellipse
-from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.units import LOAD, RPM, SPEED, Display
-from mbs.bearings.balls.ball_bearing import BallForce
-from mbs.bearings.balls.ball_element import MachineBalls
 from mbs.bearings.balls.films import ContactFilms, ball_films
-from mbs.bearings.bearing_element import BearingElement
+from mbs.bearings.locating_element import LocatingElement
 from mbs.bearings.tapered.line_film import cylinder_of
-from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.model.elements import Element
 from mbs.model.system import System
 from mbs.planning.criteria import ClosedContact, closed_contact
-from mbs.planning.ranges import LIGHT, LIGHTEST, idle_problem, same_contacts
+from mbs.planning.ranges import LIGHT, LIGHTEST, idle_problem
 from mbs.scene.assembly import AnyBearing, Model
 from mbs.scene.fields import FORCE
 
@@ -106,24 +101,22 @@ class Seen:
         Temperature of the raceways [K].
     static_load : float
         Largest load at rest, in the unit of `load`.
+    of_points : bool
+        Whether its contacts are points, else lines.
     """
 
-    geometry: BallGeometry | TaperedGeometry
+    geometry: Any
     bearings: tuple[str, ...]
     load: tuple[float, float]
     entrainment_speed: tuple[float, float]
     temperature: float
     static_load: float
+    of_points: bool
 
     @property
     def display(self) -> Display:
         """Unit in which its loads are told."""
-        return FORCE if isinstance(self.geometry, BallGeometry) else LOAD
-
-    @property
-    def of_points(self) -> bool:
-        """Tell whether its contacts are points, else lines."""
-        return isinstance(self.geometry, BallGeometry)
+        return FORCE if self.of_points else LOAD
 
     def states(
         self, lubricant: Lubricant, load: FloatArray, speed: float
@@ -144,7 +137,7 @@ class Seen:
         SolverError
             Where the film table of points has no films at that speed.
         """
-        if isinstance(self.geometry, BallGeometry):
+        if self.of_points:
             contacts = self.geometry.contacts(STEEL)
             films = ball_films(self.geometry, lubricant, speed, self.temperature, solves=False).sides
             return tuple(
@@ -182,10 +175,10 @@ def seen_ranges(
     AnalysisError
         If all bearings of a geometry are unloaded or stand still.
     """
-    groups: dict[object, list[tuple[AnyBearing, float]]] = {}
+    groups: dict[object, list[tuple[LocatingElement, float]]] = {}
     for bearing, load in zip(bearings, static_loads, strict=True):
-        if not isinstance(bearing, BearingElement):
-            groups.setdefault(_contacts(bearing.force.geometry), []).append((bearing, load))
+        if isinstance(bearing, LocatingElement):
+            groups.setdefault(bearing.same_films, []).append((bearing, load))
     found = []
     for members in groups.values():
         names = tuple(bearing.name for bearing, _ in members)
@@ -193,26 +186,21 @@ def seen_ranges(
         rates = [bearing.entrainment_rate for bearing, _ in members if bearing.entrainment_rate > 0.0]
         if problem := idle_problem(names, highest, rates):
             raise AnalysisError(problem)
-        geometry = members[0][0].force.geometry  # type: ignore[union-attr]
+        one = members[0][0]
+        geometry, of_points = one.force.geometry, one.of_points
         lowest = LIGHTEST * margin * highest
         found.append(
             Seen(
                 geometry=geometry,
                 bearings=names,
-                load=(lowest if isinstance(geometry, BallGeometry) else min(lowest, LIGHT), margin * highest),
+                load=(lowest if of_points else min(lowest, LIGHT), margin * highest),
                 entrainment_speed=(min(rates) * speeds[0], max(rates) * speeds[1]),
                 temperature=temperature,
                 static_load=highest,
+                of_points=of_points,
             )
         )
     return tuple(found)
-
-
-def _contacts(geometry: BallGeometry | TaperedGeometry) -> object:
-    """Key of the contacts of a bearing, whatever its clearance, and which way it stands."""
-    if isinstance(geometry, BallGeometry):
-        return dataclasses.replace(geometry, clearance=0.0, contact_angle=abs(geometry.contact_angle))
-    return same_contacts(cylinder_of(geometry)), geometry.name
 
 
 _SPEEDS = 5
@@ -251,7 +239,7 @@ def held_films(seen: Seen, model: Model, speeds: tuple[float, float]) -> Held:
         Lowest and highest speed of the system [rad/s].
     """
     element = next(entry for entry in unmapped(model) if entry.name == seen.bearings[0])
-    length = 1.0 if isinstance(seen.geometry, BallGeometry) else seen.geometry.roller_length
+    length = 1.0 if seen.of_points else seen.geometry.roller_length
     low, high, missing = 0.0, math.inf, ""
     for speed in np.unique(np.geomspace(*speeds, _SPEEDS)).tolist():
         try:
@@ -272,7 +260,7 @@ def _reason(text: str) -> str:
     return f"{head} ({first})" if first else head
 
 
-def unmapped(model: Model) -> tuple[MachineBalls | TaperedElement, ...]:
+def unmapped(model: Model) -> tuple[LocatingElement, ...]:
     """Bearings of a model of which no map is made, in the order of `Model.on_rings`.
 
     Parameters
@@ -280,7 +268,7 @@ def unmapped(model: Model) -> tuple[MachineBalls | TaperedElement, ...]:
     model : Model
         Scene with its law.
     """
-    return tuple(entry for entry in model.on_rings if not isinstance(entry, BearingElement))
+    return tuple(entry for entry in model.on_rings if isinstance(entry, LocatingElement))
 
 
 def weightless(system: System) -> System:
@@ -300,13 +288,8 @@ _LEAST_DENSITY = 1e-3
 
 def _weightless(element: Element) -> Element:
     """The element with rolling bodies of little mass, which balances them where nothing touches; others as they are."""
-    if not isinstance(element, (MachineBalls, TaperedElement)):
+    if not isinstance(element, LocatingElement):
         return element
     material = element.force.material
     light = dataclasses.replace(material, density=_LEAST_DENSITY * material.density)
-    if isinstance(element, MachineBalls):
-        balls = BallForce(element.force.geometry, element.force.law, light)
-        return dataclasses.replace(element, force=balls, _made=OrderedDict())
-    rollers = element.force.with_films(element.force.films)
-    rollers.material = light
-    return dataclasses.replace(element, force=rollers)
+    return dataclasses.replace(element, force=element.force.with_material(light))

@@ -39,7 +39,7 @@ def bearings(found: Examination) -> Iterator[Markup]:
     model, balance = found.model, found.statics.balance
     for index, (bearing, motion) in enumerate(ring_motions(model, balance.displacement)):
         force, contacts = balance.forces[index], found.statics.contacts[index]
-        rollers = bearing.rollers(motion, balance.operation)
+        rollers = bearing.loads(motion, balance.operation)
         matrices = ring_matrices(balance.element_stiffness[index], balance.element_damping[index])
         size = float(np.hypot(force[1], force[2]))
         moves = 1e6 * motion[1:3]

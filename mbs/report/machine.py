@@ -22,6 +22,7 @@ from mbs.model.elements import GROUND
 from mbs.model.findings import Severity
 from mbs.model.relaxation import NOTABLE
 from mbs.output.model_text import LITTLE_DAMPING, OTHER_DAMPING, clearance_text, temperature_text, weight_text
+from mbs.output.one_bearing.located import located
 from mbs.output.one_bearing.table import regime
 from mbs.output.result_text import kinds
 from mbs.output.state_text import class_lines, flooded_note, largest_torque, state_lines
@@ -67,7 +68,7 @@ def used_maps(found: Examination) -> Iterator[UsedMap]:
             if found.maps is None or found.maps.of(bearing.bearing.geometry) is not emap:
                 continue
             speed = abs(float(bearing.entrainment_speed(balance.operation)))
-            highest = float(bearing.rollers(motion, balance.operation).load_per_length.max())
+            highest = float(bearing.loads(motion, balance.operation).load_per_length.max())
             loads = {"inner": highest, "outer": highest + float(bearing.centrifugal_load(balance.operation))}
             place = f"{speed:.3g}", f"{bearing.temperature:.4g}"
             before = points.get(place)
@@ -179,7 +180,7 @@ def in_short(found: Examination) -> Iterator[str]:
     if motions:
         forces = [float(np.hypot(*balance.forces[index][1:3])) for index in range(len(motions))]
         most = int(np.argmax(forces))
-        rollers = motions[most][0].rollers(motions[most][1], balance.operation)
+        rollers = motions[most][0].loads(motions[most][1], balance.operation)
         contacts = found.statics.contacts[most]
         yield (
             f"Bearing {motions[most][0].name} carries most: {shown(FORCE, forces[most])} on "
@@ -187,14 +188,12 @@ def in_short(found: Examination) -> Iterator[str]:
             f"{shown(FORCE, float(rollers.load.max()))} on one, with a Hertz pressure of "
             f"{shown(PRESSURE, float(contacts.hertz_pressure.max()))}."
         )
-    elif not (model.balls or model.scene.tapered):
+    elif not model.on_rings:
         yield "The scene has no bearing of rollers or balls."
-    for ball in model.balls:
-        motion = model.system.relative(ball.inner, ball.outer) @ balance.displacement
-        loads = ball.balls(motion, balance.operation)
+    for _, element, at in located(model, balance):
         yield (
-            f"Ball bearing {ball.name} has {loads.loaded} of {loads.angle.size} balls loaded, "
-            f"up to {shown(FORCE, float(loads.load[0].max()))} on one."
+            f"Bearing {element.name} has {at.loads.loaded} of {at.loads.angle.size} {element.rolling_element}s loaded, "
+            f"up to {shown(FORCE, float(at.loads.load[0].max()))} on one."
         )
     films = [float(np.min(state.minimum_film)) for state in found.statics.contacts]
     if np.isfinite(films).any():

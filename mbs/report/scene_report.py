@@ -15,12 +15,11 @@ from ehdmaps.report.page import Markup, Section, document, joined, pairs, senten
 from ehdmaps.units import RPM
 from mbs.analyses.sensors import excited_orders
 from mbs.model.findings import warned
-from mbs.report.balls import balls
 from mbs.report.bearings import bearings
 from mbs.report.campbell import campbell, lines_of, mode_table, saved_campbell
 from mbs.report.examination import Examination, highest_of
+from mbs.report.located import located_bearings
 from mbs.report.machine import in_short, machine, map_sections, notes, used_maps, warnings
-from mbs.report.tapered import tapered
 
 
 def scene_report(
@@ -61,10 +60,8 @@ def scene_report(
     ]
     if found.model.bearings:
         sections.append(Section("bearings", "Bearings in operation", list(bearings(found))))
-    if found.model.balls:
-        sections.append(Section("balls", "Ball bearings in operation", list(balls(found))))
-    if found.model.scene.tapered:
-        sections.append(Section("tapered", "Bearings of rollers with ribs in operation", list(tapered(found))))
+    if locating := list(located_bearings(found)):
+        sections.append(Section("locating", "Bearings with axial load in operation", locating))
     for index, one in enumerate(used):
         sections += map_sections(one, f"map-{index}", len(used) > 1)
     if not used:

@@ -86,7 +86,7 @@ def main(speed: float = 6000.0) -> None:
             ring = model.system.relative("ring", "ground") @ moved
             places.setdefault(law, float(ring[0]))
             bearing = model.balls[0]
-            balls = bearing.balls(
+            balls = bearing.loads(
                 model.system.relative(bearing.inner, bearing.outer) @ found.balance.displacement,
                 found.balance.operation,
             )

@@ -170,7 +170,8 @@ def force_of(kind: str, speed: float) -> BallForce:
     law = ball_films(geometry, Lubricant.named("ISO VG 32"), entrainment, 353.15, solves=False).law
     force = BallForce(geometry, law)
     if kind == "memory":
-        force.held = FilmsOfBalls.at_rest(law, force.balls(POSE, inner_speed=speed).approach.T).held(2e-5)
+        force(POSE, inner_speed=speed)
+        force.held = FilmsOfBalls.at_rest(force).held(2e-5)
     return force
 
 

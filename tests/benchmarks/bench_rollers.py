@@ -162,7 +162,7 @@ def following_table(speed: float, found: Found) -> None:
     assert isinstance(element, RollerElement)
     count, mass = element.plain.bearing.geometry.rollers, element.plain.bearing.roller_mass
     place = balance.system.elements[index].transform @ balance.displacement
-    loads = element.plain.rollers(place[:6] - place[6:12], balance.operation).load
+    loads = element.plain.loads(place[:6] - place[6:12], balance.operation).load
     s = 2j * math.pi * np.array(FREQUENCIES)
     rollers = np.arange(12, 12 + count)
     both = element_dynamic_stiffness(balance, index, s)[:, rollers, rollers]

@@ -174,7 +174,7 @@ class ExactMachine:
                 continue
             self.stiffness -= ports.T @ balance.element_stiffness[index] @ ports
             self.damping -= ports.T @ balance.element_damping[index] @ ports
-            rollers = element.rollers(ports @ balance.displacement, balance.operation)
+            rollers = element.loads(ports @ balance.displacement, balance.operation)
             cos, sin = np.cos(rollers.angle)[:, None], np.sin(rollers.angle)[:, None]
             x = rollers.position
             parts = (0.0 * x, cos, sin, 0.0 * x, -sin * x, cos * x)

@@ -255,7 +255,7 @@ def test_stiffness_at_held_loads(even):
     for part in (PART, -PART):
         sides = {}
         for i, side in enumerate(("inner", "outer")):
-            law, rest = getattr(at.force.law, side), at.balls.approach[i, 0]
+            law, rest = getattr(at.force.law, side), at.loads.approach[i, 0]
             sides[side] = law._replace(centre=(law.centre + part * rest) / (1 + part), scale=law.scale / (1 + part))
         other = BallForce(at.force.geometry, dataclasses.replace(at.force.law, **sides))
         found.append(other(at.pose, **at.conditions)[1:])

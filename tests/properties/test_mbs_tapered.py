@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 
 from ehdmaps.physics.rollers.ribbed_geometry import ribbed_estimate
 from ehdmaps.physics.rollers.tapered_catalogue import tapered_estimate
-from mbs.bearings.tapered.tapered_bearing import FASTEST, TaperedForce
+from mbs.bearings.locating_force import FASTEST
+from mbs.bearings.tapered.tapered_bearing import TaperedForce
 
 LEFT = 1e-8
 """Force on a roller that may be left over the largest on it: Newton's method leaves 1e-9 at most, and what is read here

@@ -140,7 +140,7 @@ def test_file_for_ross_is_contacts_in_series(tmp_path, rpm):
         u = geometry.entrainment_speed(speed)
         law = ball_films(geometry, Lubricant.named("FVA3"), u, WARM, solves=False).law
         point = ball_point(BallForce(geometry, law), (2000.0, 1000.0, 0.0), speed)
-        balls = point.force.balls(point.pose, inner_speed=speed)
+        balls = point.force.loads(point.pose, inner_speed=speed)
         z = by_hand(point.force, balls, speed, 1j * max(at, 1e-3))
         for term, axis in (("xx", 1), ("yy", 2), ("zz", 0)):
             found = written[f"k{term}"][row] + 1j * max(at, 1e-3) * written[f"c{term}"][row]

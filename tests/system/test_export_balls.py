@@ -118,7 +118,7 @@ def test_cage_settles_as_in_machines(exported):
         at = element.settled(pose, Operation(speed))
         status, found = kernel.call(pose, np.zeros(6), 0.0, speed, 0.0)
         assert status == 0
-        assert kernel.cage_speed == pytest.approx(at.balls.cage_speed, rel=1e-9)
+        assert kernel.cage_speed == pytest.approx(at.loads.cage_speed, rel=1e-9)
         np.testing.assert_allclose(found[0], element.evaluate(pose, np.zeros(6), Operation(speed)).force, rtol=1e-8)
 
 

@@ -170,7 +170,7 @@ def test_the_reference_load_is_that_of_a_public_code() -> None:
     force = TaperedForce(TaperedGeometry("x", 9e-3, 13.6e-3, 43.5e-3, 12, 0.0), profile="straight", slices=40)
     pose = [0.0, 5.024242357274666e-6, 0.0, 0.0, 0.0, 0.0]
     assert force(pose)[0][1] == pytest.approx(-3000.0, rel=1e-9)  # digits of its displacement
-    slices = force.rollers(pose).slices * 13.6e-3 / 40
+    slices = force.loads(pose).slices * 13.6e-3 / 40
     load, life = roller_reference_life(slices, 40e3, 9.0 / 43.5, 0.0, edges=False)
     assert load == pytest.approx(1435.1519996562806, rel=1e-9)
     assert life == pytest.approx(65645.8036738807, rel=1e-9)

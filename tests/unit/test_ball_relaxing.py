@@ -32,8 +32,8 @@ def bearing(name, rpm, pose, turns=True):
     films = ball_films(geometry, OIL, geometry.entrainment_speed(speed, 0.0), KELVIN, solves=False)
     force, conditions = BallForce(geometry, films.law), {"inner_speed": speed if turns else 0.0}
     _, K, C = force(pose, **conditions)
-    balls, rows = force.balls(pose, **conditions), force.last_balls
-    relaxation = ball_relaxation(films.law, force.shape, rows, force.drive_at(**conditions), balls.angle)
+    balls = force.loads(pose, **conditions)
+    relaxation = ball_relaxation(force, balls, conditions)
     return force, K, C, balls, conditions["inner_speed"], relaxation
 
 

@@ -10,11 +10,11 @@ import pytest
 
 from ehdmaps.errors import AnalysisError
 from mbs import assemble, parse_scene, read_scene, statics
-from mbs.bearings.balls.answers import FELT
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.ball_block import BALLS, BallBlock
-from mbs.bearings.balls.ball_element import BallStates
 from mbs.bearings.balls.normal_law import contact
+from mbs.bearings.locating_block import FELT
+from mbs.bearings.locating_element import LocatingStates
 from mbs.model.blocks import FOUND, Member, Moment
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
@@ -36,7 +36,7 @@ def drive(law):
 
 def states_of(element):
     """States before the first step."""
-    return BallStates(0.0, np.zeros((element.force.geometry.balls, 4)), 0.0, 0.0, 0.0)
+    return LocatingStates(0.0, np.zeros((element.force.geometry.balls, 4)), 0.0, 0.0, 0.0)
 
 
 def answers(block, speeds, step, angle, place=PLACE, rate=RATE):
@@ -91,7 +91,7 @@ def test_no_closed_path_gives_energy(law):
     path[:, 0], path[:, 1], path[:, 2] = 60e-6 * np.cos(turn), 14e-6 * np.sin(2 * turn + 0.3), 8e-6 * np.sin(turn)
     path[:, 4], path[:, 5] = 2e-4 * np.sin(turn + 1.0), 1e-4 * np.cos(2 * turn)
     answers = [force(pose, inner_speed=600.0, cage_speed=0.0) for pose in path]
-    loads = np.array([force.balls(pose, cage_speed=0.0).load[0] for pose in path[::100]])
+    loads = np.array([force.loads(pose, cage_speed=0.0).load[0] for pose in path[::100]])
     assert np.all(loads.min(axis=0) < 1e-2 * loads.max())
     work = 0.5 * (np.array([f for f, _, _ in answers[1:]]) + [f for f, _, _ in answers[:-1]]) * np.diff(path, axis=0)
     assert abs(work.sum()) < 1e-6 * np.abs(work.sum(axis=1)).sum()

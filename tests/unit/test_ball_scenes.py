@@ -19,7 +19,7 @@ from mbs.cli import main
 from mbs.linearised.modes import modes
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
-from mbs.output.one_bearing.balls import ball_lines
+from mbs.output.one_bearing.located import located_lines
 from mbs.scene.matrices import MatrixSpec
 
 LAW = "hertz:1.25e-5 s"
@@ -114,7 +114,7 @@ class TestExtremes:
         found = equilibrium(machine.system, machine.operation)
         for ball, way in zip(machine.balls, (-1.0, 1.0), strict=True):
             index = [entry.element for entry in machine.system.elements].index(ball)
-            balls = ball.balls(machine.system.relative(ball.inner, ball.outer) @ found.displacement, machine.operation)
+            balls = ball.loads(machine.system.relative(ball.inner, ball.outer) @ found.displacement, machine.operation)
             assert np.ptp(balls.load[0]) < 1e-9 * balls.load[0].max()
             assert way * found.forces[index][0] < 0.0 < way * balls.mean_angle(0)
 
@@ -150,10 +150,10 @@ class TestExtremes:
         machine = model(ring_spin=1.0)
         ball = machine.balls[1]
         at = ball.settled(np.array([2e-5, 0.0, 0.0, 0.0, 0.0, 0.0]), machine.operation)
-        np.testing.assert_allclose(at.balls.speed, SPEED, rtol=1e-12)
+        np.testing.assert_allclose(at.loads.speed, SPEED, rtol=1e-12)
         geometry = ball.force.geometry
         load = 0.5 * geometry.ball_mass(ball.force.material) * geometry.pitch_diameter * SPEED**2
-        outward = at.balls.load * np.cos(at.balls.contact_angle)
+        outward = at.loads.load * np.cos(at.loads.contact_angle)
         np.testing.assert_allclose(outward[1] - outward[0], load, rtol=1e-6)
 
 
@@ -222,6 +222,6 @@ force = ["0 N", "-1 kN", "0 N"]
     machine = assemble(parse_scene(given, "rotor", "rotor.toml"), "table")
     rest = equilibrium(machine.system, machine.operation)
     place = machine.system.relative("rotor:left", "ground") @ rest.displacement
-    loads = machine.balls[0].balls(place, machine.operation)
+    loads = machine.balls[0].loads(place, machine.operation)
     assert np.all(loads.load[0] > 0.0) and loads.loaded < loads.angle.size
-    assert f"  {loads.loaded} of {loads.angle.size} balls loaded" in "\n".join(ball_lines(machine, rest))
+    assert f"  {loads.loaded} of {loads.angle.size} balls loaded" in "\n".join(located_lines(machine, rest))

@@ -84,7 +84,7 @@ def test_quick_motion_has_the_stiffness_of_locked_films():
     element, ports = CASES[0]
     z, _, _ = stiffness(element, ports, np.array([1e9j / element.relaxation(POSE, AT).times.min()]))
     at = law().at(element.entrainment_speed(AT), WARM)
-    rollers = element.rollers(ports, AT)
+    rollers = element.loads(ports, AT)
     table = at.memory.table
     total = np.zeros(2)
     for angle, row in zip(rollers.angle, rollers.load_per_length, strict=True):
@@ -121,7 +121,7 @@ def test_small_steps_in_time_see_the_same(cycles_per_time):
     element, ports = CASES[0]
     direction = np.array([0.0, 0.8, 0.6, 0.0, 0.0, 0.0])
     at = law().at(element.entrainment_speed(AT), WARM)
-    rollers = element.rollers(ports, AT)
+    rollers = element.loads(ports, AT)
     relaxation = element.relaxation(ports, AT)
     weights = relaxation.times * (relaxation.rows @ direction) ** 2
     typical = float(weights @ relaxation.times / weights.sum())

@@ -81,7 +81,7 @@ def test_unloaded_rollers_are_counted():
     balance = equilibrium(model.system, model.operation)
     bearing = model.bearings[0]
     motion = model.system.relative(bearing.inner, bearing.outer) @ balance.displacement
-    unloaded = np.count_nonzero(bearing.rollers(motion, model.operation).load == 0.0)
+    unloaded = np.count_nonzero(bearing.loads(motion, model.operation).load == 0.0)
     assert 0 < unloaded < 24
     (line,) = free_lines(free_motions(balance))
     assert line.startswith("bearing_rollers: ")

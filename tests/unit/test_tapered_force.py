@@ -9,7 +9,7 @@ import pytest
 
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.rollers.tapered_catalogue import tapered_estimate
-from mbs.bearings.tapered import tapered_element
+from mbs.bearings import locating_element
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
 from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.model.elements import Operation
@@ -31,7 +31,7 @@ def test_wrong_values_are_refused() -> None:
         FORCE(np.zeros(6), cage_angle=math.nan)
     with pytest.raises(InputError, match=r"velocity: got .*nan.*; allowed: finite numbers"):
         FORCE(np.zeros(6), [math.nan] * 6)
-    with pytest.raises(InputError, match=r"speeds: got 1000000.0, 0.0 and .* at most 20000 rad/s"):
+    with pytest.raises(InputError, match=r"speeds: got 1000000.0 and 0.0 of the rings.* at most 20000 rad/s"):
         FORCE(np.zeros(6), inner_speed=1e6)
     with pytest.raises(InputError, match=r"pose: got an array of shape \(3,\); allowed: \(6,\)"):
         FORCE(np.zeros(3))
@@ -57,19 +57,19 @@ def test_the_element_takes_offset_and_speeds() -> None:
     np.testing.assert_allclose(found.force, expected[0], rtol=1e-9, atol=1e-9)  # balance of rollers
     assert element.excitation is not None and element.excitation.order == FORCE.geometry.rollers * turn
     assert element.ports[0].on == "shaft:0"
-    loads = element.rollers(displacement, operation)
+    loads = element.loads(displacement, operation)
     # slices add up to the rollers, and rollers to the force along the axis
     total = loads.slices.sum(axis=2) * FORCE.geometry.roller_length / 5
     np.testing.assert_allclose(total, loads.load[:2], rtol=1e-9)
     assert found.force[0] == pytest.approx(-float(loads.load[1].sum()) * FORCE.shape.cup[0], rel=1e-9)
-    assert element.excitation.harmonics == tapered_element.HARMONICS
+    assert element.excitation.harmonics == locating_element.HARMONICS
 
 
 def test_rollers_of_loose_rings_lie_in_the_cup() -> None:
     """Without load between the rings only centrifugal load and moment are left: they lean on cup and rib."""
     loose = [-50e-6, 0.0, 0.0, 0.0, 0.0, 0.0]
-    assert not np.any(FORCE.rollers(loose).load)
-    loads = FORCE.rollers(loose, inner_speed=1000.0).load
+    assert not np.any(FORCE.loads(loose).load)
+    loads = FORCE.loads(loose, inner_speed=1000.0).load
     centrifugal, _ = FORCE.speed_loads(1000.0)
     # no contact with the cone: two forces and the rib's hold a roller, by the triangle of their directions
     parts = np.linalg.solve(np.array([np.array(FORCE.shape.cup), -FORCE.shape.ribs.normals[0]]).T, [0.0, centrifugal])

@@ -13,14 +13,14 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.rollers.ribbed_geometry import ribbed_estimate
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from ehdmaps.physics.solids import STEEL
-from mbs.bearings.balls.answers import FELT
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import MemoryBearing
 from mbs.bearings.bearing_force import BearingForce
+from mbs.bearings.locating_block import FELT
+from mbs.bearings.locating_element import LocatingStates
 from mbs.bearings.tapered.line_film import LOADS, line_films
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
 from mbs.bearings.tapered.tapered_element import TaperedElement
-from mbs.bearings.tapered.tapered_energy import TaperedStates
 from mbs.model.elements import Operation
 from tests.cases.tapered_runs import driven
 from tests.unit.test_tapered_films import CYLINDER, WARM, U
@@ -167,7 +167,7 @@ def test_steps_of_any_length_end_where_they_should(films):
 def test_what_makes_no_sense_is_refused(films):
     bearing, place = element(films, GEOMETRY), PLACES["32208"]
     _, states = bearing.advance(None, place, np.zeros(6), Operation(SPEED))
-    assert isinstance(states, TaperedStates)
+    assert isinstance(states, LocatingStates)
     with pytest.raises(InputError, match="allowed: finite numbers"):
         bearing.advance(states, place * math.nan, np.zeros(6), Operation(SPEED, 0.0, 1e-5))
     with pytest.raises(InputError, match=r"at most 20000 rad/s"):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from ehdmaps.physics.rollers.tapered_catalogue import mirrored
-from mbs.bearings.balls.answers import FELT
+from mbs.bearings.locating_block import FELT
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
 from mbs.bearings.tapered.tapered_block import TAPERED, TaperedBlock
 from mbs.bearings.tapered.tapered_element import TaperedElement
@@ -57,9 +57,9 @@ def test_compiled_block_is_the_element(speed):
         told = after.dissipated, after.driven, after.stored
         assert (ours.dissipated, ours.driven, ours.stored) == pytest.approx(told, rel=1e-8, abs=1e-12)
         assert powers[place, :2] == pytest.approx(told[:2], rel=1e-8, abs=1e-12)
-        held = one.rollers(PLACE, Operation(speed, 0.3)).load[1] > 1e-6  # others lie anywhere
+        held = one.loads(PLACE, Operation(speed, 0.3)).load[1] > 1e-6  # others lie anywhere
         np.testing.assert_allclose(ours.last[held], after.last[held], rtol=1e-8, atol=1e-17)
-    loads = ELEMENTS[1].force.rollers(PLACE).load[0]
+    loads = ELEMENTS[1].force.loads(PLACE).load[0]
     assert 2 < np.count_nonzero(loads) < loads.size
     far = motion.copy()
     far[0, 0] = -2e-3
@@ -76,7 +76,7 @@ def test_no_closed_path_gives_energy():
     path[:, 4], path[:, 5] = 2e-4 * np.sin(turn + 1.0), 1e-4 * np.cos(2 * turn)
     force = TaperedForce(GEOMETRY, damping_time=1e-5)
     found = [force(pose, inner_speed=400.0) for pose in path]
-    loaded = [np.count_nonzero(force.rollers(pose, inner_speed=400.0).load[0]) for pose in path[::50]]
+    loaded = [np.count_nonzero(force.loads(pose, inner_speed=400.0).load[0]) for pose in path[::50]]
     assert min(loaded) == 0 and max(loaded) == GEOMETRY.rollers
     moved, mean = np.diff(path, axis=0), 0.5 * (np.array([f for f, _, _ in found[1:]]) + [f for f, _, _ in found[:-1]])
     work = np.sum(mean * moved, axis=1)

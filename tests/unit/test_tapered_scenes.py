@@ -18,7 +18,7 @@ from mbs.linearised.modes import modes
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.model.findings import Cause
-from mbs.output.one_bearing.ribs import tapered_lines
+from mbs.output.one_bearing.located import located_lines
 from mbs.scene.matrices import MatrixSpec
 
 GEOMETRY = tapered_estimate("32208")
@@ -127,7 +127,7 @@ def test_preload_by_force_gives_both_bearings_that_force() -> None:
     for value in ours:
         # both arrangements of rollers and rings are alike, so that nothing tilts; equilibria to 1e-10 of the loads
         assert np.min(np.abs(theirs - value)) < 1e-6 * abs(value)
-    lines = "\n".join(tapered_lines(machine, balance))
+    lines = "\n".join(located_lines(machine, balance))
     assert "left: -1" in lines and "17 of 17 rollers loaded" in lines and "N s/mm" in lines
     assert "tapered roller bearings dry Hertz, c = 12.5 us times k" in machine.law
 

@@ -148,9 +148,9 @@ def test_slip_and_spin_are_those_of_the_velocities() -> None:
     force = BallForce(geometry, dry_law(geometry))
     pose = np.array([25e-6, 6e-6, -3e-6, 0.0, 2e-4, 0.0])
     half, pitch = 0.5 * geometry.ball_diameter, 0.5 * geometry.pitch_diameter
-    rolling = force.balls(pose, inner_speed=speeds[0], outer_speed=speeds[1])
+    rolling = force.loads(pose, inner_speed=speeds[0], outer_speed=speeds[1])
     assert np.ptp(rolling.speed) > 0.005 * rolling.cage_speed
-    for balls in (rolling, force.balls(pose, inner_speed=speeds[0], outer_speed=speeds[1], cage_speed=360.0)):
+    for balls in (rolling, force.loads(pose, inner_speed=speeds[0], outer_speed=speeds[1], cage_speed=360.0)):
         motion = ball_motion(force, balls, *speeds)
         for j in range(geometry.balls):
             ai, ao = balls.contact_angle[:, j]

@@ -67,7 +67,7 @@ def by_hand(balance, s):
         assert isinstance(element, BearingElement)
         ports = connected.transform @ balance.displacement
         at = element.force.law.at(element.entrainment_speed(balance.operation), element.temperature)
-        rollers = element.rollers(ports, balance.operation)
+        rollers = element.loads(ports, balance.operation)
         for angle, approaches in zip(rollers.angle, rollers.approach, strict=True):
             c, theta = at(approaches, 0.0)[2], times(at, approaches)
             cos, sin, x = math.cos(angle), math.sin(angle), rollers.position

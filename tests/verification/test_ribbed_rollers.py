@@ -129,7 +129,7 @@ def test_the_couple_of_the_ribs_moves_the_loads_along_the_roller() -> None:
     Ribs lean, so that the lever of their couple is a little less than between their contacts.
     """
     for axial, radial, lifted in ((9e-6, 25e-6, False), (120e-6, 8e-6, True)):
-        rollers = FORCE.rollers([axial, radial, 0.0, 0.0, 0.0, 0.0])
+        rollers = FORCE.loads([axial, radial, 0.0, 0.0, 0.0, 0.0])
         cone, cup, rib = rollers.load
         np.testing.assert_allclose(rollers.ribs[0], rollers.ribs[1], rtol=1e-9, atol=1e-9)
         couple = rib * 2.0 * GEOMETRY.rib_reach

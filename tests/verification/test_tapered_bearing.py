@@ -222,7 +222,7 @@ def test_an_axial_load_is_shared_by_the_closed_form() -> None:
     assert approach == pytest.approx(shape.cup[0] * 20e-6, rel=1e-3)
     slope = 0.9 * (line[0] + shares[0] * line[1]) / cup + 2.0 / 3.0 * shares[1] * rib / cup
     assert K[0, 0] == pytest.approx(GEOMETRY.rollers * shape.cup[0] ** 2 / slope, rel=2e-3)
-    loads = force.rollers([20e-6, 0.0, 0.0, 0.0, 0.0, 0.0]).load
+    loads = force.loads([20e-6, 0.0, 0.0, 0.0, 0.0, 0.0]).load
     assert loads[0] == pytest.approx(shares[0] * cup, rel=1e-9) and loads[2] == pytest.approx(shares[1] * cup, rel=1e-9)
 
 
@@ -302,7 +302,7 @@ def test_a_mirrored_bearing_carries_the_other_way() -> None:
     g, L, _ = turned(sign * POSE, inner_speed=800.0)
     assert np.max(np.abs(g - sign * f)) < 1e-9 * float(np.linalg.norm(f))  # round-off of the balance
     assert np.max(np.abs(L - np.outer(sign, sign) * K)) < 1e-9 * float(np.max(np.abs(K)))
-    one, other = FORCE.rollers(POSE), turned.rollers(sign * POSE)
+    one, other = FORCE.loads(POSE), turned.loads(sign * POSE)
     assert np.max(np.abs(one.centre - other.centre)) < 1e-12 and np.max(np.abs(one.load - other.load)) < 1e-6
 
 

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, fields, replace
-from typing import Self
+from typing import ClassVar, Self
 
 from ehdmaps.errors import InputError
 from ehdmaps.labels import label_problem
@@ -75,6 +75,7 @@ class BallGeometry:
     (0.575, 7.561)
     """
 
+    kind: ClassVar[str] = "ball bearing"
     name: str
     ball_diameter: float
     pitch_diameter: float

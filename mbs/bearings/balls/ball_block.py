@@ -1,31 +1,25 @@
-"""Ball bearings in compiled runs, by `ehdmaps/kernel/c/ball/ball_block.c`.
-
-Films change with the speed: their laws are made at nodes that lie evenly in its logarithm, on one grid of approaches,
-and blended straight between two nodes, see `mbs.bearings.balls.film_tables`.
-"""
+"""Ball bearings in compiled runs, by `ehdmaps/kernel/c/ball/ball_block.c`."""
 
 from __future__ import annotations
 
 import ctypes
 import dataclasses
-import math
 from collections.abc import Sequence
 from typing import ClassVar
 
 import numpy as np
 
-from ehdmaps.arrays import BoolArray, FloatArray
+from ehdmaps.arrays import FloatArray
 from ehdmaps.kernel.library import checked
 from ehdmaps.kernel.record import Record, integers, numbers
-from mbs.bearings.balls.answers import felt_rows
 from mbs.bearings.balls.ball_data import COLUMNS, START
-from mbs.bearings.balls.ball_element import BallStates, MachineBalls
 from mbs.bearings.balls.ball_memory import SPRINGS, FilmsOfBalls
 from mbs.bearings.balls.ball_speed import dry_energy
-from mbs.bearings.balls.film_tables import FilmCourse, FilmData
+from mbs.bearings.balls.film_tables import FilmData
 from mbs.bearings.balls.laws import NODES
 from mbs.bearings.balls.normal_law import HELD
 from mbs.bearings.balls.response import SHORTER
+from mbs.bearings.locating_block import COURSES, PLACES, SHAPES, WORKS, LocatingBlock, felt_rows
 from mbs.model.blocks import Kind, Member
 
 
@@ -70,146 +64,90 @@ class Balls(Record):
 
     _fields_ = (
         *((name, ctypes.c_int64) for name in ("count", "longest")),
-        *((name, integers) for name in ("firsts", "places", "films_of", "counts")),
-        *((name, numbers) for name in ("starts", "turns", "offsets", "spins", "lengths", "drives", "cosine", "sine")),
-        *((name, numbers) for name in ("centres", "rows", "rests", "powers", "last", "times", "works")),
+        *PLACES,
+        ("counts", integers),
+        *COURSES,
+        *((name, numbers) for name in ("spins", "lengths", "drives", "cosine", "sine")),
+        *((name, numbers) for name in ("centres", "rows", "rests")),
+        *WORKS,
         ("relaxes", integers),
         *((name, numbers) for name in ("held", "passed", "forces", "springs", "approaches", "clock", "shorter")),
         ("films", ctypes.POINTER(FilmData)),
     )
     shapes: ClassVar = {
-        **dict.fromkeys(("firsts", "places", "films_of", "counts", "starts", "turns", "offsets"), ("count",)),
-        **dict.fromkeys(("rests", "times", "works", "relaxes"), ("count",)),
-        **dict.fromkeys(("spins", "powers"), ("count", 2)),
+        **SHAPES,
+        **dict.fromkeys(("counts", "rests", "relaxes"), ("count",)),
+        "spins": ("count", 2),
         "lengths": ("count", 7),
         "drives": ("count", 6),
         **dict.fromkeys(("cosine", "sine"), ("count", "longest")),
         "centres": ("count", "longest", START),
         "rows": ("count", "longest", COLUMNS),
-        "last": ("count", "longest", 4),
         "held": ("count", "longest", 2, HELD),
         "passed": ("count", "longest", 2, SPRINGS, 2),
         "forces": ("count", "longest", 2, SPRINGS),
         "springs": ("count", "longest", 2, SPRINGS + 1),
         "approaches": ("count", "longest", 2),
-        "clock": (2,),
         "shorter": (SPRINGS,),
     }
 
 
-class BallBlock:
-    """The ball bearings of a run; see `mbs.model.blocks.StatefulBlock`.
+class BallBlock(LocatingBlock):
+    """The ball bearings of a run, `MachineBalls`; see `LocatingBlock`.
 
     Parameters
     ----------
     members : sequence of Member
-        Bearings of the class `MachineBalls`.
+        The bearings.
     """
 
+    nodes, columns = NODES, SPRINGS + 1
+
     def __init__(self, members: Sequence[Member]) -> None:
-        elements: list[MachineBalls] = [member.element for member in members]
-        columns = SPRINGS + 1 if any(one.relaxes for one in elements) else 0
-        self._course = FilmCourse(elements, NODES, columns)
-        self._data, self._arrays = _gather(members, self._course)
+        super().__init__(members)
+        elements, count, most = self.elements, len(self.elements), self.longest
+        cosine, sine = np.zeros((2, count, most))
+        for b, one in enumerate(elements):
+            cosine[b, : self.size(b)], sine[b, : self.size(b)] = one.force.directions
+        self.arrays |= {
+            "counts": np.array([self.size(b) for b in range(count)], dtype=np.int64),
+            "spins": self.rows([(one.inner_spin, one.outer_spin) for one in elements], 2),
+            "lengths": self.rows([one.force.shape for one in elements], 7),
+            "drives": self.rows([one.force.drive for one in elements], 6),
+            "cosine": cosine,
+            "sine": sine,
+            "centres": np.zeros((count, most, START)),
+            "rows": np.zeros((count, most, COLUMNS)),
+            "rests": np.zeros(count),
+            "relaxes": np.array([int(one.relaxes) for one in elements], dtype=np.int64),
+            "held": np.zeros((count, most, 2, HELD)),
+            "passed": np.zeros((count, most, 2, SPRINGS, 2)),
+            "forces": np.zeros((count, most, 2, SPRINGS)),
+            "springs": np.zeros((count, most, 2, SPRINGS + 1)),
+            "approaches": np.zeros((count, most, 2)),
+            "shorter": np.array(SHORTER),
+        }
+        self.data = checked(Balls, "ehd_ball_block")(count=count, longest=most, films=self.course.data, **self.arrays)
 
-    def begin(self, speeds: FloatArray) -> None:
-        """Find the places of the speeds [rad/s] on the tables, and the grids of these."""
-        self._course.begin(speeds)
+    def stored(self, b: int) -> float:
+        """See `LocatingBlock.stored`."""
+        return dry_energy(self.arrays["rows"][b, : self.size(b)])
 
-    def prepare(self, first: int, last: int) -> tuple[Balls, BoolArray]:
-        """Make the laws of the next steps, as many as are held at once.
+    def films(self, b: int) -> FilmsOfBalls:
+        """See `LocatingBlock.films`."""
+        return FilmsOfBalls(*(place.copy() for place in self._places(b)))
 
-        Parameters
-        ----------
-        first, last : int
-            Steps of those that `begin` was told.
-        """
-        return self._data, self._course.prepare(first, last)
-
-    def states(self) -> Sequence[BallStates]:
-        """States of each bearing after the last step."""
-        arrays = self._arrays
-        return [
-            BallStates(
-                time=float(arrays["times"][b]),
-                last=arrays["last"][b, :z].copy(),
-                dissipated=float(arrays["powers"][b, 0]),
-                driven=float(arrays["powers"][b, 1] + arrays["works"][b]),
-                stored=dry_energy(arrays["rows"][b, :z]),
-                films=FilmsOfBalls(*(place.copy() for place in self._places(b))) if arrays["relaxes"][b] else None,
-            )
-            for b, z in enumerate(arrays["counts"].tolist())
-        ]
-
-    def resume(self, states: Sequence[BallStates]) -> None:
-        """Go on with states that `MachineBalls.advance` gave.
-
-        Parameters
-        ----------
-        states : sequence of BallStates
-            States of each bearing.
-        """
-        for b, one in enumerate(states):
-            self._arrays["times"][b] = one.time
-            self._arrays["last"][b, : one.last.shape[0]] = one.last
-            self._arrays["clock"][:] = one.time, math.nan
-            places = self._places(b)
-            for place, values in zip(
-                places, dataclasses.astuple(one.films) if one.films else (0.0, 0.0, 0.0), strict=True
-            ):
-                place[:] = values
+    def put(self, b: int, films: FilmsOfBalls | None) -> None:
+        """See `LocatingBlock.put`."""
+        values = (0.0, 0.0, 0.0) if films is None else dataclasses.astuple(films)
+        for place, value in zip(self._places(b), values, strict=True):
+            place[:] = value
 
     def _places(self, b: int) -> tuple[FloatArray, ...]:
         """Arrays of the films of a bearing: forces, springs, approaches."""
-        arrays, z = self._arrays, int(self._arrays["counts"][b])
-        return arrays["forces"][b, :z], arrays["springs"][b, :z], arrays["approaches"][b, :z]
-
-
-def _gather(members: Sequence[Member], course: FilmCourse) -> tuple[Balls, dict[str, FloatArray]]:
-    """Data of some bearings, and their arrays."""
-    elements: list[MachineBalls] = [member.element for member in members]
-    count, most = len(elements), max((one.force.geometry.balls for one in elements), default=0)
-    cosine, sine = np.zeros((2, count, most))
-    for b, one in enumerate(elements):
-        cosine[b, : one.force.geometry.balls], sine[b, : one.force.geometry.balls] = one.force.directions
-
-    def whole(values: Sequence[int]) -> FloatArray:
-        return np.array(values, dtype=np.int64)
-
-    def rows(values: Sequence[float] | Sequence[Sequence[float]], *columns: int) -> FloatArray:
-        return np.array(values, dtype=np.float64).reshape(count, *columns)
-
-    arrays = {
-        "firsts": whole([member.first for member in members]),
-        "places": whole([member.place for member in members]),
-        "films_of": whole(course.films_of),
-        "counts": whole([one.force.geometry.balls for one in elements]),
-        "starts": rows([one.start_angle for one in elements]),
-        "turns": rows([one.cage_turn for one in elements]),
-        "offsets": rows([one.axial_offset for one in elements]),
-        "spins": rows([(one.inner_spin, one.outer_spin) for one in elements], 2),
-        "lengths": rows([one.force.shape for one in elements], 7),
-        "drives": rows([one.force.drive for one in elements], 6),
-        "cosine": cosine,
-        "sine": sine,
-        "centres": np.zeros((count, most, START)),
-        "rows": np.zeros((count, most, COLUMNS)),
-        "rests": np.zeros(count),
-        "powers": np.zeros((count, 2)),
-        "last": np.zeros((count, most, 4)),
-        "times": np.zeros(count),
-        "works": np.zeros(count),
-        "relaxes": whole([int(one.relaxes) for one in elements]),
-        "held": np.zeros((count, most, 2, HELD)),
-        "passed": np.zeros((count, most, 2, SPRINGS, 2)),
-        "forces": np.zeros((count, most, 2, SPRINGS)),
-        "springs": np.zeros((count, most, 2, SPRINGS + 1)),
-        "approaches": np.zeros((count, most, 2)),
-        "clock": np.array([0.0, math.nan]),
-        "shorter": np.array(SHORTER),
-    }
-    data = checked(Balls, "ehd_ball_block")(count=count, longest=most, films=course.data, **arrays)
-    return data, arrays
+        forces, springs, approaches = (self.arrays[name][b] for name in ("forces", "springs", "approaches"))
+        z = self.size(b)
+        return forces[:z], springs[:z], approaches[:z]
 
 
 BALLS = Kind(

@@ -17,9 +17,6 @@ the contacts on their tables; speed around the axis [rad/s], centrifugal load an
 START = 8
 """Numbers by which a ball begins: `ehd_ball_start`, its centre, that of the inner groove there, and S (4)."""
 
-NOT_FINITE, TOO_FAR, NO_BALANCE = -1, -2, -3
-"""What `ehd_ball_force` finds instead of an answer."""
-
 
 class BallShape(NamedTuple):
     """Numbers of a bearing that do not change.

@@ -22,6 +22,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.kernel.library import function
+from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.laws import BallLaw
 from mbs.bearings.balls.normal_law import HELD, contacts_at
 from mbs.bearings.balls.response import SHORTER
@@ -64,17 +65,16 @@ class FilmsOfBalls:
     approaches: FloatArray
 
     @classmethod
-    def at_rest(cls, law: BallLaw, approaches: FloatArray) -> FilmsOfBalls:
-        """Films that have not moved.
+    def at_rest(cls, force: BallForce) -> FilmsOfBalls:
+        """Films that have not moved, at the last call of a force.
 
         Parameters
         ----------
-        law : BallLaw
-            Laws of the contacts.
-        approaches : array (Z, 2)
-            Approaches [m].
+        force : BallForce
+            The force.
         """
-        return cls(np.zeros((*approaches.shape, SPRINGS)), _springs(law, approaches), approaches.copy())
+        approaches = force.last_balls[:, 14:16].copy()
+        return cls(np.zeros((*approaches.shape, SPRINGS)), _springs(force.law, approaches), approaches)
 
     def held(self, step: float) -> FloatArray:
         """Force [N], spring [N/m] and approach [m] that contacts hold over a step [s], (Z, 2, HELD)."""
@@ -88,22 +88,21 @@ class FilmsOfBalls:
         _hold()(self.approaches.size, _SHORTER.ctypes.data, step, *(one.ctypes.data for one in arrays))
         return passed, held
 
-    def after(self, step: float, law: BallLaw, approaches: FloatArray) -> FilmsOfBalls:
+    def after(self, step: float, force: BallForce) -> FilmsOfBalls:
         """Films after a step.
 
         Parameters
         ----------
         step : float
             Length of the step [s].
-        law : BallLaw
-            Laws of the contacts there.
-        approaches : array (Z, 2)
-            Approaches there [m].
+        force : BallForce
+            The force with the films of its end, at its last call.
         """
-        forces, springs, after = self.forces.copy(), self.springs.copy(), _springs(law, approaches)
-        moved, passed = np.ascontiguousarray(approaches - self.approaches), self._over(step)[0]
+        approaches = force.last_balls[:, 14:16].copy()
+        forces, springs, after = self.forces.copy(), self.springs.copy(), _springs(force.law, approaches)
+        moved, passed = approaches - self.approaches, self._over(step)[0]
         _go_on()(moved.size, *(one.ctypes.data for one in (moved, springs, after, passed, forces)))
-        return FilmsOfBalls(forces, springs, approaches.copy())
+        return FilmsOfBalls(forces, springs, approaches)
 
 
 def _springs(law: BallLaw, approaches: FloatArray) -> FloatArray:

@@ -21,7 +21,8 @@ from ehdmaps.physics.point.ball_catalogue import ball_dynamic_rating, ball_stati
 from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.physics.point.film_formulas import hamrock_dowson_central, hamrock_dowson_minimum
 from ehdmaps.units import written
-from mbs.bearings.balls.ball_bearing import BallElement, BallForce, BallLoads
+from mbs.bearings.balls.ball_bearing import BallForce, BallLoads
+from mbs.bearings.balls.ball_element import MachineBalls
 from mbs.bearings.balls.ball_findings import ball_gauge, ball_pressures, reach_of
 from mbs.bearings.balls.ball_motion import Motion, ball_motion
 from mbs.life import ReferenceLife, ball_reference_life
@@ -34,7 +35,8 @@ from mbs.model.system import System
 if TYPE_CHECKING:
     from mbs.bearings.balls.films import BallFilms
 
-_RING = "inner ring"
+_RING, _TURNING = "inner ring", Operation(1.0)
+"""The ring; speeds are those of the rings at a speed of the system of one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -199,10 +201,10 @@ def ball_point(
     ring = rigid_body(_RING, [Inertia(1.0, 1.0, 1.0)], free)
     loads = [Load("load", _RING, np.array([*given, 0.0, 0.0, 0.0]))]
     pose = np.zeros(6)
-    element = _Held("bearing", _RING, "ground", force, inner_speed, outer_speed)
+    element = MachineBalls("bearing", _RING, "ground", force, inner_speed, outer_speed)
     balance = _balance(System([ring], loads=loads, elements=[element]), given, force)
     pose[[0, 1, 2, 4, 5][: len(free)]] = balance.displacement
-    balls = element.balls(pose, Operation())
+    balls = element.loads(pose, _TURNING)
     contacts, pressure = force.geometry.contacts(force.material), ball_pressures(force, balls)
     motion = ball_motion(force, balls, inner_speed, outer_speed)
     central, minimum = np.full((2, *pressure.shape), np.nan)
@@ -268,24 +270,14 @@ def ball_dynamic_stiffness(point: BallPoint, omega: FloatArray) -> ComplexArray:
 
     force, s = point.force, np.asarray(1j * omega, dtype=np.complex128)
     speeds = {"inner_speed": point.inner_speed, "outer_speed": point.outer_speed}
-    balls = force.balls(point.pose, **speeds)
-    relaxation = ball_relaxation(force.law, force.shape, force.last_balls, force.drive_at(**speeds), balls.angle)
+    relaxation = ball_relaxation(force, force.loads(point.pose, **speeds), speeds)
     return np.asarray(point.stiffness + s[:, None, None] * point.damping + relaxation.more(s))
-
-
-@dataclass(frozen=True, eq=False)
-class _Held(BallElement):
-    """A bearing whose rings turn at speeds of their own [rad/s], whatever the system does."""
-
-    def conditions(self, operation: Operation) -> dict[str, float]:
-        """Speeds as they are."""
-        return {"inner_speed": self.inner_spin, "outer_speed": self.outer_spin}
 
 
 def _balance(system: System, load: FloatArray, force: BallForce) -> Equilibrium:
     """The equilibrium, or what to do where there is none."""
     try:
-        return equilibrium(system, Operation())
+        return equilibrium(system, _TURNING)
     except AnalysisError as error:
         geometry = force.geometry
         words = (

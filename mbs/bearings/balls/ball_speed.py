@@ -145,13 +145,6 @@ def speed_work(balls: FloatArray, arm: float, last: FloatArray) -> float:
     return _work()(balls.shape[0], balls.ctypes.data, arm, last.ctypes.data)
 
 
-def turned_by(pose: FloatArray, force: FloatArray) -> float:
-    """Moment that the bearing asks of its cage [N m], by pose and force at rest of its inner ring, (6,) each."""
-    radial: float = pose[1] * force[2] - pose[2] * force[1]
-    tilts: float = pose[4] * force[5] - pose[5] * force[4]
-    return radial + tilts
-
-
 def speed_slopes(along: Any, length: Any, drive: Drive) -> tuple[Any, Any]:
     """Derivatives of P, centrifugal load and traction together, by d and by v, (..., 2, 2) each [N/m].
 

@@ -43,30 +43,27 @@ class _Places(NamedTuple):
     loads: FloatArray
 
 
-def ball_relaxation(law: BallLaw, shape: BallShape, balls: FloatArray, drive: Drive, angles: FloatArray) -> Relaxation:
+def ball_relaxation(force: BallForce, balls: BallLoads, conditions: dict[str, Any]) -> Relaxation:
     """Relaxation of a bearing in the pose (6,) of its inner ring.
 
-    There are as many springs at any speed and pose; some have no stiffness.
+    There are as many springs at any speed and pose; some have no stiffness, and none has of a law without responses.
 
     Parameters
     ----------
-    law : BallLaw
-        Laws of the contacts; without responses, springs have no stiffness.
-    shape : BallShape
-        Lengths of the bearing.
-    balls : array (Z, COLUMNS)
-        Rows of all balls.
-    drive : Drive
-        Speeds and masses.
-    angles : array (Z,)
-        Angles of the balls from y towards z [rad].
+    force : BallForce
+        The force with the films of a speed, at the pose of its last call.
+    balls : BallLoads
+        What that call found.
+    conditions : dict
+        Angle of the cage and speeds at that call.
     """
-    rows, times = np.zeros((angles.size, 2 * TIMES.size, 6)), np.ones((angles.size, 2 * TIMES.size))
-    on = balls[:, 10] > 0.0  # others do nothing
+    law, shape, found = force.law, force.shape, force.last_balls
+    rows, times = np.zeros((balls.angle.size, 2 * TIMES.size, 6)), np.ones((balls.angle.size, 2 * TIMES.size))
+    on = found[:, 10] > 0.0  # others do nothing
     if law.responses and np.any(on):
-        contacts, _ = _contacts(law, shape, balls[on], drive)
-        found = relaxation(contacts, _by_pose(shape.arm, angles[on]))
-        rows[on], times[on] = found.rows.reshape(rows[on].shape), found.times.reshape(times[on].shape)
+        contacts, _ = _contacts(law, shape, found[on], force.drive_at(**conditions))
+        made = relaxation(contacts, _by_pose(shape.arm, balls.angle[on]))
+        rows[on], times[on] = made.rows.reshape(rows[on].shape), made.times.reshape(times[on].shape)
     return Relaxation(rows.reshape(-1, 6), times.reshape(-1))
 
 

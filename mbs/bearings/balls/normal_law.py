@@ -154,8 +154,3 @@ def on_rows(law: NormalLaw, table: FloatArray) -> tuple[FloatArray, FloatArray, 
 def empty_table() -> FloatArray:
     """Table of a dry contact."""
     return np.zeros((0, 4))
-
-
-def nothing_held() -> FloatArray:
-    """Numbers that contacts without memory hold: none."""
-    return np.zeros((0, 2, HELD))

@@ -17,9 +17,6 @@ from mbs.bearings.balls.normal_law import LawData, NormalLaw, law_data
 if TYPE_CHECKING:
     from mbs.bearings.tapered.tapered_shape import Ribs, RollerLaws, TaperedShape
 
-NOT_FINITE, TOO_FAR, NO_BALANCE = -1, -2, -3
-"""What ``ehd_taper_force`` finds instead of an answer."""
-
 RIB_NUMBERS = 6
 """Numbers of a rib, see `rib_rows`."""
 

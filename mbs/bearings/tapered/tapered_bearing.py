@@ -30,32 +30,30 @@ import numpy as np
 import numpy.typing as npt
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.errors import InputError
 from ehdmaps.kernel.record import address
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.physics.surface import iso_profile
 from mbs.bearings.balls.normal_law import contacts_at
 from mbs.bearings.laws import roller_coefficient
+from mbs.bearings.locating_force import LocatingForce, directions
 from mbs.bearings.tapered.kernel_structs import (
     ANSWER,
     COLUMNS,
     FIRST_RIB,
     MEMORY,
-    NOT_FINITE,
     PLACE,
     RING,
-    TOO_FAR,
     LineSprings,
     both_lines,
     data_of,
     functions,
 )
 from mbs.bearings.tapered.line_film import DRY_LINES, LineFilms
+from mbs.bearings.tapered.tapered_energy import dry_energy, place_work
 from mbs.bearings.tapered.tapered_shape import Ribs, RollerLaws, TaperedShape
-
-FASTEST = 2e4
-"""Largest accepted speed of a ring [rad/s]."""
+from mbs.model.findings import CARRIES
 
 SLICES, MOST_SLICES = 21, 1000
 
@@ -87,9 +85,19 @@ class TaperedLoads:
     centre: FloatArray
     slices: FloatArray
 
+    @property
+    def loaded(self) -> int:
+        """Number of rollers that carry more than 1 % of the highest load of the cone."""
+        return int(np.count_nonzero(self.load[0] > CARRIES * self.load[0].max()))
 
-class TaperedForce:
-    """Force, stiffness and damping of a tapered roller bearing.
+    @property
+    def largest(self) -> float:
+        """Load per length of the most loaded slice [N/m]."""
+        return float(self.slices.max())
+
+
+class TaperedForce(LocatingForce):
+    """Force, stiffness and damping of a tapered roller bearing, see `LocatingForce`.
 
     Parameters
     ----------
@@ -130,6 +138,8 @@ class TaperedForce:
     (True, True)
     """
 
+    rolling_element = "roller"
+
     def __init__(
         self,
         geometry: TaperedGeometry,
@@ -161,7 +171,7 @@ class TaperedForce:
         depths = iso_profile(self.positions, diameter, length) if profile == "iso" else np.zeros(slices)
         if callable(profile):
             depths = np.array(profile(self.positions.copy()), dtype=np.float64)
-        places = 2.0 * math.pi * np.arange(geometry.rollers) / geometry.rollers
+        places = directions(geometry.rollers)
         way = -1.0 if geometry.contact_angle < 0.0 else 1.0
         self.ribs = geometry.ribs(material)
         self.shape = TaperedShape(
@@ -192,6 +202,7 @@ class TaperedForce:
 
     def _begin(self) -> None:
         """Make what the kernel reads of the laws, and the arrays that it writes."""
+        self.highest = self.films.loads[1]
         self._lines, self._kept = both_lines(self.laws)
         self._given, self._answer = np.zeros((2, 6)), np.zeros(ANSWER)
         self._rollers = np.zeros((self.geometry.rollers, COLUMNS))
@@ -227,6 +238,12 @@ class TaperedForce:
         other._begin()
         return other
 
+    def with_material(self, material: Material) -> TaperedForce:
+        """See `LocatingForce.with_material`; contacts keep that of before."""
+        other = self.with_films(self.films)
+        other.material = material
+        return other
+
     def speed_loads(
         self, inner_speed: float, outer_speed: float = 0.0, cage_speed: float | None = None
     ) -> tuple[float, float]:
@@ -244,13 +261,7 @@ class TaperedForce:
         InputError
             For speeds that are no finite numbers, or beyond `FASTEST`.
         """
-        geometry = self.geometry
-        cage = geometry.cage_speed(inner_speed, outer_speed) if cage_speed is None else cage_speed
-        if not all(abs(speed) <= FASTEST for speed in (inner_speed, outer_speed, cage)):
-            raise InputError(
-                f"{geometry.kind}, speeds: got {inner_speed!r}, {outer_speed!r} and {cage!r} rad/s; allowed: finite "
-                f"numbers, at most {FASTEST:g} rad/s either way"
-            )
+        geometry, cage = self.geometry, self._cage_of(inner_speed, outer_speed, cage_speed)
         mass = geometry.roller_mass(self.material)
         along, across = geometry.roller_inertia(self.material)
         sine, cosine = math.sin(geometry.axis_angle), math.cos(geometry.axis_angle)
@@ -258,53 +269,7 @@ class TaperedForce:
         moment = cage * sine * (along * spin - across * cage * cosine)
         return 0.5 * mass * geometry.pitch_diameter * cage**2, self._way * moment
 
-    def __call__(
-        self,
-        pose: npt.ArrayLike,
-        velocity: npt.ArrayLike | None = None,
-        *,
-        cage_angle: float = 0.0,
-        inner_speed: float = 0.0,
-        outer_speed: float = 0.0,
-        cage_speed: float | None = None,
-    ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Force on the inner ring, and its derivatives.
-
-        Parameters
-        ----------
-        pose, velocity : array (6,)
-            Pose and velocity of the inner ring in O [m], [rad], [m/s], [rad/s]; at rest if there is no velocity.
-            Damping is that of small velocities: the force is linear in them.
-        cage_angle : float
-            Angle of the first roller, from y towards z [rad].
-        inner_speed, outer_speed : float
-            Speeds of the rings [rad/s].
-        cage_speed : float, optional
-            Speed of the cage [rad/s]; that of pure rolling if left out.
-
-        Returns
-        -------
-        f, K, C : arrays (6,), (6, 6), (6, 6)
-            Force and moments [N], [N m] in O about the centre of the inner ring, K = -df/dpose at rest,
-            C = -df/dvelocity.
-
-        Raises
-        ------
-        InputError
-            For values that are no finite numbers, and poses or speeds beyond reason.
-        AnalysisError
-            Where the balance of a roller is not found.
-        """
-        self._evaluated(pose, cage_angle, inner_speed, outer_speed, cage_speed)
-        force, stiffness, damping = (array.copy() for array in self._out)
-        if velocity is not None:
-            rate = _six(velocity, "velocity")
-            if not np.all(np.isfinite(rate)):
-                raise InputError(f"{self.geometry.kind}, velocity: got {rate.tolist()}; allowed: finite numbers")
-            force -= damping @ rate
-        return force, stiffness, damping
-
-    def rollers(
+    def loads(
         self,
         pose: npt.ArrayLike,
         *,
@@ -320,7 +285,7 @@ class TaperedForce:
         pose : array (6,)
             Pose of the inner ring in O.
         cage_angle, inner_speed, outer_speed, cage_speed : float
-            Angle of the cage [rad] and speeds [rad/s], see `TaperedForce.__call__`.
+            Angle of the cage [rad] and speeds [rad/s], see `LocatingForce.__call__`.
         """
         self._evaluated(pose, cage_angle, inner_speed, outer_speed, cage_speed)
         rows, shape = self._rollers.T.copy(), self.shape
@@ -345,6 +310,19 @@ class TaperedForce:
         """Numbers of the rollers at the last call, (Z, `COLUMNS`), see `mbs.bearings.tapered.kernel_structs`."""
         return self._rollers
 
+    @property
+    def last_loads(self) -> FloatArray:
+        """See `LocatingForce.last_loads`: of cone and cup."""
+        return self._rollers[:, 3:5].T
+
+    def work(self, speeds: tuple[float, float], last: FloatArray) -> float:
+        """See `LocatingForce.work`; `last` has places, radial [m] and turned [rad], and loads."""
+        return place_work(self._rollers, self.speed_loads(*speeds), last)
+
+    def stored(self) -> float:
+        """See `LocatingForce.stored`."""
+        return dry_energy(self.laws, self.shape, self._rollers)
+
     def go_on(self, springs: LineSprings, memory: FloatArray) -> None:
         """Bring films with memory to the end of a step, at which the last call was.
 
@@ -367,9 +345,9 @@ class TaperedForce:
 
     def _evaluated(
         self, pose: npt.ArrayLike, cage_angle: float, inner_speed: float, outer_speed: float, cage_speed: float | None
-    ) -> None:
-        """Call the kernel, which writes into the arrays of this object."""
-        place = _six(pose, "pose")
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """See `LocatingForce`."""
+        place = self._six(pose, "pose")
         centrifugal, moment = self.speed_loads(inner_speed, outer_speed, cage_speed)
         memory, (first, loads, last) = None if self.held is None else self._room(self.held), self._places
         self._given[0], self._given[1, 1], self._given[1, 2] = place, centrifugal, moment
@@ -377,29 +355,4 @@ class TaperedForce:
         if found < 0:
             self._rollers[:] = 0.0
             self._refuse(found, place, cage_angle)
-
-    def _refuse(self, found: int, pose: FloatArray, cage_angle: float) -> None:
-        """Say what is wrong."""
-        kind = self.geometry.kind
-        if found == NOT_FINITE:
-            raise InputError(
-                f"{kind}, pose: got {pose.tolist()} and the cage angle {cage_angle!r}; allowed: finite numbers"
-            )
-        if found == TOO_FAR:
-            raise InputError(
-                f"{kind}, pose: got x, y, z = {pose[0]:.6g}, {pose[1]:.6g}, {pose[2]:.6g} m, theta_y, theta_z "
-                f"= {pose[4]:.6g}, {pose[5]:.6g} rad; allowed: within {self.shape.most_travel:.6g} m and "
-                f"{self.shape.most_tilt:.6g} rad; check units and the step of the solver"
-            )
-        raise AnalysisError(f"{kind} {self.geometry.name}: no balance of a roller was found at {pose.tolist()}")
-
-
-def _six(values: npt.ArrayLike, name: str) -> FloatArray:
-    """Six numbers."""
-    try:
-        array = np.ascontiguousarray(values, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise InputError(f"bearing, {name}: got {values!r:.80}; allowed: six real numbers") from None
-    if array.shape != (6,):
-        raise InputError(f"bearing, {name}: got an array of shape {array.shape}; allowed: (6,)")
-    return array
+        return self._out

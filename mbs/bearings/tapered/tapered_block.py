@@ -1,27 +1,23 @@
-"""Bearings of tapered rollers, or of rollers between ribs, in compiled runs, by `ehdmaps/kernel/c/taper/taper_block.c`.
-
-Films change with the speed: see `mbs.bearings.balls.film_tables`.
-"""
+"""Bearings of tapered rollers, or between ribs, in compiled runs, by `ehdmaps/kernel/c/taper/taper_block.c`."""
 
 from __future__ import annotations
 
 import ctypes
 import math
 from collections.abc import Sequence
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
-from ehdmaps.arrays import BoolArray, FloatArray
+from ehdmaps.arrays import FloatArray
 from ehdmaps.kernel.library import checked
 from ehdmaps.kernel.record import Record, integers, numbers
-from mbs.bearings.balls.answers import felt_rows
-from mbs.bearings.balls.film_tables import FilmCourse, FilmData
+from mbs.bearings.balls.film_tables import FilmData
+from mbs.bearings.locating_block import COURSES, PLACES, SHAPES, WORKS, LocatingBlock, felt_rows
+from mbs.bearings.locating_force import FASTEST
 from mbs.bearings.tapered.kernel_structs import COLUMNS, MEMORY, TaperedData, data_of, functions
 from mbs.bearings.tapered.line_film import NODES
-from mbs.bearings.tapered.tapered_bearing import FASTEST
-from mbs.bearings.tapered.tapered_element import TaperedElement
-from mbs.bearings.tapered.tapered_energy import TaperedStates, dry_energy
+from mbs.bearings.tapered.tapered_energy import dry_energy
 from mbs.bearings.tapered.tapered_memory import FilmsOfRollers, no_memory
 from mbs.model.blocks import Kind, Member
 
@@ -65,138 +61,82 @@ class Tapered(Record):
     _fields_ = (
         *((name, ctypes.c_int64) for name in ("count", "longest")),
         ("bearings", ctypes.c_void_p),
-        *((name, integers) for name in ("firsts", "places", "films_of")),
-        *((name, numbers) for name in ("starts", "turns", "offsets", "fastest", "lines", "loads")),
-        *((name, numbers) for name in ("rollers", "powers", "last", "times", "works")),
+        *PLACES,
+        *COURSES,
+        *((name, numbers) for name in ("fastest", "lines", "loads", "rollers")),
+        *WORKS,
         ("memories", integers),
         *((name, numbers) for name in ("memory", "clock")),
         ("films", ctypes.POINTER(FilmData)),
     )
     shapes: ClassVar = {
-        **dict.fromkeys(("firsts", "places", "films_of", "starts", "turns", "offsets", "fastest"), ("count",)),
-        **dict.fromkeys(("times", "works", "memories"), ("count",)),
-        **dict.fromkeys(("lines", "loads", "powers"), ("count", 2)),
+        **SHAPES,
+        **dict.fromkeys(("fastest", "memories"), ("count",)),
+        **dict.fromkeys(("lines", "loads"), ("count", 2)),
         "rollers": ("count", "longest", COLUMNS),
-        "last": ("count", "longest", 4),
-        "clock": (2,),
     }
 
 
-class TaperedBlock:
-    """The bearings of a run; see `mbs.model.blocks.StatefulBlock`.
+class TaperedBlock(LocatingBlock):
+    """The bearings of tapered rollers, or of rollers between ribs, of a run; see `LocatingBlock`.
 
     Parameters
     ----------
     members : sequence of Member
-        Bearings of the class `TaperedElement`.
+        The bearings.
     """
 
+    nodes, columns = NODES, 2
+
     def __init__(self, members: Sequence[Member]) -> None:
-        self._elements: list[TaperedElement] = [member.element for member in members]
-        self._course = FilmCourse(self._elements, NODES, 2 if any(one.relaxes for one in self._elements) else 0)
-        own = [data_of(one.force.shape, one.force.laws) for one in self._elements]
+        super().__init__(members)
+        elements = self.elements
+        own = [data_of(one.force.shape, one.force.laws) for one in elements]
         self._kept = own, (TaperedData * len(own))(*own)
-        self._arrays = _arrays(members, self._course)
+        spins = [(one.inner_spin, one.outer_spin, one.cage_turn) for one in elements]
+        sizes = [math.prod(self._shape(b)) if one.relaxes else 0 for b, one in enumerate(elements)]
+        firsts = np.cumsum([0, *sizes])[:-1]
+        memories = [int(first) if one.relaxes else -1 for one, first in zip(elements, firsts, strict=True)]
+        self.arrays |= {
+            "fastest": self.rows([FASTEST / max(*map(abs, each), 1e-12) for each in spins]),
+            "lines": self.rows([(one.force.laws.cone, one.force.laws.cup) for one in elements], 2),
+            "loads": self.rows([one.force.speed_loads(*e[:2]) for one, e in zip(elements, spins, strict=True)], 2),
+            "rollers": np.zeros((len(elements), self.longest, COLUMNS)),
+            "memories": np.array(memories, dtype=np.int64),
+            "memory": np.zeros(sum(sizes)),
+        }
         functions()  # which compares the structs
-        self._data = checked(Tapered, "ehd_taper_block")(
+        self.data = checked(Tapered, "ehd_taper_block")(
             count=len(own),
-            longest=self._arrays["rollers"].shape[1],
+            longest=self.longest,
             bearings=ctypes.addressof(self._kept[1]),
-            films=self._course.data,
-            **self._arrays,
+            films=self.course.data,
+            **self.arrays,
         )
 
-    def begin(self, speeds: FloatArray) -> None:
-        """Find the places of the speeds [rad/s] on the tables, and the grids of these."""
-        self._course.begin(speeds)
+    def stored(self, b: int) -> float:
+        """See `LocatingBlock.stored`."""
+        force = self.elements[b].force
+        return dry_energy(force.laws, force.shape, self.arrays["rollers"][b, : self.size(b)])
 
-    def prepare(self, first: int, last: int) -> tuple[Tapered, BoolArray]:
-        """Make the laws of the next steps, as many as are held at once.
+    def films(self, b: int) -> FilmsOfRollers:
+        """See `LocatingBlock.films`."""
+        return FilmsOfRollers(self._memory(b).copy())
 
-        Parameters
-        ----------
-        first, last : int
-            Steps of those that `begin` was told.
-        """
-        return self._data, self._course.prepare(first, last)
+    def put(self, b: int, films: FilmsOfRollers | None) -> None:
+        """See `LocatingBlock.put`."""
+        memory = self._memory(b)
+        memory[:] = films.memory if films else no_memory(memory.shape[0], memory.shape[-1])
 
-    def states(self) -> Sequence[TaperedStates]:
-        """States of each bearing after the last step."""
-        arrays = self._arrays
-        return [
-            TaperedStates(
-                time=float(arrays["times"][b]),
-                last=arrays["last"][b, : one.force.geometry.rollers].copy(),
-                dissipated=float(arrays["powers"][b, 0]),
-                driven=float(arrays["powers"][b, 1] + arrays["works"][b]),
-                stored=dry_energy(one.force.laws, one.force.shape, arrays["rollers"][b, : one.force.geometry.rollers]),
-                films=FilmsOfRollers(self._memory(b).copy()) if one.relaxes else None,
-            )
-            for b, one in enumerate(self._elements)
-        ]
-
-    def resume(self, states: Sequence[TaperedStates]) -> None:
-        """Go on with states that `TaperedElement.advance` gave.
-
-        Parameters
-        ----------
-        states : sequence of TaperedStates
-            States of each bearing.
-        """
-        arrays = self._arrays
-        for b, one in enumerate(states):
-            arrays["times"][b] = one.time
-            arrays["last"][b, : one.last.shape[0]] = one.last
-            arrays["clock"][:] = one.time, math.nan
-            if self._elements[b].relaxes:
-                memory = self._memory(b)
-                memory[:] = one.films.memory if one.films else no_memory(memory.shape[0], memory.shape[-1])
+    def _shape(self, b: int) -> tuple[int, int, int, int]:
+        """Lengths of the memory of the slices of a bearing."""
+        return self.size(b), 2, MEMORY, self.elements[b].force.positions.size
 
     def _memory(self, b: int) -> FloatArray:
         """Memory of the slices of a bearing."""
-        shape, first = _memory_shape(self._elements[b]), int(self._arrays["memories"][b])
-        memory: FloatArray = self._arrays["memory"][first : first + math.prod(shape)].reshape(shape)
+        shape, first = self._shape(b), int(self.arrays["memories"][b])
+        memory: FloatArray = self.arrays["memory"][first : first + math.prod(shape)].reshape(shape)
         return memory
-
-
-def _memory_shape(element: TaperedElement) -> tuple[int, int, int, int]:
-    """Lengths of the memory of the slices of a bearing."""
-    return element.force.geometry.rollers, 2, MEMORY, element.force.positions.size
-
-
-def _arrays(members: Sequence[Member], course: FilmCourse) -> dict[str, Any]:
-    """Arrays of some bearings."""
-    elements: list[TaperedElement] = [member.element for member in members]
-    count, most = len(elements), max((one.force.geometry.rollers for one in elements), default=0)
-    spins = [(one.inner_spin, one.outer_spin, one.cage_turn) for one in elements]
-    sizes = [math.prod(_memory_shape(one)) if one.relaxes else 0 for one in elements]
-    firsts = np.cumsum([0, *sizes])[:-1]
-
-    def whole(values: Sequence[int]) -> Any:
-        return np.array(values, dtype=np.int64)
-
-    def rows(values: Sequence[Any], *columns: int) -> FloatArray:
-        return np.array(values, dtype=np.float64).reshape(count, *columns)
-
-    return {
-        "firsts": whole([member.first for member in members]),
-        "places": whole([member.place for member in members]),
-        "films_of": whole(course.films_of),
-        "starts": rows([one.start_angle for one in elements]),
-        "turns": rows([one.cage_turn for one in elements]),
-        "offsets": rows([one.axial_offset for one in elements]),
-        "fastest": rows([FASTEST / max(*map(abs, each), 1e-12) for each in spins]),
-        "lines": rows([(one.force.laws.cone, one.force.laws.cup) for one in elements], 2),
-        "loads": rows([one.force.speed_loads(*each[:2]) for one, each in zip(elements, spins, strict=True)], 2),
-        "rollers": np.zeros((count, most, COLUMNS)),
-        "powers": np.zeros((count, 2)),
-        "last": np.zeros((count, most, 4)),
-        "times": np.zeros(count),
-        "works": np.zeros(count),
-        "memories": whole([int(first) if one.relaxes else -1 for one, first in zip(elements, firsts, strict=True)]),
-        "memory": np.zeros(sum(sizes)),
-        "clock": np.array([0.0, math.nan]),
-    }
 
 
 TAPERED = Kind(

@@ -10,41 +10,11 @@ of the ring and of the turning cage, the second one that of speed.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
-
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from mbs.bearings.tapered.kernel_structs import FIRST_RIB, functions
 from mbs.bearings.tapered.tapered_shape import RollerLaws, TaperedShape
-
-if TYPE_CHECKING:
-    from mbs.bearings.tapered.tapered_memory import FilmsOfRollers
-
-
-class TaperedStates(NamedTuple):
-    """States of a bearing after a step in time.
-
-    Attributes
-    ----------
-    time : float
-        Time [s].
-    last : array (Z, 4)
-        What `place_work` keeps.
-    dissipated, driven : float
-        Power that contacts take, and that cage and speed bring in over the step [W].
-    stored : float
-        Energy of its dry contacts [J].
-    films : FilmsOfRollers or None
-        Films with memory; None where none are known.
-    """
-
-    time: float
-    last: FloatArray
-    dissipated: float
-    driven: float
-    stored: float
-    films: FilmsOfRollers | None = None
 
 
 def place_work(rollers: FloatArray, loads: tuple[float, float], last: FloatArray) -> float:

@@ -35,7 +35,8 @@ from mbs.model.system import System
 RIB_FRICTION = 0.05
 """Coefficient of friction at ribs, assumed: mixed friction with an oil film."""
 
-_RING = "inner ring"
+_RING, _TURNING = "inner ring", Operation(1.0)
+"""The ring; speeds are those of the rings at a speed of the system of one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,15 +145,6 @@ class TaperedPoint(WithFindings):
         return float(known.min()) if known.size else math.nan
 
 
-@dataclass(frozen=True, eq=False)
-class _Held(TaperedElement):
-    """A bearing whose rings turn at speeds of their own [rad/s], whatever the system does."""
-
-    def conditions(self, operation: Operation) -> dict[str, float]:
-        """Speeds as they are."""
-        return {"inner_speed": self.inner_spin, "outer_speed": self.outer_spin}
-
-
 def tapered_point(
     force: TaperedForce,
     load: Sequence[float],
@@ -193,7 +185,7 @@ def tapered_point(
     free = ["x", "y", "z", "theta_y", "theta_z"] if tilts else ["x", "y", "z"]
     ring = rigid_body(_RING, [Inertia(1.0, 1.0, 1.0)], free)
     loads = [Load("load", _RING, np.array([*given, 0.0, 0.0, 0.0]))]
-    element = _Held("bearing", _RING, "ground", force, inner_speed, outer_speed)
+    element = TaperedElement("bearing", _RING, "ground", force, inner_speed, outer_speed)
     geometry = force.geometry
     start = np.zeros(len(free))
     way = math.copysign(1.0, geometry.contact_angle if geometry.contact_angle else given[0])
@@ -202,7 +194,7 @@ def tapered_point(
         *(2e-6 * given[1:] / max(np.abs(given).max(), 1e-300)),
     )
     try:
-        balance = equilibrium(System([ring], loads=loads, elements=[element]), Operation(), start)
+        balance = equilibrium(System([ring], loads=loads, elements=[element]), _TURNING, start)
     except AnalysisError as error:
         radial = math.hypot(*given[1:])
         words = f"no equilibrium of {geometry.name} under {written(given[0])} N axial, {written(radial)} N radial"
@@ -217,7 +209,7 @@ def tapered_point(
         raise AnalysisError(f"{words}: {error.__cause__ or error}") from error
     pose = np.zeros(6)
     pose[[0, 1, 2, 4, 5][: len(free)]] = balance.displacement
-    rollers = element.rollers(pose, Operation())
+    rollers = element.loads(pose, _TURNING)
     speed = geometry.entrainment_speed(inner_speed, outer_speed)
     central, minimum = _lines(force, rollers, speed, oil, temperature)
     rib_pressure, rib_film, slides = _ribs(force, rollers, (inner_speed, outer_speed), oil, temperature)

@@ -245,7 +245,7 @@ def _cycle_at_rest(case: Case, random: np.random.Generator) -> tuple[float, str]
     conditions = element.entrainment_speed(case.operation), TEMPERATURE, 0.0
     assert isinstance(element.force, BearingForce)
     stored = [
-        energy_at_rest(element.force.law, conditions, element.bearing, element.rollers(pose, case.operation).approach)
+        energy_at_rest(element.force.law, conditions, element.bearing, element.loads(pose, case.operation).approach)
         for pose in (path(0.0), path(0.5))
     ]
     largest = max(*stored, abs(works[1][1]))

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ehdmaps.physics.hertz import POINT_LIMIT
 from ehdmaps.units import PRESSURE, RPM, SPEED, TEMPERATURE, Display
-from mbs.bearings.balls.ball_element import MachineBalls, Settled
 from mbs.bearings.balls.ball_findings import ball_pressures
 from mbs.bearings.balls.ball_motion import ball_motion
 from mbs.bearings.balls.ball_point import BallPoint
+from mbs.bearings.locating_element import Settled
 from mbs.output.one_bearing.kind import (
     CONTACT_SIDES,
     Column,
@@ -26,13 +25,8 @@ from mbs.output.one_bearing.kind import (
     numbers_of,
     tilting,
 )
-from mbs.output.one_bearing.table import matrix_line
 from mbs.output.state_text import beside_class
 from mbs.scene.fields import DEGREE, FORCE, MICROMETRE
-
-if TYPE_CHECKING:
-    from mbs.model.equilibrium import Equilibrium
-    from mbs.scene.assembly import Model
 
 _ERRORS = (
     ("film_offset_error", "largest stated error of the film offset"),
@@ -156,40 +150,28 @@ def _moving(at: Settled) -> list[str]:
     inner, outer = at.conditions["inner_speed"], at.conditions["outer_speed"]
     if inner == outer:
         return []
-    motion, carries = ball_motion(at.force, at.balls, inner, outer), at.balls.load > 0.0
+    motion, carries = ball_motion(at.force, at.loads, inner, outer), at.loads.load > 0.0
     slip, spin = (np.where(carries, np.abs(values), 0.0).max(axis=1) for values in (motion.slip, motion.spin))
     return [
-        f"  cage {RPM.text(at.balls.cage_speed)}; slip up to {no_dust(slip[0]):.3g} m/s inner, {no_dust(slip[1]):.3g} "
+        f"  cage {RPM.text(at.loads.cage_speed)}; slip up to {no_dust(slip[0]):.3g} m/s inner, {no_dust(slip[1]):.3g} "
         f"outer; spin up to {no_dust(spin[0]):.4g} rad/s inner, {no_dust(spin[1]):.4g} outer"
     ]
 
 
-def ball_lines(model: Model, balance: Equilibrium) -> list[str]:
-    """Lines on each ball bearing: its load, contact angles, loads of the balls, stiffness and damping.
+def ball_words(at: Settled) -> tuple[str, list[str]]:
+    """Contact angles of a ball bearing of a machine, and lines on the loads, pressures and speeds of its balls.
 
     Parameters
     ----------
-    model : Model
-        Scene with its law.
-    balance : Equilibrium
-        Equilibrium of its system.
+    at : Settled
+        The bearing at rest.
     """
-    lines = []
-    for index, connected in enumerate(model.system.elements):
-        element = connected.element
-        if not isinstance(element, MachineBalls):
-            continue
-        at = element.settled(connected.transform @ balance.displacement, balance.operation)
-        force, loads = balance.forces[index], at.balls.load
-        angles = [math.degrees(at.balls.mean_angle(side)) for side in (0, 1)]
-        pressures = ball_pressures(at.force, at.balls).max(axis=1)
-        lines += [
-            f"{element.name}: {force[0]:.5g} N along x, {math.hypot(force[1], force[2]):.5g} N across it on the inner "
-            f"ring; contact angle {angles[0]:.4g} deg inner, {angles[1]:.4g} outer",
-            f"  {at.balls.loaded} of {loads.shape[1]} balls loaded, {loads[0].min():.4g} to "
-            f"{loads[0].max():.5g} N at the inner raceway; Hertz pressure up to {PRESSURE.value(pressures[0]):.4g} "
-            f"inner, {PRESSURE.text(pressures[1])} outer",
-            *_moving(at),
-            matrix_line(balance, index),
-        ]
-    return lines
+    loads = at.loads.load
+    angles = [math.degrees(at.loads.mean_angle(side)) for side in (0, 1)]
+    pressures = ball_pressures(at.force, at.loads).max(axis=1)
+    return f"contact angle {angles[0]:.4g} deg inner, {angles[1]:.4g} outer", [
+        f"  {at.loads.loaded} of {loads.shape[1]} balls loaded, {loads[0].min():.4g} to "
+        f"{loads[0].max():.5g} N at the inner raceway; Hertz pressure up to {PRESSURE.value(pressures[0]):.4g} "
+        f"inner, {PRESSURE.text(pressures[1])} outer",
+        *_moving(at),
+    ]

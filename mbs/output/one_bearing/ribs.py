@@ -2,19 +2,13 @@
 
 from __future__ import annotations
 
-import math
-from typing import TYPE_CHECKING
-
-import numpy as np
-
 from ehdmaps.physics.hertz import LINE_LIMIT
 from ehdmaps.physics.rollers.ribbed_geometry import RibbedGeometry
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from ehdmaps.units import PRESSURE, RPM, TEMPERATURE
+from mbs.bearings.locating_element import Settled
 from mbs.bearings.tapered.roller_findings import line_pressures
-from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.bearings.tapered.tapered_point import RIB_FRICTION, TaperedPoint
-from mbs.model.findings import CARRIES
 from mbs.output.one_bearing.kind import (
     CONTACT_SIDES,
     Description,
@@ -28,13 +22,8 @@ from mbs.output.one_bearing.kind import (
     smallest,
     tilting,
 )
-from mbs.output.one_bearing.table import matrix_line
 from mbs.output.state_text import beside_class
 from mbs.scene.fields import DEGREE, FORCE
-
-if TYPE_CHECKING:
-    from mbs.model.equilibrium import Equilibrium
-    from mbs.scene.assembly import Model
 
 _SPEEDS = (
     Number("cage_speed", "rad/s", "speed of the cage, in pure rolling"),
@@ -123,29 +112,19 @@ RIBBED = Kind(
 """Tapered roller bearings, and those of cylindrical rollers that ribs hold along the axis."""
 
 
-def tapered_lines(model: Model, balance: Equilibrium) -> list[str]:
-    """Lines on each tapered roller bearing: its load, loads of the rollers, stiffness and damping.
+def roller_words(at: Settled) -> tuple[str, list[str]]:
+    """Loads and pressures of a bearing of rollers and ribs of a machine; there are no more lines.
 
     Parameters
     ----------
-    model : Model
-        Scene with its law.
-    balance : Equilibrium
-        Equilibrium of its system.
+    at : Settled
+        The bearing at rest.
     """
-    lines = []
-    for index, connected in enumerate(model.system.elements):
-        element = connected.element
-        if not isinstance(element, TaperedElement):
-            continue
-        rollers = element.rollers(connected.transform @ balance.displacement, balance.operation)
-        force, cone = balance.forces[index], rollers.load[0]
-        pressures = line_pressures(element.force_at(balance.operation), rollers).max(axis=1)
-        lines += [
-            f"{element.name}: {force[0]:.5g} N along x, {math.hypot(force[1], force[2]):.5g} N across it on the inner "
-            f"ring; {np.count_nonzero(cone > CARRIES * cone.max())} of {cone.size} rollers loaded, up to "
-            f"{cone.max():.5g} N at the inner raceway, rib up to {rollers.load[2].max():.4g} N; Hertz pressure up to "
-            f"{PRESSURE.value(pressures[0]):.4g} inner, {PRESSURE.text(pressures[1])} outer",
-            matrix_line(balance, index),
-        ]
-    return lines
+    rollers = at.loads
+    cone, pressures = rollers.load[0], line_pressures(at.force, rollers).max(axis=1)
+    words = (
+        f"{rollers.loaded} of {cone.size} rollers loaded, up to "
+        f"{cone.max():.5g} N at the inner raceway, rib up to {rollers.load[2].max():.4g} N; Hertz pressure up to "
+        f"{PRESSURE.value(pressures[0]):.4g} inner, {PRESSURE.text(pressures[1])} outer"
+    )
+    return words, []

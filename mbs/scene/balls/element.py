@@ -161,6 +161,7 @@ class _TableFilms:
         return _film_law(self, self.geometry.entrainment_speed(inner_speed, outer_speed))
 
     source = "the film table of points"
+    error_words = "errors of the film table of points"
 
     @property
     def points(self) -> PointFilmSource:

@@ -1,0 +1,393 @@
+"""A bearing that carries axial load in a machine: quasi-static, with the films of the speed that the system has.
+
+The angle of the cage goes evenly, by pure rolling at the nominal contact angle. Films have the stiffness and damping of
+slow motion, or a memory. What its kinds have of their own, `MachineBalls` and `TaperedElement`, are the functions below
+its films: which they are at a speed, how they keep a memory, how small motions and contacts are told.
+"""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+
+import numpy as np
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import AnalysisError, EhdmapsError
+from ehdmaps.units import RPM
+from mbs.model.elements import Excitation, Forces, OnRings, Operation, Port, Powers, check_apart
+from mbs.model.findings import Gauge
+from mbs.model.relaxation import Films, Relaxation
+
+if TYPE_CHECKING:
+    from mbs.bearings.contact_report import BearingContacts, RollingLoss
+    from mbs.model.condensed import Condensed
+
+HARMONICS = 3
+"""Multiples of the passing frequency of the rolling elements that are worth following."""
+
+MOST_SPEEDS = 64
+"""Speeds whose films are kept."""
+
+
+class Settled(NamedTuple):
+    """A bearing at a pose.
+
+    Attributes
+    ----------
+    force : LocatingForce
+        The force with the films of the speed, after a call at the pose.
+    pose : array, shape (6,)
+        Pose of the inner ring in the outer one [m, rad].
+    conditions : dict
+        Angle of the cage [rad] and speeds [rad/s], by the names that the force takes.
+    loads : BallLoads or TaperedLoads
+        State of its rolling elements.
+    """
+
+    force: Any
+    pose: FloatArray
+    conditions: dict[str, float]
+    loads: Any
+
+    @property
+    def speeds(self) -> tuple[float, float]:
+        """Speeds of the inner and the outer ring [rad/s]."""
+        return self.conditions["inner_speed"], self.conditions["outer_speed"]
+
+
+class LocatingStates(NamedTuple):
+    """States of a bearing after a step in time.
+
+    Attributes
+    ----------
+    time : float
+        End of the step [s].
+    last : array, shape (Z, 4)
+        What `LocatingForce.work` keeps of it.
+    dissipated, driven : float
+        What contacts take up, and what cage and speed bring in [W].
+    stored : float
+        Energy of the contacts, which are dry [J].
+    films : FilmsOfBalls or FilmsOfRollers or None
+        Films with memory; None where none are known.
+    """
+
+    time: float
+    last: FloatArray
+    dissipated: float
+    driven: float
+    stored: float
+    films: Any = None
+
+
+@dataclass(frozen=True, eq=False)
+class LocatingElement(OnRings):
+    """A bearing that carries axial load, between an inner and an outer ring; kinds inherit from it.
+
+    Attributes
+    ----------
+    name : str
+        Name for messages and results.
+    inner, outer : str
+        Places at the middle of the bearing, of tapered rollers in the plane of the middles of the rollers.
+    force : LocatingForce
+        The force, dry.
+    inner_spin, outer_spin : float
+        Speeds of the rings as multiples of the system's.
+    start_angle : float
+        Angle of the first rolling element from y at the beginning [rad].
+    axial_offset : float
+        Way of the inner ring along x against the outer one where both places have not moved [m]: preload by
+        displacement, or play.
+    films : callable or None
+        Law with the films at two speeds of the rings [rad/s]; None for the dry law. Bearings whose `films` are equal
+        share them.
+    memory : {"slow", "memory"}
+        Whether films have stiffness and damping of slow motion, or relax; "memory" in time, too.
+    of_points : bool
+        Whether contacts are points, else lines in slices.
+    """
+
+    locating: ClassVar[bool] = True
+    of_points: ClassVar[bool] = False
+    name: str
+    inner: str
+    outer: str
+    force: Any
+    inner_spin: float = 1.0
+    outer_spin: float = 0.0
+    start_angle: float = 0.0
+    axial_offset: float = 0.0
+    films: Callable[[float, float], Any] | None = None
+    memory: Films = "slow"
+    _made: OrderedDict[float, Any] = field(default_factory=OrderedDict, init=False, repr=False)
+
+    @property
+    def dry_law(self) -> Any:
+        """The law where nothing rolls."""
+        raise NotImplementedError
+
+    @property
+    def same_films(self) -> object:
+        """Key of its contacts, whatever its clearance, and which way it stands."""
+        raise NotImplementedError
+
+    def at_rest(self, force: Any) -> Any:
+        """Films with memory that have not moved, at the last call of a force.
+
+        Parameters
+        ----------
+        force : LocatingForce
+            The force.
+        """
+        raise NotImplementedError
+
+    def relaxation_at(self, at: Settled) -> Relaxation:
+        """Relaxation of its films.
+
+        Parameters
+        ----------
+        at : Settled
+            The bearing at rest.
+        """
+        raise NotImplementedError
+
+    def condensed_at(self, at: Settled) -> Condensed | None:
+        """Its rolling elements for small motions, of a bearing with films; None where they have none, or no load.
+
+        Parameters
+        ----------
+        at : Settled
+            The bearing at rest.
+        """
+        raise NotImplementedError
+
+    def gauge_at(self, at: Settled) -> Gauge:
+        """See `OnRings.gauge`.
+
+        Parameters
+        ----------
+        at : Settled
+            The bearing at rest.
+        """
+        raise NotImplementedError
+
+    def felt_at(self, at: Settled) -> tuple[BearingContacts, RollingLoss]:
+        """See `OnRings.felt`.
+
+        Parameters
+        ----------
+        at : Settled
+            The bearing at rest.
+        """
+        raise NotImplementedError
+
+    def beyond(self, pose: FloatArray) -> bool:
+        """Tell whether the inner ring is where it has no raceway, however near.
+
+        Parameters
+        ----------
+        pose : array (6,)
+            Pose of the inner ring in the outer one.
+        """
+        return False
+
+    @property
+    def film_key(self) -> tuple[object, ...]:
+        """Key that bearings with the same law at all speeds have in common."""
+        law = id(self.dry_law) if self.films is None else self.films
+        return (law, self.inner_spin, self.outer_spin, self.relaxes)
+
+    @property
+    def varies(self) -> bool:
+        """Tell whether it has films that change with the speed."""
+        return self.films is not None and self.inner_spin != self.outer_spin
+
+    @property
+    def relaxes(self) -> bool:
+        """Tell whether its films have a memory."""
+        return self.memory == "memory" and self.films is not None
+
+    def law_at(self, speed: float) -> Any:
+        """The law at a speed of the system [rad/s]; dry where nothing rolls.
+
+        Raises
+        ------
+        AnalysisError
+            Where there are no films at that speed.
+        """
+        if self.films is None or abs(speed) * abs(self.inner_spin - self.outer_spin) == 0.0:
+            return self.dry_law
+        try:
+            return self.films(self.inner_spin * abs(speed), self.outer_spin * abs(speed))
+        except EhdmapsError as error:
+            raise AnalysisError(
+                f"bearing {self.name!r}: no films at {RPM.text(abs(speed))} of the system ({error}); take another oil, "
+                "temperature or speed, or dry contacts: --law 'hertz:1.25e-5 s'"
+            ) from error
+
+    def force_at(self, operation: Operation) -> Any:
+        """The force with the films of a speed; errors as of `law_at`."""
+        speed = abs(operation.speed)
+        if self.films is None:
+            return self.force
+        if speed not in self._made:
+            self._made[speed] = self.force.with_films(self.law_at(speed))
+            if len(self._made) > MOST_SPEEDS:
+                self._made.popitem(last=False)
+        return self._made[speed]
+
+    @property
+    def ports(self) -> tuple[Port, ...]:
+        """Displacement of the inner ring against the outer one."""
+        return (Port(self.inner, self.outer),)
+
+    @property
+    def excitation(self) -> Excitation | None:
+        """The passing of the rolling elements; None for a cage that stands."""
+        order = self.force.angles.size * abs(self.cage_turn)
+        return Excitation(order, HARMONICS, rank=1) if order > 0.0 else None
+
+    @cached_property
+    def cage_turn(self) -> float:
+        """Speed of the cage as a multiple of the system's, by the nominal contact angle."""
+        return float(self.force.geometry.cage_speed(self.inner_spin, self.outer_spin))
+
+    @property
+    def entrainment_rate(self) -> float:
+        """See `OnRings.entrainment_rate`."""
+        return float(self.force.geometry.entrainment_speed(self.inner_spin, self.outer_spin))
+
+    def conditions(self, operation: Operation) -> dict[str, float]:
+        """Angle of the cage and speeds, by the names that the force takes."""
+        return {
+            "cage_angle": self.start_angle + self.cage_turn * operation.angle,
+            "inner_speed": self.inner_spin * operation.speed,
+            "outer_speed": self.outer_spin * operation.speed,
+        }
+
+    def pose(self, displacement: FloatArray) -> FloatArray:
+        """Pose of the inner ring in the outer one by their displacement (6,)."""
+        pose = displacement.copy()
+        pose[0] += self.axial_offset
+        return pose
+
+    def settled(self, displacement: FloatArray, operation: Operation) -> Settled:
+        """The bearing at rest at a displacement (6,) of the inner ring against the outer one."""
+        force, pose, conditions = self.force_at(operation), self.pose(displacement), self.conditions(operation)
+        return Settled(force, pose, conditions, force.loads(pose, **conditions))
+
+    def loads(self, displacement: FloatArray, operation: Operation) -> Any:
+        """State of all rolling elements at rest at the displacement (6,) of the inner ring against the outer one."""
+        return self.settled(displacement, operation).loads
+
+    def element_loads(self, displacement: FloatArray, operation: Operation) -> FloatArray:
+        """See `OnRings.element_loads`."""
+        force = self.force_at(operation)
+        force(self.pose(displacement), **self.conditions(operation))
+        return np.array(force.last_loads[0])
+
+    def largest_load(self, displacement: FloatArray, operation: Operation) -> float:
+        """See `OnRings.largest_load`."""
+        return float(self.settled(displacement, operation).loads.largest)
+
+    def relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
+        """Relaxation of the films of all contacts, where they relax, see `Element.relaxation`."""
+        return self.film_relaxation(displacement, operation) if self.relaxes else None
+
+    def film_relaxation(self, displacement: FloatArray, operation: Operation) -> Relaxation | None:
+        """See `OnRings.film_relaxation`; where nothing rolls, contacts have springs without stiffness."""
+        return None if self.films is None else self.relaxation_at(self.settled(displacement, operation))
+
+    @property
+    def error_words(self) -> str:
+        """See `OnRings.error_words`."""
+        return str(getattr(self.films, "error_words", ""))
+
+    def small_motions(self, displacement: FloatArray, operation: Operation) -> Condensed | None:
+        """See `OnRings.small_motions`."""
+        return self.condensed_at(self.settled(displacement, operation)) if self.varies else None
+
+    def gauge(self, displacement: FloatArray, operation: Operation) -> Gauge:
+        """See `OnRings.gauge`."""
+        return self.gauge_at(self.settled(displacement, operation))
+
+    def felt(self, displacement: FloatArray, operation: Operation) -> tuple[BearingContacts, RollingLoss]:
+        """See `OnRings.felt`."""
+        return self.felt_at(self.settled(displacement, operation))
+
+    def evaluate(self, displacement: FloatArray, velocity: FloatArray, operation: Operation) -> Forces:
+        """Force on the inner ring, stiffness and damping; whether loads are beyond those of the films.
+
+        Parameters
+        ----------
+        displacement, velocity, operation
+            What `Element.evaluate` takes.
+        """
+        force = self.force_at(operation)
+        answer: tuple[FloatArray, FloatArray, FloatArray] = force(
+            self.pose(displacement), velocity, **self.conditions(operation)
+        )
+        return Forces(*answer, bool(force.last_loads.max() > force.highest))
+
+    def advance(
+        self, states: Any, displacement: FloatArray, velocity: FloatArray, operation: Operation
+    ) -> tuple[Forces, Any]:
+        """The same at the end of a step in time, see `Element.advance`.
+
+        Parameters
+        ----------
+        states : LocatingStates or None
+            States after the last step; None at the beginning.
+        displacement, velocity, operation
+            What `Element.advance` takes.
+
+        Raises
+        ------
+        AnalysisError
+            Where the rings have come apart.
+        """
+        force, pose, conditions = self.force_at(operation), self.pose(displacement), self.conditions(operation)
+        most = force.shape.most_travel, force.shape.most_tilt
+        check_apart(self.name, pose, most, operation.time, beyond=self.beyond(pose))
+        films, step = None if states is None else states.films, 0.0 if states is None else operation.time - states.time
+        force.held = None if films is None else films.held(step)
+        try:
+            answer = self.evaluate(displacement, velocity, operation)
+        finally:
+            force.held = None
+        last = np.zeros((force.angles.size, 4)) if states is None else states.last.copy()
+        work = force.work((conditions["inner_speed"], conditions["outer_speed"]), last)
+        if self.relaxes:
+            films = self.at_rest(force) if films is None else films.after(step, force)
+        slowed = answer.damping @ velocity
+        turning = turned_by(pose, answer.force + slowed) * self.cage_turn * operation.speed
+        return answer, LocatingStates(
+            time=operation.time,
+            last=last,
+            dissipated=float(velocity @ slowed),
+            driven=turning + (work / step if step > 0.0 else 0.0),
+            stored=force.stored(),
+            films=films,
+        )
+
+    def powers(
+        self, states: Any, force: FloatArray, displacement: FloatArray, velocity: FloatArray, operation: Operation
+    ) -> Powers | None:
+        """Power that contacts dissipate, and that cage and speed bring in; None with films, see `Element.powers`."""
+        return None if self.films is not None else Powers(states.dissipated, states.driven)
+
+    def stored(self, states: Any, displacement: FloatArray, operation: Operation) -> float | None:
+        """Energy of its dry contacts [J]; None with films, see `Element.stored`."""
+        return None if self.films is not None else float(states.stored)
+
+
+def turned_by(pose: FloatArray, force: FloatArray) -> float:
+    """Moment that the bearing asks of its cage [N m], by pose and force at rest of its inner ring, (6,) each."""
+    radial: float = pose[1] * force[2] - pose[2] * force[1]
+    tilts: float = pose[4] * force[5] - pose[5] * force[4]
+    return radial + tilts

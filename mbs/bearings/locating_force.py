@@ -1,0 +1,209 @@
+"""Force of a bearing that carries axial load, by the pose of its inner ring: what its kinds have in common.
+
+Pose and signs are those of `mbs.bearings.bearing`, with x: x, y, z, and the tilts theta_y = -n_z, theta_z = n_y of the
+inner ring's axis n in the frame O of the outer ring; theta_x has no force. Quasi-static: each rolling element is in
+balance at the speeds of the rings, and has no inertia against small motions beside its centrifugal load and gyroscopic
+moment. A kind is balls, or rollers with ribs; its balance is in C.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, ClassVar, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from ehdmaps.arrays import FloatArray
+from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.physics.solids import Material
+
+FASTEST = 2e4
+"""Largest accepted speed of a ring [rad/s]; 1e5 rpm is half of it."""
+
+NOT_FINITE, TOO_FAR, NO_BALANCE = -1, -2, -3
+"""What functions in C find instead of an answer."""
+
+
+class Loads(Protocol):
+    """State of all rolling elements at one pose, as every kind has it."""
+
+    @property
+    def angle(self) -> FloatArray:
+        """Angles of the elements in O, from y towards z, within -pi to pi [rad], shape (Z,)."""
+        ...
+
+    @property
+    def load(self) -> FloatArray:
+        """Loads, first of the inner contact, then of the outer one, shape (2 or more, Z) [N]."""
+        ...
+
+    @property
+    def largest(self) -> float:
+        """Load of the most loaded contact, in the unit of its law: [N], or [N/m] of slices."""
+        ...
+
+
+class LocatingForce:
+    """Force, stiffness and damping of a bearing that carries axial load; kinds inherit from it.
+
+    Attributes
+    ----------
+    rolling_element : str
+        How one of its rolling elements is called: ball, roller.
+    geometry : BallGeometry or TaperedGeometry
+        Geometry of the bearing; its `kind` is named in messages.
+    material : Material
+        Material of elements and rings.
+    shape : BallShape or TaperedShape
+        Lengths of the bearing.
+    angles : array (Z,)
+        Angles of the elements in the cage [rad].
+    highest : float
+        Load up to which its films were made [N]; infinity where it is dry.
+    held : array (Z, ...) or None
+        What films with memory hold over a step; None without a memory.
+
+    Notes
+    -----
+    An object is for one thread: it keeps the places of the elements as a start for the next call.
+    """
+
+    rolling_element: ClassVar[str]
+    geometry: Any
+    material: Material
+    shape: Any
+    angles: FloatArray
+    highest: float
+    held: Any
+
+    def __call__(
+        self,
+        pose: npt.ArrayLike,
+        velocity: npt.ArrayLike | None = None,
+        *,
+        cage_angle: float = 0.0,
+        inner_speed: float = 0.0,
+        outer_speed: float = 0.0,
+        cage_speed: float | None = None,
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Force on the inner ring, and its derivatives.
+
+        Parameters
+        ----------
+        pose, velocity : array (6,)
+            Pose and velocity of the inner ring in O [m], [rad], [m/s], [rad/s]; at rest if there is no velocity.
+            Damping is that of small velocities: the force is linear in them.
+        cage_angle : float
+            Angle of the first element, from y towards z [rad].
+        inner_speed, outer_speed : float
+            Speeds of the rings [rad/s].
+        cage_speed : float, optional
+            Speed of a cage that holds all elements [rad/s]; that of rolling if left out, of each ball its own.
+
+        Returns
+        -------
+        f, K, C : arrays (6,), (6, 6), (6, 6)
+            Force and moments [N], [N m] in O about the centre of the inner ring, K = -df/dpose at rest,
+            C = -df/dvelocity.
+
+        Raises
+        ------
+        InputError
+            For values that are no finite numbers, and poses or speeds beyond reason.
+        AnalysisError
+            Where the balance of an element is not found.
+        """
+        found = self._evaluated(pose, cage_angle, inner_speed, outer_speed, cage_speed)
+        force, stiffness, damping = (array.copy() for array in found)
+        if velocity is not None:
+            rate = self._six(velocity, "velocity")
+            if not np.all(np.isfinite(rate)):
+                raise InputError(f"{self.geometry.kind}, velocity: got {rate.tolist()}; allowed: finite numbers")
+            force -= damping @ rate
+        return force, stiffness, damping
+
+    def with_material(self, material: Material) -> LocatingForce:
+        """The same bearing with rolling elements of another density.
+
+        Parameters
+        ----------
+        material : Material
+            Material of the elements.
+        """
+        raise NotImplementedError
+
+    @property
+    def last_loads(self) -> FloatArray:
+        """Loads of the inner and the outer contacts after the last call, shape (2, Z) [N]."""
+        raise NotImplementedError
+
+    def work(self, speeds: tuple[float, float], last: FloatArray) -> float:
+        """Work of centrifugal loads and gyroscopic moments on the elements since the last call [J].
+
+        Parameters
+        ----------
+        speeds : (float, float)
+            Speeds of the rings [rad/s].
+        last : array (Z, 4)
+            What is kept of the last call; written.
+        """
+        raise NotImplementedError
+
+    def stored(self) -> float:
+        """Energy of its contacts after the last call, as if they were dry [J]."""
+        raise NotImplementedError
+
+    def _evaluated(
+        self, pose: npt.ArrayLike, cage_angle: float, inner_speed: float, outer_speed: float, cage_speed: float | None
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Force, stiffness and damping by C; the arrays are overwritten by the next call."""
+        raise NotImplementedError
+
+    def _cage_of(self, inner_speed: float, outer_speed: float, cage_speed: float | None) -> float:
+        """Speed of the cage that is given, or of pure rolling [rad/s]."""
+        cage = float(self.geometry.cage_speed(inner_speed, outer_speed) if cage_speed is None else cage_speed)
+        if not all(abs(speed) <= FASTEST for speed in (inner_speed, outer_speed, cage)):
+            raise InputError(
+                f"{self.geometry.kind}, speeds: got {inner_speed!r} and {outer_speed!r} of the rings, {cage!r} rad/s "
+                f"of the cage; allowed: finite numbers, at most {FASTEST:g} rad/s either way"
+            )
+        return cage
+
+    def _six(self, values: npt.ArrayLike, name: str) -> FloatArray:
+        """Six numbers."""
+        try:
+            array = np.ascontiguousarray(values, dtype=np.float64)
+        except (TypeError, ValueError):
+            raise InputError(f"{self.geometry.kind}, {name}: got {values!r:.80}; allowed: six real numbers") from None
+        if array.shape != (6,):
+            raise InputError(f"{self.geometry.kind}, {name}: got an array of shape {array.shape}; allowed: (6,)")
+        return array
+
+    def _refuse(self, found: int, pose: FloatArray, cage_angle: float) -> None:
+        """Say what is wrong."""
+        kind = self.geometry.kind
+        if found == NOT_FINITE:
+            raise InputError(
+                f"{kind}, pose: got {pose.tolist()} and the cage angle {cage_angle!r}; allowed: finite numbers"
+            )
+        if found == TOO_FAR:
+            raise InputError(
+                f"{kind}, pose: got x, y, z = {pose[0]:.6g}, {pose[1]:.6g}, {pose[2]:.6g} m, theta_y, theta_z "
+                f"= {pose[4]:.6g}, {pose[5]:.6g} rad; allowed: within {self.shape.most_travel:.6g} m and "
+                f"{self.shape.most_tilt:.6g} rad; check units and the step of the solver"
+            )
+        raise AnalysisError(
+            f"{kind} {self.geometry.name}: no balance of a {self.rolling_element} was found at {pose.tolist()}"
+        )
+
+
+def directions(count: int) -> FloatArray:
+    """Angles of elements that stand evenly in their cage, (count,) [rad].
+
+    Parameters
+    ----------
+    count : int
+        How many there are.
+    """
+    return 2.0 * math.pi * np.arange(count) / count

@@ -1,0 +1,63 @@
+"""Lines on the bearings of a machine that carry axial load: forces, loads, pressures, stiffness and damping."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import cast
+
+from mbs.bearings.balls.ball_element import MachineBalls
+from mbs.bearings.locating_element import LocatingElement, Settled
+from mbs.bearings.tapered.tapered_element import TaperedElement
+from mbs.model.equilibrium import Equilibrium
+from mbs.output.one_bearing.balls import ball_words
+from mbs.output.one_bearing.ribs import roller_words
+from mbs.output.one_bearing.table import matrix_line
+from mbs.scene.assembly import Model
+
+_WORDS: dict[type[LocatingElement], Callable[[Settled], tuple[str, list[str]]]] = {
+    MachineBalls: ball_words,
+    TaperedElement: roller_words,
+}
+"""By class: what is said behind the force on the inner ring, and in further lines."""
+
+
+def located_lines(model: Model, balance: Equilibrium) -> list[str]:
+    """Lines on each bearing that carries axial load.
+
+    Parameters
+    ----------
+    model : Model
+        Scene with its law.
+    balance : Equilibrium
+        Equilibrium of its system.
+    """
+    lines = []
+    for place, element, at in located(model, balance):
+        force, (words, more) = balance.forces[place], _WORDS[type(element)](at)
+        lines += [
+            f"{element.name}: {force[0]:.5g} N along x, {math.hypot(force[1], force[2]):.5g} N across it on the inner "
+            f"ring; {words}",
+            *more,
+            matrix_line(balance, place),
+        ]
+    return lines
+
+
+def located(model: Model, balance: Equilibrium) -> list[tuple[int, LocatingElement, Settled]]:
+    """Bearings that carry axial load, each with its place among the elements, at the equilibrium.
+
+    Parameters
+    ----------
+    model : Model
+        Scene with its law.
+    balance : Equilibrium
+        Equilibrium of its system.
+    """
+    found = []
+    for place in model.ring_places[len(model.bearings) :]:
+        connected = model.system.elements[place]
+        element = cast("LocatingElement", connected.element)
+        at = element.settled(connected.transform @ balance.displacement, balance.operation)
+        found.append((place, element, at))
+    return found
