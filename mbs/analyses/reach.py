@@ -60,8 +60,9 @@ def source_of(model: Model) -> str:
     return "the map" if model.law.startswith(("map ", "maps ")) else "the table of the film formula"
 
 
-BALL_LOADS = "the loads that the film table of points holds"
-"""What is left by balls that carry more."""
+_LOADS = "the loads that "
+"""Begin of what is left by a bearing that carries axial load, whose films are known up to a load: behind it they go on
+straight in the logarithms."""
 
 SPEED_TABLE = "its table of speeds"
 """What is left by a bearing or spring of matrices over speed."""
@@ -70,8 +71,8 @@ SPEED_TABLE = "its table of speeds"
 def sources_of(model: Model) -> dict[str, str]:
     """Source that each element reads, in words.
 
-    `source_of` the laws of bearings, `SPEED_TABLE` of matrices over speed, `BALL_LOADS` of ball bearings, and what
-    films of tapered and ribbed rollers are read from.
+    `source_of` the laws of bearings, `SPEED_TABLE` of matrices over speed, and what films of bearings that carry axial
+    load are read from.
 
     Parameters
     ----------
@@ -80,16 +81,13 @@ def sources_of(model: Model) -> dict[str, str]:
     """
     elements = [entry.element for entry in model.system.elements]
     source = source_of(model)
-    kinds = {entry.name: BALL_LOADS for entry in model.balls}
-    tapered = {spec.name for spec in model.scene.tapered}
-    kinds |= {entry.name: _read_by(entry, source) for entry in elements if entry.name in tapered}
-    kinds |= {entry.name: SPEED_TABLE for entry in elements if isinstance(entry, MatrixElement)}
+    kinds = {entry.name: SPEED_TABLE for entry in elements if isinstance(entry, MatrixElement)}
+    for other in model.on_rings[len(model.bearings) :]:
+        films = getattr(other, "films", None)
+        kinds[other.name] = (
+            f"{_LOADS}{getattr(films, 'source', 'the film table')} holds" if films is not None else source
+        )
     return {entry.name: kinds.get(entry.name, source) for entry in elements}
-
-
-def _read_by(element: object, source: str) -> str:
-    """Source that the films of tapered or ribbed rollers are read from; `source` where they do not say it."""
-    return str(getattr(getattr(element, "films", None), "source", source))
 
 
 def fade_of(model: Model) -> Fade | None:
@@ -178,7 +176,6 @@ _ADVICE = {
     "the map": "make a map that reaches there",
     SPEED_TABLE: "give it these speeds too",
     POINTS: "add points that reach there",
-    **dict.fromkeys((BALL_LOADS, "the film table"), "smaller loads or more speed lie inside"),
 }
 
 
@@ -213,9 +210,14 @@ def outside_lines(
         left = words.format(count).replace("the map", source)
         axis = f" ({axes[name]})" if name in axes else ""
         held = "it is held at its edge" if source == SPEED_TABLE else "the law is held at its edge"
-        if source in (POINTS, BALL_LOADS):
+        if source == POINTS or source.startswith(_LOADS):
             held = "the law goes on straight"
-        advice = _ADVICE.get(source, "a map may reach there, `mbs plan` writes its job")
+        otherwise = (
+            "smaller loads or more speed lie inside"
+            if source.startswith(_LOADS)
+            else "a map may reach there, `mbs plan` writes its job"
+        )
+        advice = _ADVICE.get(source, otherwise)
         lines.append(f"warning: {begin}{name}: {left}{axis}, where {held}; {advice}")
     return lines
 

@@ -332,7 +332,7 @@ class LocatingElement(OnRings):
         answer: tuple[FloatArray, FloatArray, FloatArray] = force(
             self.pose(displacement), velocity, **self.conditions(operation)
         )
-        return Forces(*answer, bool(force.last_loads.max() > force.highest))
+        return Forces(*answer, bool(force.last_loads.max() > force.film_loads[1]))
 
     def advance(
         self, states: Any, displacement: FloatArray, velocity: FloatArray, operation: Operation

@@ -17,6 +17,7 @@ import numpy.typing as npt
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.solids import Material
+from mbs.model.findings import CARRIES, Cause, Finding
 
 FASTEST = 2e4
 """Largest accepted speed of a ring [rad/s]; 1e5 rpm is half of it."""
@@ -59,8 +60,9 @@ class LocatingForce:
         Lengths of the bearing.
     angles : array (Z,)
         Angles of the elements in the cage [rad].
-    highest : float
-        Load up to which its films were made [N]; infinity where it is dry.
+    film_loads : (float, float)
+        Loads of a rolling element from which and up to which its films were made [N]; zero and infinity where it is
+        dry.
     held : array (Z, ...) or None
         What films with memory hold over a step; None without a memory.
 
@@ -74,7 +76,7 @@ class LocatingForce:
     material: Material
     shape: Any
     angles: FloatArray
-    highest: float
+    film_loads: tuple[float, float]
     held: Any
 
     def __call__(
@@ -153,6 +155,25 @@ class LocatingForce:
     def stored(self) -> float:
         """Energy of its contacts after the last call, as if they were dry [J]."""
         raise NotImplementedError
+
+    def reach_of(self, load: FloatArray) -> Finding | None:
+        """Contacts that matter whose loads have no film; machines tell of theirs by `Forces.outside`.
+
+        Parameters
+        ----------
+        load : array (2, Z)
+            Loads of the inner and the outer contacts [N].
+        """
+        low, high = self.film_loads
+        largest = float(load.max())
+        light = int(np.count_nonzero((load < low) & (load > CARRIES * largest)))
+        if largest <= high and not light:
+            return None
+        words = (
+            f"films are known from {low:.3g} to {high:.4g} N; contacts carry up to {largest:.4g} N, and {light} less "
+            "than that: their films go on along straight lines in the logarithms"
+        )
+        return Finding(Cause.REACH if largest > high else Cause.FILM, words, excess=max(largest / high, 1.0))
 
     def _evaluated(
         self, pose: npt.ArrayLike, cage_angle: float, inner_speed: float, outer_speed: float, cage_speed: float | None

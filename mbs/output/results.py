@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -18,7 +18,9 @@ from mbs.gears.gear import GearMesh
 from mbs.model.body import FREEDOMS
 from mbs.model.elements import Input, OnRings, Sensor
 from mbs.model.equilibrium import Equilibrium
+from mbs.model.findings import CARRIES
 from mbs.model.system import System
+from mbs.output.state_text import HIGHEST_LOAD, LOADED
 from mbs.scene.assembly import Model
 from mbs.spectral.spectra import AmplitudeSpectrum
 from mbs.transient.energy import EnergyBalance
@@ -328,6 +330,7 @@ def statics_dataset(
                 "long_name": f"{name} of the bearing on its inner ring",
             },
         )
+    variables |= _element_loads(balance, bearings)
     coordinates = {
         "bearing": _bearing_names(balance.system),
         "freedom": list(FREEDOMS),
@@ -352,6 +355,23 @@ def statics_dataset(
         )
     attributes = {**_operation(balance), "warnings": "\n".join(warnings)}
     return xr.Dataset(variables, coords={**_coordinates(balance.system), **coordinates}, attrs=attributes)
+
+
+def _element_loads(balance: Equilibrium, bearings: Sequence[int]) -> dict[str, Any]:
+    """Loads of the rolling elements of each bearing; NaN where none are known, nothing where no bearing tells them."""
+    known = []
+    for place in bearings:
+        connected = balance.system.elements[place]
+        element = cast("OnRings", connected.element)
+        known.append(element.element_loads(connected.transform @ balance.displacement, balance.operation))
+    if all(loads is None for loads in known):
+        return {}
+    highest = [math.nan if loads is None else float(np.max(loads)) for loads in known]
+    loaded = [math.nan if loads is None else np.count_nonzero(loads > CARRIES * np.max(loads)) for loads in known]
+    return {
+        "highest_raceway_load": ("bearing", np.array(highest), {"units": "N", "long_name": HIGHEST_LOAD}),
+        "loaded_elements": ("bearing", np.array(loaded, dtype=np.float64), {"units": "1", "long_name": LOADED}),
+    }
 
 
 def modes_dataset(found: Modes, balance: Equilibrium) -> xr.Dataset:

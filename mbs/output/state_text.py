@@ -28,6 +28,10 @@ STIFFNESSES = "N/um, N/urad; N m/um, N m/urad"
 DAMPINGS = "N s/mm, N s/mrad; N m s/mm, N m s/mrad"
 """Those of a damping matrix, with the factor of `DAMPER`."""
 
+HIGHEST_LOAD = "highest load of a rolling element on the inner raceway"
+LOADED = "rolling elements that carry more than 1 % of the highest load"
+"""Numbers that results of machines and of one bearing have in common, in words."""
+
 
 def state_lines(states: Iterable[BearingState]) -> list[str]:
     """Lines on each bearing in operation; none for a model whose bearings are as the scene states them.

@@ -65,6 +65,7 @@ def test_command(machine, law, command, capsys, tmp_path, monkeypatch):
             check_dataset(dataset, machine, law, command)
 
 
+LOADS = ("loaded_elements", "highest_raceway_load")
 CONTACTS = ("hertz_pressure", "central_film", "minimum_film", "rolling_torque", "rolling_power")
 """What `mbs statics -o` says of the contacts of each bearing."""
 
@@ -80,7 +81,7 @@ def check_dataset(dataset, machine, law, command):
     if command.name == "statics":
         loaded = np.linalg.norm(dataset["bearing_force"], axis=1) > 1.0
         assert np.count_nonzero(loaded) >= 2
-        for name in CONTACTS[: None if law == "films" else 1]:
+        for name in (*LOADS, *CONTACTS[: None if law == "films" else 1]):
             assert np.all(dataset[name].values[loaded] > 0.0), name
 
 

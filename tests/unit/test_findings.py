@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from ehdmaps.errors import InputError
 from ehdmaps.physics.hertz import LINE_LIMIT, POINT_LIMIT
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from ehdmaps.physics.solids import STEEL
@@ -134,6 +135,44 @@ def test_bearings_that_carry_nothing_say_so(kind):
         f"left: no {element} carries load: nothing holds the shaft there, preload is lost"
     ]
     assert Judged([("", found)]).status == 0 and Judged([("", found)]).last == [f"warning: {found[0].told}"]
+
+
+@pytest.mark.parametrize("kind", [kind for kind, row in KINDS.items() if row[2]])
+def test_loads_without_films_have_one_cause_and_one_sentence(kind):
+    """Bearings that carry axial load, above and below the loads for which their films were made."""
+    (bearing,) = machine(kind, 2e3, 1e3).on_rings
+    force = bearing.force
+    load = np.full((2, force.angles.size), 100.0)
+    assert force.reach_of(load) is None  # dry
+    force.film_loads = (1.0, 1e3)
+    assert force.reach_of(load) is None
+    begin = "films are known from 1 to 1000 N; contacts carry up to "
+    load[0, 0] = 2e3
+    found = force.reach_of(load)
+    assert (found.cause, found.severity.status, found.excess) == (Cause.REACH, 1, 2.0)
+    assert (
+        found.words == f"{begin}2000 N, and 0 less than that: their films go on along straight lines in the logarithms"
+    )
+    load[0, 0], load[1, :2] = 10.0, 0.5
+    load[1, 2:] = 10.0
+    found = force.reach_of(load[1:])
+    assert (found.cause, found.severity.status) == (Cause.FILM, 0)
+    assert found.words.startswith(f"{begin}10 N, and 2 less than that")
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_motion_that_is_no_number_is_no_lost_preload(kind):
+    """Every kind refuses it as what it is, at rest and in time."""
+    made = machine(kind, 2e3, 1e3)
+    (place,) = made.ring_places
+    connected = made.system.elements[place]
+    still = np.zeros(connected.transform.shape[0])
+    for answer in (
+        lambda motion: connected.element.evaluate(motion, still, Operation(10.0)),
+        lambda motion: connected.element.advance(None, motion, still, Operation(10.0)),
+    ):
+        with pytest.raises(InputError, match="finite numbers"):
+            answer(np.full_like(still, np.nan))
 
 
 def test_severities_follow_from_the_cause():

@@ -149,7 +149,7 @@ class BallForce(LocatingForce):
         )
         mass, diameter, pitch = geometry.ball_mass(material), geometry.ball_diameter, geometry.pitch_diameter
         self.drive = Drive(0.0, 0.0, math.nan, diameter / pitch, 0.5 * mass * pitch, 0.2 * mass * pitch)
-        self.angles, self.highest = directions(geometry.balls), law.loads[1]
+        self.angles, self.film_loads = directions(geometry.balls), law.loads
         self.directions = np.cos(self.angles), np.sin(self.angles)
         balls = geometry.balls
         self._pose, self._starts, self._balls = np.zeros(6), np.zeros((balls, START)), np.zeros((balls, COLUMNS))

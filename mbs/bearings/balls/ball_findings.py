@@ -130,25 +130,3 @@ def _thrown(balls: BallLoads) -> Finding | None:
         return None
     words = f"{count} of {balls.angle.size} balls run on the outer raceway alone, by their centrifugal load"
     return Finding(Cause.THROWN, words, excess=float(count))
-
-
-def reach_of(force: BallForce, balls: BallLoads) -> Finding | None:
-    """Contacts that matter whose loads have no film; machines tell of theirs by `Forces.outside`.
-
-    Parameters
-    ----------
-    force : BallForce
-        The bearing.
-    balls : BallLoads
-        Loads of the balls.
-    """
-    low, high = force.law.loads
-    largest = float(balls.load.max())
-    light = np.count_nonzero((balls.load < low) & (balls.load > CARRIES * largest))
-    if largest <= high and not light:
-        return None
-    words = (
-        f"films are solved from {low:.3g} to {high:.4g} N; contacts carry up to {largest:.4g} N, and {light} less than "
-        "that: their films go on along straight lines in the logarithms"
-    )
-    return Finding(Cause.REACH if largest > high else Cause.FILM, words, excess=max(largest / high, 1.0))

@@ -23,7 +23,7 @@ from ehdmaps.physics.point.film_formulas import hamrock_dowson_central, hamrock_
 from ehdmaps.units import written
 from mbs.bearings.balls.ball_bearing import BallForce, BallLoads
 from mbs.bearings.balls.ball_element import MachineBalls
-from mbs.bearings.balls.ball_findings import ball_gauge, ball_pressures, reach_of
+from mbs.bearings.balls.ball_findings import ball_gauge, ball_pressures
 from mbs.bearings.balls.ball_motion import Motion, ball_motion
 from mbs.life import ReferenceLife, ball_reference_life
 from mbs.model.body import Inertia, rigid_body
@@ -251,7 +251,7 @@ def ball_point(
         film_errors=film_errors,
         findings=(
             *ball_gauge(force, balls).findings,
-            *filter(None, [reach_of(force, balls)]),
+            *filter(None, [force.reach_of(balls.load)]),
         ),
     )
 

@@ -46,23 +46,6 @@ def line_pressures(force: TaperedForce, rollers: TaperedLoads) -> FloatArray:
     return pressure
 
 
-def reach_of(force: TaperedForce, rollers: TaperedLoads) -> Finding | None:
-    """Rollers whose loads have no film; machines tell of theirs by `Forces.outside`.
-
-    Parameters
-    ----------
-    force : TaperedForce
-        The bearing.
-    rollers : TaperedLoads
-        Loads of the rollers.
-    """
-    largest, high = float(rollers.load[:2].max()), force.films.loads[1]
-    if force.films.dry or largest <= high:
-        return None
-    words = f"rollers carry up to {largest:.4g} N; films are known to {high:.4g} N, and are held there"
-    return Finding(Cause.REACH, words, excess=largest / high)
-
-
 def _slack(force: TaperedForce, rollers: TaperedLoads) -> Finding | None:
     """Less than half of the tapered rollers carry load."""
     if not force.geometry.contact_angle:

@@ -202,7 +202,7 @@ class TaperedForce(LocatingForce):
 
     def _begin(self) -> None:
         """Make what the kernel reads of the laws, and the arrays that it writes."""
-        self.highest = self.films.loads[1]
+        self.film_loads = self.films.loads
         self._lines, self._kept = both_lines(self.laws)
         self._given, self._answer = np.zeros((2, 6)), np.zeros(ANSWER)
         self._rollers = np.zeros((self.geometry.rollers, COLUMNS))

@@ -22,7 +22,7 @@ from ehdmaps.physics.rollers.tapered_catalogue import tapered_ratings
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from ehdmaps.units import written
 from mbs.bearings.films import FormulaFilms
-from mbs.bearings.tapered.roller_findings import line_pressures, reach_of, roller_gauge
+from mbs.bearings.tapered.roller_findings import line_pressures, roller_gauge
 from mbs.bearings.tapered.tapered_bearing import TaperedForce, TaperedLoads
 from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.life import ReferenceLife, roller_reference_life
@@ -241,7 +241,7 @@ def tapered_point(
         rib_power=RIB_FRICTION * float(slides @ rollers.ribs.sum(axis=1)),
         centrifugal_load=centrifugal,
         reference=reference,
-        findings=(*roller_gauge(force, rollers).findings, *filter(None, [reach_of(force, rollers)])),
+        findings=(*roller_gauge(force, rollers).findings, *filter(None, [force.reach_of(rollers.load[:2])])),
     )
 
 

@@ -19,6 +19,7 @@ from ehdmaps.physics.surface import SMOOTH, Surface
 from ehdmaps.units import DAMPER, FILM, PRESSURE, RPM, SPRING, Display, written
 from mbs.bearings.thermal import BearingState
 from mbs.life import required_viscosity
+from mbs.output.state_text import HIGHEST_LOAD, LOADED
 
 Points = Sequence[Sequence[Any]]
 """Points of one kind, by load, then by speed."""
@@ -291,8 +292,6 @@ def numbers_of(element: str, own: Sequence[Number], *, axial: bool, speed: str =
         Number(f"tilt_{axis}", "rad", f"tilt of the inner ring about {axis}", _tilt(place))
         for place, axis in ((4, "y"), (5, "z"))
     ]
-    highest = "highest load of a rolling element on the inner raceway"
-    loaded = "rolling elements that carry more than 1 % of the highest load"
     film = "Lambda, smallest film over the combined rms roughness"
     return (
         *matrices,
@@ -300,8 +299,10 @@ def numbers_of(element: str, own: Sequence[Number], *, axial: bool, speed: str =
         *(tilts if axial else []),
         Number("entrainment_speed", "m/s", f"mean of the two surface speeds{speed}"),
         *own,
-        Number("highest_raceway_load", "N", highest, lambda p, _: np.max(first_row(getattr(p, f"{element}s").load))),
-        Number("loaded_elements", "1", loaded, lambda p, _: p.loaded),
+        Number(
+            "highest_raceway_load", "N", HIGHEST_LOAD, lambda p, _: np.max(first_row(getattr(p, f"{element}s").load))
+        ),
+        Number("loaded_elements", "1", LOADED, lambda p, _: p.loaded),
         Number("film_parameter", "1", film, lambda p, description: p.smallest_film / description.roughness),
         Number("equivalent_load", "N", "equivalent load P_ref of ISO/TS 16281", lambda p, _: p.reference.load),
         Number("reference_life", "1", "basic reference life L10r in millions of turns", lambda p, _: p.reference.life),
