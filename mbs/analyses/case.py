@@ -61,7 +61,7 @@ class Case:
 def common_clearance(model: Model) -> float:
     """Diametral clearance of all bearings [m]; NaN if they have not all the same."""
     found = {entry.geometry.diametral_clearance for entry in model.scene.bearings}
-    found |= {entry.geometry.clearance for entry in model.scene.balls}
+    found |= model.scene.located_clearances
     return found.pop() if len(found) == 1 else math.nan
 
 

@@ -84,8 +84,9 @@ def states_of(model: Model) -> tuple[BearingState, ...]:
         for entry in model.bearings
     )
     scene = model.scene
-    clearances = {spec.name: spec.geometry.clearance for spec in scene.balls}
-    clearances |= {spec.name: getattr(spec.geometry, "diametral_clearance", math.nan) for spec in scene.tapered}
+    clearances = {
+        spec.name: math.nan if spec.geometry.clearance is None else spec.geometry.clearance for spec in scene.located
+    }
     others = model.on_rings[len(model.bearings) :]
     kelvin = scene.temperature
     return (*found, *(BearingState(one.name, kelvin, kelvin, Clearance(clearances[one.name])) for one in others))

@@ -202,7 +202,7 @@ def _band(entry: LawRun, runs: int, sensors: Sequence[Sensor]) -> list[str]:
     """Lines on the band of the sum level, where runs for it were asked for."""
     if not runs:
         return []
-    if entry.level_error is None and (entry.case.model.scene.balls or entry.case.model.scene.tapered):
+    if entry.level_error is None and entry.case.model.scene.located:
         return ["  no band of the sum level: runs with wrong laws are those of machines on cylindrical rollers alone"]
     words = band_lines(entry.case.model)
     for place, wrong in enumerate(entry.level_error or ()):

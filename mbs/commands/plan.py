@@ -81,7 +81,7 @@ def _read(arguments: argparse.Namespace) -> tuple[Scene, PlanSettings]:
     margin = _margin(arguments.margin, problems)
     scene, clearance = read_dry(arguments, problems)
     settings = PlanSettings(clearance, margin)
-    if arguments.output is not None and scene is not None and not scene.bearings and (scene.balls or scene.tapered):
+    if arguments.output is not None and scene is not None and not scene.bearings and scene.located:
         problems.append(
             f"-o: got {arguments.output!r:.60} for bearings whose films are read from the film table: there is no map "
             "to make, and no job; leave -o out"

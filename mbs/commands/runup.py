@@ -284,7 +284,8 @@ def _report(found: RunUpResult) -> list[str]:
             f"{outside[bearing.name]} calls outside {end}"
         )
     names = [entry.element.name for entry in model.system.elements]
-    lines += [_ball_line(ball.name, result.forces[names.index(ball.name)]) for ball in model.balls]
+    others = [entry.name for entry in model.on_rings[len(model.bearings) :]]
+    lines += [_located_line(name, result.forces[names.index(name)]) for name in others]
     lines += drive_lines(result.drive) + energy_lines(result.energy)
     lines += fade_lines(model, result.speed, "the run")
     fastest = float(np.abs(result.speed).max())
@@ -293,8 +294,8 @@ def _report(found: RunUpResult) -> list[str]:
     return lines + film_course(model, (float(result.speed[0]), float(result.speed[-1])))
 
 
-def _ball_line(name: str, force: FloatArray) -> str:
-    """Line on the forces (samples, 6) of a ball bearing on its inner ring."""
+def _located_line(name: str, force: FloatArray) -> str:
+    """Line on the forces (samples, 6) of a bearing that carries axial load on its inner ring."""
     along, across = force[:, 0], np.hypot(force[:, 1], force[:, 2])
     return (
         f"{name}: {along[0]:.5g} N along x at the beginning, {along.min():.5g} to {along.max():.5g} N, "

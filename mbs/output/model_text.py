@@ -37,7 +37,7 @@ def clearance_text(model: Model) -> str:
     if model.states:
         return span([1e6 * state.clearance.operating for state in model.states], MICROMETRE.unit)
     found = {entry.geometry.diametral_clearance for entry in model.scene.bearings}
-    clearances = sorted(found | {entry.geometry.clearance for entry in model.scene.balls})
+    clearances = sorted(found | model.scene.located_clearances)
     words = " stated" if any(entry.changes_in_operation for entry in model.scene.bearings) else ""
     return ", ".join(MICROMETRE.text(value) for value in clearances) + words
 
@@ -114,8 +114,7 @@ def _estimated(model: Model) -> list[str]:
     """A line for each kind of bearing whose inner geometry is an estimate, and for each estimated gear mesh."""
     kinds: dict[tuple[str, str], list[str]] = {}
     entries = [(entry.geometry.name, entry.geometry.estimated, entry.name) for entry in model.scene.bearings]
-    entries += [(entry.geometry.name, entry.geometry.estimated, entry.name) for entry in model.scene.balls]
-    entries += [(entry.geometry.name, entry.geometry.estimated, entry.name) for entry in model.scene.tapered]
+    entries += [(entry.geometry.name, entry.geometry.estimated, entry.name) for entry in model.scene.located]
     for name, estimated, bearing in entries:
         if estimated:
             kinds.setdefault((name, estimated), []).append(bearing)

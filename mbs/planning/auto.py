@@ -436,7 +436,7 @@ def _supplies(scene: Scene, asked: OilSupply | None) -> dict[str, OilSupply]:
     """The oil supply of each bearing by its name."""
     usual = asked or scene.supply or FLOODED
     found = {entry.name: asked or entry.supply or usual for entry in scene.bearings}
-    return found | {entry.name: usual for entry in scene.balls} | {entry.name: usual for entry in scene.tapered}
+    return found | {entry.name: usual for entry in scene.located}
 
 
 def _verdicts(

@@ -19,7 +19,6 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import with_law
-from ehdmaps.physics.rollers.ribbed_geometry import RibbedGeometry
 from ehdmaps.units import RPM
 from mbs.analyses.operating import held
 from mbs.bearings.bearing import MOST_COUPLED
@@ -35,7 +34,7 @@ from mbs.scene.assembly import Model, assemble
 from mbs.scene.fields import HERTZ, MICROMETRE
 from mbs.scene.map_set import TABLE_LAW
 from mbs.scene.scene import Scene
-from mbs.scene.specs import BallSpec, FlexibleSpec, TaperedSpec
+from mbs.scene.specs import FlexibleSpec, LocatingSpec
 
 WARMER = 10.0
 """Difference of the temperatures of the rings whose effect is told [K]."""
@@ -302,9 +301,7 @@ def slices_verdict(found: PlanResult, rest: _AtRest, tolerance: float) -> Verdic
 def _sliced(scene: Scene, change: Callable[[int], int]) -> Scene:
     """The scene with other numbers of slices, none coupled."""
     bearings = [dataclasses.replace(one, slices=change(one.slices), slices_coupled=False) for one in scene.bearings]
-    return scene.with_bearings(bearings).with_tapered(
-        lambda entry: dataclasses.replace(entry, slices=max(change(entry.slices), 2))
-    )
+    return scene.with_bearings(bearings).with_located(lambda entry: entry.sliced(lambda n: max(change(n), 2)))
 
 
 def coupling_verdict(found: PlanResult, rest: _AtRest, tolerance: float) -> Verdict:
@@ -346,8 +343,7 @@ def rings_verdict(found: PlanResult, rest: _AtRest, tolerance: float) -> Verdict
     size = rest.change(lambda scene: _narrower(scene, lambda diameter: warm * diameter))
     scene = found.scene
     pitches = [entry.geometry.pitch_diameter for entry in scene.bearings]
-    pitches += [entry.geometry.pitch_diameter for entry in scene.balls]
-    pitches += [entry.geometry.pitch_diameter for entry in scene.tapered]
+    pitches += [entry.geometry.pitch_diameter for entry in scene.located]
     words = (
         f"an inner ring {WARMER:g} K warmer takes {MICROMETRE.text(warm * max(pitches), 2)} of the clearance, which "
         f"changes k of a bearing by {_told(size, tolerance)}"
@@ -478,20 +474,12 @@ def _changes(plain: ClosedContact, other: ClosedContact) -> tuple[float, float]:
 def _narrower(scene: Scene, by: Callable[[float], float]) -> Scene:
     """The scene with smaller clearances, by pitch diameters; where bearings stand one way, with more offset."""
 
-    def of_balls(entry: BallSpec) -> BallSpec:
+    def of_located(entry: LocatingSpec) -> LocatingSpec:
         geometry, less = entry.geometry, by(entry.geometry.pitch_diameter)
-        if geometry.contact_angle != 0.0:
-            offset = entry.axial_offset + math.copysign(less, geometry.contact_angle)
-            return dataclasses.replace(entry, axial_offset=offset)
-        return dataclasses.replace(entry, geometry=dataclasses.replace(geometry, clearance=geometry.clearance - less))
-
-    def of_rollers(entry: TaperedSpec) -> TaperedSpec:
-        geometry, less = entry.geometry, by(entry.geometry.pitch_diameter)
-        if not isinstance(geometry, RibbedGeometry):
-            offset = entry.axial_offset + math.copysign(less, geometry.contact_angle)
-            return dataclasses.replace(entry, axial_offset=offset)
-        clearance = geometry.diametral_clearance - less
-        return dataclasses.replace(entry, geometry=dataclasses.replace(geometry, diametral_clearance=clearance))
+        if geometry.contact_angle == 0.0:
+            return entry.with_clearance(geometry.clearance - less)
+        offset = entry.axial_offset + math.copysign(less, geometry.contact_angle)
+        return dataclasses.replace(entry, axial_offset=offset)
 
     bearings = []
     for entry in scene.bearings:
@@ -499,7 +487,7 @@ def _narrower(scene: Scene, by: Callable[[float], float]) -> Scene:
         bearings.append(
             dataclasses.replace(entry, geometry=dataclasses.replace(entry.geometry, diametral_clearance=clearance))
         )
-    return scene.with_bearings(bearings).with_balls(of_balls).with_tapered(of_rollers)
+    return scene.with_bearings(bearings).with_located(of_located)
 
 
 def _told(size: float, tolerance: float) -> str:

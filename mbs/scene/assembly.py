@@ -36,10 +36,10 @@ from mbs.scene.turning import turning_loads, with_places
 if TYPE_CHECKING:
     from ehdmaps.maps.emap import EHDMap
     from mbs.bearings.balls.ball_element import MachineBalls
-    from mbs.bearings.tapered.tapered_element import TaperedElement
+    from mbs.bearings.locating_element import LocatingElement
     from mbs.gears.gear import GearMesh
 
-AnyBearing: TypeAlias = "BearingElement | MachineBalls | TaperedElement"
+AnyBearing: TypeAlias = "BearingElement | LocatingElement"
 """A bearing in a system, of any kind."""
 
 _ROUND_OFF = 1e-9
@@ -167,7 +167,7 @@ class Model:
     @property
     def on_rings(self) -> tuple[AnyBearing, ...]:
         """Bearings of all kinds: those of `bearings`, then the others in the order of the elements."""
-        others = {entry.name for entry in self.scene.balls} | {entry.name for entry in self.scene.tapered}
+        others = {entry.name for entry in self.scene.located}
         found = [entry.element for entry in self.system.elements if entry.element.name in others]
         return (*self.bearings, *cast("list[AnyBearing]", found))
 
@@ -283,14 +283,10 @@ def assemble(
     bearings = tuple(_shown(built, "bearings", BearingElement))
     of_balls = {spec.name for spec in scene.balls}
     words = [laws.words] if bearings else []
-    if scene.balls:
-        from mbs.scene.balls.element import ball_law_words
+    if scene.located:
+        from mbs.scene.locating.element import located_law_words
 
-        words.append(ball_law_words(laws))
-    if scene.tapered:
-        from mbs.scene.tapered.element import tapered_law_words
-
-        words.append(tapered_law_words(laws))
+        words += located_law_words(laws)
     if law is None and chosen == "hertz":
         words += filter(None, [dry_reason(scene)])
     return Model(
@@ -373,15 +369,9 @@ def _with_clearance(scene: Scene, clearance: float, problems: list[str]) -> Scen
             problems += [f"--clearance: {problem}" for problem in error.problems]
             changed.append(entry)
     try:
-        scene = scene.with_balls(
-            lambda entry: dataclasses.replace(entry, geometry=entry.geometry.with_clearance(clearance))
-        )
+        scene = scene.with_located(lambda entry: entry.with_clearance(clearance))
     except InputError as error:
         problems += [f"--clearance: {problem}" for problem in error.problems]
-    if scene.tapered:
-        from mbs.scene.tapered.ribs import with_clearance
-
-        scene = scene.with_tapered(lambda entry: with_clearance(entry, clearance))
     return scene.with_bearings(changed)
 
 

@@ -18,7 +18,7 @@ from mbs.scene import fields
 from mbs.scene.fields import DEGREE, MICROMETRE
 from mbs.scene.matrices import MatrixSpec, read_table_bearing
 from mbs.scene.shafts.standing import read_rings
-from mbs.scene.specs import RIB_KEYS, BallSpec, BearingSpec, TaperedSpec
+from mbs.scene.specs import RIB_KEYS, BearingSpec, LocatingSpec
 
 if TYPE_CHECKING:
     from mbs.scene.surroundings import Built, Surroundings
@@ -126,7 +126,7 @@ def _expansion(table: Table) -> float | None:
     return table.quantity("expansion", "1/K", *EXPANSIONS, EXPANSION)
 
 
-def read_bearing(section: Table, name: str) -> BearingSpec | BallSpec | TaperedSpec | MatrixSpec | None:
+def read_bearing(section: Table, name: str) -> BearingSpec | LocatingSpec | MatrixSpec | None:
     """Read a bearing of rollers or balls, or one by matrices with kind = "table"; None where a problem was noted.
 
     Parameters
@@ -139,13 +139,10 @@ def read_bearing(section: Table, name: str) -> BearingSpec | BallSpec | TaperedS
     if section.choice("kind", ("rollers", "table")) == "table":
         return read_table_bearing(section, name)
     if "bearing" in section:  # catalogues of others are loaded where a designation is given
-        from mbs.scene.balls.reading import is_ball, read_ball
-        from mbs.scene.tapered.reading import is_tapered, read_tapered
+        from mbs.scene.locating.reading import reader_of
 
-        if is_ball(section):
-            return read_ball(section, name)
-        if is_tapered(section):
-            return read_tapered(section, name)
+        if (read := reader_of(section)) is not None:
+            return read(section, name)
     inner, outer = read_rings(section, name)
     geometry = _geometry(section)
     profile = read_profile(section, geometry)
@@ -187,7 +184,7 @@ def read_bearing(section: Table, name: str) -> BearingSpec | BallSpec | TaperedS
     )
     if not (isinstance(section.get("bearing"), str) or any(key in section for key in RIB_KEYS)):
         return spec
-    from mbs.scene.tapered.ribs import read_ribs
+    from mbs.scene.locating.ribs import read_ribs
 
     return read_ribs(section, spec)
 

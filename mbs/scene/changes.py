@@ -25,14 +25,13 @@ def with_loads(scene: Scene, factor: float) -> Scene:
 def with_start_angle(scene: Scene, angle: float) -> Scene:
     """The scene with all cages at another angle [rad]."""
     changed = scene.with_bearings(dataclasses.replace(entry, start_angle=angle) for entry in scene.bearings)
-    changed = changed.with_tapered(lambda entry: dataclasses.replace(entry, start_angle=angle))
-    return changed.with_balls(lambda entry: dataclasses.replace(entry, start_angle=angle))
+    return changed.with_located(lambda entry: dataclasses.replace(entry, start_angle=angle))
 
 
 def with_slices(scene: Scene, slices: int) -> Scene:
     """The scene with another number of slices of all rollers."""
     changed = scene.with_bearings(dataclasses.replace(entry, slices=slices) for entry in scene.bearings)
-    return changed.with_tapered(lambda entry: dataclasses.replace(entry, slices=slices))
+    return changed.with_located(lambda entry: entry.sliced(lambda _: slices))
 
 
 def with_temperature(scene: Scene, temperature: float) -> Scene:

@@ -660,7 +660,7 @@ def combinations(
             got, scene = ", ".join(map(choice.text, several)), found[0].subject.scene
             of_others = not scene.bearings and choice.concerned != "relaxing"
             lacks = LACKS[choice.concerned]
-            if of_others and (scene.balls or scene.tapered):
+            if of_others and scene.located:
                 lacks = BALLS_LACK if scene.balls else TAPERED_LACK
             problems.append(f"--{choice.name}: got {got} {lacks}")
             continue

@@ -93,8 +93,8 @@ KINDS = (
         spec=BallSpec,
         read=bearings.read_bearing,
         places=lambda spec: (spec.inner, spec.outer),
-        problems=_later("mbs.scene.balls.element", "ball_problems"),
-        build=_later("mbs.scene.balls.element", "build_ball"),
+        problems=_later("mbs.scene.locating.element", "located_problems"),
+        build=_later("mbs.scene.locating.element", "build_located"),
     ),
     ElementKind(
         key="",
@@ -102,8 +102,8 @@ KINDS = (
         spec=TaperedSpec,
         read=bearings.read_bearing,
         places=lambda spec: (spec.inner, spec.outer),
-        problems=_later("mbs.scene.tapered.element", "tapered_problems"),
-        build=_later("mbs.scene.tapered.element", "build_tapered"),
+        problems=_later("mbs.scene.locating.element", "located_problems"),
+        build=_later("mbs.scene.locating.element", "build_located"),
     ),
 )
 """All kinds, in the order of the elements of a system."""

@@ -245,7 +245,7 @@ class _Reader:
         elements = [entry for kind in kinds.KINDS if kind.key for entry in self._all(kind.key, kind.read)]
         elements += [spring for spring in springs if isinstance(spring, MatrixSpec)]
         if any(isinstance(entry, BearingSpec) and entry.between_ribs is not None for entry in elements):
-            from mbs.scene.tapered.ribs import held_by_ribs
+            from mbs.scene.locating.ribs import held_by_ribs
 
             elements = held_by_ribs(elements, bodies, top.problems)
         bodies = spins_by_teeth(bodies, (one for one in elements if isinstance(one, GearPair)), self._typed_spins())

@@ -23,6 +23,7 @@ from mbs.scene.specs import (
     BodySpec,
     ElementSpec,
     FlexibleSpec,
+    LocatingSpec,
     ShaftSpec,
     TaperedSpec,
     Triple,
@@ -162,15 +163,25 @@ class Scene:
         return tuple(entry for entry in self.elements if isinstance(entry, TaperedSpec))
 
     @property
+    def located(self) -> tuple[LocatingSpec, ...]:
+        """The bearings that carry axial load: those of `balls`, then those of `tapered`."""
+        return (*self.balls, *self.tapered)
+
+    @property
+    def located_clearances(self) -> set[float]:
+        """Diametral clearances of these [m], of those that have one."""
+        return {entry.geometry.clearance for entry in self.located} - {None}
+
+    @property
     def has_bearings(self) -> bool:
         """Tell whether it has a bearing of any kind."""
-        return bool(self.bearings or self.balls or self.tapered)
+        return bool(self.bearings or self.located)
 
     @property
     def clearance_ranges(self) -> dict[str, tuple[str, ClearanceRange]]:
         """Ranges of clearances that are not stated, or beside a class: designation and range, by the bearing."""
         found = {}
-        entries: tuple[BearingSpec | BallSpec | TaperedSpec, ...] = (*self.bearings, *self.balls, *self.tapered)
+        entries: tuple[BearingSpec | LocatingSpec, ...] = (*self.bearings, *self.located)
         for entry in entries:
             if (reach := clearance_range(entry.geometry)) is not None:
                 found[entry.name] = entry.geometry.name, reach
@@ -210,12 +221,7 @@ class Scene:
         changed = [next(others) if isinstance(entry, BearingSpec) else entry for entry in self.elements]
         return dataclasses.replace(self, elements=changed)
 
-    def with_tapered(self, change: Callable[[TaperedSpec], TaperedSpec]) -> Scene:
-        """The scene with each bearing of tapered rollers, or of rollers between ribs, changed."""
-        changed = [change(entry) if isinstance(entry, TaperedSpec) else entry for entry in self.elements]
-        return dataclasses.replace(self, elements=changed)
-
-    def with_balls(self, change: Callable[[BallSpec], BallSpec]) -> Scene:
-        """The scene with each ball bearing changed."""
-        changed = [change(entry) if isinstance(entry, BallSpec) else entry for entry in self.elements]
+    def with_located(self, change: Callable[[LocatingSpec], LocatingSpec]) -> Scene:
+        """The scene with each bearing that carries axial load changed."""
+        changed = [change(entry) if isinstance(entry, LocatingSpec) else entry for entry in self.elements]
         return dataclasses.replace(self, elements=changed)

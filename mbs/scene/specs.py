@@ -5,10 +5,10 @@ Springs, loads, sensors and inputs (`mbs.model.elements`) and gear pairs (`mbs.g
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, Self
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
@@ -19,8 +19,6 @@ from mbs.frozen import frozen
 from mbs.model.body import Body, Inertia, rigid_problems
 
 if TYPE_CHECKING:
-    from ehdmaps.physics.point.ball_geometry import BallGeometry
-    from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
     from mbs.flexible.plan import Attached, ReductionPlan, Turn
     from mbs.flexible.reduced_body import ReducedBody
     from mbs.flexible.shaft_parts import Disc, Section
@@ -258,19 +256,19 @@ class BearingSpec:
 
 
 @dataclass(frozen=True)
-class BallSpec:
-    """A ball bearing between two places.
+class LocatingSpec:
+    """A bearing that carries axial load, between two places.
 
     Attributes
     ----------
     name : str
         Name of the bearing.
     inner, outer : str
-        Places of its rings.
-    geometry : BallGeometry
-        Grooves, balls, and the clearance of the scene.
+        Places of its rings, of tapered rollers in the middles of the rollers.
+    geometry : BallGeometry or TaperedGeometry
+        Raceways and rolling elements; which way it stands by the sign of its contact angle, or by what it carries.
     start_angle : float
-        Angle of the first ball from y [rad].
+        Angle of the first rolling element from y [rad].
     axial_offset : float
         Way of the inner ring along x against the outer one where both places have not moved [m].
     """
@@ -278,27 +276,40 @@ class BallSpec:
     name: str
     inner: str
     outer: str
-    geometry: BallGeometry
+    geometry: Any
     start_angle: float = 0.0
     axial_offset: float = 0.0
 
+    @property
+    def elements(self) -> str:
+        """Its rolling elements in words."""
+        raise NotImplementedError
+
+    def with_clearance(self, clearance: float) -> Self:
+        """The bearing with another diametral clearance [m], if it has one."""
+        return replace(self, geometry=self.geometry.with_clearance(clearance))
+
+    def sliced(self, change: Callable[[int], int]) -> Self:
+        """The bearing with another number of slices of a roller, by the number of before, if it has rollers."""
+        return self
+
 
 @dataclass(frozen=True)
-class TaperedSpec:
-    """A tapered roller bearing, or one of cylindrical rollers between ribs; its places are the middles of its rollers.
+class BallSpec(LocatingSpec):
+    """A ball bearing, see `LocatingSpec`."""
+
+    @property
+    def elements(self) -> str:
+        """Its rolling elements in words."""
+        return f"{self.geometry.balls} balls"
+
+
+@dataclass(frozen=True)
+class TaperedSpec(LocatingSpec):
+    """A tapered roller bearing, or one of cylindrical rollers between ribs, see `LocatingSpec`.
 
     Attributes
     ----------
-    name : str
-        Name of the bearing.
-    inner, outer : str
-        Places of its rings.
-    geometry : TaperedGeometry
-        Cones, rollers and ribs; which way it stands by the sign of its contact angle, or by what it carries.
-    start_angle : float
-        Angle of the first roller from y [rad].
-    axial_offset : float
-        Way of the inner ring along x against the outer one where both places have not moved [m].
     profile : {"iso", "straight"}, CrownedProfile or TabulatedProfile
         Profile of the rollers.
     slices : int
@@ -307,16 +318,19 @@ class TaperedSpec:
         Keys that were given and that it does not take, and keys of its ribs, until its bodies are known; then none.
     """
 
-    name: str
-    inner: str
-    outer: str
-    geometry: TaperedGeometry
-    start_angle: float = 0.0
-    axial_offset: float = 0.0
     profile: str | CrownedProfile | TabulatedProfile = "iso"
     slices: int = 21
     without: Sequence[str] = ()
     given: Sequence[str] = ()
+
+    @property
+    def elements(self) -> str:
+        """Its rolling elements in words."""
+        return f"{self.geometry.rollers} rollers"
+
+    def sliced(self, change: Callable[[int], int]) -> Self:
+        """See `LocatingSpec.sliced`."""
+        return replace(self, slices=change(self.slices))
 
 
 def _freeze(spec: object, *names: str) -> None:

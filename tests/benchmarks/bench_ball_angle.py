@@ -29,8 +29,8 @@ from mbs import assemble, parse_scene, read_scene
 from mbs.analyses.modes import modes
 from mbs.bearings.balls.laws import FilmCurve, film_normal_law
 from mbs.model.elements import Operation
-from mbs.scene.balls.element import _film_law as made_film_law
-from mbs.scene.balls.element import _films_at as read_films
+from mbs.scene.locating.ball_films import _film_law as made_film_law
+from mbs.scene.locating.ball_films import _films_at as read_films
 
 MEAN_LOAD = 100.0
 """Load of a ball at which the offset is held [N]."""

@@ -18,7 +18,7 @@ from mbs.bearings.tapered.tapered_bearing import TaperedForce
 from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.cli import main
 from mbs.model.elements import Operation
-from mbs.scene.tapered.films import FilmsOfLines, OilOfLines
+from mbs.scene.locating.line_films import FilmsOfLines, OilOfLines
 from tests.cases.fmu import Unit, stepped
 from tests.cases.tapered_runs import driven
 

@@ -187,7 +187,7 @@ def test_wrong_bearings_and_laws_are_all_said():
         parse_scene(text(left="mirrored = true"), "rotor", "rotor.toml")
     with pytest.raises(InputError, match=r"diametral_clearance"):
         parse_scene(text(left='diametral_clearance = "9 mm"'), "rotor", "rotor.toml")
-    with pytest.raises(InputError, match=r"films of ball bearings need the oil of the scene; add \[lubricant\]"):
+    with pytest.raises(InputError, match=r"films need the oil of the scene; add \[lubricant\]"):
         model("table")
     with pytest.raises(InputError, match=r"'drive': got oil layer 5 um; films of ball bearings are flooded"):
         assemble(read_scene("electric_drive"), "table", supply=OilSupply(5e-6))

@@ -15,7 +15,7 @@ from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.cli import main
 from mbs.linearised.modes import modes
 from mbs.model.equilibrium import equilibrium
-from mbs.scene.tapered.ribs import open_sides
+from mbs.scene.locating.ribs import open_sides
 from tests.cases import commands
 
 MASS = 20.0

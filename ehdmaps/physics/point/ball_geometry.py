@@ -188,6 +188,10 @@ class BallGeometry:
         """
         return 0.25 * self.pitch_diameter * abs(inner_speed - outer_speed) * (1.0 - self.gamma**2)
 
+    def carries_along(self, way: float) -> bool:
+        """Tell whether it carries a force on the inner ring along x, `way` > 0, or along -x."""
+        return self.contact_angle == 0.0 or self.contact_angle * way > 0.0
+
     def cage_speed(self, inner_speed: float, outer_speed: float = 0.0) -> float:
         """Speed of the cage [rad/s] in pure rolling at the nominal contact angle.
 

@@ -23,7 +23,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, fields
 from functools import cached_property
-from typing import ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple, Self
 
 from ehdmaps.errors import InputError
 from ehdmaps.labels import label_problem
@@ -132,6 +132,19 @@ class TaperedGeometry:
         """Everything that defines the bearing, for provenance; SI units; what is not given is left out."""
         values = {entry.name: getattr(self, entry.name) for entry in fields(self)}
         return {name: value for name, value in values.items() if value is not None}
+
+    @property
+    def clearance(self) -> float | None:
+        """Diametral clearance [m]; None: what presses or loosens rollers is an axial displacement."""
+        return None
+
+    def with_clearance(self, clearance: float) -> Self:
+        """The same bearing, as it has no clearance."""
+        return self
+
+    def carries_along(self, way: float) -> bool:
+        """Tell whether it carries a force on the inner ring along x, `way` > 0, or along -x."""
+        return self.contact_angle * way > 0.0
 
     @property
     def raceway_play(self) -> float:

@@ -102,7 +102,7 @@ def _films(request: Request) -> Callable[[float], LineFilms] | None:
     fastest = max(request.entrainment_speed(speed) for speed in request.operating.speeds)
     if not request.films or not fastest > 0.0:
         return None
-    from mbs.scene.tapered.films import FilmsOfLines, OilOfLines
+    from mbs.scene.locating.line_films import FilmsOfLines, OilOfLines
 
     geometry, temperature = request.force.geometry, request.description.temperature
     films = FilmsOfLines(geometry, OilOfLines("table", request.oil, temperature, fastest, surface=request.surface))

@@ -19,9 +19,9 @@ from mbs.model.body import Body
 from mbs.output.model_text import heading
 from mbs.scene.assembly import Model
 from mbs.scene.fields import DEGREE, HERTZ, MICROMETRE
+from mbs.scene.locating.ribs import open_sides
 from mbs.scene.scene import Scene
-from mbs.scene.specs import BallSpec, BearingSpec, RigidSpec, ShaftSpec, TaperedSpec
-from mbs.scene.tapered.ribs import open_sides
+from mbs.scene.specs import BearingSpec, LocatingSpec, RigidSpec, ShaftSpec
 
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
@@ -78,8 +78,7 @@ def _bearings(model: Model) -> Iterator[str]:
             f"{spec.geometry.rollers} rollers, clearance {MICROMETRE.text(spec.geometry.diametral_clearance)}, "
             f"{_where(model.scene, spec)}; {model.films[spec.name].words}"
         )
-    others: tuple[BallSpec | TaperedSpec, ...] = (*model.scene.balls, *model.scene.tapered)
-    for other in others:
+    for other in model.scene.located:
         yield f"  bearing {other.name}: {_located(other)}, {_where(model.scene, other)}"
 
 
@@ -97,24 +96,21 @@ def _gears(scene: Scene) -> Iterator[str]:
         )
 
 
-def _located(spec: BallSpec | TaperedSpec) -> str:
+def _located(spec: LocatingSpec) -> str:
     """Bearing that holds a ring along the axis too: its elements, and how it stands."""
     geometry, angle = spec.geometry, math.degrees(spec.geometry.contact_angle)
     estimated = " (estimated)" if geometry.estimated else ""
-    if isinstance(spec, BallSpec):
-        words = [f"{spec.geometry.balls} balls", f"clearance {MICROMETRE.text(spec.geometry.clearance)}"]
-    else:
-        words = [f"{spec.geometry.rollers} rollers"]
-        if isinstance(spec.geometry, RibbedGeometry):
-            axial = MICROMETRE.text(spec.geometry.axial_clearance)
-            words.append(f"clearance {MICROMETRE.text(spec.geometry.diametral_clearance)}")
-            words.append(f"ribs carry {spec.geometry.ways}, axial clearance {axial}")
+    words = [spec.elements]
+    if geometry.clearance is not None:
+        words.append(f"clearance {MICROMETRE.text(geometry.clearance)}")
+    if isinstance(geometry, RibbedGeometry):
+        words.append(f"ribs carry {geometry.ways}, axial clearance {MICROMETRE.text(geometry.axial_clearance)}")
     words += [f"contact angle {abs(angle):.3g} deg"] * (angle != 0.0) + ["mirrored"] * (angle < 0.0)
     words += [f"inner ring offset by {MICROMETRE.text(spec.axial_offset)}"] * (spec.axial_offset != 0.0)
     return f"{geometry.title}{estimated}, {', '.join(words)}"
 
 
-def _where(scene: Scene, spec: BearingSpec | BallSpec | TaperedSpec) -> str:
+def _where(scene: Scene, spec: BearingSpec | LocatingSpec) -> str:
     """Places of a bearing; on a shaft with the position along it."""
     body, _, frame = spec.inner.partition(":")
     shaft = next((entry for entry in scene.bodies if isinstance(entry, ShaftSpec) and entry.name == body), None)

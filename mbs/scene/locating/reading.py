@@ -1,22 +1,24 @@
-"""Ball bearings of a scene: [[bearings]] with the designation of one is read."""
+"""Ball and tapered roller bearings of a scene: [[bearings]] with the designation of one is read."""
 
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.table import Table
 from ehdmaps.physics.point.ball_catalogue import ball_estimate, plain_ball_designation
+from ehdmaps.physics.rollers.tapered_catalogue import mirrored, plain_tapered_designation, tapered_estimate
 from mbs.scene.fields import MICROMETRE
 from mbs.scene.shafts.standing import read_located
-from mbs.scene.specs import BallSpec
+from mbs.scene.specs import BallSpec, LocatingSpec, TaperedSpec
 
 WIDEST = 1e-2
 """Largest clearance, either way [m]."""
 
 
-def is_ball(section: Table) -> bool:
-    """Tell whether the table of a bearing names a ball bearing.
+def reader_of(section: Table) -> Callable[[Table, str], LocatingSpec | None] | None:
+    """Find what reads the table of a bearing that carries axial load; None for others.
 
     Parameters
     ----------
@@ -24,7 +26,11 @@ def is_ball(section: Table) -> bool:
         A table [[bearings]] with the key `bearing`.
     """
     given = section.get("bearing")
-    return isinstance(given, str) and bool(plain_ball_designation(given))
+    if not isinstance(given, str):
+        return None
+    if plain_ball_designation(given):
+        return read_ball
+    return read_tapered if plain_tapered_designation(given) else None
 
 
 def read_ball(section: Table, name: str) -> BallSpec | None:
@@ -37,12 +43,12 @@ def read_ball(section: Table, name: str) -> BallSpec | None:
     name : str
         Name of the bearing.
     """
-    inner, outer, geometry, mirrored, angle, offset = read_located(section, name, ball_estimate)
+    inner, outer, geometry, turned, angle, offset = read_located(section, name, ball_estimate)
     clearance = section.quantity("diametral_clearance", "m", -WIDEST, WIDEST, MICROMETRE)
     if geometry is not None:
-        if mirrored and geometry.contact_angle == 0.0:
+        if turned and geometry.contact_angle == 0.0:
             section.note("mirrored", f"got true for {geometry.name}, which is alike both ways; delete it")
-        way = -1.0 if mirrored else 1.0
+        way = -1.0 if turned else 1.0
         try:
             geometry = dataclasses.replace(geometry, contact_angle=way * geometry.contact_angle)
             geometry = geometry if clearance is None else geometry.with_clearance(clearance)
@@ -53,3 +59,19 @@ def read_ball(section: Table, name: str) -> BallSpec | None:
     if inner is None or outer is None or geometry is None:
         return None
     return BallSpec(name, inner, outer, geometry, angle, offset)
+
+
+def read_tapered(section: Table, name: str) -> TaperedSpec | None:
+    """Read a tapered roller bearing; None where a problem was noted.
+
+    Parameters
+    ----------
+    section : Table
+        The table; the caller closes it.
+    name : str
+        Name of the bearing.
+    """
+    inner, outer, geometry, turned, angle, offset = read_located(section, name, tapered_estimate)
+    if inner is None or outer is None or geometry is None:
+        return None
+    return TaperedSpec(name, inner, outer, mirrored(geometry) if turned else geometry, angle, offset)

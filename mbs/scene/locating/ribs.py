@@ -15,7 +15,7 @@ from ehdmaps.units import short
 from mbs.gears.pair import GearPair
 from mbs.scene.fields import FORCE, MICROMETRE
 from mbs.scene.shafts.standing import FARTHEST
-from mbs.scene.specs import RIB_KEYS, BallSpec, BearingSpec, RigidSpec, ShaftSpec, TaperedSpec
+from mbs.scene.specs import RIB_KEYS, BearingSpec, LocatingSpec, RigidSpec, ShaftSpec, TaperedSpec
 
 if TYPE_CHECKING:
     from ehdmaps.jobs.table import Table
@@ -160,23 +160,4 @@ def _carries(entry: ElementSpec, body: str, way: float) -> bool:
     if isinstance(entry, GearPair):
         return False
     on_inner = way if _body(getattr(entry, "inner", "")) == body else -way
-    if isinstance(entry, TaperedSpec) and isinstance(entry.geometry, RibbedGeometry):
-        return entry.geometry.carries in ("both", "+x" if on_inner > 0.0 else "-x")
-    if isinstance(entry, BallSpec | TaperedSpec):
-        return entry.geometry.contact_angle * on_inner > 0.0 or entry.geometry.contact_angle == 0.0
-    return True
-
-
-def with_clearance(spec: TaperedSpec, clearance: float) -> TaperedSpec:
-    """The bearing with another diametral clearance, if it has one.
-
-    Parameters
-    ----------
-    spec : TaperedSpec
-        The bearing.
-    clearance : float
-        [m].
-    """
-    if not isinstance(spec.geometry, RibbedGeometry):
-        return spec
-    return dataclasses.replace(spec, geometry=spec.geometry.with_clearance(clearance))
+    return not isinstance(entry, LocatingSpec) or bool(entry.geometry.carries_along(on_inner))
