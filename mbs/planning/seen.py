@@ -21,7 +21,7 @@ from ehdmaps.physics.point.ellipse import Ellipse
 from ehdmaps.physics.solids import STEEL
 from ehdmaps.units import LOAD, RPM, SPEED, Display
 from mbs.bearings.balls.films import ContactFilms, ball_films
-from mbs.bearings.locating_element import LocatingElement
+from mbs.bearings.locating.locating_element import LocatingElement
 from mbs.bearings.tapered.line_film import cylinder_of
 from mbs.model.elements import Element
 from mbs.model.system import System

@@ -15,7 +15,7 @@ from ehdmaps.report.page import Markup, joined, pairs, table, tag
 from ehdmaps.units import DAMPER, FILM, PRESSURE, SPRING, Display
 from mbs.bearings.balls.ball_element import MachineBalls
 from mbs.bearings.contact_report import BearingContacts, RollingLoss
-from mbs.bearings.locating_element import LocatingElement, Settled
+from mbs.bearings.locating.locating_element import LocatingElement, Settled
 from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.output.one_bearing.located import located
 from mbs.output.state_text import DAMPINGS, STIFFNESSES, loss_words

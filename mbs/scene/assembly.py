@@ -36,7 +36,7 @@ from mbs.scene.turning import turning_loads, with_places
 if TYPE_CHECKING:
     from ehdmaps.maps.emap import EHDMap
     from mbs.bearings.balls.ball_element import MachineBalls
-    from mbs.bearings.locating_element import LocatingElement
+    from mbs.bearings.locating.locating_element import LocatingElement
     from mbs.gears.gear import GearMesh
 
 AnyBearing: TypeAlias = "BearingElement | LocatingElement"

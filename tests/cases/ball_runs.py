@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from mbs.bearings.balls.ball_block import BALLS, BallBlock
-from mbs.bearings.locating_block import FELT
+from mbs.bearings.locating.locating_block import FELT
 from mbs.model.blocks import FOUND, Member, Moment
 from mbs.model.elements import Operation
 from tests.cases.c_blocks import AskedBlock

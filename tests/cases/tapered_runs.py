@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mbs.bearings.locating_block import FELT
+from mbs.bearings.locating.locating_block import FELT
 from mbs.bearings.tapered.tapered_block import TAPERED, TaperedBlock
 from mbs.model.blocks import FOUND, Member, Moment
 from mbs.model.elements import Operation

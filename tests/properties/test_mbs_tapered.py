@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from ehdmaps.physics.rollers.ribbed_geometry import ribbed_estimate
 from ehdmaps.physics.rollers.tapered_catalogue import tapered_estimate
-from mbs.bearings.locating_force import FASTEST
+from mbs.bearings.locating.locating_force import FASTEST
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
 
 LEFT = 1e-8

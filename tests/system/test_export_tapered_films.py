@@ -13,7 +13,7 @@ from ehdmaps.exports.fmu.binaries import platforms
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.rollers.ribbed_geometry import ribbed_estimate
 from ehdmaps.physics.rollers.tapered_catalogue import tapered_estimate
-from mbs.bearings.locating_block import FELT
+from mbs.bearings.locating.locating_block import FELT
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
 from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.cli import main

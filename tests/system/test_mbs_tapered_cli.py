@@ -15,7 +15,7 @@ from ehdmaps.physics.hertz import LINE_LIMIT
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.rollers.tapered_catalogue import tapered_boundary, tapered_estimate
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
-from mbs.bearings.balls.normal_law import contact
+from mbs.bearings.locating.normal_law import contact
 from mbs.bearings.tapered.line_film import LOADS, cylinder_of, line_film
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
 from mbs.bearings.tapered.tapered_point import tapered_point

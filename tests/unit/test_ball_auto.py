@@ -12,7 +12,7 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.solids import STEEL
 from mbs import assemble, parse_scene, read_scene
-from mbs.bearings.balls.normal_law import contact, load_approach
+from mbs.bearings.locating.normal_law import contact, load_approach
 from mbs.bearings.tapered.line_film import cylinder_of
 from mbs.budget.linear_look import LinearReference, linear_look
 from mbs.model.equilibrium import equilibrium

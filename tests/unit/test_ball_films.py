@@ -16,7 +16,7 @@ from ehdmaps.table.points.file import shipped_point_table
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.films import ball_films
 from mbs.bearings.balls.laws import BallLaw, dry_law, film_normal_law
-from mbs.bearings.balls.normal_law import contact, load_approach
+from mbs.bearings.locating.normal_law import contact, load_approach
 from tests.cases.balls import DEEP, FREE, LOOSE, rest
 
 LOADS = (1e-2, 2e4)

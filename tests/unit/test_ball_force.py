@@ -17,7 +17,7 @@ from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.ball_element import MachineBalls
 from mbs.bearings.balls.laws import dry_law
-from mbs.bearings.locating_force import FASTEST
+from mbs.bearings.locating.locating_force import FASTEST
 from mbs.model.elements import Operation
 from tests.cases.balls import ANGULAR, BEARINGS, DEEP, FREE, LOOSE, OTHER_WAY, rest
 

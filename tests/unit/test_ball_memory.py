@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from mbs import assemble, read_scene
-from mbs.bearings.balls.normal_law import contact
-from mbs.bearings.locating_block import FELT
+from mbs.bearings.locating.locating_block import FELT
+from mbs.bearings.locating.normal_law import contact
 from mbs.model.elements import Operation
 from tests.cases.ball_runs import driven
 

@@ -14,7 +14,7 @@ from ehdmaps.table.points.response import read_response
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.balls_in_balance import ball_relaxation
 from mbs.bearings.balls.films import ball_films
-from mbs.bearings.balls.normal_law import contact
+from mbs.bearings.locating.normal_law import contact
 from mbs.linearised.linear import frequency_response
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium

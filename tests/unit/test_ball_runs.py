@@ -12,9 +12,9 @@ from ehdmaps.errors import AnalysisError
 from mbs import assemble, parse_scene, read_scene, statics
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.ball_block import BALLS, BallBlock
-from mbs.bearings.balls.normal_law import contact
-from mbs.bearings.locating_block import FELT
-from mbs.bearings.locating_element import LocatingStates
+from mbs.bearings.locating.locating_block import FELT
+from mbs.bearings.locating.locating_element import LocatingStates
+from mbs.bearings.locating.normal_law import contact
 from mbs.model.blocks import FOUND, Member, Moment
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium

@@ -14,8 +14,8 @@ from scipy.interpolate import CubicHermiteSpline
 
 from ehdmaps.kernel.library import function
 from mbs.bearings.balls.ball_memory import FilmsOfBalls
-from mbs.bearings.balls.normal_law import NormalLaw, contacts_at, empty_table, law_data, load_approach
 from mbs.bearings.balls.response import SHORTER
+from mbs.bearings.locating.normal_law import NormalLaw, contacts_at, empty_table, law_data, load_approach
 
 ROWS, CENTRE, SCALE, FIRST, STEP, HERTZ = 23, -2e-7, 1.3e-7, -4.0, 0.4, 1.1e10
 APPROACHES = CENTRE + SCALE * np.sinh(np.linspace(FIRST - 1.5, FIRST + STEP * (ROWS - 1) + 1.5, 401))

@@ -18,11 +18,11 @@ from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from mbs import assemble, parse_scene
 from mbs.analyses.film_errors import film_course, film_error, film_errors, notable_from
 from mbs.analyses.reach import fade_lines, fade_of
-from mbs.bearings.balls.normal_law import contact
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
-from mbs.bearings.locating_block import FELT
+from mbs.bearings.locating.locating_block import FELT
+from mbs.bearings.locating.normal_law import contact
 from mbs.bearings.roller_contacts import RollerContacts
 from mbs.bearings.slices_in_balance import relaxation_times, slice_relaxation
 from mbs.bearings.tapered.line_film import LOADS, LineFilms, line_films

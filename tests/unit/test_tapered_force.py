@@ -9,7 +9,7 @@ import pytest
 
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.rollers.tapered_catalogue import tapered_estimate
-from mbs.bearings import locating_element
+from mbs.bearings.locating import locating_element
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
 from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.model.elements import Operation

@@ -16,8 +16,8 @@ from ehdmaps.physics.solids import STEEL
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_element import MemoryBearing
 from mbs.bearings.bearing_force import BearingForce
-from mbs.bearings.locating_block import FELT
-from mbs.bearings.locating_element import LocatingStates
+from mbs.bearings.locating.locating_block import FELT
+from mbs.bearings.locating.locating_element import LocatingStates
 from mbs.bearings.tapered.line_film import LOADS, line_films
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
 from mbs.bearings.tapered.tapered_element import TaperedElement

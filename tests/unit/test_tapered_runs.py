@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from ehdmaps.physics.rollers.tapered_catalogue import mirrored
-from mbs.bearings.locating_block import FELT
+from mbs.bearings.locating.locating_block import FELT
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
 from mbs.bearings.tapered.tapered_block import TAPERED, TaperedBlock
 from mbs.bearings.tapered.tapered_element import TaperedElement

@@ -1,10 +1,10 @@
 """Ball bearings, deep groove and angular contact: five freedoms, quasi-static, with the speed of their balls.
 
-The balance of the balls, the sums over them and films with memory are in C: `ehdmaps/kernel/c/ball` and `pair`.
+The balance of the balls, the sums over them and films with memory are in C: `ehdmaps/kernel/c/ball` and `pair`. What
+balls share with rollers with ribs is in `mbs.bearings.locating`.
 
 =====================  ================================================================================================
 `laws`                 contact laws of both raceways: Hertz, with a damper, or a film over it
-`normal_law`           the law of a contact for C, its load by approach and its approach by load
 `ball_data`            a bearing and its balls as C has them
 `ball_bearing`         the force element; loads and contact angles of the balls
 `ball_element`         a bearing in a machine: films of its speed, the cage that its balls ask for
@@ -12,8 +12,6 @@ The balance of the balls, the sums over them and films with memory are in C: `eh
 `ball_block`           ball bearings in compiled runs
 `ball_memory`          films with memory in time
 `balls_in_balance`     small motions: films with memory in linear analyses, errors of the film table
-`answers`              what bearings of five freedoms share in compiled runs
-`film_tables`          laws over the speed for compiled runs
 `films`                films of both contacts at one speed, solved at some loads, and the law that they make
 `ball_point`           an operating point: equilibrium, speed of the cage, pressures, films
 =====================  ================================================================================================

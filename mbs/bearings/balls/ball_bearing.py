@@ -44,8 +44,8 @@ from mbs.bearings.balls.ball_data import (
 )
 from mbs.bearings.balls.ball_speed import Drive, ball_loads, dry_energy, mean_speed, speed_work
 from mbs.bearings.balls.laws import BallLaw
-from mbs.bearings.balls.normal_law import law_data, load_approach
-from mbs.bearings.locating_force import LocatingForce, directions
+from mbs.bearings.locating.locating_force import LocatingForce, directions
+from mbs.bearings.locating.normal_law import law_data, load_approach
 from mbs.model.findings import CARRIES
 
 NEGLIGIBLE = 1e-11
@@ -134,6 +134,7 @@ class BallForce(LocatingForce):
     """
 
     rolling_element = "ball"
+    geometry: BallGeometry
 
     def __init__(self, geometry: BallGeometry, law: BallLaw, material: Material = STEEL) -> None:
         self.geometry, self.law, self.material = geometry, law, material

@@ -15,11 +15,11 @@ from ehdmaps.kernel.record import Record, integers, numbers
 from mbs.bearings.balls.ball_data import COLUMNS, START
 from mbs.bearings.balls.ball_memory import SPRINGS, FilmsOfBalls
 from mbs.bearings.balls.ball_speed import dry_energy
-from mbs.bearings.balls.film_tables import FilmData
 from mbs.bearings.balls.laws import NODES
-from mbs.bearings.balls.normal_law import HELD
 from mbs.bearings.balls.response import SHORTER
-from mbs.bearings.locating_block import COURSES, PLACES, SHAPES, WORKS, LocatingBlock, felt_rows
+from mbs.bearings.locating.film_tables import FilmData
+from mbs.bearings.locating.locating_block import COURSES, PLACES, SHAPES, WORKS, LocatingBlock, felt_rows
+from mbs.bearings.locating.normal_law import HELD
 from mbs.model.blocks import Kind, Member
 
 

@@ -7,7 +7,7 @@ from typing import ClassVar, NamedTuple
 
 from ehdmaps.kernel.record import Record, numbers
 from mbs.bearings.balls.ball_speed import Drive
-from mbs.bearings.balls.normal_law import LawData
+from mbs.bearings.locating.normal_law import LawData
 
 COLUMNS = 25
 """Numbers that are kept of a ball: `ehd_ball_found`. Force on the ball (2), stiffness (4) and damping (4) of the pair,

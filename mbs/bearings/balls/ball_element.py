@@ -16,7 +16,7 @@ from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.ball_findings import ball_gauge
 from mbs.bearings.balls.ball_memory import FilmsOfBalls
 from mbs.bearings.balls.laws import BallLaw
-from mbs.bearings.locating_element import LocatingElement, Settled
+from mbs.bearings.locating.locating_element import LocatingElement, Settled
 from mbs.model.findings import Gauge
 from mbs.model.relaxation import Relaxation
 

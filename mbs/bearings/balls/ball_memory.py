@@ -24,8 +24,8 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.kernel.library import function
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.laws import BallLaw
-from mbs.bearings.balls.normal_law import HELD, contacts_at
 from mbs.bearings.balls.response import SHORTER
+from mbs.bearings.locating.normal_law import HELD, contacts_at
 
 SPRINGS = len(SHORTER)
 """Springs of a contact."""

@@ -18,10 +18,9 @@ from ehdmaps.arrays import ComplexArray, FloatArray
 from mbs.bearings.balls.ball_bearing import BallForce, BallLoads
 from mbs.bearings.balls.ball_data import BallShape
 from mbs.bearings.balls.ball_speed import Drive, speed_slopes
-from mbs.bearings.balls.contact_slopes import contact_slopes
 from mbs.bearings.balls.laws import BallLaw
-from mbs.bearings.balls.normal_law import contacts_at
 from mbs.bearings.balls.response import TIMES
+from mbs.bearings.locating.normal_law import contact_slopes, contacts_at
 from mbs.model.condensed import Condensed
 from mbs.model.contacts import Contacts, LawSlopes, film_directions, followed, law_slopes, relaxation
 from mbs.model.relaxation import Relaxation

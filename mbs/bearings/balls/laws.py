@@ -23,7 +23,7 @@ from ehdmaps.errors import InputError, SolverError
 from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.physics.point.ellipse import Ellipse
 from ehdmaps.physics.solids import STEEL, Material
-from mbs.bearings.balls.normal_law import NormalLaw, empty_table, on_rows
+from mbs.bearings.locating.normal_law import NormalLaw, empty_table, on_rows
 
 if TYPE_CHECKING:
     from mbs.bearings.balls.response import ContactResponse

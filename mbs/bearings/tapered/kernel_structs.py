@@ -12,7 +12,7 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.kernel.library import checked, function
 from ehdmaps.kernel.record import Record, numbers
-from mbs.bearings.balls.normal_law import LawData, NormalLaw, law_data
+from mbs.bearings.locating.normal_law import LawData, NormalLaw, law_data
 
 if TYPE_CHECKING:
     from mbs.bearings.tapered.tapered_shape import Ribs, RollerLaws, TaperedShape

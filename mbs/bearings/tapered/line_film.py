@@ -18,7 +18,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
-from mbs.bearings.balls.normal_law import NormalLaw, empty_table, on_rows
+from mbs.bearings.locating.normal_law import NormalLaw, empty_table, on_rows
 
 if TYPE_CHECKING:
     from ehdmaps.maps.law import ContactLaw, LawAtPoint

@@ -14,8 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ehdmaps.arrays import BoolArray, FloatArray
-from mbs.bearings.balls.contact_slopes import STEP, contact_slopes
-from mbs.bearings.balls.normal_law import contacts_at
+from mbs.bearings.locating.normal_law import STEP, contact_slopes, contacts_at
 from mbs.bearings.slices_in_balance import natural_times, relaxation_times
 from mbs.bearings.tapered.kernel_structs import FIRST_RIB
 from mbs.bearings.tapered.tapered_bearing import TaperedForce

@@ -35,9 +35,9 @@ from ehdmaps.kernel.record import address
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.physics.surface import iso_profile
-from mbs.bearings.balls.normal_law import contacts_at
 from mbs.bearings.laws import roller_coefficient
-from mbs.bearings.locating_force import LocatingForce, directions
+from mbs.bearings.locating.locating_force import LocatingForce, directions
+from mbs.bearings.locating.normal_law import contacts_at
 from mbs.bearings.tapered.kernel_structs import (
     ANSWER,
     COLUMNS,
@@ -139,6 +139,7 @@ class TaperedForce(LocatingForce):
     """
 
     rolling_element = "roller"
+    geometry: TaperedGeometry
 
     def __init__(
         self,

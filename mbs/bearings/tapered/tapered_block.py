@@ -12,9 +12,9 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.kernel.library import checked
 from ehdmaps.kernel.record import Record, integers, numbers
-from mbs.bearings.balls.film_tables import FilmData
-from mbs.bearings.locating_block import COURSES, PLACES, SHAPES, WORKS, LocatingBlock, felt_rows
-from mbs.bearings.locating_force import FASTEST
+from mbs.bearings.locating.film_tables import FilmData
+from mbs.bearings.locating.locating_block import COURSES, PLACES, SHAPES, WORKS, LocatingBlock, felt_rows
+from mbs.bearings.locating.locating_force import FASTEST
 from mbs.bearings.tapered.kernel_structs import COLUMNS, MEMORY, TaperedData, data_of, functions
 from mbs.bearings.tapered.line_film import NODES
 from mbs.bearings.tapered.tapered_energy import dry_energy

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from mbs.bearings.locating_element import LocatingElement, Settled
+from mbs.bearings.locating.locating_element import LocatingElement, Settled
 from mbs.bearings.tapered.line_film import DRY_LINES, LineFilms, cylinder_of
 from mbs.bearings.tapered.roller_findings import roller_gauge
 from mbs.bearings.tapered.tapered_bearing import TaperedForce

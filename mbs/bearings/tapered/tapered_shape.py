@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from ehdmaps.arrays import BoolArray, FloatArray
-from mbs.bearings.balls.normal_law import NormalLaw
+from mbs.bearings.locating.normal_law import NormalLaw
 
 
 class Ribs(NamedTuple):

@@ -13,7 +13,7 @@ from mbs.output.one_bearing.kind import Description, Kind
 from mbs.scene.contact_laws import Damper
 
 if TYPE_CHECKING:
-    from mbs.bearings.balls.film_tables import PairLaw
+    from mbs.bearings.locating.film_tables import PairLaw
     from mbs.commands.one_bearing.linear_files import Oscillating
     from mbs.commands.one_bearing.shared import Operating
     from mbs.exports.one_bearing.kind import ExportKind

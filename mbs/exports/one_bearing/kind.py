@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from mbs.bearings.balls.film_tables import PairLaw
-from mbs.bearings.balls.normal_law import NormalLaw
+from mbs.bearings.locating.film_tables import PairLaw
+from mbs.bearings.locating.normal_law import NormalLaw
 from mbs.exports.one_bearing.speed_laws import STEP, SpeedLaws, dry_speed_laws, film_speed_laws
 
 

@@ -12,7 +12,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError
 from ehdmaps.exports.c.text import comment, define, number, renamed, template
 from ehdmaps.outputs import Kind, has_mark, write_text
-from mbs.bearings.balls.normal_law import NormalLaw
+from mbs.bearings.locating.normal_law import NormalLaw
 from mbs.exports.one_bearing.kind import ExportKind
 from mbs.exports.one_bearing.speed_laws import SpeedLaws
 

@@ -17,9 +17,9 @@ from functools import cached_property
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from mbs.bearings.balls.film_tables import PairLaw, on_grid
 from mbs.bearings.balls.laws import NODES, BallLaw
-from mbs.bearings.balls.normal_law import NormalLaw, contact, load_approach
+from mbs.bearings.locating.film_tables import PairLaw, on_grid
+from mbs.bearings.locating.normal_law import NormalLaw, contact, load_approach
 
 STEP = 0.2
 """Largest distance of two speeds in ln u: with it loads are right within some 1e-4 between them."""

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import cast
 
 from mbs.bearings.balls.ball_element import MachineBalls
-from mbs.bearings.locating_element import LocatingElement, Settled
+from mbs.bearings.locating.locating_element import LocatingElement, Settled
 from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.model.equilibrium import Equilibrium
 from mbs.output.one_bearing.balls import ball_words

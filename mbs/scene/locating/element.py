@@ -14,7 +14,7 @@ from ehdmaps.units import TEMPERATURE
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.ball_element import MachineBalls
 from mbs.bearings.balls.laws import dry_law
-from mbs.bearings.locating_element import LocatingElement
+from mbs.bearings.locating.locating_element import LocatingElement
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
 from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.model.relaxation import FILM_WORDS

@@ -1,7 +1,7 @@
 """Bearings that carry axial load in compiled runs: what blocks of their kinds have in common.
 
 Films change with the speed: their laws are made at nodes that lie evenly in its logarithm, on one grid of approaches,
-and blended straight between two nodes, see `mbs.bearings.balls.film_tables`.
+and blended straight between two nodes, see `mbs.bearings.locating.film_tables`.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ import numpy as np
 
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.kernel.record import Record, integers, numbers
-from mbs.bearings.balls.film_tables import FilmCourse
-from mbs.bearings.locating_element import LocatingElement, LocatingStates
+from mbs.bearings.locating.film_tables import FilmCourse
+from mbs.bearings.locating.locating_element import LocatingElement, LocatingStates
 from mbs.model.blocks import Member
 
 FELT = np.array([0, 1, 2, 4, 5])

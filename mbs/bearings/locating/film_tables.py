@@ -1,7 +1,7 @@
 """Laws of two contacts over the speed, for compiled runs: at nodes, on one grid of approaches, blended between nodes.
 
-Nodes lie evenly in the logarithm of the speed. The laws are `mbs.bearings.balls.normal_law.NormalLaw`: those of a ball
-in its grooves, and of lines in slices.
+Nodes lie evenly in the logarithm of the speed. The laws are `mbs.bearings.locating.normal_law.NormalLaw`: those of a
+ball in its grooves, and of lines in slices.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from ehdmaps.arrays import BoolArray, FloatArray, IntArray
 from ehdmaps.errors import EhdmapsError
 from ehdmaps.kernel.library import checked
 from ehdmaps.kernel.record import Record, integers, numbers
-from mbs.bearings.balls.normal_law import NormalLaw, contacts_at
+from mbs.bearings.locating.normal_law import NormalLaw, contacts_at
 from mbs.bearings.speed_tables import CourseOfFilms, Made, Prepared, SpeedWindow, shared
 
 STEP = 0.04

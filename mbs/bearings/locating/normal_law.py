@@ -1,4 +1,4 @@
-"""Law of a ball's contact over its approach: load, stiffness, damping, by `ehdmaps/kernel/c/pair/pair_law.c`.
+"""Law of a contact over its approach: load, stiffness, damping, by `ehdmaps/kernel/c/pair/pair_law.c`.
 
 Each law is F = C g^(3/2), with the dry overlap g = approach, or with g(approach) from a table for films.
 """
@@ -16,6 +16,9 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.kernel.library import checked, function
 from ehdmaps.kernel.record import Record, numbers
+
+STEP = 1e-10
+"""Step of the approach, either way, by which laws are differentiated [m]."""
 
 HELD = 3
 """Numbers that a contact with memory holds over a step."""
@@ -107,6 +110,19 @@ def contacts_at(law: NormalLaw, approach: FloatArray) -> FloatArray:
     held = np.array([law.held, law.spring, law.at])
     _contacts()(data.address, places.size, places.ctypes.data, held.ctypes.data, found.ctypes.data)
     return np.ascontiguousarray(found.T).reshape(3, *approach.shape)
+
+
+def contact_slopes(law: NormalLaw, approach: FloatArray) -> FloatArray:
+    """Derivatives of load, stiffness and damping by the approach, shape (3, ...).
+
+    Parameters
+    ----------
+    law : NormalLaw
+        Their law.
+    approach : array (...)
+        Approaches [m].
+    """
+    return np.asarray((contacts_at(law, approach + STEP) - contacts_at(law, approach - STEP)) / (2.0 * STEP))
 
 
 def contact(law: NormalLaw, approach: float) -> tuple[float, float, float]:

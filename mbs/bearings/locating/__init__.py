@@ -1,0 +1,13 @@
+"""Bearings that carry axial load, balls or rollers with ribs: what they have in common.
+
+| module | idea |
+|---|---|
+| `normal_law` | load, stiffness and damping of a contact over its approach, as the kernel reads them |
+| `film_tables` | these laws over the speed, for compiled runs |
+| `locating_force` | force, stiffness and damping by the pose of the inner ring |
+| `locating_element` | the bearing in a machine, at the speed that the system has |
+| `locating_block` | such bearings in compiled runs |
+
+What a kind has of its own, its balance, kinematics, films and findings, is in `mbs.bearings.balls` and
+`mbs.bearings.tapered`.
+"""
