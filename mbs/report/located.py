@@ -28,7 +28,7 @@ _ROUND_OFF = 1e-8
 
 
 class _Told(NamedTuple):
-    """What is said of a kind alone: rows before and behind its loads, and columns of each rolling element."""
+    """Words of a kind alone: rows before and behind its loads, and columns of each rolling element."""
 
     first: tuple[tuple[str, str], ...]
     last: tuple[tuple[str, str], ...]

@@ -100,7 +100,7 @@ class LocatingBlock:
         }
 
     def size(self, b: int) -> int:
-        """How many rolling elements a bearing has."""
+        """Number of rolling elements of a bearing."""
         return int(self.elements[b].force.angles.size)
 
     def rows(self, values: Sequence[Any], *columns: int) -> FloatArray:

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class _Kind:
-    """What differs between kinds.
+    """Kind of bearing of a scene: what differs.
 
     Attributes
     ----------
