@@ -164,8 +164,8 @@ class Scene:
 
     @property
     def located(self) -> tuple[LocatingSpec, ...]:
-        """The bearings that carry axial load: those of `balls`, then those of `tapered`."""
-        return (*self.balls, *self.tapered)
+        """The bearings that carry axial load among the machine elements."""
+        return tuple(entry for entry in self.elements if isinstance(entry, LocatingSpec))
 
     @property
     def located_clearances(self) -> set[float]:
