@@ -17,7 +17,7 @@ from mbs.bearings.locating.locating_block import COURSES, PLACES, SHAPES, WORKS,
 from mbs.bearings.locating.locating_force import FASTEST
 from mbs.bearings.tapered.kernel_structs import COLUMNS, MEMORY, TaperedData, data_of, functions
 from mbs.bearings.tapered.line_film import NODES
-from mbs.bearings.tapered.tapered_energy import dry_energy
+from mbs.bearings.tapered.tapered_bearing import dry_energy
 from mbs.bearings.tapered.tapered_memory import FilmsOfRollers, no_memory
 from mbs.model.blocks import Kind, Member
 
@@ -46,8 +46,8 @@ class Tapered(Record):
     powers : array (count, 2)
         What the last answer dissipates, and what the turning cage brings in [W].
     last, times, works : array (count, longest, 4), (count,), (count,)
-        What `mbs.bearings.tapered.tapered_energy.place_work` keeps of the last step, its time [s], and its work by that
-        time [W].
+        What `mbs.bearings.tapered.tapered_bearing.place_work` keeps of the last step, its time [s], and its work by
+        that time [W].
     memories : array (count,), of int
         First number of the memory of a bearing; below zero for films without one.
     memory : array

@@ -11,9 +11,8 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.exports.c.text import array, define, number
 from mbs.bearings.locating.normal_law import NormalLaw, empty_table
-from mbs.bearings.tapered.kernel_structs import RIB_NUMBERS, rib_rows
+from mbs.bearings.tapered.kernel_structs import RIB_NUMBERS, RollerLaws, rib_rows
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
-from mbs.bearings.tapered.tapered_shape import RollerLaws
 from mbs.exports.one_bearing.kind import ExportKind
 
 _KERNEL = (
