@@ -4,6 +4,9 @@ ROSS has x and y radial and z along the axis, and stations (nodes) instead of pl
 and seals up at the speed of the rotor, though their axis is called frequency. What a scene has no place for is refused;
 what changes no motion (colours, the size of a symbol in drawings, what a table was once computed from) is passed over.
 
+`Rotor.load` of ROSS would read them too, but it makes the class that a file names without a look at the values, and
+takes plotly, control and ccp-performance along.
+
 References
 ----------
 ROSS 2.3.0, modules shaft_element, disk_element, bearing_seal_element, point_mass and rotor_assembly.

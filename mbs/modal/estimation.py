@@ -15,7 +15,8 @@ Frequency responses and coherence from averaged hammer hits.
 
 Sums over hits of the spectra X of a response and F of the force: H1 = sum(X F*)/sum(F F*) has no bias from noise on
 the response, H2 = sum(X X*)/sum(F X*) none from noise on the force, and coherence = H1/H2 =
-|G_XF|^2/(G_XX G_FF).
+|G_XF|^2/(G_XX G_FF). The library pyFRF has them too, but wants a sampling rate of whole hertz, and does not take its
+windows out again.
 
 References
 ----------

@@ -10,6 +10,9 @@ written here. Dataset 1858 may say that there was one, but not which.
 Hits: a record of the force (data type 13) belongs to the place in its response fields, a record of a response to the
 place in its reference fields, and the version number counts the hits; where it does not, their order in the file
 does. The step of evenly spaced values has six digits in such a file.
+
+pyuff reads files that are cut off, headers that announce other counts, and zeros that fill up a last line without a
+word. All of that is looked at here, and so is what belongs together.
 """
 
 from __future__ import annotations
@@ -466,7 +469,10 @@ def write_sets(path: Path, title: str, functions: Sequence[Dataset]) -> None:
         If it cannot be written, or has values that are not finite.
     """
     pyuff = load_pyuff()
-    sets: list[Dataset] = [_header(title), _si(), *functions]
+    model_name = ascii_text(title, 78) or "NONE"
+    header = pyuff.prepare_151(model_name=model_name, description=MARK, db_app="mbs", program="mbs")
+    units = pyuff.prepare_164(1, "SI: metre, newton", temp_mode=1, length=1.0, force=1.0, temp=1.0, temp_offset=0.0)
+    sets: list[Dataset] = [header, units, *functions]
     # The library would turn them into zeros.
     if not all(np.all(np.isfinite(entry["data"])) for entry in sets if "data" in entry):
         raise InputError(f"{path}: got values that are not finite; leave those records out")
@@ -476,31 +482,6 @@ def write_sets(path: Path, title: str, functions: Sequence[Dataset]) -> None:
             pyuff.UFF(str(aside)).write_sets(sets, mode="overwrite")
         except Exception as error:  # the library raises nothing more special
             raise OSError(str(error)) from error
-
-
-def _header(title: str) -> Dataset:
-    """Dataset 151 with a title."""
-    return {
-        "type": 151,
-        "model_name": ascii_text(title, 78) or "NONE",
-        "description": MARK,
-        "db_app": "mbs",
-        "program": "mbs",
-    }
-
-
-def _si() -> Dataset:
-    """Dataset 164 for SI."""
-    return {
-        "type": 164,
-        "units_code": 1,
-        "units_description": "SI: metre, newton",
-        "temp_mode": 1,
-        "length": 1.0,
-        "force": 1.0,
-        "temp": 1.0,
-        "temp_offset": 0.0,
-    }
 
 
 def _hit_sets(hits: Hits) -> list[Dataset]:

@@ -9,6 +9,8 @@
 Lines that begin with # are passed over. Units stand in square or round brackets. Columns are apart by tabulators, else
 semicolons, else commas; with the first two, numbers may have a decimal comma and names any. Text is in UTF-8, UTF-16 or
 Windows' own letters. Numbers are written with 12 digits.
+
+pandas reads such tables faster, but fills short rows up with NaN, and says of what is no number not where it stands.
 """
 
 from __future__ import annotations

@@ -4,7 +4,8 @@ Distances of pulses change slowly, but where one is missing, or is counted twice
 and backwards, each distance is compared with the one that those before it let expect: about n times as long has n - 1
 pulses too few, of two that are together as long as one the pulse between is too many. A wheel with a gap, such as one
 of 60 - 2 teeth, has pulses too few once a turn. At either end, next to standstill, distances change faster: what is not
-one distance there is left out.
+one distance there is left out. No library was found that counts pulses which are not there; `scipy.signal.find_peaks`
+takes each for one.
 """
 
 from __future__ import annotations

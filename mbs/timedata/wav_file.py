@@ -16,6 +16,7 @@ bits, and floating ones.
 
 from __future__ import annotations
 
+import json
 import math
 import tomllib
 import warnings
@@ -215,5 +216,4 @@ def _floating(samples: Any) -> FloatArray:
 
 def _quoted(text: str) -> str:
     """A text of TOML."""
-    plain = "".join(letter if letter.isprintable() else " " for letter in text)
-    return '"' + plain.replace("\\", "\\\\").replace('"', '\\"') + '"'
+    return json.dumps("".join(letter if letter.isprintable() else " " for letter in text), ensure_ascii=False)
