@@ -345,10 +345,10 @@ def _command(arguments: argparse.Namespace) -> tuple[str, int]:
 
             return solve_balls(arguments)
     if arguments.command in ("generate", "show", "plot", "export"):
-        from ehdmaps.jobs.points.asked import points_source
+        from ehdmaps.jobs.make.points.asked import points_source
 
         if source := points_source(arguments):
-            from ehdmaps.jobs.points.commands import run as run_points
+            from ehdmaps.jobs.commands.points import run as run_points
 
             return run_points(arguments, source)
     _place_bearing(arguments)

@@ -14,8 +14,8 @@ import xarray as xr
 from ehdmaps.errors import InputError
 from ehdmaps.exports.mat import KIND as MATLAB
 from ehdmaps.exports.mat import ascii_text, write_matlab
-from ehdmaps.jobs.points.asked import MADE
-from ehdmaps.jobs.points.points_map import (
+from ehdmaps.jobs.make.points.asked import MADE
+from ehdmaps.jobs.make.points.points_map import (
     DIMS,
     KIND,
     SIDES,
@@ -98,7 +98,7 @@ def run(arguments: argparse.Namespace, source: str) -> tuple[str, int]:
     if kind is None:
         return described(dataset), 0
     if kind is FIGURE:
-        from ehdmaps.jobs.points.points_plot import RESOLUTION, points_map_figure
+        from ehdmaps.jobs.show.points_plot import RESOLUTION, points_map_figure
 
         write_figure(points_map_figure(dataset), path, RESOLUTION)
     elif kind is MATLAB:

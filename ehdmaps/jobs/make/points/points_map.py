@@ -17,7 +17,7 @@ import xarray as xr
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import InputError, MapError
-from ehdmaps.jobs.points.asked import ENDING, MADE
+from ehdmaps.jobs.make.points.asked import ENDING, MADE
 from ehdmaps.netcdf_structure import DAMAGE, structure_problem
 from ehdmaps.outputs import MADE_AS, dataset_kind, written_aside
 from ehdmaps.physics.hertz import POINT_LIMIT

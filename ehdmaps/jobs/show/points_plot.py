@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from ehdmaps.figures import COLOURS, typeset, write_heading
-from ehdmaps.jobs.points.points_map import SIDES
+from ehdmaps.jobs.make.points.points_map import SIDES
 from ehdmaps.units import DAMPER, FILM, SPEED, SPRING, TEMPERATURE
 
 RESOLUTION = 200
