@@ -17,7 +17,7 @@ spacing            errors of contact laws between the points of a map
 assemble           results -> dataset of the map, isolated holes filled from their neighbours
 report             statuses by cause, error estimates, correction, in lines
 generate           the whole story: job -> map file, or a map in memory
-points             maps of points of ball bearings
+points             the film table of points, and maps of points of ball bearings
 batch              a batch file: bearings x oils x overrides
 batch_generate     its maps
 batch_table        these as a table
