@@ -39,6 +39,7 @@ from ehdmaps.maps.records import (
     completed,
     contacts_of,
     lubricant_from_json,
+    read_json,
     record_json,
     restructured,
     supply_from_json,
@@ -51,6 +52,7 @@ from ehdmaps.maps.usable import check_backbone, check_loads, known_grid
 from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import BearingGeometry, with_law
 from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.heat import INLET_HEAT
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.surface import SMOOTH, Surface
@@ -340,6 +342,12 @@ class EHDMap:
         """True where the films of its laws are read from the film table, as its points were."""
         return schema.FILM_TABLE in self.dataset.attrs
 
+    @cached_property
+    def inlet_heat(self) -> bool:
+        """True where the films of its laws are read from the film table with heat in the inlet, by its rule."""
+        settings = read_json(self.dataset.attrs["solver_settings"], "solver_settings") if self.from_table else {}
+        return bool(settings.get("physics") == INLET_HEAT)
+
     @property
     def own_points(self) -> str:
         """Reason why its points are somebody's own, from which alone its laws are made; empty where they are not.
@@ -380,7 +388,7 @@ class EHDMap:
                 return line_field(self.backbone, chosen, self.lubricant, *ranges)
             from ehdmaps.maps.table_field import TableField  # with the film table, that other maps do not need
 
-            return TableField(chosen, self.lubricant, *ranges)
+            return TableField(chosen, self.lubricant, *ranges, inlet_heat=self.inlet_heat)
         reach, read = known_grid(self.dataset, chosen)
         data = self.dataset.sel(contact=[contact.name for contact in chosen]).transpose(*schema.DIMS, ...)
         offset, compliance, loss = (np.asarray(data[name].values, dtype=np.float64) for name in FILMS)
@@ -434,7 +442,7 @@ class EHDMap:
             lines = partial(table_lines, self.contacts, self.lubricant, loads, speeds, kelvins, SPEED_REACH)
         both = reach.part(np.stack([np.where(read, array, np.nan) for array in found]))
         axes = reach.loads, reach.speeds, reach.temperatures
-        return rolling_film(both, reach.part(read), axes, lines, self.contacts, self.lubricant)
+        return rolling_film(both, reach.part(read), axes, lines, self.contacts, self.lubricant, self.inlet_heat)
 
     @cached_property
     def low_loads(self) -> LowLoads | None:

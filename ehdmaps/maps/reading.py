@@ -35,6 +35,7 @@ from ehdmaps.maps.records import contacts_of, contradictions, lubricant_from_jso
 from ehdmaps.maps.schema import Variable
 from ehdmaps.netcdf_structure import DAMAGE, opened
 from ehdmaps.physics.designations.families import words_for_lines
+from ehdmaps.physics.heat import INLET_HEAT
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -360,13 +361,14 @@ def _not_of_table(dataset: xr.Dataset) -> int:
     points = dataset.transpose(*schema.DIMS, ...)
     axes = (points[name].values.astype(np.float64) for name in schema.DIMS[1:])
     w, u, T = np.meshgrid(*axes, indexing="ij")
-    thickest = float(read_json(dataset.attrs["solver_settings"], "solver_settings").get("thickest_film", THICKEST_FILM))
+    settings = read_json(dataset.attrs["solver_settings"], "solver_settings")
+    thickest, heat = float(settings.get("thickest_film", THICKEST_FILM)), settings.get("physics") == INLET_HEAT
     lubricant = lubricant_from_json(dataset.attrs["lubricant"])
     wrong = np.zeros(points["status"].shape, dtype=bool)
     try:
         table = film_table(lubricant)
         for i, contact in enumerate(contacts_of(dataset)):
-            films = table.films(contact, lubricant, w, u, T, thickest_film=thickest)
+            films = table.films(contact, lubricant, w, u, T, thickest_film=thickest, inlet_heat=heat)
             for name in _READ_BY_LAWS:
                 if name in points:
                     known = np.where(films.usable, getattr(films, name), np.nan)

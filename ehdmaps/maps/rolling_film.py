@@ -38,6 +38,7 @@ from ehdmaps.maps.kernels.splines import mix_lines, spline_weights
 from ehdmaps.maps.schema import BACKBONE_DIMS
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.films import RIGID_ROLLING_CONSTANT
+from ehdmaps.physics.heat import inlet_heats
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.moes import moes_groups, moes_speed_number, valley_load_number
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply, rolling_ratio
@@ -305,6 +306,7 @@ def rolling_film(
     backbone: xr.Dataset | LaterLines | None,
     contacts: Sequence[LineContact],
     lubricant: Lubricant,
+    inlet_heat: bool = False,
 ) -> RollingFilm | None:
     """Rolling force and mass flow of a map; None where it does not hold them at all points that are known.
 
@@ -322,6 +324,8 @@ def rolling_film(
         Contacts of the map.
     lubricant : Lubricant
         The oil.
+    inlet_heat : bool
+        Whether heat in the inlet thins the films of the lines, which know nothing of it.
     """
     if not axes[1].size or not np.all((np.isfinite(values) & (values > 0.0))[:, known]):
         return None
@@ -329,6 +333,7 @@ def rolling_film(
     start = math.inf
     if callable(backbone):
         reader, start = _MadeLater(backbone, lubricant), RIGID
+        reader = _Heated(reader, lubricant) if inlet_heat else reader
     elif backbone is not None and all(name in backbone for name in NAMES):
         reader, start = _lines_reader(backbone, contacts, lubricant)
     if reader is None:
@@ -360,6 +365,20 @@ class _MadeLater:
 
     def __call__(self, contact: LineContact, loads: FloatArray, speed: float, T: float) -> FloatArray:
         return self.reader(contact, loads, speed, T)
+
+
+@dataclass(frozen=True, eq=False)
+class _Heated:
+    """Reader of films that heat in the inlet thins: rolling force and flow go with them."""
+
+    isothermal: _Reader
+    lubricant: Lubricant
+
+    def __call__(self, contact: LineContact, loads: FloatArray, speed: float, T: float) -> FloatArray:
+        every = (np.full(loads.shape, value) for value in (speed, T))
+        return self.isothermal(contact, loads, speed, T) + np.log(
+            inlet_heats(contact, self.lubricant, loads, *every).factor
+        )
 
 
 @dataclass(frozen=True, eq=False)

@@ -103,6 +103,8 @@ class TableField:
     lenient : bool
         Whether films that the table lacks are continued within these ranges too, and not only outside them: straight
         along the loads, and at the largest L that the table knows.
+    inlet_heat : bool
+        Whether heat in the inlet thins the films, by its rule, see `ehdmaps.physics.heat`.
     """
 
     dry = False
@@ -115,8 +117,9 @@ class TableField:
         speed_range: Range,
         temperature_range: Range,
         lenient: bool = False,
+        inlet_heat: bool = False,
     ) -> None:
-        self._lenient = lenient
+        self._lenient, self._inlet_heat = lenient, inlet_heat
         self.contacts = tuple(contact.name for contact in contacts)
         self.load_range, self.speed_range, self.temperature_range = load_range, speed_range, temperature_range
         self._contacts = {contact.name: contact for contact in contacts}
@@ -134,7 +137,7 @@ class TableField:
 
     @cached_property
     def _memory(self) -> BackboneField:
-        """Lines with responses."""
+        """Lines with responses, isothermal in any case: what is read of them is parts of a film that relaxes."""
         contacts, ranges = tuple(self._contacts.values()), (self.load_range, self.speed_range, self.temperature_range)
         lines, reference = table_lines(contacts, self._lubricant, *ranges)
         return BackboneField(lines, reference, contacts, self._lubricant, *ranges)
@@ -243,8 +246,9 @@ class TableField:
         groups = self._groups(contact, held, temperatures) if np.any(held < groups.speed) else groups
         unit, valley, film, u = (part[at] for part in (groups.unit, groups.valley, groups.film, groups.speed))
         w = np.exp(zeta) * valley / unit
+        T, heat = temperatures[at[1]], self._inlet_heat
         read = self._table.films(
-            contact, self._lubricant, w, u, temperatures[at[1]], others=False, thickest_film=math.inf
+            contact, self._lubricant, w, u, T, others=False, thickest_film=math.inf, inlet_heat=heat
         )
         width = half_width(w, contact.radius, contact.reduced_modulus)
         with np.errstate(invalid="ignore"):

@@ -30,9 +30,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 
+from ehdmaps.arrays import BoolArray, FloatArray, Values, as_given
 from ehdmaps.errors import InputError
 from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.lubricant import HEAT_CAPACITY, Lubricant
@@ -304,29 +306,44 @@ UNNOTICED = 0.99
 
 @dataclass(frozen=True)
 class InletHeat:
-    """Effect of heat in the inlet on one isothermal film.
+    """Effect of heat in the inlet on one isothermal film, or on several: then numbers are arrays.
 
     Attributes
     ----------
-    factor : float
+    factor : float or array
         Factor phi of the film; 1 without heat.
     refused : str
-        Why the rule does not hold there; empty where it does.
-    slope : float
+        Why the rule does not hold for one film; empty where it does, and for several.
+    slope : float or array
         Derivative of phi by load [m/N].
-    exponent : float
+    exponent : float or array
         n: the loss compliance goes with phi^n.
-    film_error, loss_error : float
+    film_error, loss_error : float or array
         How far the film, and film compliance and loss compliance, may be from those of a film with temperatures,
         relative: bounds of the rule itself, beside the numerical errors of the isothermal film.
     """
 
-    factor: float
+    factor: Any
     refused: str
-    slope: float
-    exponent: float
-    film_error: float
-    loss_error: float
+    slope: Any
+    exponent: Any
+    film_error: Any
+    loss_error: Any
+
+    @property
+    def loss_factor(self) -> Any:
+        """Factor of the loss compliance."""
+        return self.factor**self.exponent
+
+    def compliance(self, film_compliance: Any, film_offset: Any) -> Any:
+        """Film compliance with heat, of those of the isothermal film.
+
+        Parameters
+        ----------
+        film_compliance, film_offset : float or array
+            Of the isothermal film [m2/N], [m].
+        """
+        return film_compliance * self.factor - film_offset * self.slope
 
     @property
     def note(self) -> str:
@@ -335,18 +352,18 @@ class InletHeat:
             return ""
         return (
             f"inlet heat by a formula: film x {self.factor:.3f} within {100.0 * self.film_error:.1f} %, loss x "
-            f"{self.factor**self.exponent:.3f}, loss and film compliance within {100.0 * self.loss_error:.0f} %"
+            f"{self.loss_factor:.3f}, loss and film compliance within {100.0 * self.loss_error:.0f} %"
         )
 
 
-def inlet_heat_factor(load_number: float, loading: float) -> float:
+def inlet_heat_factor(load_number: Values, loading: Values) -> Values:
     """Factor phi of the film.
 
     Parameters
     ----------
-    load_number : float
+    load_number : float or array
         Moes' M of the isothermal contact, > 0.
-    loading : float
+    loading : float or array
         QL, see `ehdmaps.physics.heat.thermal_loading`, >= 0.
 
     Notes
@@ -359,8 +376,8 @@ def inlet_heat_factor(load_number: float, loading: float) -> float:
     >>> round(inlet_heat_factor(20.0, 0.5), 3)
     0.876
     """
-    heating: float = 0.236 * loading**0.72 * load_number / (load_number + LIGHTEST)
-    return 1.0 / (1.0 + heating)
+    heating = 0.236 * loading**0.72 * load_number / (load_number + LIGHTEST)
+    return as_given(1.0 / (1.0 + heating), load_number)
 
 
 def inlet_heat(contact: LineContact, lubricant: Lubricant, point: OperatingPoint) -> InletHeat:
@@ -380,47 +397,101 @@ def inlet_heat(contact: LineContact, lubricant: Lubricant, point: OperatingPoint
     InputError
         Without the conductivity of the oil.
     """
-    conductivity = heat_data(lubricant, contact.material).oil_conductivity
     if point.entrainment_speed == 0.0:
+        heat_data(lubricant, contact.material)
         return InletHeat(1.0, "", 0.0, 1.0, 0.0, 0.0)
-    state = lubricant.at(point.temperature)
-    loading = thermal_loading(viscosity_slope(lubricant, point.temperature), point.entrainment_speed, conductivity)
-    alpha = state.pressure_viscosity.pressure_viscosity
-    M, L = moes_groups(
-        point.load, point.entrainment_speed, state.viscosity, alpha, contact.radius, contact.reduced_modulus
-    )
-    M, factor = float(M), inlet_heat_factor(float(M), loading)
-    zeta = math.log(M / float(valley_load_number(L)))
-    square = M * M
-    share = 0.8 if abs(zeta) > 1.0 else 4.0
-    return InletHeat(
+    at = np.array([[point.load], [point.entrainment_speed], [point.temperature]])
+    several, groups = _heats(contact, lubricant, *at)
+    numbers = {entry.name: getattr(several, entry.name) for entry in fields(several) if entry.name != "refused"}
+    one = {name: float(value[0]) for name, value in numbers.items()}
+    return InletHeat(refused=_refused(*(float(group[0]) for group in groups), one["factor"]), **one)
+
+
+def inlet_heats(
+    contact: LineContact, lubricant: Lubricant, load: FloatArray, speed: FloatArray, temperature: FloatArray
+) -> InletHeat:
+    """Effect of heat in the inlet on isothermal films; arrays of one shape.
+
+    Nothing is refused: the factors go on smoothly where no factor is known, and the errors are as large as the effect.
+
+    Parameters
+    ----------
+    contact, lubricant
+        Contact and oil, whose conductivity has to be known.
+    load, speed, temperature : array
+        w [N/m] > 0, u [m/s] > 0 and T [K].
+
+    Raises
+    ------
+    InputError
+        Without the conductivity of the oil.
+    """
+    return _heats(contact, lubricant, load, speed, temperature)[0]
+
+
+def _heats(
+    contact: LineContact, lubricant: Lubricant, load: FloatArray, speed: FloatArray, temperature: FloatArray
+) -> tuple[InletHeat, tuple[FloatArray, FloatArray, FloatArray]]:
+    """The same, and M, L and QL."""
+    conductivity = heat_data(lubricant, contact.material).oil_conductivity
+    M, L, loading = np.empty((3, *load.shape))
+    for kelvin in np.unique(temperature).tolist():
+        here, state = temperature == kelvin, lubricant.at(kelvin)
+        alpha = state.pressure_viscosity.pressure_viscosity
+        one_M, one_L = moes_groups(1.0, 1.0, state.viscosity, alpha, contact.radius, contact.reduced_modulus)
+        M[here], L[here] = one_M * load[here] / np.sqrt(speed[here]), one_L * speed[here] ** 0.25
+        loading[here] = thermal_loading(viscosity_slope(lubricant, kelvin), 1.0, conductivity) * speed[here] ** 2
+    factor = inlet_heat_factor(M, loading)
+    thinner, square = 1.0 - factor, M * M
+    unknown = np.logical_or.reduce(_unknown(M, L, loading, factor))
+    heat = InletHeat(
         factor=factor,
-        refused=_refused(M, L, zeta, loading, factor),
-        slope=-(1.0 - factor) * factor * LIGHTEST / (M + LIGHTEST) / point.load,
+        refused="",
+        slope=-thinner * factor * LIGHTEST / (M + LIGHTEST) / load,
         exponent=1.0 + square / (1.0 + square),
-        film_error=0.4 * (1.0 - factor),
-        loss_error=share * (1.0 - factor),
+        film_error=np.where(unknown, 1.0, 0.4) * thinner,
+        loss_error=np.where(unknown | (np.abs(_zeta(M, L)) <= 1.0), 4.0, 0.8) * thinner,
+    )
+    return heat, (M, L, loading)
+
+
+def _zeta(M: FloatArray, L: FloatArray) -> FloatArray:
+    """Distance from the bottom of the damping valley in ln M."""
+    return np.log(M / valley_load_number(L))
+
+
+def _unknown(M: FloatArray, L: FloatArray, loading: FloatArray, factor: FloatArray) -> tuple[BoolArray, ...]:
+    """Tell where no factor is known: too much heat, a light contact with much heat, the damping valley."""
+    noticed = factor <= UNNOTICED
+    return (
+        np.asarray(loading > LARGEST_LOADING),
+        np.asarray(noticed & (M < LIGHT) & (loading > LIGHT_LOADING)),
+        np.asarray(noticed & (np.abs(_zeta(M, L)) < VALLEY) & (L > VALLEY_OIL_NUMBER)),
     )
 
 
-def _refused(M: float, L: float, zeta: float, loading: float, factor: float) -> str:
-    """Reason why the rule does not hold; empty where it does."""
+def _refused(M: float, L: float, loading: float, factor: float) -> str:
+    """Reason why the rule does not hold for one film; empty where it does."""
+    hot, light, valley = _unknown(*(np.array(value) for value in (M, L, loading, factor)))
     instead = "solve with physics thermal"
-    if loading > LARGEST_LOADING:
+    if hot:
         return f"inlet heat: loading QL = {loading:.3g} above {LARGEST_LOADING:g}, where no factor is known; {instead}"
-    if factor > UNNOTICED:
-        return ""
-    if M < LIGHT and loading > LIGHT_LOADING:
+    if light:
         return (
             f"inlet heat: M = {M:.3g} below {LIGHT:g} at a loading QL = {loading:.3g} above {LIGHT_LOADING:g}, where "
             f"no factor is known; {instead}"
         )
-    if abs(zeta) < VALLEY and L > VALLEY_OIL_NUMBER:
+    if valley:
+        zeta = float(_zeta(np.array(M), np.array(L)))
         return (
             f"inlet heat: M = {M:.3g} is {abs(zeta):.2f} in ln M from the bottom of the damping valley, below "
             f"{VALLEY:g} at L = {L:.3g} above {VALLEY_OIL_NUMBER:g}, where no factor holds; {instead}"
         )
     return ""
+
+
+THINNED = ("film_offset", "central_film", "minimum_film", "rolling_force", "mass_flow")
+"""Numbers of a film that go with its factor."""
 
 
 def heated(film: FilmSolution, heat: InletHeat) -> FilmSolution:
@@ -439,13 +510,12 @@ def heated(film: FilmSolution, heat: InletHeat) -> FilmSolution:
         return FilmSolution(
             Status.OUTSIDE_VALIDITY, heat.refused, iterations=film.iterations, solve_seconds=film.solve_seconds
         )
-    thinner = ("film_offset", "central_film", "minimum_film", "rolling_force", "mass_flow")
     return replace(
         film,
         reason="; ".join(filter(None, (film.reason, heat.note))),
-        film_compliance=film.film_compliance * heat.factor - film.film_offset * heat.slope,
-        loss_compliance=film.loss_compliance * heat.factor**heat.exponent,
-        **{name: getattr(film, name) * heat.factor for name in thinner},
+        film_compliance=heat.compliance(film.film_compliance, film.film_offset),
+        loss_compliance=film.loss_compliance * heat.loss_factor,
+        **{name: getattr(film, name) * heat.factor for name in THINNED},
     )
 
 
@@ -468,11 +538,10 @@ def heated_spectrum(spectrum: FilmSpectrum, heat: InletHeat) -> FilmSpectrum:
     film = heated(spectrum.film, heat)
     if not film.status.usable:
         return no_spectrum(film, spectrum.frequencies)
-    kept, lost = heat.factor, heat.factor**heat.exponent
-    more = -spectrum.film.film_offset * heat.slope
+    kept = heat.compliance(spectrum.compliance.real, spectrum.film.film_offset)
     return replace(
         spectrum,
         film=film,
-        compliance=np.asarray(kept * spectrum.compliance.real + more + 1j * lost * spectrum.compliance.imag),
-        errors=np.asarray(kept * spectrum.errors.real + 1j * lost * spectrum.errors.imag),
+        compliance=np.asarray(kept + 1j * heat.loss_factor * spectrum.compliance.imag),
+        errors=np.asarray(heat.factor * spectrum.errors.real + 1j * heat.loss_factor * spectrum.errors.imag),
     )

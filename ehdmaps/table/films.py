@@ -26,6 +26,7 @@ from ehdmaps.physics.closed_form import (
     THIN_FILM_LIMIT,
 )
 from ehdmaps.physics.contact import LineContact, OperatingPoint
+from ehdmaps.physics.heat import THINNED, inlet_heats
 from ehdmaps.physics.hertz import LARGEST_PRESSURE
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.rheology import NEWTONIAN_LIMIT, NEWTONIAN_STRESS
@@ -168,6 +169,7 @@ class FilmTable:
         others: bool = True,
         response: bool = False,
         thickest_film: float = THICKEST_FILM,
+        inlet_heat: bool = False,
     ) -> TableFilms:
         """Films at points.
 
@@ -185,11 +187,15 @@ class FilmTable:
             Whether the film compliance at the natural frequencies is wanted.
         thickest_film : float
             Largest h/R that is no refusal; infinite for points that stand for their groups only.
+        inlet_heat : bool
+            Whether heat in the inlet thins them, by its rule (`ehdmaps.physics.heat`), whose errors are added. The
+            response is isothermal in any case.
 
         Raises
         ------
         InputError
-            For loads, speeds and temperatures that no point can have, and an oil with the other density law.
+            For loads, speeds and temperatures that no point can have, an oil with the other density law, and one whose
+            conductivity heat would need.
         """
         if (lubricant.density_law != "incompressible") != self.compressible:
             held = "dowson-higginson" if self.compressible else "incompressible"
@@ -225,6 +231,16 @@ class FilmTable:
             complex_response[good] = reduced_response * points.unit.compliance[good, None]
             errors["response"][good] = np.hypot(wrong[:, 0::2], wrong[:, 1::2]) / np.abs(reduced_response)
         cause[good] = _noted(numbers, hole, thickest_film * contact.radius, contact.radius, good)
+        if inlet_heat:
+            heat = inlet_heats(contact, lubricant, *(x.ravel()[good] for x in (w, u, T)))
+            kept = heat.compliance(numbers["film_compliance"][good], numbers["film_offset"][good])
+            numbers["film_compliance"][good] = kept
+            numbers["loss_compliance"][good] *= heat.loss_factor
+            for name in THINNED:
+                numbers[name][good] *= heat.factor
+                errors[name][good] += heat.film_error
+            for wrong in (errors["film_compliance"], errors["loss_compliance"], law_error):
+                wrong[good] += heat.loss_error
         refused, dry = cause > _DRY, cause == _DRY
         for number in (*numbers.values(), *errors.values(), complex_response, law_error):
             number[refused], number[dry] = np.nan, 0.0

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from ehdmaps.arrays import FloatArray
 from ehdmaps.physics.closed_form import THICKEST_FILM
 from ehdmaps.physics.contact import LineContact, OperatingPoint
+from ehdmaps.physics.heat import INLET_HEAT
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.solution import ContactSolver, ContactSolverDefaults, FilmSolution, FilmSpectrum
 from ehdmaps.table.file import CHECKSUM, shipped_tables
@@ -22,10 +23,13 @@ class TableSolver(ContactSolverDefaults):
         Solves on the grid of the table, see `ehdmaps.table.coordinates.GRID`.
     thickest_film : float
         Largest h/R that is no refusal; infinite for maps that are there for their laws only.
+    inlet_heat : bool
+        Whether heat in the inlet thins the films, by its rule; what another solver solves is isothermal.
     """
 
     other: ContactSolver
     thickest_film: float = THICKEST_FILM
+    inlet_heat: bool = False
 
     @property
     def name(self) -> str:
@@ -44,7 +48,8 @@ class TableSolver(ContactSolverDefaults):
 
     def settings(self) -> dict[str, float | int | str]:
         """Settings of the other solver, and which table is read."""
-        return {**self.other.settings(), "film_table": shipped_tables().attributes[CHECKSUM]}
+        heat = {"physics": INLET_HEAT} if self.inlet_heat else {}
+        return {**self.other.settings(), **heat, "film_table": shipped_tables().attributes[CHECKSUM]}
 
     def solve_line(
         self,

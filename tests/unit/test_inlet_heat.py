@@ -10,6 +10,8 @@ import pytest
 
 from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import InputError
+from ehdmaps.jobs.make.table_law import table_map
+from ehdmaps.maps.emap import EHDMap
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.heat import INLET_HEAT, UNNOTICED, InletHeat, heated, inlet_heat, inlet_heat_factor
@@ -100,6 +102,38 @@ def test_reynolds_films_with_heat_are_isothermal_ones_times_the_factors():
     moved = warm.film_compliance - heat.factor * cold.film_compliance
     np.testing.assert_allclose(spectrum.compliance.real, heat.factor * plain.compliance.real + moved, rtol=1e-12)
     np.testing.assert_allclose(spectrum.compliance.imag, heat.factor**heat.exponent * plain.compliance.imag, rtol=1e-12)
+
+
+def test_laws_of_the_film_table_have_heat_by_the_same_rule():
+    ranges = {"loads": (1e3, 3e5), "entrainment_speeds": (1.0, 12.0), "temperatures": (353.15, 393.15)}
+    geometry = BearingGeometry.named("NU308")
+    cold, warm = (table_map(geometry, OIL, **ranges, inlet_heat=heat) for heat in (False, True))
+    speeds, kelvins = np.array([FAST.entrainment_speed]), np.array([FAST.temperature])
+    step = np.array([1.0 - 1e-4, 1.0, 1.0 + 1e-4])
+    loads = (FAST.load * step)[:, None, None]
+    plain, found = (emap.film_field().films("inner", loads, speeds, kelvins) for emap in (cold, warm))
+    heat = inlet_heat(INNER, OIL, FAST)
+    assert 0.9 < heat.factor < 0.95
+    factors = [(new / old)[1, 0, 0] for new, old in zip(found, plain, strict=True)]
+    # lines of both are joined by splines through the same nodes
+    assert (factors[0], factors[2]) == pytest.approx((heat.factor, heat.loss_factor), rel=1e-4)
+    slope = -(found[0][2] - found[0][0]) / (loads[2] - loads[0])
+    np.testing.assert_allclose(found[1][1], slope, rtol=1e-6)
+    forces, flows = (
+        [getattr(emap.rolling_film, name)("inner", FAST.load, 10.0, FAST.temperature) for emap in (cold, warm)]
+        for name in ("rolling_force", "mass_flow")
+    )
+    assert [new / old for old, new in (forces, flows)] == pytest.approx([heat.factor] * 2, rel=1e-9)
+    # the rule may be wrong by what it says, and so bands know it
+    errors = [emap.dataset["loss_compliance_error"].sel(contact="inner").values[-1, -1, 0] for emap in (cold, warm)]
+    at = OperatingPoint(3e5, 12.0, 353.15)
+    assert errors[1] - errors[0] == pytest.approx(inlet_heat(INNER, OIL, at).loss_error, rel=1e-3)
+    assert warm.inlet_heat and EHDMap(warm.dataset).inlet_heat and not EHDMap(cold.dataset).inlet_heat
+
+
+def test_heat_of_the_table_is_refused_where_the_table_does_not_serve():
+    with pytest.raises(InputError, match=r"^inlet heat of .*: its films have to be solved .*; allowed: films of the"):
+        table_map(INNER, OIL, solver=ReynoldsSolver(shear="eyring"), inlet_heat=True)
 
 
 def test_settings_name_the_physics_only_where_it_is_not_the_default():

@@ -547,7 +547,7 @@ def _finished(planned: _Plan, result: SweepResult, where: str) -> tuple[xr.Datas
     """Put results together, with the check of the laws and a checksum: the map and its backbone."""
     arrays = _results(planned, result)
     if planned.from_table and isinstance(planned.solver, TableSolver):
-        films = table_films(planned.job, planned.solver.thickest_film)
+        films = table_films(planned.job, planned.solver)
     else:
         films = placed(planned.job, planned.tasks, arrays)
     dataset = assemble(planned.job, planned.solver, films)

@@ -111,21 +111,21 @@ def within_bars(lubricant: Lubricant, points: list[SamplePoint]) -> BoolArray:
     return good
 
 
-def table_films(job: Job, thickest_film: float) -> dict[str, npt.NDArray[Any]]:
+def table_films(job: Job, solver: TableSolver) -> dict[str, npt.NDArray[Any]]:
     """Films of all points of a map, read from the table, by the names of `FilmSolution`; of the shape of the map.
 
     Parameters
     ----------
     job : Job
         The job.
-    thickest_film : float
-        Largest h/R that is no refusal.
+    solver : TableSolver
+        Says which of them are refused, and whether heat in the inlet thins them.
     """
     axes = (np.array(axis, dtype=float) for axis in (job.loads, job.entrainment_speeds, job.temperatures))
     w, u, T = np.meshgrid(*axes, indexing="ij")
-    table = film_table(job.lubricant)
+    table, thickest, heat = film_table(job.lubricant), solver.thickest_film, solver.inlet_heat
     read = [
-        _film_arrays(table.films(contact, job.lubricant, w, u, T, thickest_film=thickest_film))
+        _film_arrays(table.films(contact, job.lubricant, w, u, T, thickest_film=thickest, inlet_heat=heat))
         for contact in job.contacts
     ]
     return {name: np.stack([one[name] for one in read]) for name in read[0]}

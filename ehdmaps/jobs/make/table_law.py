@@ -23,6 +23,7 @@ from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.catalogue import designated
 from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.heat import heat_data
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.point.ball_catalogue import ball_estimate, plain_ball_designation
@@ -67,6 +68,7 @@ class ReadMap(EHDMap):
         self.contacts, self.lubricant, self.bearing = job.contacts, job.lubricant, job.bearing
         self.supply, self.surface = job.supply or FLOODED, job.surface or SMOOTH
         self.solver = solver.name
+        self.inlet_heat = solver.inlet_heat
 
     def __getstate__(self) -> dict[str, Any]:
         """For other processes, which make again what follows from the job."""
@@ -95,7 +97,7 @@ class ReadMap(EHDMap):
         """Variables by name."""
         from ehdmaps.jobs.make.assemble import assembled
 
-        return assembled(self._job, table_films(self._job, self._read.thickest_film))
+        return assembled(self._job, table_films(self._job, self._read))
 
 
 def table_map(
@@ -109,6 +111,7 @@ def table_map(
     supply: OilSupply | None = None,
     surface: Surface | None = None,
     solver: ContactSolver | None = None,
+    inlet_heat: bool = False,
 ) -> EHDMap:
     """Make a map in memory, in about a second, with few points: it is there for its laws.
 
@@ -132,11 +135,13 @@ def table_map(
         Oil supply and surfaces that the laws have by default; flooded and smooth if left out.
     solver : ContactSolver, optional
         What gives the films; the table if left out.
+    inlet_heat : bool
+        Whether heat in the inlet thins the films of the table, by its rule (`ehdmaps.physics.heat`).
 
     Raises
     ------
     InputError
-        For ranges that no map could have.
+        For ranges that no map could have; for heat where the table does not serve, or of an oil without conductivity.
     """
     bearing = of if isinstance(of, BearingGeometry) else None
     if temperatures is None:
@@ -161,8 +166,16 @@ def table_map(
     )
     # laws let films fade where they are too thick for the points of a map
     chosen = of_groups(solver or solvers.of_map(job))
-    if isinstance(chosen, TableSolver) and not unserved(job, chosen):
-        return ReadMap(job, chosen)
+    why = unserved(job, chosen)
+    if inlet_heat:
+        heat_data(lubricant, material)
+        if why:
+            raise InputError(
+                f"inlet heat of {job.title}: its films have to be solved ({why}); allowed: films of the film table; "
+                'make a map, by `ehdmaps generate` with physics = "inlet-heat" in [solver] of the job'
+            )
+    if isinstance(chosen, TableSolver) and not why:
+        return ReadMap(job, replace(chosen, inlet_heat=inlet_heat))
     from ehdmaps.jobs.make.generate import generate_in_memory  # with all that solves and writes a map
 
     made = generate_in_memory(job, workers=1, solver=chosen)
