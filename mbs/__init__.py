@@ -63,7 +63,8 @@ if TYPE_CHECKING:
     from mbs.model.drive import Drive
     from mbs.model.elements import Input, Load, Operation, Sensor, Spring
     from mbs.model.profiles import SpeedProfile
-    from mbs.planning.auto import AutoSettings, automatic
+    from mbs.planning.auto import automatic
+    from mbs.planning.physics import AutoSettings
     from mbs.planning.plan import PlanSettings, plan
     from mbs.scene.assembly import Model, assemble
     from mbs.scene.matrices import MatrixSpec
@@ -138,7 +139,7 @@ __all__ = [
 
 _HOMES = {
     "Attached": "flexible.plan",
-    "AutoSettings": "planning.auto",
+    "AutoSettings": "planning.physics",
     "Bearing": "bearings.bearing",
     "BearingForce": "bearings.bearing_force",
     "BearingSpec": "scene.specs",

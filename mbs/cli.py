@@ -8,7 +8,7 @@ import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from ehdmaps.choices import PHYSICS, SHEAR, add_choices
+from ehdmaps.choices import add_choices
 from ehdmaps.errors import AnalysisError
 from ehdmaps.program import Program, count, run
 from mbs.scene.choices import OPTIONS, VARIED
@@ -22,7 +22,7 @@ _PREPARE, _LABORATORY = "maps and bodies", "laboratory"
 _SCENES = ("check", "importing", "new")
 """Modules of commands on scene files themselves."""
 
-_OWN_PHYSICS = ("auto", "maps", PHYSICS.key, SHEAR.key, "auto_tolerance")
+_OWN_PHYSICS = ("auto", "auto_tolerance")
 
 _UFF = "universal files need pip install 'ehdmaps[modal]'"
 """What is said where such files are read or written."""
@@ -234,7 +234,7 @@ def _level_tolerance(command: argparse.ArgumentParser) -> None:
         "--tolerance",
         metavar="LEVEL",
         help="of one law: choose step and slices by short trials so that the sum level at equal speed keeps "
-        'it, such as "1 dB"; with --auto films, supply and roughness, too',
+        'it, such as "1 dB"; with --auto films, too',
     )
 
 
@@ -258,7 +258,7 @@ def _recorded(command: argparse.ArgumentParser) -> None:
 def _tradeoff(top: Program) -> None:
     """Add the command that measures speed against accuracy; the laws are its own."""
     words = "speed against accuracy of a scene, measured: laws, supplies, maps, slices, cut-off, step, cage angles"
-    chosen = _choices("law", "films", "supply", "start-angle")
+    chosen = _choices("law", "physics", "films", "supply", "start-angle")
     more = "; the first map is the reference, more make rows; without one the film formula is the reference"
     command = top.add_command(_LABORATORY, "tradeoff", words, chosen, more)
     command.add_argument("scene", metavar="SCENE")
@@ -291,7 +291,7 @@ def _variants(command: argparse.ArgumentParser) -> None:
 def _bearing(top: Program) -> None:
     """Add the command on one bearing, without a scene."""
     words = "one bearing without a scene: stiffness, damping, loads of rollers or balls, pressures, films"
-    chosen = _choices("load-factor", "start-angle")
+    chosen = _choices("physics", "load-factor", "start-angle")
     command = top.add_command(_LOOK, "bearing", words, chosen)
     command.add_argument(
         "bearing", metavar="BEARING", help="N1014, NU308, 6208, 7208B, or a TOML file with [bearing] (a job)"
@@ -512,24 +512,12 @@ def _auto(shared: argparse.ArgumentParser) -> None:
         "--auto",
         action="store_true",
         default=None,
-        help="films of the film table, with film memory, oil supply and roughness where they matter; where heat or a "
-        "limiting stress do, a map of its own, whose points are kept in a store beside it",
+        help="films of the film table, with film memory and heat in the inlet where these matter; says what does",
     )
-    group.add_argument(
-        "--maps",
-        metavar="FOLDER",
-        help="for maps that --auto makes and keeps; made if missing; default: this one",
-    )
-    for choice, default in (
-        (PHYSICS, "by the rule of the inlet where that matters and holds"),
-        (SHEAR, "limiting where that matters"),
-    ):
-        words = f"{choice.said}, of the map of --auto; default: {default}"
-        group.add_argument(f"--{choice.name}", metavar=choice.metavar, help=words)
     group.add_argument(
         "--auto-tolerance",
         metavar="PART",
-        help="change of a stiffness or damping above which --auto switches physics on, such as '5 %%', or of "
+        help="change of a stiffness or damping above which physics matters to --auto, such as '5 %%', or of "
         "a level, such as '1 dB'; default: --tolerance of runup and campbell, else 5 %%",
     )
 

@@ -31,7 +31,7 @@ from ehdmaps.maps.film_field import (
 )
 from ehdmaps.maps.grid_field import GridField, line_field, lines_by_contact
 from ehdmaps.maps.law import SPEED_REACH, ContactLaw, LawKind, OutsidePolicy
-from ehdmaps.maps.law_errors import LEFT_OUT, LawErrors
+from ehdmaps.maps.law_errors import LawErrors
 from ehdmaps.maps.reading import check_content, check_tables, content_sha256, own_points, read_map, validate
 from ehdmaps.maps.records import (
     bearing_from_json,
@@ -182,25 +182,6 @@ class EHDMap:
         if schema.CHECKSUM in dataset.attrs:
             dataset.attrs[schema.CHECKSUM] = content_sha256(dataset, self.backbone)
         return EHDMap(dataset, self.backbone)
-
-    def with_left_out(self, stiffness: float, damping: float) -> EHDMap:
-        """The same map with errors for physics of known size that its films leave out, which bounds of its laws have.
-
-        Parameters
-        ----------
-        stiffness, damping : float
-            Relative errors of k and c at all points, >= 0, in place of any that were given before.
-
-        Examples
-        --------
-        >>> from ehdmaps.jobs.make.table_law import table_map
-        >>> plain = table_map(BearingGeometry.named("NU308"), Lubricant.named("FVA3"))
-        >>> [one.law_errors.left_out for one in (plain, plain.with_left_out(0.0, 0.1))]
-        [(0.0, 0.0), (0.0, 0.1)]
-        """
-        added = dict(zip(LEFT_OUT, (float(stiffness), float(damping)), strict=True))
-        dataset = self.dataset.assign_attrs(added)
-        return self._of_the_same_films(dataset)
 
     def with_surface(self, surface: Surface) -> EHDMap:
         """The same films, whose laws are those of other surfaces where nothing else is asked for.

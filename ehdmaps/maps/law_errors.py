@@ -10,8 +10,7 @@ Four kinds of error, each relative, at a load, entrainment speed and temperature
   c, likewise linear between the points, of which each has the largest error around it;
 - of the model: `stiffness_model_error` and `damping_model_error`, where the map has them.
 
-Physics that the films leave out, and of which the size is known, is added as a fifth where whoever uses the map says
-so (`EHDMap.with_left_out`). All are taken as systematic: an estimate that has one sign at one point has it at all
+All are taken as systematic: an estimate that has one sign at one point has it at all
 loads, in both contacts of a roller, and in all bearings that share the map. So the kinds are added, and so are the
 contacts of a roller. Where signs alternate, as those of an interpolation do, that is more than need be.
 
@@ -84,9 +83,6 @@ def changed_table(table: ApproachTable, change: LawChange) -> ApproachTable:
 
 QUANTILES = {"median": 0.5, "95 %": 0.95, "99 %": 0.99, "largest": 1.0}
 """Words and numbers of the quantiles that the check of a law writes."""
-
-LEFT_OUT = ("left_out_stiffness_error", "left_out_damping_error")
-"""Attributes of a map with the relative errors of k and c for physics that its films leave out."""
 
 TAKEN = "95 %"
 """Quantile of the errors of a law that a bound takes."""
@@ -224,12 +220,6 @@ class LawErrors:
         return 0 if self._checked is None or points is None else int(points)
 
     @property
-    def left_out(self) -> tuple[float, float]:
-        """Relative errors of k and c for physics of known size that the films leave out."""
-        attributes = self._data.attrs
-        return float(attributes.get(LEFT_OUT[0], 0.0)), float(attributes.get(LEFT_OUT[1], 0.0))
-
-    @property
     def has_model_errors(self) -> bool:
         """True where the map states errors of its model."""
         return any(name in self._data for name in MODEL_ERRORS)
@@ -296,9 +286,6 @@ class LawErrors:
             parts.append("errors of its law between its points")
         if self.has_model_errors:
             parts.append("errors of its model")
-        if any(self.left_out):
-            k, c = (f"{100.0 * part:.2g} %" for part in self.left_out)
-            parts.append(f"physics of known size that its films leave out ({k} of k, {c} of c)")
         told = self._checked is not None or self.has_spacing_errors
         lacking = [
             *([] if told else ["errors of its law between its points (it was not checked)"]),
@@ -306,7 +293,7 @@ class LawErrors:
             *(f"{name} (not known)" for name in self.unknown),
         ]
         without = f"; without {', '.join(lacking)}" if lacking else ""
-        return f"{' and '.join(parts)}{without}; {'other ' if any(self.left_out) else ''}{NOT_IN}"
+        return f"{' and '.join(parts)}{without}; {NOT_IN}"
 
     def bounds(
         self,
@@ -377,7 +364,7 @@ class LawErrors:
                     (k, c, offset), self._of_law(logs - np.log(valley), share, film), strict=True
                 )
             )
-        return k + self.left_out[0], c + self.left_out[1], offset, compliance, loss
+        return k, c, offset, compliance, loss
 
     def _of_law(self, zeta: FloatArray, share: FloatArray, film: FloatArray) -> tuple[FloatArray, ...]:
         """Errors of the law: relative ones of k and c, and that of the film offset [m]."""

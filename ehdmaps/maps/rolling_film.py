@@ -376,9 +376,8 @@ class _Heated:
 
     def __call__(self, contact: LineContact, loads: FloatArray, speed: float, T: float) -> FloatArray:
         every = (np.full(loads.shape, value) for value in (speed, T))
-        return self.isothermal(contact, loads, speed, T) + np.log(
-            inlet_heats(contact, self.lubricant, loads, *every).factor
-        )
+        logs = np.log(inlet_heats(contact, self.lubricant, loads, *every).factor)
+        return np.asarray(self.isothermal(contact, loads, speed, T) + logs)
 
 
 @dataclass(frozen=True, eq=False)

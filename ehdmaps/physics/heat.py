@@ -404,7 +404,8 @@ def inlet_heat(contact: LineContact, lubricant: Lubricant, point: OperatingPoint
     several, groups = _heats(contact, lubricant, *at)
     numbers = {entry.name: getattr(several, entry.name) for entry in fields(several) if entry.name != "refused"}
     one = {name: float(value[0]) for name, value in numbers.items()}
-    return InletHeat(refused=_refused(*(float(group[0]) for group in groups), one["factor"]), **one)
+    M, L, loading = (float(group[0]) for group in groups)
+    return InletHeat(refused=_refused(M, L, loading, one["factor"]), **one)
 
 
 def inlet_heats(

@@ -78,7 +78,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         lines += write_time_data(arguments.signals, simulated_campbell(runs))
     outside = any(any(entry.record.outside.values()) for entry in runs)
     missed = judged.status or found.failed or outside or (tolerated is not None and not tolerated.met)
-    return "\n".join(lines), 1 if missed else done.status
+    return "\n".join(lines), 1 if missed else 0
 
 
 class _Asked(NamedTuple):

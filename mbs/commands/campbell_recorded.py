@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 _MOST_ORDERS, _LARGEST_ORDER = 50, 1e4
 _OF_A_SCENE = (
     *(choice.key for choice in OPTIONS),
-    *("bands", "tolerance", "modes", "auto", "maps", "physics", "measured", "channel"),
+    *("bands", "tolerance", "modes", "auto", "measured", "channel"),
 )
 """Options that say something of a simulation, and nothing of a run that is recorded."""
 

@@ -178,8 +178,6 @@ def _one_each(arguments: argparse.Namespace) -> list[str]:
         for choice in OPTIONS
         if choice.name != "map" and len(texts := texts_of(arguments, choice)) > 1
     ]
-    if _ready(arguments) is not None and texts_of(arguments, CHOICES["law"]):
-        problems.append("--law: stands beside --auto, whose law is that of a map; leave one of them out")
     return problems
 
 
@@ -201,9 +199,7 @@ def _combined(
                 f"of bearing; {_COMPARING}"
             )
         laws = laws[:1] if values["law"] else laws
-    ready = _ready(arguments)
-    clearance = None if ready is None else ready.clearance
-    return combinations([Subject(scene, law, clearance) for law in laws], values, problems)
+    return combinations([Subject(scene, law) for law in laws], values, problems)
 
 
 def _values(arguments: argparse.Namespace, problems: list[str]) -> dict[str, list[Any]]:
@@ -218,12 +214,8 @@ def _values(arguments: argparse.Namespace, problems: list[str]) -> dict[str, lis
 def _laws(
     arguments: argparse.Namespace, scene: Scene, values: dict[str, list[Any]], problems: list[str]
 ) -> list[LawChoice]:
-    """The laws that are meant: those named, and each set of maps; without either films from the film table.
-
-    A subject that stands ready has the first one.
-    """
-    names, paths, ready = values["law"], values["map"], _ready(arguments)
-    laws = [] if ready is None else [ready.law]
+    """The laws that are meant: those named, and each set of maps; without either films from the film table."""
+    names, paths, laws = values["law"], values["map"], list[LawChoice]()
     for name in names:
         if name == "map" and paths:
             continue
@@ -231,7 +223,7 @@ def _laws(
             laws.append(named_law(name, scene))
         except InputError as error:
             problems += error.problems
-    if paths and ready is None:
+    if paths:
         laws += opened_maps(paths, scene, problems)
     if laws or names or paths:
         return laws
@@ -243,20 +235,12 @@ def _laws(
 
 
 def _read_scene(arguments: argparse.Namespace, problems: list[str]) -> Scene | None:
-    """Read the scene; None where problems were noted. A subject that stands ready has it."""
-    if (subject := _ready(arguments)) is not None:
-        return subject.scene
+    """Read the scene; None where problems were noted."""
     try:
         return read_scene(arguments.scene)
     except InputError as error:
         problems += error.problems
         return None
-
-
-def _ready(arguments: argparse.Namespace) -> Subject | None:
-    """Scene and law that stand ready in place of those to be read, as `--auto` puts them there."""
-    subject: Subject | None = getattr(arguments, "subject", None)
-    return subject
 
 
 def _output_problems(arguments: argparse.Namespace, scene: Scene | None, kind: Kind) -> list[str]:

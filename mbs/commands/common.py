@@ -27,26 +27,23 @@ RESOLUTION = 150
 
 @dataclass(frozen=True, eq=False)
 class Done(Generic[R]):
-    """The result of a command's analysis, with what `--auto` has to say.
+    """The result of a command's analysis, with what is to be said of the physics of its films.
 
     Attributes
     ----------
     result : R
         What the analysis gave.
     lines : tuple of str
-        Lines for the beginning of the output; none without `--auto`.
-    status : int
-        Exit status that they ask for.
+        Lines for the beginning of the output.
     """
 
     result: R
     lines: tuple[str, ...] = ()
-    status: int = 0
 
 
 @dataclass(frozen=True, eq=False)
 class Looked:
-    """Scope of an analysis, as far as a map and its physics depend on it.
+    """Scope of an analysis, as far as the physics of its films depends on it.
 
     Attributes
     ----------

@@ -63,7 +63,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     figure = critical_plot(labels, results) if arguments.plot else None
     dataset = dataset_of_laws(labels, results)
     lines += judged.last + outside + write(arguments, judged.marked(dataset), figure)
-    return "\n".join(lines), 1 if outside or judged.status else done.status
+    return "\n".join(lines), 1 if outside or judged.status else 0
 
 
 class _Asked(NamedTuple):

@@ -58,7 +58,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     if file := getattr(arguments, "state_space", None):
         write_spaces(Path(file), found)
         lines.append(f"{file}: written")
-    return "\n".join(lines), 1 if outside or judged.status else done.status
+    return "\n".join(lines), 1 if outside or judged.status else 0
 
 
 def _asked(arguments: argparse.Namespace) -> list[Case]:

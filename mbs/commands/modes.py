@@ -74,7 +74,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         *write(arguments, result.dataset, figure),
         *_write_shapes(arguments, result, shown),
     ]
-    return "\n".join(lines), 1 if outside or judged.status else done.status
+    return "\n".join(lines), 1 if outside or judged.status else 0
 
 
 def _asked(arguments: argparse.Namespace) -> tuple[Model, float]:

@@ -27,7 +27,7 @@ from mbs.scene.choices import OPTIONS
 from mbs.scene.map_set import MapSet
 from mbs.settings import SweepRange
 
-_OPTIONS = (*(choice.name for choice in OPTIONS), "physics", "shear", "auto-tolerance", "result")
+_OPTIONS = (*(choice.name for choice in OPTIONS), "auto-tolerance", "result")
 
 
 class _Asked(NamedTuple):
@@ -47,16 +47,14 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     found = done.result
     saved = None if asked.saved is None else (Path(arguments.result).name, asked.saved)
     maps = [Path(path).name for path in arguments.map or ()]
-    # a page that is sent need not tell the folders of who made it
-    remarks = [line.strip().replace(f"{Path(arguments.maps or '.')}/", "") for line in done.lines]
-    text = scene_report(found, _command(arguments), maps, saved, remarks)
+    text = scene_report(found, _command(arguments), maps, saved, [line.strip() for line in done.lines])
     write_report(arguments.output, text)
     failed = [reason for reason in (found.modes, found.sweep) if isinstance(reason, str) and reason]
     told = [f"warning: {line}" for line in (*warnings(found), *failed)]
     judged = Judged([("", found.findings)])
     lines = [*judged.first, *done.lines, *told, *judged.last, f"{arguments.output}: written"]
     outside = outside_at(found.model, found.statics.balance)
-    return "\n".join(lines), 1 if failed or outside or judged.status else done.status
+    return "\n".join(lines), 1 if failed or outside or judged.status else 0
 
 
 def _asked(arguments: argparse.Namespace) -> _Asked:
@@ -84,7 +82,7 @@ def _asked(arguments: argparse.Namespace) -> _Asked:
 
 
 def _examine(asked: _Asked, looked: list[_Asked]) -> Examination:
-    """Examine the model; what was asked last is kept, with the maps that `--auto` made."""
+    """Examine the model; what was asked last is kept, with what `--auto` chose."""
     looked.append(asked)
     return examined(asked.case.model, _maps(asked), asked.speeds, asked.saved is None, asked.case.subject)
 

@@ -1,4 +1,4 @@
-"""`mbs run`: every analysis for which the scene has a table, with one map or with a map of its own (`--auto`).
+"""`mbs run`: every analysis for which the scene has a table, with films that `--auto` may choose.
 
 Results, figures and texts of all of them are written into one folder.
 """
@@ -17,7 +17,7 @@ from mbs.scene.choices import OPTIONS
 from mbs.scene.reader import read_scene
 from mbs.scene.scene import Scene
 
-_TOLD_ONCE = ("auto: ", "warning: auto: ", "note: these films")
+_TOLD_ONCE = ("auto: ", "note: ")
 
 MARK = "mbs run"
 TEXT = Kind("a text of mbs run", (".txt",), lambda path: path.read_bytes().startswith(MARK.encode()))
@@ -80,9 +80,8 @@ def _words(arguments: argparse.Namespace, scene: Scene, name: str, folder: Path)
     for choice in OPTIONS:
         for text in texts_of(arguments, choice):
             words += [f"--{choice.name}", text]
-    for option in ("maps", "physics", "shear", "auto-tolerance"):
-        if (value := getattr(arguments, option.replace("-", "_"))) is not None:
-            words += [f"--{option}", value]
+    if arguments.auto_tolerance is not None:
+        words += ["--auto-tolerance", arguments.auto_tolerance]
     if arguments.auto:
         words.append("--auto")
     check_outputs([Output("-o", folder / f"{name}.txt", TEXT)])

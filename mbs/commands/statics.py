@@ -81,7 +81,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     outside = outside_at(model, balance)
     lines += [*judged.last, *(f"warning: {line}" for line in found.free), *outside]
     lines += write(arguments, found.dataset if arguments.output else None, figure)
-    return "\n".join(lines), 1 if outside or judged.status else done.status
+    return "\n".join(lines), 1 if outside or judged.status else 0
 
 
 def _slow(model: Model, balance: Equilibrium) -> list[str]:

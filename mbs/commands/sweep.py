@@ -88,7 +88,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     lines += judged.last + outside + write(arguments, result.dataset, figure)
     if arguments.waterfall:
         lines += write_plot(result.waterfall(), arguments.waterfall)
-    return "\n".join(lines), 1 if outside or judged.status else done.status
+    return "\n".join(lines), 1 if outside or judged.status else 0
 
 
 class _Asked(NamedTuple):

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
-import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.job import Job, check_oil
-from ehdmaps.jobs.job_text import Entry, bearing_keys, lubricant_keys, table_lines
+from ehdmaps.jobs.job_text import bearing_keys, lubricant_keys, table_lines
 from ehdmaps.jobs.problem import LOAD_AXIS, SPEED_AXIS, AxisRule
 from ehdmaps.jobs.reader import parse_job
 from ehdmaps.physics.lubricant import Lubricant
@@ -32,7 +31,7 @@ FEWEST = 4
 LAW_CHECK = 500
 
 
-def planned_job(scene: Scene, needed: Needed, name: str = "plan", solver: Mapping[str, Entry] | None = None) -> Job:
+def planned_job(scene: Scene, needed: Needed, name: str = "plan") -> Job:
     """The job that covers what the bearings of one geometry need, read back by the reader of jobs.
 
     Parameters
@@ -43,21 +42,19 @@ def planned_job(scene: Scene, needed: Needed, name: str = "plan", solver: Mappin
         The ranges.
     name : str
         Name of the job.
-    solver : mapping, optional
-        Further keys of [solver].
 
     Raises
     ------
     InputError
         With everything that a job does not allow, or cannot say.
     """
-    text = _job_text(scene, needed, solver)
+    text = _job_text(scene, needed)
     job = parse_job(text, name, f"the job for {', '.join(needed.bearings)}", to_run=True)
     check_oil(_lubricant(scene), job)
     return job
 
 
-def _job_text(scene: Scene, needed: Needed, solver: Mapping[str, Entry] | None) -> str:
+def _job_text(scene: Scene, needed: Needed) -> str:
     """Text of the job that covers what the bearings of one geometry need; geometry, oil and temperature are theirs."""
     geometry = next(entry.geometry for entry in scene.bearings if entry.name == needed.bearings[0])
     lines = [
@@ -78,7 +75,6 @@ def _job_text(scene: Scene, needed: Needed, solver: Mapping[str, Entry] | None) 
         'name = "reynolds"',
         'structural_law = "iso16281"',
         f"law_check = {LAW_CHECK}",
-        *(f"{key} = {json.dumps(value)}" for key, value in (solver or {}).items()),
         "",
     ]
     return "\n".join(lines)
@@ -154,8 +150,6 @@ class PlanResult:
         Ranges of a map by geometry; none without cylindrical roller bearings.
     seen : tuple of Seen
         Ranges of the other bearings by geometry, of balls, tapered or ribbed rollers.
-    filled : Model
-        The model with clearances that the films have taken up at the highest speed.
     """
 
     scene: Scene
@@ -163,43 +157,25 @@ class PlanResult:
     speeds: tuple[float, float]
     needed: tuple[Needed, ...]
     seen: tuple[Seen, ...]
-    filled: Model
 
-    def job(self, index: int, name: str = "plan", solver: Mapping[str, Entry] | None = None) -> Job:
-        """The job of one geometry, as `planned_job`.
-
-        Parameters
-        ----------
-        index : int
-            Which of `needed`.
-        name : str
-            Name of the job.
-        solver : mapping, optional
-            Further keys of [solver].
-        """
-        return planned_job(self.scene, self.needed[index], name, solver)
-
-    def jobs(self, names: Sequence[str] = (), solvers: Sequence[Mapping[str, Entry]] = ()) -> tuple[Job, ...]:
+    def jobs(self, names: Sequence[str] = ()) -> tuple[Job, ...]:
         """Jobs that cover the ranges, one a geometry, read back by the reader of jobs.
 
         Parameters
         ----------
         names : sequence of str
             One a geometry; "plan" if left out.
-        solvers : sequence of mapping
-            Further keys of [solver], one a geometry; none if left out.
 
         Raises
         ------
         InputError
             With everything that a job does not allow.
         """
-        count = len(self.needed)
         problems: list[str] = []
         jobs = []
-        for entry, name, solver in zip(self.needed, names or ["plan"] * count, solvers or [{}] * count, strict=True):
+        for entry, name in zip(self.needed, names or ["plan"] * len(self.needed), strict=True):
             try:
-                jobs.append(planned_job(self.scene, entry, name, solver))
+                jobs.append(planned_job(self.scene, entry, name))
             except InputError as error:
                 problems += error.problems
         if problems:
@@ -298,8 +274,10 @@ def _planned(scene: Scene, model: Model, settings: PlanSettings) -> PlanResult:
         else 0.0
         for entry, load, speed in zip(model.bearings, at_rest[:mapped], fastest, strict=True)
     )
-    filled = held(assemble(_dry_scene(model.scene, rooms), "hertz")) if mapped else mounted
-    preloaded = ranges.largest_loads(filled.system, filled.on_rings, speeds[1]) if mapped else dry
+    preloaded = dry
+    if mapped:  # in clearances that the films have taken up
+        filled = held(assemble(_dry_scene(model.scene, rooms), "hertz"))
+        preloaded = ranges.largest_loads(filled.system, filled.on_rings, speeds[1])
     centrifugal = [
         entry.bearing.centrifugal_load(entry.inner_spin, entry.outer_spin) * speeds[1] ** 2
         if given.centrifugal
@@ -314,4 +292,4 @@ def _planned(scene: Scene, model: Model, settings: PlanSettings) -> PlanResult:
         from mbs.planning.seen import seen_ranges  # with the films of points
 
         seen = seen_ranges(model.on_rings, static, speeds, scene.temperature, settings.margin)
-    return PlanResult(scene, model, speeds, needed, seen, filled)
+    return PlanResult(scene, model, speeds, needed, seen)

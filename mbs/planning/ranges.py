@@ -17,7 +17,6 @@ from itertools import pairwise
 
 import numpy as np
 
-from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.films import moes_central
@@ -30,7 +29,6 @@ from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import Constant, Course, Harmonic, LoadProfile
 from mbs.model.system import System
-from mbs.planning.criteria import ClosedContact, closed_contact
 from mbs.scene.assembly import AnyBearing
 
 ANGLES = 12
@@ -86,21 +84,6 @@ class Needed:
     temperature: float
     static_load: float
     film_room: float
-
-    def states(self, lubricant: Lubricant, load: FloatArray, speed: float) -> tuple[ClosedContact, ...]:
-        """The inner and the outer contact in closed form.
-
-        Parameters
-        ----------
-        lubricant : Lubricant
-            The oil.
-        load : array (n,)
-            Loads per unit length [N/m], > 0.
-        speed : float
-            Entrainment speed [m/s], > 0.
-        """
-        contacts = self.geometry.contacts(STEEL, "iso16281")
-        return tuple(closed_contact(contact, lubricant, load, speed, self.temperature) for contact in contacts)
 
 
 def same_contacts(geometry: BearingGeometry) -> tuple[float, float, float, float]:

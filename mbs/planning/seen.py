@@ -1,12 +1,11 @@
 """Bearings whose films no map has, of balls, tapered or ribbed rollers: what they see, what the film table has there.
 
 Their films are those of the film table of points, or of lines at the middle of a roller. They are asked the questions
-of bearings with maps: loads, speeds and temperature (`mbs.planning.ranges`), and what each physics would change.
+of bearings with maps: loads, speeds and temperature (`mbs.planning.ranges`).
 """
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,73 +13,12 @@ from typing import Any
 
 import numpy as np
 
-from ehdmaps.arrays import ComplexArray, FloatArray
 from ehdmaps.errors import AnalysisError
-from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.point.ellipse import Ellipse
-from ehdmaps.physics.solids import STEEL
 from ehdmaps.units import LOAD, RPM, SPEED, Display
-from mbs.bearings.balls.films import ContactFilms, ball_films
 from mbs.bearings.locating.locating_element import LocatingElement
-from mbs.bearings.tapered.line_film import cylinder_of
-from mbs.model.elements import Element
-from mbs.model.system import System
-from mbs.planning.criteria import ClosedContact, closed_contact
 from mbs.planning.ranges import LIGHT, LIGHTEST, idle_problem
 from mbs.scene.assembly import AnyBearing, Model
 from mbs.scene.fields import FORCE
-
-
-@dataclass(frozen=True, eq=False)
-class PointContact:
-    """A contact of a ball with its film of the film table, over its loads; arrays of the shape of `load`.
-
-    Attributes
-    ----------
-    contact : Ellipse
-        The dry contact.
-    load : array
-        Load [N], > 0.
-    speed, temperature : float
-        u [m/s], > 0, and T [K].
-    films : ContactFilms
-        What the table has at this speed.
-    """
-
-    contact: Ellipse
-    load: FloatArray
-    speed: float
-    temperature: float
-    films: ContactFilms
-
-    @property
-    def stiffness(self) -> FloatArray:
-        """k of slow motion [N/m]: the film gives way by -dh/dF beside the solids."""
-        dry = 1.0 / np.asarray(self.contact.stiffness(self.load))
-        return np.asarray(1.0 / (dry - self.films.read(self.load)[1][0] / self.load))
-
-    @property
-    def damping(self) -> FloatArray:
-        """c of slow motion [N s/m]."""
-        return np.asarray(self.films.read(self.load)[0][3])
-
-    @property
-    def minimum_film(self) -> FloatArray:
-        """Smallest film [m]."""
-        return np.asarray(self.films.read(self.load)[0][2])
-
-    def with_memory(self, omega: float) -> ComplexArray:
-        """Dynamic stiffness at an angular frequency [N/m], by `mbs.bearings.balls.response`.
-
-        Parameters
-        ----------
-        omega : float
-            Angular frequency [rad/s].
-        """
-        assert self.films.response is not None  # films that were read
-        springs, s = self.films.response.springs(self.load), 1j * omega
-        followed = np.sum(springs.shares / (1.0 + s * springs.times), axis=1)
-        return np.asarray(self.stiffness + s * self.damping * followed)
 
 
 @dataclass(frozen=True)
@@ -117,35 +55,6 @@ class Seen:
     def display(self) -> Display:
         """Unit in which its loads are told."""
         return FORCE if self.of_points else LOAD
-
-    def states(
-        self, lubricant: Lubricant, load: FloatArray, speed: float
-    ) -> tuple[ClosedContact, ...] | tuple[PointContact, ...]:
-        """The inner and the outer contact: lines in closed form, points by the film table.
-
-        Parameters
-        ----------
-        lubricant : Lubricant
-            The oil.
-        load : array (n,)
-            Loads in the unit of `load`, > 0.
-        speed : float
-            Entrainment speed [m/s], > 0.
-
-        Raises
-        ------
-        SolverError
-            Where the film table of points has no films at that speed.
-        """
-        if self.of_points:
-            contacts = self.geometry.contacts(STEEL)
-            films = ball_films(self.geometry, lubricant, speed, self.temperature, solves=False).sides
-            return tuple(
-                PointContact(contact, load, speed, self.temperature, side)
-                for contact, side in zip(contacts, films, strict=True)
-            )
-        lines = cylinder_of(self.geometry).contacts(STEEL, "iso16281")
-        return tuple(closed_contact(contact, lubricant, load, speed, self.temperature) for contact in lines)
 
 
 def seen_ranges(
@@ -269,27 +178,3 @@ def unmapped(model: Model) -> tuple[LocatingElement, ...]:
         Scene with its law.
     """
     return tuple(entry for entry in model.on_rings if isinstance(entry, LocatingElement))
-
-
-def weightless(system: System) -> System:
-    """The system with balls, tapered and ribbed rollers that have no mass.
-
-    Parameters
-    ----------
-    system : System
-        System with bearings.
-    """
-    return system.with_elements([_weightless(connected.element) for connected in system.elements])
-
-
-_LEAST_DENSITY = 1e-3
-"""Of a body without mass, over its own: what is left of the effect is as small."""
-
-
-def _weightless(element: Element) -> Element:
-    """The element with rolling bodies of little mass, which balances them where nothing touches; others as they are."""
-    if not isinstance(element, LocatingElement):
-        return element
-    material = element.force.material
-    light = dataclasses.replace(material, density=_LEAST_DENSITY * material.density)
-    return dataclasses.replace(element, force=element.force.with_material(light))

@@ -378,6 +378,31 @@ def _with_films(subject: Subject, kind: str) -> Subject:
     return dataclasses.replace(subject, law=dataclasses.replace(law, films="memory" if kind == "memory" else "slow"))
 
 
+def _physics() -> tuple[str, str]:
+    """What films of the film table know of heat."""
+    from ehdmaps.physics.heat import INLET_HEAT, ISOTHERMAL
+
+    return ISOTHERMAL, INLET_HEAT
+
+
+def _with_physics(subject: Subject, physics: str) -> Subject:
+    """A subject whose films of the film table have heat in the inlet or not; other laws stay as they are."""
+    maps = subject.law.maps
+    if maps is None:
+        return subject
+    if not all(emap.from_table for emap in maps.maps):
+        raise InputError(
+            f"got {physics} with a map, which has the physics that it was made with; allowed: films of the film table; "
+            "make the map of a job with this physics in [solver]"
+        )
+    heat = physics != _physics()[0]
+    if all(emap.inlet_heat == heat for emap in maps.maps):
+        return subject
+    from mbs.scene.map_set import table_maps
+
+    return dataclasses.replace(subject, law=dataclasses.replace(subject.law, maps=table_maps(subject.scene, heat)))
+
+
 def _films_words(kind: str) -> str:
     """Tell films."""
     return FILM_WORDS["memory" if kind == "memory" else "slow"]
@@ -406,7 +431,7 @@ def _with_temperature(subject: Subject, kelvin: float) -> Subject:
     if maps is None or not all(emap.from_table for emap in maps.maps) or maps.known_at(kelvin):
         return changed
     structure = maps.maps[0].structural_law
-    wider = table_maps(changed.scene).each(lambda emap: emap.with_structure(structure))
+    wider = table_maps(changed.scene, maps.maps[0].inlet_heat).each(lambda emap: emap.with_structure(structure))
     return dataclasses.replace(changed, law=dataclasses.replace(changed.law, maps=wider))
 
 
@@ -443,6 +468,17 @@ _ROWS = (
         "",
         str,
         _with_map,
+    ),
+    SceneChoice(
+        "physics",
+        "NAME",
+        "heat in films of the film table: isothermal | inlet-heat, by the rule of the inlet, of cylindrical rollers",
+        "isothermal",
+        one_of(_physics),
+        _with_physics,
+        example="inlet-heat",
+        concerned="maps",
+        usual=lambda physics: physics == _physics()[0],
     ),
     SceneChoice(
         STRUCTURE.name,

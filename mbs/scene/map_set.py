@@ -299,6 +299,7 @@ def _made_for(emap: EHDMap) -> str:
 def _made_by(emap: EHDMap) -> str:
     """Way in which a map was made."""
     films = "films from the film table" if emap.from_table else f"solver {emap.solver}"
+    films += ", inlet heat" if emap.inlet_heat else ""
     return films + structure_words(emap)
 
 
@@ -318,18 +319,20 @@ def speeds_of_laws(geometry: BearingGeometry, scene: Scene) -> tuple[float, floa
     return _SPEEDS[0], max(_SPEEDS[1], _BEYOND * fastest)
 
 
-def table_maps(scene: Scene) -> MapSet:
+def table_maps(scene: Scene, inlet_heat: bool = False) -> MapSet:
     """Maps of all types of bearing of a scene, over the usual ranges and those of the scene; a second each.
 
     Parameters
     ----------
     scene : Scene
         Bearings and oil.
+    inlet_heat : bool
+        Whether heat in the inlet thins the films, by its rule (`ehdmaps.physics.heat`).
 
     Raises
     ------
     InputError
-        If the scene has no oil or no bearing.
+        If the scene has no oil or no bearing; for heat that the film table cannot have.
     """
     from ehdmaps.jobs.make.table_law import TEMPERATURES
 
@@ -344,7 +347,7 @@ def table_maps(scene: Scene) -> MapSet:
     for spec in scene.bearings:
         if not any(suits(emap, spec.geometry) for emap in maps):
             plain = dataclasses.replace(spec.geometry, diametral_clearance=0.0)
-            maps.append(_made(plain, scene.lubricant, speeds_of_laws(plain, scene), temperatures))
+            maps.append(_made(plain, scene.lubricant, speeds_of_laws(plain, scene), temperatures, inlet_heat))
     return MapSet(maps)
 
 
@@ -354,8 +357,9 @@ def _made(
     lubricant: Lubricant,
     speeds: tuple[float, float],
     temperatures: tuple[float, float],
+    inlet_heat: bool,
 ) -> EHDMap:
     """Map of one type of bearing, made once in a process."""
     from ehdmaps.jobs.make.table_law import table_map  # with the solver, for what the table does not know
 
-    return table_map(geometry, lubricant, entrainment_speeds=speeds, temperatures=temperatures)
+    return table_map(geometry, lubricant, entrainment_speeds=speeds, temperatures=temperatures, inlet_heat=inlet_heat)

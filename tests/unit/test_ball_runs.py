@@ -268,7 +268,7 @@ def test_report_has_the_balls(capsys, tmp_path):
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (("statics", "--auto", "--physics", "thermal"), "read from the film table, which is isothermal; leave it out"),
+        (("statics", "--physics", "inlet-heat"), "--physics: got inlet-heat with ball bearings alone; allowed: none"),
         (("modes", "--law", "hertz", "--films", "memory"), "without a law that has films; allowed: with --map, --law"),
         (("statics", "--supply", "5 um"), "with ball bearings alone; allowed: none of it: their films are of one oil"),
     ],

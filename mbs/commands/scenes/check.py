@@ -1,4 +1,4 @@
-"""`mbs check`: every problem of a scene at once, and what will be solved; nothing is solved."""
+"""`mbs check`: every problem of a scene at once, and what will be solved; no film is solved."""
 
 from __future__ import annotations
 
@@ -14,7 +14,9 @@ from mbs.analyses.hammer import hammer_problems
 from mbs.analyses.lsa import lsa_problems
 from mbs.analyses.runup import runup_problems
 from mbs.analyses.sweep import sweep_problems
+from mbs.commands.auto import judged
 from mbs.commands.cases import load_model
+from mbs.commands.common import Looked
 from mbs.model.body import Body
 from mbs.output.model_text import heading
 from mbs.scene.assembly import Model
@@ -34,7 +36,18 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     lines += [f"  load {load.name}: on {load.on}" for load in scene.loads]
     found = open_sides(scene)
     ends = [f"problem: {problem}" for problem in found] or ["no problem found"]
-    return "\n".join([*lines, "", *_analyses(scene), *ends]), 1 if found else 0
+    physics = _physics(arguments, model)
+    return "\n".join([*lines, "", *_analyses(scene), *physics, *ends]), 1 if found else 0
+
+
+def _physics(arguments: argparse.Namespace, model: Model) -> Iterator[str]:
+    """Lines on the physics that matters to films of the film table, up to the highest frequency of the scene."""
+    highest = max(model.scene.frequencies, default=model.scene.campbell.highest)
+    for verdict in judged(arguments, Looked(model.scene, highest)):
+        if verdict.matters:
+            yield f"  {verdict.line}"
+    if model.balls and model.scene.lubricant is not None:
+        yield "  films of balls are smooth, flooded, isothermal and Newtonian; what that leaves out is not weighed"
 
 
 def _oil(scene: Scene) -> Iterator[str]:
