@@ -341,7 +341,7 @@ class InletHeat:
         Parameters
         ----------
         film_compliance, film_offset : float or array
-            Of the isothermal film [m2/N], [m].
+            Numbers of the isothermal film [m2/N], [m].
         """
         return film_compliance * self.factor - film_offset * self.slope
 

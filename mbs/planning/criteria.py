@@ -72,7 +72,7 @@ class ClosedContact:
     zeta : array
         ln(M/M_valley(L)).
     oil_number : float
-        L.
+        Moes' oil number L.
     """
 
     contact: LineContact

@@ -1,4 +1,4 @@
-"""Which physics of films matters at the operating points that a scene visits, each with the size of leaving it out.
+"""Physics of films that matters at the operating points that a scene visits, each with the size of leaving it out.
 
 The criteria are those of `mbs.planning.criteria`, each taken at its worst over both contacts of all bearings, over the
 speeds of the scene, and over the loads of the rollers that carry it, `SHARES` of the highest load at rest. Rollers that
@@ -199,7 +199,7 @@ def switched(found: Sequence[Verdict]) -> Mapping[str, str]:
     Parameters
     ----------
     found : sequence of Verdict
-        Verdicts.
+        Verdicts on films.
     """
     on = {verdict.physics: verdict.on for verdict in found}
     chosen = {}

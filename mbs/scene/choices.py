@@ -379,7 +379,7 @@ def _with_films(subject: Subject, kind: str) -> Subject:
 
 
 def _physics() -> tuple[str, str]:
-    """What films of the film table know of heat."""
+    """Words for what films of the film table know of heat."""
     from ehdmaps.physics.heat import INLET_HEAT, ISOTHERMAL
 
     return ISOTHERMAL, INLET_HEAT
