@@ -148,7 +148,7 @@ def test_no_equilibrium_and_overload_are_said() -> None:
         AnalysisError, match=r"falls apart without a positive axial load above tan.alpha. .Fr . Z Fc. = 1233 N, Fc the"
     ):
         tapered_point(FORCE, (0.0, 5000.0, 0.0), 0.0)
-    with pytest.raises(InputError, match=r"tapered point, load: got .*; allowed: three finite numbers"):
+    with pytest.raises(InputError, match=r"bearing point, load: got .*; allowed: three finite numbers"):
         tapered_point(FORCE, (0.0, 0.0, 0.0), 0.0)
     with pytest.raises(
         AnalysisError, match=r"no equilibrium of 32208 under 1e\+07 N axial, 0 N radial: tapered bearing"

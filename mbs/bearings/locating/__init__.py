@@ -6,6 +6,7 @@
 | `film_tables` | these laws over the speed, for compiled runs |
 | `locating_force` | force, stiffness and damping by the pose of the inner ring |
 | `locating_element` | the bearing in a machine, at the speed that the system has |
+| `locating_point` | one bearing alone at an operating point |
 | `locating_block` | such bearings in compiled runs |
 
 What a kind has of its own, its balance, kinematics, films and findings, is in `mbs.bearings.balls` and

@@ -15,53 +15,34 @@ from dataclasses import dataclass
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.film_formulas import hamrock_dowson_central
 from ehdmaps.physics.rollers.tapered_catalogue import tapered_ratings
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from ehdmaps.units import written
 from mbs.bearings.films import FormulaFilms
+from mbs.bearings.locating.locating_point import RING, LocatingPoint, ring_at_rest, ring_load
 from mbs.bearings.tapered.roller_findings import line_pressures, roller_gauge
 from mbs.bearings.tapered.tapered_bearing import TaperedForce, TaperedLoads
 from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.life import ReferenceLife, roller_reference_life
-from mbs.model.body import Inertia, rigid_body
-from mbs.model.elements import Load, Operation
-from mbs.model.equilibrium import equilibrium
-from mbs.model.findings import Finding, WithFindings
-from mbs.model.system import System
 
 RIB_FRICTION = 0.05
 """Coefficient of friction at ribs, assumed: mixed friction with an oil film."""
 
-_RING, _TURNING = "inner ring", Operation(1.0)
-"""The ring; speeds are those of the rings at a speed of the system of one."""
 
-
-@dataclass(frozen=True, eq=False)
-class TaperedPoint(WithFindings):
-    """A tapered roller bearing, or one with cylindrical rollers between ribs, in equilibrium.
+@dataclass(frozen=True, eq=False, kw_only=True)
+class TaperedPoint(LocatingPoint):
+    """A tapered roller bearing, or one with rollers between ribs, in equilibrium, see `LocatingPoint`.
 
     Attributes
     ----------
-    force : TaperedForce
-        Geometry and laws.
-    load : array (3,)
-        Load on the inner ring, x, y and z [N].
-    inner_speed, outer_speed, cage_speed : float
+    cage_speed : float
         [rad/s].
     entrainment_speed : float
         Speed of both surfaces against the cage in the middle of a roller [m/s].
-    pose : array (6,)
-        Pose of the inner ring in the outer one.
-    stiffness, damping : array (6, 6)
-        -d force/d pose and -d force/d velocity.
     rollers : TaperedLoads
         Loads of rollers and slices.
-    pressure, central_film, minimum_film : array (2, Z)
-        Largest Hertz pressure of the slices of cone and cup [Pa], and their smallest films [m]; NaN for films of
-        contacts without load, or without an oil.
     rib_pressure, rib_film : array (m, Z)
         Hertz pressure [Pa] and central film [m] at the ribs.
     sliding_speed : float
@@ -72,33 +53,18 @@ class TaperedPoint(WithFindings):
         Centrifugal load of a roller [N].
     reference : ReferenceLife
         Equivalent load and life of ISO/TS 16281.
-    findings : tuple of Finding
-        What is beyond its laws, and what else is to be known.
-    failed : bool
-        Whether it has no answer: numbers are NaN, and `problems` say why.
     """
 
     force: TaperedForce
-    load: FloatArray
-    inner_speed: float
-    outer_speed: float
     cage_speed: float
     entrainment_speed: float
-    pose: FloatArray
-    stiffness: FloatArray
-    damping: FloatArray
     rollers: TaperedLoads
-    pressure: FloatArray
-    central_film: FloatArray
-    minimum_film: FloatArray
     rib_pressure: FloatArray
     rib_film: FloatArray
     sliding_speed: float
     rib_power: float
     centrifugal_load: float
     reference: ReferenceLife
-    findings: tuple[Finding, ...]
-    failed: bool = False
 
     @property
     def geometry(self) -> TaperedGeometry:
@@ -111,38 +77,9 @@ class TaperedPoint(WithFindings):
         return tapered_ratings(self.geometry)
 
     @property
-    def size(self) -> float:
-        """Size of the radial load [N]."""
-        return math.hypot(self.load[1], self.load[2])
-
-    @property
-    def axial(self) -> float:
-        """Axial load [N]."""
-        return float(self.load[0])
-
-    @property
     def loaded(self) -> int:
         """Number of rollers that carry more than 1 % of the highest load of the cone."""
-        cone = self.rollers.load[0]
-        return int(np.count_nonzero(cone > 0.01 * cone.max()))
-
-    @property
-    def axes(self) -> FloatArray:
-        """Unit vectors along and across the radial load, (2, 3); along y without one."""
-        y, z = (self.load[1:] / self.size) if self.size > 0.0 else (1.0, 0.0)
-        return np.array([[0.0, y, z], [0.0, -z, y]])
-
-    def along_across(self, matrix: FloatArray) -> tuple[float, float, float]:
-        """Entries of a matrix (6, 6) along the radial load, across it, and along the axis."""
-        along, across = self.axes
-        part = matrix[:3, :3]
-        return float(along @ part @ along), float(across @ part @ across), float(part[0, 0])
-
-    @property
-    def smallest_film(self) -> float:
-        """Smallest of all films of the raceways [m]; NaN where none is known."""
-        known = self.minimum_film[np.isfinite(self.minimum_film)]
-        return float(known.min()) if known.size else math.nan
+        return self.rollers.loaded
 
 
 def tapered_point(
@@ -179,37 +116,24 @@ def tapered_point(
     AnalysisError
         Where no equilibrium is found.
     """
-    given = np.array(load, dtype=np.float64)
-    if given.shape != (3,) or not np.all(np.isfinite(given)) or not np.any(given):
-        raise InputError(f"tapered point, load: got {load!r} N; allowed: three finite numbers, x, y, z, not all zero")
-    free = ["x", "y", "z", "theta_y", "theta_z"] if tilts else ["x", "y", "z"]
-    ring = rigid_body(_RING, [Inertia(1.0, 1.0, 1.0)], free)
-    loads = [Load("load", _RING, np.array([*given, 0.0, 0.0, 0.0]))]
-    element = TaperedElement("bearing", _RING, "ground", force, inner_speed, outer_speed)
-    geometry = force.geometry
-    start = np.zeros(len(free))
+    given, geometry = ring_load(load), force.geometry
     way = math.copysign(1.0, geometry.contact_angle if geometry.contact_angle else given[0])
-    start[:3] = (
-        way * (1e-5 + sum(rib.play for rib in force.ribs if way * rib.normal[0] > 0.0)),
-        *(2e-6 * given[1:] / max(np.abs(given).max(), 1e-300)),
+    start = np.array(
+        [
+            way * (1e-5 + sum(rib.play for rib in force.ribs if way * rib.normal[0] > 0.0)),
+            *(2e-6 * given[1:] / max(np.abs(given).max(), 1e-300)),
+        ]
     )
-    try:
-        balance = equilibrium(System([ring], loads=loads, elements=[element]), _TURNING, start)
-    except AnalysisError as error:
-        radial = math.hypot(*given[1:])
-        words = f"no equilibrium of {geometry.name} under {written(given[0])} N axial, {written(radial)} N radial"
-        thrown = geometry.rollers * force.speed_loads(inner_speed, outer_speed)[0]
-        least = math.tan(geometry.cup_angle) * (radial + thrown)
-        if geometry.contact_angle and math.copysign(given[0], given[0] * geometry.contact_angle) < least:
-            sign = "positive" if geometry.contact_angle > 0.0 else "negative"
-            words += (
-                f"; a tapered roller bearing falls apart without a {sign} axial load above tan(alpha) (Fr + Z Fc) = "
-                f"{written(least)} N, Fc the centrifugal load of a roller"
-            )
-        raise AnalysisError(f"{words}: {error.__cause__ or error}") from error
-    pose = np.zeros(6)
-    pose[[0, 1, 2, 4, 5][: len(free)]] = balance.displacement
-    rollers = element.loads(pose, _TURNING)
+    thrown = geometry.rollers * force.speed_loads(inner_speed, outer_speed)[0]
+    least, advice = math.tan(geometry.cup_angle) * (math.hypot(*given[1:]) + thrown), ""
+    if geometry.contact_angle and math.copysign(given[0], given[0] * geometry.contact_angle) < least:
+        sign = "positive" if geometry.contact_angle > 0.0 else "negative"
+        advice = (
+            f"; a tapered roller bearing falls apart without a {sign} axial load above tan(alpha) (Fr + Z Fc) = "
+            f"{written(least)} N, Fc the centrifugal load of a roller"
+        )
+    element = TaperedElement("bearing", RING, "ground", force, inner_speed, outer_speed)
+    _, pose, rollers, balance = ring_at_rest(element, given, advice, tilts=tilts, start=start)
     speed = geometry.entrainment_speed(inner_speed, outer_speed)
     central, minimum = _lines(force, rollers, speed, oil, temperature)
     rib_pressure, rib_film, slides = _ribs(force, rollers, (inner_speed, outer_speed), oil, temperature)
