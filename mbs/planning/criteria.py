@@ -249,8 +249,8 @@ def stress_felt(state: ClosedContact) -> BoolArray:
     Notes
     -----
     There the loss of a Newtonian film passes near zero, and a little less of it is much. Solutions with a limiting
-    stress and without, FVA 3 in NU308, differ there in c by 10 % (L = 16) up to a factor of 3 (L = 25), in k by 5 %
-    at most; everywhere else in c by 5 %, 9 % above L = 27. See `docs/measured.md`.
+    stress and without, of FVA 3 and an ISO VG 46 in NU308, differ there in c by 10 % (L = 16) up to a factor of 3
+    (L = 25), in k by 5 % at most; everywhere else in c by 5 % up to L = 27, 18 % at L = 35. See `docs/measured.md`.
     """
     return np.asarray((np.abs(state.zeta) < STRESS_FELT) & (state.oil_number > VALLEY_OIL_NUMBER))
 
