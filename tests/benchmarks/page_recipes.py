@@ -69,6 +69,10 @@ TIMES = tuple(
         r" (\d\S*) +\d+/\d+(?: |$)",  # beside what was solved, of a trade
         r"distance to the solution (\S+)",  # round-off
         r"made (\d{4}-\S+)",  # date of a map
+        r"kill -9 at (\d+) of",  # where a run is killed, and what the next one finds
+        r"^ +(\d+) of \d+ points taken over",
+        r"(\d+) of them taken over",
+        r"^ .* N/mm((?: +[\d.]+ \( *\d+\))+)",  # times over load and speed
     )
 )
 """What is exempt in printed texts: times, ratios of times, and what round-off leaves."""

@@ -12,7 +12,8 @@ the commands, `tests.benchmarks.page_block` the form of the markers.
 with what that one prints: the figures of the blocks by each tree, and everything that the commands print.
 
 Blocks are quick (together some minutes), long (with --long) or need the built ehlFoam (--openfoam). Maps that commands
-read are generated in FOLDER first, each by its tree, unless --maps says where they are; cfd.nc takes an hour.
+read are generated in FOLDER first, each by its tree, unless --maps says where they are; cfd.nc takes an hour, night.nc
+somewhat more.
 """
 
 from __future__ import annotations
@@ -44,6 +45,7 @@ PAGES = (
     "docs/accuracy.md",
     "docs/point_contacts.md",
     "docs/cfd.md",
+    "docs/overnight.md",
     "docs/witnesses.md",
     "docs/solids.md",
     "docs/python.md",
@@ -55,6 +57,10 @@ MADE = {
     "nu308.nc": "ehdmaps generate nu308 -o nu308.nc",
     "n1014.nc": "ehdmaps generate n1014 -o n1014.nc",
     "cfd.nc": "ehdmaps generate nu308_openfoam -o cfd.nc",
+    "night.nc": (
+        "python -m tests.benchmarks.overnight night.nc --make nu308_night --kills 3 --again 50 --witness 100 "
+        "--plot overnight.png"
+    ),
     "vg320.nc": "ehdmaps generate docs/vg320.toml -o vg320.nc",
     "dry.nc": "ehdmaps generate nu308 --solver hertz -o dry.nc",
     "spirax.nc": 'ehdmaps generate --bearing NU308 --oil "Spirax MA 80W" -o spirax.nc',
