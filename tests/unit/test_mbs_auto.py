@@ -39,6 +39,7 @@ from mbs.planning.question import at_one_speed, in_time, over_speeds
 from mbs.settings import SweepRange
 from tests.benchmarks.bench_auto_criteria import THERMAL
 from tests.cases.commands import run
+from tests.unit.test_tapered_scenes import O_PAIR, text
 
 TEXT = (resources.files("mbs") / "systems" / "nu308_rigid.toml").read_text(encoding="utf-8")
 SHORT = TEXT.replace("slices = 41", "slices = 3").replace("points = 2000", "points = 5").split("[runup]")[0]
@@ -333,3 +334,12 @@ def test_only_the_speeds_that_an_analysis_visits_are_planned_for(bearing, rpm):
 def test_a_scene_that_stands_still_is_judged_at_its_other_speeds():
     still = scene(f"{SHORT.replace('500 rpm', '0 rpm')}\n{FASTEST_OF_MAPS}")
     assert at_one_speed(still) is still
+
+
+def test_heat_of_tapered_rollers_is_sized_and_not_offered():
+    """Their films have no heat yet: an option that their scenes refuse is not named."""
+    oil = '[lubricant]\nname = "FVA3"\n'
+    scene = parse_scene(text(**{**O_PAIR, "more": oil}).replace("500.0 rad/s", "1200 rad/s"), "rotor", "rotor.toml")
+    found = {verdict.physics: verdict for verdict in verdicts(scene)}["inlet heat"]
+    assert found.matters and not found.on
+    assert "do not have it yet" in found.words and "--physics" not in found.words
