@@ -177,7 +177,8 @@ def _table(fit: ModalFit) -> list[str]:
     how = "refined to the least error" if fit.refined else "medians over the orders"
     lines = [
         f"p-LSCF, orders 1 to {orders}, poles {how}",
-        "  mode   frequency/Hz        +-   damping ratio        +-   orders      (+-: standard uncertainty)",
+        "  mode   frequency/Hz        +-   damping ratio        +-   orders      (+-: standard uncertainty"
+        f"{'; 0 orders: in what other modes left' if 0 in fit.counts else ''})",
     ]
     for k in range(fit.poles.size):
         lines.append(

@@ -31,6 +31,10 @@ _STRAYED = 1.0
 _SMOOTH = 100
 """One part in so many of the lines over which the noise is averaged."""
 
+_APART = 2.0
+"""Half widths between a mode that is found in what others left and any other: nearer, it mends the model of a strong
+one."""
+
 _FLOOR = 1e-6
 """Least deviation of a value, against the rms of its response: the noise of noiseless data."""
 
@@ -91,6 +95,12 @@ def identify(
         ),
     )
     chosen, poles, deviation = _significant(s, inside, weight, stable, modes, refined)
+    while refined and chosen.size and (modes is None or chosen.size < modes):
+        wider = stable.of(chosen).and_one(_left_over(s, inside, weight, poles))
+        further = _significant(s, inside, weight, wider, modes, refined)
+        if further[0].size <= chosen.size or _nearest(further[1]) < _APART:
+            break
+        stable, (chosen, poles, deviation) = wider, further
     if not chosen.size:
         raise AnalysisError(
             f"modal fit: no stable mode from {inside.frequency[0]:.6g} Hz to {inside.frequency[-1]:.6g} Hz "
@@ -111,6 +121,25 @@ def identify(
         candidates=stable.candidates,
         refined=refined,
     )
+
+
+def _left_over(s: ComplexArray, inside: Responses, weight: FloatArray, poles: ComplexArray) -> complex:
+    """A pole at the line at which most is left, as much damped as the others, with what a window adds [1/s].
+
+    Beside stronger modes the poles of a fit of the whole band may not settle on a weak one.
+    """
+    parts = fit_residues(s, inside.response, weight, inside.derivatives, poles)
+    left = inside.response - synthesise(s, inside.derivatives, poles, parts)
+    peak = int(np.argmax(np.sum(np.abs(weight * left) ** 2, axis=0)))
+    omega = 2.0 * math.pi * float(inside.frequency[peak])
+    return complex(float(np.median(poles.real / np.abs(poles))) * omega - inside.decay, omega)
+
+
+def _nearest(poles: ComplexArray) -> float:
+    """Smallest distance of two poles, in half widths of the wider one."""
+    half = np.maximum(-poles.real, -poles.real[:, None])
+    apart = np.abs(poles - poles[:, None]) / half
+    return float(np.min(apart[~np.eye(poles.size, dtype=bool)], initial=math.inf))
 
 
 def weights(responses: Responses) -> FloatArray:

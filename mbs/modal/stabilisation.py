@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse.csgraph import connected_components
 
-from ehdmaps.arrays import BoolArray, ComplexArray, FloatArray
+from ehdmaps.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 
 _FREQUENCY, _DAMPING, _ASSURANCE = 0.005, 0.1, 0.9
 """Largest relative change of |pole| and of the decay from order to order, and smallest modal assurance criterion
@@ -69,6 +69,28 @@ class Stabilisation:
     scatter: FloatArray
     counts: tuple[int, ...]
     candidates: tuple[Candidate, ...]
+
+    def of(self, chosen: IntArray) -> Stabilisation:
+        """The same with some of its modes.
+
+        Parameters
+        ----------
+        chosen : array of int
+            Which.
+        """
+        counts = tuple(self.counts[k] for k in chosen)
+        return Stabilisation(self.poles[chosen], self.scatter[chosen], counts, self.candidates)
+
+    def and_one(self, pole: complex) -> Stabilisation:
+        """The same with a further mode that no chain has; the diagram stays.
+
+        Parameters
+        ----------
+        pole : complex
+            Its pole [1/s].
+        """
+        scatter = np.concatenate([self.scatter, np.full((1, 2), np.nan)])
+        return Stabilisation(np.append(self.poles, pole), scatter, (*self.counts, 0), self.candidates)
 
 
 def stabilise(
