@@ -76,7 +76,7 @@ class Stabilisation:
         Parameters
         ----------
         chosen : array of int
-            Which.
+            Indices of the modes that stay.
         """
         counts = tuple(self.counts[k] for k in chosen)
         return Stabilisation(self.poles[chosen], self.scatter[chosen], counts, self.candidates)
@@ -87,7 +87,7 @@ class Stabilisation:
         Parameters
         ----------
         pole : complex
-            Its pole [1/s].
+            Pole of the mode [1/s].
         """
         scatter = np.concatenate([self.scatter, np.full((1, 2), np.nan)])
         return Stabilisation(np.append(self.poles, pole), scatter, (*self.counts, 0), self.candidates)
