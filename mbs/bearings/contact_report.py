@@ -46,7 +46,7 @@ from mbs.bearings.bearing import Bearing
 from mbs.bearings.films import ContactState, FilmSource
 from mbs.bearings.force_at_point import RollerLoads
 from mbs.bearings.laws import DryLaw, Law, TableLaw
-from mbs.life import ReferenceLife, roller_reference_life
+from mbs.life import ReferenceLife
 from mbs.model.findings import Finding, WithFindings
 
 
@@ -473,10 +473,7 @@ class BearingPoint(WithFindings):
     @property
     def reference(self) -> ReferenceLife:
         """Equivalent load and life of ISO/TS 16281, by the rating of ISO 281."""
-        geometry = self.geometry
-        loads = self.rollers.load_per_length * geometry.roller_length / self.bearing.slices
-        gamma = geometry.roller_diameter / geometry.pitch_diameter
-        return roller_reference_life(np.stack([loads, loads]), self.ratings[0], gamma, 0.0)
+        return self.rollers.life(self.geometry, inner_turns=True)
 
     @property
     def inner_speed(self) -> float:

@@ -36,6 +36,8 @@ from mbs.model.elements import Forces
 if TYPE_CHECKING:
     from ehdmaps.maps.emap import EHDMap
     from ehdmaps.maps.law import ContactLaw
+    from ehdmaps.physics.bearing import BearingGeometry
+    from mbs.life import ReferenceLife
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,6 +74,26 @@ class RollerLoads:
     def load_zone(self, share: float = 0.0) -> FloatArray:
         """Angles of the rollers that carry more than a share of the highest roller load, sorted [rad]."""
         return np.sort(self.angle[self.load > share * float(np.max(self.load))])
+
+    def life(self, geometry: BearingGeometry, inner_turns: bool) -> ReferenceLife:
+        """Equivalent load and life of ISO/TS 16281, by the rating of ISO 281.
+
+        Parameters
+        ----------
+        geometry : BearingGeometry
+            Geometry of the bearing.
+        inner_turns : bool
+            Whether the inner ring turns against the load.
+        """
+        from ehdmaps.physics.rollers.ratings import Rollers, dynamic_rating  # where lives are asked for
+        from mbs.life import roller_reference_life
+
+        slices = self.load_per_length * geometry.roller_length / self.position.size
+        rating = dynamic_rating(
+            Rollers(geometry.roller_diameter, geometry.roller_length, geometry.rollers), geometry.pitch_diameter
+        )
+        gamma = geometry.roller_diameter / geometry.pitch_diameter
+        return roller_reference_life(np.stack([slices, slices]), rating, gamma, 0.0, inner_turns=inner_turns)
 
     def films(
         self,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from scipy.optimize import brentq
 from ehdmaps.errors import InputError
 from ehdmaps.physics.point.ball_catalogue import ball_dynamic_rating, ball_estimate
 from ehdmaps.physics.point.ball_geometry import BallGeometry
+from mbs.cli import main
 from mbs.life import (
     a_iso,
     ball_reference_life,
@@ -108,3 +110,14 @@ def test_limits_of_viscosity_and_fatigue() -> None:
     assert required_viscosity(-500.0 * rpm, 0.06) == required_viscosity(500.0 * rpm, 0.06)
     assert fatigue_limit(22e3, 0.1, "ball") == pytest.approx(1e3)
     assert fatigue_limit(22e3, 0.4, "ball") == pytest.approx(0.5e3)
+
+
+@pytest.mark.slow  # a machine of six bearings of two kinds
+def test_each_bearing_of_a_machine_has_its_life(capsys) -> None:
+    assert main(["statics", "two_stage"]) == 0
+    said = capsys.readouterr().out
+    found = re.findall(r"equivalent load (\S+) N, L10r (\S+) million turns \(ISO/TS 16281", said)
+    assert len(found) == len(re.findall(r"Hertz pressure up to .* film down to", said)) == 6
+    assert all(float(load) > 0.0 and float(life) > 0.0 for load, life in found)
+    assert main(["statics", "nu308_rigid", "--law", "hertz", "--speed", "0 rpm"]) in (0, 1)
+    assert "L10r" not in capsys.readouterr().out  # nothing turns

@@ -25,7 +25,7 @@ import functools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -47,6 +47,9 @@ from mbs.bearings.balls.laws import BallLaw
 from mbs.bearings.locating.locating_force import LocatingForce, directions
 from mbs.bearings.locating.normal_law import law_data, load_approach
 from mbs.model.findings import CARRIES
+
+if TYPE_CHECKING:
+    from mbs.life import ReferenceLife
 
 NEGLIGIBLE = 1e-11
 """Approach [m] of a dry contact under a centrifugal load that is left out: less than a micronewton."""
@@ -102,6 +105,21 @@ class BallLoads:
         """
         loaded = self.load[1] > CARRIES * self.load[1].max()
         return float(np.max(np.abs(self.traction[loaded]) / self.load[1][loaded], initial=0.0))
+
+    def life(self, geometry: BallGeometry, inner_turns: bool) -> ReferenceLife:
+        """Equivalent load and life of ISO/TS 16281, by the rating of ISO 281.
+
+        Parameters
+        ----------
+        geometry : BallGeometry
+            Geometry of the bearing.
+        inner_turns : bool
+            Whether the inner ring turns against the load.
+        """
+        from ehdmaps.physics.point.ball_catalogue import ball_dynamic_rating  # where lives are asked for
+        from mbs.life import ball_reference_life
+
+        return ball_reference_life(geometry, self.load, ball_dynamic_rating(geometry), inner_turns=inner_turns)
 
     def mean_angle(self, side: int) -> float:
         """Mean contact angle of a side, 0 the inner one, by the loads of its balls [rad]; zero without load."""

@@ -23,7 +23,7 @@ from mbs.bearings.balls.ball_element import MachineBalls
 from mbs.bearings.balls.ball_findings import ball_gauge, ball_pressures
 from mbs.bearings.balls.ball_motion import Motion, ball_motion
 from mbs.bearings.locating.locating_point import RING, LocatingPoint, ring_at_rest, ring_load
-from mbs.life import ReferenceLife, ball_reference_life
+from mbs.life import ReferenceLife
 
 if TYPE_CHECKING:
     from mbs.bearings.balls.films import BallFilms
@@ -82,8 +82,7 @@ class BallPoint(LocatingPoint):
     @property
     def reference(self) -> ReferenceLife:
         """Equivalent load and life of ISO/TS 16281, by the rating of ISO 281."""
-        turns = abs(self.inner_speed) >= abs(self.outer_speed)
-        return ball_reference_life(self.geometry, self.balls.load, self.ratings[0], inner_turns=turns)
+        return self.balls.life(self.geometry, abs(self.inner_speed) >= abs(self.outer_speed))
 
     @property
     def loaded(self) -> int:

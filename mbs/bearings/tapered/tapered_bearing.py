@@ -31,7 +31,7 @@ import functools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -62,6 +62,9 @@ from mbs.bearings.tapered.kernel_structs import (
 )
 from mbs.bearings.tapered.line_film import DRY_LINES, LineFilms
 from mbs.model.findings import CARRIES
+
+if TYPE_CHECKING:
+    from mbs.life import ReferenceLife
 
 SLICES, MOST_SLICES = 21, 1000
 
@@ -102,6 +105,24 @@ class TaperedLoads:
     def largest(self) -> float:
         """Load per length of the most loaded slice [N/m]."""
         return float(self.slices.max())
+
+    def life(self, geometry: TaperedGeometry, inner_turns: bool) -> ReferenceLife:
+        """Equivalent load and life of ISO/TS 16281, by the rating of ISO 281.
+
+        Parameters
+        ----------
+        geometry : TaperedGeometry
+            Geometry of the bearing.
+        inner_turns : bool
+            Whether the inner ring turns against the load.
+        """
+        from ehdmaps.physics.rollers.tapered_catalogue import tapered_ratings  # where lives are asked for
+        from mbs.life import roller_reference_life
+
+        slices = self.slices * geometry.roller_length / self.slices.shape[2]
+        gamma = geometry.roller_diameter * math.cos(geometry.cup_angle) / geometry.pitch_diameter
+        rating = tapered_ratings(geometry)[0]
+        return roller_reference_life(slices, rating, gamma, geometry.cup_angle, inner_turns=inner_turns)
 
 
 class TaperedForce(LocatingForce):

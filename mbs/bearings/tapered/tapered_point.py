@@ -25,7 +25,7 @@ from mbs.bearings.locating.locating_point import RING, LocatingPoint, ring_at_re
 from mbs.bearings.tapered.roller_findings import line_pressures, roller_gauge
 from mbs.bearings.tapered.tapered_bearing import TaperedForce, TaperedLoads
 from mbs.bearings.tapered.tapered_element import TaperedElement
-from mbs.life import ReferenceLife, roller_reference_life
+from mbs.life import ReferenceLife
 
 RIB_FRICTION = 0.05
 """Coefficient of friction at ribs, assumed: mixed friction with an oil film."""
@@ -138,12 +138,7 @@ def tapered_point(
     central, minimum = _lines(force, rollers, speed, oil, temperature)
     rib_pressure, rib_film, slides = _ribs(force, rollers, (inner_speed, outer_speed), oil, temperature)
     carries = rollers.ribs.max(axis=1, initial=0.0) > 0.0
-    length = geometry.roller_length / force.positions.size
-    gamma = geometry.roller_diameter * math.cos(geometry.cup_angle) / geometry.pitch_diameter
-    turns = abs(inner_speed) >= abs(outer_speed)
-    reference = roller_reference_life(
-        rollers.slices * length, tapered_ratings(geometry)[0], gamma, geometry.cup_angle, inner_turns=turns
-    )
+    reference = rollers.life(geometry, abs(inner_speed) >= abs(outer_speed))
     centrifugal, _ = force.speed_loads(inner_speed, outer_speed)
     return TaperedPoint(
         force=force,
