@@ -55,7 +55,8 @@ def moes_groups(
     (4.632, 20.037)
     """
     speed_number = moes_speed_number(speed, viscosity, radius, reduced_modulus)
-    load_number = load / (reduced_modulus * radius) / np.sqrt(speed_number)
+    with np.errstate(over="ignore"):  # absurd loads have groups that are infinite
+        load_number = load / (reduced_modulus * radius) / np.sqrt(speed_number)
     return as_given(load_number, load), as_given(pressure_viscosity * reduced_modulus * speed_number**0.25, speed)
 
 

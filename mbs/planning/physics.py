@@ -58,7 +58,7 @@ MOST_TOLD = 9.0
 SHARES = (0.1, 1.0)
 """Loads of rollers that carry a bearing, over the highest one at rest."""
 
-MAKE_A_MAP = "a map by `mbs plan -o` and `ehdmaps generate` with {key} has it"
+MAKE_A_MAP = "a map by `mbs plan SCENE -o JOB.toml` and `ehdmaps generate JOB.toml` with {key} has it"
 """What is to be done where the film table cannot have it."""
 
 _LOADS, _SPEEDS, _LAYERS = 9, 5, 241

@@ -191,4 +191,4 @@ def _solved(case: dict[str, float]) -> tuple[FloatArray, float]:
     values = root(left, start, tol=1e-13).x
     assert np.max(np.abs(left(values))) < 1e-6
     pose = pose_of(values)
-    return pose, ball_reference_life(geometry, force.balls(pose, inner_speed=0.0).load, 23400.0).life
+    return pose, ball_reference_life(geometry, force.loads(pose, inner_speed=0.0).load, 23400.0).life

@@ -545,7 +545,6 @@ MBS_OPTIONS: dict[str, tuple[str, int, str]] = {
     "half a band": ("modal-fit good.uff --band 100Hz", 2, "expected 2 arguments"),
     "no modes": ("modal-fit good.uff --modes 0", 2, "modes"),
     "an order": ("modal-fit good.uff --order 0", 2, "order"),
-    "a method": ("modal-fit good.uff --method best", 2, "invalid choice: 'best'"),
     "a window decay": ("modal-fit good.uff --window-decay -1s", 2, "--window-decay"),
     "a margin": ("plan nu308_rigid --margin 0.5", 2, "--margin: got '0.5'"),
     "a margin of text": ("plan nu308_rigid --margin wide", 2, "--margin: got 'wide'"),

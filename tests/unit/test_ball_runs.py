@@ -262,7 +262,7 @@ def test_report_has_the_balls(capsys, tmp_path):
     assert commands.run(capsys, "report", "electric_drive", "-o", str(tmp_path / "page.html"))[0] == 0
     page = (tmp_path / "page.html").read_text(encoding="utf-8")
     assert page.count("Balls, from y towards z") == 2
-    assert "Ball bearing drive has 9 of 9 balls loaded" in page
+    assert "Bearing drive has 9 of 9 balls loaded" in page
 
 
 @pytest.mark.parametrize(

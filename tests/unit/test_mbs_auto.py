@@ -259,7 +259,9 @@ def test_heat_is_on_where_its_rule_holds_and_told_where_it_does_not():
 
 def test_a_limiting_stress_is_told_where_carrying_rollers_are_in_the_valley():
     found = judged(turning(3000))["limiting shear stress"]
-    assert found.matters and not found.on and '`ehdmaps generate` with shear = "limiting" has it' in found.words
+    assert (
+        found.matters and not found.on and '`ehdmaps generate JOB.toml` with shear = "limiting" has it' in found.words
+    )
     assert not judged(turning(500, 100.0))["limiting shear stress"].matters
 
 
