@@ -251,7 +251,7 @@ class TestRefused:
                 vary=[["clearence", "1 um"], ["clearance"], ["ramp", "3"], ["slices", "0"], ["films", "wet"]],
                 highest="3 m",
             ),
-            "--vary: got 'clearence' (did you mean 'clearance'?); allowed: law, physics, structural-law, films, supply,",
+            "--vary: got 'clearence' (did you mean 'clearance'?); allowed: law, physics, structural-law, films,",
             "--vary clearance: got no value; allowed: one or more, such as '15 um'",
             "--vary ramp: got '3' without a unit",
             "--vary slices: got '0'; allowed: a whole number from 1 to 10000",
