@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import math
-from typing import Any
 
 import numpy as np
 
@@ -20,14 +19,12 @@ from mbs.bearings.force_at_point import RollerLoads
 from mbs.commands.auto import analysed
 from mbs.commands.cases import load_model
 from mbs.commands.common import Looked, write
-from mbs.life import ReferenceLife
 from mbs.model.equilibrium import Equilibrium
 from mbs.model.relaxation import NOTABLE
 from mbs.output.model_text import heading
-from mbs.output.state_text import DAMPINGS, STIFFNESSES, flooded_note, largest_torque, loss_words
+from mbs.output.state_text import DAMPINGS, STIFFNESSES, flooded_note, largest_torque, life_lines, loss_words
 from mbs.planning.question import at_one_speed
 from mbs.scene.assembly import Model, ring_motions
-from mbs.scene.fields import FORCE
 
 _SHOWN = (1, 2, 4, 5)
 _ROUND_OFF = 1e-9
@@ -65,7 +62,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             *_loads(rollers),
             f"  {_contact_words(contacts[index])}",
             f"  {loss_words(found.losses[index])}",
-            *_life(bearing, bearing.bearing.geometry, rollers, balance),
+            *life_lines(bearing, bearing.bearing.geometry, rollers, balance.operation),
             *_matrix(f"K [{STIFFNESSES}]", SPRING.factor * stiffness),
             *_matrix(f"C [{DAMPINGS}]", DAMPER.factor * damping),
         ]
@@ -75,14 +72,6 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         lines += located_lines(model, balance)
     others = list(zip(model.on_rings, contacts, found.losses, strict=True))[len(model.bearings) :]
     lines += [f"{entry.name}: {_contact_words(state)}; {loss_words(loss, 'elements')}" for entry, state, loss in others]
-    if others:
-        from mbs.output.one_bearing.located import located
-
-        lines += [
-            f"{element.name}:{line[1:]}"
-            for _, element, at in located(model, balance)
-            for line in _life(element, at.force.geometry, at.loads, balance)
-        ]
     if model.gears:
         from mbs.output.results import gear_lines
 
@@ -94,20 +83,6 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     lines += [*judged.last, *(f"warning: {line}" for line in found.free), *outside]
     lines += write(arguments, found.dataset if arguments.output else None, figure)
     return "\n".join(lines), 1 if outside or judged.status else 0
-
-
-def _life(bearing: Any, geometry: Any, loads: Any, balance: Equilibrium) -> list[str]:
-    """A line on the life of a bearing that turns and carries, of any kind."""
-    inner, outer = bearing.inner_spin, bearing.outer_spin
-    if inner == outer or balance.operation.speed == 0.0:
-        return []
-    found: ReferenceLife = loads.life(geometry, abs(inner) >= abs(outer))
-    if not math.isfinite(found.life):
-        return []
-    return [
-        f"  equivalent load {FORCE.text(found.load)}, L10r {found.life:.4g} million turns (ISO/TS 16281, C of ISO "
-        "281 by inner geometry)"
-    ]
 
 
 def _slow(model: Model, balance: Equilibrium) -> list[str]:

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ehdmaps.physics.designations.clearance import clearance_range
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.units import TEMPERATURE
 from mbs.bearings.contact_report import RollingLoss
 from mbs.bearings.thermal import BearingHeat, BearingState
-from mbs.scene.fields import MICROMETRE
+from mbs.scene.fields import FORCE, MICROMETRE
 
 if TYPE_CHECKING:
+    from mbs.life import ReferenceLife
+    from mbs.model.elements import Operation
     from mbs.scene.scene import Scene
 
 FLOODED_NOTE = (
@@ -125,6 +127,32 @@ def loss_words(loss: RollingLoss, elements: str = "rollers") -> str:
     if loss.slowest == 1.0:
         return f"{words} (films only: no flanges, cage, seals, churning)"
     return f"{words}, the slowest at {loss.slowest:.2g} of rolling (films and pockets: no flanges, seals, churning)"
+
+
+def life_lines(bearing: Any, geometry: Any, loads: Any, operation: Operation) -> list[str]:
+    """A line on the life of a bearing of a machine that turns and carries; else none.
+
+    Parameters
+    ----------
+    bearing : BearingElement or LocatingElement
+        Element of the bearing.
+    geometry : BearingGeometry, BallGeometry or TaperedGeometry
+        Geometry of the bearing.
+    loads : RollerLoads, BallLoads or TaperedLoads
+        State of its rolling elements.
+    operation : Operation
+        Speed of the system.
+    """
+    inner, outer = bearing.inner_spin, bearing.outer_spin
+    if inner == outer or operation.speed == 0.0:
+        return []
+    found: ReferenceLife = loads.life(geometry, abs(inner) >= abs(outer))
+    if not math.isfinite(found.life):
+        return []
+    return [
+        f"  equivalent load {FORCE.text(found.load)}, L10r {found.life:.4g} million turns (ISO/TS 16281, C of ISO 281 "
+        "by inner geometry)"
+    ]
 
 
 def largest_torque(losses: Iterable[RollingLoss]) -> float:

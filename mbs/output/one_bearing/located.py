@@ -13,6 +13,7 @@ from mbs.model.equilibrium import Equilibrium
 from mbs.output.one_bearing.balls import ball_words
 from mbs.output.one_bearing.ribs import roller_words
 from mbs.output.one_bearing.table import matrix_line
+from mbs.output.state_text import life_lines
 from mbs.scene.assembly import Model
 
 _WORDS: dict[type[LocatingElement], Callable[[Settled], tuple[str, list[str]]]] = {
@@ -39,6 +40,7 @@ def located_lines(model: Model, balance: Equilibrium) -> list[str]:
             f"{element.name}: {force[0]:.5g} N along x, {math.hypot(force[1], force[2]):.5g} N across it on the inner "
             f"ring; {words}",
             *more,
+            *life_lines(element, at.force.geometry, at.loads, balance.operation),
             matrix_line(balance, place),
         ]
     return lines
