@@ -130,7 +130,7 @@ def loss_words(loss: RollingLoss, elements: str = "rollers") -> str:
 
 
 def life_lines(bearing: Any, geometry: Any, loads: Any, operation: Operation) -> list[str]:
-    """A line on the life of a bearing of a machine that turns and carries; else none.
+    """A line on the life of a bearing of a machine that turns and carries; none of a kind whose life no rule tells.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ def life_lines(bearing: Any, geometry: Any, loads: Any, operation: Operation) ->
         Speed of the system.
     """
     inner, outer = bearing.inner_spin, bearing.outer_spin
-    if inner == outer or operation.speed == 0.0:
+    if inner == outer or operation.speed == 0.0 or not hasattr(loads, "life"):
         return []
     found: ReferenceLife = loads.life(geometry, abs(inner) >= abs(outer))
     if not math.isfinite(found.life):
