@@ -61,7 +61,7 @@ def named_executor(text: str | None, workers: int | None = None) -> Iterator[Exe
     Raises
     ------
     InputError
-        For a name that is none, and where no scheduler answers.
+        If the engine is unknown, or no scheduler answers.
     DependencyError
         If the package of the engine is not installed.
     """

@@ -52,7 +52,7 @@ from ehdmaps.maps.usable import check_backbone, check_loads, known_grid
 from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import BearingGeometry, with_law
 from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.heat import INLET_HEAT
+from ehdmaps.physics.heat import INLET_HEAT, ISOTHERMAL
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.surface import SMOOTH, Surface
@@ -326,8 +326,13 @@ class EHDMap:
     @cached_property
     def inlet_heat(self) -> bool:
         """True where the films of its laws are read from the film table with heat in the inlet, by its rule."""
-        settings = read_json(self.dataset.attrs["solver_settings"], "solver_settings") if self.from_table else {}
-        return bool(settings.get("physics") == INLET_HEAT)
+        return self.from_table and self.physics == INLET_HEAT
+
+    @cached_property
+    def physics(self) -> str:
+        """Word for what its films know of heat, see `ehdmaps.physics.heat.PHYSICS`."""
+        settings = read_json(self.dataset.attrs.get("solver_settings", "{}"), "solver_settings")
+        return str(settings.get("physics", ISOTHERMAL))
 
     @property
     def own_points(self) -> str:

@@ -19,6 +19,7 @@ import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.physics.heat import ISOTHERMAL
 from ehdmaps.physics.solids import reduced_modulus
 from ehdmaps.units import written
 from mbs.bearings.bearing import Bearing
@@ -244,7 +245,7 @@ def bearing_point(
         extrapolated(contacts, films.lubricant),
         fading(force.law, u),
         guessed(force.law, rollers.load_per_length, u, temperature),
-        heated(contacts, films.lubricant, modulus, u, temperature),
+        "" if _knows_heat(films) else heated(contacts, films.lubricant, modulus, u, temperature),
         _loose(stiffness, given),
         _between_points(films, element, pose, operation, given),
     ]
@@ -266,6 +267,11 @@ def bearing_point(
             *(Finding(Cause.FILM, words) for words in notes if words),
         ),
     )
+
+
+def _knows_heat(films: FilmSource) -> bool:
+    """Tell whether films are those of a map with heat."""
+    return isinstance(films, MapFilms) and films.emap.physics != ISOTHERMAL
 
 
 def _between_points(

@@ -38,7 +38,7 @@ from ehdmaps.maps.kernels.tables import LOAD_TOLERANCE
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.heat import inlet_shear_heating_factor, thermal_loading, viscosity_slope
 from ehdmaps.physics.lubricant import Lubricant
-from ehdmaps.physics.rollers.ratings import Rollers, ratings
+from ehdmaps.physics.rollers.ratings import cylindrical_ratings
 from ehdmaps.physics.solution import tip_words
 from ehdmaps.physics.surface import Surface
 from ehdmaps.units import LOAD, PRESSURE, SPEED, TEMPERATURE
@@ -466,9 +466,7 @@ class BearingPoint(WithFindings):
     @property
     def ratings(self) -> tuple[float, float]:
         """C of ISO 281 and C0 of ISO 76 by the inner geometry [N]."""
-        geometry = self.geometry
-        rollers = Rollers(geometry.roller_diameter, geometry.roller_length, geometry.rollers)
-        return ratings(rollers, geometry.pitch_diameter)
+        return cylindrical_ratings(self.geometry)
 
     @property
     def reference(self) -> ReferenceLife:

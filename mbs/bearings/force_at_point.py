@@ -85,15 +85,12 @@ class RollerLoads:
         inner_turns : bool
             Whether the inner ring turns against the load.
         """
-        from ehdmaps.physics.rollers.ratings import Rollers, dynamic_rating  # where lives are asked for
+        from ehdmaps.physics.rollers.ratings import cylindrical_ratings  # where lives are asked for
         from mbs.life import roller_reference_life
 
         slices = self.load_per_length * geometry.roller_length / self.position.size
-        rating = dynamic_rating(
-            Rollers(geometry.roller_diameter, geometry.roller_length, geometry.rollers), geometry.pitch_diameter
-        )
-        gamma = geometry.roller_diameter / geometry.pitch_diameter
-        return roller_reference_life(np.stack([slices, slices]), rating, gamma, 0.0, inner_turns=inner_turns)
+        rating = cylindrical_ratings(geometry)[0]
+        return roller_reference_life(np.stack([slices, slices]), rating, geometry.gamma, 0.0, inner_turns=inner_turns)
 
     def films(
         self,

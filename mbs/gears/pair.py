@@ -540,13 +540,8 @@ class GearPair:
                     f"gear pair, tip_diameters: got {given!r:.60} m; allowed: two, above the base circles of "
                     f"{1e3 * base[0]:.5g} and {1e3 * base[1]:.5g} mm"
                 ]
-        total = self.reference_distance * math.cos(self.transverse_pressure_angle)
-        if (
-            involute(self.transverse_pressure_angle)
-            + 2.0 * math.tan(self.pressure_angle) * sum(self.shifts) / sum(self.teeth)
-            <= 0.0
-            or not total < self.centre_distance
-        ):
+        more = 2.0 * math.tan(self.pressure_angle) * sum(self.shifts) / sum(self.teeth)
+        if not (involute(self.transverse_pressure_angle) + more > 0.0 and sum(self.base_radii) < self.centre_distance):
             return [f"{where}: got {shown}, with which the teeth do not mesh; allowed: a larger sum"]
         return []
 

@@ -98,7 +98,7 @@ def identify(
     while refined and chosen.size and (modes is None or chosen.size < modes):
         wider = stable.of(chosen).and_one(_left_over(s, inside, weight, poles))
         further = _significant(s, inside, weight, wider, modes, refined)
-        if further[0].size <= chosen.size or _nearest(further[1]) < _APART:
+        if further[0].size <= chosen.size or _nearest(further[1], int(np.argmax(further[0]))) < _APART:
             break
         stable, (chosen, poles, deviation) = wider, further
     if not chosen.size:
@@ -135,11 +135,11 @@ def _left_over(s: ComplexArray, inside: Responses, weight: FloatArray, poles: Co
     return complex(float(np.median(poles.real / np.abs(poles))) * omega - inside.decay, omega)
 
 
-def _nearest(poles: ComplexArray) -> float:
-    """Smallest distance of two poles, in half widths of the wider one."""
-    half = np.maximum(-poles.real, -poles.real[:, None])
-    apart = np.abs(poles - poles[:, None]) / half
-    return float(np.min(apart[~np.eye(poles.size, dtype=bool)], initial=math.inf))
+def _nearest(poles: ComplexArray, which: int) -> float:
+    """Smallest distance of a pole to the others, in half widths of the wider one."""
+    others = np.delete(poles, which)
+    half = np.maximum(-others.real, -poles[which].real)
+    return float(np.min(np.abs(others - poles[which]) / half, initial=math.inf))
 
 
 def weights(responses: Responses) -> FloatArray:

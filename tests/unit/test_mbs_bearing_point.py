@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.jobs.make.table_law import table_map
+from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.solids import STEEL
 from mbs.analyses.bearing_point import bearing_point, bearing_points
@@ -16,7 +18,7 @@ from mbs.bearings import laws
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.contact_report import fading, heated, outside_map
-from mbs.bearings.films import FormulaFilms
+from mbs.bearings.films import FormulaFilms, MapFilms
 from mbs.model.equilibrium import equilibrium
 from mbs.scene.assembly import assemble
 from mbs.scene.reader import read_scene
@@ -153,6 +155,15 @@ def test_films_that_inlet_heating_thins_are_said():
     )
     assert "by more than the formula of Gupta et al. covers" in "".join(dry_point("NU308", (1e5, 0.0), 1e4).notes)
     assert heated(dry_point("NU308", (200.0, 0.0), 300.0).contacts, None, 231e9, 5.0, WARM) == ""
+
+
+@pytest.mark.parametrize("heat", [False, True])
+def test_films_of_a_map_with_heat_are_not_called_isothermal(heat):
+    emap = table_map(BearingGeometry.named("NU308"), Lubricant.named("FVA3"), inlet_heat=heat)
+    bearing = Bearing.named("NU308", clearance=20e-6)
+    force = BearingForce(bearing, emap.law("series"))
+    notes = "".join(bearing_point(force, MapFilms(emap), (2000.0, 0.0), 300.0, WARM).notes)
+    assert ("films are isothermal" in notes) is not heat
 
 
 @pytest.mark.parametrize("load", [(0.0, 0.0), (math.nan, 1.0), (1.0,), (math.inf, 0.0)])

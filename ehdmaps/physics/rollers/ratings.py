@@ -14,9 +14,12 @@ the reduction 0.83 for line contacts.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from ehdmaps.errors import InputError
+
+if TYPE_CHECKING:
+    from ehdmaps.physics.bearing import BearingGeometry
 
 RATING = 44e6
 """Factor of ISO 76 for radial roller bearings [N/m2]."""
@@ -92,6 +95,18 @@ def ratings(rollers: Rollers, pitch: float, angle: float = 0.0) -> tuple[float, 
         See `dynamic_rating`.
     """
     return dynamic_rating(rollers, pitch, angle), static_rating(rollers, pitch, angle)
+
+
+def cylindrical_ratings(geometry: BearingGeometry) -> tuple[float, float]:
+    """C of ISO 281 and C0 of ISO 76 of a cylindrical roller bearing by its inner geometry [N].
+
+    Parameters
+    ----------
+    geometry : BearingGeometry
+        The bearing.
+    """
+    rollers = Rollers(geometry.roller_diameter, geometry.roller_length, geometry.rollers)
+    return ratings(rollers, geometry.pitch_diameter)
 
 
 def with_static_rating(diameter: float, count: float, pitch: float, rating: float, angle: float = 0.0) -> Rollers:

@@ -152,7 +152,7 @@ def _verdict(wild: WildPoint, judge: Judge, place: str = "") -> Verdict:
 
 
 def _slip(where: str, error: Exception) -> Verdict:
-    """An error that is none of ours."""
+    """An error of a class that this program does not raise on purpose."""
     return Verdict(where, wrong=f"{type(error).__name__}: {error!s:.200}")
 
 

@@ -118,22 +118,12 @@ def _page(kind: Kind, description: Description, point: Any) -> list[str]:
         ),
         lambda_line(row["film_parameter"], MICROMETRE.text(description.roughness))
         + kind.beside_lambda(point, description),
-        *(f"  {line}" for line in (*kind.closing(point, row), *life_lines(kind.element, point, row))),
+        *(f"  {line}" for line in (*kind.closing(point, row), *_life(kind.element, point, row))),
     ]
 
 
-def life_lines(element: str, point: Any, row: Row) -> list[str]:
-    """Lines on the life of one point: by its loads, and with its oil.
-
-    Parameters
-    ----------
-    element : str
-        How a rolling element is called.
-    point : object
-        The point.
-    row : mapping
-        Numbers of the point by name, SI.
-    """
+def _life(element: str, point: Any, row: Row) -> list[str]:
+    """Lines on the life of one point: by its loads, and with its oil."""
     kind: Elements = "ball" if element == "ball" else "roller"
     power = {"ball": "3", "roller": "10/3"}[kind]
     rating, static = point.ratings
