@@ -279,6 +279,10 @@ class BallForce(LocatingForce):
         cage = float(mean_speed(self._balls, float(idle)))
         return BallLoads(angle, rows[10:12], rows[12:14], rows[14:16], rows[22], rows[23], traction, cage)
 
+    def forget(self) -> None:
+        """See `LocatingForce.forget`."""
+        self._starts[:] = 0.0
+
     @property
     def last_balls(self) -> FloatArray:
         """Rows of the balls after the last call, shape (Z, COLUMNS), see `mbs.bearings.balls.ball_data`.

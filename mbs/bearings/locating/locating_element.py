@@ -277,8 +277,12 @@ class LocatingElement(OnRings):
         return pose
 
     def settled(self, displacement: FloatArray, operation: Operation) -> Settled:
-        """The bearing at rest at a displacement (6,) of the inner ring against the outer one."""
+        """The bearing at rest at a displacement (6,) of the inner ring against the outer one.
+
+        Whatever was asked before: results do not depend on the places from which a search started.
+        """
         force, pose, conditions = self.force_at(operation), self.pose(displacement), self.conditions(operation)
+        force.forget()
         return Settled(force, pose, conditions, force.loads(pose, **conditions))
 
     def loads(self, displacement: FloatArray, operation: Operation) -> Any:
@@ -287,9 +291,7 @@ class LocatingElement(OnRings):
 
     def element_loads(self, displacement: FloatArray, operation: Operation) -> FloatArray:
         """See `OnRings.element_loads`."""
-        force = self.force_at(operation)
-        force(self.pose(displacement), **self.conditions(operation))
-        return np.array(force.last_loads[0])
+        return np.array(self.settled(displacement, operation).loads.load[0])
 
     def largest_load(self, displacement: FloatArray, operation: Operation) -> float:
         """See `OnRings.largest_load`."""

@@ -135,6 +135,9 @@ class LocatingForce:
         """
         raise NotImplementedError
 
+    def forget(self) -> None:
+        """Drop the places of the elements after the last call, so that the next one is as the first."""
+
     @property
     def last_loads(self) -> FloatArray:
         """Loads of the inner and the outer contacts after the last call, shape (2, Z) [N]."""
