@@ -102,8 +102,8 @@ class EHDMap:
         self.backbone = backbone
 
     def __getstate__(self) -> dict[str, object]:
-        """For other processes: without the laws that were made of it."""
-        return {name: value for name, value in self.__dict__.items() if name != "_laws"}
+        """For other processes: without the laws that were made of it, and what these were read from."""
+        return {name: value for name, value in self.__dict__.items() if name not in ("_laws", "_fields")}
 
     @property
     def dataset(self) -> xr.Dataset:
@@ -294,9 +294,7 @@ class EHDMap:
         check_loads(self.axis("load"), contacts)
         if len(self._laws) >= _MOST_LAWS:
             self._laws.pop(next(iter(self._laws)))
-        goes_on = self.solver not in _CLOSED_FORMS
-
-        field = self.film_field(names)
+        field, continued = self._field_of_law(names, contacts)
         self._laws[key] = ContactLaw(
             kind,
             contacts,
@@ -308,7 +306,7 @@ class EHDMap:
             supply=key[2],
             surface=key[3],
             errors=self.law_errors,
-            continued=_continued(field, contacts, self.lubricant) if goes_on else None,
+            continued=continued,
             title="" if self.bearing is None else self.bearing.title,
         )
         return self._laws[key]
@@ -317,6 +315,21 @@ class EHDMap:
     def _laws(self) -> dict[tuple[LawKind, OutsidePolicy, OilSupply, Surface], ContactLaw]:
         """Laws that were made, the latest last."""
         return {}
+
+    @cached_property
+    def _fields(self) -> dict[tuple[str, ...], tuple[FilmField, ContinuedField | None]]:
+        """Films that laws were made from, by contacts."""
+        return {}
+
+    def _field_of_law(
+        self, names: tuple[str, ...], contacts: tuple[LineContact, ...]
+    ) -> tuple[FilmField, ContinuedField | None]:
+        """Films of a law, and those that go on beyond the map; what one oil supply reads of them serves for others."""
+        if names not in self._fields:
+            field = self.film_field(names)
+            goes_on = self.solver not in _CLOSED_FORMS
+            self._fields[names] = field, _continued(field, contacts, self.lubricant) if goes_on else None
+        return self._fields[names]
 
     @property
     def from_table(self) -> bool:

@@ -282,7 +282,7 @@ def load_at(contact: LineContact, lubricant: Lubricant, zeta: float, speed: floa
     speed, temperature : float
         u [m/s], > 0, and T [K].
     """
-    return float(_loads_at([contact], lubricant, zeta, np.array([speed]), np.array([temperature]))[0, 0])
+    return float(loads_at([contact], lubricant, zeta, np.array([speed]), np.array([temperature]))[0, 0])
 
 
 def first_loads(
@@ -308,7 +308,7 @@ def first_loads(
     speeds, temperatures : array (n_u,), (n_T,)
         u [m/s], > 0, and T [K].
     """
-    return np.minimum(_JUST_BELOW * lowest_load, _loads_at(contacts, lubricant, start, speeds, temperatures))
+    return np.minimum(_JUST_BELOW * lowest_load, loads_at(contacts, lubricant, start, speeds, temperatures))
 
 
 def valley_loads(
@@ -325,7 +325,7 @@ def valley_loads(
     speeds, temperatures : array (n_u,), (n_T,)
         u [m/s], > 0, and T [K].
     """
-    return _loads_at([contact], lubricant, 0.0, speeds, temperatures)
+    return loads_at([contact], lubricant, 0.0, speeds, temperatures)
 
 
 def same_load(lowest_load: float, speeds: FloatArray, temperatures: FloatArray) -> FloatArray:
@@ -390,7 +390,7 @@ def low_loads(
     """
     speeds, temperatures = looked_at(speed_range, temperature_range)
     begins = first(speeds, temperatures)
-    zeta = np.log(begins / _loads_at(contacts, lubricant, 0.0, speeds, temperatures))
+    zeta = np.log(begins / loads_at(contacts, lubricant, 0.0, speeds, temperatures))
     guessed = zeta > RIGID + _ROUND_OFF
     ends = float(np.min(begins)), float(np.max(begins))
     return LowLoads(lowest_load, ends, float(np.mean(guessed)), float(np.max(zeta)))
@@ -410,14 +410,26 @@ def guessed_at(
     """
     speeds, temperatures = np.array([speed]), np.array([temperature])
     begins = float(first(speeds, temperatures)[0, 0])
-    right = float(_loads_at(contacts, lubricant, RIGID, speeds, temperatures)[0, 0])
+    right = float(loads_at(contacts, lubricant, RIGID, speeds, temperatures)[0, 0])
     return begins if begins > right * (1.0 + _ROUND_OFF) else 0.0
 
 
-def _loads_at(
+def loads_at(
     contacts: Sequence[LineContact], lubricant: Lubricant, zeta: float, speeds: FloatArray, temperatures: FloatArray
 ) -> FloatArray:
-    """Smallest load of some contacts at a zeta [N/m], (n_u, n_T)."""
+    """Smallest load of some contacts at a zeta [N/m], (n_u, n_T).
+
+    Parameters
+    ----------
+    contacts : sequence of LineContact
+        The contacts.
+    lubricant : Lubricant
+        The oil.
+    zeta : float
+        ln(M/M_valley(L)).
+    speeds, temperatures : array (n_u,), (n_T,)
+        u [m/s], > 0, and T [K].
+    """
     groups = [groups_at(contact, lubricant, np.asarray(speeds), np.asarray(temperatures)) for contact in contacts]
     loads: FloatArray = np.min([math.exp(zeta) * valley_load_number(L) / unit for unit, L in groups], axis=0)
     return loads

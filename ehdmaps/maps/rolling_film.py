@@ -28,11 +28,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.interpolate import CubicSpline, PPoly
+from scipy.interpolate import CubicSpline
 
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.maps.backbone import FEWEST_NODES, LATTICE_STEP, lagrange
-from ehdmaps.maps.film_field import RIGID, FilmField, known_from, load_at
+from ehdmaps.maps.film_field import RIGID, FilmField, known_from, load_at, loads_at
 from ehdmaps.maps.grid_field import lines_by_contact
 from ehdmaps.maps.kernels.splines import mix_lines, spline_weights
 from ehdmaps.maps.schema import BACKBONE_DIMS
@@ -55,6 +55,9 @@ RIGID_FLOW_NUMBER = 3.0
 _PRESSURE_EXPONENT = 1.5
 _STEP = 1e-3
 _FLOW_STEP = 0.1
+
+_KEPT = 4
+"""Flows that are kept: laws on layers of other thickness ask for the same."""
 
 _Reader = Callable[[LineContact, FloatArray, float, float], FloatArray]
 """From contact, loads (n,) from the first known to the highest one, speed and temperature to ln f and ln g, (2, n)."""
@@ -89,10 +92,12 @@ class FlowFilm:
         """
         places = (log_load - self.first) / self.reach
         held = np.minimum(places, 1.0)
-        logs, slopes = np.empty((2, *held.shape))
-        for place in np.ndindex(held.shape[1:]):
-            line = PPoly(self.line.c[:, :, *place], self.line.x)
-            logs[:, *place], slopes[:, *place] = line(held[:, *place]), line(held[:, *place], 1)
+        # each speed and temperature has its own places, which no spline of scipy takes
+        part = np.clip(np.searchsorted(self.line.x, held, side="right") - 1, 0, self.line.x.size - 2)
+        third, second, first, begin = np.take_along_axis(self.line.c, part[None], axis=1)
+        step = held - self.line.x[part]
+        logs = begin + step * (first + step * (second + step * third))
+        slopes = first + step * (2.0 * second + step * 3.0 * third)
         return logs + slopes * (places - held), slopes / self.reach
 
 
@@ -131,6 +136,11 @@ class RollingFilm:
         self._lubricant = lubricant
         self._reader = reader
         self._loads, self._temperatures = load_range, temperature_range
+        self._flows: dict[tuple[str | bytes, ...], tuple[FilmField | None, FlowFilm]] = {}
+
+    def __getstate__(self) -> dict[str, Any]:
+        """For other processes: without flows that were made of it."""
+        return {**self.__dict__, "_flows": {}}
 
     def rolling_force(
         self,
@@ -209,6 +219,18 @@ class RollingFilm:
         field : FilmField, optional
             Films of the contact. Outside the map the flow then follows them, see above; it goes on straight without.
         """
+        key = contact, *(values.tobytes() for values in (first, speeds, temperatures))
+        kept = self._flows.get(key)
+        if kept is None or kept[0] is not field:
+            if len(self._flows) >= _KEPT:
+                self._flows.pop(next(iter(self._flows)))
+            kept = self._flows[key] = field, self._flow_film(contact, first, speeds, temperatures, field)
+        return kept[1]
+
+    def _flow_film(
+        self, contact: str, first: FloatArray, speeds: FloatArray, temperatures: FloatArray, field: FilmField | None
+    ) -> FlowFilm:
+        """Flow along the loads, as `flow_film` says."""
         line, reach = self._contacts[contact], np.log(self._loads[1] / first)
         places = np.linspace(0.0, 1.0, 4 + math.ceil(float(np.max(reach)) / _FLOW_STEP))
         logs = np.empty((places.size, speeds.size, temperatures.size))
@@ -220,6 +242,7 @@ class RollingFilm:
             )
         for j, k in np.ndindex(speeds.size, temperatures.size):
             speed, kelvin, loads = float(speeds[j]), float(temperatures[k]), first[j, k] * np.exp(places * reach[j, k])
+            loads = np.minimum(loads, self._loads[1])  # round-off
             if field is not None and (float(held_speeds[j]), float(held[k])) != (speed, kelvin):
                 speed, kelvin, loads = float(held_speeds[j]), float(held[k]), same[:, j, k]
             state = self._lubricant.at(kelvin)
@@ -240,11 +263,10 @@ class RollingFilm:
         held: FloatArray,
     ) -> tuple[FloatArray, FloatArray]:
         """Loads at the edge of the map with the same zeta, and how films grow from there, (n, n_u, n_T) each."""
-        units = np.empty((2, speeds.size, temperatures.size))
-        for j, k in np.ndindex(speeds.size, temperatures.size):
-            for i, (u, T) in enumerate(((speeds[j], temperatures[k]), (held_speeds[j], held[k]))):
-                units[i, j, k] = load_at(line, self._lubricant, 0.0, float(u), float(T))
-        same = loads * units[1] / units[0]
+        units, at_edge = (
+            loads_at([line], self._lubricant, 0.0, *at) for at in ((speeds, temperatures), (held_speeds, held))
+        )
+        same = loads * at_edge / units
         if np.array_equal(speeds, held_speeds) and np.array_equal(temperatures, held):
             return same, np.ones_like(loads)
         here = field.films(line.name, loads, speeds, temperatures)[0]
