@@ -9,7 +9,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -28,14 +28,11 @@ from mbs.analyses.reach import fade_of
 from mbs.analyses.sensors import chosen_sensors, followed_orders
 from mbs.analyses.soundness import Judged, findings_in_run
 from mbs.analyses.step_error import StepCheck, step_check
-from mbs.bearings.bearing_element import BearingElement, RingElement, RollerElement
-from mbs.bearings.bearing_force import BearingForce
-from mbs.bearings.roller_contacts import RollerContacts
 from mbs.linearised.averaged import steady_system
 from mbs.linearised.sweep import sweep
 from mbs.linearised.sweep_result import Sweep
 from mbs.model.drive import DrivenSpeed
-from mbs.model.elements import Element, OnRings, Operation, Sensor
+from mbs.model.elements import OnRings, Operation, Sensor
 from mbs.model.equilibrium import equilibrium
 from mbs.model.findings import Finding
 from mbs.output.campbell_table import campbell_dataset, of_sensors
@@ -91,8 +88,7 @@ def law_changes(model: Model, speeds: Sequence[float]) -> Changes | None:
         balance = equilibrium(steady_system(operating(model, speed).system), operation)
         for index in balance.system.select(OnRings):
             connected = balance.system.elements[index]
-            if not isinstance(connected.element, RingElement):
-                return None
+            assert isinstance(connected.element, OnRings)
             sides = connected.element.sides(connected.transform @ balance.displacement, operation)
             changes = []
             for side in sides:
@@ -145,18 +141,13 @@ def with_changed_laws(model: Model, changes: Changes, signs: tuple[float, float,
             made[key] = law.changed(change)
         return made[key]
 
-    elements: list[Element] = [connected.element for connected in model.system.elements]
+    elements: list[Any] = [connected.element for connected in model.system.elements]
     bearings = list(model.bearings)
     for index, bearing in enumerate(bearings):
         own, element = [change.times(signs) for change in changes[bearing.name]], elements[index]
-        if isinstance(element, RollerElement):
-            laws = [changed(law, change) for law, change in zip(element.contacts.laws, own, strict=True)]
-            contacts = RollerContacts(element.contacts.bearing, *laws)
-            elements[index] = dataclasses.replace(element, contacts=contacts)
-            continue
-        assert isinstance(element, BearingElement) and isinstance(element.force, BearingForce)
-        force = BearingForce(element.force.bearing, changed(element.force.law, own[0]))
-        elements[index] = bearings[index] = dataclasses.replace(element, force=force)
+        laws = [changed(law, change) for law, change in zip(element.film_laws, own, strict=True)]
+        elements[index] = element.with_laws(laws)
+        bearings[index] = elements[index].plain
     return dataclasses.replace(model, system=model.system.with_elements(elements), bearings=tuple(bearings))
 
 

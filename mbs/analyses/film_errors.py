@@ -9,12 +9,12 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 from ehdmaps.units import RPM
 from mbs.analyses.operating import operating
-from mbs.bearings.bearing_element import ring_following
 from mbs.linearised.validity import ContactsInBalance, FilmError
 from mbs.model.contacts import slow_springs
 from mbs.model.elements import Element, OnRings, Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.model.relaxation import FILM_WORDS, NOTABLE, Films
+from mbs.model.ring_ports import ring_following
 from mbs.scene.assembly import Model
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from typing import Any
 
 import numpy as np
 
@@ -12,11 +13,8 @@ from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.units import RPM, TEMPERATURE
 from mbs.analyses.losses import contacts_and_losses
-from mbs.bearings.bearing import Bearing
-from mbs.bearings.bearing_element import BearingElement, RollerElement
-from mbs.bearings.bearing_force import BearingForce
+from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.contact_report import RollingLoss, load_torque, viscous_torque
-from mbs.bearings.roller_contacts import RollerContacts
 from mbs.bearings.thermal import (
     BearingHeat,
     BearingState,
@@ -27,7 +25,7 @@ from mbs.bearings.thermal import (
     steady_temperatures,
 )
 from mbs.linearised.averaged import steady_system
-from mbs.model.elements import Element, Operation
+from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.scene.assembly import Model
 from mbs.scene.specs import BearingSpec
@@ -110,7 +108,7 @@ def _friction(model: Model, index: int, paths: HeatPaths, loss: RollingLoss, loa
 
 def _viscosity(model: Model, bearing: BearingElement) -> float:
     """Kinematic viscosity of the oil at the temperature of a bearing [m2/s]."""
-    oil: Lubricant | None = model.films[bearing.name].lubricant or model.scene.lubricant
+    oil: Lubricant | None = bearing.lubricant or model.scene.lubricant
     if oil is None:
         raise InputError(
             f"bearing {bearing.name!r}, thermal: palmgren needs an oil; allowed: with --map, or a table [lubricant]"
@@ -137,7 +135,7 @@ def _moved(
     friction: dict[int, tuple[float, float, float]] | None = None,
 ) -> Model:
     """The model with raceways (bearings, 2) of these temperatures [K], and what is known of its heat."""
-    elements: list[Element] = [connected.element for connected in model.system.elements]
+    elements: list[Any] = [connected.element for connected in model.system.elements]
     bearings, states = list(model.bearings), []
     for index, (spec, bearing) in enumerate(zip(model.scene.bearings, model.bearings, strict=True)):
         state = _state(spec, bearing, raceways[index])
@@ -148,7 +146,10 @@ def _moved(
             state = dataclasses.replace(state, oil=oil, heat=BearingHeat(inner + outer, added, *flows))
         states.append(state)
         if spec.changes_in_operation:
-            bearings[index], elements[index] = _in_state(bearing, elements[index], state)
+            geometry = dataclasses.replace(bearing.bearing.geometry, diametral_clearance=state.clearance.operating)
+            other = dataclasses.replace(bearing.bearing, geometry=geometry)
+            elements[index] = elements[index].in_state(other, state.film_temperature)
+            bearings[index] = elements[index].plain
     return dataclasses.replace(
         model,
         system=model.system.with_elements(elements),
@@ -165,16 +166,3 @@ def _state(spec: BearingSpec, bearing: BearingElement, raceways: FloatArray) -> 
     if not spec.changes_in_operation:
         clearance = dataclasses.replace(clearance, by_temperature=0.0)
     return BearingState(spec.name, inner, outer, clearance)
-
-
-def _in_state(bearing: BearingElement, element: Element, state: BearingState) -> tuple[BearingElement, Element]:
-    """A bearing, and its element in the system, in another state."""
-    geometry = dataclasses.replace(bearing.bearing.geometry, diametral_clearance=state.clearance.operating)
-    other: Bearing = dataclasses.replace(bearing.bearing, geometry=geometry)
-    assert isinstance(bearing.force, BearingForce)  # bearings of scenes have no other
-    force = BearingForce(other, bearing.force.law)
-    plain = dataclasses.replace(bearing, bearing=other, force=force, temperature=state.film_temperature)
-    if isinstance(element, RollerElement):
-        contacts = RollerContacts(other, *element.contacts.laws)
-        return plain, dataclasses.replace(element, plain=plain, contacts=contacts)
-    return plain, plain

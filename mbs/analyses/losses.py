@@ -7,11 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.errors import InputError
-from ehdmaps.physics.solids import STEEL
-from mbs.bearings.bearing_element import BearingElement
-from mbs.bearings.contact_report import BearingContacts, RollingLoss, bearing_contacts, rolling_loss
-from mbs.bearings.films import DryContacts, FilmSource
+from mbs.bearings.contact_report import BearingContacts, RollingLoss
 from mbs.model.elements import Operation
 from mbs.scene.assembly import Model
 
@@ -30,16 +26,8 @@ def contacts_and_losses(
     operation : Operation
         Speed and angle.
     """
-    rollers = {bearing.name: bearing for bearing in model.bearings}
-    found = []
-    for entry in model.on_rings:
-        motion = model.system.relative(entry.inner, entry.outer) @ displacement
-        bearing = rollers.get(entry.name)
-        if bearing is None:
-            found.append(entry.felt(motion, operation))
-        else:
-            found.append(_of_bearing(model.films[entry.name], bearing, motion, operation))
-    return found
+    motions = [model.system.relative(entry.inner, entry.outer) @ displacement for entry in model.on_rings]
+    return [entry.felt(motion, operation) for entry, motion in zip(model.on_rings, motions, strict=True)]
 
 
 def losses_over_speed(
@@ -65,17 +53,3 @@ def losses_over_speed(
         if np.all(np.isnan(found[:, index])):  # no film of this model knows any, at whatever speed
             break
     return found[0], found[1]
-
-
-def _of_bearing(
-    films: FilmSource, bearing: BearingElement, motion: FloatArray, operation: Operation
-) -> tuple[BearingContacts, RollingLoss]:
-    """Contacts and loss of one bearing at the motion (6,) of its inner ring."""
-    rollers, u = bearing.loads(motion, operation), bearing.entrainment_speed(operation)
-    at = rollers, u, bearing.temperature, bearing.centrifugal_load(operation)
-    try:
-        contacts = bearing_contacts(films, *at)
-    except InputError:  # the oil has no viscosity at this temperature, where a law is held at its edge
-        contacts = bearing_contacts(DryContacts(bearing.bearing.geometry.contacts(STEEL, "iso16281")), *at)
-    ring_speed = (bearing.inner_spin - bearing.outer_spin) * operation.speed
-    return contacts, rolling_loss(bearing.bearing, films, contacts, rollers, u, ring_speed, *at[2:])

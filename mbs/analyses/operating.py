@@ -87,6 +87,6 @@ def states_of(model: Model) -> tuple[BearingState, ...]:
     clearances = {
         spec.name: math.nan if spec.geometry.clearance is None else spec.geometry.clearance for spec in scene.located
     }
-    others = model.on_rings[len(model.bearings) :]
+    others = model.located
     kelvin = scene.temperature
     return (*found, *(BearingState(one.name, kelvin, kelvin, Clearance(clearances[one.name])) for one in others))

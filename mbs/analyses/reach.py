@@ -10,10 +10,8 @@ import numpy.typing as npt
 
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.units import LOAD, RPM
-from mbs.bearings.bearing_element import BearingElement
-from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.contact_report import axes_left
-from mbs.bearings.laws import DryLaw, Law, TableLaw
+from mbs.bearings.laws import DryLaw, TableLaw
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import Equilibrium
 from mbs.model.matrices import MatrixElement
@@ -82,27 +80,19 @@ def sources_of(model: Model) -> dict[str, str]:
     elements = [entry.element for entry in model.system.elements]
     source = source_of(model)
     kinds = {entry.name: SPEED_TABLE for entry in elements if isinstance(entry, MatrixElement)}
-    for other in model.on_rings[len(model.bearings) :]:
-        films = getattr(other, "films", None)
-        kinds[other.name] = (
-            f"{_LOADS}{getattr(films, 'source', 'the film table')} holds" if films is not None else source
-        )
+    for other in model.located:
+        held = f"{_LOADS}{other.film_source or 'the film table'} holds"
+        kinds[other.name] = source if other.films is None else held
     return {entry.name: kinds.get(entry.name, source) for entry in elements}
 
 
 def fade_of(model: Model) -> Fade | None:
     """Find where the films of the model begin; None for laws without films, and for bearings that do not turn."""
     found: list[Fade] = []
-    for bearing in model.bearings:
-        law = _law_of(bearing)
-        if law is None or isinstance(law, DryLaw) or not bearing.rates[1] > 0.0 or not law.speed_range[0] > 0.0:
-            continue
-        lowest = law.speed_range[0]
-        found.append(Fade(lowest / bearing.rates[1], lowest, source_of(model)))
-    for other in model.on_rings[len(model.bearings) :]:
-        films, rate = getattr(other, "films", None), other.entrainment_rate
-        if films is not None and rate > 0.0 and films.slowest > 0.0:
-            found.append(Fade(films.slowest / rate, films.slowest, films.source))
+    for bearing in model.on_rings:
+        lowest, rate = bearing.slowest_film, bearing.entrainment_rate
+        if rate > 0.0 and lowest > 0.0:
+            found.append(Fade(lowest / rate, lowest, bearing.film_source or source_of(model)))
     return max(found, key=lambda fade: fade.speed, default=None)
 
 
@@ -126,8 +116,8 @@ def axes_outside(model: Model, speed: float, loads: Mapping[str, float] | None =
     """
     found = {}
     for bearing in model.bearings:
-        law = _law_of(bearing)
-        if law is None or (isinstance(law, DryLaw) and not isinstance(law, TableLaw)):
+        law = bearing.force.law
+        if isinstance(law, DryLaw) and not isinstance(law, TableLaw):
             continue
         load = (loads or {}).get(bearing.name, 0.0)
         u = bearing.entrainment_speed(Operation(speed))
@@ -139,11 +129,6 @@ def axes_outside(model: Model, speed: float, loads: Mapping[str, float] | None =
         words = "; ".join(axes) or f"a load above {end}"
         found[bearing.name] = words.replace("the map", source_of(model))
     return found
-
-
-def _law_of(bearing: BearingElement) -> Law | None:
-    """The law of a bearing; None of one that has another force."""
-    return bearing.force.law if isinstance(bearing.force, BearingForce) else None
 
 
 def fade_lines(model: Model, speeds: FloatArray, of: str = "the speeds") -> list[str]:
@@ -242,7 +227,6 @@ def outside_at(model: Model, balance: Equilibrium) -> list[str]:
     loads = {
         bearing.name: float(bearing.loads(motion, balance.operation).load_per_length.max())
         for bearing, motion in ring_motions(model, balance.displacement)
-        if isinstance(bearing.force, BearingForce)
     }
     axes = axes_outside(model, balance.operation.speed, loads)
     return outside_lines(balance.outside, "lies outside the map", axes, sources=sources_of(model))

@@ -12,15 +12,15 @@
 `bearing_force`        the force element, with films at once or in time, its energy and the moment on its cage
 `roller_spin`          how fast rollers turn in the clearance of their pockets
 `roller_contacts`      rollers as bodies between two contacts
-`bearing_element`      a bearing in a system: rollers massless or bodies, films that follow at once or need time
+`bearing_element`      a bearing in a system, with massless rollers
+`roller_element`       the same with rollers as bodies
+`memory_element`       both with films that need time
 `locating`             the same of bearings that carry axial load: laws, force, element, compiled runs
 `balls`                their kinds: balls with two contact angles each, which set their speed
 `tapered`              and tapered rollers, or rollers between ribs, in slices between cup, cone and rib
 `slices_in_balance`    small motions: films with memory in linear analyses, errors of the law
 `contact_report`       what the contacts feel in an equilibrium, what rolling costs, which limits are passed
-`reports`              the same of balls, and of rollers with ribs
-`ring_records`         bearings of a run as C takes them
-`rings`                bearings of a run as arrays: rings, rollers, and contacts with one side or two
+`rings`                bearings of a run as arrays, and as C takes them: rings, rollers, contacts with one side or two
 `bearing_block`        compiled runs with slow films or dry contacts
 `memory_block`         compiled runs with films that have a memory
 =====================  ================================================================================================

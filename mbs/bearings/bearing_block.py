@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from ctypes import addressof, c_int64, c_void_p
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -17,14 +17,21 @@ from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.kernel.library import checked, function
 from ehdmaps.kernel.record import Record, integers, numbers
 from mbs.bearings import slice_table as table
-from mbs.bearings.bearing_element import BearingElement
-from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.cylinder import CylinderLaw
-from mbs.bearings.ring_records import CourseRecord, RingsRecord, course_record, rings_record
-from mbs.bearings.rings import alike_contacts, alone, feels, gather_rings, placed, strict
+from mbs.bearings.rings import (
+    CourseRecord,
+    RingsRecord,
+    alike_contacts,
+    alone,
+    course_record,
+    feels,
+    gather_rings,
+    placed,
+    rings_record,
+    strict,
+)
 from mbs.bearings.speed_tables import NODES, CourseOfFilms, SpeedTables, course_of
 from mbs.model.blocks import Kind, Member
-from mbs.model.elements import Element
 
 
 class CourseLaw(Record):
@@ -141,7 +148,7 @@ class BearingBlock:
     Parameters
     ----------
     members : sequence of Member
-        Bearings with a `BearingForce`, or elements of the class `RollerElement`.
+        Elements of the class `BearingElement`, or of the class `RollerElement`.
     """
 
     def __init__(self, members: Sequence[Member]) -> None:
@@ -182,9 +189,9 @@ class BearingBlock:
         return self._data, sound
 
 
-def _takes(element: Element) -> bool:
+def _takes(element: Any) -> bool:
     """Tell whether C has the force of a bearing."""
-    return isinstance(element, BearingElement) and type(element.force) is BearingForce and not element.bearing.coupled
+    return not element.bearing.coupled
 
 
 BEARINGS = Kind(

@@ -27,10 +27,22 @@ from ehdmaps.kernel.record import Record, integers, numbers
 from ehdmaps.maps.kernels.memory import FilmState
 from ehdmaps.maps.kernels.memory_table import NUMBERS
 from ehdmaps.maps.law import ContactLaw
-from mbs.bearings.bearing_element import FilmStates
 from mbs.bearings.laws import DryLaw
-from mbs.bearings.ring_records import CourseRecord, RingsRecord, course_record, rings_record
-from mbs.bearings.rings import Rings, alike_contacts, alone, feels, folding_of, gather_rings, placed, plain, strict
+from mbs.bearings.memory_element import FilmStates
+from mbs.bearings.rings import (
+    CourseRecord,
+    Rings,
+    RingsRecord,
+    alike_contacts,
+    alone,
+    course_record,
+    feels,
+    folding_of,
+    gather_rings,
+    placed,
+    rings_record,
+    strict,
+)
 from mbs.bearings.speed_tables import CourseOfFilms, Made, SpeedWindow, course_of
 from mbs.model.blocks import Kind, Member
 
@@ -207,7 +219,7 @@ class MemoryBlock:
             mixed=np.zeros((len(laws), NUMBERS)),
             in_use=self._in_use,
         )
-        self._folds = [folding_of(plain(member.element)) for member in members]
+        self._folds = [folding_of(member.element.plain) for member in members]
 
     def begin(self, speeds: FloatArray) -> None:
         """Find the places of the speeds [rad/s] on the tables."""

@@ -14,30 +14,25 @@ Approaches are those of `mbs.bearings.roller_contacts`.
 
 from __future__ import annotations
 
+import ctypes
 import dataclasses
 from collections.abc import Iterable, Sequence
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
 from ehdmaps.arrays import BoolArray, FloatArray, IntArray
+from ehdmaps.kernel.library import checked
+from ehdmaps.kernel.record import Record, integers, numbers
 from mbs.bearings.bearing import Bearing
-from mbs.bearings.bearing_element import BearingElement, RollerElement
+from mbs.bearings.bearing_element import FELT, LEVEL, BearingElement, RingElement
 from mbs.bearings.cylinder import Cylinder, cylinder_of
 from mbs.bearings.laws import FlatLaw
-from mbs.bearings.speed_tables import shared
+from mbs.bearings.roller_element import RollerElement
+from mbs.bearings.speed_tables import Course, shared
 from mbs.model.blocks import Member
 
-FELT = np.array([1, 2, 4, 5])
-"""Displacements of its port that a bearing feels: y, z, theta_y, theta_z."""
-
-LEVEL = 2
-"""How many of them one feels whose rings do not tilt: the first ones."""
-
 _TILTS = FELT[LEVEL:]
-
-_FELT, _TILT_PLACE = 6, 4
-"""How many displacements of both rings a bearing feels whose rollers are bodies, and where the tilts are among them."""
 
 _SIZES = "half_clearance", "slice_length", "most_travel", "most_tilt", "half_length", "least_profile"
 """Numbers of `mbs.bearings.cylinder.Cylinder` in `Rings.sizes`."""
@@ -104,16 +99,9 @@ class Rings(NamedTuple):
         return int(np.max(self.rollers * self.slices, initial=0))
 
 
-def feels(element: BearingElement | RollerElement) -> FloatArray:
-    """Rows of what a bearing feels of its rings: (4, 6), (2, 6) without tilts, (6, 12 + Z) with rollers as bodies."""
-    if not isinstance(element, RollerElement):
-        return np.asarray(np.eye(6)[FELT[: _felt(element)]])
-    rows = np.zeros((_FELT, element.contacts.size))
-    for row, place in enumerate((1, 2, 7, 8)):
-        rows[row, place] = 1.0
-    for row, place in ((_TILT_PLACE, 4), (_TILT_PLACE + 1, 5)):
-        rows[row, place], rows[row, place + 6] = 1.0, -1.0
-    return rows
+def feels(element: RingElement) -> FloatArray:
+    """Rows of what a bearing feels of its rings, for `mbs.model.blocks.Kind`."""
+    return element.felt_rows
 
 
 def alone(element: RollerElement) -> FloatArray:
@@ -171,13 +159,6 @@ def folding_of(element: BearingElement) -> Folding:
     return Folding(firsts, groups.reshape(-1), counts.astype(np.float64))
 
 
-def _felt(element: BearingElement | RollerElement) -> int:
-    """Number of displacements of rings that a bearing feels."""
-    if isinstance(element, RollerElement):
-        return _FELT
-    return FELT.size if element.tilts else LEVEL
-
-
 class Alike(NamedTuple):
     """Contacts with the same law at the same conditions, which share its tables.
 
@@ -203,18 +184,11 @@ def alike_contacts(members: Sequence[Member]) -> tuple[IntArray, list[Alike]]:
     """Film of each contact of some bearings, shape (bearings, sides), and what the contacts of each film share."""
     contacts = []
     for element in (member.element for member in members):
-        massless = plain(element)
-        # The centrifugal load of rollers that are bodies acts on them, and not in their contacts.
-        rates = massless.rates[1], 0.0 if isinstance(element, RollerElement) else massless.rates[2]
-        contacts += [Alike(massless.bearing, law, massless.temperature, rates) for law in element.flat_laws]
+        plain, rates = element.plain, element.contact_rates
+        contacts += [Alike(plain.bearing, law, plain.temperature, rates) for law in element.flat_laws]
     films_of, firsts = shared((id(one.law.law), one.temperature, *one.rates) for one in contacts)
     sides = len(contacts) // len(members) if members else 1
     return _whole(films_of).reshape(len(members), sides), [contacts[first] for first in firsts]
-
-
-def plain(element: BearingElement | RollerElement) -> BearingElement:
-    """The bearing with massless rollers."""
-    return element.plain if isinstance(element, RollerElement) else element
 
 
 def strict(members: Sequence[Member]) -> BoolArray:
@@ -224,7 +198,7 @@ def strict(members: Sequence[Member]) -> BoolArray:
 
 def gather_rings(members: Sequence[Member], films_of: IntArray) -> Rings:
     """The arrays of some bearings, and which film each of their contacts has."""
-    plains: list[BearingElement] = [plain(member.element) for member in members]
+    plains: list[BearingElement] = [member.element.plain for member in members]
     shapes = [cylinder_of(element.bearing) for element in plains]
     folds = [folding_of(element) for element in plains]
     return Rings(
@@ -240,7 +214,7 @@ def gather_rings(members: Sequence[Member], films_of: IntArray) -> Rings:
         profiles=_slices_of([one.given("profile")[fold.firsts] for one, fold in zip(shapes, folds, strict=True)]),
         cos=_padded([shape.given("cosine") for shape in shapes]),
         sin=_padded([shape.given("sine") for shape in shapes]),
-        felt=_whole(_felt(member.element) for member in members),
+        felt=_whole(feels(member.element).shape[0] for member in members),
         weights=_slices_of([fold.weights for fold in folds]),
         alone=_whole(member.alone for member in members),
         outward=np.array([plain.rates[2] * plain.bearing.geometry.roller_length for plain in plains], dtype=np.float64),
@@ -268,3 +242,70 @@ def _padded(rows: Sequence[FloatArray]) -> FloatArray:
 def _whole(numbers: Iterable[int]) -> IntArray:
     """Whole numbers as an array."""
     return np.array(list(numbers), dtype=np.int64)
+
+
+_WHOLE = ("firsts", "places", "films_of", "rollers", "slices", "felt", "alone")
+_REAL = ("start_angles", "cage_rates", "sizes", "positions", "profiles", "weights", "cosine", "sine", "outward")
+
+
+class RingsRecord(Record):
+    """Bearings, one row a bearing: the arrays of `mbs.bearings.rings.Rings`.
+
+    Attributes
+    ----------
+    count, sides : int
+        How many bearings, and contacts of a roller.
+    most_rollers, most_slices : int
+        Lengths of the rows of rollers and slices.
+    """
+
+    _fields_ = (
+        *((name, ctypes.c_int64) for name in ("count", "sides", "most_rollers", "most_slices")),
+        *((name, integers) for name in _WHOLE),
+        *((name, numbers) for name in _REAL),
+    )
+    shapes: ClassVar = {
+        **dict.fromkeys((*_WHOLE, "start_angles", "cage_rates", "outward"), ("count",)),
+        "films_of": ("count", "sides"),
+        "sizes": ("count", 6),
+        **dict.fromkeys(("positions", "profiles", "weights"), ("count", "most_slices")),
+        **dict.fromkeys(("cosine", "sine"), ("count", "most_rollers")),
+    }
+
+
+def rings_record(rings: Rings) -> RingsRecord:
+    """Bearings for C."""
+    count, sides = rings.films_of.shape
+    named = {name: getattr(rings, name) for name in (*_WHOLE, *_REAL) if name not in ("cosine", "sine")}
+    return checked(RingsRecord, "ehd_rings")(
+        count=count,
+        sides=sides,
+        most_rollers=rings.cos.shape[1],
+        most_slices=rings.positions.shape[1],
+        cosine=rings.cos,
+        sine=rings.sin,
+        **named,
+    )
+
+
+class CourseRecord(Record):
+    """Places of some steps on tables over the speed: the arrays of `mbs.bearings.speed_tables.Course`.
+
+    Attributes
+    ----------
+    films : int
+        How many tables.
+    """
+
+    _fields_ = (
+        ("films", ctypes.c_int64),
+        ("nodes", integers),
+        ("outside", integers),
+        ("weights", numbers),
+        ("kept", integers),
+    )
+
+
+def course_record(course: Course) -> CourseRecord:
+    """Course for C."""
+    return checked(CourseRecord, "ehd_film_course")(films=course.nodes.shape[1], **course._asdict())

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 _STEPS = 100
-_AT_REST = 1e6
+AT_REST = 1e6
 """A step so long that films are in equilibrium at its end [s]."""
 
 _ALIKE = 1e-6
@@ -178,7 +178,7 @@ class RollerContacts:
             delta = self._approach(flat, tilted, q)
             memory = self._point(side, law, entrainment_speed, temperature).memory
             begin = memory.settled(delta) if states is None else states[side]
-            load, tangent, end = memory.advance(begin, delta, _AT_REST if states is None else dt)
+            load, tangent, end = memory.advance(begin, delta, AT_REST if states is None else dt)
             films.append(begin if states is None else end)
             f -= length * (flat.T @ load.sum(axis=1) + tilted.T @ (load @ self._x))
             K += self._matrix(flat, tilted, tangent * length)

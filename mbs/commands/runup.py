@@ -284,7 +284,7 @@ def _report(found: RunUpResult) -> list[str]:
             f"{outside[bearing.name]} calls outside {end}"
         )
     names = [entry.element.name for entry in model.system.elements]
-    others = [entry.name for entry in model.on_rings[len(model.bearings) :]]
+    others = [entry.name for entry in model.located]
     lines += [_located_line(name, result.forces[names.index(name)]) for name in others]
     lines += drive_lines(result.drive) + energy_lines(result.energy)
     lines += fade_lines(model, result.speed, "the run")

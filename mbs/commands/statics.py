@@ -13,7 +13,6 @@ from ehdmaps.units import DAMPER, FILM, PRESSURE, SPRING, written
 from mbs.analyses.reach import fade_lines, outside_at
 from mbs.analyses.soundness import Judged
 from mbs.analyses.statics import statics
-from mbs.bearings.bearing_element import ring_matrices
 from mbs.bearings.contact_report import BearingContacts
 from mbs.bearings.force_at_point import RollerLoads
 from mbs.commands.auto import analysed
@@ -21,6 +20,7 @@ from mbs.commands.cases import load_model
 from mbs.commands.common import Looked, write
 from mbs.model.equilibrium import Equilibrium
 from mbs.model.relaxation import NOTABLE
+from mbs.model.ring_ports import ring_matrices
 from mbs.output.model_text import heading
 from mbs.output.state_text import DAMPINGS, STIFFNESSES, flooded_note, largest_torque, life_lines, loss_words
 from mbs.planning.question import at_one_speed
@@ -66,7 +66,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
             *_matrix(f"K [{STIFFNESSES}]", SPRING.factor * stiffness),
             *_matrix(f"C [{DAMPINGS}]", DAMPER.factor * damping),
         ]
-    if model.on_rings[len(model.bearings) :]:
+    if model.located:
         from mbs.output.one_bearing.located import located_lines
 
         lines += located_lines(model, balance)

@@ -37,11 +37,11 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
-from mbs.bearings.bearing_element import ring_following
 from mbs.linearised.film_part import CondensedBearing, FilmPart, condensed_bearings, film_part
 from mbs.model.contacts import LAW_CHANGES
 from mbs.model.elements import OnRings
 from mbs.model.equilibrium import Equilibrium
+from mbs.model.ring_ports import ring_following
 
 KINDS = LAW_CHANGES
 """Kinds of changes, in the order in which each bearing has them."""

@@ -18,7 +18,6 @@ import numpy as np
 
 from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
 from ehdmaps.errors import AnalysisError, InputError
-from mbs.bearings.bearing_element import ring_matrices
 from mbs.linearised.averaged import AveragedEquilibrium, PitchSpread, averaged, over_pitch, pitch_spread, steady_system
 from mbs.linearised.bands import film_share, law_bands
 from mbs.linearised.dynamic import LostMode
@@ -29,6 +28,7 @@ from mbs.linearised.tracking import Match, ModeSet, compose, match, numbers, tra
 from mbs.linearised.validity import DynamicLoad, dynamic_loads
 from mbs.model.elements import Input, OnRings, Operation, Sensor
 from mbs.model.equilibrium import Equilibrium, equilibrium
+from mbs.model.ring_ports import ring_matrices
 from mbs.model.system import System
 from mbs.settings import MOST_SPEEDS
 

@@ -272,10 +272,13 @@ class OnRings(ElementDefaults):
         Whether it holds the ring along the axis, once its clearance is taken up.
     rolling_element : str
         How one of its rolling elements is called: roller, ball.
+    memory_words : str
+        What describes films with memory, and leaves the rest of their response out.
     """
 
     locating: ClassVar[bool] = False
     rolling_element: ClassVar[str] = "roller"
+    memory_words: ClassVar[str] = "springs and dampers of films with memory leave"
 
     if TYPE_CHECKING:  # a property at run time would be the default of the fields of this name
 
@@ -287,6 +290,16 @@ class OnRings(ElementDefaults):
     def entrainment_rate(self) -> float:
         """Entrainment speed of its contacts by the speed of the system [m]; 0 where nothing rolls, or none is known."""
         return 0.0
+
+    @property
+    def slowest_film(self) -> float:
+        """Entrainment speed from which on its law has films [m/s]; 0 where it has none, or at any speed."""
+        return 0.0
+
+    @property
+    def film_source(self) -> str:
+        """Source of its films in words; empty where it is that of the law of the system."""
+        return ""
 
     def felt(self, displacement: FloatArray, operation: Operation) -> tuple[Any, Any]:
         """Pressures and films of its contacts at rest, and what rolling costs, by the law in force.
@@ -355,6 +368,21 @@ class OnRings(ElementDefaults):
     def error_words(self) -> str:
         """Name the errors that its law states, for people; empty for laws that state none."""
         return ""
+
+    def sides(self, displacement: FloatArray, operation: Operation) -> tuple[Any, ...]:
+        """Its slices at rest by laws whose errors are known slice by slice; none of other bearings.
+
+        Parameters
+        ----------
+        displacement, operation
+            The same as of `small_motions`.
+
+        Returns
+        -------
+        tuple of Side
+            Slices of each side, see `mbs.bearings.slices_in_balance`.
+        """
+        return ()
 
     def small_motions(self, displacement: FloatArray, operation: Operation) -> Condensed | None:
         """Condense its rolling elements for small motions, with what errors of its law change; None without films.

@@ -9,8 +9,8 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from ehdmaps.units import RPM, TEMPERATURE, written
-from mbs.bearings.bearing_element import error_words
 from mbs.bearings.thermal import HeatPaths
+from mbs.linearised.band_words import error_words
 from mbs.model.equilibrium import ROLLER
 from mbs.model.relaxation import FILM_WORDS, NOTABLE
 from mbs.output.state_text import class_lines, state_lines

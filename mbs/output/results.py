@@ -11,14 +11,15 @@ import numpy.typing as npt
 import xarray as xr
 
 from ehdmaps.arrays import ComplexArray, FloatArray
-from mbs.bearings.bearing_element import error_words, ring_matrices
 from mbs.bearings.films import SIDES
 from mbs.bearings.thermal import BearingHeat, BearingState
 from mbs.gears.gear import GearMesh
+from mbs.linearised.band_words import error_words
 from mbs.model.body import FREEDOMS
 from mbs.model.elements import Input, OnRings, Sensor
 from mbs.model.equilibrium import Equilibrium
 from mbs.model.findings import CARRIES
+from mbs.model.ring_ports import ring_matrices
 from mbs.model.system import System
 from mbs.output.state_text import HIGHEST_LOAD, LOADED
 from mbs.scene.assembly import Model

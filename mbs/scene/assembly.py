@@ -16,7 +16,6 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.surface import Surface
 from mbs.bearings.bearing_element import BearingElement
-from mbs.bearings.films import FilmSource
 from mbs.bearings.thermal import BearingState
 from mbs.gears.pair import GearPair
 from mbs.model.elements import OnRings, Operation
@@ -119,8 +118,6 @@ class Model:
         Bearings in the order of the scene; where rollers are bodies, with massless rollers, to look at.
     gears : tuple of GearMesh
         Gear meshes in the order of the scene.
-    films : mapping of str to FilmSource
-        What knows pressures and films of the contacts, by bearing.
     label : str
         The law in two words, as the legend of a figure has it.
     memory : {"slow", "memory"}
@@ -148,7 +145,6 @@ class Model:
     law: str
     bearings: tuple[BearingElement, ...]
     gears: tuple[GearMesh, ...]
-    films: Mapping[str, FilmSource]
     label: str
     memory: Films = "slow"
     states: tuple[BearingState, ...] = ()
@@ -167,9 +163,14 @@ class Model:
     @property
     def on_rings(self) -> tuple[AnyBearing, ...]:
         """Bearings of all kinds: those of `bearings`, then the others in the order of the elements."""
-        others = {entry.name for entry in self.scene.located}
-        found = [entry.element for entry in self.system.elements if entry.element.name in others]
-        return (*self.bearings, *cast("list[AnyBearing]", found))
+        return (*self.bearings, *self.located)
+
+    @property
+    def located(self) -> tuple[LocatingElement, ...]:
+        """Bearings that carry axial load, in the order of the elements."""
+        names = {entry.name for entry in self.scene.located}
+        found = [entry.element for entry in self.system.elements if entry.element.name in names]
+        return tuple(cast("list[LocatingElement]", found))
 
     @property
     def ring_places(self) -> tuple[int, ...]:
@@ -295,10 +296,6 @@ def assemble(
         law="; ".join(words) or "none",
         bearings=bearings,
         gears=cast("tuple[GearMesh, ...]", tuple(part.shown for part in built["gears"])),
-        films={
-            entry.name: laws.films(entry.bearing, laws.supply(spec))
-            for entry, spec in zip(bearings, scene.bearings, strict=True)
-        },
         label=laws.label if scene.has_bearings else NO_LAW,
         balls=tuple(cast("MachineBalls", part.element) for part in built[""] if part.element.name in of_balls),
         memory=laws.memory,

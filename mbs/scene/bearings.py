@@ -262,11 +262,12 @@ def build_bearing(spec: BearingSpec, surroundings: Surroundings) -> Built:
         coupled=spec.slices_coupled,
         pocket_clearance=spec.pocket_clearance,
     )
-    laws = surroundings.laws.of(bearing, surroundings.laws.supply(spec))
+    supply = surroundings.laws.supply(spec)
+    laws = surroundings.laws.of(bearing, supply)
     memory = surroundings.laws.memory == "memory"
     kind = BearingElement
     if memory and not spec.rollers_as_bodies:
-        from mbs.bearings.bearing_element import MemoryBearing
+        from mbs.bearings.memory_element import MemoryBearing
 
         kind = MemoryBearing
     plain = kind(
@@ -280,16 +281,17 @@ def build_bearing(spec: BearingSpec, surroundings: Surroundings) -> Built:
         outer_spin=surroundings.places.spin(spec.outer),
         start_angle=spec.start_angle,
         centrifugal=spec.centrifugal,
+        source=surroundings.laws.films(bearing, supply),
     )
     if not spec.rollers_as_bodies:
         return Built(plain, plain)
-    from mbs.bearings.bearing_element import RollerElement, roller_body
     from mbs.bearings.roller_contacts import RollerContacts
+    from mbs.bearings.roller_element import RollerElement, roller_body
 
     body = roller_body(f"{spec.name}_rollers", bearing)
     contacts = RollerContacts(bearing, *laws.single)
     if not memory:
         return Built(RollerElement(plain, contacts, body.name), plain, (body,))
-    from mbs.bearings.bearing_element import MemoryRollers
+    from mbs.bearings.memory_element import MemoryRollers
 
     return Built(MemoryRollers(plain, contacts, body.name), plain, (body,))

@@ -13,8 +13,10 @@ from __future__ import annotations
 from mbs.bearings.balls.ball_block import BALLS
 from mbs.bearings.balls.ball_element import MachineBalls
 from mbs.bearings.bearing_block import BEARINGS, ROLLERS
-from mbs.bearings.bearing_element import BearingElement, MemoryBearing, MemoryRollers, RollerElement
+from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.memory_block import MEMORY_BEARINGS, MEMORY_ROLLERS
+from mbs.bearings.memory_element import MemoryBearing, MemoryRollers
+from mbs.bearings.roller_element import RollerElement
 from mbs.bearings.tapered.tapered_block import TAPERED
 from mbs.bearings.tapered.tapered_element import TaperedElement
 from mbs.gears.gear import GearMesh

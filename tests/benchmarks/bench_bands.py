@@ -38,7 +38,8 @@ from ehdmaps.units import RPM, TEMPERATURE
 from mbs.analyses.lsa import lsa
 from mbs.analyses.modes import modes as modes_of_model
 from mbs.analyses.sweep import SweepSettings, sweep
-from mbs.bearings.bearing_element import BearingElement, RollerElement
+from mbs.bearings.bearing_element import BearingElement
+from mbs.bearings.roller_element import RollerElement
 from mbs.linearised.averaged import steady_system
 from mbs.linearised.bands import law_bands
 from mbs.linearised.modes import Modes, modes

@@ -27,7 +27,7 @@ import numpy as np
 
 import ehdmaps
 from ehdmaps.maps.emap import EHDMap
-from mbs.bearings.bearing_element import RollerElement
+from mbs.bearings.roller_element import RollerElement
 from mbs.linearised.dynamic import element_dynamic_stiffness
 from mbs.linearised.modes import Modes, modes
 from mbs.model.elements import Operation

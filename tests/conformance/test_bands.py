@@ -22,7 +22,7 @@ from mbs.analyses.modes import modes
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.films import ball_films
 from mbs.bearings.balls.response import ContactResponse
-from mbs.bearings.bearing_element import NO_MAP
+from mbs.linearised.band_words import NO_MAP
 from mbs.linearised.bands import law_bands
 from mbs.linearised.dynamic import dynamic_slope, dynamic_stiffness, newton
 from mbs.linearised.linear import (

@@ -7,8 +7,8 @@ import pytest
 
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from ehdmaps.physics.solids import STEEL
-from mbs.bearings.reports import ball_report
-from mbs.bearings.reports.ball_report import strips
+from mbs.bearings.balls import ball_report
+from mbs.bearings.balls.ball_report import strips
 
 ELLIPSE = ball_estimate("6208").contacts(STEEL)[0]
 LOADS = np.array([1.0, 300.0, 5e3])

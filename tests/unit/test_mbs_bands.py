@@ -17,7 +17,7 @@ from mbs.analyses.campbell import campbell, law_changes, with_changed_laws
 from mbs.analyses.lsa import LsaSettings, lsa
 from mbs.analyses.modes import modes
 from mbs.analyses.ramp import silent_run
-from mbs.bearings.bearing_element import NO_MAP, error_words
+from mbs.linearised.band_words import NO_MAP, error_words
 from mbs.linearised.bands import KINDS, law_bands
 from mbs.linearised.dynamic import dynamic_stiffness
 from mbs.linearised.film_part import CondensedBearing

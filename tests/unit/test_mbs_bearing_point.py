@@ -179,7 +179,7 @@ def test_the_point_is_that_of_a_scene():
     force = balance.forces[0][1:3]
     point = bearing_point(
         model.bearings[0].force,
-        model.films[model.bearings[0].name],
+        model.bearings[0].source,
         -force,
         model.scene.speed,
         model.scene.temperature,

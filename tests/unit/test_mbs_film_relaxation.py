@@ -12,10 +12,11 @@ from ehdmaps.errors import InputError
 from ehdmaps.maps.kernels.memory_table import approach_at
 from ehdmaps.maps.law import ContactLaw
 from mbs.bearings.bearing import Bearing
-from mbs.bearings.bearing_element import BearingElement, RollerElement
+from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.laws import hertz
 from mbs.bearings.roller_contacts import RollerContacts
+from mbs.bearings.roller_element import RollerElement
 from mbs.linearised.dynamic import TOLERANCE, film_states, together
 from mbs.model.elements import Operation
 from mbs.model.relaxation import Relaxation

@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from mbs.bearings.bearing import Bearing
-from mbs.bearings.bearing_element import BearingElement, MemoryBearing
+from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.laws import hertz
 from mbs.bearings.memory_block import MemoryBlock
+from mbs.bearings.memory_element import MemoryBearing
 from mbs.bearings.rings import LEVEL, feels, folding_of, placed
 from mbs.bearings.speed_tables import SpeedWindow
 from mbs.model.blocks import Member

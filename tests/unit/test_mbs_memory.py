@@ -17,10 +17,10 @@ from ehdmaps.maps.law import ContactLaw
 from ehdmaps.physics.oil_supply import OilSupply
 from mbs import assemble, read_scene
 from mbs.bearings.bearing import Bearing
-from mbs.bearings.bearing_element import MemoryBearing
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.laws import hertz
 from mbs.bearings.memory_block import MEMORY, STEP, resume
+from mbs.bearings.memory_element import MemoryBearing
 from mbs.bearings.speed_tables import MOST_KEPT, CourseOfFilms
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import Load, Operation

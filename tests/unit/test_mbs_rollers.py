@@ -14,11 +14,13 @@ from ehdmaps.maps.law import ContactLaw
 from mbs import assemble, read_scene
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_block import ROLLERS
-from mbs.bearings.bearing_element import BearingElement, MemoryRollers, RollerElement
+from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.laws import hertz
 from mbs.bearings.memory_block import MEMORY_ROLLERS
+from mbs.bearings.memory_element import MemoryRollers
 from mbs.bearings.roller_contacts import RollerContacts
+from mbs.bearings.roller_element import RollerElement
 from mbs.model.blocks import FOUND, IN_PYTHON, NO_SOLUTION, Answers, Member, Moment
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium

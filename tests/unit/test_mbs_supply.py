@@ -69,7 +69,7 @@ def test_laws_and_films_have_the_supply_of_their_bearing(emaps):
     model = assemble(scene(of_bearing='{ lubrication = "grease" }'), emap=emaps[0])
     laws = [entry.force.law for entry in model.bearings if isinstance(entry.force, BearingForce)]
     assert [law.supply for law in laws] == [GREASE, FLOODED]
-    assert [model.films[name].in_force for name in model.supplies] == [GREASE, FLOODED]
+    assert [one.source.in_force for one in model.bearings] == [GREASE, FLOODED]
     # Two films of a roller, of at most 1.23 times the layer, do not fill a gap of 3 um; flooded ones do.
     loads = [law(-3e-6, 0.0, 1.2, 313.15)[0] for law in laws]
     assert loads[0] == 0.0 < loads[1]

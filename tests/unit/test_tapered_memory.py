@@ -14,10 +14,10 @@ from ehdmaps.physics.rollers.ribbed_geometry import ribbed_estimate
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from ehdmaps.physics.solids import STEEL
 from mbs.bearings.bearing import Bearing
-from mbs.bearings.bearing_element import MemoryBearing
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.locating.locating_block import FELT
 from mbs.bearings.locating.locating_element import LocatingStates
+from mbs.bearings.memory_element import MemoryBearing
 from mbs.bearings.tapered.line_film import LOADS, line_films
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
 from mbs.bearings.tapered.tapered_element import TaperedElement

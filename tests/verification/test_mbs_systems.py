@@ -14,14 +14,15 @@ import pytest
 from scipy.linalg import eigh
 
 from mbs.bearings.bearing import Bearing
-from mbs.bearings.bearing_element import BearingElement, ring_matrices
+from mbs.bearings.bearing_element import BearingElement
 from mbs.bearings.bearing_force import BearingForce
 from mbs.linearised.linear import frequency_response, responses
 from mbs.linearised.modes import modes, undamped_modes
 from mbs.linearised.sweep import sweep
-from mbs.model.elements import Input, Load, Operation, Sensor
+from mbs.model.elements import ElementDefaults, Input, Load, Operation, Sensor
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import Harmonic, SpeedProfile
+from mbs.model.ring_ports import ring_matrices
 from mbs.model.system import System
 from mbs.scene.assembly import assemble
 from mbs.scene.reader import read_scene
@@ -324,31 +325,21 @@ class TestEnergy:
         assert np.abs(total - total[0]).max() < 1e-6 * kinetic.max()
 
 
-class HardSwitch:
+class HardSwitch(ElementDefaults):
     """Dry below a speed, film above it: the negative control."""
 
     def __init__(self, dry, film, at):
-        self.dry, self.film, self.at = dry, film, at
+        self.name, self.ports, self.dry, self.film, self.at = film.name, film.ports, dry, film, at
 
-    def evaluate(self, pose, velocity, **state):
-        force = self.film if state["entrainment_speed"] >= self.at else self.dry
-        return force.evaluate(pose, velocity, **state)
+    def evaluate(self, displacement, velocity, operation):
+        element = self.film if operation.speed >= self.at else self.dry
+        return element.evaluate(displacement, velocity, operation)
 
 
 class TestRunUp:
     @pytest.fixture
     def switched(self, model):
-        bearings = [
-            dataclasses.replace(
-                entry,
-                force=HardSwitch(
-                    BearingForce(entry.bearing, _hertz(entry.bearing)),
-                    entry.force,
-                    entry.bearing.geometry.entrainment_speed(500 * RPM),
-                ),
-            )
-            for entry in model.bearings
-        ]
+        bearings = [HardSwitch(entry.with_laws([_hertz(entry.bearing)]), entry, 500 * RPM) for entry in model.bearings]
         return System(model.system.bodies, NU308.springs, NU308.loads, bearings)
 
     @staticmethod

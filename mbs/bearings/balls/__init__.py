@@ -13,6 +13,7 @@ balls share with rollers with ribs is in `mbs.bearings.locating`.
 `ball_memory`          films with memory in time
 `balls_in_balance`     small motions: films with memory in linear analyses, errors of the film table
 `films`                films of both contacts at one speed, solved at some loads, and the law that they make
+`ball_report`          pressures and films of the contacts at rest, the cost of rolling
 `ball_point`           an operating point: equilibrium, speed of the cage, pressures, films
 =====================  ================================================================================================
 """

@@ -71,6 +71,6 @@ class MachineBalls(LocatingElement):
 
     def felt_at(self, at: Settled) -> tuple[BearingContacts, RollingLoss]:
         """See `LocatingElement.felt_at`."""
-        from mbs.bearings.reports.ball_report import ball_contacts
+        from mbs.bearings.balls.ball_report import ball_contacts
 
         return ball_contacts(at.force, at.loads, getattr(self.films, "points", None), at.speeds)

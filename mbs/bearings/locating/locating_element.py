@@ -306,6 +306,16 @@ class LocatingElement(OnRings):
         return None if self.films is None else self.relaxation_at(self.settled(displacement, operation))
 
     @property
+    def slowest_film(self) -> float:
+        """See `OnRings.slowest_film`."""
+        return float(getattr(self.films, "slowest", 0.0))
+
+    @property
+    def film_source(self) -> str:
+        """See `OnRings.film_source`."""
+        return str(getattr(self.films, "source", ""))
+
+    @property
     def error_words(self) -> str:
         """See `OnRings.error_words`."""
         return str(getattr(self.films, "error_words", ""))

@@ -8,6 +8,7 @@
 `rollers_in_balance`   small motions: films with memory in linear analyses, errors of the law
 `tapered_block`        the bearings of a compiled run
 `line_film`            films of both raceways at one speed as tables for the kernel
+`roller_report`        pressures and films of the contacts at rest, the cost of rolling
 `tapered_point`        an operating point: equilibrium, pressures, films, the rib
 =====================  ================================================================================================
 """

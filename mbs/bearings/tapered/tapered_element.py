@@ -59,7 +59,7 @@ class TaperedElement(LocatingElement):
     def felt_at(self, at: Settled) -> tuple[BearingContacts, RollingLoss]:
         """See `LocatingElement.felt_at`."""
         from mbs.bearings.films import DryContacts
-        from mbs.bearings.reports.roller_report import roller_contacts
+        from mbs.bearings.tapered.roller_report import roller_contacts
 
         source = getattr(self.films, "lines", None)
         films = source or DryContacts(cylinder_of(self.force.geometry).contacts(self.force.material, "iso16281"))

@@ -85,11 +85,12 @@ def _words(spec: object) -> str:
 
 def _bearings(model: Model) -> Iterator[str]:
     """Lines of the bearings; of cylindrical rollers with their oil and films."""
-    for spec in model.scene.bearings:
+    for spec, bearing in zip(model.scene.bearings, model.bearings, strict=True):
+        assert bearing.source is not None  # bearings of scenes have one
         yield (
             f"  bearing {spec.name}: {spec.geometry.title}{' (estimated)' if spec.geometry.estimated else ''}, "
             f"{spec.geometry.rollers} rollers, clearance {MICROMETRE.text(spec.geometry.diametral_clearance)}, "
-            f"{_where(model.scene, spec)}; {model.films[spec.name].words}"
+            f"{_where(model.scene, spec)}; {bearing.source.words}"
         )
     for other in model.scene.located:
         yield f"  bearing {other.name}: {_located(other)}, {_where(model.scene, other)}"

@@ -243,7 +243,6 @@ def _cycle_at_rest(case: Case, random: np.random.Generator) -> tuple[float, str]
         parts = [-0.5 * float((forces[i] + forces[i + 1]) @ (poses[i + 1] - poses[i])) for i in range(steps)]
         works.append((sum(parts), sum(parts[: steps // 2])))
     conditions = element.entrainment_speed(case.operation), TEMPERATURE, 0.0
-    assert isinstance(element.force, BearingForce)
     stored = [
         energy_at_rest(element.force.law, conditions, element.bearing, element.loads(pose, case.operation).approach)
         for pose in (path(0.0), path(0.5))
@@ -277,7 +276,6 @@ def _energy_of_films(
     """Energy that films took up over a path run three times, beside its bound, by a number of steps and its double."""
     element = case.element
     force = element.force
-    assert isinstance(force, BearingForce)
     conditions = {"entrainment_speed": element.entrainment_speed(case.operation), "temperature": TEMPERATURE}
     memory, length, angle = force.in_time(**conditions).law.memory, element.bearing.slice_length, case.operation.angle
     found = []

@@ -18,9 +18,9 @@ from mbs.scene.specs import BallSpec
 
 if TYPE_CHECKING:
     from ehdmaps.maps.emap import EHDMap
+    from mbs.bearings.balls.ball_report import PointFilmSource
     from mbs.bearings.balls.films import BallFilms
     from mbs.bearings.balls.laws import BallLaw
-    from mbs.bearings.reports.ball_report import PointFilmSource
     from mbs.scene.surroundings import Surroundings
 
 
