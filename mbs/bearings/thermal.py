@@ -43,6 +43,7 @@ import dataclasses
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
@@ -335,6 +336,10 @@ class GivenTemperatures:
     inner: float | None = None
     outer: float | None = None
 
+    def warmed(self, kelvin: float) -> GivenTemperatures:
+        """The same where all that is given is warmer [K]."""
+        return _warmed(self, ("inner", "outer"), kelvin)
+
 
 @dataclass(frozen=True)
 class HeatPaths:
@@ -409,6 +414,10 @@ class HeatPaths:
         missing = {name: temperature for name in _TEMPERATURES if getattr(self, name) is None}
         return dataclasses.replace(self, **missing)
 
+    def warmed(self, kelvin: float) -> HeatPaths:
+        """The same where all that is given is warmer [K]."""
+        return _warmed(self, _TEMPERATURES, kelvin)
+
     @property
     def network(self) -> tuple[FloatArray, FloatArray]:
         """G (2, 2) [W/K] and s (2,) [W] of Q = G T - s: heat into the raceways at their temperatures T, oil included.
@@ -460,6 +469,15 @@ class HeatPaths:
         warmer = self.oil_temperature(raceways) - inlet if self.oil_flow else 0.0
         inner, outer = raceways.tolist()
         return self.shaft * (inner - shaft), self.housing * (outer - housing), self.oil_flow * warmer
+
+
+_Thermal = TypeVar("_Thermal", GivenTemperatures, HeatPaths)
+
+
+def _warmed(thermal: _Thermal, names: Sequence[str], kelvin: float) -> _Thermal:
+    """The same with some of its temperatures higher, as far as it has them [K]."""
+    given = {name: value + kelvin for name in names if (value := getattr(thermal, name)) is not None}
+    return dataclasses.replace(thermal, **given)
 
 
 def heat_of_contacts(inner: float, outer: float, added: float) -> FloatArray:

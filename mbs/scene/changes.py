@@ -12,7 +12,7 @@ from mbs.model.drive import DrivenSpeed
 from mbs.model.profiles import Advanced, Constant, Course, SpeedProfile
 from mbs.scene.fields import HERTZ
 from mbs.scene.scene import Scene
-from mbs.scene.specs import HIGHEST_DAMPING_RATIO, BodySpec, FlexibleSpec, ShaftSpec
+from mbs.scene.specs import HIGHEST_DAMPING_RATIO, BearingSpec, BodySpec, FlexibleSpec, ShaftSpec
 from mbs.settings import RunUp
 
 
@@ -37,6 +37,42 @@ def with_slices(scene: Scene, slices: int) -> Scene:
 def with_temperature(scene: Scene, temperature: float) -> Scene:
     """The scene with raceways of another temperature [K]."""
     return dataclasses.replace(scene, temperature=temperature)
+
+
+def warmed(scene: Scene, kelvin: float) -> Scene:
+    """The scene with all its temperatures higher: of raceways, and of what is around bearings with heat paths [K]."""
+    changed = []
+    for entry in scene.bearings:
+        thermal = entry.thermal
+        changed.append(entry if thermal is None else dataclasses.replace(entry, thermal=thermal.warmed(kelvin)))
+    return with_temperature(scene.with_bearings(changed), scene.temperature + kelvin)
+
+
+def with_clearance_of(scene: Scene, bearing: str, clearance: float) -> Scene:
+    """The scene with another diametral clearance of one bearing [m].
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    bearing : str
+        Name of the bearing.
+    clearance : float
+        Clearance [m].
+
+    Raises
+    ------
+    InputError
+        If no such bearing can have it.
+    """
+
+    def changed(entry: BearingSpec) -> BearingSpec:
+        if entry.name != bearing:
+            return entry
+        return dataclasses.replace(entry, geometry=entry.geometry.with_clearance(clearance))
+
+    scene = scene.with_bearings(map(changed, scene.bearings))
+    return scene.with_located(lambda entry: entry.with_clearance(clearance) if entry.name == bearing else entry)
 
 
 def with_speed(scene: Scene, speed: float) -> Scene:

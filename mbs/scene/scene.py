@@ -7,6 +7,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics.contact import OIL_TEMPERATURES
@@ -30,6 +31,9 @@ from mbs.scene.specs import (
 )
 from mbs.scene.turning import OrderLoad, Unbalance
 from mbs.settings import CampbellSettings, RunUp, SweepRange
+
+if TYPE_CHECKING:
+    from ehdmaps.jobs.tolerances import Tolerance
 
 _SEQUENCES = (
     "bodies",
@@ -93,6 +97,8 @@ class Scene:
         What is drawn of a run-up.
     assumed : tuple of str
         Which of its numbers are assumptions.
+    tolerances : mapping of str to Tolerance
+        How well its numbers are known, as far as it is stated, see `mbs.unknowns.statement`.
     file : Path or None
         The scene file.
 
@@ -132,6 +138,7 @@ class Scene:
     sweep: SweepRange | None = None
     campbell: CampbellSettings = field(default_factory=CampbellSettings)
     assumed: Sequence[str] = ()
+    tolerances: Mapping[str, Tolerance] = field(default_factory=dict)
     file: Path | None = None
 
     def __post_init__(self) -> None:

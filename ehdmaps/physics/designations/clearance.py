@@ -45,6 +45,9 @@ _ROLLERS = (
     (100, 15, 50, 50, 85, 75, 110, 105, 140, 155, 190),
 )
 _TABLES = {DEEP_GROOVE: _BALLS, CYLINDRICAL: _ROLLERS, NEEDLE: _ROLLERS}
+_FIT, _FITS = 20e-6, {DEEP_GROOVE: 10e-6}
+"""What fits and warmth take of a clearance at most, where neither is stated [m]: a rule of our own. k5 in the ring of
+class P0 with a bore of 40 mm has 2 to 25 um of interference, of which three quarters arrive at the raceway."""
 _MOUNTED = {
     ANGULAR: "the play of angular contact bearings is set when they are mounted",
     TAPERED: "the play of tapered bearings is set when they are mounted",
@@ -64,12 +67,20 @@ class ClearanceRange(NamedTuple):
     taken : {"middle", "zero", "stated"}
         What the bearing has: the middle of the class of its designation; none, where neither a class nor a clearance
         is stated; or a clearance that is stated beside a class, which counts.
+    fit : float
+        What fits and warmth take of it at most [m].
     """
 
     name: str
     least: float
     largest: float
     taken: str
+    fit: float = 20e-6
+
+    @property
+    def mounted(self) -> tuple[float, float]:
+        """Range of a bearing that is mounted with a fit that is not known [m]."""
+        return max(self.least - self.fit, 0.0), self.largest
 
     @property
     def clearance(self) -> float:
@@ -110,7 +121,7 @@ def class_range(kind: str, bore: float, name: str, taken: str = "middle") -> Cle
     for largest_bore, *limits in _TABLES.get(kind, ()):
         if bore <= 1e-3 * largest_bore * (1.0 + 1e-9):
             place = 2 * CLASSES.index(name)
-            return ClearanceRange(name, limits[place] / 1e6, limits[place + 1] / 1e6, taken)
+            return ClearanceRange(name, limits[place] / 1e6, limits[place + 1] / 1e6, taken, _FITS.get(kind, _FIT))
     return None
 
 

@@ -1,0 +1,182 @@
+"""Tolerances say how well a number is known: beside values ("25 um +- 5 um"), and in the table [tolerances] of a file.
+
+A tolerance is a half-width, absolute ("5 um", "2 K") or a part ("10 %") of what it belongs to. Nothing at all ("0 um",
+"0 %") says that the number is exact.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from ehdmaps.errors import InputError, closest, short
+from ehdmaps.jobs.table import Table
+from ehdmaps.units import Display, quantity
+
+_SIGN = re.compile(r"\+-|\+/-|±")
+_PART = re.compile(r"([0-9]+\.?[0-9]*|\.[0-9]+) ?%")
+
+MOST = 1.0
+"""Largest tolerance that is a part."""
+
+
+@dataclass(frozen=True)
+class Tolerated:
+    """Row of what a tolerance may be stated of: a key of [tolerances].
+
+    Attributes
+    ----------
+    name : str
+        The key.
+    unit : str
+        SI unit of an absolute tolerance; empty where it is a part.
+    most : float
+        Largest absolute tolerance [unit].
+    part : bool
+        Whether it may be a part.
+    display : Display
+        How messages show an absolute one.
+    examples : str
+        What may be written, for messages.
+    """
+
+    name: str
+    unit: str
+    most: float
+    part: bool
+    display: Display
+    examples: str
+
+
+TOLERATED: Mapping[str, Tolerated] = {
+    row.name: row
+    for row in (
+        Tolerated("clearance", "m", 1e-3, True, Display("um", 1e6), '"5 um" or "10 %"'),
+        Tolerated("temperature", "K", 50.0, False, Display("K"), '"2 K"'),
+        Tolerated("viscosity", "", 0.0, True, Display("%", 100.0), '"5 %"'),
+        Tolerated("pressure_viscosity", "", 0.0, True, Display("%", 100.0), '"10 %"'),
+        Tolerated(
+            "geometry", "", 0.0, True, Display("%", 100.0), '"0 %" (as drawn), "50 %" of what an estimate states'
+        ),
+        Tolerated("preload", "N", 1e7, True, Display("N"), '"20 N" or "10 %"'),
+        Tolerated("load", "", 0.0, True, Display("%", 100.0), '"5 %"'),
+        Tolerated("profile", "", 0.0, True, Display("%", 100.0), '"0 %": the profile is as stated'),
+        Tolerated("cage_angle", "rad", 2.0 * math.pi, False, Display("deg", 180.0 / math.pi), '"0 deg"'),
+    )
+}
+"""Keys of [tolerances], in the order of the reference."""
+
+OF_JOBS = ("viscosity", "pressure_viscosity", "geometry")
+"""Those that jobs of maps have: what their estimates are made of."""
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """Half-width of what a number may be off.
+
+    Attributes
+    ----------
+    size : float
+        Half-width in SI, or the part.
+    part : bool
+        Whether it is a part of the number.
+    text : str
+        Text as it was written.
+    """
+
+    size: float
+    part: bool
+    text: str
+
+    @property
+    def exact(self) -> bool:
+        """Tell whether the number is known."""
+        return self.size == 0.0
+
+    def half_width(self, value: float) -> float:
+        """Half-width at a value [unit of the value]."""
+        return self.size * abs(value) if self.part else self.size
+
+
+def read_tolerance(text: object, name: str) -> Tolerance:
+    """Read one tolerance.
+
+    Parameters
+    ----------
+    text : object
+        Such as "5 um" or "10 %", with or without a sign before it.
+    name : str
+        What it belongs to, one of `TOLERATED`.
+
+    Raises
+    ------
+    InputError
+        With one problem, which does not say where: the caller knows that.
+
+    Examples
+    --------
+    >>> read_tolerance("+- 5 um", "clearance").half_width(20e-6), read_tolerance("10 %", "clearance").half_width(20e-6)
+    (5e-06, 2e-06)
+    """
+    row = TOLERATED[name]
+    wrong = InputError(f"got {short(text)}; allowed: {_allowed(row)}")
+    if not isinstance(text, str):
+        raise wrong
+    plain = _SIGN.sub("", text, count=1).strip()
+    if found := _PART.fullmatch(plain):
+        part = float(f"{0.01 * float(found.group(1)):.15g}")
+        if part > MOST or (part and not row.part):
+            raise wrong
+        return Tolerance(part, True, f"+-{plain}")
+    if not row.unit:
+        raise wrong
+    try:
+        size = quantity(plain, row.unit)
+    except InputError:
+        raise wrong from None
+    if not 0.0 <= size <= row.most:
+        raise wrong
+    return Tolerance(size, False, f"+-{plain}")
+
+
+def split(text: str) -> tuple[str, str]:
+    """A value and its tolerance as they were typed; either is empty where it is not there.
+
+    Examples
+    --------
+    >>> split("25 um +- 5 um"), split("25 um"), split("+- 10 %")
+    (('25 um', '5 um'), ('25 um', ''), ('', '10 %'))
+    """
+    value, _, tolerance = _SIGN.sub("\0", text, count=1).partition("\0")
+    return value.strip(), tolerance.strip()
+
+
+def read_tolerances(section: Table, names: tuple[str, ...] = tuple(TOLERATED)) -> dict[str, Tolerance]:
+    """Read [tolerances]; unknown keys are noted, and the table is closed.
+
+    Parameters
+    ----------
+    section : Table
+        The table.
+    names : tuple of str
+        Keys that the file may have.
+    """
+    found = {}
+    for name in section.entries():
+        if name not in names:
+            section.note(name, f"unknown key{closest(name, names)}; allowed: {', '.join(names)}")
+            continue
+        try:
+            found[name] = read_tolerance(section.get(name), name)
+        except InputError as error:
+            section.note(name, error.problems[0])
+    return found
+
+
+def _allowed(row: Tolerated) -> str:
+    """Words on what a tolerance of a row may be, for messages."""
+    ways = [f"0 to {row.display.text(row.most)}"] if row.unit else []
+    ways += [f"0 % to {100.0 * MOST:g} %"] if row.part else []
+    return f"{', or '.join(ways)}, such as {row.examples}"

@@ -1,0 +1,10 @@
+"""Unknowns of a machine: what a scene leaves open, by how much, and the machines that it may be as well.
+
+=========  =================================================================================================
+unknown    one thing that is not known: half-width, reason, and the changed scenes that a band looks at
+statement  how well a number is known, as files and commands say it; the nearest statement wins
+held_open  all that a scene leaves open, with the sources of its spreads
+=========  =================================================================================================
+
+Nothing here computes a result: whoever has a result looks at the changed scenes beside it.
+"""

@@ -1,0 +1,46 @@
+"""An unknown of a machine."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from mbs.scene.scene import Scene
+
+
+@dataclass(frozen=True, eq=False)
+class Unknown:
+    """Unknown of a machine: how far it may be off, why, and the machines at its ends.
+
+    Attributes
+    ----------
+    name : str
+        What is not known, such as "clearance of drive".
+    group : str
+        Key of [tolerances] that states it, see `ehdmaps.jobs.tolerances.TOLERATED`.
+    held : str
+        How far it may be off, such as "5 to 50 um" or "+-5 K".
+    why : str
+        Why it is open, with the source of its spread.
+    looks : tuple of Scene
+        The machine at the ends of the spread, or its further members; the scene itself is its middle, or one of the
+        members. Of one that is `reflected` a single one. Empty for what is held at its value, and only said.
+    reflected : bool
+        Whether the difference of the single look stands, with the other sign, for the other end, too.
+    frozen_cage : bool
+        Whether the looks are of one cage angle each, that of their bearings, and not of the mean over a pitch.
+    """
+
+    name: str
+    group: str
+    held: str
+    why: str
+    looks: tuple[Scene, ...] = ()
+    reflected: bool = False
+    frozen_cage: bool = False
+
+    @property
+    def text(self) -> str:
+        """The unknown in a line."""
+        return f"{self.name} {self.held} ({self.why})"
