@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Literal, Protocol
+from typing import Protocol
 
 import numpy as np
 
@@ -54,8 +54,6 @@ PARAMETER_VERSION = 7
 
 PHYSICS = (ISOTHERMAL, THERMAL)
 """What the solver may know of heat."""
-
-StartWord = Literal["reynolds", "hertz"]
 
 
 class Guess(Protocol):

@@ -33,7 +33,6 @@ FE_LOAD = 1e5
 """Load [N/m] at which the law of finite elements states its approach: 100 N/mm."""
 
 _LOAD_EXPONENT = 0.9
-_HALF_PLANE_DEPTH_RATIO = 0.49
 _WIDEST_FE = 0.25
 """Half-width over reduced radius up to which the law of finite elements holds."""
 _LARGEST_EXPONENT = 700.0
@@ -143,8 +142,9 @@ def half_space(load: Values, reference_depth: float, radius: float, reduced_modu
     load : float or array
         w [N/m]; negative loads are taken as zero.
     reference_depth : float
-        d* [m], the geometric mean of the depths of the two bodies: see `roller_reference_depth` and
-        `half_plane_reference_depth`. It is a depth far below the contact, so b <= d* is asked for.
+        d* [m], the geometric mean of the depths of the two bodies: see `roller_reference_depth`; of a
+        half plane with nu = 0.3 it is 0.49 times the depth of the point (Johnson, section 5.6). It is a depth far
+        below the contact, so b <= d* is asked for.
     radius : float
         Reduced radius R [m].
     reduced_modulus : float
@@ -281,21 +281,6 @@ def roller_reference_depth(roller_diameter: float) -> float:
     5.15
     """
     return roller_diameter / math.e
-
-
-def half_plane_reference_depth(depth: float) -> float:
-    """Depth d* = 0.49 times the depth [m] of a datum point below the surface of a half plane, for nu = 0.3.
-
-    A half plane yields by w (1 - nu^2)/(pi E) [2 ln(2 z/b) - nu/(1 - nu)] against a point at z >> b, so that
-    d* = z exp(-(1/2)(1 + nu/(1 - nu))), 0.4895 z for nu = 0.3
-    (K. L. Johnson, Contact Mechanics, Cambridge, 1985, section 5.6).
-
-    Examples
-    --------
-    >>> round(half_plane_reference_depth(10e-3), 6)
-    0.0049
-    """
-    return _HALF_PLANE_DEPTH_RATIO * depth
 
 
 def _material_factor(reduced_modulus: float) -> float:

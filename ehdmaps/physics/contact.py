@@ -89,38 +89,6 @@ class OperatingPoint:
 Force = tuple[float, float, float]
 
 
-def unilateral_force(w: float, dw: float, c: float, dc: float, rate: float) -> Force:
-    """Load of a contact in motion, never a tension, and its derivatives by approach and rate.
-
-    Parameters
-    ----------
-    w, dw : float
-        Load at rest, >= 0, and its derivative by the approach [N/m], [N/m2]. All may be per unit length, as here, or
-        of a whole body.
-    c, dc : float
-        Damping, >= 0, and its derivative by the approach [N s/m2], [N s/m3]; zero where w is.
-    rate : float
-        Rate of the approach [m/s].
-
-    Returns
-    -------
-    load, stiffness, damping : float
-        F [N/m], dF/d delta [N/m2], dF/d rate [N s/m2].
-
-    Examples
-    --------
-    >>> unilateral_force(8.0, 2.0, 4.0, 0.0, rate=-1.0)
-    (4.0, 2.0, 4.0)
-    >>> unilateral_force(8.0, 2.0, 4.0, 0.0, rate=-4.0)
-    (1.0, 0.5, 0.25)
-    """
-    part = c * rate
-    if part >= -0.5 * w:
-        return w + part, dw + dc * rate, c
-    ratio = w / part
-    return -0.25 * w * ratio, 0.25 * ratio * (ratio * dc * rate - 2.0 * dw), 0.25 * ratio * ratio * c
-
-
 @dataclass(frozen=True)
 class LineContact:
     """Two bodies of one material in line contact, per unit length.

@@ -22,8 +22,6 @@ The integral runs to the exit of the film; behind it the oil runs along with the
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from ehdmaps.arrays import FloatArray, Values, as_given
@@ -106,8 +104,8 @@ def dowson_toyoda_central(speed_number: float, load_number: Values, material_num
     return as_given(3.06 * speed_number**0.69 * material_number**0.56 * load_number**-0.10, load_number)
 
 
-def pan_hamrock_minimum(speed_number: float, load_number: Values, material_number: float) -> Values:
-    """Minimum film, h/R = 1.714 W^-0.128 U^0.694 G^0.568.
+def pan_hamrock_central(speed_number: float, load_number: Values, material_number: float) -> Values:
+    """Central film, h/R = 2.922 W^-0.166 U^0.692 G^0.470.
 
     Fitted to compressible solutions with Roelands' law in the piezoviscous-elastic regime.
 
@@ -124,28 +122,6 @@ def pan_hamrock_minimum(speed_number: float, load_number: Values, material_numbe
     ----------
     P. Pan, B. J. Hamrock, Simple formulas for performance parameters used in elastohydrodynamically
     lubricated line contacts, J. Tribology 111, 1989, 246-251.
-
-    Examples
-    --------
-    >>> f"{pan_hamrock_minimum(1e-11, 3e-5, 5000.0):.4g}"
-    '1.905e-05'
-    """
-    return as_given(1.714 * load_number**-0.128 * speed_number**0.694 * material_number**0.568, load_number)
-
-
-def pan_hamrock_central(speed_number: float, load_number: Values, material_number: float) -> Values:
-    """Central film, h/R = 2.922 W^-0.166 U^0.692 G^0.470.
-
-    Fit, range and reference as for `pan_hamrock_minimum`.
-
-    Parameters
-    ----------
-    speed_number : float
-        U = eta0 u/(E'R), u the mean of the surface speeds; see `dowson_groups`.
-    load_number : float or array
-        W = w/(E'R).
-    material_number : float
-        G = alpha E'.
 
     Examples
     --------
@@ -298,101 +274,6 @@ def rolling_film_damping(film: Values, viscosity: float, radius: float) -> Value
     return as_given(ROLLING_FILM_CONSTANT * viscosity * (radius / film) ** 1.5, film)
 
 
-def squeeze_film_damping(film: Values, viscosity: float, radius: float) -> Values:
-    """Damping of a rigid isoviscous squeeze film without cavitation, c = 3 sqrt(2) pi eta (R/h)^1.5 [N s/m2].
-
-    The whole parabola carries, under tension too when the bodies part.
-
-    Parameters
-    ----------
-    film : float or array
-        h, the smallest film [m], h << R.
-    viscosity : float
-        eta [Pa s].
-    radius : float
-        R [m].
-
-    Examples
-    --------
-    >>> round(squeeze_film_damping(1e-6, viscosity=0.1, radius=5e-3))
-    471239
-    """
-    return as_given(3.0 * math.sqrt(2.0) * math.pi * viscosity * (radius / film) ** 1.5, film)
-
-
-def rigid_inlet_damping(film: Values, viscosity: float, radius: float) -> Values:
-    """Damping of the inlet half of a rigid squeeze film, c = (3/sqrt 2) pi eta (R/h)^1.5 [N s/m2].
-
-    Half of `squeeze_film_damping`, as if the gap ended at its narrowest place. A bound only: elastic contacts
-    yield, and share the velocity between film and solids.
-
-    Parameters
-    ----------
-    film : float or array
-        h, the smallest film [m], h << R.
-    viscosity : float
-        eta [Pa s].
-    radius : float
-        R [m].
-
-    Examples
-    --------
-    >>> round(rigid_inlet_damping(1e-6, viscosity=0.1, radius=5e-3))
-    235619
-    """
-    return as_given(0.5 * squeeze_film_damping(film, viscosity, radius), film)
-
-
-def dietl_damping(
-    load: Values,
-    sum_speed: float,
-    viscosity: float,
-    pressure_viscosity: float,
-    radius: float,
-    reduced_modulus: float,
-    length: float,
-    inlet_length_factor: float,
-) -> Values:
-    """Dietl's regression for the damping of a whole contact [N s/m], not per unit length.
-
-    c = K0 R^0.781 l^0.769 E'^1.069 eta0^0.531 alpha^0.424 q^-0.136 us^-0.434 f^-0.563, K0 = 0.1963,
-    everything in SI units (the further factor 1e-3 of the source converts to N s/mm).
-
-    Parameters
-    ----------
-    load : float or array
-        q [N/m], per unit length: only so do the dimensions close, with K0 in kg^-0.04 m^0.06 s^0.115.
-    sum_speed : float
-        us, the sum of the surface speeds, 2u [m/s].
-    viscosity, pressure_viscosity : float
-        eta0 [Pa s] and alpha [1/Pa] at ambient pressure.
-    radius : float
-        Reduced radius [m].
-    reduced_modulus : float
-        E' [Pa].
-    length : float
-        l of the contact [m]. The formula is not additive over slices.
-    inlet_length_factor : float
-        f, the length factor of the inlet zone [-]. The accessible sources do not say how to find it, so
-        that the formula cannot be reproduced from them alone: compare with it, do not build on it.
-
-    References
-    ----------
-    P. Dietl, Damping and stiffness characteristics of rolling element bearings, PhD thesis, TU Wien, 1997;
-    the regression is taken from later work that quotes it.
-
-    Examples
-    --------
-    >>> c = dietl_damping(88571.4, 3.4, 0.0845, 2.24e-8, 5.5152e-3, 230.769e9, 0.7e-3, 1.0)
-    >>> f"{c:.4g}"
-    '341.5'
-    """
-    lengths: float = 0.1963 * radius**0.781 * length**0.769
-    oil = viscosity**0.531 * pressure_viscosity**0.424
-    speed = sum_speed**-0.434 * inlet_length_factor**-0.563
-    return as_given(lengths * reduced_modulus**1.069 * oil * load**-0.136 * speed, load)
-
-
 RIGID_ROLLING_CONSTANT = 4.159245
 """F/sqrt(eta u w) of the rigid isoviscous rolling film with the Reynolds exit; see `rigid_rolling_force`."""
 
@@ -467,36 +348,3 @@ def rigid_rolling_force(load: Values, speed: float, viscosity: float) -> Values:
     18.601
     """
     return as_given(RIGID_ROLLING_CONSTANT * np.sqrt(viscosity * speed * np.asarray(load)), load)
-
-
-def matsuyama_rolling_force(
-    load_number: Values, speed_number: float, material_number: float, radius: float, reduced_modulus: float
-) -> Values:
-    """Rolling force of a loaded contact, F = 14.2 E' R U^0.75 G^-0.04 W^0.08 [N/m], both walls together.
-
-    A fit to numerical solutions of isothermal line contacts; its moment on a roller, per length, is F R.
-
-    Parameters
-    ----------
-    load_number : float or array
-        W = w/(E'R).
-    speed_number : float
-        U = eta0 u/(E'R), u the mean of the surface speeds; see `ehdmaps.physics.moes.dowson_groups`.
-    material_number : float
-        G = alpha E'.
-    radius : float
-        R [m].
-    reduced_modulus : float
-        E' [Pa].
-
-    References
-    ----------
-    Matsuyama's fit as quoted in Machines 11, 2023, 801.
-
-    Examples
-    --------
-    >>> round(matsuyama_rolling_force(2e-4, 1e-10, 3745.0, 0.01, 2.2753e11), 2)
-    371.94
-    """
-    number = speed_number**0.75 * material_number**-0.04 * load_number**0.08
-    return as_given(14.2 * reduced_modulus * radius * number, load_number)

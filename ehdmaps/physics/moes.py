@@ -138,11 +138,6 @@ def load_and_speed(
     return load, speed_number * reduced_modulus * radius / (2.0 * viscosity)
 
 
-def viscosity_exponent(load_number: Values, oil_number: float) -> Values:
-    """Alpha p_H = L sqrt(M/(2 pi)), the exponent of Barus' law at the largest Hertz pressure."""
-    return as_given(oil_number * np.sqrt(load_number / (2.0 * math.pi)), load_number)
-
-
 def dowson_groups(
     load: Values,
     speed: float,

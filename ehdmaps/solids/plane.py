@@ -29,8 +29,6 @@ from ehdmaps.physics.solids import Material
 from ehdmaps.solids.mesh_plane import PlaneMesh
 
 Plane = Literal["strain", "stress"]
-PLANES: tuple[Plane, ...] = ("strain", "stress")
-
 PURPOSE = "plane elasticity of roller and rings"
 
 _GAUSS = 12

@@ -191,17 +191,21 @@ Law: TypeAlias = "DryLaw | ContactLaw"
 def unilateral_forces(
     w: FloatArray, dw: FloatArray, c: FloatArray, dc: FloatArray, rate: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """`ehdmaps.physics.contact.unilateral_force` of many contacts.
+    """Loads of many contacts in motion, never a tension, and their derivatives.
 
     Parameters
     ----------
-    w, dw, c, dc, rate : array
-        The same quantities as there, of one shape.
+    w, dw : array
+        Loads at rest, >= 0, and their derivatives by the approach, per unit length [N/m], [N/m2] or of whole bodies.
+    c, dc : array
+        Damping, >= 0, and its derivative by the approach [N s/m2], [N s/m3]; zero where w is.
+    rate : array
+        Rates of the approach [m/s]. All have one shape.
 
     Returns
     -------
     load, stiffness, damping : array
-        The same quantities as there, of the same shape.
+        F [N/m], dF/d delta [N/m2], dF/d rate [N s/m2], of the same shape.
     """
     states, forces = (
         np.stack([np.ravel(part) for part in (w, dw, c, dc, rate)], dtype=np.float64),

@@ -202,9 +202,6 @@ def _node(path: Path, number: int, text: str) -> tuple[int, tuple[float, float, 
     return node, (x, y, z)
 
 
-_GMSH_HEAD = re.compile(rb"\s*(?:\$Comments.*?\$EndComments\s*)?\$MeshFormat\s+(\S+)\s+([01])\s+8[ \r]*\n", re.DOTALL)
-
-
 def _gmsh_nodes(path: Path) -> NodePositions:
     """Nodes of a mesh of Gmsh."""
     content = path.read_bytes()

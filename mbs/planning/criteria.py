@@ -255,19 +255,6 @@ def stress_felt(state: ClosedContact) -> BoolArray:
     return np.asarray((np.abs(state.zeta) < STRESS_FELT) & (state.oil_number > VALLEY_OIL_NUMBER))
 
 
-def film_over_roughness(state: ClosedContact, roughness: float) -> FloatArray:
-    """Lambda: the smallest film over the combined rms roughness of both surfaces.
-
-    Parameters
-    ----------
-    state : ClosedContact
-        The contact of smooth surfaces.
-    roughness : float
-        Combined rms roughness [m], > 0.
-    """
-    return np.asarray(state.minimum_film / roughness)
-
-
 def roughness_effect(state: ClosedContact, surface: Surface, lubricant: Lubricant) -> tuple[FloatArray, FloatArray]:
     """By how much rough surfaces change k and c of a contact, as parts of the values of smooth ones.
 

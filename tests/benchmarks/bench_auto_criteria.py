@@ -35,7 +35,6 @@ from mbs.bearings.slices_in_balance import relaxation_times
 from mbs.planning.criteria import (
     TOUCHING,
     closed_contact,
-    film_over_roughness,
     heat_effect,
     memory_effect,
     supply_effect,
@@ -116,7 +115,7 @@ def contact_cases(emap: EHDMap, made: Laws, count: int, rng: np.random.Generator
         size = max(float(supply_effect(state, layer)[0]) for state in closed)
         full = larger_change((k, c), at_load(made.layers[layer], load, speed, temperature)[1:])
         found["oil supply"].append(Compared(size, math.nan, full))
-        size = min(float(film_over_roughness(state, rq)[0]) for state in closed)
+        size = min(float(state.minimum_film[0] / rq) for state in closed)
         full = larger_change((k, c), at_load(made.rough[rq], load, speed, temperature)[1:])
         found["roughness"].append(Compared(-size, -TOUCHING, full))
     return found

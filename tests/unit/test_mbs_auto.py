@@ -26,7 +26,6 @@ from mbs.commands.auto import read_tolerance
 from mbs.planning.criteria import (
     STRESS_FELT,
     closed_contact,
-    film_over_roughness,
     heat_effect,
     memory_effect,
     roughness_effect,
@@ -188,11 +187,6 @@ def test_a_layer_that_floods_changes_nothing_and_a_thin_one_much():
     assert np.all(supply_effect(state, np.inf) < 1e-9)  # the ratios are polynomials, to 1e-11
     assert np.all(supply_effect(state, 20.0 * state.film.max()) < 1e-6)
     assert np.all(supply_effect(state, 0.3 * state.film.min()) > 0.1)
-
-
-def test_lambda_goes_with_roughness():
-    rough = film_over_roughness(contact([5e4]), 2e-7)
-    np.testing.assert_allclose(film_over_roughness(contact([5e4]), 4e-7), 0.5 * rough)
 
 
 def test_roughness_that_does_not_touch_still_has_a_size():

@@ -81,7 +81,6 @@ def test_both_sets_of_groups_say_the_same(load, speed):
     U, W, G = moes.dowson_groups(load, speed, ETA, ALPHA, RADIUS, MODULUS)
     assert pytest.approx(W / math.sqrt(2 * U), rel=ROUND_OFF) == M
     assert pytest.approx(G * (2 * U) ** 0.25, rel=ROUND_OFF) == L
-    assert moes.viscosity_exponent(M, L) == pytest.approx(ALPHA * hertz.max_pressure(load, RADIUS, MODULUS), rel=1e-11)
 
 
 @given(factor=st.floats(0.1, 10.0))
@@ -144,7 +143,6 @@ def test_formulas_take_arrays():
     for formula in (
         films.dowson_higginson_minimum,
         films.dowson_toyoda_central,
-        films.pan_hamrock_minimum,
         films.pan_hamrock_central,
     ):
         W = np.array([1e-5, 1e-4])
@@ -158,7 +156,6 @@ def test_formulas_take_arrays():
     [
         (films.dowson_higginson_minimum, 0.70, -0.13, 0.54),
         (films.dowson_toyoda_central, 0.69, -0.10, 0.56),
-        (films.pan_hamrock_minimum, 0.694, -0.128, 0.568),
         (films.pan_hamrock_central, 0.692, -0.166, 0.470),
     ],
 )
@@ -175,56 +172,12 @@ def test_exponents_of_the_power_laws(formula, speed, load, material):
 def test_damping_constants():
     unit = {"film": 1e-3, "viscosity": 2.0, "radius": 1e-3}
     assert films.rolling_film_damping(**unit) == pytest.approx(2 * 6.548, rel=1e-4)  # four printed digits
-    assert films.squeeze_film_damping(**unit) == pytest.approx(6 * math.sqrt(2) * math.pi, rel=ROUND_OFF)
-    assert films.rigid_inlet_damping(**unit) == pytest.approx(6 * math.pi / math.sqrt(2), rel=ROUND_OFF)
 
 
 @given(film=st.floats(1e-8, 1e-4), factor=st.floats(1.1, 10.0))
 def test_damping_falls_with_the_film_to_the_power_of_one_and_a_half(film, factor):
-    for formula in (films.rolling_film_damping, films.squeeze_film_damping, films.rigid_inlet_damping):
-        thin, thick = formula(film, ETA, RADIUS), formula(factor * film, ETA, RADIUS)
-        assert thin / thick == pytest.approx(factor**1.5, rel=ROUND_OFF)
-
-
-def test_rolling_film_damps_less_than_the_whole_and_the_half_squeeze_film():
-    values = (1e-6, ETA, RADIUS)
-    inlet = films.rigid_inlet_damping(*values)
-    assert films.rolling_film_damping(*values) < inlet < films.squeeze_film_damping(*values)
-
-
-def test_dietl_exponents():
-    base = dict(
-        load=1e5,
-        sum_speed=3.0,
-        viscosity=ETA,
-        pressure_viscosity=ALPHA,
-        radius=RADIUS,
-        reduced_modulus=MODULUS,
-        length=0.7e-3,
-        inlet_length_factor=1.0,
-    )
-    exponents = (-0.136, -0.434, 0.531, 0.424, 0.781, 1.069, 0.769, -0.563)
-    for (name, value), exponent in zip(base.items(), exponents, strict=True):
-        ratio = films.dietl_damping(**(base | {name: 2 * value})) / films.dietl_damping(**base)
-        assert ratio == pytest.approx(2**exponent, rel=ROUND_OFF)
-    ones = dict.fromkeys(base, 1.0)
-    assert films.dietl_damping(**ones) == 0.1963
-
-
-def test_dietl_dimensions_close():
-    """Exponents of kg, m, s add up to those of N s/m with K0 in kg^-0.04 m^0.06 s^0.115 (round-off)."""
-    units = {  # exponent in the formula, then kg, m, s of the quantity
-        "K0": (1.0, (-0.04, 0.06, 0.115)),
-        "radius": (0.781, (0, 1, 0)),
-        "length": (0.769, (0, 1, 0)),
-        "modulus": (1.069, (1, -1, -2)),
-        "viscosity": (0.531, (1, -1, -1)),
-        "alpha": (0.424, (-1, 1, 2)),
-        "load": (-0.136, (1, 0, -2)),
-        "speed": (-0.434, (0, 1, -1)),
-    }
-    total = [sum(power * unit[axis] for power, unit in units.values()) for axis in range(3)]
-    assert total == pytest.approx([1.0, 0.0, -1.0], abs=1e-9)
+    thin, thick = (films.rolling_film_damping(times * film, ETA, RADIUS) for times in (1.0, factor))
+    assert thin / thick == pytest.approx(factor**1.5, rel=ROUND_OFF)
 
 
 # --- inlet shear heating ---------------------------------------------------------------------------------

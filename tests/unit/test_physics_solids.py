@@ -95,9 +95,7 @@ def test_half_space_closed_form():
     assert approach.half_space(w, depth, radius, modulus) == pytest.approx(expected, rel=ROUND_OFF)
 
 
-def test_half_plane_depth_ratio_is_that_of_nu_0_3():
-    exact = math.exp(-0.5 * (1 + 0.3 / 0.7))
-    assert approach.half_plane_reference_depth(1.0) == pytest.approx(exact, rel=2e-3)  # 0.49 has two digits
+def test_reference_depth_of_a_roller():
     assert approach.roller_reference_depth(14e-3) == pytest.approx(14e-3 / math.e, rel=ROUND_OFF)
 
 

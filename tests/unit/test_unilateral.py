@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ehdmaps.physics.contact import unilateral_force
+from ehdmaps.physics.contact import Force
 from mbs.bearings.laws import unilateral_forces
 from mbs.gears.gear_kernel import TOUCH, flank_force
 
@@ -15,6 +15,15 @@ RATES = np.array([-1e3, -3.0, -1.001, -0.999, -0.5, 0.0, 2.0])
 """Both sides of x = -1/2, which is at the rate -1 of the state below [m/s]."""
 
 W, DW, C, DC = 8.0, 2.0, 4.0, 0.7
+
+
+def unilateral_force(w: float, dw: float, c: float, dc: float, rate: float) -> Force:
+    """The rule as scalar text: load, and its derivatives by approach and rate."""
+    part = c * rate
+    if part >= -0.5 * w:
+        return w + part, dw + dc * rate, c
+    ratio = w / part
+    return -0.25 * w * ratio, 0.25 * ratio * (ratio * dc * rate - 2.0 * dw), 0.25 * ratio * ratio * c
 
 
 @pytest.mark.parametrize("rate", RATES)

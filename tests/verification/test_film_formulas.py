@@ -59,11 +59,6 @@ def test_rigid_rolling_film_damping():
     assert limit("rigid isoviscous rolling film")["damping"] == pytest.approx(constant, rel=1e-5)
 
 
-def test_squeeze_film_damping():
-    constant = integral(lambda x: 12 * x**2 / (1 + x**2 / 2) ** 3, -math.inf, math.inf)
-    assert films.squeeze_film_damping(1.0, 1.0, 1.0) == pytest.approx(constant, rel=QUADRATURE)
-
-
 def test_dry_compliance_of_the_log_kernel():
     """-dH0/dW at fixed reference length: H0 = (1/pi) Int P ln|S| dS, differenced in the half-width.
 
@@ -103,7 +98,6 @@ def test_formulas_against_reference_solutions(point):
     M, L = point["M"], point["L"]
     assert 0.93 < point["minimum_film"] / dowson_film_number(films.dowson_higginson_minimum, M, L) < 1.16
     assert 0.78 < point["central_film"] / dowson_film_number(films.dowson_toyoda_central, M, L) < 1.22
-    assert 0.90 < point["minimum_film"] / dowson_film_number(films.pan_hamrock_minimum, M, L) < 1.10
     assert 0.90 < point["central_film"] / dowson_film_number(films.pan_hamrock_central, M, L) < 1.10
     assert 0.70 < point["minimum_film"] / films.moes_central(M, L) < 0.80
 
@@ -135,7 +129,6 @@ def test_formulas_against_each_other(speed_number, load_number, material_number)
     groups = (speed_number, load_number, material_number)
     M, L = load_number / math.sqrt(2 * speed_number), material_number * (2 * speed_number) ** 0.25
     moes_film = films.moes_central(M, L) * math.sqrt(2 * speed_number)
-    assert films.pan_hamrock_minimum(*groups) == pytest.approx(films.dowson_higginson_minimum(*groups), rel=0.15)
     assert films.dowson_toyoda_central(*groups) == pytest.approx(moes_film, rel=0.15)
     assert films.dowson_higginson_minimum(*groups) < films.pan_hamrock_central(*groups) < 1.1 * moes_film
 

@@ -18,7 +18,7 @@ from ehdmaps.ehl.solver import ReynoldsSolver, line_problem
 from ehdmaps.errors import MapError
 from ehdmaps.maps.emap import EHDMap, open_map
 from ehdmaps.maps.rolling_film import NAMES, RIGID_FLOW_NUMBER
-from ehdmaps.physics.films import RIGID_ROLLING_CONSTANT, matsuyama_rolling_force, rigid_rolling_force
+from ehdmaps.physics.films import RIGID_ROLLING_CONSTANT, rigid_rolling_force
 from ehdmaps.physics.isotherm import density, log_viscosity
 
 CONTACT = BearingGeometry.named("NU308").contacts(STEEL, "iso16281")[0]
@@ -96,14 +96,17 @@ MATSUYAMA = [
 
 
 def test_rolling_force_is_that_of_matsuyama_s_fit():
-    """Within -8 and +1 %, what a fit of three powers leaves: the lower the heavier the load."""
+    """14.2 E' R U^0.75 G^-0.04 W^0.08, as quoted in Machines 11, 2023, 801.
+
+    Within -8 and +1 %, what a fit of three powers leaves: the lower the heavier the load.
+    """
     ratios = []
     modulus, radius = CONTACT.reduced_modulus, CONTACT.radius
     for W, U in MATSUYAMA:
         oil = Lubricant.barus(viscosity=0.05, pressure_viscosity=3745.0 / modulus, density=900.0)
         speed = U * modulus * radius / 0.05
         (film,) = ReynoldsSolver().solve_line(CONTACT, oil, (W * modulus * radius,), speed, 313.15)
-        ratios.append(film.rolling_force / matsuyama_rolling_force(W, U, 3745.0, radius, modulus))
+        ratios.append(film.rolling_force / (14.2 * modulus * radius * U**0.75 * 3745.0**-0.04 * W**0.08))
     # -8.1 % is what finer and finer grids come to at the heaviest load
     assert -0.082 < min(ratios) - 1.0 < -0.06 and 0.0 < max(ratios) - 1.0 < 0.01
     assert np.all(np.diff(ratios[:6]) < 0.0)

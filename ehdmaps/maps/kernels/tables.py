@@ -4,8 +4,8 @@
 what is left of them at one speed, temperature and centrifugal load.
 
 Tables whose cells are fine near 1, and as wide as they are far from it, have 32 cells to each doubling of a number
-a >= 1, found without a logarithm: the binary digits of a above `SHIFT` are the number of its cell, those below its
-place there.
+a >= 1, found without a logarithm: its leading binary digits are the number of its cell, the others its place
+there.
 """
 
 from __future__ import annotations
@@ -17,9 +17,6 @@ import numpy as np
 from ehdmaps.arrays import FloatArray
 
 _BITS = 5
-
-SHIFT = np.uint64(52 - _BITS)
-"""Binary digits of a double that are the place in a cell."""
 
 FIRST = np.int64(np.float64(1.0).view(np.int64) >> (52 - _BITS))
 """Number of the cell that begins at 1."""

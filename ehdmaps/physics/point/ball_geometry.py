@@ -136,15 +136,6 @@ class BallGeometry:
         return math.copysign(math.acos(min(self.radial_distance / self.groove_distance, 1.0)), self.contact_angle)
 
     @property
-    def axial_play(self) -> float:
-        """Axial way of the inner ring from its middle until balls are touched, A sin(abs(alpha_0)) [m].
-
-        Deep groove bearings have it to both sides. Of angular contact bearings it is the axial distance of their groove
-        centres where the balls are touched.
-        """
-        return self.groove_distance * math.sin(abs(self.free_angle))
-
-    @property
     def inner_groove_radius(self) -> float:
         """Distance of the inner groove's centre from the axis, d_m/2 + (f_i - 1/2) Dw cos(alpha_0) [m]."""
         return 0.5 * self.pitch_diameter + (self.inner_conformity - 0.5) * self.ball_diameter * math.cos(
