@@ -32,8 +32,7 @@ from ehdmaps.physics.closed_form import CONTINUUM, NO_CONTINUUM, THICK_NOTE, THI
 from ehdmaps.physics.hertz import LARGEST_PRESSURE
 from ehdmaps.physics.lubricant import Lubricant, LubricantState
 from ehdmaps.physics.point.ellipse import Ellipse
-from ehdmaps.physics.point.film_formulas import hamrock_dowson_central
-from ehdmaps.physics.point.groups import kapitza_film, point_groups
+from ehdmaps.physics.point.film_formulas import hamrock_dowson_central, kapitza_film, point_groups
 from ehdmaps.physics.rheology import wall_stress_note
 from ehdmaps.physics.solution import Status, peak_sampling_error
 

@@ -20,7 +20,7 @@ from ehdmaps.physics.closed_form import CONTINUUM, NO_CONTINUUM, THICK_NOTE, THI
 from ehdmaps.physics.hertz import LARGEST_PRESSURE
 from ehdmaps.physics.lubricant import Lubricant, LubricantState
 from ehdmaps.physics.point.ellipse import Ellipse
-from ehdmaps.physics.point.groups import point_groups
+from ehdmaps.physics.point.film_formulas import point_groups
 from ehdmaps.physics.solution import Status
 from ehdmaps.physics.spectrum import checked_frequencies
 from ehdmaps.point.problem import PointProblem

@@ -10,8 +10,7 @@ Roller and rings in the plane, and their structural law `fe`:
 `mesh_plane`           triangles by gmsh, graded to the contact
 `plane`                how far a body yields under Hertz' pressure of any width (scikit-fem)
 `law`                  from these numbers to the approach over the load
-`plane_contact`        the contact by CalculiX, with no pressure assumed
-`plane_bearing`        both contacts of a bearing, how good they are, and all of it as plain values
+`plane_bearing`        both contacts of a bearing, also by CalculiX, how good they are, all as plain values
 
 A roller of finite length:
 

@@ -1,8 +1,7 @@
 """Speed against accuracy, as it was measured: rows of contacts and of machines, and what is made of them.
 
 =======  ================================================================================
-record   `Trade`: choices with their cost, and the errors of what a user looks at
-entry    `Entry`: a way to an answer as it will be measured, beside what it is held against
+record   `Entry`: a way to an answer as it will be measured; `Trade`: choices with their cost and their errors
 budget   sources of error, by how much results are wrong without them
 =======  ================================================================================
 

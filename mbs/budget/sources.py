@@ -15,8 +15,7 @@ import numpy as np
 from ehdmaps.choices import supply_from_text
 from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.surface import Surface
-from ehdmaps.trade.entry import Entry, Group
-from ehdmaps.trade.record import Choice, ErrorSummary, Judged, Source, Trade
+from ehdmaps.trade.record import Choice, Entry, ErrorSummary, Group, Judged, Source, Trade
 from ehdmaps.units import RPM
 from mbs.analyses.case import common_clearance
 from mbs.budget.linear_look import LinearDifferences, LinearLook, LinearReference, linear_look

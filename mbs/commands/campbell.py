@@ -39,8 +39,7 @@ from mbs.output.model_text import band_lines, heading, held_lines
 from mbs.output.result_text import drive_lines, energy_lines
 from mbs.output.time_files import is_time_data, write_time_data
 from mbs.planning.question import in_time
-from mbs.planning.tolerance import Tolerated
-from mbs.planning.tolerated import asked_tolerance, several_problems, tolerated_run
+from mbs.planning.tolerance import Tolerated, asked_tolerance, several_problems, tolerated_run
 from mbs.settings import CampbellSettings
 from mbs.spectral.levels import Reference, difference_text
 from mbs.spectral.orders import OrderPeak

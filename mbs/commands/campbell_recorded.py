@@ -35,8 +35,8 @@ from mbs.settings import CampbellSettings
 from mbs.spectral.campbell import RunUpSpectra
 from mbs.spectral.levels import Reference, difference_text
 from mbs.timedata.records import TimeChannel, TimeData
-from mbs.timedata.sound_file import SOUND
 from mbs.timedata.speed import AS_IT_IS, SpeedSource, with_speed
+from mbs.timedata.wav_file import SOUND
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

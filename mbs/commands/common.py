@@ -6,13 +6,34 @@ import argparse
 import warnings
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from ehdmaps.errors import InputError
 from ehdmaps.outputs import write_figure
 from ehdmaps.units import Display, quantity
 from mbs.output.files import write_dataset
+from mbs.scene.fields import HERTZ, MILLISECOND
+from mbs.scene.reader import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
 from mbs.scene.scene import Scene
+
+
+def read_band(arguments: argparse.Namespace, problems: list[str]) -> dict[str, Any]:
+    """Read the fields of `CampbellSettings` that are given.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        Arguments with `highest` and `window`.
+    problems : list of str
+        What is wrong is appended.
+    """
+    limits = (LOWEST_HIGHEST, HIGHEST_HIGHEST)
+    found = {
+        "highest": read_option("--highest", arguments.highest, "Hz", limits, HERTZ, problems),
+        "window": read_option("--window", arguments.window, "s", (SHORTEST, LONGEST), MILLISECOND, problems),
+    }
+    return {name: value for name, value in found.items() if value is not None}
+
 
 R = TypeVar("R")
 

@@ -33,8 +33,7 @@ from mbs.output.result_text import drive_lines, energy_lines, signal_lines
 from mbs.output.results import with_spectra
 from mbs.output.time_files import is_time_data, read_time_data, write_time_data
 from mbs.planning.question import in_time
-from mbs.planning.tolerance import Tolerated
-from mbs.planning.tolerated import asked_tolerance, several_problems, tolerated_run
+from mbs.planning.tolerance import Tolerated, asked_tolerance, several_problems, tolerated_run
 from mbs.scene.fields import HERTZ, MILLISECOND
 from mbs.scene.reader import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
 from mbs.scene.scene import Scene
@@ -42,8 +41,8 @@ from mbs.settings import HIGHEST
 from mbs.spectral.spectra import AmplitudeSpectrum
 from mbs.timedata.netcdf_file import signal_variables
 from mbs.timedata.records import TimeChannel, TimeData, TimeRecord
-from mbs.timedata.sound_file import sound_channel, write_sound
 from mbs.timedata.speed import SpeedSource, with_speed
+from mbs.timedata.wav_file import sound_channel, write_sound
 
 if TYPE_CHECKING:
     pass

@@ -7,8 +7,7 @@ plan       which ranges a scene needs of a contact map, and the jobs that cover 
 seen       the same of balls, tapered and ribbed rollers, of which no map is made
 criteria   by how much a physics changes a contact, in closed form
 physics    verdicts on the physics of the films of a scene
-tolerance  step and slices that keep the level of a run-up within a tolerance
-tolerated  runs with such settings, for `--tolerance`
+tolerance  step and slices that keep the level of a run-up within a tolerance, and runs with them
 auto       an analysis that chooses its physics
 =========  ==========================================================================================
 """

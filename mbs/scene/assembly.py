@@ -1,4 +1,9 @@
-"""From a scene and a contact law to a system, in one pass that finds every problem."""
+"""From a scene and a contact law to a system, in one pass that finds every problem.
+
+Bodies are matrices of shafts, and reduced finite elements; one of the same content is built once.
+Analyses compare several laws, clearances and loads on the same bodies. So bodies are known by what they are made
+from, files included, and those of the last scenes are at hand.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +28,6 @@ from mbs.model.relaxation import Films
 from mbs.model.system import Places, System
 from mbs.model.turning import TurningLoad
 from mbs.scene import kinds
-from mbs.scene.bodies import build_bodies
 from mbs.scene.contact_laws import NO_LAW, ContactLaws, dry_reason, law_in_force, supply_words, surface_label
 from mbs.scene.kinds import ElementKind
 from mbs.scene.map_set import MapSet
@@ -37,6 +41,101 @@ if TYPE_CHECKING:
     from mbs.bearings.balls.ball_element import MachineBalls
     from mbs.bearings.locating.locating_element import LocatingElement
     from mbs.gears.gear import GearMesh
+
+import functools
+
+from mbs.model.body import Body, rigid_body
+from mbs.scene.specs import BodySpec, FlexibleSpec, RigidSpec, ShaftSpec
+
+MOST_AT_HAND = 64
+"""Bodies."""
+
+
+def build_bodies(specs: Iterable[BodySpec]) -> tuple[Body, ...]:
+    """Build all bodies of a scene.
+
+    Parameters
+    ----------
+    specs : iterable of RigidSpec, ShaftSpec, FlexibleSpec or Body
+        What they are.
+
+    Raises
+    ------
+    InputError
+        With the problems of all bodies.
+    AnalysisError
+        If the modes or static shapes of a reduction are not found.
+    """
+    problems: list[str] = []
+    bodies = []
+    for spec in specs:
+        try:
+            bodies.append(build_body(spec))
+        except InputError as error:
+            problems += error.problems
+    if problems:
+        raise InputError(problems)
+    return tuple(bodies)
+
+
+def build_body(spec: BodySpec) -> Body:
+    """Build one body, or return it from before; its arrays are read-only.
+
+    Parameters
+    ----------
+    spec : RigidSpec, ShaftSpec, FlexibleSpec or Body
+        What it is. A `Body` is returned as it is.
+
+    Raises
+    ------
+    InputError
+        With everything that does not fit together.
+    AnalysisError
+        If the modes or static shapes of a reduction are not found.
+    """
+    if isinstance(spec, Body):
+        return spec
+    if not isinstance(spec, FlexibleSpec):
+        return _built(_ByContent(repr(spec), spec))
+    from mbs.scene.flexible import build_flexible, content_of
+
+    try:
+        content = content_of(spec.source)
+        if content is None:
+            return build_flexible(spec)
+        rest = repr(dataclasses.replace(spec, source=Path()))
+        return _built(_ByContent(f"{content} {rest}", spec))
+    except InputError as error:
+        raise InputError([f"flexible body {spec.name!r}: {problem}" for problem in error.problems]) from error
+
+
+@dataclass(frozen=True)
+class _ByContent:
+    """A spec that is known by its content: for a body from files, a hash of these."""
+
+    content: str
+    spec: RigidSpec | ShaftSpec | FlexibleSpec = field(compare=False)
+
+
+@functools.lru_cache(maxsize=MOST_AT_HAND)
+def _built(given: _ByContent) -> Body:
+    """Build a body."""
+    spec = given.spec
+    if isinstance(spec, RigidSpec):
+        body = rigid_body(spec.name, spec.parts, spec.freedoms, spec.position, spec.frames, spec.spin)
+    elif isinstance(spec, ShaftSpec):
+        from mbs.scene.shafts.tables import build_shaft
+
+        body = build_shaft(spec)
+    else:
+        from mbs.scene.flexible import build_flexible
+
+        body = build_flexible(spec)
+    shared = (body.mass, body.gyroscopic, body.damping, body.stiffness)
+    for array in (*shared, *(part for frame in body.frames.values() for part in (frame.position, frame.transform))):
+        array.setflags(write=False)  # several systems have it
+    return body
+
 
 AnyBearing: TypeAlias = "BearingElement | LocatingElement"
 """A bearing in a system, of any kind."""

@@ -5,8 +5,7 @@ records      channels over time, with speed and angle where they are known
 quantities   which units a channel may have, and what was measured by them
 csv_file     tables of numbers with names and units in their first line
 uff_file     universal files, datasets 58
-wav_file     sound files, with a table beside them that says the scale
-sound_file   a sensor to listen to, written only
+wav_file     sound files with a table that says the scale; one to listen to
 netcdf_file  results of `mbs runup`, and signals alone
 speed        speed and angle of a record: a channel, pulses of a tacho, a table
 ===========  ====================================================================================

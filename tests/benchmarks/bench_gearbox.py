@@ -47,8 +47,7 @@ from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import Course, SpeedProfile
 from mbs.model.relaxation import DEFAULT_FILMS, Films
 from mbs.model.system import System
-from mbs.scene.assembly import Model, assemble
-from mbs.scene.bodies import build_bodies
+from mbs.scene.assembly import Model, assemble, build_bodies
 from mbs.scene.reader import parse_scene, read_scene
 from mbs.scene.scene import Scene
 from mbs.settings import RunUp, Settings

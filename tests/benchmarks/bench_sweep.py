@@ -32,8 +32,7 @@ from mbs.linearised.sweep import Sweep, along_load, sweep
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.model.system import System
-from mbs.scene.assembly import assemble
-from mbs.scene.bodies import build_bodies
+from mbs.scene.assembly import assemble, build_bodies
 from mbs.scene.reader import read_scene
 from mbs.scene.scene import Scene
 

@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
-from ehdmaps.exports.c.locked_table import locked_table
+from ehdmaps.exports.c.kernel import locked_table
 from ehdmaps.jobs.cli import main as export
 from ehdmaps.maps.emap import open_map
 from ehdmaps.maps.kernels.memory import FilmMemory

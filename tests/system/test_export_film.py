@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from ehdmaps.exports.c.locked_table import locked_table
+from ehdmaps.exports.c.kernel import locked_table
 from ehdmaps.jobs.cli import main
 from ehdmaps.maps.emap import open_map
 from ehdmaps.maps.kernels.locked_film import FORMULA

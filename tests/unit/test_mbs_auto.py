@@ -152,7 +152,7 @@ def test_numerical_settings_are_chosen_for_the_films(file, capsys, monkeypatch):
         chosen.append((subject.law.name, subject.law.films, tolerance))
         raise AnalysisError("enough")
 
-    monkeypatch.setattr("mbs.planning.tolerated.within", within)
+    monkeypatch.setattr("mbs.planning.tolerance.within", within)
     slow = ("campbell", file, "--auto", "--auto-tolerance", "900 %", "--tolerance", "1 dB")
     assert run(capsys, *slow)[0] == 1
     assert chosen == [("map", "slow", 1.0)]

@@ -17,7 +17,7 @@ from mbs.commands import reduce as command
 from mbs.flexible.finite_elements import Extent, FiniteElementModel, extent
 from mbs.flexible.reduced_file import read_reduced
 from mbs.model.body import FREEDOMS
-from mbs.scene.bodies import build_body
+from mbs.scene.assembly import build_body
 from mbs.scene.flexible import read_flexible
 from tests.cases.flexible import DENSITY, SIZE, block, written
 

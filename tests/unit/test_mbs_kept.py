@@ -14,7 +14,7 @@ from ehdmaps.errors import InputError
 from mbs.flexible import carry_out as kept
 from mbs.flexible.carry_out import carry_out
 from mbs.flexible.plan import PlaneSurface, PlannedInterface, ReductionPlan
-from mbs.scene.bodies import build_body
+from mbs.scene.assembly import build_body
 from mbs.scene.specs import FlexibleSpec
 from tests.cases.flexible import block
 

@@ -12,11 +12,10 @@ import pytest
 from scipy import sparse
 
 from ehdmaps.errors import InputError
-from mbs.flexible.bulk_data import entries
 from mbs.flexible.finite_elements import FiniteElementModel, NodePositions, extent
 from mbs.flexible.matrix_files import assemble_model, read_abaqus_matrix
 from mbs.flexible.mesh_files import read_mesh_nodes
-from mbs.flexible.nastran_files import read_nastran
+from mbs.flexible.nastran_files import entries, read_nastran
 from mbs.flexible.rigid_motion import strained
 from mbs.flexible.skin import read_skin
 from tests.cases.flexible import block, upper
@@ -433,7 +432,7 @@ def test_rows_are_read_whole_or_refused(tmp_path, name):
 def test_values_that_the_library_does_not_find(tmp_path, monkeypatch):
     path = tmp_path / "a.bdf"
     path.write_text(HEAD + "".join(ROWS["long row"].format(matrix) for matrix in "KM"))
-    monkeypatch.setattr("mbs.flexible.bulk_data._split", lenient)
+    monkeypatch.setattr("mbs.flexible.nastran_files._split", lenient)
     with pytest.raises(
         InputError, match=r"DMIG K: pyNastran finds 3 values where the file has 6; allowed: rows"
     ) as caught:

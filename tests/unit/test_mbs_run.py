@@ -22,11 +22,10 @@ from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import SpeedProfile
 from mbs.model.system import System
 from mbs.settings import Settings
-from mbs.transient.integration_kernel import eliminate
+from mbs.transient.compiled_run import LinearPart
 from mbs.transient.kinds import kind_of
-from mbs.transient.linear_part import LinearPart
 from mbs.transient.run import CHUNK, Options, run
-from mbs.transient.stepping import Method
+from mbs.transient.stepping import Method, eliminate
 from tests.cases.bearings import TEMPERATURE, integrate, map_law
 
 REST = SpeedProfile.constant(0.0)

@@ -32,8 +32,7 @@ from mbs.model.profiles import Course, Harmonic
 from mbs.model.system import System
 from mbs.planning.plan import plan
 from mbs.scene import kinds
-from mbs.scene.assembly import assemble
-from mbs.scene.bodies import build_bodies
+from mbs.scene.assembly import assemble, build_bodies
 from mbs.scene.kinds import KINDS, ElementKind
 from mbs.scene.matrices import MatrixSpec
 from mbs.scene.reader import parse_scene, read_scene, shipped_systems
@@ -407,7 +406,7 @@ def test_reading_loads_nothing_that_computes():
     code = (
         "import sys; from mbs.scene.reader import read_scene; "
         "heavy = ('numba', 'scipy', 'xarray', 'netCDF4', 'meshio', 'matplotlib', 'mbs.linearised', 'mbs.spectral', "
-        "'mbs.transient', 'mbs.scene.bodies', 'mbs.scene.assembly', 'mbs.flexible.reduction', 'mbs.flexible.shaft'); "
+        "'mbs.transient', 'mbs.scene.assembly', 'mbs.scene.assembly', 'mbs.flexible.reduction', 'mbs.flexible.shaft'); "
         "print([m for m in heavy if m in sys.modules]); "
         "read_scene('gearbox'); heavy = [m for m in heavy if m != 'scipy']; "  # pint looks whether there is scipy
         "print([m for m in heavy if m in sys.modules])"

@@ -27,7 +27,7 @@ from mbs.model.body import FREEDOMS, Inertia, lever_arm, rigid_body
 from mbs.model.elements import Operation, Spring
 from mbs.model.equilibrium import equilibrium
 from mbs.model.system import System
-from mbs.scene.bodies import build_body
+from mbs.scene.assembly import build_body
 from mbs.scene.shafts.tables import read_shaft
 
 BENDING = ("y", "z", "theta_y", "theta_z")

@@ -11,7 +11,7 @@ from ehdmaps.outputs import has_mark
 from mbs import cli
 from mbs.output.waterfall_plot import Waterfall, waterfall_figure
 from mbs.timedata.records import TimeChannel, TimeRecord
-from mbs.timedata.sound_file import RATE, sound_channel, write_sound
+from mbs.timedata.wav_file import RATE, sound_channel, write_sound
 
 STEP = 1e-5
 TIME = np.arange(20_001) * STEP

@@ -266,7 +266,7 @@ class TestCommand:
             chosen = numerics.applied(subject)
             return tolerance_module.Tolerated(chosen, numerics, ("chosen",), True, 0.3, 5.0), run(chosen)[0]
 
-        monkeypatch.setattr("mbs.planning.tolerated.within", answer)
+        monkeypatch.setattr("mbs.planning.tolerance.within", answer)
         scene = tmp_path / "swinging.toml"
         text = SWINGING.replace('"1 s"', '"0.05 s"').replace('step = "20 us"', 'step = "20 us"\nsample = "0.1 ms"')
         scene.write_text(text)

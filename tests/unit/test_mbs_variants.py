@@ -20,7 +20,7 @@ from mbs.laboratory import variants as analysis
 from mbs.laboratory.variants import Variation, variants
 from mbs.output.campbell_plot import variants_figure
 from mbs.scene import changes
-from mbs.scene.bodies import build_body
+from mbs.scene.assembly import build_body
 from mbs.scene.choices import VARIED, LawChoice, Subject
 from mbs.scene.map_set import MapSet
 from mbs.spectral.levels import LevelDifference, difference_text

@@ -17,7 +17,7 @@ from ehdmaps.openfoam.point_case import PointParameters, read_point_columns, rea
 from ehdmaps.openfoam.pyfoam import parse
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.ellipse import Ellipse
-from ehdmaps.physics.point.groups import kapitza_film
+from ehdmaps.physics.point.film_formulas import kapitza_film
 from ehdmaps.physics.solution import Status
 from tests.cases import openfoam_fake
 

@@ -37,8 +37,7 @@ from ehdmaps.physics.moes import moes_groups, valley_load_number
 from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.solution import ContactSolverDefaults, FilmSolution, Status
 from ehdmaps.physics.surface import Surface
-from ehdmaps.trade.entry import Entry, Group
-from ehdmaps.trade.record import Choice, Trade
+from ehdmaps.trade.record import Choice, Entry, Group, Trade
 from mbs.laboratory.tradeoff.contacts import measure
 from mbs.laboratory.tradeoff.contestants import contestants
 from mbs.laboratory.tradeoff.solved_ways import AtFrequency, FromTable, OnLayer

@@ -23,8 +23,7 @@ from mbs.modal.fit import identify
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import SpeedProfile
-from mbs.scene.assembly import assemble
-from mbs.scene.bodies import build_body
+from mbs.scene.assembly import assemble, build_body
 from mbs.scene.reader import read_scene
 from mbs.settings import Settings
 from mbs.spectral.campbell import run_up_spectra

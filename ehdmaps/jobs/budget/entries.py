@@ -39,8 +39,7 @@ from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.solution import ContactSolver
 from ehdmaps.physics.surface import Surface
 from ehdmaps.table.solver import TableSolver
-from ehdmaps.trade.entry import Entry, Group
-from ehdmaps.trade.record import Source
+from ehdmaps.trade.record import Entry, Group, Source
 
 ContactEntry = Entry[ContactModel]
 

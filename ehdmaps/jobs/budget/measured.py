@@ -25,8 +25,7 @@ from ehdmaps.physics.closed_form import FormulaSolver
 from ehdmaps.physics.contact import OperatingPoint
 from ehdmaps.physics.solution import natural_to_hertz
 from ehdmaps.physics.spectrum import HIGHEST_FREQUENCY, LOWEST_FREQUENCY
-from ehdmaps.trade.entry import Group
-from ehdmaps.trade.record import Choice, ErrorSummary, Judged
+from ehdmaps.trade.record import Choice, ErrorSummary, Group, Judged
 from ehdmaps.units import LOAD, SPEED, TEMPERATURE
 
 NATURAL_FREQUENCIES = (0.1, 10.0)

@@ -10,8 +10,7 @@ from ehdmaps.jobs.reader import read_job
 from ehdmaps.program import tell
 from mbs.analyses.campbell import campbell_problems
 from mbs.commands.cases import read_compared
-from mbs.commands.common import Told
-from mbs.laboratory.commands.band import read_band
+from mbs.commands.common import Told, read_band
 from mbs.laboratory.tradeoff.contacts import measure
 from mbs.laboratory.tradeoff.data import TRADE, check_trade_files, trade_json, write_trade
 from mbs.laboratory.tradeoff.machines import TradeoffSettings, tradeoff

@@ -11,8 +11,7 @@ from ehdmaps.units import RPM, closest
 from ehdmaps.workers import available_cores
 from mbs.analyses.reach import axes_outside, outside_lines
 from mbs.commands.cases import read_compared
-from mbs.commands.common import Told, write
-from mbs.laboratory.commands.band import read_band
+from mbs.commands.common import Told, read_band, write
 from mbs.laboratory.variants import Variant, VariantsResult, Variation, variants
 from mbs.output.model_text import clearance_text, common_supply, held_lines, temperature_text, weight_text
 from mbs.scene.choices import VARIED, LawChoice

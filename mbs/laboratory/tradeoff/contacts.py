@@ -23,8 +23,7 @@ from ehdmaps.jobs.budget.measured import (
     sample_words,
 )
 from ehdmaps.jobs.job import Job
-from ehdmaps.trade.entry import Group
-from ehdmaps.trade.record import Scope, Trade
+from ehdmaps.trade.record import Group, Scope, Trade
 from mbs.laboratory.tradeoff.contestants import OPENFOAM_REFINEMENT, RULE_REFINEMENT, contestants
 
 _SOLVING = ("closed forms", TABLE, "reynolds")

@@ -31,7 +31,7 @@ from ehdmaps.maps.law import LawKind
 from ehdmaps.physics.closed_form import FilmFormula, FormulaSolver
 from ehdmaps.physics.heat import INLET_HEAT, THERMAL
 from ehdmaps.physics.solution import ContactSolver
-from ehdmaps.trade.entry import Entry, Group
+from ehdmaps.trade.record import Entry, Group
 from mbs.laboratory.tradeoff.solved_ways import AtFrequency, FromTable, OnLayer, RoughSolved
 
 REFINEMENT = 4.0

@@ -21,8 +21,7 @@ import numpy as np
 
 from ehdmaps.errors import AnalysisError, EhdmapsError, InputError
 from ehdmaps.maps.emap import EHDMap
-from ehdmaps.trade.entry import Entry, Group
-from ehdmaps.trade.record import Choice, ErrorSummary, Judged, Scope, Source, Trade
+from ehdmaps.trade.record import Choice, Entry, ErrorSummary, Group, Judged, Scope, Source, Trade
 from ehdmaps.units import RPM
 from mbs.analyses.case import Progress, silent
 from mbs.analyses.operating import held
