@@ -91,3 +91,19 @@ def closest(word: str, allowed: tuple[str, ...]) -> str:
     """Say ' (did you mean ...?)' where one of the allowed words is close, else nothing."""
     matches = difflib.get_close_matches(word[:100], allowed, n=1, cutoff=0.6)
     return f" (did you mean {matches[0]!r}?)" if matches else ""
+
+
+LONGEST_LABEL = 60
+"""Characters; a title has no room for more."""
+
+
+def label_problem(label: str | None) -> list[str]:
+    """Problems of a label, in words; nothing where it is None."""
+    if label is None:
+        return []
+    rule = f"allowed: 1 to {LONGEST_LABEL} printable characters on one line"
+    if not isinstance(label, str):
+        return [f"got {label!r:.40}; {rule}, in quotes"]
+    if not (label.strip() and len(label) <= LONGEST_LABEL and label.isprintable()):
+        return [f"got {label[:40]!r}{'...' if len(label) > 40 else ''} ({len(label)} characters); {rule}"]
+    return []

@@ -8,10 +8,9 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any, TypeVar, cast
 
-from ehdmaps.errors import InputError
+from ehdmaps.errors import InputError, label_problem
 from ehdmaps.jobs.solids import NO_SOLIDS, SolidsKeys, fe_approaches
 from ehdmaps.jobs.table import Table
-from ehdmaps.labels import label_problem
 from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
 from ehdmaps.physics.catalogue import designated, estimate, estimate_from_dimensions, plain_designation

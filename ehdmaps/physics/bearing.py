@@ -7,8 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from typing import Self
 
-from ehdmaps.errors import InputError
-from ehdmaps.labels import label_problem
+from ehdmaps.errors import InputError, label_problem
 from ehdmaps.physics.approach import StructuralLaw, roller_reference_depth, shipped_approaches, shipped_names
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.designations.clearance import NORMAL, ClearanceRange, class_range, stated

@@ -14,8 +14,7 @@ from typing import Any, Literal, Required, TypedDict, Unpack
 import numpy as np
 
 from ehdmaps.arrays import Values, as_given
-from ehdmaps.errors import InputError, closest, short
-from ehdmaps.labels import label_problem
+from ehdmaps.errors import InputError, closest, label_problem, short
 from ehdmaps.physics.isotherm import FreeVolume, Isotherm, IsothermLaw, PressureViscosity, density
 from ehdmaps.physics.own_oil import (
     CLASSES,

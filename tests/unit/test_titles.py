@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
+from ehdmaps.errors import LONGEST_LABEL
 from ehdmaps.figures import legend_columns
 from ehdmaps.jobs import cli as jobs_cli
-from ehdmaps.labels import LONGEST_LABEL
 from ehdmaps.physics.catalogue import estimate
 from mbs import cli
 from tests.cases.jobs import map_job

@@ -21,8 +21,7 @@ import math
 from dataclasses import dataclass, field, fields, replace
 from typing import ClassVar, Self
 
-from ehdmaps.errors import InputError
-from ehdmaps.labels import label_problem
+from ehdmaps.errors import InputError, label_problem
 from ehdmaps.physics.designations.clearance import ClearanceRange, stated
 from ehdmaps.physics.point.ellipse import Ellipse
 from ehdmaps.physics.solids import Material, reduced_modulus

@@ -25,8 +25,7 @@ from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import ClassVar, NamedTuple, Self
 
-from ehdmaps.errors import InputError
-from ehdmaps.labels import label_problem
+from ehdmaps.errors import InputError, label_problem
 from ehdmaps.physics.contact import LineContact
 from ehdmaps.physics.point.ellipse import Ellipse
 from ehdmaps.physics.solids import Material, reduced_modulus
