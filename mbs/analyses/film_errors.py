@@ -13,8 +13,8 @@ from mbs.linearised.validity import ContactsInBalance, FilmError
 from mbs.model.contacts import slow_springs
 from mbs.model.elements import Element, OnRings, Operation
 from mbs.model.equilibrium import equilibrium
+from mbs.model.on_rings import ring_following
 from mbs.model.relaxation import FILM_WORDS, NOTABLE, Films
-from mbs.model.ring_ports import ring_following
 from mbs.scene.assembly import Model
 
 

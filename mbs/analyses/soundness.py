@@ -16,7 +16,7 @@ from ehdmaps.arrays import FloatArray
 from ehdmaps.units import RPM
 from mbs.model.elements import Operation
 from mbs.model.findings import MEANINGLESS, Cause, Finding, Severity, worst_of
-from mbs.model.ring_ports import ring_motion
+from mbs.model.on_rings import ring_motion
 from mbs.scene.assembly import Model
 
 if TYPE_CHECKING:

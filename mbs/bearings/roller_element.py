@@ -18,8 +18,8 @@ from mbs.bearings.roller_contacts import RollerContacts
 from mbs.model.body import Body
 from mbs.model.elements import Excitation, Forces, Operation, Port, Powers
 from mbs.model.findings import Gauge
+from mbs.model.on_rings import ring_motion
 from mbs.model.relaxation import Films, Relaxation
-from mbs.model.ring_ports import ring_motion
 
 if TYPE_CHECKING:
     from mbs.bearings.slices_in_balance import Side

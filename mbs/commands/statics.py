@@ -19,8 +19,8 @@ from mbs.commands.auto import analysed
 from mbs.commands.cases import load_model
 from mbs.commands.common import Looked, write
 from mbs.model.equilibrium import Equilibrium
+from mbs.model.on_rings import ring_matrices
 from mbs.model.relaxation import NOTABLE
-from mbs.model.ring_ports import ring_matrices
 from mbs.output.model_text import heading
 from mbs.output.state_text import DAMPINGS, STIFFNESSES, flooded_note, largest_torque, life_lines, loss_words
 from mbs.planning.question import at_one_speed

@@ -41,7 +41,7 @@ from mbs.linearised.film_part import CondensedBearing, FilmPart, condensed_beari
 from mbs.model.contacts import LAW_CHANGES
 from mbs.model.elements import OnRings
 from mbs.model.equilibrium import Equilibrium
-from mbs.model.ring_ports import ring_following
+from mbs.model.on_rings import ring_following
 
 KINDS = LAW_CHANGES
 """Kinds of changes, in the order in which each bearing has them."""

@@ -28,7 +28,7 @@ from mbs.linearised.tracking import Match, ModeSet, compose, match, numbers, tra
 from mbs.linearised.validity import DynamicLoad, dynamic_loads
 from mbs.model.elements import Input, OnRings, Operation, Sensor
 from mbs.model.equilibrium import Equilibrium, equilibrium
-from mbs.model.ring_ports import ring_matrices
+from mbs.model.on_rings import ring_matrices
 from mbs.model.system import System
 from mbs.settings import MOST_SPEEDS
 

@@ -17,8 +17,8 @@ from mbs.model.condensed import Condensed
 from mbs.model.elements import Input, OnRings
 from mbs.model.equilibrium import Equilibrium
 from mbs.model.findings import CARRIES
+from mbs.model.on_rings import ring_matrices
 from mbs.model.relaxation import NOTABLE, Films
-from mbs.model.ring_ports import ring_matrices
 
 _PLACES = np.array([0.1, 0.3, 1.0, 3.0, 10.0, 30.0])
 _WITHIN = np.array([4e-4, 2.5e-3, 1.5e-2, 3.1e-2, 4.1e-2, 7.9e-2])

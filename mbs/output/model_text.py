@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 from ehdmaps.units import RPM, TEMPERATURE, written
 from mbs.bearings.thermal import HeatPaths
-from mbs.linearised.band_words import error_words
 from mbs.model.equilibrium import ROLLER
+from mbs.model.on_rings import error_words
 from mbs.model.relaxation import FILM_WORDS, NOTABLE
 from mbs.output.state_text import class_lines, state_lines
 from mbs.scene.assembly import Model

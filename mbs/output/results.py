@@ -14,12 +14,11 @@ from ehdmaps.arrays import ComplexArray, FloatArray
 from mbs.bearings.films import SIDES
 from mbs.bearings.thermal import BearingHeat, BearingState
 from mbs.gears.gear import GearMesh
-from mbs.linearised.band_words import error_words
 from mbs.model.body import FREEDOMS
 from mbs.model.elements import Input, OnRings, Sensor
 from mbs.model.equilibrium import Equilibrium
 from mbs.model.findings import CARRIES
-from mbs.model.ring_ports import ring_matrices
+from mbs.model.on_rings import error_words, ring_matrices
 from mbs.model.system import System
 from mbs.output.state_text import HIGHEST_LOAD, LOADED
 from mbs.scene.assembly import Model

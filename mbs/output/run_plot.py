@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 from ehdmaps.arrays import BoolArray, FloatArray
 from ehdmaps.figures import COLOURS, typeset, write_heading
 from ehdmaps.units import RPM
-from mbs.model.ring_ports import ring_motion
+from mbs.model.on_rings import ring_motion
 from mbs.output.page import grid, headed, shade, shade_handle, whole_numbers
 from mbs.scene.assembly import Model
 from mbs.spectral.spectra import AmplitudeSpectrum

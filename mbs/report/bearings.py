@@ -14,7 +14,7 @@ from ehdmaps.report.page import Markup, joined, pairs, table, tag
 from ehdmaps.units import DAMPER, FILM, PRESSURE, SPEED, SPRING
 from mbs.bearings.films import ContactState
 from mbs.bearings.force_at_point import RollerLoads
-from mbs.model.ring_ports import ring_matrices
+from mbs.model.on_rings import ring_matrices
 from mbs.output.state_text import DAMPINGS, STIFFNESSES, loss_words
 from mbs.report.examination import Examination
 from mbs.scene.assembly import ring_motions

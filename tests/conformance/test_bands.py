@@ -22,7 +22,6 @@ from mbs.analyses.modes import modes
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.films import ball_films
 from mbs.bearings.balls.response import ContactResponse
-from mbs.linearised.band_words import NO_MAP
 from mbs.linearised.bands import law_bands
 from mbs.linearised.dynamic import dynamic_slope, dynamic_stiffness, newton
 from mbs.linearised.linear import (
@@ -36,6 +35,7 @@ from mbs.linearised.modes import state_modes, undamped_modes
 from mbs.linearised.sweep import along_load
 from mbs.model.elements import OnRings, Operation
 from mbs.model.equilibrium import equilibrium
+from mbs.model.on_rings import NO_MAP
 from tests.conformance.machines import KINDS, MIXED
 
 SCENE = """

@@ -17,7 +17,6 @@ from mbs.analyses.campbell import campbell, law_changes, with_changed_laws
 from mbs.analyses.lsa import LsaSettings, lsa
 from mbs.analyses.modes import modes
 from mbs.analyses.ramp import silent_run
-from mbs.linearised.band_words import NO_MAP, error_words
 from mbs.linearised.bands import KINDS, law_bands
 from mbs.linearised.dynamic import dynamic_stiffness
 from mbs.linearised.film_part import CondensedBearing
@@ -26,6 +25,7 @@ from mbs.linearised.modes import state_modes, undamped_modes
 from mbs.linearised.sweep import along_load
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
+from mbs.model.on_rings import NO_MAP, error_words
 from mbs.model.relaxation import Relaxation
 from mbs.output.model_text import band_lines
 from mbs.scene.assembly import assemble

@@ -21,8 +21,8 @@ from mbs.linearised.modes import modes, undamped_modes
 from mbs.linearised.sweep import sweep
 from mbs.model.elements import ElementDefaults, Input, Load, Operation, Sensor
 from mbs.model.equilibrium import equilibrium
+from mbs.model.on_rings import ring_matrices
 from mbs.model.profiles import Harmonic, SpeedProfile
-from mbs.model.ring_ports import ring_matrices
 from mbs.model.system import System
 from mbs.scene.assembly import assemble
 from mbs.scene.reader import read_scene
