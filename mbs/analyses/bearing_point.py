@@ -45,8 +45,7 @@ from mbs.model.findings import Cause, Finding
 from mbs.model.system import System
 
 if TYPE_CHECKING:
-    from mbs.bearings.balls.ball_point import BallPoint
-    from mbs.bearings.tapered.tapered_point import TaperedPoint
+    from mbs.bearings.locating.locating_point import LocatingPoint
 
 RING = "inner ring"
 """Name of the body that a bearing alone carries."""
@@ -55,7 +54,7 @@ _FREE = 1e-9
 """Stiffness across the load over that along it, below which there is none."""
 
 
-P = TypeVar("P", bound="BearingPoint | BallPoint | TaperedPoint")
+P = TypeVar("P", bound="BearingPoint | LocatingPoint")
 
 _NOTABLE = 0.01, 0.05
 """Errors of k and c along the load from which on they are told."""
@@ -127,9 +126,9 @@ def without_holes(path: str, points: list[P]) -> list[P]:
 def _hole(point: P, load: Any, speed: float, reason: str) -> P:
     """A point without an answer in the shape of one that has one."""
     size = np.array(load, dtype=np.float64)
-    given: dict[str, Any] = {"speed": speed} if isinstance(point, BearingPoint) else {"inner_speed": speed}
     blank: Any = _blank(point)
-    hole: P = dataclasses.replace(blank, load=size, findings=(Finding(Cause.FAILED, reason),), failed=True, **given)
+    failed = (Finding(Cause.FAILED, reason),)
+    hole: P = dataclasses.replace(blank, load=size, inner_speed=speed, findings=failed, failed=True)
     return hole
 
 
@@ -252,13 +251,13 @@ def bearing_point(
     return BearingPoint(
         bearing=force.bearing,
         load=given,
-        speed=speed,
+        inner_speed=speed,
         entrainment_speed=u,
         temperature=temperature,
         displacement=balance.displacement,
         stiffness=stiffness,
         damping=balance.element_damping[0][1:3, 1:3],
-        rollers=rollers,
+        elements=rollers,
         contacts=contacts,
         loss=rolling_loss(force.bearing, films, contacts, rollers, u, speed, temperature),
         findings=(

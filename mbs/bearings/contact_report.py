@@ -419,7 +419,7 @@ class BearingPoint(WithFindings):
         Geometry, clearance, profile, slices.
     load : array, shape (2,)
         Load on the inner ring, y and z [N].
-    speed : float
+    inner_speed : float
         Speed of the inner ring [rad/s].
     entrainment_speed, temperature : float
         u [m/s], T [K].
@@ -427,7 +427,7 @@ class BearingPoint(WithFindings):
         Displacement of the inner ring against the outer one, y and z [m].
     stiffness, damping : array, shape (2, 2)
         Stiffness and damping of the bearing in y and z [N/m], [N s/m].
-    rollers : RollerLoads
+    elements : RollerLoads
         Loads of rollers and slices.
     contacts : BearingContacts
         Pressures and films of all slices.
@@ -441,13 +441,13 @@ class BearingPoint(WithFindings):
 
     bearing: Bearing
     load: FloatArray
-    speed: float
+    inner_speed: float
     entrainment_speed: float
     temperature: float
     displacement: FloatArray
     stiffness: FloatArray
     damping: FloatArray
-    rollers: RollerLoads
+    elements: RollerLoads
     contacts: BearingContacts
     loss: RollingLoss
     findings: tuple[Finding, ...]
@@ -471,12 +471,7 @@ class BearingPoint(WithFindings):
     @property
     def reference(self) -> ReferenceLife:
         """Equivalent load and life of ISO/TS 16281, by the rating of ISO 281."""
-        return self.rollers.life(self.geometry, inner_turns=True)
-
-    @property
-    def inner_speed(self) -> float:
-        """Speed of the inner ring [rad/s], by the name of points of other kinds."""
-        return self.speed
+        return self.elements.life(self.geometry, inner_turns=True)
 
     @property
     def smallest_film(self) -> float:
@@ -496,12 +491,12 @@ class BearingPoint(WithFindings):
     @property
     def loaded(self) -> int:
         """Number of rollers that carry more than `SHARE` of the highest roller load."""
-        return int(self.rollers.load_zone(SHARE).size)
+        return int(self.elements.load_zone(SHARE).size)
 
     @property
     def most_loaded(self) -> int:
         """Index of the roller with the highest load."""
-        return int(np.argmax(self.rollers.load))
+        return int(np.argmax(self.elements.load))
 
     def film_parameter(self, roughness: float) -> float:
         """Lambda: smallest film of all contacts over the combined rms roughness [m]; NaN where no film is known."""
@@ -535,7 +530,7 @@ class BearingPoint(WithFindings):
             return 1.0, ""
         from ehdmaps.maps.rough_layer import LEAST_SPEED, MeanPlanes, RoughLayer, load_sharing
 
-        loads = self.rollers.load_per_length[self.most_loaded]
+        loads = self.elements.load_per_length[self.most_loaded]
         loaded = loads > 0.0
         contacts = self.bearing.geometry.contacts(self.bearing.material, "iso16281")
         place = loads[loaded], np.array([self.entrainment_speed]), np.array([self.temperature])

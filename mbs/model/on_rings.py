@@ -1,4 +1,4 @@
-"""What results ask of the bearings of a system: motion and matrices of inner rings, errors of their laws in words.
+"""Bearings of a system as results ask for them: motion and matrices of inner rings, errors of their laws in words.
 
 Ports of a bearing are the displacement of its inner ring against the outer one, (6,), or both rings and the radial
 places of Z rollers that are bodies, (12 + Z,).

@@ -78,7 +78,7 @@ def _page(kind: Kind, description: Description, point: Any) -> Figure:
 
 def _around(polar: PolarAxes, kind: Kind, point: Any) -> None:
     """Load of each rolling element at its angle, and the direction of the load."""
-    elements, name = kind.elements(point), kind.element
+    elements, name = point.elements, kind.element
     load = np.atleast_2d(elements.load)[0]
     highest = max(float(load.max()), 1e-9)
     polar.bar(elements.angle, load, width=0.7 * 2.0 * math.pi / load.size, color=COLOURS[0], alpha=0.85)

@@ -61,7 +61,7 @@ def points(emap: EHDMap, bearing: Bearing, supply: OilSupply | None) -> list[Bea
 
 def preload(point: BearingPoint) -> float:
     """Load of the rollers against the load [N]."""
-    along = point.rollers.load * np.cos(point.rollers.angle)
+    along = point.elements.load * np.cos(point.elements.angle)
     return float(-np.sum(np.minimum(along, 0.0)))
 
 

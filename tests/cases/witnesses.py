@@ -25,7 +25,7 @@ from ehdmaps.physics.solids import Material
 from ehdmaps.point import solve
 from ehdmaps.table.points.file import shipped_point_table
 from mbs.bearings.balls.ball_bearing import BallForce
-from mbs.bearings.balls.ball_point import ball_point
+from mbs.bearings.balls.ball_point import BallPoint
 from mbs.bearings.balls.laws import dry_law
 from mbs.life import ball_reference_life
 
@@ -72,7 +72,7 @@ def rows(name: str) -> list[dict[str, str]]:
 
 def pair_rigidity(geometry: BallGeometry, preload: float) -> float:
     """Axial stiffness of a pair at rest under its preload, twice that of one bearing [N/m]."""
-    return 2.0 * float(ball_point(BallForce(geometry, dry_law(geometry)), (preload, 0.0, 0.0), 0.0).stiffness[0, 0])
+    return 2.0 * float(BallPoint.at(BallForce(geometry, dry_law(geometry)), (preload, 0.0, 0.0), 0.0).stiffness[0, 0])
 
 
 @cache

@@ -18,7 +18,7 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.ball_element import MachineBalls
-from mbs.bearings.balls.ball_point import ball_point
+from mbs.bearings.balls.ball_point import BallPoint
 from mbs.bearings.balls.films import ball_films
 from mbs.bearings.balls.laws import dry_law
 from mbs.cli import main
@@ -139,7 +139,7 @@ def test_file_for_ross_is_contacts_in_series(tmp_path, rpm):
         speed = at if len(rpm) > 1 else SPEED
         u = geometry.entrainment_speed(speed)
         law = ball_films(geometry, Lubricant.named("FVA3"), u, WARM, solves=False).law
-        point = ball_point(BallForce(geometry, law), (2000.0, 1000.0, 0.0), speed)
+        point = BallPoint.at(BallForce(geometry, law), (2000.0, 1000.0, 0.0), speed)
         balls = point.force.loads(point.pose, inner_speed=speed)
         z = by_hand(point.force, balls, speed, 1j * max(at, 1e-3))
         for term, axis in (("xx", 1), ("yy", 2), ("zz", 0)):
@@ -172,7 +172,7 @@ def test_solved_films_have_no_memory():
     geometry = ball_estimate("6208")
     law = ball_films(geometry, Lubricant.named("FVA3"), geometry.entrainment_speed(SPEED), WARM, solves=False).law
     force = BallForce(geometry, dataclasses.replace(law, responses=()))
-    point = ball_point(force, (2000.0, 1000.0, 0.0), SPEED)
+    point = BallPoint.at(force, (2000.0, 1000.0, 0.0), SPEED)
     description = Description("films", "", 0.0, WARM, 0.3e-6, False, ())
     given = Export(BALL_BEARINGS, force, description, [point], 0.0, lambda u: force.law, True)
     for name in ("x.toml", "x.c"):

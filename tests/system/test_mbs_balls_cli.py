@@ -16,7 +16,7 @@ from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from ehdmaps.physics.solids import STEEL
 from mbs.bearings.balls.ball_bearing import BallForce
-from mbs.bearings.balls.ball_point import ball_point
+from mbs.bearings.balls.ball_point import BallPoint
 from mbs.bearings.balls.laws import dry_law
 from tests.cases import commands
 
@@ -45,10 +45,10 @@ def test_one_point(capsys, here) -> None:
     assert (status, err) == (0, "")
     geometry = ball_estimate("6208")
     force = BallForce(geometry, dry_law(geometry))
-    point = ball_point(force, (500.0, 2000.0, 0.0), 3000.0 * RPM, oil=Lubricant.named("FVA3"))
+    point = BallPoint.at(force, (500.0, 2000.0, 0.0), 3000.0 * RPM, oil=Lubricant.named("FVA3"))
     assert numbers(out, "stiffness") == pytest.approx([1e-6 * point.stiffness[i, i] for i in (1, 2, 0)], rel=1e-4)
     assert numbers(out, "Hertz pressure") == pytest.approx(1e-9 * point.pressure.max(axis=1), rel=1e-4)
-    angles = [math.degrees(point.balls.mean_angle(side)) for side in (0, 1)]
+    angles = [math.degrees(point.elements.mean_angle(side)) for side in (0, 1)]
     assert numbers(out, "mean contact angle") == pytest.approx(angles, rel=1e-4)
     assert "inner geometry estimated from catalogue dimensions" in out
     assert "7 of 9 balls carry more than 1 %" in out

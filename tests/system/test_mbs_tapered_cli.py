@@ -18,7 +18,7 @@ from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from mbs.bearings.locating.normal_law import contact
 from mbs.bearings.tapered.line_film import LOADS, cylinder_of, line_film
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
-from mbs.bearings.tapered.tapered_point import tapered_point
+from mbs.bearings.tapered.tapered_point import TaperedPoint
 from mbs.life import roller_reference_life
 from tests.cases import commands
 
@@ -40,7 +40,7 @@ def run(capsys, *arguments):
 def test_one_point(capsys, here) -> None:
     status, out, err = run(capsys, *LOADED, "--law", "hertz")
     assert (status, err) == (0, "")
-    point = tapered_point(FORCE, (2000.0, 5000.0, 0.0), 3000.0 * RPM, oil=Lubricant.named("FVA3"))
+    point = TaperedPoint.at(FORCE, (2000.0, 5000.0, 0.0), 3000.0 * RPM, oil=Lubricant.named("FVA3"))
     line = next(line for line in out.splitlines() if line.startswith("  stiffness"))
     numbers = [float(word) for word in line[42:].split()]
     assert numbers == pytest.approx([1e-6 * point.stiffness[i, i] for i in (1, 2, 0)], rel=1e-4)  # digits shown
@@ -147,21 +147,21 @@ def test_no_equilibrium_and_overload_are_said() -> None:
     with pytest.raises(
         AnalysisError, match=r"falls apart without a positive axial load above tan.alpha. .Fr . Z Fc. = 1233 N, Fc the"
     ):
-        tapered_point(FORCE, (0.0, 5000.0, 0.0), 0.0)
+        TaperedPoint.at(FORCE, (0.0, 5000.0, 0.0), 0.0)
     with pytest.raises(InputError, match=r"bearing point, load: got .*; allowed: three finite numbers"):
-        tapered_point(FORCE, (0.0, 0.0, 0.0), 0.0)
+        TaperedPoint.at(FORCE, (0.0, 0.0, 0.0), 0.0)
     with pytest.raises(
         AnalysisError, match=r"no equilibrium of 32208 under 1e\+07 N axial, 0 N radial: tapered bearing"
     ):
-        tapered_point(FORCE, (1e7, 0.0, 0.0), 0.0)
+        TaperedPoint.at(FORCE, (1e7, 0.0, 0.0), 0.0)
     # centrifugal loads press rollers into the cup, which asks for an axial load of its own
     with pytest.raises(AnalysisError, match=r"above tan.alpha. .Fr . Z Fc. = 21\d\d N"):
-        tapered_point(FORCE, (2000.0, 5000.0, 0.0), 20000.0 * RPM)
-    point = tapered_point(FORCE, (1e5, 2e5, 0.0), 0.0)
+        TaperedPoint.at(FORCE, (2000.0, 5000.0, 0.0), 20000.0 * RPM)
+    point = TaperedPoint.at(FORCE, (1e5, 2e5, 0.0), 0.0)
     assert point.pressure.max() > LINE_LIMIT and "the static limit of ISO 76" in point.problems[0]
-    little = tapered_point(FORCE, (1350.0, 5000.0, 0.0), 0.0)
+    little = TaperedPoint.at(FORCE, (1350.0, 5000.0, 0.0), 0.0)
     assert "less than half" in " ".join(little.notes) and little.reference.life > 0.0
-    free = tapered_point(FORCE, (2000.0, 5000.0, 0.0), 0.0, tilts=True)
+    free = TaperedPoint.at(FORCE, (2000.0, 5000.0, 0.0), 0.0, tilts=True)
     assert "crowd at an end" in " ".join(free.notes)
 
 
@@ -182,8 +182,8 @@ def test_factors_of_catalogues_come_near_the_lives_of_slices() -> None:
     """Pure axial load against half of the rollers loaded: 0.377/tan(alpha) by mean loads, Y = 0.4/tan(alpha)."""
     force = TaperedForce(tapered_estimate("32208"), profile="straight")
     thrust = tapered_boundary("32208").thrust_factor
-    half = tapered_point(force, (0.5 * 5000.0 / thrust, 5000.0, 0.0), 300.0)
-    axial = tapered_point(force, (5000.0, 0.0, 0.0), 300.0)
+    half = TaperedPoint.at(force, (0.5 * 5000.0 / thrust, 5000.0, 0.0), 300.0)
+    axial = TaperedPoint.at(force, (5000.0, 0.0, 0.0), 300.0)
     equal = (
         5000.0 * (half.reference.life / axial.reference.life) ** 0.25 / 5000.0
     )  # lives go with the fourth power of lines
@@ -205,7 +205,7 @@ def test_films_of_the_table_act_in_the_balance(capsys, here) -> None:
     status, out, _ = run(capsys, *LOADED, "--law", "table")
     assert status == 0 and "film table at radius and speed of the middle, rib dry" in out
     rows = {line[2:10].strip(): line[42:].split() for line in out.splitlines() if line[42:].strip()}
-    dry = tapered_point(FORCE, (2000.0, 5000.0, 0.0), 3000.0 * RPM)
+    dry = TaperedPoint.at(FORCE, (2000.0, 5000.0, 0.0), 3000.0 * RPM)
     assert 0.8e-6 * dry.stiffness[1, 1] < float(rows["stiffnes"][0]) < 1e-6 * dry.stiffness[1, 1]
     assert float(rows["damping,"][0]) > 1.0
     # by both films over the sine of the contact angle: a third of 1.3 and 1.4 um more than central films are stiff

@@ -13,7 +13,7 @@ from ehdmaps.physics.oil_supply import OilSupply
 from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from mbs import assemble, parse_scene, read_scene
 from mbs.bearings.balls.ball_bearing import BallForce
-from mbs.bearings.balls.ball_point import ball_point
+from mbs.bearings.balls.ball_point import BallPoint
 from mbs.bearings.balls.laws import dry_law
 from mbs.cli import main
 from mbs.linearised.modes import modes
@@ -91,7 +91,7 @@ def test_modes_are_those_on_tables_of_the_bearing_alone():
     tables = []
     for name, on, against, way in (("left", "rotor:left", "ground", -1.0), ("right", "rotor:right", "ring", 1.0)):
         force = BallForce(geometry, dry_law(geometry, damping_time=1.25e-5))
-        alone = ball_point(force, (way * axial, -0.5 * WEIGHT, 0.0), SPEED)
+        alone = BallPoint.at(force, (way * axial, -0.5 * WEIGHT, 0.0), SPEED)
         tables.append(MatrixSpec(name, on, alone.stiffness[None], alone.damping[None], against))
     other = assemble(dataclasses.replace(machine.scene, elements=tables), "hertz")
     on_tables = equilibrium(other.system, other.operation)

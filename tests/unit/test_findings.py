@@ -16,7 +16,7 @@ from mbs.analyses.lsa import LsaSettings
 from mbs.analyses.soundness import Judged, findings_at_rest
 from mbs.analyses.sweep import SweepSettings
 from mbs.bearings.balls.ball_bearing import BallForce
-from mbs.bearings.balls.ball_point import ball_point
+from mbs.bearings.balls.ball_point import BallPoint
 from mbs.bearings.balls.laws import dry_law
 from mbs.linearised.validity import lifting
 from mbs.model.elements import OnRings, Operation
@@ -198,7 +198,7 @@ def test_shoulder_of_a_6208(height, monkeypatch):
     force = BallForce(geometry, dry_law(geometry, STEEL))
 
     def told(load):
-        found = ball_point(force, (load, 0.0, 0.0), 0.0).findings
+        found = BallPoint.at(force, (load, 0.0, 0.0), 0.0).findings
         return Cause.SHOULDER in [one.cause for one in found]
 
     low, high = 1e3, 1e5

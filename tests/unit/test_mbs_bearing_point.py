@@ -43,16 +43,16 @@ def test_radial_stiffness_by_the_constants_of_iso_16281(name, load, stiffness):
     found, across = point.along_across(point.stiffness)
     assert 1e-6 * found == pytest.approx(stiffness, rel=1e-4)  # four digits of the reference
     # Stribeck's number of a bearing without clearance: 4.08 for any number of rollers
-    assert point.rollers.load.max() * point.bearing.geometry.rollers / load == pytest.approx(4.08, abs=0.01)
+    assert point.elements.load.max() * point.bearing.geometry.rollers / load == pytest.approx(4.08, abs=0.01)
     assert 0.0 < across < found
     # Q_j = Q_max cos(phi)^(10/9), the load distribution of Stribeck with the exponent of the line contact
-    expected = point.rollers.load.max() * np.maximum(np.cos(point.rollers.angle), 0.0) ** (10.0 / 9.0)
-    np.testing.assert_allclose(point.rollers.load, expected, atol=1e-6 * load)  # of the equilibrium
+    expected = point.elements.load.max() * np.maximum(np.cos(point.elements.angle), 0.0) ** (10.0 / 9.0)
+    np.testing.assert_allclose(point.elements.load, expected, atol=1e-6 * load)  # of the equilibrium
 
 
 def test_hertz_pressure_and_films_are_those_of_the_most_loaded_roller():
     point = dry_point("NU308", (2e3, 0.0), profile="straight", speed=50.0 * math.pi)
-    w = point.rollers.load.max() / 15e-3
+    w = point.elements.load.max() / 15e-3
     geometry, modulus = point.bearing.geometry, 210e9 / (1.0 - 0.3**2)
     for side, radius in enumerate((geometry.inner_radius, geometry.outer_radius)):
         width = math.sqrt(8.0 * w * radius / (math.pi * modulus))
@@ -77,7 +77,7 @@ def test_an_equilibrium_is_found_from_any_load_and_clearance(name, clearance, lo
     for angle in (0.0, 0.1, math.pi / 12.0):
         given = (load * math.cos(angle), load * math.sin(angle))
         point = dry_point(name, given, clearance=clearance)
-        carried = point.rollers.load @ np.stack([np.cos(point.rollers.angle), np.sin(point.rollers.angle)], axis=1)
+        carried = point.elements.load @ np.stack([np.cos(point.elements.angle), np.sin(point.elements.angle)], axis=1)
         np.testing.assert_allclose(carried, given, atol=1e-7 * load)  # of the equilibrium
 
 

@@ -13,7 +13,7 @@ from ehdmaps.physics.rollers.tapered_catalogue import mirrored, tapered_estimate
 from mbs import assemble, parse_scene
 from mbs.analyses.soundness import findings_at_rest
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
-from mbs.bearings.tapered.tapered_point import tapered_point
+from mbs.bearings.tapered.tapered_point import TaperedPoint
 from mbs.linearised.modes import modes
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
@@ -117,7 +117,7 @@ def test_preload_by_force_gives_both_bearings_that_force() -> None:
         (("left", "rotor:left", "ground", GEOMETRY, -1.0), ("right", "rotor:right", "ring", mirrored(GEOMETRY), 1.0))
     ):
         assert way * balance.forces[index][0] == pytest.approx(axial, rel=1e-8)  # of the equilibrium, 1e-10
-        alone = tapered_point(
+        alone = TaperedPoint.at(
             TaperedForce(geometry, damping_time=1.25e-5), (-way * axial, *(-balance.forces[index][1:3])), SPEED
         )
         tables.append(MatrixSpec(name, on, alone.stiffness[None], alone.damping[None], against))

@@ -10,7 +10,7 @@ import pytest
 
 from ehdmaps.physics.point.ball_catalogue import ANGULAR_GROOVES, GROOVES, ball_estimate
 from mbs.bearings.balls.ball_bearing import BallForce
-from mbs.bearings.balls.ball_point import ball_point
+from mbs.bearings.balls.ball_point import BallPoint
 from mbs.bearings.balls.laws import dry_law
 from tests.cases.balls import ANGULAR, BEARINGS, DEEP, LOOSE, STEEP, in_space, rest
 
@@ -162,7 +162,7 @@ def test_groove_radii_change_stiffness_as_estimates_say(name, load, held, stated
     speed, tight = 3000.0 * RPM, ball_estimate(name)
     wide = dataclasses.replace(tight, outer_conformity=0.53)
     forces = [BallForce(geometry, dry_law(geometry)) for geometry in (tight, wide)]
-    one, other = (np.diag(ball_point(force, load, speed).stiffness) for force in forces)
+    one, other = (np.diag(BallPoint.at(force, load, speed).stiffness) for force in forces)
     with np.errstate(invalid="ignore"):
         change = 1.0 - other / one
     at = np.array([held, 0.0, 0.0, 0.0, 0.0, 0.0])

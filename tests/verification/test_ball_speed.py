@@ -12,7 +12,7 @@ from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from ehdmaps.physics.solids import STEEL
 from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.ball_motion import ball_motion
-from mbs.bearings.balls.ball_point import ball_point
+from mbs.bearings.balls.ball_point import BallPoint
 from mbs.bearings.balls.ball_speed import Drive, ball_loads, orbit
 from mbs.bearings.balls.laws import dry_law
 from mbs.output.one_bearing.balls import BALLS
@@ -94,7 +94,7 @@ def test_stiffness_of_fast_bearings_by_another_program(case) -> None:
     """A balance by Jones and Harris of another author, with closed formulas, printed with three to four digits."""
     name, radial, axial, inner, outer, along, across, cage = case
     geometry = ball_estimate(name)
-    point = ball_point(BallForce(geometry, dry_law(geometry)), (axial, radial, 0.0), inner * RPM, outer * RPM)
+    point = BallPoint.at(BallForce(geometry, dry_law(geometry)), (axial, radial, 0.0), inner * RPM, outer * RPM)
     assert point.stiffness[1, 1] == pytest.approx(1e6 * along, rel=2.5e-3)
     assert point.stiffness[0, 0] == pytest.approx(1e6 * across, rel=2.5e-3)
     assert point.cage_speed == pytest.approx(cage * RPM, rel=5e-4)
@@ -121,16 +121,16 @@ def test_jones_balance(name, material, axial, inner, outer) -> None:
     """
     geometry, speeds = ball_estimate(name), (inner * RPM, outer * RPM)
     force = BallForce(geometry, dry_law(geometry, material), material)
-    point = ball_point(force, (axial, 0.0, 0.0), *speeds)
+    point = BallPoint.at(force, (axial, 0.0, 0.0), *speeds)
 
     def space(pose, only=None):
         return balls_in_space(geometry, pose, *speeds, material=material, only=only)
 
     (ball,) = space(point.pose, 1)[1]
-    np.testing.assert_allclose(point.balls.contact_angle[:, 0], ball.angles, rtol=1e-7)
-    np.testing.assert_allclose(point.balls.load[:, 0], ball.loads, rtol=1e-7)
+    np.testing.assert_allclose(point.elements.contact_angle[:, 0], ball.angles, rtol=1e-7)
+    np.testing.assert_allclose(point.elements.load[:, 0], ball.loads, rtol=1e-7)
     assert point.cage_speed == pytest.approx(ball.speed, rel=1e-9)
-    assert abs(point.balls.traction[0]) == pytest.approx(ball.traction, rel=1e-7)
+    assert abs(point.elements.traction[0]) == pytest.approx(ball.traction, rel=1e-7)
     found = np.zeros((6, 3))
     for column, axis in enumerate((0, 1, 4)):
         step = np.zeros(6)
@@ -180,14 +180,14 @@ def test_slip_and_spin_are_those_of_the_velocities() -> None:
 def test_slip_and_spin_are_outputs() -> None:
     """Dataset and page: of all balls, the largest of loaded ones; no slip in rolling; traction as the note says it."""
     geometry = ball_estimate("7208B")
-    point = ball_point(BallForce(geometry, dry_law(geometry)), (1000.0, 10.0, 0.0), 1e4 * RPM)
+    point = BallPoint.at(BallForce(geometry, dry_law(geometry)), (1000.0, 10.0, 0.0), 1e4 * RPM)
     given = Description("dry Hertz", "", 0.0, 313.15, 0.3e-6, False, ())
     data = point_dataset(BALLS, given, [[point]]).isel(load=0, speed=0)
     assert data["slip"].values.max() < 1e-9
     assert data["spin"].sel(contact="inner") == np.abs(data["ball_spin"].sel(contact="inner")).max() > 1000.0
     assert abs(data["spin"].sel(contact="outer")) < 1e-9
     assert data["ball_speed"].values == pytest.approx(point.cage_speed, rel=0.01)
-    share = np.abs(point.balls.traction) / point.balls.load[1]
+    share = np.abs(point.elements.traction) / point.elements.load[1]
     assert data["gyroscopic_traction"] == share.max() > 0.05
     text = "\n".join(point_text(BALLS, given, [[point]]))
     assert "spin of the ring on the ball     rad/s          1723" in text

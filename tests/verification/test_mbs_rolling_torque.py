@@ -92,7 +92,7 @@ def test_films_that_oscillate_on_a_layer(reynolds_map):
 def test_power_is_the_force_on_both_walls_of_every_slice(points, reynolds_map):
     """By hand from the loads of the slices: u Sum F l over both raceways, and the torque that turns the inner ring."""
     emap, point = open_map(reynolds_map), points[1]
-    u, w = point.entrainment_speed, point.rollers.load_per_length
+    u, w = point.entrainment_speed, point.elements.load_per_length
     length = point.bearing.slice_length
     forces = [emap.rolling_film.rolling_force(name, w, u, WARM) for name in ("inner", "outer")]
     power = sum(float(force.sum()) for force in forces) * length * u
@@ -204,7 +204,7 @@ def test_idle_rollers_take_half_and_loaded_ones_roll(points, reynolds_map):
     ]
     viscosity = emap.lubricant.at(WARM).viscosity
     for before, after in zip(points, found, strict=True):
-        idle, loaded = before.rollers.load < 0.05 * before.rollers.load.max(), np.argmax(before.rollers.load)
+        idle, loaded = before.elements.load < 0.05 * before.elements.load.max(), np.argmax(before.elements.load)
         was, now = before.loss.power.sum(axis=0), after.loss.power.sum(axis=0)
         assert np.all((now[idle] > 0.55 * was[idle]) & (now[idle] < 0.65 * was[idle]))
         # the pocket of a loaded roller adds its own heat; its slip is thousandths

@@ -17,7 +17,7 @@ from mbs.bearings import laws
 from mbs.bearings.bearing import Bearing
 from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
-from mbs.bearings.tapered.tapered_point import RIB_FRICTION, tapered_point
+from mbs.bearings.tapered.tapered_point import RIB_FRICTION, TaperedPoint
 
 GEOMETRY = ribbed_estimate("NUP210", 8e-6, 12e-6)
 FORCE = TaperedForce(GEOMETRY, slices=7)
@@ -140,14 +140,14 @@ def test_the_couple_of_the_ribs_moves_the_loads_along_the_roller() -> None:
 
 
 def test_an_operating_point_takes_the_load_and_slides_at_both_ribs() -> None:
-    point = tapered_point(FORCE, (-1500.0, 4000.0, 0.0), 300.0)
+    point = TaperedPoint.at(FORCE, (-1500.0, 4000.0, 0.0), 300.0)
     assert float(FORCE(point.pose, inner_speed=300.0)[0][0]) == pytest.approx(1500.0, rel=1e-8)  # of the equilibrium
-    assert not np.any(point.rollers.ribs[:2] > 0.0) and not point.notes[1:]
+    assert not np.any(point.elements.ribs[:2] > 0.0) and not point.notes[1:]
     # both ribs roll off at the raceways: they slide by their height above them, at the speed of the roller and theirs
     height = 0.5 * GEOMETRY.roller_diameter - GEOMETRY.rib_lever
     cage, spin = GEOMETRY.cage_speed(300.0), GEOMETRY.roller_speed(300.0)
     slides = [height * (abs(ring - cage) + sign * abs(spin)) for ring, sign in ((300.0, 1.0), (0.0, -1.0))]
-    power = RIB_FRICTION * float(np.abs(slides) @ point.rollers.ribs[2:].sum(axis=1))
+    power = RIB_FRICTION * float(np.abs(slides) @ point.elements.ribs[2:].sum(axis=1))
     assert point.rib_power == pytest.approx(power, rel=1e-12)
     with pytest.raises(InputError) as caught:
         RibbedGeometry("a", 10e-3, 15e-3, 60e-3, 14, 0.0, carries="z", axial_clearance=math.nan)

@@ -14,6 +14,7 @@ Technology 99 (1977) 264-276.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
@@ -72,6 +73,37 @@ def kapitza_film(load_number: float, curvature_ratio: float) -> float:
 
 POINT_FILMS = "isothermal, flooded"
 """Assumptions of all films of balls, those of the table and those that are solved, too: printed beside them."""
+
+
+def film_of(
+    formula: Callable[..., FloatArray],
+    ellipse: Ellipse,
+    state: LubricantState,
+    load: FloatArray,
+    entrainment_speed: FloatArray | float,
+) -> FloatArray:
+    """Film of a contact by one of these formulas [m], in the shape of the loads.
+
+    Parameters
+    ----------
+    formula : callable
+        Formula for h/Rx over U, W, G and k.
+    ellipse : Ellipse
+        The contact.
+    state : LubricantState
+        The oil at its temperature.
+    load : array
+        F [N], > 0.
+    entrainment_speed : float or array
+        u [m/s], > 0.
+    """
+    modulus, radius = ellipse.reduced_modulus, ellipse.rolling_radius
+    numbers = (
+        state.viscosity * entrainment_speed / (modulus * radius),
+        load / (modulus * radius**2),
+        state.pressure_viscosity.pressure_viscosity * modulus,
+    )
+    return np.asarray(radius * formula(*numbers, ellipse.ellipticity))
 
 
 def hamrock_dowson_minimum(

@@ -202,6 +202,13 @@ class BallForce(LocatingForce):
         """
         return BallForce(self.geometry, law, self.material)
 
+    @property
+    def ratings(self) -> tuple[float, float]:
+        """See `LocatingForce.ratings`."""
+        from ehdmaps.physics.point.ball_catalogue import ball_dynamic_rating, ball_static_rating
+
+        return ball_dynamic_rating(self.geometry), ball_static_rating(self.geometry)
+
     def with_material(self, material: Material) -> BallForce:
         """See `LocatingForce.with_material`."""
         return BallForce(self.geometry, self.law, material)

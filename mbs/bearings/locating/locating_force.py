@@ -125,6 +125,11 @@ class LocatingForce:
             force -= damping @ rate
         return force, stiffness, damping
 
+    @property
+    def ratings(self) -> tuple[float, float]:
+        """C of ISO 281 and C0 of ISO 76 by the inner geometry [N]."""
+        raise NotImplementedError
+
     def with_material(self, material: Material) -> LocatingForce:
         """The same bearing with rolling elements of another density.
 

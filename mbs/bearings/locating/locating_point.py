@@ -1,6 +1,7 @@
-"""One bearing that carries axial load at an operating point: what points of its kinds have in common.
+"""One bearing that carries axial load at an operating point: where its inner ring comes to rest.
 
-The outer ring is held in its place, the inner one moves along x, y and z, and tilts if it may.
+The outer ring is held in its place, the inner one moves along x, y and z, and tilts if it may. A kind has its own
+pressures and films there: `LocatingPoint.own`.
 """
 
 from __future__ import annotations
@@ -8,22 +9,45 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 
 from ehdmaps.arrays import FloatArray
 from ehdmaps.errors import AnalysisError, InputError
+from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.units import written
-from mbs.bearings.locating.locating_element import LocatingElement
+from mbs.bearings.locating.locating_element import LocatingElement, Settled
+from mbs.life import ReferenceLife
 from mbs.model.body import Inertia, rigid_body
 from mbs.model.elements import Load, Operation
-from mbs.model.equilibrium import Equilibrium, equilibrium
+from mbs.model.equilibrium import equilibrium
 from mbs.model.findings import Finding, WithFindings
 from mbs.model.system import System
 
 RING, TURNING = "inner ring", Operation(1.0)
 """The ring; speeds are those of the rings at a speed of the system of one."""
+
+
+class Course(NamedTuple):
+    """Conditions of a point, beside the state of its rolling elements.
+
+    Attributes
+    ----------
+    speeds : (float, float)
+        Speeds of the inner and the outer ring [rad/s].
+    oil : Lubricant or None
+        Oil of the films; no films without one.
+    temperature : float
+        Temperature of the raceways, and so of the oil [K].
+    films : BallFilms or None
+        Films that were solved, in place of those of formulas.
+    """
+
+    speeds: tuple[float, float]
+    oil: Lubricant | None
+    temperature: float
+    films: Any
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -38,6 +62,8 @@ class LocatingPoint(WithFindings):
         Load on the inner ring, x, y and z [N].
     inner_speed, outer_speed : float
         [rad/s].
+    elements : BallLoads or TaperedLoads
+        State of its rolling elements.
     pose : array (6,)
         Pose of the inner ring in the outer one.
     stiffness, damping : array (6, 6)
@@ -51,10 +77,12 @@ class LocatingPoint(WithFindings):
         Whether it has no answer: numbers are NaN, and `problems` say why.
     """
 
+    element: ClassVar[type[LocatingElement]]
     force: Any
     load: FloatArray
     inner_speed: float
     outer_speed: float
+    elements: Any
     pose: FloatArray
     stiffness: FloatArray
     damping: FloatArray
@@ -63,6 +91,135 @@ class LocatingPoint(WithFindings):
     minimum_film: FloatArray
     findings: tuple[Finding, ...]
     failed: bool = False
+
+    @classmethod
+    def at(
+        cls,
+        force: Any,
+        load: Sequence[float],
+        inner_speed: float,
+        outer_speed: float = 0.0,
+        *,
+        tilts: bool = False,
+        oil: Lubricant | None = None,
+        temperature: float = 313.15,
+        films: Any = None,
+    ) -> Self:
+        """Equilibrium of a bearing.
+
+        Parameters
+        ----------
+        force : LocatingForce
+            Geometry and laws.
+        load : (float, float, float)
+            Load on the inner ring, x, y and z [N]; x with the sign of the contact angle, or as ribs carry it.
+        inner_speed, outer_speed : float
+            Speeds of the rings [rad/s].
+        tilts : bool
+            Whether the inner ring tilts freely, without a moment; else it is held.
+        oil : Lubricant, optional
+            Oil of the films; no films without one.
+        temperature : float
+            Temperature of the raceways, and so of the oil [K].
+        films : BallFilms, optional
+            Films that were solved, in place of those of formulas.
+
+        Raises
+        ------
+        InputError
+            For loads that are no finite numbers, or all zero.
+        AnalysisError
+            Where no equilibrium is found.
+        """
+        given, speeds = ring_load(load), (inner_speed, outer_speed)
+        element = cls.element("bearing", RING, "ground", force, *speeds)
+        free = ["x", "y", "z", "theta_y", "theta_z"] if tilts else ["x", "y", "z"]
+        ring = rigid_body(RING, [Inertia(1.0, 1.0, 1.0)], free)
+        system = System([ring], loads=[Load("load", RING, np.array([*given, 0.0, 0.0, 0.0]))], elements=[element])
+        start = cls.start(force, given)
+        begin = None if start is None else np.concatenate([start, np.zeros(len(free) - 3)])
+        try:
+            balance = equilibrium(system, TURNING, begin)
+        except AnalysisError as error:
+            under = f"{written(given[0])} N axial, {written(math.hypot(*given[1:]))} N radial"
+            words = f"no equilibrium of {force.geometry.name} under {under}{cls.advice(force, given, speeds)}"
+            raise AnalysisError(f"{words}: {error.__cause__ or error}") from error
+        pose = np.zeros(6)
+        pose[[0, 1, 2, 4, 5][: len(free)]] = balance.displacement
+        at = element.settled(pose, TURNING)
+        return cls(
+            force=force,
+            load=given,
+            inner_speed=inner_speed,
+            outer_speed=outer_speed,
+            elements=at.loads,
+            pose=pose,
+            stiffness=balance.element_stiffness[0],
+            damping=balance.element_damping[0],
+            findings=(*element.gauge_at(at).findings, *filter(None, [force.reach_of(at.loads.load[:2])])),
+            **cls.own(at, Course(speeds, oil, temperature, films)),
+        )
+
+    @staticmethod
+    def start(force: Any, load: FloatArray) -> FloatArray | None:
+        """Displacement (3,) of the ring to start from [m]; None for its place without load.
+
+        Parameters
+        ----------
+        force : LocatingForce
+            Geometry and laws.
+        load : array (3,)
+            Load on the inner ring [N].
+        """
+        return None
+
+    @staticmethod
+    def advice(force: Any, load: FloatArray, speeds: tuple[float, float]) -> str:
+        """Advice where there is no equilibrium, to be added to what is said of it.
+
+        Parameters
+        ----------
+        force, load
+            The same as of `start`.
+        speeds : (float, float)
+            Speeds of the rings [rad/s].
+        """
+        return ""
+
+    @staticmethod
+    def own(at: Settled, course: Course) -> dict[str, Any]:
+        """Fields of the kind, by name: pressures, films and what else it has.
+
+        Parameters
+        ----------
+        at : Settled
+            The bearing at rest.
+        course : Course
+            What else is known.
+        """
+        raise NotImplementedError
+
+    @property
+    def geometry(self) -> Any:
+        """Geometry of the bearing."""
+        return self.force.geometry
+
+    @property
+    def ratings(self) -> tuple[float, float]:
+        """C of ISO 281 and C0 of ISO 76 by the inner geometry [N]."""
+        ratings: tuple[float, float] = self.force.ratings
+        return ratings
+
+    @property
+    def reference(self) -> ReferenceLife:
+        """Equivalent load and life of ISO/TS 16281, by the rating of ISO 281."""
+        life: ReferenceLife = self.elements.life(self.geometry, abs(self.inner_speed) >= abs(self.outer_speed))
+        return life
+
+    @property
+    def loaded(self) -> int:
+        """Number of rolling elements that carry more than 1 % of the highest inner load."""
+        return int(self.elements.loaded)
 
     @property
     def size(self) -> float:
@@ -93,27 +250,6 @@ class LocatingPoint(WithFindings):
         return float(known.min()) if known.size else math.nan
 
 
-class Rested(NamedTuple):
-    """A bearing whose ring is at rest.
-
-    Attributes
-    ----------
-    load : array (3,)
-        Load on the inner ring [N].
-    pose : array (6,)
-        Pose of the inner ring in the outer one.
-    loads : BallLoads or TaperedLoads
-        State of its rolling elements.
-    balance : Equilibrium
-        Equilibrium of the ring.
-    """
-
-    load: FloatArray
-    pose: FloatArray
-    loads: Any
-    balance: Equilibrium
-
-
 def ring_load(load: Sequence[float]) -> FloatArray:
     """Load on a ring, x, y and z [N].
 
@@ -131,41 +267,3 @@ def ring_load(load: Sequence[float]) -> FloatArray:
     if given.shape != (3,) or not np.all(np.isfinite(given)) or not np.any(given):
         raise InputError(f"bearing point, load: got {load!r} N; allowed: three finite numbers, x, y, z, not all zero")
     return given
-
-
-def ring_at_rest(
-    element: LocatingElement, load: FloatArray, advice: str, *, tilts: bool, start: FloatArray | None = None
-) -> Rested:
-    """Find where the inner ring of a bearing comes to rest.
-
-    Parameters
-    ----------
-    element : LocatingElement
-        The bearing between `RING` and ground, with the speeds of the rings as its spins.
-    load : array (3,)
-        Load on the inner ring [N].
-    advice : str
-        What to do where there is no equilibrium.
-    tilts : bool
-        Whether the inner ring tilts freely, without a moment; else it is held.
-    start : array (3,), optional
-        Displacement to start from [m].
-
-    Raises
-    ------
-    AnalysisError
-        Where no equilibrium is found.
-    """
-    free = ["x", "y", "z", "theta_y", "theta_z"] if tilts else ["x", "y", "z"]
-    ring = rigid_body(RING, [Inertia(1.0, 1.0, 1.0)], free)
-    system = System([ring], loads=[Load("load", RING, np.array([*load, 0.0, 0.0, 0.0]))], elements=[element])
-    begin = None if start is None else np.concatenate([start, np.zeros(len(free) - 3)])
-    try:
-        balance = equilibrium(system, TURNING, begin)
-    except AnalysisError as error:
-        under = f"{written(load[0])} N axial, {written(math.hypot(*load[1:]))} N radial"
-        words = f"no equilibrium of {element.force.geometry.name} under {under}{advice}"
-        raise AnalysisError(f"{words}: {error.__cause__ or error}") from error
-    pose = np.zeros(6)
-    pose[[0, 1, 2, 4, 5][: len(free)]] = balance.displacement
-    return Rested(load, pose, element.loads(pose, TURNING), balance)

@@ -268,6 +268,13 @@ class TaperedForce(LocatingForce):
         other._begin()
         return other
 
+    @property
+    def ratings(self) -> tuple[float, float]:
+        """See `LocatingForce.ratings`."""
+        from ehdmaps.physics.rollers.tapered_catalogue import tapered_ratings
+
+        return tapered_ratings(self.geometry)
+
     def with_material(self, material: Material) -> TaperedForce:
         """See `LocatingForce.with_material`; contacts keep that of before."""
         other = self.with_films(self.films)

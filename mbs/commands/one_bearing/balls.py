@@ -17,7 +17,7 @@ from ehdmaps.physics.surface import Surface
 from ehdmaps.program import tell
 from ehdmaps.units import RPM, SPEED
 from mbs.bearings.balls.ball_bearing import BallForce
-from mbs.bearings.balls.ball_point import BallPoint, ball_dynamic_stiffness, ball_point
+from mbs.bearings.balls.ball_point import BallPoint, ball_dynamic_stiffness
 from mbs.bearings.balls.laws import BallLaw, dry_law
 from mbs.commands.one_bearing.family import Asked, AtSpeed, Family, Request
 from mbs.commands.one_bearing.linear_files import Oscillating
@@ -148,7 +148,7 @@ BALL_BEARINGS = Family(
     words_of=_words_of,
     films=_films,
     at_speed=_at_speed,
-    point=lambda at, *given, **more: ball_point(at.force, *given, films=at.films, **more),
+    point=BallPoint,
     exported=_exported,
     oscillating=_oscillating,
 )

@@ -14,6 +14,7 @@ from mbs.scene.contact_laws import Damper
 
 if TYPE_CHECKING:
     from mbs.bearings.locating.film_tables import PairLaw
+    from mbs.bearings.locating.locating_point import LocatingPoint
     from mbs.commands.one_bearing.linear_files import Oscillating
     from mbs.commands.one_bearing.shared import Operating
     from mbs.exports.one_bearing.kind import ExportKind
@@ -124,8 +125,8 @@ class Family:
         (request) -> law with the films of an entrainment speed [m/s]; None without any.
     at_speed : callable
         (request) -> function of the speed of the inner ring [rad/s].
-    point : callable
-        (what is at the speed, load, speeds of the rings, and what all have by name) -> point.
+    point : type
+        Class of its points.
     exported : callable
         () -> what its sources and units have of their own.
     oscillating : callable or None
@@ -147,7 +148,7 @@ class Family:
     words_of: Callable[[str, Lubricant, Surface, Damper], tuple[str, str]]
     films: Callable[[Request], Callable[[float], PairLaw] | None]
     at_speed: Callable[[Request], Callable[[float], AtSpeed]]
-    point: Callable[..., Any]
+    point: type[LocatingPoint]
     exported: Callable[[], ExportKind]
     oscillating: Callable[[Sequence[Any]], Oscillating] | None = None
     assumed: tuple[str, ...] = ()

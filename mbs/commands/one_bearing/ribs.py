@@ -18,7 +18,7 @@ from ehdmaps.physics.surface import Surface
 from ehdmaps.units import RPM
 from mbs.bearings.tapered.line_film import LineFilms
 from mbs.bearings.tapered.tapered_bearing import MOST_SLICES, SLICES, TaperedForce
-from mbs.bearings.tapered.tapered_point import tapered_point
+from mbs.bearings.tapered.tapered_point import TaperedPoint
 from mbs.commands.one_bearing.family import Asked, AtSpeed, Family, Request
 from mbs.commands.one_bearing.shared import read_profile_text, read_whole
 from mbs.output.one_bearing.ribs import RIBBED
@@ -156,7 +156,7 @@ TAPERED_BEARINGS = Family(
     words_of=_words_of,
     films=_films,
     at_speed=_at_speed,
-    point=lambda at, *given, **more: tapered_point(at.force, *given, **more),
+    point=TaperedPoint,
     exported=_exported_tapered,
 )
 """Tapered roller bearings."""

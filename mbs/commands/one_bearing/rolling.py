@@ -120,8 +120,16 @@ def points_of(request: Request) -> list[list[Any]]:
 def _point(request: Request, load: tuple[float, float, float], speed: float, at: AtSpeed) -> Any:
     """The point at a load and a speed, with what is to be said of its films."""
     description = request.description
-    conditions = {"tilts": description.tilts, "oil": request.oil, "temperature": description.temperature}
-    point = request.family.point(at, load, speed, request.operating.outer_speed, **conditions)
+    point = request.family.point.at(
+        at.force,
+        load,
+        speed,
+        request.operating.outer_speed,
+        tilts=description.tilts,
+        oil=request.oil,
+        temperature=description.temperature,
+        films=at.films,
+    )
     told = [Finding(Cause.REACH, words) for words in at.problems] + [Finding(Cause.FILM, words) for words in at.notes]
     return dataclasses.replace(point, findings=(*point.findings, *told))
 

@@ -46,7 +46,7 @@ def _error(place: int) -> Number:
 
 def _largest(point: BallPoint, name: str) -> list[float]:
     """Largest slip or spin of the loaded contacts, inner and outer."""
-    values = np.where(point.balls.load > 0.0, np.abs(getattr(point.motion, name)), 0.0)
+    values = np.where(point.elements.load > 0.0, np.abs(getattr(point.motion, name)), 0.0)
     return [float(side.max()) for side in values]
 
 
@@ -59,8 +59,10 @@ _SPEEDS = (
 _SPIN_WORDS = "largest drilling of the ring against a ball, about the normal"
 _SIDES = (
     *CONTACT_SIDES,
-    Number("contact_angle", "rad", "mean contact angle, by the loads", lambda p, _: [*map(p.balls.mean_angle, (0, 1))]),
-    Number("contact_speed", "m/s", "entrainment speed, mean by the loads", lambda p, _: p.motion.mean(p.balls)),
+    Number(
+        "contact_angle", "rad", "mean contact angle, by the loads", lambda p, _: [*map(p.elements.mean_angle, (0, 1))]
+    ),
+    Number("contact_speed", "m/s", "entrainment speed, mean by the loads", lambda p, _: p.motion.mean(p.elements)),
     Number("slip", "m/s", "largest slip of the ring against a ball in the middle", lambda p, _: _largest(p, "slip")),
     Number("spin", "rad/s", _SPIN_WORDS, lambda p, _: _largest(p, "spin")),
     *map(_error, range(len(_ERRORS))),
@@ -70,11 +72,11 @@ _DRILLING = "drilling of the ring less that of the ball, about the normal"
 _AROUND = "speed of the ball around the axis of the bearing"
 _BOTH = ("contact", "ball")
 _EACH = (
-    Number("ball_load", "N", "load of the contact of the ball", lambda p, _: p.balls.load, _BOTH),
-    Number("ball_contact_angle", "rad", "contact angle of the ball", lambda p, _: p.balls.contact_angle, _BOTH),
+    Number("ball_load", "N", "load of the contact of the ball", lambda p, _: p.elements.load, _BOTH),
+    Number("ball_contact_angle", "rad", "contact angle of the ball", lambda p, _: p.elements.contact_angle, _BOTH),
     Number("ball_slip", "m/s", _SLIP, lambda p, _: p.motion.slip, _BOTH),
     Number("ball_spin", "rad/s", _DRILLING, lambda p, _: p.motion.spin, _BOTH),
-    Number("ball_speed", "rad/s", _AROUND, lambda p, _: p.balls.speed, ("ball",)),
+    Number("ball_speed", "rad/s", _AROUND, lambda p, _: p.elements.speed, ("ball",)),
 )
 
 
@@ -118,7 +120,7 @@ def _closing(point: BallPoint, _: Row) -> list[str]:
 
 def _of_one(point: BallPoint, index: int) -> str:
     """Loads, contact angles and pressures of a ball."""
-    (inner, outer), angles = point.balls.load[:, index], point.balls.contact_angle[:, index]
+    (inner, outer), angles = point.elements.load[:, index], point.elements.contact_angle[:, index]
     first, second = (no_dust(DEGREE.value(float(angle))) for angle in angles)
     pressures = 1e-9 * point.pressure[:, index]
     return f"{inner:9.5g} {outer:9.5g} {first:11.4g} {second:9.4g} {pressures[0]:11.3g} {pressures[1]:9.3g}"
@@ -129,7 +131,7 @@ BALLS = Kind(
     words="ball bearing",
     static_limit=POINT_LIMIT,
     axial=True,
-    numbers=numbers_of("ball", _SPEEDS, axial=True),
+    numbers=numbers_of(_SPEEDS, axial=True),
     sides=_SIDES,
     each=_EACH,
     columns=columns_of("ball", [Column("angles", "deg", 13, _angles)], [], axial=True),

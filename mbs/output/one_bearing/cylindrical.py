@@ -57,7 +57,7 @@ def _share(point: BearingPoint, description: Description) -> float:
 _TORQUE = "torque that rolling takes; none without a map that has rolling forces"
 _FILM_SHARE = "share of the film in the load of the most loaded roller; 1 for smooth surfaces"
 _NUMBERS = (
-    *numbers_of("roller", [], axial=False),
+    *numbers_of([], axial=False),
     Number("rolling_torque", "N m", _TORQUE, lambda point, _: point.loss.torque),
     Number("rolling_power", "W", "power that the films of all rollers take", lambda point, _: point.loss.total),
     Number("film_share", "1", _FILM_SHARE, _share),
@@ -76,8 +76,8 @@ def _along_side(side: Number) -> Number:
 
 _SLICE_LOAD = "load per length of the most loaded roller on the inner raceway"
 _EACH = (
-    Number("roller_load", "N", "load of the roller", lambda point, _: point.rollers.load, ("roller",)),
-    Number("slice_load", "N/m", _SLICE_LOAD, lambda p, _: p.rollers.load_per_length[p.most_loaded], ("slice",)),
+    Number("roller_load", "N", "load of the roller", lambda point, _: point.elements.load, ("roller",)),
+    Number("slice_load", "N/m", _SLICE_LOAD, lambda p, _: p.elements.load_per_length[p.most_loaded], ("slice",)),
     *map(_along_side, _SIDES),
 )
 
@@ -168,12 +168,12 @@ def _of_one(point: BearingPoint, index: int) -> str:
     pressures = [shown(1e-9 * float(np.max(side.hertz_pressure[index])), 3) for side in sides]
     films = [shown(1e6 * smallest(side.minimum_film[index]), 3) for side in sides]
     both = " ".join(f"{inner:>11s}{outer:>10s}" for inner, outer in (pressures, films))
-    return f"{point.rollers.load[index]:9.5g} {both}"
+    return f"{point.elements.load[index]:9.5g} {both}"
 
 
 def _along(point: BearingPoint) -> list[str]:
     """Load and pressures along the most loaded roller, at some of its slices, both ends among them."""
-    rollers, index = point.rollers, point.most_loaded
+    rollers, index = point.elements, point.most_loaded
     count = rollers.position.size
     shown = np.unique(np.linspace(0, count - 1, min(count, _PLACES)).round().astype(int))
     rows = [
@@ -192,7 +192,7 @@ def _along(point: BearingPoint) -> list[str]:
 
 def _curves(point: BearingPoint) -> Curves:
     """Load, pressures and films along the most loaded roller."""
-    rollers, index, sides = point.rollers, point.most_loaded, point.contacts.sides
+    rollers, index, sides = point.elements, point.most_loaded, point.contacts.sides
     return Curves(
         f"along the most loaded roller, at {math.degrees(rollers.angle[index]):.4g}\N{DEGREE SIGN}",
         "place along the roller, mm",
@@ -234,7 +234,7 @@ CYLINDRICAL = Kind(
     geometry_of=lambda point: point.bearing.geometry,
     attributes=_attributes,
     coordinates=lambda point: {
-        "slice": ("slice", point.rollers.position, {"units": "m", "long_name": "place along the roller"})
+        "slice": ("slice", point.elements.position, {"units": "m", "long_name": "place along the roller"})
     },
     curves_of=_curves,
     beside_lambda=_share_words,

@@ -82,7 +82,7 @@ def point_dataset(kind: Kind, description: Description, points: Points) -> xr.Da
     for old, new in kind.old_names.items():
         dims, values, attributes = variables[new]
         variables[old] = (dims, values, {**attributes, "comment": f"copy of {new}: the next release has no {old}"})
-    element, angles = kind.element, kind.elements(first).angle
+    element, angles = kind.element, first.elements.angle
     freedoms = {
         "force": ("force", list(FREEDOMS), {"units": "1", "long_name": "force or moment"}),
         "motion": ("motion", list(FREEDOMS), {"units": "1", "long_name": "displacement or tilt"}),

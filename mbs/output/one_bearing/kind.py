@@ -165,8 +165,9 @@ class Curves(NamedTuple):
     minimum_film: FloatArray
 
 
-def _around(element: str, point: Any, elements: Any) -> Curves:
+def _around(element: str, point: Any) -> Curves:
     """Loads, pressures and films of all rolling elements, around the bearing."""
+    elements = point.elements
     order = np.argsort(elements.angle)
     values = (elements.load[:2], point.pressure, point.central_film, point.minimum_film)
     load, pressure, central, minimum = (side[:, order] for side in values)
@@ -243,13 +244,9 @@ class Kind:
     last: Callable[[Any], list[str]] = lambda point: []
     remarks: Callable[[Sequence[Any], Description], list[str]] = lambda points, description: []
 
-    def elements(self, point: Any) -> Any:
-        """Loads and angles of the rolling elements of a point."""
-        return getattr(point, f"{self.element}s")
-
     def curves(self, point: Any) -> Curves:
         """Curves that a figure shows of one point."""
-        return self.curves_of(point) if self.curves_of else _around(self.element, point, self.elements(point))
+        return self.curves_of(point) if self.curves_of else _around(self.element, point)
 
     @property
     def old_names(self) -> dict[str, str]:
@@ -264,13 +261,11 @@ _WORDS = {"along": "along the radial load", "across": "across the radial load", 
 _MATRICES = (("stiffness", "N/m", ""), ("damping", "N s/m", ", low-frequency limit"))
 
 
-def numbers_of(element: str, own: Sequence[Number], *, axial: bool, speed: str = "") -> tuple[Number, ...]:
+def numbers_of(own: Sequence[Number], *, axial: bool, speed: str = "") -> tuple[Number, ...]:
     """Numbers that all kinds have, with those of a kind between speeds and loads.
 
     Parameters
     ----------
-    element : str
-        Name of a rolling element.
     own : sequence of Number
         Numbers of the kind.
     axial : bool
@@ -299,9 +294,7 @@ def numbers_of(element: str, own: Sequence[Number], *, axial: bool, speed: str =
         *(tilts if axial else []),
         Number("entrainment_speed", "m/s", f"mean of the two surface speeds{speed}"),
         *own,
-        Number(
-            "highest_raceway_load", "N", HIGHEST_LOAD, lambda p, _: np.max(first_row(getattr(p, f"{element}s").load))
-        ),
+        Number("highest_raceway_load", "N", HIGHEST_LOAD, lambda p, _: np.max(first_row(p.elements.load))),
         Number("loaded_elements", "1", LOADED, lambda p, _: p.loaded),
         Number("film_parameter", "1", film, lambda p, description: p.smallest_film / description.roughness),
         Number("equivalent_load", "N", "equivalent load P_ref of ISO/TS 16281", lambda p, _: p.reference.load),

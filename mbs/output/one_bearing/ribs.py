@@ -30,7 +30,7 @@ _SPEEDS = (
     Number("centrifugal_load", "N", "centrifugal load of a roller"),
 )
 _RIB = (
-    Number("highest_rib_load", "N", "highest load of the rib", lambda p, _: p.rollers.load[2].max()),
+    Number("highest_rib_load", "N", "highest load of the rib", lambda p, _: p.elements.load[2].max()),
     Number("rib_pressure", "Pa", "largest Hertz pressure at the rib", lambda p, _: p.rib_pressure.max()),
     Number("rib_film", "m", "smallest central film at the rib", lambda p, _: smallest(p.rib_film)),
     Number("rib_sliding_speed", "m/s", "sliding speed at the rib", lambda p, _: p.sliding_speed),
@@ -38,8 +38,8 @@ _RIB = (
 )
 _BOTH = ("contact", "roller")
 _EACH = (
-    Number("roller_load", "N", "load of the contact of the roller", lambda p, _: p.rollers.load[:2], _BOTH),
-    Number("rib_load", "N", "load of the rib", lambda p, _: p.rollers.load[2], ("roller",)),
+    Number("roller_load", "N", "load of the contact of the roller", lambda p, _: p.elements.load[:2], _BOTH),
+    Number("rib_load", "N", "load of the rib", lambda p, _: p.elements.load[2], ("roller",)),
 )
 
 
@@ -81,8 +81,8 @@ def _closing(point: TaperedPoint, row: Row) -> list[str]:
 
 def _of_one(point: TaperedPoint, index: int) -> str:
     """Loads, their places and pressures of a roller."""
-    inner, outer, rib = point.rollers.load[:, index]
-    off, pressures = 1e3 * point.rollers.centre[:, index], 1e-9 * point.pressure[:, index]
+    inner, outer, rib = point.elements.load[:, index]
+    off, pressures = 1e3 * point.elements.centre[:, index], 1e-9 * point.pressure[:, index]
     loads = f"{inner:9.5g} {outer:9.5g} {rib:9.4g}"
     return f"{loads} {off[0]:11.3g} {off[1]:9.3g} {pressures[0]:11.3g} {pressures[1]:9.3g}"
 
@@ -92,7 +92,7 @@ RIBBED = Kind(
     words="bearing of rollers and ribs",
     static_limit=LINE_LIMIT,
     axial=True,
-    numbers=(*numbers_of("roller", _SPEEDS, axial=True, speed=" in the middle of a roller"), *_RIB),
+    numbers=(*numbers_of(_SPEEDS, axial=True, speed=" in the middle of a roller"), *_RIB),
     sides=CONTACT_SIDES,
     each=_EACH,
     columns=columns_of(

@@ -148,7 +148,7 @@ def _life(element: str, point: Any, row: Row) -> list[str]:
 
 def _loaded(kind: Kind, point: Any) -> list[str]:
     """A line for each loaded rolling element."""
-    angles, loads = kind.elements(point).angle, first_row(kind.elements(point).load)
+    angles, loads = point.elements.angle, first_row(point.elements.load)
     hidden = "; the others not shown" if point.loaded < angles.size else ""
     return [
         f"  {point.loaded} of {angles.size} {kind.element}s carry more than 1 % of the highest load{hidden}",
