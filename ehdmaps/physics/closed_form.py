@@ -27,6 +27,7 @@ from typing import Literal
 
 import numpy as np
 
+from ehdmaps.arrays import FloatArray, Values
 from ehdmaps.errors import InputError
 from ehdmaps.physics.contact import LineContact, OperatingPoint
 from ehdmaps.physics.films import (
@@ -182,25 +183,37 @@ class FormulaSolver(ContactSolverDefaults):
     ) -> tuple[FilmSolution, ...]:
         """Films at each load; arguments as of `ContactSolver.solve_line`."""
         _check(loads, entrainment_speed, temperature)
-        state = lubricant.at(temperature)
-        return tuple(self._solve(contact, state, load, entrainment_speed) for load in loads)
+        if entrainment_speed == 0.0:
+            reason = "entrainment speed zero: dry contact"
+            return tuple(_dry(contact, load, Status.ASYMPTOTE, reason) for load in loads)
+        state, w = lubricant.at(temperature), np.array(loads)
+        try:
+            with np.errstate(all="ignore"):
+                film, slope = FILM_FORMULAS[self.film_formula](contact, state, w, entrainment_speed)
+                loss = rolling_film_damping(film, state.viscosity, contact.radius) * slope**2
+                minimum = np.minimum(film, _minimum_film(contact, state, w, entrainment_speed))
+        except (OverflowError, ZeroDivisionError):  # of numbers that all loads share
+            film = slope = loss = minimum = np.full(w.shape, math.nan)
+        columns = zip(loads, *(part.tolist() for part in (film, slope, loss, minimum)), strict=True)
+        return tuple(self._film(contact, state, entrainment_speed, *row) for row in columns)
 
     def settings(self) -> dict[str, float | int | str]:
         """The formula."""
         thickest = {} if self.thickest_film == THICKEST_FILM else {"thickest_film": self.thickest_film}
         return {"film_formula": self.film_formula, **thickest}
 
-    def _solve(self, contact: LineContact, state: LubricantState, load: float, speed: float) -> FilmSolution:
-        """One point."""
-        if speed == 0.0:
-            return _dry(contact, load, Status.ASYMPTOTE, "entrainment speed zero: dry contact")
-        try:
-            with np.errstate(all="ignore"):
-                film, slope = FILM_FORMULAS[self.film_formula](contact, state, load, speed)
-                loss = rolling_film_damping(film, state.viscosity, contact.radius) * slope**2
-                minimum = min(film, _minimum_film(contact, state, load, speed))
-        except (OverflowError, ZeroDivisionError):
-            film = slope = loss = minimum = math.nan
+    def _film(
+        self,
+        contact: LineContact,
+        state: LubricantState,
+        speed: float,
+        load: float,
+        film: float,
+        slope: float,
+        loss: float,
+        minimum: float,
+    ) -> FilmSolution:
+        """One point, or why it is none."""
         peak = float(max_pressure(load, contact.radius, contact.reduced_modulus))
         if not (film > 0.0 and minimum > 0.0 and all(map(math.isfinite, (film, slope, loss, peak)))):
             return FilmSolution(
@@ -257,27 +270,31 @@ def _check(loads: tuple[float, ...], speed: float, temperature: float) -> None:
         OperatingPoint(load, speed, temperature)
 
 
-_Film = Callable[[LineContact, LubricantState, float, float], tuple[float, float]]
+_Film = Callable[[LineContact, LubricantState, FloatArray, float], tuple[FloatArray, FloatArray]]
 
 
-def _moes(contact: LineContact, state: LubricantState, load: float, speed: float) -> tuple[float, float]:
+def _moes(contact: LineContact, state: LubricantState, load: FloatArray, speed: float) -> tuple[FloatArray, FloatArray]:
     """Central film of Moes [m] and its derivative with respect to load [m2/N]."""
     M, L = moes_groups(*_group_arguments(contact, state, load, speed))
     film_number, slope = moes_central_and_slope(M, L)
     film = film_from_moes(film_number, speed, state.viscosity, contact.radius, contact.reduced_modulus)
-    return float(film), float(film * slope / film_number * M / load)
+    return film, film * slope / film_number * M / load
 
 
-def _dowson_toyoda(contact: LineContact, state: LubricantState, load: float, speed: float) -> tuple[float, float]:
+def _dowson_toyoda(
+    contact: LineContact, state: LubricantState, load: FloatArray, speed: float
+) -> tuple[FloatArray, FloatArray]:
     """Central film of Dowson and Toyoda [m] and its derivative with respect to load [m2/N]."""
     film = contact.radius * dowson_toyoda_central(*dowson_groups(*_group_arguments(contact, state, load, speed)))
-    return float(film), float(-0.10 * film / load)
+    return film, -0.10 * film / load
 
 
-def _pan_hamrock(contact: LineContact, state: LubricantState, load: float, speed: float) -> tuple[float, float]:
+def _pan_hamrock(
+    contact: LineContact, state: LubricantState, load: FloatArray, speed: float
+) -> tuple[FloatArray, FloatArray]:
     """Central film of Pan and Hamrock [m] and its derivative with respect to load [m2/N]."""
     film = contact.radius * pan_hamrock_central(*dowson_groups(*_group_arguments(contact, state, load, speed)))
-    return float(film), float(-0.166 * film / load)
+    return film, -0.166 * film / load
 
 
 FILM_FORMULAS: Mapping[str, _Film] = {
@@ -287,18 +304,18 @@ FILM_FORMULAS: Mapping[str, _Film] = {
 }
 
 
-def _minimum_film(contact: LineContact, state: LubricantState, load: float, speed: float) -> float:
+def _minimum_film(contact: LineContact, state: LubricantState, load: FloatArray, speed: float) -> FloatArray:
     """Larger of the minimum films of Dowson-Higginson and of Martin [m]."""
     arguments = _group_arguments(contact, state, load, speed)
     elastic = contact.radius * dowson_higginson_minimum(*dowson_groups(*arguments))
     M, _ = moes_groups(*arguments)
     rigid = film_from_moes(martin_minimum(M), speed, state.viscosity, contact.radius, contact.reduced_modulus)
-    return float(max(elastic, rigid))
+    return np.maximum(elastic, rigid)
 
 
 def _group_arguments(
-    contact: LineContact, state: LubricantState, load: float, speed: float
-) -> tuple[float, float, float, float, float, float]:
+    contact: LineContact, state: LubricantState, load: Values, speed: float
+) -> tuple[Values, float, float, float, float, float]:
     """Arguments of the dimensionless groups."""
     alpha = state.pressure_viscosity.pressure_viscosity
     return load, speed, state.viscosity, alpha, contact.radius, contact.reduced_modulus

@@ -18,6 +18,7 @@ from ehdmaps.inputs import decimal_points, read_text, separator
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
+from ehdmaps.physics.solids import Material
 from ehdmaps.physics.surface import SMOOTH, Surface
 from ehdmaps.units import DAMPER, SPRING, closest, quantity
 from mbs.bearings import laws
@@ -537,19 +538,22 @@ class BearingLaws:
         if (emap := self.given.map_of(self.bearing.geometry)) is not None:
             return emap.law(kind, outside="clamp", supply=self.supply, surface=surface)
         speeds = speeds_of_laws(self.bearing.geometry, self.given.scene)
-        return _of_formula(self.bearing, self.given.lubricant, speeds, kind, self.supply, surface).again()
+        bearing, oil = self.bearing, self.given.lubricant
+        return _of_formula(bearing.geometry, bearing.material, oil, speeds, kind, self.supply, surface).again()
 
 
 @lru_cache(maxsize=8)
 def _of_formula(
-    bearing: Bearing,
+    geometry: BearingGeometry,
+    material: Material,
     lubricant: Lubricant,
     speeds: tuple[float, float],
     kind: LawKind,
     supply: OilSupply,
     surface: Surface | None,
 ) -> ContactLaw:
-    """Law of the film formula, made once for all models with such bearings."""
+    """Law of the film formula, made once for all models with such bearings, however many slices their rollers have."""
+    bearing = Bearing(geometry, material=material)
     return laws.formula(
         bearing, lubricant, entrainment_speed=speeds, kind=kind, outside="clamp", supply=supply, surface=surface
     )

@@ -17,7 +17,7 @@ from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.films import ball_films
 from mbs.bearings.balls.laws import BallLaw, dry_law, film_normal_law
 from mbs.bearings.locating.normal_law import contact, load_approach
-from tests.cases.balls import DEEP, FREE, LOOSE, rest
+from tests.cases.balls import DEEP, LOOSE, rest
 
 LOADS = (1e-2, 2e4)
 
@@ -68,25 +68,6 @@ def test_table_rises_and_goes_on_beyond_its_ends() -> None:
 def test_films_that_are_none_are_refused(wrong) -> None:
     with pytest.raises(InputError, match="ball law: got a film"):
         film_normal_law(DEEP.contacts(STEEL)[0], wrong, LOADS)
-
-
-@pytest.mark.parametrize("speed", [0.0, 1000.0])
-def test_stiffness_with_films_is_the_difference_quotient(speed) -> None:
-    """Central differences of 2 nm: round-off, and the table's steps of slope, 1e-4."""
-    force = BallForce(LOOSE, film_law(LOOSE))
-    pose = np.array([10e-6, 12e-6, 3e-6, 0.0, 1e-4, -1e-4])
-    scale = np.array([1.0, 1.0, 1.0, 1.0, force.shape.arm, force.shape.arm])
-    _, stiffness, damping = force(pose, inner_speed=speed)
-    found = np.zeros((6, 6))
-    for i in FREE:
-        step = np.zeros(6)
-        step[i] = 2e-9 / scale[i]
-        ahead, back = (force(pose + way * step, inner_speed=speed)[0] for way in (1.0, -1.0))
-        found[:, i] = (back - ahead) / (2.0 * step[i])
-    size = np.max(np.abs(stiffness / np.outer(scale, scale)))
-    assert np.max(np.abs((found - stiffness) / np.outer(scale, scale))) < 1e-4 * size
-    parts = np.linalg.eigvalsh(0.5 * (damping + damping.T)[np.ix_(FREE, FREE)])
-    assert parts.min() > -1e-3 * parts.max()
 
 
 def test_films_move_a_loose_bearing() -> None:

@@ -22,26 +22,6 @@ def element():
     return assemble(read_scene("electric_drive"), "table").balls[0]
 
 
-@pytest.mark.parametrize(("rpm", "hertz"), [(600.0, 3e3), (6000.0, 4e3)])
-def test_small_oscillations_are_those_of_linear_analyses(element, rpm, hertz):
-    """A nanometre, in 80 steps a period: what is left is the step, of second order, 3e-4 of Z, and the tables of the
-    springs. Damping alone is met within 2e-3; slow films have 94 % and 8 % more."""
-    count, periods, size = 80, 8, 1e-9
-    turn = 2.0 * math.pi / count * np.arange(periods * count + 1)
-    path = np.tile(PLACE, (turn.size, 1))
-    path[:, 1] += size * np.sin(turn)
-    forces, _ = driven(element, rpm * RPM, path, 1.0 / (hertz * count))
-    last = slice(-2 * count, None)
-    found = -1j * (forces[last] * np.exp(-1j * turn[last])[:, None]).sum(axis=0) / (count * size)
-    operation, s = Operation(rpm * RPM), 2j * math.pi * hertz
-    rest = element.evaluate(PLACE, np.zeros(6), operation)
-    slow = (rest.stiffness + s * rest.damping)[1, 1]
-    linear = slow + element.relaxation(PLACE, operation).more(np.array([s]))[0, 1, 1]
-    assert abs(found[1] / linear - 1.0) < 4e-4
-    assert found[1].imag == pytest.approx(linear.imag, rel=2e-3)
-    assert slow.imag > 1.05 * linear.imag
-
-
 def test_closed_paths_take_energy_and_balls_lift_off(element):
     """Up to 10 um within 0.1 to 10 ms: work of the second round by the trapezoidal rule, whose error at 400 places is
     below 1e-5 of what goes to and fro."""

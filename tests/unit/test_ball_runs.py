@@ -10,7 +10,6 @@ import pytest
 
 from ehdmaps.errors import AnalysisError
 from mbs import assemble, parse_scene, read_scene, statics
-from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.ball_block import BALLS, BallBlock
 from mbs.bearings.locating.locating_block import FELT
 from mbs.bearings.locating.locating_element import LocatingStates
@@ -78,65 +77,6 @@ def test_films_are_blended_over_the_speed():
         theirs, _ = element.advance(states_of(element), PLACE, RATE, Operation(float(speeds[step]), 0.3))
         worst = max(worst, float(np.max(np.abs(found.force - theirs.force[FELT])) / np.max(np.abs(theirs.force))))
     assert 1e-12 < worst < 1.2e-4
-
-
-@pytest.mark.parametrize("law", ["hertz", "table"])
-def test_no_closed_path_gives_energy(law):
-    """Balls lift off on the way and come back; the trapezoidal rule's error at 4000 places bounds what is left. With
-    dampers the same path takes energy."""
-    element = drive(law).balls[0]
-    force = BallForce(element.force.geometry, element.law_at(6000.0 * RPM))
-    turn = np.linspace(0.0, 2.0 * math.pi, 4001)
-    path = np.zeros((turn.size, 6))
-    path[:, 0], path[:, 1], path[:, 2] = 60e-6 * np.cos(turn), 14e-6 * np.sin(2 * turn + 0.3), 8e-6 * np.sin(turn)
-    path[:, 4], path[:, 5] = 2e-4 * np.sin(turn + 1.0), 1e-4 * np.cos(2 * turn)
-    answers = [force(pose, inner_speed=600.0, cage_speed=0.0) for pose in path]
-    loads = np.array([force.loads(pose, cage_speed=0.0).load[0] for pose in path[::100]])
-    assert np.all(loads.min(axis=0) < 1e-2 * loads.max())
-    work = 0.5 * (np.array([f for f, _, _ in answers[1:]]) + [f for f, _, _ in answers[:-1]]) * np.diff(path, axis=0)
-    assert abs(work.sum()) < 1e-6 * np.abs(work.sum(axis=1)).sum()
-    if law == "table":
-        assert all(np.linalg.eigvalsh(C + C.T)[0] > -1e-9 * np.abs(C).max() for _, _, C in answers[::50])
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("law", [LAW, "table"])
-def test_run_is_the_same_in_python(law):
-    """Both make the same steps to Newton's tolerance, 1e-10 of the forces."""
-    oil = read_scene("electric_drive").lubricant
-    machine = assemble(dataclasses.replace(parse_scene(text(), "rotor", "rotor.toml"), lubricant=oil), law)
-    rest = equilibrium(machine.system, machine.operation)
-    speed, settings = SpeedProfile.constant(machine.operation.speed), Settings(step=2e-5, sample=1e-4)
-    start = rest.displacement * 1.01
-    ours, theirs = (
-        run(machine.system, speed, 2e-3, settings, displacement=start, options=Options(states=True, compiled=compiled))
-        for compiled in (True, False)
-    )
-    assert ours.compiled == ours.steps == theirs.steps == 100
-    moved = np.ptp(theirs.states.displacement, axis=0)
-    difference = np.abs(ours.states.displacement - theirs.states.displacement)
-    assert np.all(difference <= 1e-6 * moved.max() + 1e-13)
-    for one, other in zip(ours.forces, theirs.forces, strict=True):
-        np.testing.assert_allclose(one, other, atol=1e-6 * np.abs(other).max())
-    for one, other in zip(ours.energy.elements, theirs.energy.elements, strict=True):
-        assert one.told == other.told == (law == LAW)
-        if one.told:
-            assert [one.driven, one.dissipated, one.change] == pytest.approx(
-                [other.driven, other.dissipated, other.change], rel=1e-4, abs=1e-6 * ours.energy.through
-            )
-
-
-@pytest.mark.slow
-def test_run_up_with_films_stays_compiled():
-    """The shipped drive through a third of its speeds."""
-    machine = drive("table")
-    rest = equilibrium(machine.system, Operation(600.0 * RPM))
-    speed = SpeedProfile.ramp(600.0 * RPM, 4000.0 * RPM, 0.02)
-    done = run(machine.system, speed, 0.02, Settings(step=2e-5, sample=1e-3), displacement=rest.displacement)
-    assert done.compiled == done.steps and not done.notes
-    names = [entry.element.name for entry in machine.system.elements]
-    axial = done.forces[names.index("drive")][:, 0]
-    assert np.all((axial > -320.0) & (axial < -250.0))
 
 
 def test_films_fade_below_the_slowest_of_their_table():
@@ -255,14 +195,6 @@ def test_balls_are_in_results_and_pictures():
     assert data["bearing_damping"].values[0, 1, 1] > 10.0
     panels = [axes for axes in done.plot().axes if axes.get_visible()]
     assert [len(axes.patches) for axes in panels] == [9, 9]
-
-
-@pytest.mark.slow
-def test_report_has_the_balls(capsys, tmp_path):
-    assert commands.run(capsys, "report", "electric_drive", "-o", str(tmp_path / "page.html"))[0] == 0
-    page = (tmp_path / "page.html").read_text(encoding="utf-8")
-    assert page.count("Balls, from y towards z") == 2
-    assert "Bearing drive has 9 of 9 balls loaded" in page
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,6 @@
 """Where compiled code is kept: under one hash of what it is made from, and what becomes of it where none can be."""
 
 import ast
-import multiprocessing
 import os
 import subprocess
 import sys
@@ -122,28 +121,6 @@ def _own(module):
 
 
 @pytest.mark.slow
-def test_a_caller_is_compiled_after_its_callee_was_read(site, tmp_path):
-    """Kept code is read without what numba prepares for compiling; whatever compiles afterwards still works."""
-    cache = tmp_path / "cache"
-    code = "from ehdmaps.callee import inner; assert inner(1.0) == 2.0; print(len(inner.stats.cache_hits))"
-    variables = os.environ | {"XDG_CACHE_HOME": str(cache), "PYTHONPATH": str(site)}
-    variables.pop("NUMBA_CACHE_DIR", None)
-    for hits, more in ("0", ""), ("1", "; from ehdmaps.caller import outer; assert outer(1.0) == 3.0"):
-        command = [sys.executable, "-c", code + more]
-        found = subprocess.run(command, capture_output=True, text=True, env=variables, cwd=site, check=True)
-        assert found.stdout.split() == [hits]
-
-
-@pytest.mark.slow
-def test_damaged_code_is_compiled_again(site, tmp_path):
-    cache = tmp_path / "cache"
-    outer(site, cache)
-    for path in cache.rglob("*.nb?"):
-        path.write_bytes(path.read_bytes()[:40])
-    assert outer(site, cache) == (["3.0", "0"], "")
-
-
-@pytest.mark.slow
 @pytest.mark.parametrize("home", [{"HOME": "/dev/null/home"}, {"HOME": ""}], ids=["not a folder", "empty"])
 def test_without_a_folder_for_caches_code_is_kept_among_temporary_files(site, tmp_path, home):
     (tmp_path / "tmp").mkdir()
@@ -193,37 +170,6 @@ def test_folders_of_other_states_are_removed_but_for_the_last_used(tmp_path):
     compiled._use(tmp_path / "ffffffffffffffff-00000000")
     left = sorted(path.name for path in tmp_path.iterdir())
     assert left == sorted([*OLD[: compiled.MOST_KEPT], kept.name, "ffffffffffffffff-00000000"])
-
-
-def write_index(folder, number):
-    """Add a line to an index as numba does: read, change, write; two at once would lose one."""
-
-    def save(*_):
-        index = Path(folder) / "index"
-        lines = index.read_text() if index.exists() else ""
-        index.write_text(f"{lines}{number}\n")
-
-    for _ in range(20):
-        compiled._save(save, Path(folder))
-
-
-@pytest.mark.slow
-def test_eight_processes_at_once_write_one_after_the_other(tmp_path):
-    context = multiprocessing.get_context("spawn")
-    processes = [context.Process(target=write_index, args=(str(tmp_path), number)) for number in range(8)]
-    for process in processes:
-        process.start()
-    for process in processes:
-        process.join()
-    assert [process.exitcode for process in processes] == [0] * 8
-    assert len((tmp_path / "index").read_text().split()) == 8 * 20
-
-
-def test_a_full_disk_leaves_code_in_memory(tmp_path):
-    def save(*_):
-        raise OSError(28, "No space left on device")
-
-    compiled._save(save, tmp_path)
 
 
 def test_the_hash_changes_with_sources_and_with_the_compiler(monkeypatch):

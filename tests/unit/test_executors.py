@@ -8,7 +8,7 @@ import pytest
 import ehdmaps
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.make.batch import parse_batch
-from ehdmaps.jobs.make.batch_generate import _each, generate_batch
+from ehdmaps.jobs.make.batch_generate import generate_batch
 from ehdmaps.jobs.make.store import Store
 from ehdmaps.jobs.make.sweep import sweep
 from ehdmaps.jobs.reader import parse_job
@@ -106,21 +106,6 @@ def test_a_batch_from_python(tmp_path):
     assert (tmp_path / "maps" / "summary.csv").exists()
     with pytest.raises(InputError, match="no batch file"):
         ehdmaps.generate_batch("nu308", tmp_path / "maps")
-
-
-def die(item):
-    import os
-
-    if item == 2:
-        os._exit(3)
-    return item
-
-
-@pytest.mark.slow  # processes that import all of it
-def test_a_worker_that_dies_costs_what_was_out():
-    found = dict(_each(die, [1, 2, 3], 2))
-    assert set(found) == {1, 2, 3}
-    assert found[2] is None
 
 
 def test_dask_solves_a_map():

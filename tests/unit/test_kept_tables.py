@@ -4,13 +4,10 @@ from __future__ import annotations
 
 import ctypes
 import dataclasses
-import subprocess
-import sys
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
-from numba import njit
 
 import ehdmaps
 from ehdmaps.maps.kernels import kept_tables
@@ -91,17 +88,6 @@ def test_makers_at_once_keep_one_table(folder):
         same_bits(law, laws[0])
 
 
-@pytest.mark.slow
-def test_processes_at_once_keep_one_table(folder):
-    text = "from tests.unit.test_kept_tables import made; made()"
-    processes = [subprocess.Popen([sys.executable, "-c", text]) for _ in range(2)]
-    assert [process.wait(60) for process in processes] == [0, 0]
-    (path,) = folder.iterdir()
-    before = path.stat().st_mtime_ns
-    made()
-    assert path.stat().st_mtime_ns == before
-
-
 def test_the_oldest_tables_make_room(folder, monkeypatch):
     monkeypatch.setattr(kept_tables, "MOST", 2)
     for factor in (1.0, 1.1, 1.2, 1.3):
@@ -147,21 +133,3 @@ def test_other_programs_call_a_law_by_its_address(kind):
     assert call(at.data, np.nan, 0.0, 1.0, 330.0, 0.0, room.ctypes.data, force.ctypes.data) & NOT_FINITE
     assert np.all(np.isnan(force))
     assert isinstance(call, ctypes._CFuncPtr)
-
-
-def test_compiled_loops_call_a_law_by_its_address():
-    law = ContactLaw("inner", CONTACTS[:1], OIL, SMALL_FIELD)
-    at = law.address
-    call = LawAddress.PROTOTYPE(at.function)
-
-    @njit
-    def total(data, room, force, deltas):
-        load = 0.0
-        for delta in deltas:
-            call(data, delta, 1e-4, 1.0, 330.0, 0.0, room.ctypes.data, force.ctypes.data)
-            load += force[0]
-        return load
-
-    deltas = np.linspace(-1e-5, 5e-6, 41)
-    found = total(at.data, np.empty(at.room // 8), np.empty(3), deltas)
-    assert found == pytest.approx(np.sum(law(deltas, 1e-4, 1.0, 330.0)[0]), rel=1e-12)

@@ -210,16 +210,6 @@ def test_kinds(home, monkeypatch):
         library.library.__wrapped__()
 
 
-@pytest.mark.slow
-def test_lines_that_ran_are_counted(home, monkeypatch):
-    monkeypatch.setenv("CC", needed("gcc"))
-    code = "import sys, pathlib, ehdmaps.kernel.library as k; k.found(pathlib.Path(sys.argv[1]), 'coverage')"
-    subprocess.run([sys.executable, "-c", code, str(home)], check=True, cwd=ROOT)
-    (counts,) = home.glob("*.gcda")
-    told = subprocess.run(["gcov", "-n", counts], capture_output=True, text=True, check=True, cwd=home).stdout
-    assert re.search(r"kernel\.c'\nLines executed:100\.00% of 1", told)  # the interface
-
-
 def test_the_c_files_have_no_warnings():
     """Of the standard and of what is written; not those that depend on what a compiler makes of it."""
     options = [*building.ALWAYS, *building.LINES, "-Werror", "-pedantic", "-fsyntax-only"]
@@ -307,14 +297,6 @@ def test_records_are_copied_by_their_values(way):
     same(one)
     shared = np.shares_memory(one.given("inner").given("values"), other.given("inner").given("values"))
     assert shared is (way is copy.copy)
-
-
-def test_numbers_that_were_set_later_are_copied():
-    one = whole()
-    one.weight, one.inner.rows = 4.0, 2
-    one.put(weight=5.0, other=None)
-    found = copy.deepcopy(one)
-    assert found.weight == 5.0 and found.other is not None and not found.other
 
 
 @pytest.mark.parametrize(

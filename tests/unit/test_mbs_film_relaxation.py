@@ -116,35 +116,6 @@ def test_energy_is_taken_up_at_every_frequency(element, ports):
     assert np.linalg.eigvalsh(rises).min() > -1e-12 * np.abs(z).max()
 
 
-@pytest.mark.parametrize("cycles_per_time", [0.05, 0.3, 2.0])
-def test_small_steps_in_time_see_the_same(cycles_per_time):
-    """All slices on their way with `FilmMemory.advance`, the ring oscillating along its load."""
-    element, ports = CASES[0]
-    direction = np.array([0.0, 0.8, 0.6, 0.0, 0.0, 0.0])
-    at = law().at(element.entrainment_speed(AT), WARM)
-    rollers = element.loads(ports, AT)
-    relaxation = element.relaxation(ports, AT)
-    weights = relaxation.times * (relaxation.rows @ direction) ** 2
-    typical = float(weights @ relaxation.times / weights.sum())
-    frequency = cycles_per_time / typical / (2.0 * math.pi)
-    along = (0.8 * np.cos(rollers.angle) + 0.6 * np.sin(rollers.angle))[:, None] * np.ones(BEARING.slices)
-    steps, periods, size = 400, 6, 1e-10
-    dt = 1.0 / (frequency * steps)
-    memory = at.memory
-    state, forces = memory.settled(rollers.approach), []
-    for k in range(1, steps * periods + 1):
-        moved = size * math.sin(2.0 * math.pi * k / steps)
-        w, _, state = memory.advance(state, rollers.approach + moved * along, dt)
-        forces.append(float(np.sum(w * along) * BEARING.slice_length))
-    last = np.array(forces[-steps:])
-    wave = np.exp(-2j * math.pi * np.arange(1, steps + 1) / steps)
-    found = 1j * (last @ wave) * 2.0 / steps / size
-    z, _, _ = stiffness(element, ports, np.array([2j * math.pi * frequency]))
-    expected = direction @ z[0] @ direction
-    # Backward differences of second order: (2 pi/400)^2/3 of the films' part, and the law's curvature over 0.1 nm.
-    assert abs(found - expected) < 2e-3 * abs(expected)
-
-
 def test_what_does_not_relax():
     assert massless("slow").relaxation(POSE, AT) is None
     assert bodies("slow").relaxation(at_rest(bodies())[1], AT) is None

@@ -148,20 +148,6 @@ def no_home(environment):
     raise RuntimeError("Could not determine home directory.")
 
 
-def test_what_was_read_while_a_file_changed_is_not_kept(plan, counted, monkeypatch):
-    keys = iter(["before", "after"])
-    monkeypatch.setattr(kept, "plan_key", lambda plan: next(keys))
-    kept.reduced_body(plan)
-    assert not kept.kept_folder(os.environ).exists()
-
-
-def test_memory_has_an_end(plan, counted, monkeypatch):
-    monkeypatch.setattr(kept, "MOST_IN_MEMORY", 1)
-    kept.reduced_body(plan)
-    kept.reduced_body(dataclasses.replace(plan, cutoff=1e4))
-    assert len(kept._memory) == 1
-
-
 def test_where_reductions_are_kept():
     assert kept.kept_folder({"XDG_CACHE_HOME": "/c"}) == Path("/c/ehdmaps/reduced")
     assert kept.kept_folder({}) == Path("~/.cache/ehdmaps/reduced").expanduser()

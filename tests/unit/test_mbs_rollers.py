@@ -23,9 +23,6 @@ from mbs.bearings.roller_contacts import RollerContacts
 from mbs.bearings.roller_element import RollerElement
 from mbs.model.blocks import FOUND, IN_PYTHON, NO_SOLUTION, Answers, Member, Moment
 from mbs.model.elements import Operation
-from mbs.model.equilibrium import equilibrium
-from mbs.model.profiles import SpeedProfile
-from mbs.transient.run import Options, run
 from tests.cases import blocks
 from tests.cases.laws import CONTACTS, OIL, SMALL_FIELD
 
@@ -208,28 +205,3 @@ def model(law, films):
         dataclasses.replace(entry, rollers_as_bodies=True, centrifugal=True, slices=5) for entry in scene.bearings
     ]
     return assemble(scene.with_bearings(bearings), law=law, films=films)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("law", "films", "residual", "apart"), [("hertz", None, 1e-13, 1e-9), ("formula", "memory", 1e-10, 2e-4)]
-)
-def test_runs_in_compiled_code_are_those_in_python(law, films, residual, apart):
-    """Dry by what Newton leaves over; with memory by parabolas of the table's cubics, 1e-5 of the force, grown."""
-    system = model(law, films).system
-    start = equilibrium(system, Operation(SPEED)).displacement * 1.02
-    settings = dataclasses.replace(read_scene("nu308_flexible").run_up.settings, step=1e-5, sample=1e-5)
-    settings = dataclasses.replace(settings, residual=residual)
-    compiled, python = (
-        run(
-            system, SpeedProfile.constant(SPEED), 3e-4, settings, (), start,
-            options=Options(states=True, compiled=how),
-        )
-        for how in (True, False)
-    )  # fmt: skip
-    assert compiled.compiled == compiled.steps and not compiled.notes and python.compiled == 0
-    for ours, reference in zip(compiled.forces, python.forces, strict=True):
-        assert ours == pytest.approx(reference, abs=apart * np.max(np.abs(reference)))
-    moved = python.states.displacement
-    assert compiled.states.displacement == pytest.approx(moved, abs=apart * np.max(np.abs(moved)))
-    assert np.ptp(moved[:, system.own("bearing_left_rollers")], axis=0).max() > 1e-9  # they are on their way

@@ -36,15 +36,11 @@ from mbs.model.blocks import FOUND, Member, Moment
 from mbs.model.contacts import slow_springs
 from mbs.model.elements import Input, Operation, Sensor
 from mbs.model.equilibrium import equilibrium
-from mbs.model.profiles import SpeedProfile
-from mbs.settings import Settings
-from mbs.transient.run import run
 from tests.cases import commands
 from tests.cases.c_blocks import AskedBlock
 from tests.unit.test_tapered_runs import PLACE, RATE
 from tests.unit.test_tapered_scenes import GEOMETRY, O_PAIR, text
 
-RPM = math.pi / 30.0
 WARM = 333.15
 OIL = '[lubricant]\nname = "FVA3"\n'
 POSE = np.array([0.0, 12e-6, 5e-6, 0.0, 0.0, 0.0])
@@ -88,20 +84,6 @@ def test_without_an_angle_it_is_the_cylindrical_element_with_these_films(emap, f
     for ours, expected, part in zip(force(pose), (theirs.force, theirs.stiffness, theirs.damping), within, strict=True):
         radial = (slice(1, 3),) * ours.ndim
         assert np.max(np.abs(ours - expected)[radial]) < part * np.max(np.abs(expected[radial]))
-
-
-def test_stiffness_is_the_derivative_and_dampers_only_take(films):
-    """Central differences of 1 nm: films bend over 0.3 um, (1 nm/0.3 um)^2 of them, and the table is a cubic."""
-    force = TaperedForce(GEOMETRY).with_films(films)
-    _, stiffness, damping = force(PLACE, inner_speed=500.0)
-    size = np.array([1.0, 1.0, 1.0, 1.0, 0.03, 0.03])
-    scale = np.outer(size, size) * float(np.max(np.abs(stiffness[:3, :3])))
-    for i in FELT:
-        step = np.zeros(6)
-        step[i] = 1e-9 / size[i]
-        ahead, behind = (force(PLACE + way * step, inner_speed=500.0)[0] for way in (1.0, -1.0))
-        assert np.max(np.abs((behind - ahead) / (2.0 * step[i]) - stiffness[:, i]) / scale[:, i]) < 3e-5
-    assert np.linalg.eigvalsh(damping[np.ix_(FELT, FELT)])[0] > 0.0
 
 
 def test_a_scene_has_the_point_of_the_bearing_alone(capsys, tmp_path, monkeypatch):
@@ -187,19 +169,6 @@ def test_compiled_block_is_the_element_with_films():
             assert not found.outside[0]
     crushed = LineFilms(*[element.law_at(400.0).inner] * 2, loads=(0.0, 1.0))
     assert dataclasses.replace(element, films=lambda *_: crushed).evaluate(PLACE, RATE, Operation(400.0)).outside
-
-
-@pytest.mark.slow
-def test_run_up_from_rest_with_films_stays_compiled():
-    """Preload by displacement rises with the films; steps are halved where these begin, and damp most."""
-    machine = scene()
-    rest = equilibrium(machine.system, Operation(0.0))
-    course = SpeedProfile.ramp(0.0, 600.0, 0.02)
-    done = run(machine.system, course, 0.02, Settings(step=2e-5, sample=1e-3), displacement=rest.displacement)
-    assert done.compiled == done.steps and 1000 <= done.steps < 1200
-    axial = np.abs(done.forces[0][:, 0])
-    assert axial[-1] > 1.2 * axial[0]
-    assert done.energy.elements[0].told is False
 
 
 def test_films_of_slow_motion_say_from_where_they_are_wrong(emap, films):

@@ -7,17 +7,11 @@ import math
 import numpy as np
 import pytest
 
-from ehdmaps.errors import InputError
 from ehdmaps.jobs.make.table_law import table_map
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.rollers.ribbed_geometry import ribbed_estimate
-from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from ehdmaps.physics.solids import STEEL
-from mbs.bearings.bearing import Bearing
-from mbs.bearings.bearing_force import BearingForce
 from mbs.bearings.locating.locating_block import FELT
-from mbs.bearings.locating.locating_element import LocatingStates
-from mbs.bearings.memory_element import MemoryBearing
 from mbs.bearings.tapered.line_film import LOADS, line_films
 from mbs.bearings.tapered.tapered_bearing import TaperedForce
 from mbs.bearings.tapered.tapered_element import TaperedElement
@@ -114,27 +108,6 @@ def test_closed_paths_take_energy(films, name):
     assert lifted > 2
 
 
-def test_without_an_angle_it_is_the_cylindrical_element_with_memory(emap, films):
-    """Radial oscillations in time of both elements: both contacts in series are one law there, with one relaxation
-    time: 3e-3, as in linear analyses; steps are of second order here and there, some 3e-4."""
-    plain = element(films, TaperedGeometry("plain", 10e-3, 15e-3, 60e-3, 17, 0.0), profile="straight")
-    bearing = Bearing(CYLINDER, "straight", 21)
-    law = BearingForce(bearing, emap.law("series", "clamp"))
-    speed = U / CYLINDER.entrainment_speed(1.0)
-    other = MemoryBearing("series", "ring", "ground", bearing, law, WARM)
-    count, hertz, place, size = 80, 3e3, np.array([0.0, 12e-6, 5e-6, 0.0, 0.0, 0.0]), 1e-9
-    turn, step = 2.0 * math.pi / count * np.arange(3 * count + 1), 1.0 / (hertz * count)
-    path = swept(place, turn, 1, size)
-    forces, _, _ = driven(plain, speed, path, step)
-    states, theirs = None, np.empty_like(forces)
-    for i, there in enumerate(path):
-        answer, states = other.advance(states, there, np.zeros(6), Operation(speed, 0.0, step * i))
-        theirs[i] = answer.force[FELT]
-    ours, found = (response(each, turn, count, size)[1:3] for each in (forces, theirs))
-    assert np.max(np.abs(ours - found)) < 3e-3 * np.max(np.abs(found))
-    assert ours[0].imag == pytest.approx(found[0].imag, rel=0.05)
-
-
 def test_loads_leave_and_come_back_without_a_step(films):
     """A ring that is pulled off its rollers and pressed back: a force of no tension that follows the path, whose error
     halves at least with the step."""
@@ -162,18 +135,3 @@ def test_steps_of_any_length_end_where_they_should(films):
     quicker, _, _ = driven(bearing, SPEED, [place, moved], 1e-15)
     np.testing.assert_allclose(quick[-1], quicker[-1], rtol=0.0, atol=1e-3 * np.abs(rest - before).max())
     assert abs((quicker[-1] - before)[1]) > 1.05 * abs((rest - before)[1])
-
-
-def test_what_makes_no_sense_is_refused(films):
-    bearing, place = element(films, GEOMETRY), PLACES["32208"]
-    _, states = bearing.advance(None, place, np.zeros(6), Operation(SPEED))
-    assert isinstance(states, LocatingStates)
-    with pytest.raises(InputError, match="allowed: finite numbers"):
-        bearing.advance(states, place * math.nan, np.zeros(6), Operation(SPEED, 0.0, 1e-5))
-    with pytest.raises(InputError, match=r"at most 20000 rad/s"):
-        bearing.advance(states, place, np.zeros(6), Operation(2.1e4, 0.0, 1e-5))
-    assert bearing.force.held is None
-    again, _ = bearing.advance(states, place, np.zeros(6), Operation(SPEED, 0.0, 1e-5))
-    assert np.all(np.isfinite(again.force))
-    with pytest.raises(InputError, match="finite numbers"):
-        bearing.force_at(Operation(SPEED))(place * math.nan)

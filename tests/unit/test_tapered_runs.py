@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import pytest
 
@@ -17,9 +15,9 @@ from mbs.model.elements import Operation
 from mbs.model.equilibrium import equilibrium
 from mbs.model.profiles import SpeedProfile
 from mbs.settings import Settings
-from mbs.transient.run import Options, run
+from mbs.transient.run import run
 from tests.cases.c_blocks import AskedBlock
-from tests.unit.test_tapered_scenes import GEOMETRY, O_PAIR, X_PAIR, model
+from tests.unit.test_tapered_scenes import GEOMETRY, O_PAIR, model
 
 PLACE = np.array([12e-6, -6e-6, 3e-6, 0.0, 5e-5, -8e-5])
 RATE = np.array([1e-3, -2e-3, 1e-3, 0.0, 0.1, 0.2])
@@ -67,24 +65,6 @@ def test_compiled_block_is_the_element(speed):
     assert asked.answer(moment._replace(speed=3e4), motion) == IN_PYTHON
 
 
-def test_no_closed_path_gives_energy():
-    """All rollers part and come back on the way, at a speed whose loads stay: contacts store what the ring and the
-    turning cage do, by the trapezoidal rule over 2000 places; with dampers the same path takes energy."""
-    turn = np.linspace(0.0, 2.0 * math.pi, 2001)
-    path = np.zeros((turn.size, 6))
-    path[:, 0], path[:, 1], path[:, 2] = 25e-6 * np.cos(turn), 8e-6 * np.sin(2 * turn + 0.3), 5e-6 * np.sin(turn)
-    path[:, 4], path[:, 5] = 2e-4 * np.sin(turn + 1.0), 1e-4 * np.cos(2 * turn)
-    force = TaperedForce(GEOMETRY, damping_time=1e-5)
-    found = [force(pose, inner_speed=400.0) for pose in path]
-    loaded = [np.count_nonzero(force.loads(pose, inner_speed=400.0).load[0]) for pose in path[::50]]
-    assert min(loaded) == 0 and max(loaded) == GEOMETRY.rollers
-    moved, mean = np.diff(path, axis=0), 0.5 * (np.array([f for f, _, _ in found[1:]]) + [f for f, _, _ in found[:-1]])
-    work = np.sum(mean * moved, axis=1)
-    assert abs(work.sum()) < 1e-5 * np.abs(work).sum()
-    taken = [step @ damping @ step for step, (_, _, damping) in zip(moved, found[1:], strict=True)]
-    assert min(taken) >= -1e-12 * max(taken) and max(taken) > 0.0
-
-
 def swung(pair, way, law="hertz:1.25e-5 s"):
     """A preloaded rotor pushed 30 um along its axis, beyond its preload of 15 um, and 2 um aside, and let go."""
     machine = model(law, **pair)
@@ -93,34 +73,6 @@ def swung(pair, way, law="hertz:1.25e-5 s"):
     for name, push in (("rotor.x", way * 30e-6), ("rotor.y", 2e-6)):
         start[machine.system.coordinates.index(name)] += push
     return machine, start
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("pair", [O_PAIR, X_PAIR], ids=["O", "X"])
-def test_run_up_with_lift_off_is_the_same_in_python(pair):
-    """A row parts and comes back in O and X pairs. Both make the same steps to Newton's tolerance, 1e-10 of the forces;
-    energies are what contacts store, dampers take, and cage and speed bring in."""
-    machine, start = swung(pair, 1.0)
-    course, settings = SpeedProfile.ramp(300.0, 700.0, 2e-3), Settings(step=1e-5, sample=2e-5)
-    ours, theirs = (
-        run(machine.system, course, 2e-3, settings, displacement=start, options=Options(states=True, compiled=compiled))
-        for compiled in (True, False)
-    )
-    assert ours.compiled == ours.steps == theirs.steps == 200
-    moved = np.ptp(theirs.states.displacement, axis=0)
-    np.testing.assert_allclose(ours.states.displacement, theirs.states.displacement, atol=1e-8 * moved.max())
-    for one, other in zip(ours.energy.elements, theirs.energy.elements, strict=True):
-        assert one.told and other.told
-        assert [one.driven, one.dissipated, one.change] == pytest.approx(
-            [other.driven, other.dissipated, other.change], rel=1e-6, abs=1e-8 * ours.energy.through
-        )
-    axial = [np.abs(force[:, 0]) for force in ours.forces]
-    for force, forwards in zip(axial, theirs.forces, strict=True):
-        np.testing.assert_allclose(force, np.abs(forwards[:, 0]), atol=1e-6 * force.max())
-    # one of the rows has only what centrifugal loads leave, 20 N at its rib, and then more than its preload
-    gone = [force < 1e-2 * force.max() for force in axial]
-    returns = [force[np.argmax(one) :].max() > 1000.0 for one, force in zip(gone, axial, strict=True)]
-    assert any(0.05 < np.mean(one) < 0.9 and returned for one, returned in zip(gone, returns, strict=True))
 
 
 @pytest.mark.slow

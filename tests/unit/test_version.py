@@ -4,7 +4,6 @@ import os
 import re
 import subprocess
 import sys
-import time
 from importlib import metadata
 from pathlib import Path
 
@@ -70,27 +69,6 @@ def test_a_second_process_in_the_same_tree_gives_the_same_text():
     command = [sys.executable, "-c", "import mbs; print(mbs.__version__)"]
     result = subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT)
     assert result.stdout.strip() == version()
-
-
-def test_importing_asks_no_other_program():
-    code = "import ehdmaps, mbs, sys; print([m for m in ('subprocess', 'ehdmaps.version') if m in sys.modules])"
-    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
-    assert result.stdout.strip() == "[]"
-
-
-def test_version_is_quick_and_looked_up_once(monkeypatch):
-    source_state.cache_clear()
-    tries = []
-    for _ in range(3):
-        source_state.cache_clear()
-        start = time.perf_counter()
-        first = source_state(ROOT)
-        tries.append(time.perf_counter() - start)
-    # some 10 ms on a quiet machine; the quickest of three, and five times as long on a busy one
-    assert min(tries) < 0.25
-    monkeypatch.setattr(subprocess, "run", None)
-    monkeypatch.setattr("hashlib.sha256", None)
-    assert source_state(ROOT) == first
 
 
 def test_a_clone_names_its_commit_and_whether_it_was_changed(clone, monkeypatch):
