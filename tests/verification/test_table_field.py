@@ -13,7 +13,7 @@ from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import MapError
 from ehdmaps.jobs import solvers
 from ehdmaps.jobs.job import Job
-from ehdmaps.jobs.make.generate import generate, generate_in_memory, not_served
+from ehdmaps.jobs.make.generate import Generated, generate, generate_in_memory, not_served
 from ehdmaps.jobs.make.law_check import EDGE_SHARE, REFUSED
 from ehdmaps.jobs.make.table_films import unserved
 from ehdmaps.jobs.show.describe import describe
@@ -159,14 +159,21 @@ def test_a_map_in_memory_is_read_and_one_that_is_to_be_solved_is_its_points() ->
     assert EHDMap(solved).backbone is None
 
 
+def small() -> Job:
+    return job(loads=(1e4, 1e5), entrainment_speeds=(1.0, 2.0), temperatures=(330.0, 340.0), law_check=5)
+
+
+@pytest.fixture(scope="module")
+def solved() -> Generated:
+    """A map by solved lines, which takes seconds."""
+    return generate_in_memory(replace(small(), solver_options={"films": "solved"}), workers=1)
+
+
 @pytest.mark.slow
-def test_memory_layers_and_rolling_forces_of_the_table_are_those_of_solved_lines() -> None:
+def test_memory_layers_and_rolling_forces_of_the_table_are_those_of_solved_lines(solved: Generated) -> None:
     """Rolling force, mass flow and layers within 1 %: lines read and lines solved. Factors of locked films are fits, no
     closer than the stated errors of the responses ask: within 12 %."""
-    small = job(loads=(1e4, 1e5), entrainment_speeds=(1.0, 2.0), temperatures=(330.0, 340.0), law_check=0)
-    read, solved = (
-        generate_in_memory(replace(small, solver_options={"films": films}), workers=1) for films in ("table", "solved")
-    )
+    read = generate_in_memory(replace(small(), solver_options={"films": "table"}), workers=1)
     maps = EHDMap(read.dataset, read.backbone), EHDMap(solved.dataset, solved.backbone)
     assert maps[0].from_table and not maps[1].from_table
     layered = [emap.law("inner", supply=OilSupply(2e-7)) for emap in maps]
@@ -217,13 +224,11 @@ def test_why_a_map_is_solved_is_what_its_check_found() -> None:
 
 
 @pytest.mark.slow
-def test_a_map_whose_films_miss_their_bars_is_solved(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_map_whose_films_miss_their_bars_is_solved(monkeypatch: pytest.MonkeyPatch, solved: Generated) -> None:
     monkeypatch.setattr("ehdmaps.jobs.make.generate._served", lambda *_: False)
-    small = job(loads=(1e4, 1e5), entrainment_speeds=(1.0, 2.0), temperatures=(330.0, 340.0), law_check=5)
-    made = generate_in_memory(small, workers=1)
+    made = generate_in_memory(small(), workers=1)
     assert made.backbone is not None and schema.FILM_TABLE not in made.dataset.attrs
     assert "miss their bars" in made.dataset.attrs[schema.UNSERVED]
     assert not EHDMap(made.dataset, made.backbone).from_table
-    solved = generate_in_memory(replace(small, solver_options={"films": "solved"}), workers=1)
     assert made.dataset.drop_vars("solve_seconds").equals(solved.dataset.drop_vars("solve_seconds"))
     assert made.backbone is not None and made.backbone.equals(solved.backbone)

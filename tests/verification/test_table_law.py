@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 
 import ehdmaps
-from ehdmaps.ehl.solver import ReynoldsSolver
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.make.report import films_lines
 from ehdmaps.jobs.make.table_law import law, table_map
@@ -31,26 +30,6 @@ from tests.conftest import made_map
 OIL = Lubricant.named("FVA3")
 LINE = LineContact("line", 6e-3, STEEL, "half_space", reference_depth=6e-3)
 narrow_law = partial(law, LINE, OIL, loads=(2e3, 4e5), entrainment_speeds=(0.5, 3.0), temperatures=(320.0, 345.0))
-
-
-@pytest.mark.slow
-def test_a_law_from_the_table_is_that_from_solved_lines() -> None:
-    """Load and stiffness within 0.1 %, the bar of films that are read; damping within 2 % of max(c, 0.02 k b/u)."""
-    read, solved = narrow_law(outside="clamp"), narrow_law(outside="clamp", solver=ReynoldsSolver())
-    random = np.random.default_rng(4)
-    n = 400
-    delta = random.uniform(0.0, 20e-6, n)
-    u, T = np.exp(random.uniform(np.log(0.5), np.log(3.0), n)), random.uniform(320.0, 345.0, n)
-    (w, k, c), (w0, k0, c0) = read(delta, 0.0, u, T), solved(delta, 0.0, u, T)
-    within = (w0 > 2e3) & (w0 < 4e5)
-    assert np.count_nonzero(within) > 100
-    for one, other in ((w, w0), (k, k0)):
-        wrong = np.abs(one / other - 1.0)[within]
-        assert np.max(wrong) < 1e-3
-        assert np.median(wrong) < 1e-4
-    half = np.sqrt(8.0 * w0 * LINE.radius / (np.pi * LINE.reduced_modulus))
-    wrong = np.abs(c - c0) / np.maximum(c0, 0.02 * k0 * half / u)
-    assert np.quantile(wrong[within], 0.95) < 0.02
 
 
 def test_a_kind_that_there_is_not_is_refused() -> None:
