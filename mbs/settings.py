@@ -17,6 +17,9 @@ from mbs.model.profiles import SpeedProfile
 MOST_SPEEDS = 2000
 """Speeds of a sweep."""
 
+CAGE_ANGLES, MOST_ANGLES = 4, 1000
+"""Cage angles over which linear analyses average where none are asked for, and the most that may be asked for."""
+
 HIGHEST = 5000.0
 """Highest frequency of a Campbell diagram where none is given [Hz]."""
 
@@ -173,3 +176,22 @@ class CampbellSettings:
 def _whole(ratio: float) -> bool:
     """Tell whether a ratio is a whole number >= 1, to rounding."""
     return round(ratio) >= 1 and abs(ratio - round(ratio)) <= 1e-6 * ratio
+
+
+def check_cage_angles(where: str, count: int) -> None:
+    """Refuse a number of cage angles that is not possible.
+
+    Parameters
+    ----------
+    where : str
+        What asks, for the message.
+    count : int
+        The number.
+
+    Raises
+    ------
+    InputError
+        If it is not one from 1 to `MOST_ANGLES`.
+    """
+    if not 1 <= count <= MOST_ANGLES:
+        raise InputError(f"{where}, cage angles: got {count}; allowed: a whole number from 1 to {MOST_ANGLES}")

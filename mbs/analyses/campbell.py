@@ -41,7 +41,7 @@ from mbs.output.model_text import clearance_text, common_supply, temperature_tex
 from mbs.output.results import BAND, STEP_ERROR, with_states
 from mbs.scene.assembly import Model, choice_attributes, law_attributes
 from mbs.scene.scene import Scene
-from mbs.settings import CampbellSettings, RunUp
+from mbs.settings import CAGE_ANGLES, CampbellSettings, RunUp
 from mbs.spectral.campbell import RunUpSpectra, run_up_spectra
 from mbs.spectral.levels import Reference
 from mbs.spectral.run_signal import RunSignal
@@ -520,7 +520,7 @@ def _one(model: Model, look: _Look, told: Callable[[int], None], with_modes: boo
 def _modes(model: Model, spectra: RunUpSpectra) -> Sweep:
     """Modes of the linear system at some speeds of the run, rising."""
     speeds = spectra.campbell.speeds
-    return sweep(model.system, np.linspace(speeds.min(), speeds.max(), MODE_SPEEDS))
+    return sweep(model.system, np.linspace(speeds.min(), speeds.max(), MODE_SPEEDS), cage_angles=CAGE_ANGLES)
 
 
 def _overlay(entry: LawRun) -> Overlay | None:

@@ -16,19 +16,19 @@ from ehdmaps.errors import InputError
 from mbs.analyses.film_errors import film_errors
 from mbs.analyses.operating import operating, states_of
 from mbs.analyses.soundness import findings_at_rest, lift_off, with_findings
-from mbs.linearised.averaged import AveragedEquilibrium, averaged, over_pitch, steady_system
+from mbs.linearised.averaged import AveragedEquilibrium, mean_equilibrium
 from mbs.linearised.linear import StateSpace, frequency_response, level_bands, sensed, state_space, with_peaks
 from mbs.linearised.linear import responses as responses_of
 from mbs.linearised.modes import StateModes, modes_of, state_modes, undamped_modes
-from mbs.linearised.sweep import MOST_ANGLES
 from mbs.linearised.validity import DynamicLoad, FilmError, dynamic_loads
 from mbs.model.elements import Operation
-from mbs.model.equilibrium import Equilibrium, equilibrium
+from mbs.model.equilibrium import Equilibrium
 from mbs.model.findings import Finding
 from mbs.output.files import described
 from mbs.output.results import linear_dataset, with_states
 from mbs.scene.assembly import Model, law_attributes, laws_attributes
 from mbs.scene.scene import Scene
+from mbs.settings import CAGE_ANGLES, check_cage_angles
 
 if TYPE_CHECKING:
     from mbs.output.files import Figure
@@ -46,12 +46,13 @@ class LsaSettings:
     operation : Operation or None
         Speed, angle and time of the loads; None for the operating speed of the scene.
     cage_angles : int
-        Angles within one pitch of the rollers over which stiffness and damping are averaged, from 1 to `MOST_ANGLES`.
+        Angles within one pitch of the rollers over which stiffness and damping are averaged, from 1 to `MOST_ANGLES`;
+        1 for the start angle of the cages alone. Responses and state space are those of the mean.
     """
 
     frequencies: tuple[float, ...] | None = None
     operation: Operation | None = None
-    cage_angles: int = 1
+    cage_angles: int = CAGE_ANGLES
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +64,7 @@ class LsaResult:
     model : Model
         Scene with its law.
     balance : Equilibrium
-        Equilibrium at which the system was linearised, gear meshes with their mean stiffness.
+        Equilibrium at which the system was linearised, gear meshes and bearings with their mean stiffness.
     space : StateSpace
         State space from the inputs of the scene to its sensors.
     asked : int
@@ -192,13 +193,10 @@ def _linearised(model: Model, settings: LsaSettings) -> _Linearised:
     missing = lsa_problems(dataclasses.replace(scene, frequencies=tuple(asked)))
     if missing:
         raise InputError(missing)
-    if not 1 <= settings.cage_angles <= MOST_ANGLES:
-        raise InputError(
-            f"lsa, cage angles: got {settings.cage_angles}; allowed: a whole number from 1 to {MOST_ANGLES}"
-        )
+    check_cage_angles("lsa", settings.cage_angles)
     operation = settings.operation or model.operation
     model = operating(model, operation.speed)
-    balance = averaged(over_pitch(equilibrium(steady_system(model.system), operation), settings.cage_angles))
+    balance = mean_equilibrium(model.system, operation, settings.cage_angles)
     states = state_modes(balance, undamped_modes(balance))
     frequencies = with_peaks(np.array(asked), modes_of(balance, states).eigenvalues)
     return _Linearised(model, balance, states, len(asked), frequencies)

@@ -11,17 +11,17 @@ import xarray as xr
 from mbs.analyses.film_errors import film_errors
 from mbs.analyses.operating import operating, states_of
 from mbs.analyses.soundness import findings_at_rest, with_findings
-from mbs.linearised.averaged import steady_system
+from mbs.linearised.averaged import mean_equilibrium
 from mbs.linearised.modes import Modes
 from mbs.linearised.modes import modes as modes_at
 from mbs.linearised.validity import FilmError
 from mbs.model.elements import Operation
-from mbs.model.equilibrium import Equilibrium, equilibrium
+from mbs.model.equilibrium import Equilibrium
 from mbs.model.findings import Finding
 from mbs.output.files import described
 from mbs.output.results import modes_dataset, with_states
 from mbs.scene.assembly import Model, law_attributes
-from mbs.settings import HIGHEST
+from mbs.settings import CAGE_ANGLES, HIGHEST, check_cage_angles
 
 if TYPE_CHECKING:
     from mbs.output.files import Figure
@@ -36,7 +36,7 @@ class ModesResult:
     model : Model
         Scene with its law.
     balance : Equilibrium
-        Equilibrium at which the system was linearised, gear meshes with their mean stiffness.
+        Equilibrium at which the system was linearised, gear meshes and bearings with their mean stiffness.
     modes : Modes
         Eigenvalues, shapes and strain-energy shares.
     errors : tuple of FilmError
@@ -74,7 +74,7 @@ class ModesResult:
         return modes_figure(self.model, self.modes, swinging[inside], limit, "; ".join(notes))
 
 
-def modes(model: Model, operation: Operation | None = None) -> ModesResult:
+def modes(model: Model, operation: Operation | None = None, cage_angles: int = CAGE_ANGLES) -> ModesResult:
     """Find the complex modes.
 
     Parameters
@@ -83,9 +83,14 @@ def modes(model: Model, operation: Operation | None = None) -> ModesResult:
         Scene with its law.
     operation : Operation, optional
         Speed, angle and time of the loads; the operating speed of the scene if left out.
+    cage_angles : int
+        Angles within one pitch of the rollers over which stiffness and damping of the bearings are averaged; 1 for the
+        start angle of the cages alone.
 
     Raises
     ------
+    InputError
+        For a number of cage angles that is not possible.
     AnalysisError
         If there is no equilibrium, or its matrices are not finite.
 
@@ -96,9 +101,10 @@ def modes(model: Model, operation: Operation | None = None) -> ModesResult:
     >>> found.dataset["frequency"].attrs["units"]
     'Hz'
     """
+    check_cage_angles("modes", cage_angles)
     operation = operation or model.operation
     model = operating(model, operation.speed)
-    balance = equilibrium(steady_system(model.system), operation)
+    balance = mean_equilibrium(model.system, operation, cage_angles)
     found = modes_at(balance)
     dataset = described(with_states(modes_dataset(found, balance), states_of(model)), **law_attributes(model))
     errors = tuple(film_errors(model, balance.displacement, balance.operation))

@@ -43,7 +43,7 @@ from mbs.output.results import with_states
 from mbs.output.sweep_data import critical_dataset, sweep_dataset
 from mbs.scene.assembly import Model, choice_attributes, law_attributes, laws_attributes
 from mbs.scene.scene import Scene
-from mbs.settings import SweepRange
+from mbs.settings import CAGE_ANGLES, SweepRange
 
 if TYPE_CHECKING:
     from mbs.output.files import Figure
@@ -63,11 +63,11 @@ class SweepSettings:
         None for [sweep] of the scene.
     cage_angles : int
         Angles within one pitch of the rollers over which stiffness and damping of the bearings are averaged, for
-        modes and responses too.
+        modes and responses too; 1 for the start angle of the cages alone.
     """
 
     speeds: SweepRange | None = None
-    cage_angles: int = 1
+    cage_angles: int = CAGE_ANGLES
 
 
 @dataclass(frozen=True, eq=False)
@@ -181,7 +181,7 @@ def sweep(
     models : Model, Case, or a sequence of them
         One scene with one or more laws, clearances or loads.
     settings : SweepSettings, optional
-        Speeds and cage angles; the speeds of the scene at one angle if left out.
+        Speeds and cage angles; the speeds of the scene if left out.
     progress : callable, optional
         Told how many models are done, and of how many.
     workers : int
@@ -333,7 +333,7 @@ def critical(model: Model, settings: SweepSettings | None = None) -> CriticalRes
     model : Model
         Scene with its law.
     settings : SweepSettings, optional
-        Settings with the speeds; those of [sweep] of the scene if left out.
+        Speeds and cage angles; those of [sweep] of the scene if left out.
 
     Raises
     ------
@@ -344,8 +344,8 @@ def critical(model: Model, settings: SweepSettings | None = None) -> CriticalRes
 
     Notes
     -----
-    Orders are those of the unbalances and excitations, and without any the spins of the bodies. Cages stand at their
-    start angles, gear meshes have their mean stiffness.
+    Orders are those of the unbalances and excitations, and without any the spins of the bodies. Bearings and gear
+    meshes have their mean stiffness.
 
     Examples
     --------
@@ -366,7 +366,7 @@ def critical_of(models: Sequence[Model], settings: SweepSettings | None = None) 
     models : sequence of Model
         Scene with each law. Speeds around the critical ones of any of them are added for all.
     settings : SweepSettings, optional
-        Settings with the speeds; those of [sweep] of the scene if left out.
+        Speeds and cage angles; those of [sweep] of the scene if left out.
 
     Raises
     ------
@@ -406,8 +406,8 @@ def _swept(model: Model, settings: SweepSettings) -> _Swept:
     def system_at(speed: float) -> System:
         return operating(model, speed).system
 
-    sweep = sweep_system(system_at, speeds.speeds)
-    found = critical_speeds(system_at, sweep.speeds, sweep.damped, orders(model.system))
+    sweep = sweep_system(system_at, speeds.speeds, cage_angles=settings.cage_angles)
+    found = critical_speeds(system_at, sweep.speeds, sweep.damped, orders(model.system), settings.cage_angles)
     return _Swept(model, system_at, sweep, found)
 
 
@@ -417,7 +417,7 @@ def _responded(swept: _Swept, speeds: FloatArray) -> CriticalResult:
     responses: tuple[OrderResponse, ...] = ()
     if model.system.turning:
         try:
-            responses = order_responses(system_at, speeds)
+            responses = order_responses(system_at, speeds, sweep.bearings.angles)
         except np.linalg.LinAlgError as error:
             raise AnalysisError(
                 "responses: one of the speeds is just that of an undamped resonance, where there is none; move the "

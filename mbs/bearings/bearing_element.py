@@ -7,6 +7,7 @@ Its rollers are massless, with one law of both contacts in series (`BearingEleme
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -247,6 +248,11 @@ class BearingElement(RingElement):
     def lubricant(self) -> Lubricant | None:
         """Oil of its films; None where none is known."""
         return None if self.source is None else self.source.lubricant
+
+    def passed(self, part: float) -> Self:
+        """See `OnRings.passed`."""
+        turn = 2.0 * math.pi * part / self.bearing.geometry.rollers
+        return dataclasses.replace(self, start_angle=self.start_angle + turn * float(np.sign(self.rates[0])))
 
     def cage_angle(self, operation: Operation) -> float:
         """Angle of the first roller [rad]."""

@@ -84,6 +84,10 @@ class RollerElement(RingElement):
         """The passing of the rollers."""
         return self.plain.excitation
 
+    def passed(self, part: float) -> Self:
+        """See `OnRings.passed`."""
+        return dataclasses.replace(self, plain=self.plain.passed(part))
+
     @property
     def felt_rows(self) -> FloatArray:
         """See `RingElement.felt_rows`: y and z of both rings, and the tilts of one against the other, (6, 12 + Z)."""

@@ -15,6 +15,7 @@ from mbs.output.files import write_dataset
 from mbs.scene.fields import HERTZ, MILLISECOND
 from mbs.scene.reader import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
 from mbs.scene.scene import Scene
+from mbs.settings import CAGE_ANGLES, MOST_ANGLES
 
 
 def read_band(arguments: argparse.Namespace, problems: list[str]) -> dict[str, Any]:
@@ -145,6 +146,25 @@ def write_plot(figure: Figure, path: str) -> list[str]:
         warnings.simplefilter("always")
         write_figure(figure, path, RESOLUTION)
     return [f"{path}: written", *dict.fromkeys(f"warning: {path}: {entry.message}" for entry in caught)]
+
+
+def read_cage_angles(arguments: argparse.Namespace, problems: list[str]) -> int:
+    """Read the number of cage angles of a linear analysis; that of the analysis where none is given.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        Arguments with `cage_angles`, or without it.
+    problems : list of str
+        Appended to.
+    """
+    text = getattr(arguments, "cage_angles", None)
+    if text is None:
+        return CAGE_ANGLES
+    count = int(text) if text.isascii() and text.isdigit() and len(text) < 6 else 0
+    if not 1 <= count <= MOST_ANGLES:
+        problems.append(f"--cage-angles: got {text!r:.40}; allowed: a whole number from 1 to {MOST_ANGLES}")
+    return count
 
 
 def read_option(

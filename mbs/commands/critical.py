@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -17,7 +18,7 @@ from mbs.analyses.soundness import Judged
 from mbs.analyses.sweep import CriticalResult, SweepSettings, critical_of, critical_plot, dataset_of_laws, orders
 from mbs.commands.auto import analysed
 from mbs.commands.cases import load_cases
-from mbs.commands.common import Looked, write
+from mbs.commands.common import Looked, read_cage_angles, write
 from mbs.commands.lsa import MOST_COMPARED_CASES
 from mbs.commands.sweep import read_speeds
 from mbs.linearised.critical import CriticalSpeed
@@ -81,6 +82,7 @@ def _asked(arguments: argparse.Namespace) -> _Asked:
         settings = SweepSettings(read_speeds(arguments.speed) if arguments.speed else None)
     except InputError as error:
         problems += error.problems
+    settings = dataclasses.replace(settings, cage_angles=read_cage_angles(arguments, problems))
     try:
         cases = load_cases(arguments)
     except InputError as error:

@@ -16,10 +16,8 @@ from mbs.analyses.reach import fade_lines, outside_at
 from mbs.analyses.soundness import Judged
 from mbs.commands.auto import analysed
 from mbs.commands.cases import load_cases
-from mbs.commands.common import Looked, write
-from mbs.commands.sweep import whole
+from mbs.commands.common import Looked, read_cage_angles, write
 from mbs.linearised.linear import peak_places, response_display
-from mbs.linearised.sweep import MOST_ANGLES
 from mbs.output.files import RESULT
 from mbs.output.model_text import band_lines, film_lines, heading
 from mbs.output.state_space_file import write_spaces
@@ -32,12 +30,10 @@ MOST_COMPARED_CASES = 8
 
 def run(arguments: argparse.Namespace) -> tuple[str, int]:
     """Linearise, and compute the responses over the frequencies of the scene, with each law."""
-    angles = whole(getattr(arguments, "cage_angles", None) or "1")
-    if not 1 <= angles <= MOST_ANGLES:
-        raise InputError(
-            f"--cage-angles: got {arguments.cage_angles!r:.40}; allowed: a whole number from 1 to {MOST_ANGLES}"
-        )
-    settings = LsaSettings(cage_angles=angles)
+    problems: list[str] = []
+    settings = LsaSettings(cage_angles=read_cage_angles(arguments, problems))
+    if problems:
+        raise InputError(problems)
     done = analysed(
         arguments,
         _asked,

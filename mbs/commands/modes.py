@@ -18,7 +18,7 @@ from mbs.analyses.reach import fade_lines, outside_at
 from mbs.analyses.soundness import Judged
 from mbs.commands.auto import analysed
 from mbs.commands.cases import load_model
-from mbs.commands.common import Looked, read_option, write, write_plot
+from mbs.commands.common import Looked, read_cage_angles, read_option, write, write_plot
 from mbs.linearised.modes import Modes
 from mbs.linearised.shapes import skeleton
 from mbs.output.files import RESULT
@@ -45,7 +45,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     done = analysed(
         arguments,
         _asked,
-        lambda asked: modes(asked[0]),
+        lambda asked: modes(asked[0], cage_angles=asked[2]),
         lambda asked: Looked(at_one_speed(asked[0].scene), asked[1]),
     )
     result, highest = done.result, _highest(arguments, done.result.model.scene, [])
@@ -77,8 +77,8 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     return "\n".join(lines), 1 if outside or judged.status else 0
 
 
-def _asked(arguments: argparse.Namespace) -> tuple[Model, float]:
-    """The model, and the highest frequency to show [Hz]; all problems at once."""
+def _asked(arguments: argparse.Namespace) -> tuple[Model, float, int]:
+    """The model, the highest frequency to show [Hz], and the cage angles; all problems at once."""
     problems: list[str] = []
     try:
         model = load_model(arguments)
@@ -87,9 +87,10 @@ def _asked(arguments: argparse.Namespace) -> tuple[Model, float]:
         model = None
     highest = _highest(arguments, None if model is None else model.scene, problems)
     problems += _shape_problems(arguments, model)
+    cage_angles = read_cage_angles(arguments, problems)
     if problems or model is None:
         raise InputError(tuple(dict.fromkeys(problems)))
-    return model, highest
+    return model, highest, cage_angles
 
 
 def _shape_problems(arguments: argparse.Namespace, model: Model | None) -> list[str]:

@@ -20,10 +20,9 @@ from mbs.analyses.soundness import Judged
 from mbs.analyses.sweep import SweepSettings, sweep, sweep_problems, waterfall_problems
 from mbs.commands.auto import analysed
 from mbs.commands.cases import load_cases
-from mbs.commands.common import Looked, write, write_plot
+from mbs.commands.common import Looked, read_cage_angles, write, write_plot
 from mbs.linearised.linear import response_display
 from mbs.linearised.modes import free_motions
-from mbs.linearised.sweep import MOST_ANGLES
 from mbs.linearised.sweep_result import Sweep, exchanged
 from mbs.model.elements import Operation
 from mbs.model.system import System
@@ -114,11 +113,7 @@ def _read(arguments: argparse.Namespace) -> tuple[SweepSettings, list[Case]]:
         speeds = read_speeds(arguments.speed) if arguments.speed else None
     except InputError as error:
         problems += error.problems
-    angles = whole(arguments.cage_angles or "1")
-    if not 1 <= angles <= MOST_ANGLES:
-        problems.append(
-            f"--cage-angles: got {arguments.cage_angles!r:.40}; allowed: a whole number from 1 to {MOST_ANGLES}"
-        )
+    angles = read_cage_angles(arguments, problems)
     try:
         cases = load_cases(arguments, needs=lambda scene: _needs(arguments, scene), speeds=speeds)
     except InputError as error:

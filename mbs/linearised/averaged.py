@@ -19,7 +19,7 @@ import numpy as np
 
 from ehdmaps.arrays import ComplexArray, FloatArray
 from mbs.linearised.dynamic import dynamic_stiffness
-from mbs.model.elements import Element, OnRings
+from mbs.model.elements import Element, OnRings, Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.model.relaxation import Relaxation
 from mbs.model.system import Connected, System
@@ -89,10 +89,35 @@ class PitchSpread:
     complex_damping_ratio: FloatArray
 
 
+def mean_equilibrium(
+    system: System, operation: Operation, cage_angles: int, start: FloatArray | None = None
+) -> Equilibrium:
+    """Equilibrium at which a linear analysis linearises: gear meshes and bearings with their means.
+
+    Parameters
+    ----------
+    system : System
+        Bodies, springs, loads, elements.
+    operation : Operation
+        Speed, angle and time; place and forces are those of this angle.
+    cage_angles : int
+        Angles within one pitch of the rollers over which stiffness and damping are averaged; 1 for that of `operation`
+        alone.
+    start : array, shape (n,), optional
+        Displacement to begin with.
+
+    Raises
+    ------
+    AnalysisError
+        If there is no equilibrium at an angle.
+    """
+    return averaged(over_pitch(equilibrium(steady_system(system), operation, start), cage_angles))
+
+
 def over_pitch(balance: Equilibrium, count: int) -> tuple[Equilibrium, ...]:
     """Equilibria at several angles within one pitch of the rollers, the first of them the given one.
 
-    The angles are equally far apart; where cages turn at different speeds it is the pitch of the slowest one.
+    Each cage goes on by equal parts of its own pitch, so that all are seen evenly, however fast they turn.
 
     Parameters
     ----------
@@ -107,11 +132,11 @@ def over_pitch(balance: Equilibrium, count: int) -> tuple[Equilibrium, ...]:
         If there is no equilibrium at an angle.
     """
     system, operation = balance.system, balance.operation
-    turn = max((pitch(system.elements[index].element) for index in system.select(OnRings)), default=0.0)
     equilibria = [balance]
     for part in range(1, count):
-        at = operation._replace(angle=operation.angle + turn * part / count)
-        equilibria.append(equilibrium(system, at, equilibria[-1].displacement))
+        elements = [connected.element for connected in system.elements]
+        passed = [one.passed(part / count) if isinstance(one, OnRings) else one for one in elements]
+        equilibria.append(equilibrium(system.with_elements(passed), operation, equilibria[-1].displacement))
     return tuple(equilibria)
 
 

@@ -15,13 +15,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from ehdmaps.arrays import ComplexArray, FloatArray
-from mbs.linearised.averaged import steady_system
+from mbs.linearised.averaged import mean_equilibrium
 from mbs.linearised.dynamic import dynamic_stiffness, element_dynamic_stiffness
 from mbs.linearised.sweep import Point, solve_modes
 from mbs.linearised.sweep_result import ComplexSweep
 from mbs.linearised.validity import lifting
 from mbs.model.elements import OnRings, Operation
-from mbs.model.equilibrium import Equilibrium, equilibrium
+from mbs.model.equilibrium import Equilibrium
 from mbs.model.system import System
 
 CLOSE = 1e-7
@@ -109,7 +109,11 @@ class OrderResponse:
 
 
 def critical_speeds(
-    system_at: Callable[[float], System], speeds: FloatArray, damped: ComplexSweep, orders: Sequence[float]
+    system_at: Callable[[float], System],
+    speeds: FloatArray,
+    damped: ComplexSweep,
+    orders: Sequence[float],
+    cage_angles: int = 1,
 ) -> tuple[CriticalSpeed, ...]:
     """Find the critical speeds between the speeds of a sweep.
 
@@ -123,6 +127,8 @@ def critical_speeds(
         Complex modes of the sweep.
     orders : sequence of float
         Positive orders.
+    cage_angles : int
+        Cage angles over which stiffness and damping are averaged, those of the sweep.
 
     Returns
     -------
@@ -135,6 +141,10 @@ def critical_speeds(
     AnalysisError
         If there is no equilibrium at a speed.
     """
+
+    def balance_at(speed: float) -> Equilibrium:
+        return mean_equilibrium(system_at(speed), Operation(speed), cage_angles)
+
     critical = []
     for order in sorted(orders):
         apart = damped.eigenvalues.imag - order * speeds[:, None]
@@ -146,12 +156,14 @@ def critical_speeds(
                     continue
                 values = damped.eigenvalues[index : index + 2, mode].tolist()
                 number = int(damped.number[mode])
-                here.append(_refined(system_at, (speeds[index], speeds[index + 1]), values, order, number))
+                here.append(_refined(balance_at, (speeds[index], speeds[index + 1]), values, order, number))
         critical += sorted((one for one in here if one.resonates), key=lambda entry: entry.speed)
     return tuple(critical)
 
 
-def order_responses(system_at: Callable[[float], System], speeds: FloatArray) -> tuple[OrderResponse, ...]:
+def order_responses(
+    system_at: Callable[[float], System], speeds: FloatArray, cage_angles: int = 1
+) -> tuple[OrderResponse, ...]:
     """Respond to the loads of a system that follow its angle, at each speed.
 
     Parameters
@@ -160,6 +172,8 @@ def order_responses(system_at: Callable[[float], System], speeds: FloatArray) ->
         System at a speed [rad/s].
     speeds : array, shape (speeds,)
         [rad/s].
+    cage_angles : int
+        Cage angles over which stiffness and damping are averaged.
 
     Returns
     -------
@@ -178,9 +192,8 @@ def order_responses(system_at: Callable[[float], System], speeds: FloatArray) ->
     names: dict[float, dict[str, None]] = {}
     start = None
     for speed in speeds.tolist():
-        system = steady_system(system_at(speed))
-        balance = equilibrium(system, Operation(speed), start)
-        start = balance.displacement
+        balance = mean_equilibrium(system_at(speed), Operation(speed), cage_angles, start)
+        system, start = balance.system, balance.displacement
         rules = [(index, lifting(balance, index)) for index in system.select(OnRings)]
         lifted.append(tuple(rule.of for _, rule in rules))
         for order in sorted({abs(load.order) for load in system.turning}):
@@ -244,7 +257,7 @@ def orbit(along_y: ComplexArray, along_z: ComplexArray) -> tuple[FloatArray, Flo
 
 
 def _refined(
-    system_at: Callable[[float], System],
+    balance_at: Callable[[float], Equilibrium],
     ends: tuple[float, float],
     values: Sequence[complex],
     order: float,
@@ -257,7 +270,7 @@ def _refined(
     for _ in range(_EVALUATIONS):
         part = low_apart / (low_apart - high_apart) if low_apart != high_apart else 0.5
         speed = low + part * (high - low)
-        point = solve_modes(equilibrium(steady_system(system_at(speed)), Operation(speed)))
+        point = solve_modes(balance_at(speed))
         guess = low_value + (high_value - low_value) * (speed - ends[0]) / (ends[1] - ends[0])
         which = int(np.argmin(np.abs(point.damped.eigenvalues - guess)))
         value = complex(point.damped.eigenvalues[which])

@@ -1,11 +1,11 @@
 """The linearised system over speed: equilibrium, modes, bearing stiffness and damping, frequency responses.
 
-At each speed the equilibrium is found from that of the last one, at a fixed angle, which is a fixed cage angle. Modes
-are solved there twice: undamped, because the film of a lightly loaded bearing damps so strongly that its complex modes
-become overdamped, and complex with all of damping and gyroscopic terms. Each mode is followed from speed to speed by
-its shape (`mbs.linearised.tracking`); where two speeds are too far apart for that, speeds between them are solved too,
-for the following only. Where damped modes cross, undamped ones are followed straight on too
-(`mbs.linearised.sweep_result`). Gear meshes count with their mean stiffness.
+At each speed the equilibrium is found from that of the last one, at a fixed angle, which is a fixed cage angle, or at
+several, whose stiffness and damping are averaged. Modes are solved there twice: undamped, because the film of a lightly
+loaded bearing damps so strongly that its complex modes become overdamped, and complex with all of damping and
+gyroscopic terms. Each mode is followed from speed to speed by its shape (`mbs.linearised.tracking`); where two speeds
+are too far apart for that, speeds between them are solved too, for the following only. Where damped modes cross,
+undamped ones are followed straight on too (`mbs.linearised.sweep_result`). Gear meshes count with their mean stiffness.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ import numpy as np
 
 from ehdmaps.arrays import ComplexArray, FloatArray, IntArray
 from ehdmaps.errors import AnalysisError, InputError
-from mbs.linearised.averaged import AveragedEquilibrium, PitchSpread, averaged, over_pitch, pitch_spread, steady_system
+from mbs.linearised.averaged import AveragedEquilibrium, PitchSpread, mean_equilibrium, pitch_spread
 from mbs.linearised.bands import film_share, law_bands
 from mbs.linearised.dynamic import LostMode
 from mbs.linearised.linear import checked_response, peak_places, responses, with_peaks
@@ -27,12 +27,12 @@ from mbs.linearised.sweep_result import BearingSweep, ComplexSweep, ResponseSwee
 from mbs.linearised.tracking import Match, ModeSet, compose, match, numbers, tracks
 from mbs.linearised.validity import DynamicLoad, dynamic_loads
 from mbs.model.elements import Input, OnRings, Operation, Sensor
-from mbs.model.equilibrium import Equilibrium, equilibrium
+from mbs.model.equilibrium import Equilibrium
 from mbs.model.on_rings import ring_matrices
 from mbs.model.system import System
-from mbs.settings import MOST_SPEEDS
+from mbs.settings import MOST_ANGLES, MOST_SPEEDS
 
-__all__ = ["MOST_ANGLES", "Sweep", "sweep"]
+__all__ = ["Sweep", "sweep"]
 
 
 SURE = 0.8
@@ -231,8 +231,6 @@ def _link(first: Point, last: Point) -> Along:
     return Along(undamped, match(first.damped, last.damped, LEAST), 0.5 * (ahead + behind[undamped.chosen]))
 
 
-MOST_ANGLES = 1000
-
 FEWEST_BETWEEN = 16
 """Speeds that may be put in between, however few are asked for."""
 
@@ -277,14 +275,11 @@ def sweep(
     speeds = np.atleast_1d(np.asarray(speeds, dtype=np.float64))
     frequencies = np.asarray(frequencies, dtype=np.float64)
     _check(speeds, frequencies, len(inputs) * len(sensors), cage_angles)
-    fixed = steady_system(system) if isinstance(system, System) else None
 
     def at(speed: float, start: FloatArray | None) -> Point:
-        there = fixed if isinstance(system, System) else steady_system(system(speed))
-        assert there is not None
+        there = system if isinstance(system, System) else system(speed)
         try:
-            balance = equilibrium(there, Operation(speed, angle), start)
-            return solve_modes(averaged(over_pitch(balance, cage_angles)))
+            return solve_modes(mean_equilibrium(there, Operation(speed, angle), cage_angles, start))
         except AnalysisError as error:
             raise AnalysisError(f"at {speed:.6g} rad/s: {error}") from error
 

@@ -301,6 +301,18 @@ class OnRings(ElementDefaults):
         """Source of its films in words; empty where it is that of the law of the system."""
         return ""
 
+    def passed(self, part: float) -> OnRings:
+        """The same bearing, its cage further on by a part of the pitch of its rolling elements.
+
+        Itself where no cage turns.
+
+        Parameters
+        ----------
+        part : float
+            Part of the pitch, in the direction in which the cage turns.
+        """
+        return self
+
     def felt(self, displacement: FloatArray, operation: Operation) -> tuple[Any, Any]:
         """Pressures and films of its contacts at rest, and what rolling costs, by the law in force.
 

@@ -7,11 +7,13 @@ its films: which they are at a speed, how they keep a memory, how small motions 
 
 from __future__ import annotations
 
+import dataclasses
+import math
 from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 
@@ -251,6 +253,13 @@ class LocatingElement(OnRings):
         """The passing of the rolling elements; None for a cage that stands."""
         order = self.force.angles.size * abs(self.cage_turn)
         return Excitation(order, HARMONICS, rank=1) if order > 0.0 else None
+
+    def passed(self, part: float) -> Self:
+        """See `OnRings.passed`; with the films that are made already."""
+        turn = 2.0 * math.pi * part / self.force.angles.size
+        other = dataclasses.replace(self, start_angle=self.start_angle + turn * float(np.sign(self.cage_turn)))
+        other._made.update(self._made)
+        return other
 
     @cached_property
     def cage_turn(self) -> float:
