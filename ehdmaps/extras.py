@@ -1,10 +1,16 @@
-"""Packages that only a part of the programs needs: an extra of the distribution installs them, and messages name it."""
+"""What is loaded when it is needed: packages that only a part of the programs needs, and public names of our own.
+
+An extra of the distribution installs the former, and messages name it.
+"""
 
 from __future__ import annotations
 
 import importlib
-from collections.abc import Iterator
+import re
+import sys
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 from ehdmaps.errors import DependencyError
 
@@ -51,3 +57,33 @@ def lacking(extra: str, package: str, purpose: str) -> tuple[str, ...]:
     except DependencyError as error:
         return error.problems
     return ()
+
+
+def public_names(package: str, file: str) -> tuple[list[str], Callable[[str], object], Callable[[], list[str]]]:
+    """Return `__all__`, `__getattr__` and `__dir__` of a package whose names are loaded when they are first used.
+
+    Parameters
+    ----------
+    package, file : str
+        `__name__` and `__file__` of the package; the stub beside it has a line for each name, with its module.
+
+    Examples
+    --------
+    >>> names, load, _ = public_names("ehdmaps", sys.modules["ehdmaps"].__file__)
+    >>> "open_map" in names, load("Status").__module__
+    (True, 'ehdmaps.physics.solution')
+    """
+    stub = Path(file).with_name("__init__.pyi").read_text(encoding="utf-8")
+    homes = {name: module for module, name in re.findall(r"^from (\S+) import \w+ as (\w+)$", stub, re.MULTILINE)}
+
+    def load(name: str) -> object:
+        if name == "__version__":
+            value: object = importlib.import_module("ehdmaps.version").version()
+        elif name in homes:
+            value = getattr(importlib.import_module(homes[name]), name)
+        else:
+            raise AttributeError(f"module {package!r} has no attribute {name!r}")
+        setattr(sys.modules[package], name, value)
+        return value
+
+    return sorted(homes), load, lambda: sorted(homes)

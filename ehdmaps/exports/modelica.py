@@ -4,6 +4,13 @@ At one speed and temperature the law is a table of cubics: w^(1/3) and ln(c/w) o
 s = asinh((approach - offset)/scale). The cells of s are evenly spaced. The package has these very cubics, so that it
 differs from the law by round-off only. The derivative of the function in time is a function, too, and exact, so that no
 tool has to take difference quotients for it.
+
+Films with memory in the Modelica package: a state for each contact, the approach at which its film would be at rest.
+
+    approach = a(w) + y(xi),    xi' = (w^2 - p^2)/(2 w)/(dG/dxi)
+
+The package has the cubics of `ehdmaps.maps.kernels.memory_table`, as far as the loads of the map reach, and the rate of
+the kernel in C (`ehd_film_rate`), so that it differs from that by round-off only.
 """
 
 from __future__ import annotations
@@ -12,13 +19,16 @@ import argparse
 import math
 import re
 from collections.abc import Iterable
+from importlib import resources
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from ehdmaps.errors import InputError
-from ehdmaps.exports.modelica_memory import memory_text
 from ehdmaps.exports.target import Target, origin
 from ehdmaps.maps.emap import EHDMap
+from ehdmaps.maps.kernels import memory_table
 from ehdmaps.maps.law import LawAtPoint, LawKind
 from ehdmaps.outputs import Kind, Output, check_outputs, has_mark, write_text
 from ehdmaps.program import plain
@@ -40,167 +50,12 @@ _OWN = ("Table", "atRest", "force", "forceDerivative", "Example", "Film", "cellO
 
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,62}")
 
-_BODY = """package {name} "{title}"
-  // {lines}
-  package Table
-    constant Integer cells = {cells};
-    constant Real offset(unit = "m") = {offset};
-    constant Real inverseScale(unit = "1/m") = {inverse_scale};
-    constant Real start = {start};
-    constant Real step = {step};
-    constant Real highestApproach(unit = "m") = {highest} "from here on the load is above the map";
-    constant Real cubic[{cells}, 8] = {{
-      {rows}}} "cubics over the part of a cell: four numbers of w^(1/3), four of ln(c/w)";
-  end Table;
 
-  function atRest "Load at rest and ln(c/w) of a contact, with two derivatives by the approach"
-    input Real approach(unit = "m", nominal = {nominal}) "positive together";
-    output Real rest(unit = "N/m", nominal = {load});
-    output Real drest(unit = "N/m2");
-    output Real ddrest(unit = "N/m3");
-    output Real ratio(unit = "s/m") "c/w";
-    output Real slope(unit = "1/m") "of ln(c/w)";
-    output Real bend(unit = "1/m2") "of ln(c/w)";
-  protected
-    Real z;
-    Real root;
-    Real s;
-    Real x;
-    Integer cell;
-    Real t;
-    Real scale;
-    Real dscale;
-    Real g;
-    Real dg;
-    Real ddg;
-    Real logRatio;
-  algorithm
-    assert(approach <= Table.highestApproach, "approach is above the map");
-    z := (approach - Table.offset) * Table.inverseScale;
-    root := sqrt(1.0 + z * z);
-    s := if z >= 0.0 then log(z + root) else -log(root - z);
-    x := max(0.0, min((s - Table.start) * Table.step, Table.cells));
-    cell := integer(min(floor(x), Table.cells - 1)) + 1;
-    t := x - (cell - 1);
-    scale := Table.step * Table.inverseScale / root;
-    dscale := -scale * Table.inverseScale * z / (root * root);
-    g := max(0.0, Table.cubic[cell, 1] + t * (Table.cubic[cell, 2] + t * (Table.cubic[cell, 3]
-      + t * Table.cubic[cell, 4])));
-    dg := Table.cubic[cell, 2] + t * (2.0 * Table.cubic[cell, 3] + 3.0 * t * Table.cubic[cell, 4]);
-    ddg := 2.0 * Table.cubic[cell, 3] + 6.0 * t * Table.cubic[cell, 4];
-    ddg := ddg * scale * scale + dg * dscale;
-    dg := dg * scale;
-    logRatio := Table.cubic[cell, 5] + t * (Table.cubic[cell, 6] + t * (Table.cubic[cell, 7]
-      + t * Table.cubic[cell, 8]));
-    slope := Table.cubic[cell, 6] + t * (2.0 * Table.cubic[cell, 7] + 3.0 * t * Table.cubic[cell, 8]);
-    bend := 2.0 * Table.cubic[cell, 7] + 6.0 * t * Table.cubic[cell, 8];
-    bend := bend * scale * scale + slope * dscale;
-    slope := slope * scale;
-    rest := g ^ 3;
-    drest := 3.0 * g * g * dg;
-    ddrest := 3.0 * g * (2.0 * dg * dg + g * ddg);
-    ratio := exp(max(-700.0, min(logRatio, 700.0)));
-  end atRest;
+SHORTEST_MEMORY, OPENING = 1e-12, 0.003
+"""What keeps rates finite where there is hardly a load: as `EHD_SHORTEST_MEMORY` [s] and `EHD_OPENING` in film.h."""
 
-  function force "Load of a contact, its stiffness and damping, per unit length"
-    input Real approach(unit = "m", nominal = {nominal}) "positive together";
-    input Real rate(unit = "m/s", nominal = 1e-3) "of the approach";
-    output Real w(unit = "N/m", nominal = {load}) "presses the bodies together";
-    output Real k(unit = "N/m2", nominal = {stiffness}) "dw/dapproach";
-    output Real c(unit = "N.s/m2", nominal = {damping}) "dw/drate";
-  protected
-    Real rest;
-    Real drest;
-    Real ddrest;
-    Real ratio;
-    Real slope;
-    Real bend;
-    Real drag;
-    Real ddrag;
-    Real part;
-    Real share;
-  algorithm
-    (rest, drest, ddrest, ratio, slope, bend) := atRest(approach);
-    drag := rest * ratio;
-    ddrag := ratio * (drest + rest * slope);
-    part := drag * rate;
-    if rest <= 0.0 then
-      w := 0.0;
-      k := 0.0;
-      c := 0.0;
-    elseif part >= -0.5 * rest then
-      w := rest + part;
-      k := drest + ddrag * rate;
-      c := drag;
-    else
-      share := rest / part;
-      w := -0.25 * rest * share;
-      k := 0.25 * share * (share * ddrag * rate - 2.0 * drest);
-      c := 0.25 * share * share * drag;
-    end if;
-    annotation(derivative = forceDerivative, smoothOrder = 1);
-  end force;
-
-  function forceDerivative "Rates of load, stiffness and damping in time: the derivative of force"
-    input Real approach(unit = "m", nominal = {nominal}) "positive together";
-    input Real rate(unit = "m/s", nominal = 1e-3) "of the approach";
-    input Real der_approach(unit = "m/s") "of the approach, as force has it";
-    input Real der_rate(unit = "m/s2") "of the rate, as force has it";
-    output Real der_w(unit = "N/(m.s)");
-    output Real der_k(unit = "N/(m2.s)");
-    output Real der_c(unit = "N/m2");
-  protected
-    Real rest;
-    Real drest;
-    Real ddrest;
-    Real ratio;
-    Real slope;
-    Real bend;
-    Real q;
-    Real dq;
-    Real ddq;
-    Real mixed;
-  algorithm
-    (rest, drest, ddrest, ratio, slope, bend) := atRest(approach);
-    if rest <= 0.0 then
-      der_w := 0.0;
-      der_k := 0.0;
-      der_c := 0.0;
-    elseif ratio * rate >= -0.5 then
-      // w = rest + q * rate
-      q := rest * ratio;
-      dq := ratio * (drest + rest * slope);
-      ddq := ratio * (ddrest + 2.0 * drest * slope + rest * (bend + slope * slope));
-      der_w := (drest + dq * rate) * der_approach + q * der_rate;
-      der_k := (ddrest + ddq * rate) * der_approach + dq * der_rate;
-      der_c := dq * der_approach;
-    else
-      // w = -q / (4 * rate)
-      q := rest / ratio;
-      dq := (drest - rest * slope) / ratio;
-      ddq := (ddrest - 2.0 * drest * slope + rest * (slope * slope - bend)) / ratio;
-      mixed := 0.25 * dq / (rate * rate);
-      der_w := -0.25 * dq / rate * der_approach + 0.25 * q / (rate * rate) * der_rate;
-      der_k := -0.25 * ddq / rate * der_approach + mixed * der_rate;
-      der_c := mixed * der_approach - 0.5 * q / (rate * rate * rate) * der_rate;
-    end if;
-  end forceDerivative;
-
-  model Example "A mass on the contact, under a constant load"
-    parameter Real mass(unit = "kg/m") = {mass} "per unit length of contact";
-    parameter Real load(unit = "N/m") = {load};
-    Real approach(unit = "m", start = {begin}, fixed = true, nominal = {nominal});
-    Real rate(unit = "m/s", start = 0.0, fixed = true, nominal = 1e-3);
-    Real w(unit = "N/m", nominal = {load});
-    Real k(unit = "N/m2", nominal = {stiffness});
-    Real c(unit = "N.s/m2", nominal = {damping});
-  equation
-    (w, k, c) = force(approach, rate);
-    der(approach) = rate;
-    mass * der(rate) = load - w;
-  end Example;
-end {name};
-"""
+_DIGITS = 32
+"""Cells to each doubling."""
 
 
 def package(law: LawAtPoint, name: str, lines: Iterable[str], memory: bool = False) -> str:
@@ -236,8 +91,7 @@ def package(law: LawAtPoint, name: str, lines: Iterable[str], memory: bool = Fal
     _, stiffness, damping = law(begin, 0.0)
     # The mass oscillates at 1 kHz, and begins 1 % of its approach off its place.
     mass = float(stiffness) / (2.0e3 * math.pi) ** 2
-    rows = ",\n      ".join("{" + ", ".join(_number(value) for value in row) + "}" for row in line.coefficients)
-    text = _BODY.format(
+    text = _template("contact_law.mo").format(
         name=name,
         title="EHD contact law at one speed and temperature",
         lines="\n  // ".join(_comment(one) for one in lines),
@@ -247,7 +101,7 @@ def package(law: LawAtPoint, name: str, lines: Iterable[str], memory: bool = Fal
         start=_number(line.start),
         step=_number(line.step),
         highest=_number(highest),
-        rows=rows,
+        rows=_rows(line.coefficients),
         nominal=f"{1.0 / line.inverse_scale:.1g}",
         load=_number(load),
         stiffness=f"{float(stiffness):.1g}",
@@ -260,6 +114,11 @@ def package(law: LawAtPoint, name: str, lines: Iterable[str], memory: bool = Fal
         end = text.rindex(f"end {name};")
         text = f"{text[:end]}\n{memory_text(law, {**words, 'begin': _number(1.01 * begin)})}{text[end:]}"
     return text
+
+
+def _template(name: str) -> str:
+    """A text of a package, with places for `str.format`."""
+    return (resources.files(__package__) / name).read_text(encoding="utf-8")
 
 
 def _number(value: float) -> str:
@@ -327,6 +186,52 @@ def _chosen(
     if not low <= value <= high:
         problems.append(f"{option}: got {text!r:.60}; allowed in this map: {display.text(low)} to {display.text(high)}")
     return value
+
+
+def memory_text(law: LawAtPoint, words: dict[str, str]) -> str:
+    """Return what a package with memory has besides.
+
+    Parameters
+    ----------
+    law : LawAtPoint
+        The law at one speed and temperature.
+    words : dict of str to str
+        Numbers of the package: nominal, nominal_load, mass, begin.
+    """
+    table, highest = law.memory.table, law.point.highest_load
+    reach = [law.approach(highest), table.lift_off]
+    above, below = (_cells(1.0 + abs(place - table.centre) * table.inverse_scale) for place in reach)
+    above, below = min(above, memory_table.ROWS), min(below, memory_table.ROWS)
+    loads = min(_cells(1.0 + highest / memory_table.LIGHTEST), memory_table.LOAD_ROWS)
+    cells = np.concatenate([table.cells[:above], table.cells[memory_table.ROWS : memory_table.ROWS + below]])
+    slope = table.load_cells[loads - 1, 1]
+    return _template("contact_memory.mo").format(
+        above=above,
+        below=below,
+        loads=loads,
+        rows=len(cells),
+        centre=_number(table.centre),
+        inverse_scale=_number(table.inverse_scale),
+        lift_off=_number(table.lift_off),
+        least_damping=_number(SHORTEST_MEMORY * memory_table.LIGHTEST / float(slope)),
+        opening=OPENING,
+        film=_rows(np.delete(cells, 8, axis=1)),
+        load=_rows(table.load_cells[:loads]),
+        digits=_DIGITS,
+        last=_DIGITS - 1,
+        **words,
+    )
+
+
+def _cells(end: float) -> int:
+    """Number of cells from 1 to a number, and one more for solvers that go beyond."""
+    octave = math.floor(math.log2(end))
+    return octave * _DIGITS + math.floor((end / 2.0**octave - 1.0) * _DIGITS) + 2
+
+
+def _rows(values: np.ndarray) -> str:
+    """Return rows of an array in Modelica."""
+    return ",\n      ".join("{" + ", ".join(_number(value) for value in row) + "}" for row in values)
 
 
 TARGET = Target(

@@ -1,27 +1,4 @@
-"""Films with memory in the Modelica package: a state for each contact, the approach at which its film would be at rest.
-
-    approach = a(w) + y(xi),    xi' = (w^2 - p^2)/(2 w)/(dG/dxi)
-
-The package has the cubics of `ehdmaps.maps.kernels.memory_table`, as far as the loads of the map reach, and the rate of
-the kernel in C (`ehd_film_rate`), so that it differs from that by round-off only.
-"""
-
-from __future__ import annotations
-
-import math
-
-import numpy as np
-
-from ehdmaps.maps.kernels import memory_table
-from ehdmaps.maps.law import LawAtPoint
-
-SHORTEST_MEMORY, OPENING = 1e-12, 0.003
-"""What keeps rates finite where there is hardly a load: as `EHD_SHORTEST_MEMORY` [s] and `EHD_OPENING` in film.h."""
-
-_DIGITS = 32
-"""Cells to each doubling."""
-
-_BODY = """  package Film "cells are binary digits of 1 + the distance from the centre in scales, or of 1 + w/(1 N/m)"
+  package Film "cells are binary digits of 1 + the distance from the centre in scales, or of 1 + w/(1 N/m)"
     constant Integer above = {above} "cells above the centre; those below follow";
     constant Integer below = {below};
     constant Integer loads = {loads};
@@ -161,50 +138,3 @@ _BODY = """  package Film "cells are binary digits of 1 + the distance from the 
     der(approach) = rate;
     mass * der(rate) = load - w;
   end ExampleMemory;
-"""
-
-
-def memory_text(law: LawAtPoint, words: dict[str, str]) -> str:
-    """Return what a package with memory has besides.
-
-    Parameters
-    ----------
-    law : LawAtPoint
-        The law at one speed and temperature.
-    words : dict of str to str
-        Numbers of the package: nominal, nominal_load, mass, begin.
-    """
-    table, highest = law.memory.table, law.point.highest_load
-    reach = [law.approach(highest), table.lift_off]
-    above, below = (_cells(1.0 + abs(place - table.centre) * table.inverse_scale) for place in reach)
-    above, below = min(above, memory_table.ROWS), min(below, memory_table.ROWS)
-    loads = min(_cells(1.0 + highest / memory_table.LIGHTEST), memory_table.LOAD_ROWS)
-    cells = np.concatenate([table.cells[:above], table.cells[memory_table.ROWS : memory_table.ROWS + below]])
-    slope = table.load_cells[loads - 1, 1]
-    return _BODY.format(
-        above=above,
-        below=below,
-        loads=loads,
-        rows=len(cells),
-        centre=repr(float(table.centre)),
-        inverse_scale=repr(float(table.inverse_scale)),
-        lift_off=repr(float(table.lift_off)),
-        least_damping=repr(SHORTEST_MEMORY * memory_table.LIGHTEST / float(slope)),
-        opening=OPENING,
-        film=_rows(np.delete(cells, 8, axis=1)),
-        load=_rows(table.load_cells[:loads]),
-        digits=_DIGITS,
-        last=_DIGITS - 1,
-        **words,
-    )
-
-
-def _cells(end: float) -> int:
-    """Number of cells from 1 to a number, and one more for solvers that go beyond."""
-    octave = math.floor(math.log2(end))
-    return octave * _DIGITS + math.floor((end / 2.0**octave - 1.0) * _DIGITS) + 2
-
-
-def _rows(values: np.ndarray) -> str:
-    """Return rows of an array in Modelica."""
-    return ",\n      ".join("{" + ", ".join(repr(float(value)) for value in row) + "}" for row in values)
