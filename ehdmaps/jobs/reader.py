@@ -122,8 +122,8 @@ def parse_job(
     values = table.parse(text, where)
     if "batch" in values:
         raise InputError(
-            f"{where}: is a batch file, of many jobs; allowed: one job; `ehdmaps generate`, `check`, `status`, `merge` "
-            "and `submit` take a batch"
+            f"{where}: is a batch file, of many jobs; allowed: one job; `ehdmaps generate`, `check` and "
+            "`status` take a batch"
         )
     problems: list[str] = []
     if not name.isprintable():

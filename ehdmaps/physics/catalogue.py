@@ -29,6 +29,7 @@ from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
 from ehdmaps.physics.designations.clearance import NORMAL, ClearanceRange, class_range, delivered
 from ehdmaps.physics.designations.families import words_for_lines
 from ehdmaps.physics.designations.reader import CYLINDRICAL, NEEDLES, ROLLERS, plain_name, read_designation
+from ehdmaps.physics.designations.tables import table
 from ehdmaps.physics.rollers.needle_catalogue import needle_boundary, needle_designations, needle_estimate
 from ehdmaps.physics.rollers.ratings import RATING
 
@@ -46,11 +47,7 @@ ERRORS = "raceways to about 3 %, roller diameter {} %, roller length {} %, numbe
 
 _MM = 1e-3
 
-_RATINGS = {
-    "204": 22e3, "205": 27e3, "206": 36.5e3, "207": 48e3, "208": 53e3, "209": 64e3, "210": 69.5e3, "211": 95e3,
-    "212": 102e3, "213": 118e3, "214": 137e3, "215": 156e3, "216": 166e3, "217": 200e3, "218": 220e3, "220": 305e3,
-    "305": 36.5e3,
-}  # fmt: skip
+_RATINGS = table("cylindrical")["ratings"]
 """Static ratings C0 [N] by series and bore code, as far as they are certain; others are estimated without."""
 
 
@@ -74,59 +71,7 @@ class Catalogue(NamedTuple):
     outer_raceway: float
 
 
-# diameter series, then mm: bore, outside diameter, width, width of the wide series (22, 23; 0: none), F, E
-_TABLE = (
-    (0, 25, 47, 12, 0, 30.5, 41.5),
-    (0, 30, 55, 13, 0, 36.5, 48.5),
-    (0, 35, 62, 14, 0, 42, 55),
-    (0, 40, 68, 15, 0, 47, 61),
-    (0, 45, 75, 16, 0, 52.5, 67.5),
-    (0, 50, 80, 16, 0, 57.5, 72.5),
-    (0, 55, 90, 18, 0, 64, 82),
-    (0, 60, 95, 18, 0, 69.5, 85.5),
-    (0, 65, 100, 18, 0, 74.5, 90.5),
-    (0, 70, 110, 20, 0, 80, 100),
-    (0, 75, 115, 20, 0, 85, 105),
-    (0, 80, 125, 22, 0, 91.5, 113.5),
-    (0, 85, 130, 22, 0, 96.5, 118.5),
-    (0, 90, 140, 24, 0, 103, 127),
-    (0, 95, 145, 24, 0, 108, 132),
-    (0, 100, 150, 24, 0, 113, 137),
-    (2, 20, 47, 14, 18, 26.5, 41.5),
-    (2, 25, 52, 15, 18, 31.5, 46.5),
-    (2, 30, 62, 16, 20, 37.5, 55.5),
-    (2, 35, 72, 17, 23, 44, 64),
-    (2, 40, 80, 18, 23, 49.5, 71.5),
-    (2, 45, 85, 19, 23, 54.5, 76.5),
-    (2, 50, 90, 20, 23, 59.5, 81.5),
-    (2, 55, 100, 21, 25, 66, 90),
-    (2, 60, 110, 22, 28, 72, 100),
-    (2, 65, 120, 23, 31, 78.5, 108.5),
-    (2, 70, 125, 24, 31, 83.5, 113.5),
-    (2, 75, 130, 25, 31, 88.5, 118.5),
-    (2, 80, 140, 26, 33, 95.3, 127.3),
-    (2, 85, 150, 28, 36, 100.5, 136.5),
-    (2, 90, 160, 30, 40, 107, 145),
-    (2, 95, 170, 32, 43, 112.5, 154.5),
-    (2, 100, 180, 34, 46, 119, 163),
-    (3, 20, 52, 15, 21, 27.5, 45.5),
-    (3, 25, 62, 17, 24, 34, 54),
-    (3, 30, 72, 19, 27, 40.5, 62.5),
-    (3, 35, 80, 21, 31, 46.2, 70.2),
-    (3, 40, 90, 23, 33, 52, 80),
-    (3, 45, 100, 25, 36, 58.5, 88.5),
-    (3, 50, 110, 27, 40, 65, 97),
-    (3, 55, 120, 29, 43, 70.5, 106.5),
-    (3, 60, 130, 31, 46, 77, 115),
-    (3, 65, 140, 33, 48, 82.5, 124.5),
-    (3, 70, 150, 35, 51, 89, 133),
-    (3, 75, 160, 37, 55, 95, 143),
-    (3, 80, 170, 39, 58, 101, 151),
-    (3, 85, 180, 41, 60, 108, 160),
-    (3, 90, 190, 43, 64, 113.5, 169.5),
-    (3, 95, 200, 45, 67, 121.5, 177.5),
-    (3, 100, 215, 47, 73, 127.5, 191.5),
-)
+_TABLE = table("cylindrical")["bearings"]
 
 
 def estimate(designation: str, basic_static_rating: float | None = None) -> BearingGeometry:

@@ -18,32 +18,13 @@ from typing import NamedTuple
 
 from ehdmaps.errors import InputError, short
 from ehdmaps.physics.designations.reader import ANGULAR, CYLINDRICAL, DEEP_GROOVE, NEEDLE, TAPERED, read_designation
+from ehdmaps.physics.designations.tables import table
 
 CLASSES = ("C2", "CN", "C3", "C4", "C5")
 NORMAL = "CN"
 """Class of a bearing whose designation has none."""
 
-# largest bore [mm]; least and largest clearance of C2, CN, C3, C4, C5 [um]
-_BALLS = (
-    (10, 0, 7, 2, 13, 8, 23, 14, 29, 20, 37),
-    (18, 0, 9, 3, 18, 11, 25, 18, 33, 25, 45),
-    (24, 0, 10, 5, 20, 13, 28, 20, 36, 28, 48),
-    (30, 1, 11, 5, 20, 13, 28, 23, 41, 30, 53),
-    (40, 1, 11, 6, 20, 15, 33, 28, 46, 40, 64),
-    (50, 1, 11, 6, 23, 18, 36, 30, 51, 45, 73),
-    (65, 1, 15, 8, 28, 23, 43, 38, 61, 55, 90),
-    (80, 1, 15, 10, 30, 25, 51, 46, 71, 65, 105),
-    (100, 1, 18, 12, 36, 30, 58, 53, 84, 75, 120),
-)
-_ROLLERS = (
-    (24, 0, 25, 20, 45, 35, 60, 50, 75, 65, 90),
-    (30, 0, 25, 20, 45, 35, 60, 50, 75, 70, 95),
-    (40, 5, 30, 25, 50, 45, 70, 60, 85, 80, 105),
-    (50, 5, 35, 30, 60, 50, 80, 70, 100, 95, 125),
-    (65, 10, 40, 40, 70, 60, 90, 80, 110, 110, 140),
-    (80, 10, 45, 40, 75, 65, 100, 90, 125, 130, 165),
-    (100, 15, 50, 50, 85, 75, 110, 105, 140, 155, 190),
-)
+_BALLS, _ROLLERS = table("clearance")["balls"], table("clearance")["rollers"]
 _TABLES = {DEEP_GROOVE: _BALLS, CYLINDRICAL: _ROLLERS, NEEDLE: _ROLLERS}
 _FIT, _FITS = 20e-6, {DEEP_GROOVE: 10e-6}
 """What fits and warmth take of a clearance at most, where neither is stated [m]: a rule of our own. k5 in the ring of
