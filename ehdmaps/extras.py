@@ -1,6 +1,7 @@
-"""What is loaded when it is needed: packages that only a part of the programs needs, and public names of our own.
+"""Packages and names that are loaded when they are needed.
 
-An extra of the distribution installs the former, and messages name it.
+An extra of the distribution installs a package that only a part of the programs needs, and messages name it. Public
+names of our own packages are loaded when they are first used.
 """
 
 from __future__ import annotations

@@ -62,7 +62,7 @@ def source_state(root: Path) -> str:
 
 
 def sources_hash(root: Path = ROOT) -> str:
-    """Return a hash over names and contents of the packages' Python files and of the C files of `ehdmaps.kernel`.
+    """Return a hash over names and contents of the packages' Python files, the C files of `ehdmaps.kernel`, and data.
 
     Parameters
     ----------
@@ -125,8 +125,9 @@ def _imported(text: str) -> Iterator[str]:
 
 
 def _sources(root: Path) -> dict[str, bytes]:
-    """Contents of the packages' Python and C files by their names, in order; none where one cannot be read."""
-    patterns = (*(f"{package}/**/*.py" for package in PACKAGES), "ehdmaps/kernel/c/**/*.[ch]")
+    """Contents of the packages' Python, C and data files by their names, in order; none where one cannot be read."""
+    data = ("ehdmaps/kernel/c/**/*.[ch]", "ehdmaps/physics/shipped/*.*", "ehdmaps/maps/*.toml")
+    patterns = (*(f"{package}/**/*.py" for package in PACKAGES), *data)
     names = sorted(path.relative_to(root).as_posix() for pattern in patterns for path in root.glob(pattern))
     try:
         return {name: (root / name).read_bytes() for name in names}

@@ -27,16 +27,19 @@ of films, where the solver finds them, and to the backbone the films of the oute
 own. Version 7 added the errors of temperatures. Version 8 added what laws lose between the points of a map
 without lines.
 
-To add a variable, write one row in `TABLE` with ``since=`` the new version, and raise `SCHEMA_VERSION`. With
-``required=False`` a map may lack it. It is then written, where `dataset` or `backbone` is given values for it, read,
+To add a variable, write one row in `variables.toml` with ``since`` the new version, and raise `SCHEMA_VERSION`. With
+``required = false`` a map may lack it. It is then written, where `dataset` or `backbone` is given values for it, read,
 checked and sealed by the checksum. To add an axis (a frequency, a slide-to-roll ratio), write one row whose only dim is
-its own name, with the limits of its values, and ``required=False``; the variables over it are rows of their own that
+its own name, with the limits of its values, and ``required = false``; the variables over it are rows of their own that
 name it in their dims. The dims of a row that is there already never change: old readers of old rows stay right.
 """
 
 from __future__ import annotations
 
+import tomllib
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from importlib import resources
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -166,48 +169,18 @@ _NO_YES = ((0, "no"), (1, "yes"))
 _STATUS = tuple((int(status), status.word) for status in Status)
 
 
-def _axis(name: str, units: str, long_name: str, limits: tuple[float, float], group: str = GRID) -> Variable:
-    """Row of an axis of numbers."""
-    return Variable(name, units, long_name, dims=(name,), group=group, limits=limits)
+_FLAGS = {"no_yes": _NO_YES, "status": _STATUS, "status_or_not_needed": ((NOT_NEEDED, "not_needed"), *_STATUS)}
+"""Flags by their names in the table."""
 
 
-def _derived(name: str, units: str, long_name: str) -> Variable:
-    """Row of a variable that contains the solids; version 1 had it in place of the film's own."""
-    return Variable(name, units, long_name, derived_since=2)
-
-
-def _error(name: str, of: str, required: bool = True, since: int = 1) -> Variable:
-    """Row of an error estimate."""
-    return Variable(name, "1", f"estimated relative numerical error of {of}", required=required, since=since)
-
-
-def _model_error(name: str, of: str) -> Variable:
-    """Row of what remains, after a correction, to the solver that corrected the map."""
-    words = f"estimated standard deviation of {of} from that of the dearer solver that corrected the map, relative"
-    return Variable(name, "1", words, required=False, since=4)
-
-
-def _spacing_error(name: str, of: str) -> Variable:
-    """Row of what laws lose between the points of a map."""
-    words = f"estimated error of {of} of a law between this point and those around it, relative"
-    return Variable(name, "1", words, required=False, since=8)
-
-
-def _of_films(name: str, units: str, long_name: str) -> Variable:
-    """Row of what only some solvers find of a film."""
-    return Variable(name, units, long_name, required=False, since=5)
-
-
-def _of_backbone(name: str, units: str, long_name: str, required: bool = True, since: int = 1) -> Variable:
-    """Row of a film of the reference contact."""
-    long_name = f"{long_name}, reference contact"
-    return Variable(name, units, long_name, required=required, dims=BACKBONE_DIMS, group=BACKBONE, since=since)
-
-
-def _of_response(name: str, units: str, long_name: str) -> Variable:
-    """Row of how a film of the reference contact answers at natural frequencies."""
-    words = f"{long_name} at a natural frequency, reference contact"
-    return Variable(name, units, words, required=False, dims=RESPONSE_DIMS, group=BACKBONE, since=3)
+def _rows() -> Iterator[Variable]:
+    """Rows of the table; behind those of the backbone the films of the outer contact, see `OWN`."""
+    text = (resources.files(__package__) / "variables.toml").read_text(encoding="utf-8")
+    for group, dims, rows in zip((GRID, BACKBONE), (DIMS, BACKBONE_DIMS), tomllib.loads(text).values(), strict=True):
+        for row in rows:
+            lists = {key: tuple(row[key]) for key in ("dims", "limits") if key in row}
+            flags = {"flags": _FLAGS[row["flags"]]} if "flags" in row else {}
+            yield Variable(**{"dims": dims, **row, **lists, **flags, "group": group})
 
 
 def _own(entry: Variable) -> Variable:
@@ -216,112 +189,9 @@ def _own(entry: Variable) -> Variable:
     return replace(entry, name=f"{OWN}{entry.name}", long_name=words, required=False, since=5)
 
 
-_KELVINS = (1.0, 1e4)
+_STATED = tuple(_rows())
 
-_LINE_AXES = (
-    _axis("zeta", "1", "ln(M/M_valley(L))", (-100.0, 100.0), BACKBONE),
-    _axis("reference_speed", "m s-1", "entrainment speed of the reference contact", (1e-12, 1e6), BACKBONE),
-    _axis("temperature", "K", "temperature of the raceways, the surfaces of the contact", _KELVINS, BACKBONE),
-)
-"""Axes of the refinement lines."""
-
-_LINES = (
-    _of_backbone("film_offset", "m", "dry minus lubricated approach at equal load"),
-    _of_backbone("film_compliance", "m2 N-1", "minus the derivative of the film offset by load"),
-    _of_backbone("loss_compliance", "m2 s N-1", "damping over squared stiffness, low-frequency limit"),
-    _of_backbone(
-        "rolling_force", "N m-1", "force of both walls together against pure rolling", required=False, since=3
-    ),
-    _of_backbone("mass_flow", "kg m-1 s-1", "mass flow per unit length", required=False, since=3),
-    Variable(
-        "status",
-        "1",
-        "how the point ended; -1: no contact of the map comes here",
-        "int8",
-        flags=((NOT_NEEDED, "not_needed"), *_STATUS),
-        dims=BACKBONE_DIMS,
-        group=BACKBONE,
-    ),
-    Variable(
-        NATURAL,
-        "1",
-        "omega sqrt(b^2 + 2 h R)/u of a small oscillation, with the film offset h",
-        required=False,
-        dims=(NATURAL,),
-        group=BACKBONE,
-        since=3,
-        limits=(1e-6, 1e6),
-    ),
-    _of_response("film_compliance_real", "m2 N-1", "real part of the complex film compliance S"),
-    _of_response("film_compliance_imaginary", "m2 N-1", "imaginary part of S, minus omega times the loss compliance,"),
-    _of_response("film_compliance_error", "1", "estimated numerical error of S, relative to its magnitude,"),
-)
-"""Films of the refinement lines: of the reference contact, which stands for all contacts where films know no heat."""
-
-TABLE = (
-    Variable("contact", "1", "contact of the roller with this raceway", "str", dims=("contact",)),
-    _axis("load", "N m-1", "load per unit length", (1e-6, 1e12)),
-    _axis("entrainment_speed", "m s-1", "mean of the two surface speeds", (0.0, 1e6)),
-    _axis("temperature", "K", "temperature of the raceways, the surfaces of the contact", _KELVINS),
-    _derived("approach", "m", "mutual approach of the bodies, positive together"),
-    Variable("film_offset", "m", "dry minus lubricated approach at equal load"),
-    Variable("film_compliance", "m2 N-1", "minus the derivative of the film offset by load", since=2),
-    Variable("loss_compliance", "m2 s N-1", "damping over squared stiffness, low-frequency limit", since=2),
-    _derived("stiffness", "N m-2", "stiffness per unit length, derivative of load by approach"),
-    _derived("damping", "N s m-2", "damping per unit length, low-frequency limit"),
-    Variable("central_film", "m", "film thickness at the contact centre"),
-    Variable("minimum_film", "m", "smallest film thickness"),
-    Variable("max_pressure", "Pa", "largest pressure"),
-    Variable(
-        "rolling_force",
-        "N m-1",
-        "force of both walls together against pure rolling, integral of film by pressure gradient",
-        required=False,
-        since=3,
-    ),
-    Variable("mass_flow", "kg m-1 s-1", "mass flow of oil per unit length", required=False, since=3),
-    _of_films("traction", "N m-1", "force between the surfaces from sliding, mean of both walls"),
-    _of_films("wall_stress", "Pa", "largest shear stress at a wall"),
-    _of_films("film_temperature", "K", "highest temperature in the film"),
-    _of_films("surface_temperature", "K", "highest temperature of the surfaces of the film"),
-    replace(_of_films("film_temperature_error", "K", "estimated numerical error of film_temperature"), since=7),
-    replace(_of_films("surface_temperature_error", "K", "estimated numerical error of surface_temperature"), since=7),
-    Variable("status", "1", "how the point ended", "int8", flags=_STATUS),
-    Variable("reason", "1", "cause of the status, in words", "str"),
-    _error("film_offset_error", "film_offset"),
-    _error("film_compliance_error", "film_compliance"),
-    Variable(
-        "loss_compliance_error",
-        "1",
-        "estimated relative numerical error of loss_compliance, positive where that of film_compliance has its sign",
-        since=2,
-    ),
-    replace(_error("stiffness_error", "stiffness"), derived_since=2),
-    replace(_error("damping_error", "damping"), derived_since=2),
-    _error("central_film_error", "central_film", required=False),
-    _error("minimum_film_error", "minimum_film", required=False),
-    _error("max_pressure_error", "max_pressure", required=False),
-    _error("rolling_force_error", "rolling_force", required=False, since=3),
-    _error("mass_flow_error", "mass_flow", required=False, since=3),
-    _model_error("stiffness_model_error", "stiffness"),
-    _model_error("damping_model_error", "damping"),
-    _spacing_error("film_offset_spacing_error", "film_offset"),
-    _spacing_error("stiffness_spacing_error", "stiffness"),
-    _spacing_error("damping_spacing_error", "damping"),
-    Variable("iterations", "1", "iterations of the solver, all grids together", "int32"),
-    Variable("solve_seconds", "s", "processor time to solve the point"),
-    Variable(
-        "viscosity_extrapolated",
-        "1",
-        "pressure beyond the fitted range of the viscosity",
-        "int8",
-        flags=_NO_YES,
-    ),
-    Variable("filled", "1", "values interpolated from neighbours; status keeps the cause", "int8", flags=_NO_YES),
-    *_LINE_AXES,
-    *_LINES,
-    *(_own(entry) for entry in _LINES if not entry.axis),
-)
+TABLE = (*_STATED, *(_own(entry) for entry in _STATED if entry.group == BACKBONE and not entry.axis))
 """All rows, in the order in which they are written."""
 
 ATTRIBUTES = {

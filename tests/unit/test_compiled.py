@@ -43,9 +43,11 @@ def site(tmp_path):
         "program",
         "interrupts",
         "errors",
+        "extras",
         "netcdf_structure",
     ):
         (package / f"{name}.py").write_bytes((ROOT / "ehdmaps" / f"{name}.py").read_bytes())
+    (package / "__init__.pyi").write_bytes((ROOT / "ehdmaps" / "__init__.pyi").read_bytes())
     (package / "callee.py").write_text(TWICE.format(factor=2.0))
     (package / "caller.py").write_text(CALLER.format(callee="callee"))
     return package.parent
