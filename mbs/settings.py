@@ -20,6 +20,9 @@ MOST_SPEEDS = 2000
 CAGE_ANGLES, MOST_ANGLES = 4, 1000
 """Cage angles over which linear analyses average where none are asked for, and the most that may be asked for."""
 
+NUMERICS = "numerics"
+"""What `--bands` is called that leaves bands of what is not known out."""
+
 HIGHEST = 5000.0
 """Highest frequency of a Campbell diagram where none is given [Hz]."""
 

@@ -36,6 +36,13 @@ def law_tables(tmp_path_factory: pytest.TempPathFactory) -> str:
 
 
 @pytest.fixture(scope="session", autouse=True)
+def numerics_alone() -> Iterator[None]:
+    """Let commands find bands of what is not known only where a test asks for them: they cost seconds."""
+    with mock.patch("mbs.commands.common.USUAL_BANDS", "numerics"):
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
 def own_binaries() -> Iterator[None]:
     """Compile units for this system alone: for all of them it takes ten seconds of processor time each."""
     with mock.patch("ehdmaps.exports.fmu.binaries.zig", return_value=()):

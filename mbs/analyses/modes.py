@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import xarray as xr
@@ -25,6 +26,7 @@ from mbs.settings import CAGE_ANGLES, HIGHEST, check_cage_angles
 
 if TYPE_CHECKING:
     from mbs.output.files import Figure
+    from mbs.unknowns.of_modes import ModeBands
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +56,28 @@ class ModesResult:
     dataset: xr.Dataset
     findings: tuple[Finding, ...] = ()
 
+    @property
+    def highest(self) -> float:
+        """Highest frequency that is of interest [Hz]: that of [linear] of the scene, else 10 kHz."""
+        return max(self.model.scene.frequencies, default=HIGHEST)
+
+    @cached_property
+    def bands(self) -> ModeBands:
+        """Bands of what is not known, of modes up to `highest`: found when they are asked for, in seconds."""
+        return self.bands_to(self.highest)
+
+    def bands_to(self, highest: float) -> ModeBands:
+        """Bands of what is not known, of modes up to a frequency.
+
+        Parameters
+        ----------
+        highest : float
+            [Hz].
+        """
+        from mbs.unknowns.of_modes import bands_of
+
+        return bands_of(self.model, self.balance, self.modes, highest)
+
     def plot(self, highest: float | None = None) -> Figure:
         """Figure that `mbs modes --plot` writes: frequencies, damping ratios and strain energy of the modes.
 
@@ -65,7 +89,7 @@ class ModesResult:
         from mbs.output.modes_plot import modes_figure
         from mbs.output.result_text import above_lines, free_lines, kinds
 
-        highest = max(self.model.scene.frequencies, default=HIGHEST) if highest is None else highest
+        highest = self.highest if highest is None else highest
         free, overdamped, swinging = kinds(self.modes)
         inside = self.modes.frequency[swinging] <= highest
         notes = [*free_lines(free, self.model.system), *above_lines(self.modes, swinging[~inside], highest)]

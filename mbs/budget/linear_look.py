@@ -12,7 +12,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy
-from scipy.optimize import linear_sum_assignment
 
 from ehdmaps.arrays import FloatArray, IntArray
 from ehdmaps.errors import AnalysisError
@@ -20,12 +19,10 @@ from mbs.analyses.operating import operating
 from mbs.linearised.averaged import steady_system
 from mbs.linearised.linear import frequency_response, with_peaks
 from mbs.linearised.modes import Modes, modes
+from mbs.linearised.pairs import partners
 from mbs.model.elements import Operation
 from mbs.model.equilibrium import Equilibrium, equilibrium
 from mbs.scene.assembly import Model
-
-LEAST_ASSURANCE = 0.5
-"""Modal assurance above which two modes are one."""
 
 MOST_DAMPED = 0.5
 """Damping ratio up to which a mode is looked at: above, a response has hardly a peak by it."""
@@ -152,19 +149,9 @@ class LinearReference:
 
     def _partners(self, other: LinearLook) -> IntArray:
         """The mode of another system that each chosen mode is; -1 where there is none."""
-        mine, theirs = self.look.balance.system, other.balance.system
-        places = {name: k for k, name in enumerate(theirs.coordinates)}
-        common = [k for k, name in enumerate(mine.coordinates) if name in places]
-        mass = mine.mass[np.ix_(common, common)]
-        first = self.look.modes.shapes[common][:, self.chosen]
-        second = other.modes.shapes[[places[mine.coordinates[k]] for k in common]]
-        sizes = [np.sum(part.conj() * (mass @ part), axis=0).real for part in (first, second)]
-        assurance = np.abs(first.conj().T @ mass @ second) ** 2 / np.maximum(np.multiply.outer(*sizes), 1e-300)
-        rows, columns = linear_sum_assignment(assurance, maximize=True)
-        found = np.full(self.chosen.size, -1)
-        kept = assurance[rows, columns] >= LEAST_ASSURANCE
-        found[rows[kept]] = columns[kept]
-        return found
+        own = self.look
+        shapes = own.modes.shapes[:, self.chosen]
+        return partners(own.balance.system, shapes, other.balance.system, other.modes.shapes)
 
 
 def linear_look(model: Model, angle: float = 0.0) -> LinearLook:

@@ -15,7 +15,10 @@ from mbs.output.files import write_dataset
 from mbs.scene.fields import HERTZ, MILLISECOND
 from mbs.scene.reader import HIGHEST_HIGHEST, LONGEST, LOWEST_HIGHEST, SHORTEST
 from mbs.scene.scene import Scene
-from mbs.settings import CAGE_ANGLES, MOST_ANGLES
+from mbs.settings import CAGE_ANGLES, MOST_ANGLES, NUMERICS
+
+ALL = USUAL_BANDS = "all"
+"""What `--bands` is called that finds bands of what is not known, and what is found where nothing is asked."""
 
 
 def read_band(arguments: argparse.Namespace, problems: list[str]) -> dict[str, Any]:
@@ -165,6 +168,22 @@ def read_cage_angles(arguments: argparse.Namespace, problems: list[str]) -> int:
     if not 1 <= count <= MOST_ANGLES:
         problems.append(f"--cage-angles: got {text!r:.40}; allowed: a whole number from 1 to {MOST_ANGLES}")
     return count
+
+
+def with_bands(arguments: argparse.Namespace, problems: list[str]) -> bool:
+    """Tell whether a command is to find the bands of what is not known: it is, but for `--bands numerics`.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        Arguments with `bands`, or without it.
+    problems : list of str
+        Appended to.
+    """
+    text = getattr(arguments, "bands", None) or USUAL_BANDS
+    if text not in (ALL, NUMERICS):
+        problems.append(f"--bands: got {text!r:.40}; allowed: {ALL}, {NUMERICS}; a number of runs with campbell alone")
+    return bool(text != NUMERICS)
 
 
 def read_option(

@@ -18,9 +18,10 @@ from mbs.analyses.reach import fade_lines, outside_at
 from mbs.analyses.soundness import Judged
 from mbs.commands.auto import analysed
 from mbs.commands.cases import load_model
-from mbs.commands.common import Looked, read_cage_angles, read_option, write, write_plot
+from mbs.commands.common import Looked, read_cage_angles, read_option, with_bands, write, write_plot
 from mbs.linearised.modes import Modes
 from mbs.linearised.shapes import skeleton
+from mbs.output.band_text import about_lines, mode_lines
 from mbs.output.files import RESULT
 from mbs.output.model_text import LITTLE_DAMPING, OTHER_DAMPING, band_lines, clean, film_law_line, film_lines, heading
 from mbs.output.result_text import above_lines, free_lines, kinds, share_words
@@ -50,6 +51,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
     )
     result, highest = done.result, _highest(arguments, done.result.model.scene, [])
     model, found = result.model, result.modes
+    bands = result.bands_to(highest) if with_bands(arguments, []) and model.scene.has_bearings else None
     free, overdamped, swinging = kinds(found)
     shown = swinging[found.frequency[swinging] <= highest]
     above = swinging[found.frequency[swinging] > highest]
@@ -60,10 +62,11 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         *judged.first,
         *done.lines,
         *heading(model, model.scene.speed),
-        *_table(found, shown),
+        *(_table(found, shown) if bands is None else mode_lines(found, shown, bands)),
         *([f"  {OTHER_DAMPING}"] if np.any(found.damping_ratio[shown] < LITTLE_DAMPING) else []),
-        *band_lines(model, 0.0 if found.bands is None else found.bands.film_share),
-        *film_law_line(model, found.film_law is not None),
+        *(about_lines(model.scene) if bands is not None else []),
+        *band_lines(model, 0.0 if found.bands is None else found.bands.film_share, bands is not None),
+        *(film_law_line(model, found.film_law is not None) if bands is None else []),
         *_overdamped(found, overdamped),
         *(f"  {note}" for note in notes),
         *_lost(found),
@@ -71,7 +74,7 @@ def run(arguments: argparse.Namespace) -> tuple[str, int]:
         *(fade_lines(model, np.array([model.scene.speed])) if model.scene.speed else []),
         *judged.last,
         *outside,
-        *write(arguments, result.dataset, figure),
+        *write(arguments, result.dataset if bands is None else bands.into(result.dataset), figure),
         *_write_shapes(arguments, result, shown),
     ]
     return "\n".join(lines), 1 if outside or judged.status else 0
@@ -88,6 +91,7 @@ def _asked(arguments: argparse.Namespace) -> tuple[Model, float, int]:
     highest = _highest(arguments, None if model is None else model.scene, problems)
     problems += _shape_problems(arguments, model)
     cage_angles = read_cage_angles(arguments, problems)
+    with_bands(arguments, problems)
     if problems or model is None:
         raise InputError(tuple(dict.fromkeys(problems)))
     return model, highest, cage_angles

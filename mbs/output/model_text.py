@@ -122,8 +122,8 @@ def _estimated(model: Model) -> list[str]:
     return lines + [f"  {pair.estimate}" for pair in model.scene.gears if pair.estimate]
 
 
-def band_lines(model: Model, film_share: float = 0.0) -> list[str]:
-    """A line on what the bands of a result hold; none without bearings.
+def band_lines(model: Model, film_share: float = 0.0, beside: bool = False) -> list[str]:
+    """A line on what the numerics of a result hold; none without bearings.
 
     Parameters
     ----------
@@ -131,9 +131,11 @@ def band_lines(model: Model, film_share: float = 0.0) -> list[str]:
         The model.
     film_share : float
         Part of the bands that is what films with memory leave out; 0 if that is not in them.
+    beside : bool
+        Whether bands of what is not known stand beside them.
     """
     words = error_words(model.system, film_share)
-    return [f"  bands (+-): {words}"] if words else []
+    return [f"  {'numerics' if beside else 'bands (+-)'}: {words}"] if words else []
 
 
 def film_law_line(model: Model, known: bool) -> list[str]:

@@ -30,7 +30,7 @@ from mbs.model.turning import TurningLoad
 from mbs.scene import kinds
 from mbs.scene.contact_laws import NO_LAW, ContactLaws, dry_reason, law_in_force, supply_words, surface_label
 from mbs.scene.kinds import ElementKind
-from mbs.scene.map_set import MapSet
+from mbs.scene.map_set import MapSet, again_from_table
 from mbs.scene.oils import oil_warnings
 from mbs.scene.scene import Scene
 from mbs.scene.surroundings import Built, Surroundings
@@ -202,6 +202,28 @@ GivenMaps: TypeAlias = "EHDMap | str | Path | Sequence[EHDMap | str | Path] | Ma
 
 
 @dataclass(frozen=True, eq=False)
+class Recipe:
+    """How a model was made of its scene, so that a scene that is a little different can be made alike.
+
+    Attributes
+    ----------
+    law : str or None
+        The law as it was asked for.
+    maps : MapSet or None
+        The maps that were given, or read from the film table.
+    films : {"slow", "memory"} or None
+        Which films were asked for.
+    supply : OilSupply or None
+        Oil supply of all bearings that was asked for.
+    """
+
+    law: str | None = None
+    maps: MapSet | None = None
+    films: Films | None = None
+    supply: OilSupply | None = None
+
+
+@dataclass(frozen=True, eq=False)
 class Model:
     """A scene with a contact law.
 
@@ -237,6 +259,8 @@ class Model:
         What was chosen of the scene beside its law, see `mbs.scene.choices`.
     balls : tuple of MachineBalls
         Ball bearings in the order of the scene.
+    recipe : Recipe
+        How it was made of its scene.
     """
 
     scene: Scene
@@ -253,6 +277,28 @@ class Model:
     oils: Mapping[str, Lubricant] = field(default_factory=dict)
     chosen: Mapping[str, str] = field(default_factory=dict)
     balls: tuple[MachineBalls, ...] = ()
+    recipe: Recipe = field(default_factory=Recipe, repr=False)
+
+    def again(self, scene: Scene) -> Model:
+        """Another scene with the law of this model; laws whose bearing and oil stay the same are not made anew.
+
+        Parameters
+        ----------
+        scene : Scene
+            This model's scene with something changed. Films of the film table follow its oil and its bearings; maps
+            from files are what they are.
+
+        Raises
+        ------
+        InputError
+            With everything that does not fit together, such as a map of other rollers.
+        """
+        recipe = self.recipe
+        maps = recipe.maps
+        if maps is not None and all(emap.from_table for emap in maps.maps):
+            maps = again_from_table(maps, scene)
+        model = assemble(scene, recipe.law, maps, films=recipe.films, supply=recipe.supply)
+        return dataclasses.replace(model, chosen=self.chosen)
 
     @property
     def warnings(self) -> list[str]:
@@ -401,6 +447,7 @@ def assemble(
         supplies=laws.supplies,
         surface=laws.surface,
         oils=laws.oils,
+        recipe=Recipe(law if maps is None else chosen, maps, films, supply),
     )
 
 

@@ -334,6 +334,38 @@ def table_maps(scene: Scene, inlet_heat: bool = False) -> MapSet:
     InputError
         If the scene has no oil or no bearing; for heat that the film table cannot have.
     """
+    return _from_table(scene, inlet_heat, (), _made)
+
+
+def again_from_table(maps: MapSet, scene: Scene) -> MapSet:
+    """Maps of a scene that is a little different from that of others: those that still hold are taken as they are.
+
+    Parameters
+    ----------
+    maps : MapSet
+        What `table_maps` made of the other scene.
+    scene : Scene
+        Bearings and oil.
+
+    Raises
+    ------
+    InputError
+        As `table_maps`.
+
+    Notes
+    -----
+    New maps are not kept: some hundred scenes that are tried once would fill the memory.
+    """
+    first = maps.maps[0]
+    kept = [
+        emap for emap in maps.maps if emap.lubricant == scene.lubricant and MapSet([emap]).known_at(scene.temperature)
+    ]
+    found = _from_table(scene, first.inlet_heat, kept, _made.__wrapped__)
+    return found.each(lambda emap: emap if emap in kept else emap.with_structure(first.structural_law))
+
+
+def _from_table(scene: Scene, inlet_heat: bool, known: Sequence[EHDMap], make: Callable[..., EHDMap]) -> MapSet:
+    """Maps of a scene: some that are known, and new ones."""
     from ehdmaps.jobs.make.table_law import TEMPERATURES
 
     if scene.lubricant is None:
@@ -345,9 +377,13 @@ def table_maps(scene: Scene, inlet_heat: bool = False) -> MapSet:
     temperatures = min(TEMPERATURES[0], scene.temperature), max(TEMPERATURES[1], scene.temperature)
     maps: list[EHDMap] = []
     for spec in scene.bearings:
-        if not any(suits(emap, spec.geometry) for emap in maps):
+        if any(suits(emap, spec.geometry) for emap in maps):
+            continue
+        there = next((emap for emap in known if suits(emap, spec.geometry)), None)
+        if there is None:
             plain = dataclasses.replace(spec.geometry, diametral_clearance=0.0)
-            maps.append(_made(plain, scene.lubricant, speeds_of_laws(plain, scene), temperatures, inlet_heat))
+            there = make(plain, scene.lubricant, speeds_of_laws(plain, scene), temperatures, inlet_heat)
+        maps.append(there)
     return MapSet(maps)
 
 

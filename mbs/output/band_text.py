@@ -1,0 +1,183 @@
+"""Bands of what is not known in words: values with the digits that they deserve, bounds, what decides them.
+
+Commands, reports and figures say these things alike, by the functions here.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ehdmaps.arrays import IntArray
+from mbs.output.result_text import share_words
+from mbs.scene.scene import Scene
+from mbs.unknowns.held_open import held_open
+from mbs.unknowns.looks import Band, Term
+
+if TYPE_CHECKING:
+    from mbs.linearised.modes import Modes
+    from mbs.unknowns.of_modes import ModeBands
+
+HEAD = "90 % of what is not known"
+"""Heading of bounds."""
+
+NOT_IN_IT = "oil supply, damping of seats and joints, loads, and masses and bodies of the scene"
+"""What no band holds, of any machine."""
+
+BALL_CAGE = "the cage hypothesis of balls"
+"""What bands of machines with balls do not hold besides."""
+
+
+_LOPSIDED = 0.1
+"""Part of the larger side of a band below which the smaller one makes no more digits."""
+
+
+def deserved(value: float, side: float) -> str:
+    """A number with two digits of a side of its band; with six digits where nothing is open.
+
+    Parameters
+    ----------
+    value : float
+        The number, or a bound of it.
+    side : float
+        The smaller side of its band, in the same unit.
+
+    Examples
+    --------
+    >>> deserved(268.384, 11.9), deserved(0.000923, 0.00031), deserved(21714.0, 950.0), deserved(2.5, 0.0)
+    ('268', '0.00092', '21710', '2.5')
+    """
+    if not math.isfinite(value):
+        return "-"
+    if not (math.isfinite(side) and side > 0.0):
+        return f"{value:.6g}"
+    places = 1 - math.floor(math.log10(side))
+    rounded = round(value, places)
+    return f"{rounded:.{max(places, 0)}f}" if rounded else "0"
+
+
+def side_of(band: Band, place: int) -> float:
+    """Side of a band by whose digits it is written: the smaller one, but at least a tenth of the other."""
+    sides = float(band.rise[place]), float(band.fall[place])
+    return max(min(sides), _LOPSIDED * max(sides))
+
+
+def value_text(band: Band, place: int) -> str:
+    """A value with the digits that it deserves."""
+    return deserved(float(band.value[place]), side_of(band, place))
+
+
+def bounds_text(band: Band, place: int) -> str:
+    """Both bounds of a value, such as ``203 to 279``; with a word where it is unsure."""
+    side = side_of(band, place)
+    low, high = (deserved(float(bound[place]), side) for bound in (band.low, band.high))
+    if low == high:
+        return low
+    return f"{low} to {high}{' unsure' if band.unsure[place] else ''}"
+
+
+def term_words(terms: Sequence[Term]) -> str:
+    """What decides a band: the names of terms, those of one kind of several bearings together.
+
+    Examples
+    --------
+    >>> none = np.zeros(1)
+    >>> term_words([Term(name, "clearance", none, none) for name in ("clearance of left", "clearance of right")])
+    'clearance of left and right'
+    """
+    kinds: dict[str, list[str]] = {}
+    for term in terms:
+        kind, of, bearing = term.name.partition(" of ")
+        kinds.setdefault(kind, []).extend([bearing] * bool(of))
+    return ", ".join(f"{kind} of {' and '.join(names)}" if names else kind for kind, names in kinds.items())
+
+
+def exact_text(band: Band, place: int) -> str:
+    """What decides a value, and its bounds if the largest of that were stated exactly.
+
+    Parameters
+    ----------
+    band : Band
+        Bands of several values.
+    place : int
+        Which of them.
+    """
+    terms = band.largest(place)
+    if not terms:
+        return "nothing"
+    return f"{term_words(terms)}; {bounds_text(band.without(terms[0].group), place)}"
+
+
+def about_lines(scene: Scene) -> list[str]:
+    """Lines on what bands hold of a scene, and what they do not.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    """
+    held = ", ".join(f"{unknown.name} {unknown.held}" for unknown in held_open(scene))
+    missing = f"{NOT_IN_IT}, {BALL_CAGE}" if scene.balls else NOT_IN_IT
+    return [f"  held open: {held or 'nothing'}; not in it: {missing}"] if scene.has_bearings else []
+
+
+def lost_lines(band: Band, names: Sequence[str]) -> Iterator[str]:
+    """A line on values that looks did not find again, and one for each unknown that could not be looked at.
+
+    Parameters
+    ----------
+    band : Band
+        Bands of several values.
+    names : sequence of str
+        What these are called.
+    """
+    lost = [f"{names[k]} in {band.lost[k]}" for k in np.flatnonzero(band.lost).tolist()]
+    if lost:
+        yield f"  not found again, and so left out of its band: {', '.join(lost)} of {band.looks} looks"
+    for reason in band.refused:
+        yield f"  not in the bands: {reason}"
+
+
+def mode_lines(found: Modes, shown: IntArray, bands: ModeBands) -> list[str]:
+    """Table of modes with their bands, and another of what decides these.
+
+    Parameters
+    ----------
+    found : Modes
+        The modes.
+    shown : array of int
+        Which of them are shown.
+    bands : ModeBands
+        Their bands.
+    """
+    lines = [f"  mode  frequency/Hz   {HEAD:26s} numerics   damping ratio   {'90 %':28s} numerics   strain energy"]
+    decided = []
+    for k in shown:
+        place, numerics = bands.place(int(k)), [math.nan, math.nan] if found.bands is None else found.bands[:2]
+        cells = []
+        own: tuple[tuple[Band, float], ...] = (
+            (bands.frequency, float(found.frequency[k])),
+            (bands.damping_ratio, float(found.damping_ratio[k])),
+        )
+        for (band, value), size, wide in zip(own, numerics, (26, 28), strict=True):
+            text = f"{value:.4g}" if place is None else value_text(band, place)
+            bounds = "-" if place is None else bounds_text(band, place)
+            error = "-" if found.bands is None else f"{np.asarray(size)[k]:.1e}"
+            cells += [text, f"{bounds:{wide}s}", f"{error:>8s}"]
+        lines.append(
+            f"  {k + 1:4d} {cells[0]:>13s}   {cells[1]} {cells[2]} {cells[3]:>15s}   {cells[4]} {cells[5]}   "
+            f"{share_words(found, k)}"
+        )
+        if place is not None:
+            words = [exact_text(band, place) for band, _ in own]
+            decided.append(f"  {k + 1:4d}  {words[0]:62s} {words[1]}")
+    if decided:
+        lines += [
+            "  decided by; and the band if the first of it were exact",
+            f"  mode  {'frequency/Hz':62s} damping ratio",
+        ]
+    names = [f"mode {k + 1}" for k in bands.chosen]
+    return [*lines, *decided, *lost_lines(bands.frequency, names)]

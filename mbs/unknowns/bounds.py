@@ -1,0 +1,39 @@
+"""Bounds of a band in data sets: beside each variable one more for either side."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from mbs.unknowns.looks import Band
+
+SIDES = ("low", "high")
+"""Ends of the names of bounds."""
+
+
+def with_bounds(dataset: xr.Dataset, name: str, band: Band, places: Any = ...) -> xr.Dataset:
+    """A data set with the bounds of a variable, of its dimensions, NaN where there is no band.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The data set.
+    name : str
+        The variable.
+    band : Band
+        Its band, in its unit.
+    places : index
+        Index of the values of the band among those of the variable.
+    """
+    own = dataset[name]
+    for side, words in zip(SIDES, ("lower", "upper"), strict=True):
+        bounds = np.full(own.shape, np.nan)
+        bounds[places] = getattr(band, side)
+        attributes = {
+            "units": own.attrs["units"],
+            "long_name": f"{words} bound of 90 % of what is not known of the {own.attrs['long_name']}",
+        }
+        dataset = dataset.assign({f"{name}_{side}": (own.dims, bounds, attributes)})
+    return dataset

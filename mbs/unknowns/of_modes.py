@@ -1,0 +1,141 @@
+"""Bands of frequencies and damping ratios of modes: each look is an equilibrium with its modes, paired by shape."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from ehdmaps.arrays import FloatArray, IntArray
+from mbs.analyses.operating import operating
+from mbs.linearised.averaged import AveragedEquilibrium, mean_equilibrium
+from mbs.linearised.modes import Modes, modes
+from mbs.linearised.pairs import in_order, partners
+from mbs.model.equilibrium import Equilibrium
+from mbs.scene.assembly import Model
+from mbs.scene.scene import Scene
+from mbs.unknowns.bounds import with_bounds
+from mbs.unknowns.held_open import held_open
+from mbs.unknowns.looks import Band, band
+
+MOST_DAMPED = 0.5
+"""Damping ratio up to which a mode has a band: above, looks hardly find it again."""
+
+FREE = 1.0
+"""Frequency up to which a motion counts as free, and has no band [Hz]."""
+
+
+@dataclass(frozen=True, eq=False)
+class ModeBands:
+    """Bands of modes.
+
+    Attributes
+    ----------
+    chosen : array of int, shape (modes,)
+        Which modes have bands, in the order of `Modes`.
+    frequency, damping_ratio : Band
+        Bands of these modes, shape (modes,) each [Hz], [1].
+    """
+
+    chosen: IntArray
+    frequency: Band
+    damping_ratio: Band
+
+    def place(self, mode: int) -> int | None:
+        """Place of a mode among those that have bands; None for one that has none."""
+        found = np.flatnonzero(self.chosen == mode)
+        return int(found[0]) if found.size else None
+
+    def into(self, dataset: xr.Dataset) -> xr.Dataset:
+        """A data set of all modes with their bounds, NaN where there is no band.
+
+        Parameters
+        ----------
+        dataset : xarray.Dataset
+            What `modes_dataset` makes.
+        """
+        for name, own in (("frequency", self.frequency), ("damping_ratio", self.damping_ratio)):
+            dataset = with_bounds(dataset, name, own, self.chosen)
+        return dataset
+
+
+def banded(found: Modes, highest: float) -> IntArray:
+    """Modes that have a band: those that swing, up to a frequency [Hz]."""
+    seen = (found.frequency <= highest) & (found.frequency > FREE) & (found.damping_ratio <= MOST_DAMPED)
+    return np.asarray(np.flatnonzero(seen), dtype=np.int64)
+
+
+def looked_at(model: Model, like: Equilibrium, standing: bool) -> Equilibrium:
+    """Equilibrium of a model as another one was found: at its speed, by means over as many cage angles.
+
+    Parameters
+    ----------
+    model : Model
+        The model.
+    like : Equilibrium
+        The other one.
+    standing : bool
+        True for the cage angles of the scene alone.
+    """
+    operation = like.operation
+    angles = len(like.over) if isinstance(like, AveragedEquilibrium) and not standing else 1
+    return mean_equilibrium(operating(model, operation.speed).system, operation, angles)
+
+
+@dataclass(frozen=True, eq=False)
+class ModeLook:
+    """A look at modes: frequencies and damping ratios of those that a reference has, shape (2, modes).
+
+    Attributes
+    ----------
+    model : Model
+        The model of the reference.
+    balance : Equilibrium
+        Its equilibrium; a look has the same speed, and means over as many cage angles.
+    modes : Modes
+        Its modes.
+    chosen : array of int, shape (modes,)
+        Which of them are looked for.
+    """
+
+    model: Model
+    balance: Equilibrium
+    modes: Modes
+    chosen: IntArray
+
+    def __call__(self, scene: Scene, standing: bool) -> FloatArray:
+        """Look at a changed scene; NaN for modes that it has not."""
+        balance = looked_at(self.model.again(scene), self.balance, standing)
+        return self.paired(balance, modes(balance))
+
+    def paired(self, balance: Equilibrium, found: Modes) -> FloatArray:
+        """Values of the modes of the reference in another system."""
+        shapes = self.modes.shapes[:, self.chosen]
+        partner = partners(self.balance.system, shapes, balance.system, found.shapes)
+        partner = in_order(self.modes.frequency[self.chosen], partner, found.frequency)
+        values = np.array([found.frequency[partner], found.damping_ratio[partner]])
+        return np.where(partner >= 0, values, np.nan)
+
+
+def bands_of(model: Model, balance: Equilibrium, found: Modes, highest: float) -> ModeBands:
+    """Bands of modes of a model.
+
+    Parameters
+    ----------
+    model : Model
+        Scene with its law.
+    balance : Equilibrium
+        Equilibrium at which it was linearised.
+    found : Modes
+        Its modes there.
+    highest : float
+        Frequency up to which modes have bands [Hz].
+    """
+    chosen = banded(found, highest)
+    look = ModeLook(model, balance, found, chosen)
+    centre = np.array([found.frequency[chosen], found.damping_ratio[chosen]])
+    none = np.zeros_like(centre)
+    numerics = none if found.bands is None else np.array([part[chosen] for part in found.bands[:2]])
+    both = band(look, centre, held_open(model.scene), numerics)
+    return ModeBands(chosen, both.of(0), both.of(1))

@@ -1,0 +1,140 @@
+"""Bands of what is not known: the sum against draws of a closed form, looks against machines that are made anew."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from ehdmaps.errors import AnalysisError
+from mbs.analyses.modes import modes
+from mbs.cli import main
+from mbs.linearised.pairs import in_order
+from mbs.output.band_text import bounds_text, deserved, exact_text, lost_lines, value_text
+from mbs.scene.assembly import assemble
+from mbs.scene.changes import with_temperature
+from mbs.scene.reader import read_scene
+from mbs.unknowns.looks import Band, Term, band
+from mbs.unknowns.unknown import Unknown
+
+CENTRE = np.array([100.0, 1.0])
+SIZES = {"clearance of left": 3.0, "clearance of right": 2.0, "temperature": 2.0, "viscosity": 1.5, "preload": 1.0}
+"""Changes of the first value at the ends of uniform unknowns; the second value changes by a hundredth of it."""
+
+
+def unknown(name, *changes, **more):
+    """An unknown whose looks are the changes of the first value."""
+    looks = tuple(SimpleNamespace(change=change) for change in changes)
+    return Unknown(name, name.partition(" ")[0], "", "", looks, **more)  # type: ignore[arg-type]
+
+
+def look(scene, standing):
+    """Values of such a look; NaN stands for a value that is lost, a text for no result."""
+    if isinstance(scene.change, str):
+        raise AnalysisError(scene.change)
+    return CENTRE + np.array([scene.change, 0.01 * scene.change]) * (2.0 if standing else 1.0)
+
+
+def found(*unknowns, numerics=0.0):
+    """The band by some unknowns."""
+    return band(look, CENTRE, unknowns, np.full(2, numerics))
+
+
+def test_nine_tenths_of_drawn_machines_are_inside():
+    """Of sums of uniform unknowns, whose share inside follows from draws alone: 0.90 of five of these sizes."""
+    both = found(*(unknown(name, -size, size) for name, size in SIZES.items()))
+    drawn = np.random.default_rng(7).uniform(-1.0, 1.0, (20_000, len(SIZES))) @ np.array(list(SIZES.values()))
+    inside = (drawn >= both.low[0] - CENTRE[0]) & (drawn <= both.high[0] - CENTRE[0])
+    assert 0.88 < inside.mean() < 0.92  # 0.004 are two standard deviations of the draws
+
+
+def test_sides_are_apart_and_numerics_a_term():
+    one = found(unknown("clearance", 3.0, -0.5), unknown("temperature", 4.0, 1.0), numerics=1.0)
+    assert one.rise[0] == pytest.approx(np.sqrt(9.0 + 16.0 + 1.0))
+    assert one.fall[0] == pytest.approx(np.sqrt(0.25 + 0.0 + 1.0))
+    assert [term.name for term in one.largest(0)] == ["temperature", "clearance"]
+    assert one.without("temperature").rise[0] == pytest.approx(np.sqrt(10.0))
+
+
+def test_a_single_look_stands_for_both_sides_where_it_is_reflected():
+    assert found(unknown("pressure", 2.0, reflected=True)).fall[0] == pytest.approx(2.0)
+    assert found(unknown("profile", 2.0)).fall[0] == 0.0
+    assert found(unknown("clearance", 2.0, "no equilibrium")).fall[0] == pytest.approx(2.0)
+
+
+def test_cages_that_stand_are_looked_at_as_such():
+    assert found(unknown("cage", 1.0, -0.5, 0.25, frozen_cage=True)).rise[0] == pytest.approx(2.0)
+
+
+def test_what_is_lost_or_refused_is_told():
+    one = found(unknown("clearance", np.nan, 2.0), unknown("temperature", "no equilibrium", "neither here"))
+    assert one.lost.tolist() == [1, 1] and one.looks == 2
+    assert one.low[0] == pytest.approx(98.0)  # the side that was lost is the other one reflected
+    lines = list(lost_lines(one, ["mode 1", "mode 2"]))
+    assert "mode 1 in 1, mode 2 in 1 of 2 looks" in lines[0]
+    assert lines[1].endswith("temperature: no equilibrium")
+
+
+def test_less_that_is_open_is_never_a_wider_band():
+    every = [unknown(name, -size, 0.3 * size) for name, size in SIZES.items()]
+    whole = found(*every, numerics=0.1)
+    for left_out in range(len(every)):
+        less = found(*every[:left_out], *every[left_out + 1 :], numerics=0.1)
+        assert np.all(less.low >= whole.low) and np.all(less.high <= whole.high)
+
+
+def test_damping_has_no_negative_bound():
+    wide = found(unknown("clearance", -150.0, 50.0))
+    assert wide.low[0] == 0.0 and bounds_text(wide, 0) == "0 to 150 unsure"
+    assert exact_text(wide, 0) == "clearance; 100"
+
+
+def test_numbers_have_the_digits_that_they_deserve():
+    one = Band(
+        np.array([268.384]), np.zeros(1), (Term("clearance", "c", np.array([11.2]), np.array([16.0])),), np.zeros(1)
+    )
+    assert (value_text(one, 0), bounds_text(one, 0)) == ("268", "252 to 280")
+    assert deserved(0.0123456, 0.00091) == "0.01235" and deserved(1.0, 0.0) == "1"
+
+
+def test_planes_of_one_frequency_are_paired_by_order():
+    frequency = np.array([100.0, 101.0, 200.0, 203.0])
+    assert in_order(frequency, np.array([1, 0, 3, -1]), np.array([90.0, 95.0, 190.0, 199.0])).tolist() == [0, 1, 3, -1]
+
+
+@pytest.fixture(scope="module")
+def rigid():
+    """A rigid shaft on two bearings whose geometry is known."""
+    return assemble(read_scene("nu308_rigid"))
+
+
+def test_a_look_is_the_machine_made_anew(rigid):
+    """A model `again` and one that is assembled from the changed scene are one, law and films included."""
+    warmer = with_temperature(rigid.scene, rigid.scene.temperature + 5.0)
+    again, anew = (modes(model).modes.eigenvalues for model in (rigid.again(warmer), assemble(warmer)))
+    assert np.array_equal(again, anew)
+    assert rigid.again(warmer).recipe.maps.maps[0] is rigid.recipe.maps.maps[0]
+
+
+def test_modes_have_bands_in_files(rigid, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["modes", "nu308_rigid", "--bands", "all", "-o", "all.nc"]) == 0
+    out = capsys.readouterr().out
+    assert "90 % of what is not known" in out and "decided by" in out and "held open: " in out
+    assert main(["modes", "nu308_rigid", "--bands", "numerics", "-o", "numerics.nc"]) == 0
+    assert "90 %" not in capsys.readouterr().out
+    import xarray as xr
+
+    with xr.open_dataset("all.nc") as one, xr.open_dataset("numerics.nc") as other:
+        assert np.all(one["frequency"].values == other["frequency"].values)
+        inside = np.isfinite(one["frequency_low"].values)
+        assert inside.any() and "frequency_low" not in other
+        for name in ("frequency", "damping_ratio"):
+            low, value, high, error = (one[f"{name}{end}"].values[inside] for end in ("_low", "", "_high", "_error"))
+            assert np.all((low <= value - error) & (high >= value + error))
+
+
+def test_bands_of_another_kind_are_refused(capsys):
+    assert main(["modes", "nu308_rigid", "--bands", "3"]) == 2
+    assert "--bands: got '3'; allowed: all, numerics" in capsys.readouterr().err
