@@ -8,5 +8,6 @@
 | `unit` | the sources, binaries and texts in one file |
 | `target` | the unit of a map |
 
-The files `*.c` and `component.h` are the unit; the folder `headers` has those of the standard, with their licence.
+The files `*.c` and `*.h` are the unit, `motion.c` and `variables.h` what it has of cylindrical rollers alone; the
+folder `headers` has those of the standard, with their licence.
 """

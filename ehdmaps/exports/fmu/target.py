@@ -63,7 +63,7 @@ def write(emap: EHDMap, path: Path, output: Path | None, arguments: argparse.Nam
     check_outputs([Output("-o", unit, UNIT)], [path])
     header = origin(emap, path.name, BEYOND[options.outside])
     kernel = {name: text for name, text in kernel_files(emap, options, header).items() if name.endswith((".c", ".h"))}
-    own = {name: template("ehdmaps.exports.fmu", name) for name in ("component.c", "component.h")}
+    own = {name: template("ehdmaps.exports.fmu", name) for name in ("motion.c", "variables.h")}
     cold, hot = (float(emap.dataset["temperature"].values[end]) for end in (0, -1))
     clearance = emap.bearing.diametral_clearance if options.clearance is None else options.clearance
     start = {"temperature": min(max(_USUAL_TEMPERATURE, cold), hot), "clearance": clearance}
@@ -75,7 +75,7 @@ def write(emap: EHDMap, path: Path, output: Path | None, arguments: argparse.Nam
         start=start,
         films=films,
         sources={**kernel, **own},
-        defines=f"#define EHD_START_TEMPERATURE {start['temperature']!r}\n"
+        defines=f"#define FMU_START {{[TEMPERATURE] = {start['temperature']!r}, [CLEARANCE] = EHD_CLEARANCE}}\n"
         f"#define FMU_MEMORY {int(bool(films))} /* whether films have states */\n",
         sentences=(*MOTION, MEMORY if films else SLOW, LAG),
         beyond=_BEYOND,

@@ -38,13 +38,13 @@ class Content:
     checksum : str
         Version of what it was made from.
     variables : tuple of Variable
-        Variables, in the order of `component.h`.
+        Variables, in the order of `variables.h`.
     start : mapping of str to float
         Values at the start of variables that do not start at zero.
     films : tuple of str
         Names of the states of films with memory.
     sources : mapping of str to str
-        Texts of the sources by the names of their files: the kernel, `component.c` and `component.h`.
+        Texts of the sources by the names of their files: the kernel, `variables.h` and `motion.c`.
     defines : str
         Constants of `identity.h`, beside the token.
     sentences : tuple of str
@@ -112,7 +112,7 @@ def _identity(content: Content, stem: str, fmi: str) -> Identity:
 def _unit_files(content: Content, identity: Identity, fmi: str) -> dict[str, str]:
     """Return all files of a unit but its binaries."""
     own = files("ehdmaps.exports.fmu")
-    texts = {name: own / name for name in (f"fmi{fmi}.c", "path.h")}
+    texts = {name: own / name for name in (f"fmi{fmi}.c", "component.c", "component.h")}
     texts |= {entry.name: entry for entry in (own / "headers").iterdir() if entry.name.startswith(f"fmi{fmi}")}
     written = {**content.sources, **{name: entry.read_text(encoding="utf-8") for name, entry in texts.items()}}
     written["identity.h"] = (

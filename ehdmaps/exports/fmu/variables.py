@@ -1,4 +1,4 @@
-"""Variables of the unit, in the order of `component.h`, and what it says of itself."""
+"""Variables of the unit, in the order of `variables.h`, and what it says of itself."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ MEMORY = (
 """What units with memory say."""
 
 NOMINAL_STATE = 1e-7
-"""Size of what films follow [m], as in `component.h`."""
+"""Size of what films follow [m], as in `variables.h`."""
 
 
 def film_names(rollers: int, slices: int) -> tuple[str, ...]:

@@ -29,7 +29,7 @@ _VARIABLES = (
     Variable("force.x", "output", "N", "Axial force on the inner ring; the outer one gets the opposite"),
     *(_OF_ROLLERS[name] for name in ("force.y", "force.z", "moment.y", "moment.z")),
 )
-"""Those of a roller bearing, with what goes along the axis; in the order of `component.h`."""
+"""Those of a roller bearing, with what goes along the axis; in the order of `variables.h`."""
 
 _MEMORY_STEPS = (
     "Co-Simulation alone has them. The inputs that are set before a step are those of "
@@ -50,7 +50,7 @@ VERSIONS = {".fmi2": "2", ".fmi3": "3"}
 
 
 def variables_of(kind: ExportKind) -> tuple[Variable, ...]:
-    """Variables of the units of a kind, in the order of `component.h`.
+    """Variables of the units of a kind, in the order of `variables.h`.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ def write_bearing_unit(
     texts, variables = source_texts(kind, force, laws, header), variables_of(kind)
     start = {**start, kind.play_name: kind.play(geometry)}
     values = ", ".join(number(start.get(variable.name, 0.0)) for variable in variables)
-    files = {name: template("mbs.exports.one_bearing", f"unit_files/{name}") for name in ("component.c", "component.h")}
+    files = {name: template("mbs.exports.one_bearing", f"unit_files/{name}") for name in ("motion.c", "variables.h")}
     content = Content(
         words=kind.title(geometry),
         checksum=hashlib.sha256(texts["c"].encode()).hexdigest(),

@@ -3,40 +3,16 @@
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-
-static const double START[VARIABLES] = FMU_START;
-
-/* Place of each of the five directions in the poses and forces of bearing.h. */
-static const int DIRECTION[5] = {0, 1, 2, 4, 5};
-
-component *component_make(void) {
-    component *of = calloc(1, sizeof *of);
-    if (of) component_reset(of);
-    return of;
-}
-
-void component_reset(component *of) {
-    snapshot start;
-    memset(&start, 0, sizeof start);
-    memcpy(start.values, START, sizeof start.values);
-    component_restore(of, &start);
-}
-
-void component_restore(component *of, const snapshot *kept) {
-    of->now = *kept;
-    of->stale = 1;
-    of->made = 0;
-}
 
 /* Make the bearing that some values ask for. */
 static int bearing_for(component *of, const double *values) {
-    if (!of->made || of->play != values[PLAY]) {
+    if (!of->made || of->play != values[PLAY] || of->mirrored != values[MIRRORED]) {
         of->made = 0;
         if (ehd_bearing_make(&of->bearing, values[PLAY], values[MIRRORED] != 0.0)) return EHD_BAD_ARGUMENT;
         of->made = 1;
         of->play = values[PLAY];
+        of->mirrored = values[MIRRORED];
     }
     return EHD_OK;
 }
@@ -44,13 +20,10 @@ static int bearing_for(component *of, const double *values) {
 /* Force of some values. Bodies start from nothing, so that it hangs on these values alone; or on films that have begun,
  * which are springs after no time. */
 static int force_of(component *of, const double *values, ehd_bearing_force *result) {
-    double pose[6] = {0.0}, velocity[6] = {0.0};
+    double pose[6], velocity[6];
     const double cage_angle = ehd_cage(values[INNER_ANGLE], values[OUTER_ANGLE]);
+    motion_of(values, pose, velocity);
     if (bearing_for(of, values)) return EHD_BAD_ARGUMENT;
-    for (int i = 0; i < 5; i++) {
-        pose[DIRECTION[i]] = values[POSE_X + i];
-        velocity[DIRECTION[i]] = values[VELOCITY_X + i];
-    }
 #if EHD_MEMORY
     if (of->now.begun) {
         of->bodies = of->now.bodies;
@@ -64,25 +37,9 @@ static int force_of(component *of, const double *values, ehd_bearing_force *resu
                             values[OUTER_SPEED], result);
 }
 
-/* Take note of a status, with outputs. */
-static int told(component *of, int status) {
-    of->status = status;
-    for (int i = 0; i < OUTPUTS; i++)
-        of->now.values[FIRST_OUTPUT + i] = EHD_REFUSES(of->status) ? NAN : of->result.force[DIRECTION[i]];
-    of->stale = 0;
-    return status;
-}
-
-int component_update(component *of) {
-    return of->stale ? told(of, force_of(of, of->now.values, &of->result)) : of->status;
-}
+int component_force(component *of) { return force_of(of, of->now.values, &of->result); }
 
 #if EHD_MEMORY
-#include "path.h"
-
-/* From here on the inputs of now are those of the last step. */
-static void follow(snapshot *now) { memcpy(now->former, now->values, sizeof now->former); }
-
 int component_begin(component *of) {
     of->now.begun = 0;
     of->stale = 1;
@@ -90,8 +47,7 @@ int component_begin(component *of) {
     if (EHD_REFUSES(status)) return status;
     ehd_films_begin(&of->law, &of->bodies, &of->now.films);
     of->now.bodies = of->bodies;
-    of->now.begun = 1;
-    follow(&of->now);
+    component_follow(of);
     return status;
 }
 
@@ -109,10 +65,8 @@ int component_step(component *of, double step) {
     const double turn = ehd_cage(now->values[INNER_ANGLE], now->values[OUTER_ANGLE]) - begin;
     for (int n = 1; n <= count && !EHD_REFUSES(status); n++) {
         const double part = (double)n / count;
-        double pose[6] = {0.0};
-        for (int i = 0; i < 5; i++)
-            pose[DIRECTION[i]] = place_between(now->former[POSE_X + i], now->values[POSE_X + i],
-                                               now->former[VELOCITY_X + i], now->values[VELOCITY_X + i], part, step);
+        double pose[6];
+        motion_between(now, part, step, pose);
         status |= ehd_films_step(&of->bearing, &of->law, &now->bodies, &now->films, step / count, pose,
                                  begin + part * turn, now->values[INNER_SPEED], now->values[OUTER_SPEED], &of->result);
     }
@@ -120,8 +74,8 @@ int component_step(component *of, double step) {
         component_restore(of, &before);
         return status;
     }
-    follow(now);
-    return told(of, status);
+    component_follow(of);
+    return component_told(of, status);
 }
 #else
 int component_begin(component *of) { return (void)of, EHD_OK; }
@@ -132,10 +86,7 @@ int component_step(component *of, double step) { return (void)step, component_up
 int component_set(component *of, unsigned reference, double value) {
     if (reference == TIME || reference >= FIRST_OUTPUT || !(fabs(value) <= DBL_MAX)) return 0;
     if (reference == MIRRORED && value != 0.0 && value != 1.0) return 0;
-    if (of->now.values[reference] != value) {
-        of->stale = 1;
-        if (reference == MIRRORED) of->made = 0;
-    }
+    if (of->now.values[reference] != value) of->stale = 1;
     of->now.values[reference] = value;
     return 1;
 }
@@ -173,6 +124,8 @@ static double quotient_of(component *of, unsigned unknown, unsigned known) {
     return place[1] > place[0] ? (found[1] - found[0]) / (place[1] - place[0]) : NAN;
 }
 
+/* By pose and velocity it is -K and -C, at speeds of the rings that are held; by spins, speeds and play it is a quotient of
+ * differences. Films with memory are springs there, without time to give way. */
 int component_derivative(component *of, unsigned unknown, unsigned known, double *derivative) {
     *derivative = NAN;
     const int row = DIRECTION[unknown - FIRST_OUTPUT];
