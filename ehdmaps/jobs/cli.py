@@ -72,9 +72,9 @@ def main(argv: Sequence[str] | None = None) -> int:
 def _command(arguments: argparse.Namespace) -> tuple[str, int]:
     """Load the command that is asked for, and do it."""
     if arguments.command == "solve":
-        from ehdmaps.physics.point.ball_catalogue import plain_ball_designation
+        from ehdmaps.physics.designations.reader import BALLS, plain_name
 
-        if any(plain_ball_designation(text or "") for text in (arguments.job, arguments.bearing)):
+        if any(plain_name(text or "", BALLS) for text in (arguments.job, arguments.bearing)):
             from ehdmaps.jobs.solve.ball_points import run as solve_balls
 
             return solve_balls(arguments)

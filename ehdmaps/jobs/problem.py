@@ -13,8 +13,9 @@ from ehdmaps.jobs.solids import NO_SOLIDS, SolidsKeys, fe_approaches
 from ehdmaps.jobs.table import Table
 from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
-from ehdmaps.physics.catalogue import designated, estimate, estimate_from_dimensions, plain_designation
+from ehdmaps.physics.catalogue import designated, estimate, estimate_from_dimensions
 from ehdmaps.physics.contact import OIL_TEMPERATURES, LineContact
+from ehdmaps.physics.designations.reader import ROLLERS, plain_name
 from ehdmaps.physics.lubricant import DENSITY_LAWS, Lubricant
 from ehdmaps.physics.own_oil import CORRELATIONS, Stated, stated_problems
 from ehdmaps.physics.solids import STEEL, Material
@@ -319,9 +320,9 @@ def _bearing(section: Table) -> BearingGeometry | None:
 def _known(section: Table) -> BearingGeometry | None:
     """Read the name of a bearing whose inner geometry is known; None for any other."""
     name = section.get("name")
-    if not isinstance(name, str) or plain_designation(name) not in BEARINGS:
+    if not isinstance(name, str) or plain_name(name, ROLLERS) not in BEARINGS:
         return None
-    return _built(section, lambda: designated(name), "name") or BEARINGS[plain_designation(name)]
+    return _built(section, lambda: designated(name), "name") or BEARINGS[plain_name(name, ROLLERS)]
 
 
 def _estimate(section: Table, word: str, label: str | None) -> BearingGeometry | None:

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields, replace
-from typing import Self
+from dataclasses import dataclass, field, replace
+from typing import ClassVar
 
 from ehdmaps.errors import InputError, label_problem
 from ehdmaps.physics.approach import StructuralLaw, roller_reference_depth, shipped_approaches, shipped_names
 from ehdmaps.physics.contact import LineContact
-from ehdmaps.physics.designations.clearance import NORMAL, ClearanceRange, class_range, stated
+from ehdmaps.physics.designations.clearance import NORMAL, ClearanceRange, Named, class_range
 from ehdmaps.physics.designations.reader import CYLINDRICAL
 from ehdmaps.physics.solids import Material
 
 
 @dataclass(frozen=True)
-class BearingGeometry:
+class BearingGeometry(Named):
     """A cylindrical roller bearing.
 
     Attributes
@@ -51,6 +51,7 @@ class BearingGeometry:
     (5.5152, 8.4848)
     """
 
+    clearance_field: ClassVar[str] = "diametral_clearance"
     name: str
     inner_raceway_diameter: float
     outer_raceway_diameter: float
@@ -82,25 +83,6 @@ class BearingGeometry:
             raise InputError(
                 f"bearing name: got {name!r}; allowed: {', '.join(BEARINGS)}; give other bearings by their dimensions"
             ) from None
-
-    @property
-    def title(self) -> str:
-        """Name of the bearing in titles: its label, else its name; `estimated` is for a line of its own."""
-        return self.label or self.name
-
-    def record(self) -> dict[str, float | str]:
-        """Everything that defines the bearing, for provenance; SI units; what is not given is left out."""
-        values = {entry.name: getattr(self, entry.name) for entry in fields(self) if entry.name != "clearance_range"}
-        return {name: value for name, value in values.items() if value is not None}
-
-    def delivered(self, clearance: ClearanceRange | None) -> Self:
-        """The same bearing with the clearance of its designation, and the range of it."""
-        taken = 0.0 if clearance is None else clearance.clearance
-        return replace(self, diametral_clearance=taken, clearance_range=clearance)
-
-    def with_clearance(self, clearance: float) -> Self:
-        """The same bearing with a clearance that is stated [m]."""
-        return replace(self, diametral_clearance=clearance, clearance_range=stated(self.clearance_range))
 
     @property
     def pitch_diameter(self) -> float:

@@ -24,10 +24,10 @@ import math
 import re
 from typing import NamedTuple
 
-from ehdmaps.errors import InputError, closest, short
+from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
 from ehdmaps.physics.designations.clearance import NORMAL, ClearanceRange, class_range, delivered
-from ehdmaps.physics.designations.families import words_for_lines
+from ehdmaps.physics.designations.families import not_known, words_for_lines
 from ehdmaps.physics.designations.reader import CYLINDRICAL, NEEDLES, ROLLERS, plain_name, read_designation
 from ehdmaps.physics.designations.tables import table
 from ehdmaps.physics.rollers.needle_catalogue import needle_boundary, needle_designations, needle_estimate
@@ -106,7 +106,7 @@ def estimate(designation: str, basic_static_rating: float | None = None) -> Bear
     if plain_name(designation, NEEDLES):
         return needle_estimate(designation, basic_static_rating)
     entry = _looked_up(designation)
-    name = plain_designation(designation)
+    name = plain_name(designation, ROLLERS)
     clearance = delivered(designation, entry.bore)
     rating = tabulated_rating(designation) if basic_static_rating is None else basic_static_rating
     # makers' ratings of one bearing differ by up to a fifth, and so do their rollers
@@ -132,7 +132,7 @@ def designated(designation: str) -> BearingGeometry:
     >>> designated("NU 308 ECP").estimated is None, designated("nu 210 C3").clearance_range.words
     (True, 'clearance in the middle of C3: 50 to 80 um by ISO 5753-1, before mounting')
     """
-    known = BEARINGS.get(plain_designation(designation))
+    known = BEARINGS.get(plain_name(designation, ROLLERS))
     return estimate(designation) if known is None else known.delivered(_delivered(designation))
 
 
@@ -140,22 +140,6 @@ def _delivered(designation: str) -> ClearanceRange | None:
     """Clearance of a cylindrical roller bearing by its designation."""
     entry = boundary(designation)
     return None if entry is None else delivered(designation, entry.bore)
-
-
-def plain_designation(designation: str) -> str:
-    """Designation without blanks and suffixes, such as "NU210"; empty where it is none.
-
-    Parameters
-    ----------
-    designation : str
-        Designation as it was typed.
-
-    Examples
-    --------
-    >>> plain_designation("NU 210-E-TVP2"), plain_designation("6206")
-    ('NU210', '')
-    """
-    return plain_name(designation, ROLLERS)
 
 
 def tabulated_rating(designation: str) -> float | None:
@@ -303,15 +287,15 @@ def _looked_up(designation: str) -> Catalogue:
     """The entry of a designation."""
     entry = boundary(designation)
     if entry is None:
-        if words := words_for_lines(designation):
-            raise InputError(f"bearing designation: {words}")
-        near = closest(designation.upper(), (*designations(), *needle_designations()))
-        raise InputError(
-            f"bearing designation: got {short(designation)}{near}; allowed: "
+        raise not_known(
+            designation,
+            "bearing",
+            (*designations(), *needle_designations()),
             f"{', '.join(BEARINGS)}, and N, NU, NJ or NUP of series 10, 2, 22, 3, 23 with bores of 20 mm (25 mm in "
             "series 10) to 100 mm, such as 'NU206'; needles such as 'NA4908', 'K40x48x20'; give "
             "others by bore, outside_diameter, width and "
-            "basic_static_rating"
+            "basic_static_rating",
+            words_for_lines(designation),
         )
     return entry
 

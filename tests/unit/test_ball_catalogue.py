@@ -8,12 +8,12 @@ import re
 import pytest
 
 from ehdmaps.errors import InputError
+from ehdmaps.physics.designations.reader import BALLS, plain_name
 from ehdmaps.physics.point.ball_catalogue import (
     ball_boundary,
     ball_designations,
     ball_estimate,
     ball_static_rating,
-    plain_ball_designation,
     static_factor,
 )
 
@@ -112,7 +112,7 @@ def test_own_rating_is_taken() -> None:
     ],
 )  # fmt: skip
 def test_designations_as_they_are_typed(typed, plain) -> None:
-    assert plain_ball_designation(typed) == plain
+    assert plain_name(typed, BALLS) == plain
 
 
 @pytest.mark.parametrize("wrong", ["6521", "6299", "hello", "", "7308C"])

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from ehdmaps.errors import InputError
-from ehdmaps.physics.catalogue import boundary, designated, plain_designation
+from ehdmaps.physics.catalogue import boundary, designated
+from ehdmaps.physics.designations.reader import ROLLERS, bore_code, plain_name
 from ehdmaps.physics.rollers import needle_catalogue as needles
 from ehdmaps.physics.rollers.ratings import Rollers, by_ratings, dynamic_rating, static_rating
 from mbs.bearings import laws
@@ -50,7 +51,7 @@ def test_needles_of_machined_rings_have_half_millimetres() -> None:
     for bore, raceway, outside, _, dynamic, static in needles._MACHINED:
         diameter = 1e3 * needles.needle_diameter(1e-3 * raceway, (dynamic, static))
         assert abs(diameter - 0.5 * round(2.0 * diameter)) < 0.25
-        geometry = designated(f"NA49{needles._code(bore)}")
+        geometry = designated(f"NA49{bore_code(bore)}")
         assert 1e3 * geometry.outer_raceway_diameter < outside - 2.0  # a ring of more than a millimetre
         assert abs(diameter - 1e3 * geometry.roller_diameter) < 0.23  # 4 % of the largest of them
 
@@ -88,7 +89,7 @@ def test_the_force_is_the_sum_over_needles(name) -> None:
 
 
 def test_what_is_no_needle_bearing_is_refused() -> None:
-    assert plain_designation("NA4921A") == ""
+    assert plain_name("NA4921A", ROLLERS) == ""
     with pytest.raises(InputError, match=r"got 'NA4999' \(did you mean 'NA4919'\?\); allowed: NA, RNA, NAV, RNAV"):
         designated("NA4999")
     with pytest.raises(InputError, match=r"takes needles of 2.008 mm in a width of 22 mm; .* C0 and not C"):

@@ -23,10 +23,11 @@ from ehdmaps.physics.approach import StructuralLaw
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.catalogue import designated
 from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.designations.reader import BALLS, plain_name
 from ehdmaps.physics.heat import heat_data
 from ehdmaps.physics.lubricant import Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
-from ehdmaps.physics.point.ball_catalogue import ball_estimate, plain_ball_designation
+from ehdmaps.physics.point.ball_catalogue import ball_estimate
 from ehdmaps.physics.point.ball_geometry import BallGeometry
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.physics.solution import ContactSolver
@@ -266,7 +267,7 @@ def law(
     >>> nu308 = ehdmaps.law(ehdmaps.BearingGeometry.named("NU308"), ehdmaps.Lubricant.named("FVA3"))  # doctest: +SKIP
     """
     if isinstance(of, str):
-        of = ball_estimate(of) if plain_ball_designation(of) else designated(of)
+        of = ball_estimate(of) if plain_name(of, BALLS) else designated(of)
     lubricant = Lubricant.named(lubricant) if isinstance(lubricant, str) else lubricant
     if isinstance(of, BallGeometry):
         if supply is not None or surface is not None or solver is not None:

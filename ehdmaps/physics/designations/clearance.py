@@ -14,7 +14,8 @@ bore: values as printed in makers' tables, which agree (SKF for rollers; SKF, NS
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from dataclasses import fields, replace
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 from ehdmaps.errors import InputError, short
 from ehdmaps.physics.designations.reader import ANGULAR, CYLINDRICAL, DEEP_GROOVE, NEEDLE, TAPERED, read_designation
@@ -78,6 +79,44 @@ class ClearanceRange(NamedTuple):
         if self.taken == "zero":
             return f"no clearance, an assumption: {self.name} would be {reach}"
         return f"clearance as stated: {self.name} of the designation would be {reach}"
+
+
+class Named:
+    """Geometry of a bearing with a name: how it is told, what is kept of it, and its clearance; a frozen dataclass."""
+
+    clearance_field: ClassVar[str] = ""
+    """Name of the field of its clearance; empty where it has none."""
+
+    if TYPE_CHECKING:
+        name: str
+        label: str | None
+
+    @property
+    def title(self) -> str:
+        """Name of the bearing in titles: its label, else its name; `estimated` is for a line of its own."""
+        return self.label or self.name
+
+    def record(self) -> dict[str, float | str]:
+        """Everything that defines the bearing, for provenance; SI units; what is not given is left out."""
+        own: Any = self
+        values = {entry.name: getattr(self, entry.name) for entry in fields(own) if entry.name != "clearance_range"}
+        return {name: value for name, value in values.items() if value is not None}
+
+    def delivered(self, clearance: ClearanceRange | None) -> Self:
+        """The same bearing with the clearance of its designation, and the range of it."""
+        return self._with(0.0 if clearance is None else clearance.clearance, clearance)
+
+    def with_clearance(self, clearance: float) -> Self:
+        """The same bearing with a clearance that is stated [m]; as it is where it has none."""
+        if not self.clearance_field:
+            return self
+        return self._with(clearance, stated(getattr(self, "clearance_range", None)))
+
+    def _with(self, clearance: float, reach: ClearanceRange | None) -> Self:
+        """The same bearing with a clearance and its range."""
+        own: Any = self
+        changed: Self = replace(own, **{self.clearance_field: clearance, "clearance_range": reach})
+        return changed
 
 
 def class_range(kind: str, bore: float, name: str, taken: str = "middle") -> ClearanceRange | None:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 
+from ehdmaps.errors import InputError, closest, short
 from ehdmaps.physics.designations.reader import BALLS, ROLLERS, TAPERED, plain_name
 
 SERVED = (
@@ -101,3 +103,25 @@ def words_for_lines(text: str) -> str:
         f"`ehdmaps generate {name}` for a map of points, `ehdmaps solve {name}` for one, "
         f"`mbs bearing {name} --law films` for the bearing"
     )
+
+
+def not_known(designation: str, kind: str, known: Iterable[str], allowed: str, words: str = "") -> InputError:
+    """The error of a designation that a catalogue does not have.
+
+    Parameters
+    ----------
+    designation : str
+        Designation as it was typed.
+    kind : str
+        Kind of the catalogue, in words.
+    known : iterable of str
+        Designations that it has.
+    allowed : str
+        What is allowed, in words.
+    words : str
+        What is known of the designation, in place of what it says here of kinds that are not served.
+    """
+    if words := words or not_served(designation):
+        return InputError(f"bearing designation: {words}")
+    near = closest(designation.upper(), tuple(known))
+    return InputError(f"{kind} designation: got {short(designation)}{near}; allowed: {allowed}")

@@ -107,6 +107,17 @@ def read_designation(text: str) -> Designation | None:
     return None
 
 
+def bore_code(bore: float) -> str:
+    """Bore code of a bore [mm].
+
+    Examples
+    --------
+    >>> bore_code(40), bore_code(17)
+    ('08', '03')
+    """
+    return {10: "00", 12: "01", 15: "02", 17: "03"}.get(int(bore), f"{int(bore) // 5:02d}")
+
+
 def plain_name(text: str, kinds: tuple[str, ...]) -> str:
     """Designation without blanks and suffixes, where it is of some kinds; else empty.
 

@@ -25,10 +25,10 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ehdmaps.errors import InputError, closest, short
+from ehdmaps.errors import InputError
 from ehdmaps.physics.designations.clearance import delivered
-from ehdmaps.physics.designations.families import not_served
-from ehdmaps.physics.designations.reader import BALLS, plain_name, read_designation
+from ehdmaps.physics.designations.families import not_known
+from ehdmaps.physics.designations.reader import BALLS, bore_code, read_designation
 from ehdmaps.physics.designations.tables import table
 from ehdmaps.physics.point.ball_geometry import BallGeometry
 
@@ -101,12 +101,12 @@ def ball_estimate(designation: str, basic_static_rating: float | None = None) ->
     series, code, suffix = _parts(designation)
     entry = _entry(series, code, suffix)
     if entry is None:
-        if words := not_served(designation):
-            raise InputError(f"bearing designation: {words}")
-        raise InputError(
-            f"ball bearing designation: got {short(designation)}{closest(designation.upper(), ball_designations())}; "
-            "allowed: 60, 62, 63 with bores of 10 to 100 mm, 64 with 20 to 90 mm, such as '6208'; 70, 72, 73 with the "
-            "suffix C, AC or B for the contact angle, such as '7208B'"
+        raise not_known(
+            designation,
+            "ball bearing",
+            ball_designations(),
+            "60, 62, 63 with bores of 10 to 100 mm, 64 with 20 to 90 mm, such as '6208'; 70, 72, 73 with the suffix C, "
+            "AC or B for the contact angle, such as '7208B'",
         )
     name = series + code + suffix
     pitch = 0.5 * (entry.bore + entry.outside_diameter)
@@ -137,22 +137,6 @@ def ball_estimate(designation: str, basic_static_rating: float | None = None) ->
     ).delivered(delivered(designation, entry.bore))
 
 
-def plain_ball_designation(designation: str) -> str:
-    """Designation without blanks and suffixes, such as "6208" or "7208B"; empty where it is none.
-
-    Parameters
-    ----------
-    designation : str
-        Designation as it was typed.
-
-    Examples
-    --------
-    >>> plain_ball_designation("7208 becbp"), plain_ball_designation("NU208")
-    ('7208B', '')
-    """
-    return plain_name(designation, BALLS)
-
-
 def ball_boundary(designation: str) -> BallCatalogue | None:
     """Boundary dimensions and rating of a ball bearing by its designation; None where it is not in the table.
 
@@ -172,7 +156,7 @@ def ball_boundary(designation: str) -> BallCatalogue | None:
 def ball_designations() -> tuple[str, ...]:
     """Designations that `ball_estimate` knows."""
     return tuple(
-        f"{series}{_code(row[0])}{suffix}"
+        f"{series}{bore_code(row[0])}{suffix}"
         for series, table in _TABLES.items()
         for suffix in (("",) if series[0] == "6" else tuple(ANGLES))
         if (series, suffix) != ("73", "C")
@@ -244,18 +228,13 @@ def _parts(designation: str) -> tuple[str, str, str]:
     return series, code, "".join(suffix)
 
 
-def _code(bore: float) -> str:
-    """Bore code of a bore [mm]."""
-    return {10: "00", 12: "01", 15: "02", 17: "03"}.get(int(bore), f"{int(bore) // 5:02d}")
-
-
 def _entry(series: str, code: str, suffix: str) -> BallCatalogue | None:
     """The entry of the table; None where there is none."""
     if (series, suffix) == ("73", "C"):
         return None
     column = 3 if not suffix else _COLUMNS.get((series, suffix))
     for row in _TABLES.get(series, ()):
-        if _code(row[0]) == code:
+        if bore_code(row[0]) == code:
             rating = None if column is None else float(row[column])
             factor = row[4] if not suffix and len(row) > 4 else None
             return BallCatalogue(row[0] * _MM, row[1] * _MM, row[2] * _MM, rating, factor)

@@ -18,11 +18,11 @@ Methods for calculating the modified reference rating life for universally loade
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, fields, replace
-from typing import ClassVar, Self
+from dataclasses import dataclass, field
+from typing import ClassVar
 
 from ehdmaps.errors import InputError, label_problem
-from ehdmaps.physics.designations.clearance import ClearanceRange, stated
+from ehdmaps.physics.designations.clearance import ClearanceRange, Named
 from ehdmaps.physics.point.ellipse import Ellipse
 from ehdmaps.physics.solids import Material, reduced_modulus
 
@@ -34,7 +34,7 @@ _CONFORMITIES = (0.5, 1.0)
 
 
 @dataclass(frozen=True)
-class BallGeometry:
+class BallGeometry(Named):
     """A deep groove or angular contact ball bearing.
 
     Attributes
@@ -75,6 +75,7 @@ class BallGeometry:
     """
 
     kind: ClassVar[str] = "ball bearing"
+    clearance_field: ClassVar[str] = "clearance"
     name: str
     ball_diameter: float
     pitch_diameter: float
@@ -91,25 +92,6 @@ class BallGeometry:
         problems = _problems(self)
         if problems:
             raise InputError(problems)
-
-    @property
-    def title(self) -> str:
-        """Name of the bearing in titles: its label, else its name; `estimated` is for a line of its own."""
-        return self.label or self.name
-
-    def record(self) -> dict[str, float | str]:
-        """Everything that defines the bearing, for provenance; SI units; what is not given is left out."""
-        values = {entry.name: getattr(self, entry.name) for entry in fields(self) if entry.name != "clearance_range"}
-        return {name: value for name, value in values.items() if value is not None}
-
-    def delivered(self, clearance: ClearanceRange | None) -> Self:
-        """The same bearing with the clearance of its designation, and the range of it."""
-        taken = 0.0 if clearance is None else clearance.clearance
-        return replace(self, clearance=taken, clearance_range=clearance)
-
-    def with_clearance(self, clearance: float) -> Self:
-        """The same bearing with a clearance that is stated [m]."""
-        return replace(self, clearance=clearance, clearance_range=stated(self.clearance_range))
 
     @property
     def gamma(self) -> float:

@@ -24,11 +24,11 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ehdmaps.errors import InputError, closest, short
+from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
 from ehdmaps.physics.designations.clearance import delivered
-from ehdmaps.physics.designations.families import not_served
-from ehdmaps.physics.designations.reader import NEEDLES, plain_name
+from ehdmaps.physics.designations.families import not_known
+from ehdmaps.physics.designations.reader import NEEDLES, bore_code, plain_name
 from ehdmaps.physics.designations.tables import table
 from ehdmaps.physics.rollers.ratings import by_ratings, with_static_rating
 
@@ -53,22 +53,6 @@ class NeedleBoundary(NamedTuple):
     width: float
 
 
-def plain_needle_designation(designation: str) -> str:
-    """Designation without blanks and suffixes, such as "NA4908" or "K40x48x20"; empty where it is none.
-
-    Parameters
-    ----------
-    designation : str
-        Designation as it was typed.
-
-    Examples
-    --------
-    >>> plain_needle_designation("na 4908-XL"), plain_needle_designation("K 40x48x20")
-    ('NA4908', 'K40x48x20')
-    """
-    return plain_name(designation, NEEDLES)
-
-
 def needle_estimate(designation: str, basic_static_rating: float | None = None) -> BearingGeometry:
     """Inner geometry of a needle roller bearing by its designation.
 
@@ -90,15 +74,15 @@ def needle_estimate(designation: str, basic_static_rating: float | None = None) 
     >>> bearing.rollers, round(1e3 * bearing.roller_diameter, 2), round(1e3 * bearing.roller_length, 2)
     (25, 5.0, 14.25)
     """
-    name = plain_needle_designation(designation)
+    name = plain_name(designation, NEEDLES)
     found = _cage(name) or _rings(name)
     if found is None:
-        if words := not_served(designation):
-            raise InputError(f"bearing designation: {words}")
-        raise InputError(
-            f"needle bearing designation: got {short(designation)}{closest(designation.upper(), needle_designations())}"
-            "; allowed: NA, RNA, NAV, RNAV of series 49 with bores of 10 to 100 mm, such as 'NA4908'; cages such as "
-            "'K40x48x20'; give others by their dimensions"
+        raise not_known(
+            designation,
+            "needle bearing",
+            needle_designations(),
+            "NA, RNA, NAV, RNAV of series 49 with bores of 10 to 100 mm, such as 'NA4908'; cages such as 'K40x48x20'; "
+            "give others by their dimensions",
         )
     inner, diameter, width, rating = found
     pitch, own = inner + diameter, basic_static_rating is not None
@@ -150,7 +134,7 @@ def needle_boundary(designation: str) -> NeedleBoundary | None:
     >>> needle_boundary("NA4908"), needle_boundary("K40x48x20")
     (NeedleBoundary(bore=0.04, outside_diameter=0.062, width=0.022), None)
     """
-    name = plain_needle_designation(designation)
+    name = plain_name(designation, NEEDLES)
     row = _row(name) if name and name[0] != "K" else None
     if row is None:
         return None
@@ -160,19 +144,14 @@ def needle_boundary(designation: str) -> NeedleBoundary | None:
 def needle_designations() -> tuple[str, ...]:
     """Designations that `needle_estimate` knows, machined rings written with NA."""
     return (
-        *(f"NA49{_code(row[0])}" for row in _MACHINED),
+        *(f"NA49{bore_code(row[0])}" for row in _MACHINED),
         *(f"K{inner}x{outer}x{width}" for inner, outer, width, _ in _CAGES),
     )
 
 
-def _code(bore: int) -> str:
-    """Bore code of a bore [mm]."""
-    return {10: "00", 12: "01", 15: "02", 17: "03"}.get(bore, f"{bore // 5:02d}")
-
-
 def _row(name: str) -> tuple[int, ...] | None:
     """Row of the table of machined rings."""
-    return next((row for row in _MACHINED if name[-2:] == _code(row[0])), None)
+    return next((row for row in _MACHINED if name[-2:] == bore_code(row[0])), None)
 
 
 def _cage(name: str) -> tuple[float, float, float, float] | None:

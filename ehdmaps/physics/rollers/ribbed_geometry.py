@@ -18,12 +18,13 @@ import dataclasses
 import math
 import re
 from dataclasses import dataclass, field
-from typing import ClassVar, Self
+from typing import ClassVar
 
 from ehdmaps.errors import InputError
 from ehdmaps.physics.bearing import BearingGeometry
-from ehdmaps.physics.catalogue import boundary, designated, plain_designation
-from ehdmaps.physics.designations.clearance import ClearanceRange, stated
+from ehdmaps.physics.catalogue import boundary, designated
+from ehdmaps.physics.designations.clearance import ClearanceRange
+from ehdmaps.physics.designations.reader import ROLLERS, plain_name
 from ehdmaps.physics.point.ellipse import Ellipse
 from ehdmaps.physics.rollers.tapered_geometry import Rib, TaperedGeometry
 from ehdmaps.physics.solids import Material, reduced_modulus
@@ -72,6 +73,7 @@ class RibbedGeometry(TaperedGeometry):
     (0.00375, 0.43)
     """
 
+    clearance_field: ClassVar[str] = "diametral_clearance"
     kind: ClassVar[str] = "ribbed bearing"
     carries: str = "both"
     axial_clearance: float = 0.0
@@ -105,10 +107,6 @@ class RibbedGeometry(TaperedGeometry):
     def carries_along(self, way: float) -> bool:
         """Tell whether ribs carry a force on the inner ring along x, `way` > 0, or along -x."""
         return self.carries in ("both", "+x" if way > 0.0 else "-x")
-
-    def with_clearance(self, clearance: float) -> Self:
-        """The same bearing with a clearance that is stated [m]."""
-        return dataclasses.replace(self, diametral_clearance=clearance, clearance_range=stated(self.clearance_range))
 
     @property
     def ways(self) -> str:
@@ -190,7 +188,7 @@ def ribbed_way(designation: str) -> str:
     >>> ribbed_way("NUP 210 ECP"), ribbed_way("NJ308"), ribbed_way("NU210")
     ('both', '+x', '')
     """
-    match = re.match(r"NUP|NJ", plain_designation(designation))
+    match = re.match(r"NUP|NJ", plain_name(designation, ROLLERS))
     return _TYPES[match.group()] if match else ""
 
 

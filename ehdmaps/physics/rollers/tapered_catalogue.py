@@ -21,10 +21,9 @@ import dataclasses
 import math
 from typing import NamedTuple
 
-from ehdmaps.errors import InputError, closest, short
 from ehdmaps.physics.designations.clearance import delivered
-from ehdmaps.physics.designations.families import not_served
-from ehdmaps.physics.designations.reader import TAPERED, plain_name
+from ehdmaps.physics.designations.families import not_known
+from ehdmaps.physics.designations.reader import TAPERED, bore_code, plain_name
 from ehdmaps.physics.designations.tables import table
 from ehdmaps.physics.rollers.ratings import Rollers, by_ratings, ratings, with_static_rating
 from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
@@ -95,12 +94,11 @@ def tapered_estimate(designation: str) -> TaperedGeometry:
     """
     entry = tapered_boundary(designation)
     if entry is None:
-        if words := not_served(designation):
-            raise InputError(f"bearing designation: {words}")
-        raise InputError(
-            f"tapered bearing designation: got {short(designation)}"
-            f"{closest(designation.upper(), tapered_designations())}; allowed: 302, 303, 313, 320, 322, 323 with bores "
-            "of 15 to 80 mm, as far as NSK makes them, such as '32208'"
+        raise not_known(
+            designation,
+            "tapered bearing",
+            tapered_designations(),
+            "302, 303, 313, 320, 322, 323 with bores of 15 to 80 mm, as far as NSK makes them, such as '32208'",
         )
     delivered(designation, entry.bore)  # refuses a class of radial clearance
     angle = math.atan(entry.axial_factor / 1.5)
@@ -109,7 +107,7 @@ def tapered_estimate(designation: str) -> TaperedGeometry:
     count = round(found.number)
     rollers = with_static_rating(found.diameter, count, pitch, entry.static_rating, angle)
     sentence = f"inner geometry estimated from catalogue dimensions and NSK's ratings (ISO 76, ISO 281): {ERRORS}"
-    name = plain_tapered_designation(designation)
+    name = plain_name(designation, (TAPERED,))
     return TaperedGeometry(name, rollers.diameter, rollers.length, pitch, count, angle, estimated=sentence)
 
 
@@ -122,22 +120,6 @@ def mirrored(geometry: TaperedGeometry) -> TaperedGeometry:
         The bearing.
     """
     return dataclasses.replace(geometry, contact_angle=-geometry.contact_angle)
-
-
-def plain_tapered_designation(designation: str) -> str:
-    """Designation without blanks and suffixes, such as "32208"; empty where it is none.
-
-    Parameters
-    ----------
-    designation : str
-        Designation as it was typed.
-
-    Examples
-    --------
-    >>> plain_tapered_designation("HR 32008 XJ"), plain_tapered_designation("32 208")
-    ('32008', '')
-    """
-    return plain_name(designation, (TAPERED,))
 
 
 def tapered_boundary(designation: str) -> TaperedCatalogue | None:
@@ -153,9 +135,9 @@ def tapered_boundary(designation: str) -> TaperedCatalogue | None:
     >>> tapered_boundary("32208").axial_factor
     0.37
     """
-    name = plain_tapered_designation(designation)
+    name = plain_name(designation, (TAPERED,))
     for row in _TABLE.get(name[:3], ()):
-        if _code(row[0]) == name[3:]:
+        if bore_code(row[0]) == name[3:]:
             d, outside, width, cone, cup, dynamic, static, centre, factor = row
             lengths = (d * _MM, outside * _MM, width * _MM, cone * _MM, cup * _MM)
             return TaperedCatalogue(*lengths, dynamic, static, centre * _MM, factor)
@@ -164,7 +146,7 @@ def tapered_boundary(designation: str) -> TaperedCatalogue | None:
 
 def tapered_designations() -> tuple[str, ...]:
     """Designations that `tapered_estimate` knows."""
-    return tuple(series + _code(row[0]) for series, table in _TABLE.items() for row in table)
+    return tuple(series + bore_code(row[0]) for series, table in _TABLE.items() for row in table)
 
 
 def tapered_ratings(geometry: TaperedGeometry) -> tuple[float, float]:
@@ -177,8 +159,3 @@ def tapered_ratings(geometry: TaperedGeometry) -> tuple[float, float]:
     """
     rollers = Rollers(geometry.roller_diameter, geometry.roller_length, geometry.rollers)
     return ratings(rollers, geometry.pitch_diameter, geometry.cup_angle)
-
-
-def _code(bore: float) -> str:
-    """Bore code of a bore [mm]."""
-    return {15: "02", 17: "03"}.get(int(bore), f"{int(bore) // 5:02d}")

@@ -21,12 +21,13 @@ rib's radius, which is about the apex distance, are compared in Machines 13 (202
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from functools import cached_property
-from typing import ClassVar, NamedTuple, Self
+from typing import ClassVar, NamedTuple
 
 from ehdmaps.errors import InputError, label_problem
 from ehdmaps.physics.contact import LineContact
+from ehdmaps.physics.designations.clearance import Named
 from ehdmaps.physics.point.ellipse import Ellipse
 from ehdmaps.physics.solids import Material, reduced_modulus
 
@@ -68,7 +69,7 @@ class Rib(NamedTuple):
 
 
 @dataclass(frozen=True)
-class TaperedGeometry:
+class TaperedGeometry(Named):
     """A single row tapered roller bearing.
 
     Attributes
@@ -123,23 +124,9 @@ class TaperedGeometry:
             raise InputError(problems)
 
     @property
-    def title(self) -> str:
-        """Name of the bearing in titles: its label, else its name."""
-        return self.label or self.name
-
-    def record(self) -> dict[str, float | str]:
-        """Everything that defines the bearing, for provenance; SI units; what is not given is left out."""
-        values = {entry.name: getattr(self, entry.name) for entry in fields(self)}
-        return {name: value for name, value in values.items() if value is not None}
-
-    @property
     def clearance(self) -> float | None:
         """Diametral clearance [m]; None: what presses or loosens rollers is an axial displacement."""
         return None
-
-    def with_clearance(self, clearance: float) -> Self:
-        """The same bearing, as it has no clearance."""
-        return self
 
     def carries_along(self, way: float) -> bool:
         """Tell whether it carries a force on the inner ring along x, `way` > 0, or along -x."""

@@ -44,7 +44,7 @@ from mbs.bearings.balls.ball_data import (
 )
 from mbs.bearings.balls.ball_speed import Drive, ball_loads, dry_energy, mean_speed, speed_work
 from mbs.bearings.balls.laws import BallLaw
-from mbs.bearings.locating.locating_force import LocatingForce, directions
+from mbs.bearings.locating.locating_force import Loads, LocatingForce, directions
 from mbs.bearings.locating.normal_law import law_data, load_approach
 from mbs.model.findings import CARRIES
 
@@ -56,15 +56,11 @@ NEGLIGIBLE = 1e-11
 
 
 @dataclass(frozen=True, eq=False)
-class BallLoads:
-    """State of all balls at one pose.
+class BallLoads(Loads):
+    """State of all balls at one pose, see `Loads`.
 
     Attributes
     ----------
-    angle : array (Z,)
-        Angles of the balls in O, from y towards z, within -pi to pi [rad].
-    load : array (2, Z)
-        Loads of the inner and the outer contact [N].
     contact_angle : array (2, Z)
         Contact angles of both [rad].
     approach : array (2, Z)
@@ -78,24 +74,12 @@ class BallLoads:
         Speed of the cage: the mean of the balls' speeds by their inner loads [rad/s].
     """
 
-    angle: FloatArray
-    load: FloatArray
     contact_angle: FloatArray
     approach: FloatArray
     speed: FloatArray
     centrifugal: FloatArray
     traction: FloatArray
     cage_speed: float
-
-    @property
-    def loaded(self) -> int:
-        """Number of balls that carry more than 1 % of the highest inner load: films that hardly touch carry some."""
-        return int(np.count_nonzero(self.load[0] > CARRIES * self.load[0].max()))
-
-    @property
-    def largest(self) -> float:
-        """Load of the most loaded contact [N]."""
-        return float(self.load.max())
 
     @property
     def gyroscopic_traction(self) -> float:
@@ -107,15 +91,7 @@ class BallLoads:
         return float(np.max(np.abs(self.traction[loaded]) / self.load[1][loaded], initial=0.0))
 
     def life(self, geometry: BallGeometry, inner_turns: bool) -> ReferenceLife:
-        """Equivalent load and life of ISO/TS 16281, by the rating of ISO 281.
-
-        Parameters
-        ----------
-        geometry : BallGeometry
-            Geometry of the bearing.
-        inner_turns : bool
-            Whether the inner ring turns against the load.
-        """
+        """See `Loads.life`."""
         from ehdmaps.physics.point.ball_catalogue import ball_dynamic_rating  # where lives are asked for
         from mbs.life import ball_reference_life
 
@@ -145,10 +121,6 @@ class BallForce(LocatingForce):
         Masses and sizes of the balls for `mbs.bearings.balls.ball_speed`, at rest.
     directions : (array (Z,), array (Z,))
         Directions of the balls in the cage, y and z.
-
-    Notes
-    -----
-    An object is for one thread: it keeps the places of the balls as a start for the next call.
     """
 
     rolling_element = "ball"
@@ -192,15 +164,9 @@ class BallForce(LocatingForce):
         """For other processes: as it was made, without what calls left behind."""
         return BallForce, (self.geometry, self.law, self.material)
 
-    def with_films(self, law: BallLaw) -> BallForce:
-        """The same bearing with another law.
-
-        Parameters
-        ----------
-        law : BallLaw
-            Laws of the contacts.
-        """
-        return BallForce(self.geometry, law, self.material)
+    def with_films(self, films: BallLaw) -> BallForce:
+        """See `LocatingForce.with_films`."""
+        return BallForce(self.geometry, films, self.material)
 
     @property
     def ratings(self) -> tuple[float, float]:
@@ -237,53 +203,20 @@ class BallForce(LocatingForce):
         self._data.put(held=self._held)
 
     def speed_loads(
-        self, inner_speed: float, outer_speed: float, cage_speed: float | None = None
+        self, inner_speed: float, outer_speed: float = 0.0, cage_speed: float | None = None
     ) -> tuple[float, float]:
-        """Centrifugal load of a ball [N], and factor G of its gyroscopic moment G sin(alpha_o) [N m].
-
-        Parameters
-        ----------
-        inner_speed, outer_speed : float
-            Speeds of the rings [rad/s].
-        cage_speed : float, optional
-            Speed of the ball around the axis [rad/s]; that of the nominal contact angle if left out.
-
-        Raises
-        ------
-        InputError
-            For speeds that are no finite numbers, or beyond `FASTEST`.
-        """
+        """See `LocatingForce.speed_loads`; with the factor G of the moment G sin(alpha_o)."""
         centrifugal, traction, _, _ = ball_loads(
             self.drive_at(inner_speed=inner_speed, outer_speed=outer_speed),
             self._cage_of(inner_speed, outer_speed, cage_speed),
         )
         return float(centrifugal), 0.5 * float(traction) * self.geometry.ball_diameter
 
-    def loads(
-        self,
-        pose: npt.ArrayLike,
-        *,
-        cage_angle: float = 0.0,
-        inner_speed: float = 0.0,
-        outer_speed: float = 0.0,
-        cage_speed: float | None = None,
-    ) -> BallLoads:
-        """Loads, contact angles and approaches of all balls; arguments and errors as of a call.
-
-        Parameters
-        ----------
-        pose : array (6,)
-            Pose of the inner ring in O.
-        cage_angle, inner_speed, outer_speed, cage_speed : float
-            Angle of the cage [rad] and speeds [rad/s], see `LocatingForce.__call__`.
-        """
-        self._evaluated(pose, cage_angle, inner_speed, outer_speed, cage_speed)
+    def _loads(self, angle: FloatArray, idle: float) -> BallLoads:
+        """See `LocatingForce`."""
         self._angles(self.geometry.balls, self._balls.ctypes.data)
-        angle = np.angle(np.exp(1j * (self.angles + cage_angle)))
         rows = self._balls.T.copy()
-        idle = self.geometry.cage_speed(inner_speed, outer_speed) if cage_speed is None else cage_speed
-        traction = rows[24] * rows[18]
-        cage = float(mean_speed(self._balls, float(idle)))
+        traction, cage = rows[24] * rows[18], float(mean_speed(self._balls, idle))
         return BallLoads(angle, rows[10:12], rows[12:14], rows[14:16], rows[22], rows[23], traction, cage)
 
     def forget(self) -> None:

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ehdmaps.arrays import FloatArray
-from mbs.bearings.balls.ball_bearing import BallForce
 from mbs.bearings.balls.ball_findings import ball_gauge
 from mbs.bearings.balls.ball_memory import FilmsOfBalls
 from mbs.bearings.balls.laws import BallLaw
@@ -31,6 +30,7 @@ class MachineBalls(LocatingElement):
 
     rolling_element = "ball"
     of_points = True
+    in_time = FilmsOfBalls
 
     @property
     def dry_law(self) -> BallLaw:
@@ -48,10 +48,6 @@ class MachineBalls(LocatingElement):
         """Tell whether an angular contact bearing is beyond its middle, where it has no raceway."""
         axial = self.force.shape.axial
         return bool(axial * (axial + pose[0]) < 0.0)
-
-    def at_rest(self, force: BallForce) -> FilmsOfBalls:
-        """See `LocatingElement.at_rest`."""
-        return FilmsOfBalls.at_rest(force)
 
     def relaxation_at(self, at: Settled) -> Relaxation:
         """See `LocatingElement.relaxation_at`."""

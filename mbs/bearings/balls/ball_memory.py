@@ -66,13 +66,7 @@ class FilmsOfBalls:
 
     @classmethod
     def at_rest(cls, force: BallForce) -> FilmsOfBalls:
-        """Films that have not moved, at the last call of a force.
-
-        Parameters
-        ----------
-        force : BallForce
-            The force.
-        """
+        """See `FilmsInTime.at_rest` of `mbs.bearings.locating.locating_element`."""
         approaches = force.last_balls[:, 14:16].copy()
         return cls(np.zeros((*approaches.shape, SPRINGS)), _springs(force.law, approaches), approaches)
 
@@ -89,15 +83,7 @@ class FilmsOfBalls:
         return passed, held
 
     def after(self, step: float, force: BallForce) -> FilmsOfBalls:
-        """Films after a step.
-
-        Parameters
-        ----------
-        step : float
-            Length of the step [s].
-        force : BallForce
-            The force with the films of its end, at its last call.
-        """
+        """See `FilmsInTime.after`."""
         approaches = force.last_balls[:, 14:16].copy()
         forces, springs, after = self.forces.copy(), self.springs.copy(), _springs(force.law, approaches)
         moved, passed = approaches - self.approaches, self._over(step)[0]

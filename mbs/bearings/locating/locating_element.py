@@ -13,7 +13,7 @@ from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol, Self
 
 import numpy as np
 
@@ -86,6 +86,37 @@ class LocatingStates(NamedTuple):
     films: Any = None
 
 
+class FilmsInTime(Protocol):
+    """Films with memory of a bearing after a step."""
+
+    @classmethod
+    def at_rest(cls, force: Any) -> Self:
+        """Films that have not moved, at the last call of a force.
+
+        Parameters
+        ----------
+        force : LocatingForce
+            The force.
+        """
+        ...
+
+    def held(self, step: float) -> FloatArray:
+        """Numbers that contacts hold over a step [s], as `LocatingForce.held` takes them."""
+        ...
+
+    def after(self, step: float, force: Any) -> Self:
+        """Films after a step.
+
+        Parameters
+        ----------
+        step : float
+            Length of the step [s].
+        force : LocatingForce
+            The force with the films of its end, at its last call.
+        """
+        ...
+
+
 @dataclass(frozen=True, eq=False)
 class LocatingElement(OnRings):
     """A bearing that carries axial load, between an inner and an outer ring; kinds inherit from it.
@@ -112,10 +143,13 @@ class LocatingElement(OnRings):
         Whether films have stiffness and damping of slow motion, or relax; "memory" in time, too.
     of_points : bool
         Whether contacts are points, else lines in slices.
+    in_time : type
+        Class of its films with memory.
     """
 
     locating: ClassVar[bool] = True
     of_points: ClassVar[bool] = False
+    in_time: ClassVar[type[FilmsInTime]]
     name: str
     inner: str
     outer: str
@@ -136,16 +170,6 @@ class LocatingElement(OnRings):
     @property
     def same_films(self) -> object:
         """Key of its contacts, whatever its clearance, and which way it stands."""
-        raise NotImplementedError
-
-    def at_rest(self, force: Any) -> Any:
-        """Films with memory that have not moved, at the last call of a force.
-
-        Parameters
-        ----------
-        force : LocatingForce
-            The force.
-        """
         raise NotImplementedError
 
     def relaxation_at(self, at: Settled) -> Relaxation:
@@ -384,7 +408,7 @@ class LocatingElement(OnRings):
         last = np.zeros((force.angles.size, 4)) if states is None else states.last.copy()
         work = force.work((conditions["inner_speed"], conditions["outer_speed"]), last)
         if self.relaxes:
-            films = self.at_rest(force) if films is None else films.after(step, force)
+            films = self.in_time.at_rest(force) if films is None else films.after(step, force)
         slowed = answer.damping @ velocity
         turning = turned_by(pose, answer.force + slowed) * self.cage_turn * operation.speed
         return answer, LocatingStates(

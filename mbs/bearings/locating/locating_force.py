@@ -9,7 +9,8 @@ moment. A kind is balls, or rollers with ribs; its balance is in C.
 from __future__ import annotations
 
 import math
-from typing import Any, ClassVar, Protocol
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +20,9 @@ from ehdmaps.errors import AnalysisError, InputError
 from ehdmaps.physics.solids import Material
 from mbs.model.findings import CARRIES, Cause, Finding
 
+if TYPE_CHECKING:
+    from mbs.life import ReferenceLife
+
 FASTEST = 2e4
 """Largest accepted speed of a ring [rad/s]; 1e5 rpm is half of it."""
 
@@ -26,23 +30,42 @@ NOT_FINITE, TOO_FAR, NO_BALANCE = -1, -2, -3
 """What functions in C find instead of an answer."""
 
 
-class Loads(Protocol):
-    """State of all rolling elements at one pose, as every kind has it."""
+@dataclass(frozen=True, eq=False)
+class Loads:
+    """State of all rolling elements at one pose; kinds inherit from it.
+
+    Attributes
+    ----------
+    angle : array (Z,)
+        Angles of the elements in O, from y towards z, within -pi to pi [rad].
+    load : array (2 or more, Z)
+        Loads, first of the inner contact, then of the outer one [N].
+    """
+
+    angle: FloatArray
+    load: FloatArray
 
     @property
-    def angle(self) -> FloatArray:
-        """Angles of the elements in O, from y towards z, within -pi to pi [rad], shape (Z,)."""
-        ...
-
-    @property
-    def load(self) -> FloatArray:
-        """Loads, first of the inner contact, then of the outer one, shape (2 or more, Z) [N]."""
-        ...
+    def loaded(self) -> int:
+        """Number of elements that carry more than 1 % of the highest inner load: films that hardly touch carry some."""
+        return int(np.count_nonzero(self.load[0] > CARRIES * self.load[0].max()))
 
     @property
     def largest(self) -> float:
         """Load of the most loaded contact, in the unit of its law: [N], or [N/m] of slices."""
-        ...
+        return float(self.load.max())
+
+    def life(self, geometry: Any, inner_turns: bool) -> ReferenceLife:
+        """Equivalent load and life of ISO/TS 16281, by the rating of ISO 281.
+
+        Parameters
+        ----------
+        geometry : BallGeometry or TaperedGeometry
+            Geometry of the bearing.
+        inner_turns : bool
+            Whether the inner ring turns against the load.
+        """
+        raise NotImplementedError
 
 
 class LocatingForce:
@@ -124,6 +147,61 @@ class LocatingForce:
                 raise InputError(f"{self.geometry.kind}, velocity: got {rate.tolist()}; allowed: finite numbers")
             force -= damping @ rate
         return force, stiffness, damping
+
+    def loads(
+        self,
+        pose: npt.ArrayLike,
+        *,
+        cage_angle: float = 0.0,
+        inner_speed: float = 0.0,
+        outer_speed: float = 0.0,
+        cage_speed: float | None = None,
+    ) -> Any:
+        """Loads and places of all elements, `Loads`; arguments and errors as of a call.
+
+        Parameters
+        ----------
+        pose : array (6,)
+            Pose of the inner ring in O.
+        cage_angle, inner_speed, outer_speed, cage_speed : float
+            Angle of the cage [rad] and speeds [rad/s].
+        """
+        self._evaluated(pose, cage_angle, inner_speed, outer_speed, cage_speed)
+        idle = self.geometry.cage_speed(inner_speed, outer_speed) if cage_speed is None else cage_speed
+        return self._loads(np.angle(np.exp(1j * (self.angles + cage_angle))), float(idle))
+
+    def _loads(self, angle: FloatArray, idle: float) -> Loads:
+        """Loads after a call, with the angles of the elements, and the speed of a cage whose elements are idle."""
+        raise NotImplementedError
+
+    def speed_loads(
+        self, inner_speed: float, outer_speed: float = 0.0, cage_speed: float | None = None
+    ) -> tuple[float, float]:
+        """Centrifugal load of an element [N], and what makes its gyroscopic moment [N m].
+
+        Parameters
+        ----------
+        inner_speed, outer_speed : float
+            Speeds of the rings [rad/s].
+        cage_speed : float, optional
+            Speed of the element around the axis [rad/s]; that of pure rolling at the nominal angle if left out.
+
+        Raises
+        ------
+        InputError
+            For speeds that are no finite numbers, or beyond `FASTEST`.
+        """
+        raise NotImplementedError
+
+    def with_films(self, films: Any) -> Self:
+        """The same bearing with other laws of its contacts.
+
+        Parameters
+        ----------
+        films : BallLaw or LineFilms
+            The laws.
+        """
+        raise NotImplementedError
 
     @property
     def ratings(self) -> tuple[float, float]:

@@ -22,10 +22,8 @@ def roller_contacts(
 
     Parameters
     ----------
-    force : TaperedForce
-        Geometry and laws.
-    rollers : TaperedLoads
-        Loads at rest.
+    force, rollers : TaperedForce, TaperedLoads
+        The bearing, and its loads at rest.
     films : FilmSource
         What knows the films of lines of the middle of a roller.
     speeds : (float, float)

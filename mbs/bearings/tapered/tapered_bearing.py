@@ -43,7 +43,7 @@ from ehdmaps.physics.rollers.tapered_geometry import TaperedGeometry
 from ehdmaps.physics.solids import STEEL, Material
 from ehdmaps.physics.surface import iso_profile
 from mbs.bearings.laws import roller_coefficient
-from mbs.bearings.locating.locating_force import LocatingForce, directions
+from mbs.bearings.locating.locating_force import Loads, LocatingForce, directions
 from mbs.bearings.locating.normal_law import contacts_at
 from mbs.bearings.tapered.kernel_structs import (
     ANSWER,
@@ -61,7 +61,6 @@ from mbs.bearings.tapered.kernel_structs import (
     functions,
 )
 from mbs.bearings.tapered.line_film import DRY_LINES, LineFilms
-from mbs.model.findings import CARRIES
 
 if TYPE_CHECKING:
     from mbs.life import ReferenceLife
@@ -73,15 +72,11 @@ FARTHEST = 0.1
 
 
 @dataclass(frozen=True, eq=False)
-class TaperedLoads:
-    """State of all rollers at one pose.
+class TaperedLoads(Loads):
+    """State of all rollers at one pose, see `Loads`: loads are those of cone, cup and all ribs of the cone.
 
     Attributes
     ----------
-    angle : array (Z,)
-        Angles of the rollers in O, from y towards z, within -pi to pi [rad].
-    load : array (3, Z)
-        Loads of cone, cup and all ribs of the cone [N].
     ribs : array (m, Z)
         Loads of the ribs, as the geometry has them [N].
     centre : array (2, Z)
@@ -90,16 +85,9 @@ class TaperedLoads:
         Loads per length of the slices of cone and cup [N/m].
     """
 
-    angle: FloatArray
-    load: FloatArray
     ribs: FloatArray
     centre: FloatArray
     slices: FloatArray
-
-    @property
-    def loaded(self) -> int:
-        """Number of rollers that carry more than 1 % of the highest load of the cone."""
-        return int(np.count_nonzero(self.load[0] > CARRIES * self.load[0].max()))
 
     @property
     def largest(self) -> float:
@@ -107,15 +95,7 @@ class TaperedLoads:
         return float(self.slices.max())
 
     def life(self, geometry: TaperedGeometry, inner_turns: bool) -> ReferenceLife:
-        """Equivalent load and life of ISO/TS 16281, by the rating of ISO 281.
-
-        Parameters
-        ----------
-        geometry : TaperedGeometry
-            Geometry of the bearing.
-        inner_turns : bool
-            Whether the inner ring turns against the load.
-        """
+        """See `Loads.life`."""
         from ehdmaps.physics.rollers.tapered_catalogue import tapered_ratings  # where lives are asked for
         from mbs.life import roller_reference_life
 
@@ -154,10 +134,6 @@ class TaperedForce(LocatingForce):
     ------
     InputError
         For damping, profile or slices that are none.
-
-    Notes
-    -----
-    An object is for one thread: it keeps the places of the rollers as a start for the next call.
 
     Examples
     --------
@@ -256,13 +232,7 @@ class TaperedForce(LocatingForce):
         return made, (self.geometry, self.damping, self.damping_time)
 
     def with_films(self, films: LineFilms) -> TaperedForce:
-        """The same bearing with other films.
-
-        Parameters
-        ----------
-        films : LineFilms
-            Laws of the lines.
-        """
+        """See `LocatingForce.with_films`."""
         other = copy.copy(self)
         other.films, other.laws = films, self.laws._replace(cup_film=films.outer, cone_film=films.inner)
         other._begin()
@@ -284,20 +254,7 @@ class TaperedForce(LocatingForce):
     def speed_loads(
         self, inner_speed: float, outer_speed: float = 0.0, cage_speed: float | None = None
     ) -> tuple[float, float]:
-        """Centrifugal load of a roller [N], and its gyroscopic moment from the axis outwards [N m].
-
-        Parameters
-        ----------
-        inner_speed, outer_speed : float
-            Speeds of the rings [rad/s].
-        cage_speed : float, optional
-            Speed of the cage [rad/s]; that of pure rolling if left out.
-
-        Raises
-        ------
-        InputError
-            For speeds that are no finite numbers, or beyond `FASTEST`.
-        """
+        """See `LocatingForce.speed_loads`; with the moment from the axis outwards."""
         geometry, cage = self.geometry, self._cage_of(inner_speed, outer_speed, cage_speed)
         mass = geometry.roller_mass(self.material)
         along, across = geometry.roller_inertia(self.material)
@@ -306,27 +263,9 @@ class TaperedForce(LocatingForce):
         moment = cage * sine * (along * spin - across * cage * cosine)
         return 0.5 * mass * geometry.pitch_diameter * cage**2, self._way * moment
 
-    def loads(
-        self,
-        pose: npt.ArrayLike,
-        *,
-        cage_angle: float = 0.0,
-        inner_speed: float = 0.0,
-        outer_speed: float = 0.0,
-        cage_speed: float | None = None,
-    ) -> TaperedLoads:
-        """Loads of all rollers; arguments and errors as of a call.
-
-        Parameters
-        ----------
-        pose : array (6,)
-            Pose of the inner ring in O.
-        cage_angle, inner_speed, outer_speed, cage_speed : float
-            Angle of the cage [rad] and speeds [rad/s], see `LocatingForce.__call__`.
-        """
-        self._evaluated(pose, cage_angle, inner_speed, outer_speed, cage_speed)
+    def _loads(self, angle: FloatArray, idle: float) -> TaperedLoads:
+        """See `LocatingForce`."""
         rows, shape = self._rollers.T.copy(), self.shape
-        angle = np.angle(np.exp(1j * (self.angles + cage_angle)))
         place, ring = rows[PLACE], rows[RING]
         slices = np.zeros((2, angle.size, self.positions.size))
         for side, (normal, moved) in enumerate(((shape.cone, ring - place), (shape.cup, place))):

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 from mbs.bearings.locating.locating_element import LocatingElement, Settled
 from mbs.bearings.tapered.line_film import DRY_LINES, LineFilms, cylinder_of
 from mbs.bearings.tapered.roller_findings import roller_gauge
-from mbs.bearings.tapered.tapered_bearing import TaperedForce
 from mbs.bearings.tapered.tapered_memory import FilmsOfRollers
 from mbs.model.findings import Gauge
 from mbs.model.relaxation import Relaxation
@@ -26,6 +25,8 @@ if TYPE_CHECKING:
 class TaperedElement(LocatingElement):
     """A bearing of tapered rollers, or of rollers between ribs, see `LocatingElement`; its law is a `LineFilms`."""
 
+    in_time = FilmsOfRollers
+
     @property
     def dry_law(self) -> LineFilms:
         """Lines without films."""
@@ -35,10 +36,6 @@ class TaperedElement(LocatingElement):
     def same_films(self) -> object:
         """See `LocatingElement.same_films`."""
         return cylinder_of(self.force.geometry)
-
-    def at_rest(self, force: TaperedForce) -> FilmsOfRollers:
-        """See `LocatingElement.at_rest`."""
-        return FilmsOfRollers.at_rest(force)
 
     def relaxation_at(self, at: Settled) -> Relaxation:
         """See `LocatingElement.relaxation_at`."""

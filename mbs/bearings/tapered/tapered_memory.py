@@ -49,13 +49,7 @@ class FilmsOfRollers:
 
     @classmethod
     def at_rest(cls, force: TaperedForce) -> FilmsOfRollers:
-        """Films that have not moved, at the pose of the last call of a force.
-
-        Parameters
-        ----------
-        force : TaperedForce
-            The force.
-        """
+        """See `FilmsInTime.at_rest` of `mbs.bearings.locating.locating_element`."""
         return cls(no_memory(force.angles.size, force.positions.size))._gone_on(force)
 
     def held(self, step: float) -> FloatArray:
@@ -66,15 +60,7 @@ class FilmsOfRollers:
         return memory
 
     def after(self, step: float, force: TaperedForce) -> FilmsOfRollers:
-        """Films after a step.
-
-        Parameters
-        ----------
-        step : float
-            Length of the step [s].
-        force : TaperedForce
-            The force with the films of its end, at the pose of its last call.
-        """
+        """See `FilmsInTime.after`."""
         return FilmsOfRollers(self.held(step))._gone_on(force)
 
     def _gone_on(self, force: TaperedForce) -> FilmsOfRollers:

@@ -18,6 +18,7 @@ from ehdmaps.errors import EhdmapsError, InputError
 from ehdmaps.outputs import FIGURE, Output, output_problems
 from ehdmaps.physics.bearing import BEARINGS, BearingGeometry
 from ehdmaps.physics.contact import OIL_TEMPERATURES
+from ehdmaps.physics.designations.reader import ROLLERS, plain_name
 from ehdmaps.physics.lubricant import DEFAULT_OIL, Lubricant
 from ehdmaps.physics.oil_supply import FLOODED, OilSupply
 from ehdmaps.physics.rollers.ribbed_geometry import NO_RIBS
@@ -66,7 +67,7 @@ if TYPE_CHECKING:
 import os
 
 from ehdmaps.inputs import first_bytes, read_text
-from ehdmaps.physics.catalogue import designated, designations, plain_designation
+from ehdmaps.physics.catalogue import designated, designations
 from ehdmaps.physics.rollers.needle_catalogue import needle_designations
 
 
@@ -83,7 +84,7 @@ def read_given(source: str, problems: list[str]) -> Given | None:
     from ehdmaps.jobs.defaults import SHIPPED  # with the readers of all tables of a job
 
     is_file = "\0" not in source and os.path.isfile(source)
-    if plain_designation(source) and not is_file and source not in SHIPPED:
+    if plain_name(source, ROLLERS) and not is_file and source not in SHIPPED:
         try:
             return Given(designated(source), STEEL)
         except InputError as error:

@@ -7,8 +7,9 @@ from collections.abc import Callable
 
 from ehdmaps.errors import InputError
 from ehdmaps.jobs.table import Table
-from ehdmaps.physics.point.ball_catalogue import ball_estimate, plain_ball_designation
-from ehdmaps.physics.rollers.tapered_catalogue import mirrored, plain_tapered_designation, tapered_estimate
+from ehdmaps.physics.designations.reader import BALLS, TAPERED, plain_name
+from ehdmaps.physics.point.ball_catalogue import ball_estimate
+from ehdmaps.physics.rollers.tapered_catalogue import mirrored, tapered_estimate
 from mbs.scene.fields import MICROMETRE
 from mbs.scene.shafts.standing import read_located
 from mbs.scene.specs import BallSpec, LocatingSpec, TaperedSpec
@@ -28,21 +29,13 @@ def reader_of(section: Table) -> Callable[[Table, str], LocatingSpec | None] | N
     given = section.get("bearing")
     if not isinstance(given, str):
         return None
-    if plain_ball_designation(given):
-        return read_ball
-    return read_tapered if plain_tapered_designation(given) else None
+    if plain_name(given, BALLS):
+        return _ball
+    return _tapered if plain_name(given, (TAPERED,)) else None
 
 
-def read_ball(section: Table, name: str) -> BallSpec | None:
-    """Read a ball bearing; None where a problem was noted.
-
-    Parameters
-    ----------
-    section : Table
-        The table; the caller closes it.
-    name : str
-        Name of the bearing.
-    """
+def _ball(section: Table, name: str) -> BallSpec | None:
+    """Read a ball bearing; None where a problem was noted."""
     inner, outer, geometry, turned, angle, offset = read_located(section, name, ball_estimate)
     clearance = section.quantity("diametral_clearance", "m", -WIDEST, WIDEST, MICROMETRE)
     if geometry is not None:
@@ -61,16 +54,8 @@ def read_ball(section: Table, name: str) -> BallSpec | None:
     return BallSpec(name, inner, outer, geometry, angle, offset)
 
 
-def read_tapered(section: Table, name: str) -> TaperedSpec | None:
-    """Read a tapered roller bearing; None where a problem was noted.
-
-    Parameters
-    ----------
-    section : Table
-        The table; the caller closes it.
-    name : str
-        Name of the bearing.
-    """
+def _tapered(section: Table, name: str) -> TaperedSpec | None:
+    """Read a tapered roller bearing; None where a problem was noted."""
     inner, outer, geometry, turned, angle, offset = read_located(section, name, tapered_estimate)
     if inner is None or outer is None or geometry is None:
         return None

@@ -7,7 +7,7 @@ import os
 from pathlib import Path
 
 from ehdmaps.outputs import MADE_AS, root_attributes
-from ehdmaps.physics.point.ball_catalogue import plain_ball_designation
+from ehdmaps.physics.designations.reader import BALLS, plain_name
 
 MADE = "map of points"
 """What files of such maps say that they are."""
@@ -29,7 +29,7 @@ def points_source(arguments: argparse.Namespace) -> str:
         return ""
     (source,) = given
     if not os.path.exists(source):
-        return source if plain_ball_designation(source.partition(",")[0]) else ""
+        return source if plain_name(source.partition(",")[0], BALLS) else ""
     if arguments.command == "generate" or not source.endswith(ENDING):
         return ""
     path = Path(source)
